@@ -1,0 +1,96 @@
+#include "base/quantity.hpp"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+
+#include "base/errors.hpp"
+
+namespace driftwright {
+namespace {
+
+struct FreeSystem {
+  void operator()(ut_system* s) const { ut_free_system(s); }
+};
+struct FreeUnit {
+  void operator()(ut_unit* u) const { ut_free(u); }
+};
+struct FreeConverter {
+  void operator()(cv_converter* c) const { cv_free(c); }
+};
+using UnitPtr = std::unique_ptr<ut_unit, FreeUnit>;
+using ConverterPtr = std::unique_ptr<cv_converter, FreeConverter>;
+
+ut_system* unit_system() {  // the one table of units, read from UDUNITS' own files at first use
+  static const std::unique_ptr<ut_system, FreeSystem> system = [] {
+    ut_set_error_message_handler(ut_ignore);
+    return std::unique_ptr<ut_system, FreeSystem>(ut_read_xml(nullptr));
+  }();
+  if (!system) throw std::runtime_error("the unit table of UDUNITS-2 cannot be read (package libudunits2-data)");
+  return system.get();
+}
+
+UnitPtr parse_unit(const std::string& text) {
+  UnitPtr unit(ut_parse(unit_system(), text.c_str(), UT_UTF8));
+  if (!unit) throw RangeError(fmt::format("unknown unit '{}'", text));
+  return unit;
+}
+
+ConverterPtr make_converter(const std::string& from, const std::string& to) {
+  const UnitPtr a = parse_unit(from), b = parse_unit(to);
+  if (ut_are_convertible(a.get(), b.get()) == 0) {
+    throw RangeError(fmt::format("wrong unit '{}': a quantity in {} is wanted", from, to));
+  }
+  return ConverterPtr(ut_get_converter(a.get(), b.get()));
+}
+
+struct NumberAndUnit {
+  double number;
+  std::string unit;
+};
+
+NumberAndUnit split(const std::string& text, const std::string& wanted) {
+  const char* begin = text.c_str();
+  char* end = nullptr;
+  const double number = std::strtod(begin, &end);
+  if (end == begin) throw RangeError(fmt::format("'{}' is not a number with a unit, such as '1 {}'", text, wanted));
+  if (!std::isfinite(number)) throw RangeError(fmt::format("'{}' is not a finite number", text));
+  std::string unit(end);
+  unit.erase(0, unit.find_first_not_of(" \t"));
+  return {number, unit};
+}
+
+bool has_offset(const std::string& unit) {  // degC, degF: zero of the unit is not zero of the kelvin scale
+  const ConverterPtr c = make_converter(unit, "K");
+  return cv_convert_double(c.get(), 0.0) != 0.0;
+}
+
+}  // namespace
+
+double parse_quantity(const std::string& text, const std::string& unit) {
+  const auto [number, given] = split(text, unit);
+  if (given.empty() && unit != "1") {
+    throw RangeError(fmt::format("'{}' has no unit: a quantity in {} is wanted, such as '{} {}'", text, unit, text, unit));
+  }
+  const ConverterPtr c = make_converter(given.empty() ? "1" : given, unit);
+  if (unit == "K" && has_offset(given)) {
+    throw RangeError(fmt::format("'{}' is a temperature; a temperature difference in K is wanted", text));
+  }
+  return cv_convert_double(c.get(), number);
+}
+
+double parse_temperature_K(const std::string& text) {
+  const auto [number, given] = split(text, "degC");
+  if (given.empty()) throw RangeError(fmt::format("'{}' has no unit: a temperature such as '20 degC' is wanted", text));
+  return cv_convert_double(make_converter(given, "K").get(), number);
+}
+
+double unit_factor(const std::string& from, const std::string& to) {
+  const ConverterPtr c = make_converter(from, to);
+  return cv_convert_double(c.get(), 1.0) - cv_convert_double(c.get(), 0.0);
+}
+
+}  // namespace driftwright

@@ -1,0 +1,160 @@
+#include "base/record.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "base/errors.hpp"
+
+namespace driftwright {
+namespace {
+
+const std::array<std::string, 16>& unit_table() {
+  static const std::array<std::string, 16> units = {"percent", "mm_min", "W_m2", "count", "degC", "urad", "min", "rpm",
+                                                    "um",      "mm",     "s",    "h",     "K",    "W",    "V",   "1"};
+  return units;
+}
+
+/// "bearing_front_degC" -> {"bearing_front", "degC"}; an empty unit where none is known.
+Channel split_header(const std::string& header) {
+  for (const std::string& unit : unit_table()) {  // longest first, so that mm_min wins over min
+    if (header.size() > unit.size() + 1 && header.ends_with("_" + unit)) {
+      return {header.substr(0, header.size() - unit.size() - 1), unit, {}};
+    }
+  }
+  return {header, "", {}};
+}
+
+std::vector<std::string> split_cells(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (char c : line) {
+    if (c == ',') {
+      cells.emplace_back();
+    } else if (c != '\r') {
+      cells.back() += c;
+    }
+  }
+  for (std::string& cell : cells) {
+    cell.erase(0, cell.find_first_not_of(" \t"));
+    cell.erase(cell.find_last_not_of(" \t") + 1);
+  }
+  return cells;
+}
+
+double parse_cell(const std::string& cell, const Where& where) {
+  if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
+  char* end = nullptr;
+  const double value = std::strtod(cell.c_str(), &end);
+  if (*end != '\0' || !std::isfinite(value)) {
+    throw InputError(where, fmt::format("'{}' is not a finite number; leave a missing value's cell empty", cell));
+  }
+  return value;
+}
+
+double seconds_per_time_unit(const std::string& header, const Where& where) {
+  if (header == "time_s") return 1.0;
+  if (header == "time_min") return 60.0;
+  if (header == "time_h") return 3600.0;
+  throw InputError(where, fmt::format("the first column is '{}'; time_s, time_min or time_h is wanted", header));
+}
+
+}  // namespace
+
+const Channel* Record::find(const std::string& name) const {
+  const auto hit = std::find_if(channels.begin(), channels.end(),
+                                [&](const Channel& c) { return c.name == name || c.header() == name; });
+  return hit == channels.end() ? nullptr : &*hit;
+}
+
+const Channel& Record::at(const std::string& name) const {
+  if (const Channel* channel = find(name)) return *channel;
+  std::vector<std::string> names;
+  for (const Channel& c : channels) names.push_back(c.header());
+  throw InputError(fmt::format("{}: no channel '{}'; there are {}", source, name, fmt::join(names, ", ")));
+}
+
+std::vector<std::string> Record::names_with_unit(const std::string& unit) const {
+  std::vector<std::string> names;
+  for (const Channel& c : channels) {
+    if (c.unit == unit) names.push_back(c.name);
+  }
+  return names;
+}
+
+std::span<const std::string> known_units() { return unit_table(); }
+
+Record read_record_csv(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: the file cannot be opened; is the path right?", path));
+  Record record{.source = path, .time_s = {}, .channels = {}};
+  double seconds = 0.0;
+  std::string line;
+  for (int line_number = 1; std::getline(file, line); ++line_number) {
+    if (line.starts_with("#") || line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::vector<std::string> cells = split_cells(line);
+    const auto where = [&](std::size_t cell) {
+      std::size_t column = 1;
+      for (std::size_t i = 0; i < cell; ++i) column += cells[i].size() + 1;
+      return Where{path, line_number, static_cast<int>(column),
+                   cell == 0 ? "time" : (cell <= record.channels.size() ? record.channels[cell - 1].header() : ""), ""};
+    };
+    if (seconds == 0.0) {  // the header
+      seconds = seconds_per_time_unit(cells[0], where(0));
+      for (std::size_t i = 1; i < cells.size(); ++i) {
+        Channel channel = split_header(cells[i]);
+        if (channel.unit.empty()) {
+          throw InputError(where(i), fmt::format("column '{}' names no unit; '<channel>_<unit>' is wanted with one of {}",
+                                                 cells[i], fmt::join(unit_table(), ", ")));
+        }
+        if (record.find(channel.header())) {
+          throw InputError(where(i), fmt::format("column '{}' appears twice", channel.header()));
+        }
+        record.channels.push_back(std::move(channel));
+      }
+      continue;
+    }
+    if (cells.size() != record.channels.size() + 1) {
+      throw InputError(where(0), fmt::format("{} cells where the header has {}", cells.size(), record.channels.size() + 1));
+    }
+    const double time_s = parse_cell(cells[0], where(0)) * seconds;
+    if (!std::isfinite(time_s)) throw InputError(where(0), "a row without a time");
+    if (!record.time_s.empty() && !(time_s > record.time_s.back())) {
+      throw InputError(where(0), fmt::format("time {} s does not follow {} s; rows must increase in time", time_s,
+                                             record.time_s.back()));
+    }
+    record.time_s.push_back(time_s);
+    for (std::size_t i = 1; i < cells.size(); ++i) record.channels[i - 1].values.push_back(parse_cell(cells[i], where(i)));
+  }
+  if (record.n_samples() < 2) {
+    throw InputError(fmt::format("{}: {} rows of data; a record needs at least two", path, record.n_samples()));
+  }
+  return record;
+}
+
+std::string record_csv(const Record& record, const std::vector<std::string>& comments) {
+  fmt::memory_buffer text;
+  auto out = std::back_inserter(text);
+  for (const std::string& comment : comments) fmt::format_to(out, "# {}\n", comment);
+  fmt::format_to(out, "time_s");
+  for (const Channel& c : record.channels) fmt::format_to(out, ",{}", c.header());
+  fmt::format_to(out, "\n");
+  for (std::size_t i = 0; i < record.n_samples(); ++i) {
+    fmt::format_to(out, "{:.10g}", record.time_s[i]);
+    for (const Channel& c : record.channels) {
+      if (std::isnan(c.values[i])) {
+        fmt::format_to(out, ",");
+      } else {
+        fmt::format_to(out, ",{:.7g}", c.values[i]);
+      }
+    }
+    fmt::format_to(out, "\n");
+  }
+  return fmt::to_string(text);
+}
+
+}  // namespace driftwright

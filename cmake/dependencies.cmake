@@ -1,0 +1,26 @@
+# Everything Driftwright takes from Debian 12, with the lowest version known to work. Packages: packages.txt.
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 3.4 REQUIRED)
+find_package(fmt 9 REQUIRED)
+find_package(yaml-cpp 0.7 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(GTest 1.12 REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(SUNDIALS 6.4 REQUIRED COMPONENTS arkode nvecserial)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
+pkg_check_modules(udunits REQUIRED IMPORTED_TARGET udunits)
+
+# Spectra is header-only; its package's own CMake file asks for nothing more than Eigen.
+find_path(SPECTRA_INCLUDE_DIR Spectra/SymGEigsShiftSolver.h REQUIRED)
+
+# Debian's SuiteSparse 5 and Gmsh come without CMake files.
+function(driftwright_import name library header suffixes)
+  find_library(${name}_LIBRARY ${library} REQUIRED)
+  find_path(${name}_INCLUDE_DIR ${header} PATH_SUFFIXES ${suffixes} REQUIRED)
+  add_library(${name} UNKNOWN IMPORTED)
+  set_target_properties(${name} PROPERTIES IMPORTED_LOCATION ${${name}_LIBRARY}
+    INTERFACE_SYSTEM_INCLUDE_DIRECTORIES ${${name}_INCLUDE_DIR} INTERFACE_INCLUDE_DIRECTORIES ${${name}_INCLUDE_DIR})
+endfunction()
+driftwright_import(SuiteSparse::CHOLMOD cholmod cholmod.h suitesparse)
+driftwright_import(Gmsh::Gmsh gmsh gmsh.h "")

@@ -1,0 +1,58 @@
+#pragma once
+// The mesh: nodes, cells in named regions, facets in named surfaces, and joints where parts meet.
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace driftwright::mesh {
+
+/// Shapes of cells and facets. Node order as in VTK (quadratic tetrahedra: corners, then the mid-side nodes of the
+/// edges 01, 12, 20, 03, 13, 23).
+enum class CellShape : unsigned char { kTri3, kTri6, kTet4, kTet10 };
+
+[[nodiscard]] int n_nodes_of(CellShape shape);
+/// Number of corner nodes; they come first in a cell.
+[[nodiscard]] int n_corners_of(CellShape shape);
+
+/// Cells (or facets) of mixed shapes, each in one group: a region for cells, a surface for facets.
+struct Cells {
+  std::vector<CellShape> shape;
+  std::vector<int> offset = {0};  ///< nodes of cell c: node[offset[c]] .. node[offset[c + 1] - 1]
+  std::vector<int> node;
+  std::vector<int> group;  ///< index into regions or surfaces
+
+  [[nodiscard]] int size() const { return static_cast<int>(shape.size()); }
+  [[nodiscard]] std::span<const int> nodes(int cell) const {
+    return {node.data() + offset[cell], static_cast<std::size_t>(offset[cell + 1] - offset[cell])};
+  }
+  void add(CellShape cell_shape, std::span<const int> nodes, int cell_group);
+};
+
+/// Two surfaces that touch and share no node. Each facet of side_a is matched to side_b by closest points.
+struct Joint {
+  std::string name;    ///< "<region a>/<region b>", alphabetical
+  std::string side_a;  ///< surface name
+  std::string side_b;
+};
+
+struct Mesh {
+  Eigen::Matrix3Xd coords;  ///< 3 x n_nodes [m], one column per node
+  Cells cells;
+  Cells facets;
+  std::vector<std::string> regions;
+  std::vector<std::string> surfaces;
+  std::vector<Joint> joints;
+
+  [[nodiscard]] int n_nodes() const { return static_cast<int>(coords.cols()); }
+  /// Index of a region or surface, -1 when there is none of that name.
+  [[nodiscard]] int region(const std::string& name) const;
+  [[nodiscard]] int surface(const std::string& name) const;
+  [[nodiscard]] const Joint* joint(const std::string& name) const;
+  /// Cells of a region, facets of a surface; by index.
+  [[nodiscard]] std::vector<int> cells_in(int region) const;
+  [[nodiscard]] std::vector<int> facets_on(int surface) const;
+};
+
+}  // namespace driftwright::mesh
