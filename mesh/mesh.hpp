@@ -9,7 +9,7 @@
 namespace driftwright::mesh {
 
 /// Shapes of cells and facets. Node order as in VTK (quadratic tetrahedra: corners, then the mid-side nodes of the
-/// edges 01, 12, 20, 03, 13, 23).
+/// edges 01, 12, 20, 03, 13, 23; triangles: 01, 12, 20).
 enum class CellShape : unsigned char { kTri3, kTri6, kTet4, kTet10 };
 
 [[nodiscard]] int n_nodes_of(CellShape shape);

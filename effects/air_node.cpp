@@ -1,0 +1,22 @@
+#include "effects/effect.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void contribute(const Effect& e, HeatBalance& balance) {
+  balance.nodes.push_back({e.place, e["capacity"], e["exchange"]});
+}
+
+}  // namespace
+
+EffectKind air_node() {
+  return {.key = "air_node",
+          .title = "air near the machine that the machine warms",
+          .law = "C dT/dt = sum of films that name it as surrounding - exchange (T - T_hall)",
+          .place = Place::kNode,
+          .parameters = {{"capacity", "J/K", 1e-3, 1e9, {}, "heat capacity of the pocket of air, 1.2 kJ/K for 1 m^3"},
+                         {"exchange", "W/K", 1e-6, 1e6, {}, "conductance to the hall"}},
+          .contribute = contribute};
+}
+
+}  // namespace driftwright::effects

@@ -1,0 +1,46 @@
+#pragma once
+// Turns volumes of the open Gmsh model into a Mesh whose parts share no nodes: where two parts touch, each keeps its own
+// copy of the nodes and a Joint remembers the two sides.
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace driftwright::mesh {
+
+/// An open Gmsh session, quiet, single-threaded and therefore repeatable. One at a time.
+class GmshSession {
+ public:
+  GmshSession();
+  ~GmshSession();
+  GmshSession(const GmshSession&) = delete;
+  GmshSession& operator=(const GmshSession&) = delete;
+};
+
+/// A part of the machine: which Gmsh volumes it is made of, and how fine its mesh shall be.
+struct Part {
+  std::string region;
+  std::vector<int> volumes;  ///< Gmsh volume tags after fragmenting
+  double mesh_size_m = 0.05;
+};
+
+/// What is known of an outer face of a part before it has a name; lengths in m.
+struct OuterFace {
+  std::string region;
+  std::array<double, 3> low;   ///< bounding box
+  std::array<double, 3> high;
+};
+
+/// Meshes the model and reads it back.
+///
+/// @param parts    every volume of the model in exactly one part
+/// @param order    1: tet4, 2: tet10 with curved edges
+/// @param name_of  surface name of an outer face
+/// @throws SolveError  when Gmsh fails (its message) or a cell is inverted
+[[nodiscard]] Mesh mesh_parts(const std::vector<Part>& parts, int order,
+                              const std::function<std::string(const OuterFace&)>& name_of);
+
+}  // namespace driftwright::mesh

@@ -1,0 +1,24 @@
+#pragma once
+// From mesh, materials and heat balance to the full thermal system. Unknowns: the mesh's nodes in their order, then the
+// lumped nodes in the order of the balance.
+
+#include "effects/heat_balance.hpp"
+#include "mesh/mesh.hpp"
+#include "solver/material.hpp"
+#include "solver/thermal_system.hpp"
+
+namespace driftwright::solver {
+
+/// Material of each region, in the order of mesh.regions.
+using RegionMaterials = std::vector<Material>;
+
+/// Assembles M, K0, sources and exchanges; outputs stay empty.
+///
+///     M_ij = ∫ ρ c N_i N_j dV (consistent),  K0_ij = ∫ k ∇N_i·∇N_j dV,  film G_ij = ∫ N_i N_j dA
+///
+/// Every name in the balance must exist in the mesh (the scenario reader sees to it).
+/// @throws std::logic_error  for a name that does not exist
+[[nodiscard]] FullSystem assemble_heat(const mesh::Mesh& mesh, const RegionMaterials& materials,
+                                       const effects::HeatBalance& balance);
+
+}  // namespace driftwright::solver

@@ -1,0 +1,38 @@
+#include "solver/joint.hpp"
+
+#include "mesh/locate.hpp"
+#include "mesh/shape.hpp"
+
+namespace driftwright::solver {
+
+std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint) {
+  const std::vector<int> side_a = mesh.facets_on(mesh.surface(joint.side_a));
+  const std::vector<int> side_b = mesh.facets_on(mesh.surface(joint.side_b));
+  std::vector<std::vector<JointPoint>> of_facet(side_a.size());
+#pragma omp parallel for schedule(dynamic, 8)
+  for (std::size_t f = 0; f < side_a.size(); ++f) {
+    const int facet = side_a[f];
+    const mesh::CellShape shape = mesh.facets.shape[facet];
+    const auto nodes_a = mesh.facets.nodes(facet);
+    const auto x = mesh::cell_coords(mesh, nodes_a);
+    for (const mesh::QuadraturePoint& q : mesh::quadrature(shape, 5)) {
+      const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
+      const Eigen::Vector3d position = x * s.N.head(s.n).transpose();
+      const mesh::MeshPoint opposite = mesh::nearest_point(mesh, mesh.facets, side_b, position);
+      const mesh::ShapeValues sb = mesh::shape_values(mesh.facets.shape[opposite.cell], opposite.xi);
+      const auto nodes_b = mesh.facets.nodes(opposite.cell);
+      JointPoint point{.node_a = {nodes_a.begin(), nodes_a.end()},
+                       .node_b = {nodes_b.begin(), nodes_b.end()},
+                       .weight_a = {s.N.data(), s.N.data() + s.n},
+                       .weight_b = {sb.N.data(), sb.N.data() + sb.n},
+                       .area_m2 = q.weight * mesh::jacobian(s, x, shape).det,
+                       .gap_m = opposite.distance_m};
+      of_facet[f].push_back(std::move(point));
+    }
+  }
+  std::vector<JointPoint> points;
+  for (auto& list : of_facet) std::move(list.begin(), list.end(), std::back_inserter(points));
+  return points;
+}
+
+}  // namespace driftwright::solver

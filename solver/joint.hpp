@@ -1,0 +1,22 @@
+#pragma once
+// Joints between parts that share no nodes: quadrature points of side a matched with the nearest points of side b.
+
+#include <array>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace driftwright::solver {
+
+/// One quadrature point of a joint. The jump of a nodal field across it is Σ weight_a u(node_a) - Σ weight_b u(node_b).
+struct JointPoint {
+  std::vector<int> node_a, node_b;
+  std::vector<double> weight_a, weight_b;  ///< shape functions; each sums to one, so that no heat is made or lost
+  double area_m2 = 0.0;                    ///< quadrature weight times area ratio
+  double gap_m = 0.0;                      ///< distance between the two points
+};
+
+/// The quadrature points of a joint; the rule is exact for products of quadratic functions on straight facets.
+[[nodiscard]] std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint);
+
+}  // namespace driftwright::solver

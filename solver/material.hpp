@@ -1,0 +1,30 @@
+#pragma once
+// Materials by name, each value with its source, and materials of the user's own.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/config_map.hpp"
+
+namespace driftwright::solver {
+
+/// Isotropic, at about 20 degC.
+struct Material {
+  double density_kg_m3 = 0.0;
+  double conductivity_W_mK = 0.0;
+  double heat_capacity_J_kgK = 0.0;
+  double youngs_modulus_Pa = 0.0;
+  double poisson_ratio = 0.0;
+  double expansion_1_K = 0.0;
+  std::string source;
+};
+
+/// The library, by name.
+[[nodiscard]] const std::map<std::string, Material>& material_library();
+
+/// Reads a material given by its values: density, conductivity, heat_capacity, youngs_modulus, poisson_ratio, expansion, and
+/// optionally source. @throws InputError
+[[nodiscard]] Material read_material(const ConfigMap& in);
+
+}  // namespace driftwright::solver

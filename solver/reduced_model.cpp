@@ -1,0 +1,181 @@
+#include "solver/reduced_model.hpp"
+
+#include <Spectra/SymGEigsShiftSolver.h>
+#include <fmt/format.h>
+
+#include <Eigen/CholmodSupport>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace driftwright::solver {
+namespace {
+
+using ColumnMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
+
+SparseRow stiffness_at(const FullSystem& system, const effects::Inputs& at) {
+  SparseRow k = system.conduction;
+  for (const auto& e : system.exchanges) k += e.coefficient(at) * e.matrix;
+  return k;
+}
+
+class Factor {
+ public:
+  explicit Factor(const SparseRow& k) {
+    llt_.cholmod().print = 0;
+    llt_.compute(ColumnMatrix(Eigen::SparseMatrix<double, Eigen::ColMajor, int>(k.transpose())));
+    if (llt_.info() != Eigen::Success) {
+      throw SolveError("the heat conduction matrix is singular: some part has no film, joint or link through which heat leaves");
+    }
+  }
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const { return llt_.solve(b); }
+
+ private:
+  Eigen::CholmodSupernodalLLT<ColumnMatrix, Eigen::Lower> llt_;
+};
+
+// Spectra's two operators: x -> K⁻¹ x (shift zero) and x -> M x.
+struct InverseStiffness {
+  using Scalar = double;
+  const Factor& factor;
+  int n;
+  [[nodiscard]] Eigen::Index rows() const { return n; }
+  [[nodiscard]] Eigen::Index cols() const { return n; }
+  void set_shift(double) {}
+  void perform_op(const double* x, double* y) const {
+    Eigen::Map<Eigen::VectorXd>(y, n) = factor.solve(Eigen::Map<const Eigen::VectorXd>(x, n));
+  }
+};
+struct MassProduct {
+  using Scalar = double;
+  const SparseRow& mass;
+  [[nodiscard]] Eigen::Index rows() const { return mass.rows(); }
+  [[nodiscard]] Eigen::Index cols() const { return mass.cols(); }
+  void perform_op(const double* x, double* y) const { multiply(mass, x, y); }
+};
+
+/// (e^{-a} - 1 + a) / a² and (1 - e^{-a}) / a without cancellation near a = 0.
+double phi1(double a) { return std::abs(a) < 1e-8 ? 1.0 - 0.5 * a : -std::expm1(-a) / a; }
+double phi2(double a) { return std::abs(a) < 1e-3 ? 0.5 - a / 6.0 + a * a / 24.0 : (1.0 - phi1(a)) / a; }
+
+}  // namespace
+
+ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, int n_modes) {
+  const int n = system.size();
+  if (n_modes < 1 || n_modes > n - 2) throw InputError(fmt::format("{} thermal modes of {} unknowns cannot be had", n_modes, n));
+  const Factor factor(stiffness_at(system, at));
+  InverseStiffness inverse{factor, n};
+  MassProduct mass{system.mass};
+  const int n_krylov = std::min(n, std::max(2 * n_modes + 1, 20));
+  Spectra::SymGEigsShiftSolver<InverseStiffness, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(inverse, mass, n_modes,
+                                                                                                     n_krylov, 0.0);
+  // A fixed start makes the modes repeatable; equal weights reach every mode of an irregular machine.
+  Eigen::VectorXd start(n);
+  for (int i = 0; i < n; ++i) start[i] = std::sin(1.0 + i);
+  solver.init(start.data());
+  const auto n_found = solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10);
+  if (solver.info() != Spectra::CompInfo::Successful || n_found < n_modes) {
+    throw SolveError(fmt::format("{} of {} thermal modes converged; ask for fewer", n_found, n_modes));
+  }
+  ThermalModes modes;
+  modes.shapes = solver.eigenvectors();
+  // Slowest first: Spectra sorts by 1/lambda, largest first, and returns lambda.
+  for (int i = 0; i < n_modes; ++i) modes.time_constant_s.push_back(1.0 / solver.eigenvalues()[i]);
+  for (int i = 0; i < n_modes; ++i) {
+    Eigen::VectorXd m_phi(n);
+    multiply(system.mass, modes.shapes.col(i).data(), m_phi.data());
+    modes.shapes.col(i) /= std::sqrt(m_phi.dot(modes.shapes.col(i)));
+  }
+  return modes;
+}
+
+Eigen::MatrixXd steady_responses(const FullSystem& system, const effects::Inputs& at) {
+  const Factor factor(stiffness_at(system, at));
+  const auto n_sources = static_cast<Eigen::Index>(system.sources.size());
+  Eigen::MatrixXd responses(system.size(), n_sources + 1);
+  for (Eigen::Index s = 0; s < n_sources; ++s) responses.col(s) = factor.solve(system.sources[s].load);
+  Eigen::VectorXd hall = Eigen::VectorXd::Zero(system.size());
+  for (const auto& e : system.exchanges) hall += e.coefficient(at) * e.to_hall;
+  responses.col(n_sources) = factor.solve(hall);
+  return responses;
+}
+
+Eigen::MatrixXd orthonormalise(const SparseRow& mass, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd basis(columns.rows(), columns.cols()), m_basis(columns.rows(), columns.cols());
+  int kept = 0;
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+    Eigen::VectorXd v = columns.col(c), mv(columns.rows());
+    multiply(mass, v.data(), mv.data());
+    const double length = std::sqrt(v.dot(mv));
+    for (int pass = 0; pass < 2; ++pass) v -= basis.leftCols(kept) * (m_basis.leftCols(kept).transpose() * v);  // twice is enough
+    multiply(mass, v.data(), mv.data());
+    const double rest = std::sqrt(v.dot(mv));
+    if (!(rest > 1e-10 * length)) continue;
+    basis.col(kept) = v / rest;
+    m_basis.col(kept) = mv / rest;
+    ++kept;
+  }
+  return basis.leftCols(kept);
+}
+
+ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis) {
+  const auto reduce = [&](const SparseRow& a) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd r = basis.transpose() * (a * basis);
+    return 0.5 * (r + r.transpose());
+  };
+  ReducedSystem reduced;
+  reduced.mass = reduce(system.mass);
+  reduced.conduction = reduce(system.conduction);
+  for (const HeatSource& s : system.sources) reduced.sources.push_back({s.name, basis.transpose() * s.load, s.power_W});
+  for (const auto& e : system.exchanges) {
+    reduced.exchanges.push_back({e.name, reduce(e.matrix), basis.transpose() * e.to_hall, e.hall_sum, e.coefficient});
+  }
+  reduced.outputs = {system.outputs.name, system.outputs.unit, basis.transpose() * system.outputs.state, system.outputs.hall};
+  Eigen::VectorXd m_ones(system.size());
+  multiply(system.mass, system.ones.data(), m_ones.data());
+  reduced.ones = basis.transpose() * m_ones;
+  return reduced;
+}
+
+Trajectory evolve(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+                  const std::vector<double>& output_s, const Eigen::VectorXd& start) {
+  Trajectory run;
+  run.time_s = output_s;
+  run.outputs.resize(system.outputs.state.cols(), static_cast<Eigen::Index>(output_s.size()));
+  Eigen::VectorXd state = start;
+  std::size_t next = 0;
+  double known_speed_rpm = -1.0;
+  Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+  Eigen::MatrixXd to_modes;
+  for (const LinearStretch& stretch : linear_stretches(cyclogram, hall)) {
+    const double length_s = stretch.end_s - stretch.start_s;
+    const effects::Inputs at_start{stretch.speed_rpm, hall.at(stretch.start_s)}, at_end{stretch.speed_rpm, hall.at(stretch.end_s)};
+    if (stretch.speed_rpm != known_speed_rpm) {
+      Eigen::MatrixXd k = system.conduction;
+      for (const auto& e : system.exchanges) k += e.coefficient(at_start) * e.matrix;
+      eigen.compute(k, system.mass);
+      to_modes = eigen.eigenvectors().transpose() * system.mass;  // x = V z, V'MV = 1
+      known_speed_rpm = stretch.speed_rpm;
+    }
+    const Eigen::VectorXd z0 = to_modes * state;
+    const Eigen::VectorXd f0 = eigen.eigenvectors().transpose() * system.load(at_start);
+    const Eigen::VectorXd slope = (eigen.eigenvectors().transpose() * system.load(at_end) - f0) / length_s;
+    const auto state_after = [&](double dt_s) -> Eigen::VectorXd {  // z' = -λ z + f0 + slope t
+      Eigen::VectorXd z(z0.size());
+      for (Eigen::Index i = 0; i < z.size(); ++i) {
+        const double a = eigen.eigenvalues()[i] * dt_s;
+        z[i] = std::exp(-a) * z0[i] + dt_s * phi1(a) * f0[i] + dt_s * dt_s * phi2(a) * slope[i];
+      }
+      return eigen.eigenvectors() * z;
+    };
+    for (; next < output_s.size() && output_s[next] <= stretch.end_s; ++next) {
+      run.outputs.col(static_cast<Eigen::Index>(next)) =
+          system.observe(state_after(output_s[next] - stretch.start_s), hall.at(output_s[next]));
+    }
+    state = state_after(length_s);
+  }
+  return run;
+}
+
+}  // namespace driftwright::solver

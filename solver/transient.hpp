@@ -1,0 +1,34 @@
+#pragma once
+// The full model in time: SUNDIALS ARKODE with the consistent mass matrix.
+//
+// Stiffly accurate, L-stable ESDIRK of order 3 with error control (ARKODE_ESDIRK324L2SA_4_2_3, Kennedy & Carpenter 2019). The
+// integrator stops exactly where the speed changes or the hall's curve bends and restarts where the speed jumps. The heat of
+// each source and each exchange with the hall is integrated beside the temperatures with the same stage weights, so that the
+// energy balance closes to rounding: Runge-Kutta methods keep linear invariants.
+
+#include <functional>
+
+#include "base/cyclogram.hpp"
+#include "solver/thermal_system.hpp"
+
+namespace driftwright::solver {
+
+struct TransientOptions {
+  double relative_tolerance = 1e-4;  ///< of θ
+  double absolute_tolerance_K = 5e-4;
+  double max_step_s = 1200.0;
+};
+
+/// Called at each output time with the time, the state and the share of the run that is done; throwing ends the run.
+using OutputCallback = std::function<void(double time_s, const Eigen::VectorXd& state)>;
+
+/// Runs the cyclogram from `start` (state at t = 0, zero: everything at the reference temperature).
+///
+/// @param hall     hall temperature minus the reference temperature [K]
+/// @param output_s times of the outputs, increasing, within the cyclogram
+/// @throws SolveError  with time and ARKODE's flag when it gives up
+[[nodiscard]] Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+                                  const std::vector<double>& output_s, const TransientOptions& options,
+                                  const Eigen::VectorXd& start, const OutputCallback& callback = {});
+
+}  // namespace driftwright::solver
