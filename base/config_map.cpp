@@ -89,6 +89,8 @@ bool ConfigMap::has(const std::string& key) const {
   return (*node_)[key].IsDefined();
 }
 
+bool ConfigMap::is_map(const std::string& key) const { return has(key) && (*node_)[key].IsMap(); }
+
 std::vector<std::string> ConfigMap::keys() const {
   std::vector<std::string> keys;
   for (const auto& entry : *node_) keys.push_back(entry.first.as<std::string>());

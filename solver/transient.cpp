@@ -191,6 +191,7 @@ LinearSolverPtr make_linear_solver(HeatOde& ode, SUNContext context,
   s->content = &ode;
   s->ops->gettype = embedded_type;
   s->ops->solve = solve;
+  s->ops->setatimes = [](SUNLinearSolver, void*, SUNATimesFn) -> int { return 0; };  // it knows its matrix
   s->ops->free = [](SUNLinearSolver self) -> int {
     self->content = nullptr;  // borrowed
     SUNLinSolFreeEmpty(self);
@@ -240,11 +241,12 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
 
   const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, hall);
   ode.set_speed(stretches.front().speed_rpm);
+  // Made before ARKODE and freed after it, which still looks at them when it goes.
+  const LinearSolverPtr shifted = make_linear_solver(ode, context.get(), shifted_solve_callback);
+  const LinearSolverPtr mass = make_linear_solver(ode, context.get(), mass_solve_callback);
   const ArkodePtr arkode(ARKStepCreate(nullptr, rhs_callback, 0.0, y.get(), context.get()));
   void* mem = arkode.get();
   ode.arkode = mem;
-  const LinearSolverPtr shifted = make_linear_solver(ode, context.get(), shifted_solve_callback);
-  const LinearSolverPtr mass = make_linear_solver(ode, context.get(), mass_solve_callback);
   const auto must = [&](int flag, const char* call) { check(flag, call, 0.0, ode); };
   must(ARKStepSetUserData(mem, &ode), "ARKStepSetUserData");
   must(ARKStepSVtolerances(mem, options.relative_tolerance, tolerance.get()), "ARKStepSVtolerances");

@@ -1,0 +1,235 @@
+#include "scenarios/machine.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "base/quantity.hpp"
+#include "mesh/locate.hpp"
+#include "mesh/shape.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+using mesh::Mesh;
+using solver::DisplacementFunctional;
+
+constexpr double kSnap_m = 5e-3;  ///< how far a sensor may be moved onto its region
+
+[[noreturn]] void unknown_name(const Where& where, const std::string& what, const std::string& name,
+                               const std::vector<std::string>& known) {
+  const std::string near = nearest_word(name, known);
+  throw InputError(where, fmt::format("the mesh has no {} '{}'; there are {}.{}", what, name, fmt::join(known, ", "),
+                                      near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+}
+
+std::vector<std::string> outer_surfaces(const Mesh& mesh) {  // those a film can lie on: not the sides of joints
+  std::vector<std::string> names;
+  for (const std::string& s : mesh.surfaces) {
+    if (s.find('@') == std::string::npos) names.push_back(s);
+  }
+  return names;
+}
+
+std::vector<std::string> joint_names(const Mesh& mesh) {
+  std::vector<std::string> names;
+  for (const mesh::Joint& j : mesh.joints) names.push_back(j.name);
+  return names;
+}
+
+void must_be_one_of(const Where& where, const std::string& what, const std::string& name, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), name) == known.end()) unknown_name(where, what, name, known);
+}
+
+solver::RegionMaterials place_materials(const MachineModel& model, const Mesh& mesh) {
+  solver::RegionMaterials materials(mesh.regions.size());
+  std::vector<bool> given(mesh.regions.size(), false);
+  for (const MaterialEntry& entry : model.materials) {
+    must_be_one_of(entry.where, "region", entry.region, mesh.regions);
+    materials[mesh.region(entry.region)] = entry.material;
+    given[mesh.region(entry.region)] = true;
+  }
+  for (std::size_t r = 0; r < given.size(); ++r) {
+    if (!given[r]) throw InputError(model.where, fmt::format("region '{}' has no material; add it under `materials`", mesh.regions[r]));
+  }
+  return materials;
+}
+
+void check_effects(const MachineModel& model, const Mesh& mesh, const effects::HeatBalance& balance) {
+  std::vector<std::string> nodes, surroundings = {"hall"};
+  for (const effects::LumpedNode& n : balance.nodes) {
+    nodes.push_back(n.name);
+    surroundings.push_back(n.name);
+  }
+  for (const effects::Effect& e : model.effects) {
+    switch (e.kind->place) {
+      case effects::Place::kRegion: must_be_one_of(e.where, "region", e.place, mesh.regions); break;
+      case effects::Place::kSurface: must_be_one_of(e.where, "surface", e.place, outer_surfaces(mesh)); break;
+      case effects::Place::kJoint: must_be_one_of(e.where, "joint", e.place, joint_names(mesh)); break;
+      case effects::Place::kNode: break;  // it makes the node
+    }
+    if (e.kind->has_surrounding) must_be_one_of(e.where, "surrounding (lumped node)", e.surrounding, surroundings);
+  }
+  for (const mesh::Joint& joint : mesh.joints) {
+    const bool has_contact = std::any_of(balance.contacts.begin(), balance.contacts.end(),
+                                         [&](const effects::Contact& c) { return c.joint == joint.name; });
+    if (!has_contact) {
+      throw InputError(model.where, fmt::format("joint '{}' has no contact; add {{type: contact, joint: {}, conductance: ... W/(m^2 K)}} "
+                                                "to `effects` (0 W/(m^2 K) insulates)",
+                                                joint.name, joint.name));
+    }
+  }
+}
+
+/// The point of a region nearest to where the user put it.
+mesh::MeshPoint place_point(const Mesh& mesh, const PointOnRegion& point) {
+  must_be_one_of(point.where, "region", point.region, mesh.regions);
+  const std::vector<int> cells = mesh.cells_in(mesh.region(point.region));
+  const mesh::MeshPoint found = mesh::nearest_point(mesh, mesh.cells, cells, point.at_m);
+  if (!(found.distance_m <= kSnap_m)) {
+    throw InputError(point.where, fmt::format("the point lies {:.1f} mm outside region '{}' (at most {:.0f} mm is moved); its nearest point is "
+                                              "[{:.1f} mm, {:.1f} mm, {:.1f} mm]",
+                                              1e3 * found.distance_m, point.region, 1e3 * kSnap_m, 1e3 * found.position_m[0],
+                                              1e3 * found.position_m[1], 1e3 * found.position_m[2]));
+  }
+  return found;
+}
+
+void add_displacement(DisplacementFunctional& d, const Mesh& mesh, const mesh::MeshPoint& at, const Eigen::Vector3d& direction) {
+  const auto s = mesh::shape_values(mesh.cells.shape[at.cell], at.xi);
+  const auto nodes = mesh.cells.nodes(at.cell);
+  for (int i = 0; i < s.n; ++i) d.terms.push_back({nodes[i], s.N[i] * direction});
+}
+
+/// Adds c·ω with the rotation ω = ½ curl u at a point: c·(∇N × u)/2 = u·(c × ∇N)/2.
+void add_rotation(DisplacementFunctional& d, const Mesh& mesh, const mesh::MeshPoint& at, const Eigen::Vector3d& c) {
+  const auto shape = mesh.cells.shape[at.cell];
+  const auto s = mesh::shape_values(shape, at.xi);
+  const auto nodes = mesh.cells.nodes(at.cell);
+  const Eigen::Matrix3d inverse_t = mesh::jacobian(s, mesh::cell_coords(mesh, nodes), shape).dx_dxi.inverse().transpose();
+  for (int i = 0; i < s.n; ++i) d.terms.push_back({nodes[i], 0.5 * c.cross(inverse_t * s.dN.col(i))});
+}
+
+DisplacementFunctional tool_against_table(const Mesh& mesh, const DisplacementOutput& output) {
+  const mesh::MeshPoint tool = place_point(mesh, output.tool), table = place_point(mesh, output.table);
+  const Eigen::Vector3d direction = Eigen::Vector3d::Unit(output.axis);
+  const Eigen::Vector3d arm = tool.position_m - table.position_m;
+  DisplacementFunctional d;  // e·(u_tool - u_table - ω_table × arm)
+  add_displacement(d, mesh, tool, direction);
+  add_displacement(d, mesh, table, -direction);
+  add_rotation(d, mesh, table, -arm.cross(direction));
+  return d;
+}
+
+DisplacementFunctional tilt_against_table(const Mesh& mesh, const TiltOutput& output) {
+  const mesh::MeshPoint from = place_point(mesh, output.from), to = place_point(mesh, output.to);
+  const Eigen::Vector3d line = to.position_m - from.position_m;
+  // A rigid rotation ω turns the line by ω × line; the part about the axis is axis·(line × Δu)/|line_perpendicular|².
+  const Eigen::Vector3d axis = Eigen::Vector3d::Unit(output.axis);
+  const Eigen::Vector3d across = axis.cross(line) / axis.cross(line).squaredNorm();
+  DisplacementFunctional d;
+  add_displacement(d, mesh, to, across);
+  add_displacement(d, mesh, from, -across);
+  add_rotation(d, mesh, place_point(mesh, output.table), -axis);
+  return d;
+}
+
+}  // namespace
+
+PlacedMachine place(const MachineModel& model) {
+  PlacedMachine placed;
+  placed.mesh = std::visit([](const mesh::KneeMill& mill) { return mesh::build_knee_mill(mill); }, model.mesh);
+  const Mesh& mesh = placed.mesh;
+  placed.materials = place_materials(model, mesh);
+  placed.balance = effects::heat_balance(model.effects);
+  check_effects(model, mesh, placed.balance);
+  for (const SupportEntry& s : model.supports) {
+    must_be_one_of(s.where, "surface", s.support.surface, outer_surfaces(mesh));
+    placed.supports.push_back(s.support);
+  }
+  for (const Sensor& sensor : model.sensors) {
+    std::vector<std::pair<int, double>> weights;
+    if (const auto* point = std::get_if<PointOnRegion>(&sensor.place)) {
+      const mesh::MeshPoint at = place_point(mesh, *point);
+      const auto s = mesh::shape_values(mesh.cells.shape[at.cell], at.xi);
+      for (int i = 0; i < s.n; ++i) weights.emplace_back(mesh.cells.nodes(at.cell)[i], s.N[i]);
+    } else if (const std::string& node = std::get<std::string>(sensor.place); node != "hall") {
+      std::vector<std::string> known = {"hall"};
+      for (std::size_t i = 0; i < placed.balance.nodes.size(); ++i) {
+        known.push_back(placed.balance.nodes[i].name);
+        if (known.back() == node) weights.emplace_back(mesh.n_nodes() + static_cast<int>(i), 1.0);
+      }
+      must_be_one_of(sensor.where, "lumped node", node, known);
+    }
+    placed.sensor_weights.push_back(std::move(weights));
+  }
+  for (const DisplacementOutput& d : model.displacements) placed.functionals.push_back(tool_against_table(mesh, d));
+  for (const TiltOutput& t : model.tilts) placed.functionals.push_back(tilt_against_table(mesh, t));
+  return placed;
+}
+
+Machine build(const MachineModel& model, PlacedMachine placed) {
+  solver::Elasticity elasticity(placed.mesh, placed.materials, placed.supports);
+  Machine machine{std::move(placed), std::move(elasticity), {}};
+  machine.system = solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance);
+  solver::Outputs& out = machine.system.outputs;
+  const auto n_sensors = model.sensors.size();
+  const auto n_outputs = static_cast<Eigen::Index>(n_sensors + machine.placed.functionals.size());
+  out.state = Eigen::MatrixXd::Zero(machine.system.size(), n_outputs);
+  out.hall = Eigen::VectorXd::Zero(n_outputs);
+  for (std::size_t i = 0; i < n_sensors; ++i) {
+    out.name.push_back(model.sensors[i].name);
+    out.unit.emplace_back("K");
+    const auto& weights = machine.placed.sensor_weights[i];
+    for (const auto& [unknown, weight] : weights) out.state(unknown, static_cast<Eigen::Index>(i)) += weight;
+    if (weights.empty()) out.hall[static_cast<Eigen::Index>(i)] = 1.0;
+  }
+  for (const DisplacementOutput& d : model.displacements) {
+    out.name.push_back(d.name);
+    out.unit.emplace_back("m");
+  }
+  for (const TiltOutput& t : model.tilts) {
+    out.name.push_back(t.name);
+    out.unit.emplace_back("rad");
+  }
+  for (std::size_t i = 0; i < machine.placed.functionals.size(); ++i) {
+    out.state.col(static_cast<Eigen::Index>(n_sensors + i)).head(machine.placed.mesh.n_nodes()) =
+        machine.elasticity.influence(machine.placed.functionals[i]);
+  }
+  return machine;
+}
+
+Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram, double reference_K) {
+  Record record{.source = cyclogram.name, .time_s = run.time_s, .channels = {}};
+  Channel speed{"speed", "rpm", {}};
+  for (double t_s : run.time_s) speed.values.push_back(cyclogram.speed_rpm(t_s));
+  record.channels.push_back(std::move(speed));
+  for (std::size_t i = 0; i < outputs.name.size(); ++i) {
+    const auto row = run.outputs.row(static_cast<Eigen::Index>(i));
+    Channel channel{outputs.name[i], "", {}};
+    double factor = 1e6, offset = 0.0;
+    if (outputs.unit[i] == "K") {
+      channel.unit = "degC";
+      factor = 1.0;
+      offset = reference_K - kZeroCelsius_K;
+    } else {
+      channel.unit = outputs.unit[i] == "m" ? "um" : "urad";
+    }
+    for (Eigen::Index k = 0; k < row.size(); ++k) channel.values.push_back(factor * row[k] + offset);
+    record.channels.push_back(std::move(channel));
+  }
+  return record;
+}
+
+std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s) {
+  std::vector<double> times_s;
+  const double end_s = cyclogram.duration_s();
+  for (int i = 0; i * interval_s < end_s * (1 - 1e-12); ++i) times_s.push_back(i * interval_s);
+  times_s.push_back(end_s);
+  return times_s;
+}
+
+}  // namespace driftwright::scenarios

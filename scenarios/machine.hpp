@@ -1,0 +1,45 @@
+#pragma once
+// From scenario to computable machine: mesh, matrices, influence vectors; and its runs as records.
+
+#include <memory>
+
+#include "base/record.hpp"
+#include "mesh/mesh.hpp"
+#include "scenarios/scenario.hpp"
+#include "solver/elasticity.hpp"
+#include "solver/thermal_system.hpp"
+
+namespace driftwright::scenarios {
+
+/// Everything that has been looked up in the mesh: no name is left to be wrong.
+struct PlacedMachine {
+  mesh::Mesh mesh;
+  solver::RegionMaterials materials;
+  effects::HeatBalance balance;
+  std::vector<solver::Support> supports;
+  /// Weights of each thermometer on the unknowns; empty for one that reads the hall.
+  std::vector<std::vector<std::pair<int, double>>> sensor_weights;
+  std::vector<solver::DisplacementFunctional> functionals;  ///< displacements, then tilts
+};
+
+/// Meshes the machine and finds every region, surface, joint, node and point of the scenario in it.
+/// @throws InputError  for a name or point that is not there, a region without material, a joint without contact
+/// @throws SolveError  when the mesh cannot be made
+[[nodiscard]] PlacedMachine place(const MachineModel& model);
+
+/// The full model, ready to run.
+struct Machine {
+  PlacedMachine placed;
+  solver::Elasticity elasticity;
+  solver::FullSystem system;  ///< outputs: sensors [K], displacements [m], tilts [rad], in the scenario's order
+};
+[[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed);
+
+/// A trajectory as a record: speed_rpm, sensors in degC, displacements in um, tilts in urad.
+[[nodiscard]] Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
+                               double reference_K);
+
+/// 0, interval, 2 interval, ... and the end of the cyclogram [s].
+[[nodiscard]] std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s);
+
+}  // namespace driftwright::scenarios
