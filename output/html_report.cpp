@@ -1,0 +1,215 @@
+#include "output/html_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace driftwright::output {
+namespace {
+
+constexpr std::string_view kStyle = R"css(
+:root { color-scheme: light dark; --text: #1d2329; --soft: #5b6670; --line: #d9dee3; --page: #ffffff; --card: #f5f7f9;
+  --good: #00704f; --bad: #b34700; --neutral: #005f94; }
+@media (prefers-color-scheme: dark) { :root { --text: #e4e7ea; --soft: #a3adb6; --line: #3a424a; --page: #171b1f;
+  --card: #21272d; --good: #35c499; --bad: #ff9350; --neutral: #63b8ee; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 40px 20px 64px; max-width: 1000px; background: var(--page); color: var(--text);
+  font: 16px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
+header { border-bottom: 2px solid var(--text); margin-bottom: 28px; padding-bottom: 12px; }
+h1 { font-size: 28px; line-height: 1.2; margin: 0; }
+header p { color: var(--soft); margin: 6px 0 0; max-width: none; overflow-wrap: anywhere; }
+h2 { font-size: 20px; line-height: 1.3; margin: 40px 0 12px; }
+p { margin: 12px 0; max-width: 46em; }
+.verdict { margin: 20px 0; padding: 14px 18px; background: var(--card); border-left: 6px solid var(--tone);
+  border-radius: 4px; }
+.verdict strong { color: var(--tone); font-size: 18px; }
+.verdict p { margin: 4px 0 0; }
+.good { --tone: var(--good); } .bad { --tone: var(--bad); } .neutral { --tone: var(--neutral); }
+.table { overflow-x: auto; margin: 20px 0; }
+table { border-collapse: collapse; font-size: 15px; font-variant-numeric: tabular-nums; }
+caption { text-align: left; color: var(--soft); padding-bottom: 6px; }
+th, td { padding: 6px 14px; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
+th { border-bottom: 2px solid var(--soft); vertical-align: bottom; }
+.number { text-align: right; white-space: nowrap; }
+.plots { display: grid; grid-template-columns: 1fr 1fr; gap: 20px 16px; margin: 20px 0; }
+figure { margin: 0; padding: 12px 0 10px; background: #ffffff; color: #1d2329; border: 1px solid #d9dee3;
+  border-radius: 4px; grid-column: 1 / -1; min-width: 0; break-inside: avoid; }
+figure.half { grid-column: auto; }
+figcaption { font-weight: 600; padding: 0 16px 6px; }
+figure svg { display: block; width: 100%; height: auto; }
+.legend { list-style: none; display: flex; flex-wrap: wrap; gap: 2px 22px; margin: 6px 16px 0; padding: 0;
+  font-size: 14px; }
+.legend li { display: flex; align-items: center; gap: 8px; }
+.legend i { flex: none; width: 24px; border-top: 3px solid var(--c); }
+.legend i.dashed { border-top-style: dashed; }
+.legend i.points { width: 8px; height: 8px; border: 0; border-radius: 50%; background: var(--c); margin: 0 8px; }
+.legend i.band { height: 14px; border: 1px solid #c3ccd3; background: var(--c); }
+.legend i.limit { border-top: 2px dashed #777777; }
+pre { background: var(--card); border: 1px solid var(--line); border-radius: 4px; padding: 12px 16px; overflow-x: auto;
+  font: 13px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; }
+@media (max-width: 640px) { figure.half { grid-column: 1 / -1; } }
+@media print { body { padding: 0; max-width: none; font-size: 11pt; } h2 { break-after: avoid; }
+  tr, .verdict { break-inside: avoid; } pre { white-space: pre-wrap; } * { print-color-adjust: exact; } }
+)css";
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+/// Does a cell begin like a number: a digit, perhaps after signs, dots and spaces?
+bool looks_numeric(const std::string& cell) {
+  std::string_view rest = cell;
+  for (bool skipped = true; skipped;) {
+    skipped = false;
+    for (const std::string_view lead : {"+", "-", "−", "±", "<", ">", "≤", "≥", "≈", ".", " "}) {
+      if (rest.starts_with(lead)) {
+        rest.remove_prefix(lead.size());
+        skipped = true;
+      }
+    }
+  }
+  return !rest.empty() && rest.front() >= '0' && rest.front() <= '9';
+}
+
+bool is_blank(const std::string& cell) {
+  return cell.empty() || cell == "-" || cell == "–" || cell == "—";
+}
+
+bool is_number_column(const Table& table, std::size_t column) {
+  bool any = false;
+  for (const auto& row : table.rows) {
+    if (is_blank(row[column])) continue;
+    if (!looks_numeric(row[column])) return false;
+    any = true;
+  }
+  return any;
+}
+
+std::string html(const Heading& heading) {
+  return fmt::format("<h2>{}</h2>\n", escaped(heading.text));
+}
+std::string html(const Paragraph& paragraph) {
+  return fmt::format("<p>{}</p>\n", escaped(paragraph.text));
+}
+std::string html(const Preformatted& text) {
+  return fmt::format("<pre>{}</pre>\n", escaped(text.text));
+}
+
+std::string html(const Verdict& verdict) {
+  const char* kind = verdict.kind == Verdict::Kind::kGood  ? "good"
+                     : verdict.kind == Verdict::Kind::kBad ? "bad"
+                                                           : "neutral";
+  return fmt::format("<div class=\"verdict {}\"><strong>{}</strong>{}</div>\n", kind, escaped(verdict.title),
+                     verdict.text.empty() ? "" : fmt::format("<p>{}</p>", escaped(verdict.text)));
+}
+
+std::string html(const Table& table) {
+  for (const auto& row : table.rows) {
+    if (row.size() != table.headers.size()) {
+      throw std::logic_error(fmt::format("table '{}': {} cells under {} headers", table.caption, row.size(),
+                                         table.headers.size()));
+    }
+  }
+  std::vector<std::string> attribute;  // of the cells of each column
+  for (std::size_t c = 0; c < table.headers.size(); ++c) {
+    attribute.emplace_back(is_number_column(table, c) ? " class=\"number\"" : "");
+  }
+  std::string out = "<div class=\"table\"><table>\n";
+  if (!table.caption.empty()) out += fmt::format("<caption>{}</caption>\n", escaped(table.caption));
+  out += "<thead><tr>";
+  for (std::size_t c = 0; c < table.headers.size(); ++c) {
+    out += fmt::format("<th{}>{}</th>", attribute[c], escaped(table.headers[c]));
+  }
+  out += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : table.rows) {
+    out += "<tr>";
+    for (std::size_t c = 0; c < row.size(); ++c)
+      out += fmt::format("<td{}>{}</td>", attribute[c], escaped(row[c]));
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string legend(const Plot& plot) {
+  std::string items;
+  const auto add = [&](const std::string& kind, const std::string& color, const std::string& label) {
+    if (label.empty()) return;
+    items += fmt::format("<li><i class=\"{}\" style=\"--c:{}\"></i>{}</li>", kind, color, escaped(label));
+  };
+  for (std::size_t s = 0; s < plot.series.size(); ++s) {
+    const Series::Style style = drawn_style(plot, s);
+    const char* kind = style == Series::Style::kPoints   ? "points"
+                       : style == Series::Style::kDashed ? "dashed"
+                                                         : "line";
+    add(kind, series_color(plot, s), plot.series[s].label);
+  }
+  for (std::size_t b = 0; b < plot.bands.size(); ++b) {
+    add(plot.bands[b].low == plot.bands[b].high ? "limit" : "band", band_color(b), plot.bands[b].label);
+  }
+  return items.empty() ? "" : fmt::format("<ul class=\"legend\">{}</ul>", items);
+}
+
+std::string html(const Plot& plot, const std::string& svg) {
+  const std::string caption =
+      plot.title.empty() ? "" : fmt::format("<figcaption>{}</figcaption>", escaped(plot.title));
+  return fmt::format("<figure{}>{}\n{}{}</figure>\n", plot.half_width ? " class=\"half\"" : "", caption, svg,
+                     legend(plot));
+}
+
+}  // namespace
+
+std::string render_html(const Report& report) {
+  std::vector<Plot> plots;
+  for (const ReportBlock& block : report.blocks) {
+    if (const auto* plot = std::get_if<Plot>(&block)) plots.push_back(*plot);
+  }
+  const std::vector<std::string> svgs = draw_svgs(plots);
+
+  std::string body;
+  std::size_t n_drawn = 0;
+  bool in_plots = false;  // plots that follow each other share a grid, so that halves pair up
+  for (const ReportBlock& block : report.blocks) {
+    const auto* plot = std::get_if<Plot>(&block);
+    if ((plot != nullptr) != in_plots) body += in_plots ? "</div>\n" : "<div class=\"plots\">\n";
+    in_plots = plot != nullptr;
+    if (plot != nullptr) {
+      body += html(*plot, svgs[n_drawn++]);
+    } else {
+      std::visit(
+          [&](const auto& other) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(other)>, Plot>) body += html(other);
+          },
+          block);
+    }
+  }
+  if (in_plots) body += "</div>\n";
+
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
+      "<style>{1}</style>\n</head>\n<body>\n<header><h1>{0}</h1>{2}</header>\n{3}</body>\n</html>\n",
+      escaped(report.title), kStyle,
+      report.subtitle.empty() ? "" : fmt::format("<p>{}</p>", escaped(report.subtitle)), body);
+}
+
+}  // namespace driftwright::output

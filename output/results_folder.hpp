@@ -1,0 +1,78 @@
+#pragma once
+// The folder a command writes its results to. It appears whole or not at all: work happens in a folder beside
+// it, which takes its place at the end, and nobody's own files are lost on the way.
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace driftwright::output {
+
+/// What made a folder of results. Stands in its manifest and in each field file.
+struct Provenance {
+  std::string version;   ///< of the program, "0.1.0"
+  std::string scenario;  ///< path or name of the scenario, as the user gave it
+};
+
+/// Name of the file, inside a folder of results, that lists the files which are ours:
+///     { "program": "driftwright", "version": ..., "scenario": ..., "files": ["report.html", ...] }
+inline constexpr const char* kManifestName = "driftwright-manifest.json";
+
+/// Writes `text` to `file`, replacing it. Every step is checked, the closing too: a full disk shows there at
+/// last.
+/// @throws std::runtime_error  naming the file and the system's reason
+void write_file(const std::filesystem::path& file, std::string_view text);
+
+/// A folder of results under way. Make it before anything is computed, since it refuses in its constructor;
+/// write through path() or write_text(); commit() last. Destroyed without commit, it leaves no trace.
+///
+/// One process works on one target at a time. Links are never followed when files are deleted.
+class ResultsFolder {
+ public:
+  /// Judges `target` and makes the folder `<target>.partial-<pid>` to work in.
+  ///
+  /// Fine are: a target that does not exist (missing parents are created), an empty folder, and a folder in
+  /// which every file is listed in its own manifest. With `force`, a folder that also holds other files:
+  /// commit() deletes them. Partial folders that processes no longer alive left beside the target are
+  /// removed.
+  /// @throws InputError  saying what to do, when the target holds other files and `force` is false; and
+  /// always when it
+  ///                     is no folder, is the current or the home folder or one that contains them, is a
+  ///                     mount point, or when its parent cannot be created or written to
+  ResultsFolder(const std::filesystem::path& target, bool force, Provenance made_by);
+  ~ResultsFolder();
+  ResultsFolder(const ResultsFolder&) = delete;
+  ResultsFolder& operator=(const ResultsFolder&) = delete;
+
+  /// Where the results will be found: absolute, links resolved.
+  [[nodiscard]] const std::filesystem::path& target() const { return target_; }
+  [[nodiscard]] const Provenance& made_by() const { return made_by_; }
+
+  /// Where to write the file `relative` ("fields/fields_0000.vtu") until commit(). Creates its subfolder and
+  /// enters it in the manifest.
+  /// @throws std::logic_error  when `relative` is empty, absolute or leads out of the folder, or after
+  /// commit()
+  [[nodiscard]] std::filesystem::path path(const std::filesystem::path& relative);
+
+  /// write_file() to path(relative).
+  void write_text(const std::filesystem::path& relative, std::string_view text);
+
+  /// Writes the manifest and puts the folder in place of the target. Files of others that have come into the
+  /// target since the constructor looked (a ParaView state saved during a long run) move into the new folder.
+  /// @throws std::runtime_error  naming what could not be written or renamed; the target is then as it was
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path work_;
+  std::vector<std::filesystem::path>
+      created_parents_;          // innermost last; removed again when nothing was committed
+  std::set<std::string> files_;  // sorted, so that the manifest's bytes do not depend on order
+  Provenance made_by_;
+  bool force_;
+  bool committed_ = false;
+};
+
+}  // namespace driftwright::output

@@ -1,0 +1,146 @@
+#include "output/vtk_fields.hpp"
+
+#include <fmt/format.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkStringArray.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <stdexcept>
+
+namespace driftwright::output {
+namespace {
+
+int vtk_cell_type(mesh::CellShape shape) {
+  switch (shape) {
+    case mesh::CellShape::kTri3:
+      return VTK_TRIANGLE;
+    case mesh::CellShape::kTri6:
+      return VTK_QUADRATIC_TRIANGLE;
+    case mesh::CellShape::kTet4:
+      return VTK_TETRA;
+    case mesh::CellShape::kTet10:
+      return VTK_QUADRATIC_TETRA;
+  }
+  throw std::logic_error("a cell shape without a VTK type");
+}
+
+/// Adds a named array of the given type, replacing one of that name, and returns it for filling.
+template <typename Array>
+Array* add_array(vtkFieldData* data, const char* name, int n_components, vtkIdType n_tuples) {
+  vtkNew<Array> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(n_components);
+  array->SetNumberOfTuples(n_tuples);
+  data->AddArray(array);
+  return array;  // kept alive by `data`
+}
+
+/// Points, cells and regions of a mesh, without fields.
+void build_grid(const mesh::Mesh& mesh, vtkUnstructuredGrid* grid) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(mesh.n_nodes());
+  for (int n = 0; n < mesh.n_nodes(); ++n) points->SetPoint(n, mesh.coords.col(n).data());
+  grid->SetPoints(points);
+
+  grid->AllocateExact(mesh.cells.size(), static_cast<vtkIdType>(mesh.cells.node.size()));
+  for (int c = 0; c < mesh.cells.size(); ++c) {
+    const auto nodes = mesh.cells.nodes(c);
+    const std::vector<vtkIdType> ids(nodes.begin(), nodes.end());
+    grid->InsertNextCell(vtk_cell_type(mesh.cells.shape[c]), static_cast<vtkIdType>(ids.size()), ids.data());
+  }
+
+  auto* region = add_array<vtkIntArray>(grid->GetCellData(), "region", 1, mesh.cells.size());
+  for (int c = 0; c < mesh.cells.size(); ++c) region->SetValue(c, mesh.cells.group[c]);
+  auto* names = add_array<vtkStringArray>(grid->GetFieldData(), "region_names", 1,
+                                          static_cast<vtkIdType>(mesh.regions.size()));
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r)
+    names->SetValue(static_cast<vtkIdType>(r), mesh.regions[r]);
+}
+
+/// Through memory, so that writing to disk is checked in one place.
+void write_grid(vtkUnstructuredGrid* grid, const std::filesystem::path& file) {
+  vtkNew<vtkXMLUnstructuredGridWriter> writer;
+  writer->SetInputData(grid);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToZLib();
+  writer->SetHeaderTypeToUInt64();
+  writer->WriteToOutputStringOn();
+  if (writer->Write() != 1) throw std::runtime_error(fmt::format("VTK could not make '{}'", file.string()));
+  write_file(file, writer->GetOutputString());
+}
+
+}  // namespace
+
+struct FieldSeries::Grid {
+  vtkNew<vtkUnstructuredGrid> vtk;
+};
+
+FieldSeries::FieldSeries(ResultsFolder& folder, const mesh::Mesh& mesh)
+    : folder_(folder), grid_(std::make_unique<Grid>()) {
+  build_grid(mesh, grid_->vtk);
+  const Provenance& made_by = folder.made_by();
+  add_array<vtkStringArray>(grid_->vtk->GetFieldData(), "made_by", 1, 1)
+      ->SetValue(0, fmt::format("Driftwright {}, {}", made_by.version, made_by.scenario));
+}
+
+FieldSeries::~FieldSeries() = default;
+
+void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC,
+                        const Eigen::Matrix3Xd& displacement_um) {
+  vtkUnstructuredGrid* grid = grid_->vtk;
+  const vtkIdType n_nodes = grid->GetNumberOfPoints();
+  if (temperature_degC.size() != n_nodes || displacement_um.cols() != n_nodes) {
+    throw std::logic_error(fmt::format("fields of {} and {} nodes on a mesh of {}", temperature_degC.size(),
+                                       displacement_um.cols(), n_nodes));
+  }
+  if (!times_s_.empty() && !(time_s > times_s_.back())) {
+    throw std::logic_error(fmt::format("fields at {} s after those at {} s", time_s, times_s_.back()));
+  }
+
+  auto* temperature = add_array<vtkFloatArray>(grid->GetPointData(), "temperature_degC", 1, n_nodes);
+  auto* displacement = add_array<vtkFloatArray>(grid->GetPointData(), "displacement_um", 3, n_nodes);
+  for (vtkIdType n = 0; n < n_nodes; ++n) {
+    temperature->SetValue(n, static_cast<float>(temperature_degC[n]));
+    displacement->SetTuple(n, displacement_um.col(n).data());
+  }
+  add_array<vtkDoubleArray>(grid->GetFieldData(), "TimeValue", 1, 1)->SetValue(0, time_s);
+
+  write_grid(grid, folder_.path(fmt::format("fields/fields_{:04}.vtu", times_s_.size())));
+  times_s_.push_back(time_s);
+}
+
+void FieldSeries::finish() {
+  std::string pvd =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
+  for (std::size_t i = 0; i < times_s_.size(); ++i) {
+    pvd += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"fields/fields_{:04}.vtu\"/>\n",
+                       times_s_[i], i);
+  }
+  folder_.write_text("fields.pvd", pvd + "  </Collection>\n</VTKFile>\n");
+}
+
+void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const std::filesystem::path& file) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  build_grid(mesh, grid);
+  if (!quality.empty()) {
+    if (quality.size() != static_cast<std::size_t>(mesh.cells.size())) {
+      throw std::logic_error(fmt::format("{} qualities for {} cells", quality.size(), mesh.cells.size()));
+    }
+    auto* array = add_array<vtkFloatArray>(grid->GetCellData(), "quality", 1, mesh.cells.size());
+    for (int c = 0; c < mesh.cells.size(); ++c) array->SetValue(c, static_cast<float>(quality[c]));
+  }
+  write_grid(grid, file);
+}
+
+}  // namespace driftwright::output
