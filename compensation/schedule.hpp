@@ -57,8 +57,7 @@ struct Schedule {
 /// @throws RangeError  when tolerance, step or resolution is not positive, the margin lies outside [0,
 /// tolerance), or
 ///                     the step is larger than the band 2 (tolerance - margin), which it would jump over
-/// Source: Polyakov, Marusich & Nikitina. Their deltas are read as increments: as totals they would leave the
-/// tolerance.
+/// Source: Polyakov, Marusich & Nikitina. That their deltas are increments, not totals, is our reading.
 [[nodiscard]] Schedule plan_schedule(std::span<const double> time_s, std::span<const double> drift_um,
                                      std::span<const double> boundaries_s,
                                      const ScheduleOptions& options = {});
