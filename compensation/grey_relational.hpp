@@ -1,0 +1,80 @@
+#pragma once
+// Grey relational analysis: which sensors move like the drift? A ranking by closeness of shape, no model.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/record.hpp"
+
+namespace driftwright::compensation {
+
+/// How a series is made dimensionless. The first used sample, the mean and the range are those of all records
+/// together.
+enum class Image {
+  kAutomatic,     ///< initial value where that is defined and does not depend on the unit, range otherwise
+  kInitialValue,  ///< x' = x / x(1); all series start at 1
+  kMeanValue,     ///< x' = x / mean(x)
+  kRange          ///< x' = (x - min) / (max - min); all series fill [0, 1]
+};
+
+struct GreyOptions {
+  double rho = 0.5;  ///< distinguishing coefficient [-], 0 < rho <= 1
+  Image image = Image::kAutomatic;
+  /// A series that falls while the reference rises tells as much as one that rises. With `true`, the image of
+  /// a candidate whose covariance with the reference is negative is mirrored: x' -> 1 - x' (range), x' -> 2 -
+  /// x' (initial and mean value, whose images start at or scatter about 1). `false` is Deng's definition to
+  /// the letter.
+  bool reverse_falling = true;
+};
+
+struct RankedChannel {
+  std::string name;
+  std::optional<double> grade;  ///< grey relational grade [-] in (0, 1]; none where the channel has no image
+  bool reversed = false;        ///< its image was mirrored
+  std::string note;             ///< why there is no grade; else empty
+};
+
+struct Ranking {
+  std::vector<RankedChannel>
+      channels;                 ///< by falling grade, equals in the order given, those without grade last
+  Image image = Image::kRange;  ///< the one used, never kAutomatic
+  std::string reason;           ///< why that image, one sentence
+  int n_samples = 0;            ///< rows used
+  int n_left_out = 0;           ///< rows left out because a channel was missing in them
+};
+
+/// Grey relational grades of `candidates` against `reference` over the records laid end to end.
+///
+///     D_i(k)  = |x0'(k) - xi'(k)|
+///     xi_i(k) = (min_i min_k D + rho max_i max_k D) / (D_i(k) + rho max_i max_k D)
+///     grade_i = mean_k xi_i(k)
+///
+/// The two extremes run over all candidates that have an image, so a grade depends on the company it is
+/// judged in: compare grades within one ranking only. Where all images coincide (max D = 0) the grade is 1.
+///
+/// kAutomatic takes the initial-value image only if no series starts near 0 (|x(1)| < 5 % of its span:
+/// division by almost nothing) and none is a temperature, in degC or in K: the zero of degC is arbitrary, so
+/// the image would be another one in K, and in K it is so flat (1.00 to 1.02) that the grade measures
+/// nothing. The range image ranks alike in both units. In practice kAutomatic therefore means range wherever
+/// temperatures are ranked.
+///
+/// A candidate that never changes has no grade, nor has one whose first value or mean is 0 where the image
+/// asked for divides by it.
+///
+/// @param reference   channel name, such as the drift
+/// @param candidates  channel names
+/// @throws RangeError  when rho lies outside (0, 1]
+/// @throws InputError  when there are no candidates, fewer than two complete rows, the reference never
+/// changes or has
+///                     no image of the kind asked for; and as complete_rows()
+/// Source: Deng, J. Grey System 1 (1989) 1-24; used on thermal error by Chen & Wang (2013).
+[[nodiscard]] Ranking rank_channels(std::span<const Record> records, const std::string& reference,
+                                    const std::vector<std::string>& candidates,
+                                    const GreyOptions& options = {});
+
+/// Names of the n best channels that have a grade; fewer where there are fewer.
+[[nodiscard]] std::vector<std::string> best(const Ranking& ranking, int n);
+
+}  // namespace driftwright::compensation
