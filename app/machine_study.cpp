@@ -74,7 +74,10 @@ void fit_regression_on_best(MachineStudy& study, const scenarios::Study& setting
   const std::vector<Record> records = training_records(study);
   study.ranking = rank_channels(records, settings.target, candidates(settings, records.front()));
   const std::vector<std::string> inputs = best(study.ranking, settings.sensors_to_choose);
-  for (const std::string& d : study.displacements) study.regressions.push_back(fit_regression(records, inputs, d));
+  for (const std::string& d : study.displacements) {
+    study.regressions.push_back(fit_regression(records, inputs, d));
+    study.single_sensor.push_back(fit_regression(records, {inputs.front()}, d));
+  }
 }
 
 void correct(MachineStudy& study, const Scenario& scenario) {
@@ -94,8 +97,9 @@ void correct(MachineStudy& study, const Scenario& scenario) {
         study.corrections.push_back(std::move(corrected));
       }
     };
-    add("regression", study.regressions[d].predict(record), study.regressions[d].max_abs_residual);
-    add("modal", study.modal_prediction.at(channel).values, study.modal_margin_um[d]);
+    add(kPredictors[0], study.single_sensor[d].predict(record), study.single_sensor[d].max_abs_residual);
+    add(kPredictors[1], study.regressions[d].predict(record), study.regressions[d].max_abs_residual);
+    add(kPredictors[2], study.modal_prediction.at(channel).values, study.modal_margin_um[d]);
   }
 }
 

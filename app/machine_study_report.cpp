@@ -107,9 +107,10 @@ Table ranking_table(const MachineStudy& study) {
 }
 
 Table regression_table(const MachineStudy& study) {
-  Table table{.caption = "Multiple linear regression (QR) on the training records.", .headers = {"channel", "intercept [um]"}, .rows = {}};
+  Table table{.caption = "Multiple linear regression (QR) on the training records; RMS and max are of its residual there. A condition number far above "
+                         "100 says that the chosen sensors tell the same story twice.", .headers = {"channel", "intercept [um]"}, .rows = {}};
   for (const std::string& input : study.regressions.front().inputs) table.headers.push_back(input + " [um/K]");
-  table.headers.insert(table.headers.end(), {"RMS residual [um]", "largest residual [um]", "condition number [-]"});
+  table.headers.insert(table.headers.end(), {"RMS [um]", "max [um]", "condition [-]"});
   for (const auto& r : study.regressions) {
     std::vector<std::string> row = {r.target, fmt::format("{:.2f}", r.intercept)};
     for (double b : r.coefficients) row.push_back(fmt::format("{:.3f}", b));
@@ -127,7 +128,7 @@ Table modal_table(const MachineStudy& study) {
               .rows = {}};
   for (const std::string& d : study.displacements) table.headers.push_back(d + " [um]");
   for (const ModalError& e : study.modal_errors) {
-    std::vector<std::string> row = {fmt::format("{} modes{}", e.n_modes, e.with_steady_responses ? " and steady responses" : " alone"),
+    std::vector<std::string> row = {fmt::format("modes ({}) {}", e.n_modes, e.with_steady_responses ? "and steady responses" : "alone"),
                                     e.worst_sensor, fmt::format("{:.3f}", e.worst_temperature_K)};
     for (double d_um : e.worst_displacement_um) row.push_back(fmt::format("{:.2f}", d_um));
     table.rows.push_back(row);
@@ -152,6 +153,31 @@ Table heat_table(const MachineStudy& study) {
   table.rows.push_back({"sum", fmt::format("{:.1f}", in_W), fmt::format("{:.1f}", lost_W)});
   table.rows.push_back({"stored in the machine", "", fmt::format("{:.1f}", run.stored_J[last] / duration_s)});
   return table;
+}
+
+void add_ambiguity(output::Report& report, const std::string& target, const MachineStudy& study) {
+  const auto& [sensor, a] = study.ambiguities.front();
+  report.blocks.emplace_back(Heading{"Drift is not a function of temperature"});
+  report.blocks.emplace_back(
+      Paragraph{fmt::format("At {} = {:.2f} degC, {} is {:.1f} um in '{}' (at {:.0f} min) and {:.1f} um in '{}' (at {:.0f} min). No "
+                            "correction from this temperature alone can serve both.",
+                            sensor, a.temperature, target, a.first.displacement_um, a.first.source, a.first.time_s / 60.0,
+                            a.second.displacement_um, a.second.source, a.second.time_s / 60.0)});
+  for (const std::string& shown : {study.single_sensor.front().inputs.front(), sensor}) {
+    Plot plot = drift_over_temperature(shown, target, study);
+    plot.half_width = true;
+    report.blocks.emplace_back(std::move(plot));
+  }
+  Table table{.caption = "Largest spread of the drift at one temperature, |d1 - d2| / min(|d1|, |d2|), between two cyclograms; drifts below 5 um "
+                         "do not count.",
+              .headers = {"sensor", "temperature [degC]", "drift 1 [um]", "drift 2 [um]", "spread [%]", "cyclogram 1", "cyclogram 2"},
+              .rows = {}};
+  for (const auto& [name, b] : study.ambiguities) {
+    table.rows.push_back({name, fmt::format("{:.2f}", b.temperature), fmt::format("{:.1f}", b.first.displacement_um),
+                          fmt::format("{:.1f}", b.second.displacement_um), fmt::format("{:.0f}", 100.0 * b.spread), b.first.source,
+                          b.second.source});
+  }
+  report.blocks.emplace_back(std::move(table));
 }
 
 }  // namespace
@@ -184,15 +210,7 @@ output::Report study_report(const scenarios::Scenario& scenario, const scenarios
   add(Heading{"Sensors and regression"});
   add(ranking_table(study));
   add(regression_table(study));
-  if (!study.ambiguities.empty()) {
-    const auto& [sensor, a] = study.ambiguities.front();
-    add(Heading{"Drift is not a function of temperature"});
-    add(Paragraph{fmt::format("At {} = {:.2f} degC, {} is {:.1f} um in '{}' (at {:.0f} min) and {:.1f} um in '{}' (at {:.0f} min): a spread of "
-                              "{:.0f} % of the smaller value. No correction from this temperature alone can serve both.",
-                              sensor, a.temperature, settings.target, a.first.displacement_um, a.first.source, a.first.time_s / 60.0,
-                              a.second.displacement_um, a.second.source, a.second.time_s / 60.0, 100.0 * a.spread)});
-    add(drift_over_temperature(sensor, settings.target, study));
-  }
+  if (!study.ambiguities.empty()) add_ambiguity(report, settings.target, study);
   add(Heading{"Thermal modes"});
   std::vector<std::string> tau;
   for (double tau_s : study.modal_time_constant_s) tau.push_back(fmt::format("{:.1f}", tau_s / 60.0));

@@ -41,12 +41,12 @@ Json json_of(const compensation::Crossing& c) {
 std::string terminal_summary(const scenarios::Scenario& scenario, const MachineStudy& study) {
   const scenarios::Study& settings = *scenario.study;
   std::string text = fmt::format("{}: judged on '{}', fitted on {}\n", scenario.name, settings.judge, fmt::join(settings.train, ", "));
-  std::string drift = "  peak drift before correction    ";
+  std::string drift = "  peak drift before correction          ";
   for (const std::string& d : study.displacements) drift += fmt::format("  {} {:6.1f} um", d, study.of_channel(d).front()->before.peak_abs);
   text += drift + "\n";
-  for (const char* predictor : {"regression", "modal"}) {
+  for (const char* predictor : kPredictors) {
     for (const char* actuator : {"pulse injector", "schedule"}) {
-      text += fmt::format("  after {:<10} by {:<14} ", predictor, actuator);
+      text += fmt::format("  after {:<15} by {:<14} ", predictor, actuator);
       bool inside = false;
       for (const CorrectedRun& c : study.corrections) {
         if (c.predictor != predictor || c.actuator != actuator) continue;
@@ -68,7 +68,6 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
     text += fmt::format("  drift is no function of temperature: at {} = {:.1f} degC {} is {:.1f} um or {:.1f} um\n", sensor, a.temperature,
                         settings.target, a.first.displacement_um, a.second.displacement_um);
   }
-  text += fmt::format("  energy balance closes to {:.0e} of the heat turned over\n", std::max(1e-16, study.worst_energy_gap));
   return text;
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/record_study.hpp"
@@ -77,6 +78,11 @@ void validate(const RecordOptions& options) {
   for (const JudgedPrediction& p : study.judged) {
     fmt::print("  {:<24} {:<34} RMS {:6.2f} {u}  peak {:6.2f} {u}\n", std::filesystem::path(p.test).filename().string(), p.strategy, p.error.rmse,
                p.error.peak_abs, fmt::arg("u", r.target_unit));
+  }
+  for (std::size_t t = 0; t < study.test.size(); ++t) {
+    const bool beats_both = study.judged[3 * t].error.rmse < std::min(study.judged[3 * t + 1].error.rmse, study.judged[3 * t + 2].error.rmse);
+    fmt::print("  {}: the regression {}\n", std::filesystem::path(study.test[t].source).filename().string(),
+               beats_both ? "beats both baselines" : "does NOT beat both baselines; do not use it");
   }
   fmt::print("report in {}\n", shown_path(folder.target() / "report.html"));
 }
