@@ -3,11 +3,14 @@
 #include <CLI/CLI.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <exception>
 
 #include "app/verbs.hpp"
 #include "app/version.hpp"
+#include "base/config_map.hpp"
 #include "base/errors.hpp"
 
 namespace {
@@ -29,6 +32,16 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
 void add_records(CLI::App* verb, app::RecordOptions& options, bool with_test) {
   verb->add_option("--train", options.train, "record CSV to fit on; may be repeated")->required()->allow_extra_args(false);
   if (with_test) verb->add_option("--test", options.test, "record CSV to judge on; may be repeated")->required()->allow_extra_args(false);
+}
+
+/// CLI11 would only say that a subcommand is required.
+void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : cli.get_subcommands([](const CLI::App*) { return true; })) verbs.push_back(verb->get_name());
+  if (word.empty() || word[0] == '-' || std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return;
+  const std::string near = nearest_word(word, verbs);
+  throw InputError(fmt::format("unknown verb '{}'; there are {}.{}", word, fmt::join(verbs, ", "),
+                               near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
 }
 
 }  // namespace
@@ -67,6 +80,7 @@ int main(int argc, char** argv) {
   verb->callback([&] { app::validate(validate); });
 
   try {
+    reject_unknown_verb(cli, argc > 1 ? argv[1] : "");
     cli.parse(argc, argv);
     return kDone;
   } catch (const CLI::ParseError& e) {

@@ -43,14 +43,14 @@ build_target() {
     say "driftwright: configuring (Release)"
     (cd "$top" && cmake --preset release) >"$log" 2>&1 || { tail -n 30 "$log" >&2; say "driftwright: configuring failed; see $log"; exit 1; }
   fi
-  if [ -t 2 ]; then
-    # A dry run tells whether there is work: Ninja's progress line appears only then.
-    if ! ninja -C "$build" -n "$1" | grep -q 'no work to do'; then
-      say "driftwright: building (Release)"
+  # A dry run tells whether there is work; only then is there anything to see.
+  if ! ninja -C "$build" -n "$1" | grep -q 'no work to do'; then
+    say "driftwright: building $1 (Release)"
+    if [ -t 2 ]; then
       ninja -C "$build" "$1" >&2 || { say "driftwright: the build failed"; exit 1; }
+    else
+      ninja -C "$build" "$1" >"$log" 2>&1 || { tail -n 40 "$log" >&2; say "driftwright: the build failed; see $log"; exit 1; }
     fi
-  else
-    ninja -C "$build" "$1" >"$log" 2>&1 || { tail -n 40 "$log" >&2; say "driftwright: the build failed; see $log"; exit 1; }
   fi
   exec 9>&-
 }

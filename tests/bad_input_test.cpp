@@ -1,0 +1,104 @@
+// Bad input ends with exit code 2 and one message that names file, line, key and what was expected; nothing is written.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/command_line.hpp"
+
+namespace driftwright {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Mistake {
+  const char* name;
+  const char* right;  ///< text of the shipped scenario
+  const char* wrong;  ///< what the user wrote instead
+  std::vector<const char*> message;
+};
+
+std::string replace_first(std::string text, const std::string& what, const std::string& with) {
+  const auto at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << "the shipped scenario no longer holds: " << what;
+  return at == std::string::npos ? text : text.replace(at, what.size(), with);
+}
+
+class BadScenario : public ::testing::TestWithParam<Mistake> {};
+
+TEST_P(BadScenario, EndsWithTwoNamesThePlaceAndWritesNothing) {
+  const Mistake& mistake = GetParam();
+  const auto folder = fresh_folder(std::string("bad_") + mistake.name);
+  const auto scenario = folder / "scenario.yaml";
+  std::ofstream(scenario) << replace_first(read_text("scenarios/fp3_spindle.yaml"), mistake.right, mistake.wrong);
+  const CommandOutcome outcome = run_program("run " + scenario.string() + " -o " + (folder / "out").string());
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr(scenario.string() + ":"));
+  for (const char* part : mistake.message) EXPECT_THAT(outcome.output, HasSubstr(part));
+  int n_files = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++n_files;
+  EXPECT_EQ(n_files, 1) << "something was written beside the scenario";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, BadScenario,
+    ::testing::Values(
+        Mistake{"unknown_key", "    f1: 0.0009", "    f_1: 0.0009", {"unknown key 'f_1'", "known keys:", "Did you mean 'f1'?", "effects[0].f_1", "|     ^"}},
+        Mistake{"missing_key", "    power: 85 W\n", "", {"key 'power' is missing", "effects[2]"}},
+        Mistake{"wrong_unit", "film: 10 W/(m^2 K)", "film: 10 W/K", {"wrong unit 'W/K'", "W/(m^2 K) is wanted", "effects[8].film"}},
+        Mistake{"no_unit", "power: 85 W", "power: 85", {"has no unit", "'85 W'"}},
+        Mistake{"difference_for_temperature", "absolute_tolerance: 5e-3 K", "absolute_tolerance: 5 degC", {"temperature difference in K is wanted"}},
+        Mistake{"not_a_number", "power: 85 W", "power: nan W", {"is not a finite number", "effects[2].power"}},
+        Mistake{"out_of_range", "f0: 0.7 ", "f0: -1 ", {"outside what is allowed", "effects[0].f0"}},
+        Mistake{"unknown_effect", "type: motor_loss", "type: motor_los", {"'motor_los' is not known here", "motor_loss"}},
+        Mistake{"unknown_material", "knee: cast_iron_gjl250", "knee: cast_iron", {"'cast_iron' is not known here", "cast_iron_gjl250"}},
+        Mistake{"duplicate_key", "name: fp3_spindle", "name: fp3_spindle\nname: twice", {"key 'name' appears twice"}},
+        Mistake{"no_yaml", "study:", "study: [", {"this is not valid YAML"}},
+        Mistake{"empty_cyclogram", "  warm_up_2000: [[300 min, 2000 rpm]]", "  warm_up_2000: []", {"at least one", "cyclograms.warm_up_2000"}},
+        Mistake{"negative_duration", "[[300 min, 2000 rpm]]", "[[-300 min, 2000 rpm]]", {"a duration above zero is wanted"}},
+        Mistake{"judged_on_training", "judge: chaotic", "judge: heat_cool_1000", {"judged on a cyclogram it was not fitted on"}},
+        Mistake{"unknown_cyclogram", "judge: chaotic", "judge: caotic", {"no cyclogram 'caotic'", "warm_up_2000"}},
+        Mistake{"parts_do_not_fit", "bore: 95 mm", "bore: 130 mm", {"diameters must fall"}},
+        // These show only once the mesh is there.
+        Mistake{"unknown_region", "    region: bearing_rear", "    region: bearing_reer", {"the mesh has no region 'bearing_reer'", "Did you mean 'bearing_rear'?", "effects[1].region"}},
+        Mistake{"unknown_surface", "surface: foot", "surface: feet", {"the mesh has no surface 'feet'", "supports[0].surface"}},
+        Mistake{"unknown_joint", "joint: knee/table", "joint: table/knee", {"the mesh has no joint 'table/knee'"}},
+        Mistake{"region_without_material", "  knee: cast_iron_gjl250\n", "", {"region 'knee' has no material"}},
+        Mistake{"joint_without_contact", "  - {type: contact, joint: knee/table, conductance: 1500 W/(m^2 K)}\n", "", {"joint 'knee/table' has no contact"}},
+        Mistake{"sensor_outside", "at: [0 mm, -660 mm, 1430 mm]", "at: [0 mm, -660 mm, 1530 mm]", {"outside region 'motor'", "its nearest point is", "sensors[4].at"}},
+        Mistake{"unknown_node", "{name: air, node: air_nose}", "{name: air, node: air_nos}", {"no lumped node 'air_nos'", "air_nose"}}),
+    [](const auto& mistake) { return std::string(mistake.param.name); });
+
+TEST(BadCommand, MissingFileUnknownVerbAndMissingArgumentEndWithTwo) {
+  EXPECT_EQ(run_program("run /nowhere/x.yaml").exit_code, 2);
+  EXPECT_THAT(run_program("run /nowhere/x.yaml").output, HasSubstr("/nowhere/x.yaml: the file cannot be opened"));
+  EXPECT_EQ(run_program("run").exit_code, 2);
+  EXPECT_EQ(run_program("rnu scenarios/fp3_spindle.yaml").exit_code, 2);
+  EXPECT_THAT(run_program("rnu scenarios/fp3_spindle.yaml").output, HasSubstr("unknown verb 'rnu'"));
+}
+
+TEST(BadCommand, AFolderWithOtherFilesIsRefusedAndKept) {
+  const auto folder = fresh_folder("foreign");
+  std::ofstream(folder / "thesis.txt") << "mine";
+  const CommandOutcome outcome = run_program("run scenarios/fp3_spindle.yaml -o " + folder.string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("--force"));
+  EXPECT_EQ(read_text(folder / "thesis.txt"), "mine");
+}
+
+TEST(BadCommand, AScenarioWithoutMachineCannotBeRun) {
+  const CommandOutcome outcome = run_program("run scenarios/spindle_22.yaml");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("needs the key `machine`"));
+}
+
+TEST(BadCommand, ARecordWithoutTheTargetIsRefused) {
+  const auto folder = fresh_folder("no_target");
+  std::ofstream(folder / "a.csv") << "time_s,t_K\n0,1\n1,2\n";
+  const std::string file = (folder / "a.csv").string();
+  const CommandOutcome outcome = run_program("select scenarios/spindle_22.yaml --train " + file);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("no channel 'error_um'"));
+}
+
+}  // namespace
+}  // namespace driftwright

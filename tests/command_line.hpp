@@ -1,0 +1,46 @@
+#pragma once
+// Runs the built program as a user would, for the tests of the command line and of the shipped scenarios.
+
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace driftwright {
+
+struct CommandOutcome {
+  int exit_code = -1;
+  std::string output;  ///< standard output and standard error
+};
+
+/// DRIFTWRIGHT_PROGRAM is the path of the built program, set by CMake.
+inline CommandOutcome run_program(const std::string& arguments) {
+  CommandOutcome outcome;
+  FILE* pipe = popen((std::string(DRIFTWRIGHT_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
+  char buffer[4096];
+  while (std::fgets(buffer, sizeof buffer, pipe)) outcome.output += buffer;
+  const int status = pclose(pipe);
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+inline std::string read_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// An empty folder of this test's own.
+inline std::filesystem::path fresh_folder(const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("driftwright_" + name);
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+}  // namespace driftwright

@@ -1,0 +1,135 @@
+// The main job on the shipped scenario, judged by what it must show.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/record.hpp"
+#include "tests/command_line.hpp"
+
+namespace driftwright {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Fp3Spindle : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = fresh_folder("fp3") / "out";
+    outcome_ = run_program("run scenarios/fp3_spindle.yaml -o " + folder_.string());
+    ASSERT_EQ(outcome_.exit_code, 0) << outcome_.output;
+    summary_ = nlohmann::json::parse(read_text(folder_ / "summary.json"));
+  }
+  static inline std::filesystem::path folder_;
+  static inline CommandOutcome outcome_;
+  static inline nlohmann::json summary_;
+};
+
+TEST_F(Fp3Spindle, EnergyBalanceCloses) {
+  EXPECT_LT(summary_["energy_balance_gap"].get<double>(), 1e-6);  // the bound of the issue; rounding gives 1e-15
+}
+
+TEST_F(Fp3Spindle, ReachesTheMagnitudesOfThePaper) {
+  // "Displacements up to about 50 um, sensor temperatures 20-25 degC"; 240 min at 2000 rpm is the hardest training run.
+  const Record hot = read_record_csv((folder_ / "records/heat_cool_2000.csv").string());
+  const auto peak = [&](const char* name) { return *std::max_element(hot.at(name).values.begin(), hot.at(name).values.end()); };
+  EXPECT_NEAR(peak("drift_y"), 45.0, 10.0);
+  for (const char* sensor : {"t01", "t02", "t03", "t04", "t07", "t08", "t09", "t12"}) {
+    EXPECT_GT(peak(sensor), 23.0) << sensor;
+    EXPECT_LT(peak(sensor), 29.0) << sensor;
+  }
+  // A machine symmetric about x = 0 neither moves nor tilts sideways; drift_x is the quill's own radius, 62.5 mm on one side.
+  const double radius_growth_um = 11.5e-6 * 62.5e3 * (peak("t06") - 20.0);
+  EXPECT_NEAR(peak("drift_x"), radius_growth_um, 0.35 * radius_growth_um);
+}
+
+TEST_F(Fp3Spindle, DriftIsNoFunctionOfTemperature) {
+  // The paper found more than 50 % of the smaller value; the issue asks for 30 % at some sensor. We ask it of every sensor
+  // on the headstock, where the paper measured.
+  for (const auto& entry : summary_["drift_at_one_temperature"]) {
+    if (entry["sensor"] == "t05" || entry["sensor"] == "t10" || entry["sensor"] == "t11") continue;  // motor and column
+    EXPECT_GE(entry["spread"].get<double>(), 0.3) << entry["sensor"];
+  }
+  EXPECT_GE(summary_["drift_at_one_temperature"].size(), 12U);
+}
+
+TEST_F(Fp3Spindle, SomeStrategyStaysInsideTenMicrometresAndOneIsShownFailing) {
+  int n_inside = 0, n_failing = 0;
+  for (const auto& c : summary_["corrections"]) {
+    if (c["channel"] != "drift_y") continue;
+    const bool inside = c["inside_tolerance"];
+    EXPECT_EQ(inside, c["after"]["peak_um"].get<double>() <= 10.0);
+    (inside ? n_inside : n_failing)++;
+    EXPECT_GT(c["before"]["peak_um"].get<double>(), 20.0);
+  }
+  EXPECT_GE(n_inside, 1);
+  EXPECT_GE(n_failing, 1);
+  EXPECT_THAT(outcome_.output, HasSubstr("LEAVES 10 um"));
+}
+
+TEST_F(Fp3Spindle, ScoresAreThoseOfTheWrittenRecord) {
+  const Record record = read_record_csv((folder_ / "record.csv").string());
+  EXPECT_EQ(record.n_samples(), 301U);
+  double peak_um = 0.0;
+  for (double d : record.at("drift_y").values) peak_um = std::max(peak_um, std::abs(d));
+  for (const auto& c : summary_["corrections"]) {
+    if (c["channel"] != "drift_y") continue;
+    EXPECT_NEAR(c["before"]["peak_um"].get<double>(), peak_um, 1e-4);  // 6 digits each
+  }
+}
+
+TEST_F(Fp3Spindle, FewModesMissTheBearingAndSteadyResponsesMendIt) {
+  const auto& errors = summary_["modal"]["errors_against_full_model"];
+  EXPECT_GT(errors[0]["worst_temperature_K"].get<double>(), 1.0);  // what the issue warns of
+  EXPECT_LT(errors[1]["worst_temperature_K"].get<double>(), 0.2 * errors[0]["worst_temperature_K"].get<double>());
+  const auto& tau = summary_["modal"]["time_constants_min"];
+  EXPECT_TRUE(std::is_sorted(tau.begin(), tau.end(), std::greater<>()));
+}
+
+TEST_F(Fp3Spindle, WritesFieldsReportAndSchedule) {
+  EXPECT_THAT(read_text(folder_ / "fields.pvd"), HasSubstr("fields/fields_0010.vtu"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "fields/fields_0010.vtu"));
+  EXPECT_THAT(read_text(folder_ / "schedule.txt"), HasSubstr("1-{40}-{0}"));
+  EXPECT_THAT(read_text(folder_ / "report.html"), HasSubstr("Drift is not a function of temperature"));
+}
+
+TEST_F(Fp3Spindle, TheSameScenarioGivesTheSameBytes) {
+  const auto again = fresh_folder("fp3_again") / "out";
+  ASSERT_EQ(run_program("run scenarios/fp3_spindle.yaml -o " + again.string()).exit_code, 0);
+  int n_files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
+    if (!entry.is_regular_file()) continue;
+    ++n_files;
+    EXPECT_EQ(read_text(entry.path()), read_text(again / std::filesystem::relative(entry.path(), folder_))) << entry.path();
+  }
+  EXPECT_GT(n_files, 15);
+}
+
+TEST(Fp3Verbs, CheckMeshSimulateAndPredictWork) {
+  const auto folder = fresh_folder("fp3_verbs");
+  EXPECT_THAT(run_program("check scenarios/fp3_spindle.yaml").output, HasSubstr("fine; "));
+  EXPECT_EQ(run_program("mesh scenarios/fp3_spindle.yaml -o " + (folder / "mesh").string()).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "mesh/mesh.vtu"));
+
+  // The modal predictor against the full model on a cyclogram given as a CSV: 20 min at 2000 rpm, then 10 at rest.
+  std::ofstream(folder / "plan.csv") << "time_min,speed_rpm\n0,2000\n20,0\n30,0\n";
+  auto scenario = read_text("scenarios/fp3_spindle.yaml");
+  const std::string marker = "  warm_up_2000:";
+  scenario.insert(scenario.find(marker), "  plan: [[20 min, 2000 rpm], [10 min, 0 rpm]]\n");
+  std::ofstream(folder / "plan.yaml") << scenario;
+  const std::string yaml = (folder / "plan.yaml").string();
+  ASSERT_EQ(run_program("simulate " + yaml + " --cyclogram plan -o " + (folder / "full").string()).exit_code, 0);
+  ASSERT_EQ(run_program("predict " + yaml + " --cyclogram " + (folder / "plan.csv").string() + " -o " + (folder / "modal").string()).exit_code, 0);
+  const Record full = read_record_csv((folder / "full/record.csv").string()), modal = read_record_csv((folder / "modal/record.csv").string());
+  ASSERT_EQ(full.time_s, modal.time_s);
+  EXPECT_EQ(full.at("speed").values, modal.at("speed").values);
+  for (std::size_t i = 0; i < full.n_samples(); ++i) {
+    EXPECT_NEAR(full.at("drift_y").values[i], modal.at("drift_y").values[i], 1.0) << "at " << full.time_s[i] << " s";  // truncation, see docs
+  }
+}
+
+}  // namespace
+}  // namespace driftwright
