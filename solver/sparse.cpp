@@ -81,7 +81,7 @@ void multiply(const SparseRow& a, const double* x, double* y) {
   const int* column = a.innerIndexPtr();
   const double* value = a.valuePtr();
   const int n = static_cast<int>(a.rows());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (a.nonZeros() > kWorthThreads)
   for (int row = 0; row < n; ++row) {
     double sum = 0.0;
     for (int k = start[row]; k < start[row + 1]; ++k) sum += value[k] * x[column[k]];

@@ -29,6 +29,9 @@ void scatter_add(SparseRow& a, std::span<const int> dofs, const Eigen::Ref<const
 /// @throws std::logic_error  when part has an entry that whole has not
 [[nodiscard]] std::vector<int> slots_of(const SparseRow& part, const SparseRow& whole);
 
+/// Loops of fewer entries are faster on one core: waking the others costs some 10 us.
+inline constexpr int kWorthThreads = 20000;
+
 /// y = A x on all cores.
 void multiply(const SparseRow& a, const double* x, double* y);
 /// x . y, summed in fixed blocks, so that any number of threads gives the same bits.
