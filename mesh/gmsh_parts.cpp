@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gmsh.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <map>
@@ -81,13 +82,16 @@ void add_elements(Cells& cells, NodeTable& table, int part, int entity, GmshShap
 
 }  // namespace
 
-GmshSession::GmshSession() {
+GmshSession::GmshSession() : n_threads_(omp_get_max_threads()) {
   gmsh::initialize();
   gmsh::option::setNumber("General.Terminal", 0);
   gmsh::option::setNumber("General.NumThreads", 1);
   gmsh::option::setNumber("Mesh.RandomSeed", 1);
 }
-GmshSession::~GmshSession() { gmsh::finalize(); }
+GmshSession::~GmshSession() {
+  gmsh::finalize();
+  omp_set_num_threads(n_threads_);  // Gmsh sets it for the whole process
+}
 
 Mesh mesh_parts(const std::vector<Part>& parts, int order, const std::function<std::string(const OuterFace&)>& name_of) {
   Mesh mesh;

@@ -18,6 +18,9 @@ class GmshSession {
   ~GmshSession();
   GmshSession(const GmshSession&) = delete;
   GmshSession& operator=(const GmshSession&) = delete;
+
+ private:
+  int n_threads_;  ///< of OpenMP, before Gmsh
 };
 
 /// A part of the machine: which Gmsh volumes it is made of, and how fine its mesh shall be.

@@ -5,7 +5,9 @@
 
 #include <Eigen/CholmodSupport>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/errors.hpp"
 
@@ -79,13 +81,17 @@ ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, 
     throw SolveError(fmt::format("{} of {} thermal modes converged; ask for fewer", n_found, n_modes));
   }
   ThermalModes modes;
-  modes.shapes = solver.eigenvectors();
-  // Slowest first: Spectra sorts by 1/lambda, largest first, and returns lambda.
-  for (int i = 0; i < n_modes; ++i) modes.time_constant_s.push_back(1.0 / solver.eigenvalues()[i]);
+  modes.shapes.resize(n, n_modes);
+  std::vector<int> order(n_modes);
+  std::iota(order.begin(), order.end(), 0);
+  const Eigen::VectorXd lambda = solver.eigenvalues();
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return lambda[a] < lambda[b]; });
+  const Eigen::MatrixXd vectors = solver.eigenvectors();
   for (int i = 0; i < n_modes; ++i) {
+    modes.time_constant_s.push_back(1.0 / lambda[order[i]]);
     Eigen::VectorXd m_phi(n);
-    multiply(system.mass, modes.shapes.col(i).data(), m_phi.data());
-    modes.shapes.col(i) /= std::sqrt(m_phi.dot(modes.shapes.col(i)));
+    multiply(system.mass, vectors.col(order[i]).data(), m_phi.data());
+    modes.shapes.col(i) = vectors.col(order[i]) / std::sqrt(m_phi.dot(vectors.col(order[i])));
   }
   return modes;
 }

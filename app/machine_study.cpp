@@ -1,0 +1,147 @@
+#include "app/machine_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftwright::app {
+namespace {
+
+using namespace compensation;
+using scenarios::Machine;
+using scenarios::Scenario;
+
+std::vector<std::string> candidates(const scenarios::Study& study, const Record& record) {
+  return study.candidates.empty() ? record.names_with_unit("degC") : study.candidates;
+}
+
+std::vector<Record> training_records(const MachineStudy& study) {
+  std::vector<Record> records;
+  for (const SimulatedRun& run : study.train) records.push_back(run.record);
+  return records;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+/// The modal model's record of a cyclogram, at the times of the full model's.
+Record predict_record(const ModalPredictor& predictor, const Scenario& scenario, const Machine& machine, const Cyclogram& cyclogram,
+                      const std::vector<double>& time_s) {
+  return scenarios::to_record(predictor.predict(cyclogram, scenario.machine->hall, time_s), machine.system.outputs, cyclogram,
+                              scenario.machine->reference_K);
+}
+
+ModalError modal_error(const Record& predicted, const Record& full, const std::vector<std::string>& displacements, int n_modes,
+                       bool with_steady_responses) {
+  ModalError error{.n_modes = n_modes, .with_steady_responses = with_steady_responses, .worst_sensor = {}, .worst_displacement_um = {}};
+  for (const std::string& sensor : full.names_with_unit("degC")) {
+    const double difference_K = largest_difference(predicted.at(sensor).values, full.at(sensor).values);
+    if (difference_K >= error.worst_temperature_K) {
+      error.worst_temperature_K = difference_K;
+      error.worst_sensor = sensor;
+    }
+  }
+  for (const std::string& d : displacements) {
+    error.worst_displacement_um.push_back(largest_difference(predicted.at(d).values, full.at(d).values));
+  }
+  return error;
+}
+
+void fit_modal(MachineStudy& study, const Scenario& scenario, const Machine& machine) {
+  const Cyclogram& judged = scenario.cyclogram(scenario.study->judge);
+  const int n_modes = scenario.study->thermal_modes;
+  for (bool with_steady_responses : {false, true}) {
+    const ModalPredictor predictor = make_modal_predictor(machine.system, n_modes, with_steady_responses);
+    Record predicted = predict_record(predictor, scenario, machine, judged, study.judged.record.time_s);
+    study.modal_errors.push_back(modal_error(predicted, study.judged.record, study.displacements, n_modes, with_steady_responses));
+    if (!with_steady_responses) continue;
+    study.modal_prediction = std::move(predicted);
+    study.modal_time_constant_s = predictor.time_constant_s;
+    study.modal_margin_um.assign(study.displacements.size(), 0.0);
+    for (const SimulatedRun& run : study.train) {
+      const Record p = predict_record(predictor, scenario, machine, scenario.cyclogram(run.record.source), run.record.time_s);
+      for (std::size_t d = 0; d < study.displacements.size(); ++d) {
+        study.modal_margin_um[d] = std::max(study.modal_margin_um[d], largest_difference(p.at(study.displacements[d]).values,
+                                                                                         run.record.at(study.displacements[d]).values));
+      }
+    }
+  }
+}
+
+void fit_regression_on_best(MachineStudy& study, const scenarios::Study& settings) {
+  const std::vector<Record> records = training_records(study);
+  study.ranking = rank_channels(records, settings.target, candidates(settings, records.front()));
+  const std::vector<std::string> inputs = best(study.ranking, settings.sensors_to_choose);
+  for (const std::string& d : study.displacements) {
+    study.regressions.push_back(fit_regression(records, inputs, d));
+    study.single_sensor.push_back(fit_regression(records, {inputs.front()}, d));
+  }
+}
+
+void correct(MachineStudy& study, const Scenario& scenario) {
+  const scenarios::Study& settings = *scenario.study;
+  std::vector<double> durations_s;
+  for (const auto& section : scenario.cyclogram(settings.judge).sections) durations_s.push_back(section.duration_s);
+  const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
+  const Record& record = study.judged.record;
+  for (std::size_t d = 0; d < study.displacements.size(); ++d) {
+    const std::string& channel = study.displacements[d];
+    const JudgedRun run{record.time_s, record.at(channel).values, boundaries_s, settings.tolerance_um};
+    const auto add = [&](const char* predictor, const std::vector<double>& predicted_um, double margin_um) {
+      for (CorrectedRun corrected : {correct_by_injector(run, predicted_um, settings.encoder_period_um),
+                                     correct_by_schedule(run, predicted_um, margin_um)}) {
+        corrected.predictor = predictor;
+        corrected.channel = channel;
+        study.corrections.push_back(std::move(corrected));
+      }
+    };
+    add(kPredictors[0], study.single_sensor[d].predict(record), study.single_sensor[d].max_abs_residual);
+    add(kPredictors[1], study.regressions[d].predict(record), study.regressions[d].max_abs_residual);
+    add(kPredictors[2], study.modal_prediction.at(channel).values, study.modal_margin_um[d]);
+  }
+}
+
+void find_ambiguities(MachineStudy& study, const Scenario& scenario) {
+  std::vector<Record> records = training_records(study);
+  records.push_back(study.judged.record);
+  for (const scenarios::Sensor& sensor : scenario.machine->sensors) {
+    if (!std::holds_alternative<scenarios::PointOnRegion>(sensor.place)) continue;  // the air says nothing of the machine
+    const auto ambiguity = temperature_ambiguity(records, sensor.name, scenario.study->target);
+    if (ambiguity) study.ambiguities.push_back({sensor.name, *ambiguity});
+  }
+  std::stable_sort(study.ambiguities.begin(), study.ambiguities.end(), [](const SensorAmbiguity& a, const SensorAmbiguity& b) {
+    return a.ambiguity.spread > b.ambiguity.spread;
+  });
+}
+
+}  // namespace
+
+std::vector<const CorrectedRun*> MachineStudy::of_channel(const std::string& channel) const {
+  std::vector<const CorrectedRun*> found;
+  for (const CorrectedRun& c : corrections) {
+    if (c.channel == channel) found.push_back(&c);
+  }
+  return found;
+}
+
+MachineStudy study_machine(const Scenario& scenario, const Machine& machine, Progress& progress, output::FieldSeries* fields) {
+  MachineStudy study;
+  const scenarios::Study& settings = *scenario.study;
+  for (const std::string& name : settings.train) {
+    study.train.push_back(simulate_cyclogram(scenario, machine, scenario.cyclogram(name), progress, nullptr));
+    study.worst_energy_gap = std::max(study.worst_energy_gap, study.train.back().trajectory.energy_gap());
+  }
+  study.judged = simulate_cyclogram(scenario, machine, scenario.cyclogram(settings.judge), progress, fields);
+  study.worst_energy_gap = std::max(study.worst_energy_gap, study.judged.trajectory.energy_gap());
+  for (const auto& d : scenario.machine->displacements) study.displacements.push_back(d.name);
+  progress.begin("fitting and correcting");
+  fit_regression_on_best(study, settings);
+  fit_modal(study, scenario, machine);
+  correct(study, scenario);
+  find_ambiguities(study, scenario);
+  return study;
+}
+
+}  // namespace driftwright::app

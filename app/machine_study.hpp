@@ -1,0 +1,55 @@
+#pragma once
+// The main job: simulate the training cyclograms and the judged one, fit both predictors on the former, correct the latter.
+
+#include <array>
+
+#include "app/results.hpp"
+#include "compensation/correction.hpp"
+#include "compensation/grey_relational.hpp"
+#include "compensation/modal_predictor.hpp"
+#include "compensation/regression.hpp"
+#include "compensation/temperature_ambiguity.hpp"
+
+namespace driftwright::app {
+
+/// The predictors, by the names that summary and report use.
+inline constexpr std::array<const char*, 3> kPredictors = {"one thermometer", "regression", "thermal modes"};
+
+/// How far a modal model is from the full model on one run.
+struct ModalError {
+  int n_modes = 0;
+  bool with_steady_responses = false;
+  std::string worst_sensor;
+  double worst_temperature_K = 0.0;
+  std::vector<double> worst_displacement_um;  ///< per displacement channel
+};
+
+struct SensorAmbiguity {
+  std::string sensor;
+  compensation::TemperatureAmbiguity ambiguity;
+};
+
+struct MachineStudy {
+  std::vector<SimulatedRun> train;
+  SimulatedRun judged;
+  std::vector<std::string> displacements;  ///< channels in um
+  compensation::Ranking ranking;           ///< of the thermometers against the target
+  std::vector<compensation::Regression> regressions;    ///< on the best sensors, one per displacement
+  std::vector<compensation::Regression> single_sensor;  ///< on the very best one: what temperature alone can do
+  std::vector<double> modal_time_constant_s;
+  Record modal_prediction;  ///< of the judged cyclogram
+  std::vector<double> modal_margin_um;  ///< largest error on the training cyclograms, per displacement
+  std::vector<ModalError> modal_errors;  ///< on the judged cyclogram: bare modes, then completed ones
+  /// Displacement by displacement: predictors (kPredictors) x actuators (pulse injector, schedule).
+  std::vector<compensation::CorrectedRun> corrections;
+  std::vector<SensorAmbiguity> ambiguities;  ///< of the target at each point on the machine, worst first
+  double worst_energy_gap = 0.0;
+
+  /// The corrections of one channel.
+  [[nodiscard]] std::vector<const compensation::CorrectedRun*> of_channel(const std::string& channel) const;
+};
+
+[[nodiscard]] MachineStudy study_machine(const scenarios::Scenario& scenario, const scenarios::Machine& machine, Progress& progress,
+                                         output::FieldSeries* fields);
+
+}  // namespace driftwright::app

@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include "app/results.hpp"
+#include "app/verbs.hpp"
+#include "mesh/quality.hpp"
+
+namespace driftwright::app {
+
+void mesh(const CommonOptions& options) {
+  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::MachineModel& model = require_machine(scenario, "mesh");
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress;
+  progress.begin("meshing");
+  const scenarios::PlacedMachine placed = scenarios::place(model);
+  const mesh::Mesh& m = placed.mesh;
+  output::write_mesh(m, mesh::scaled_jacobians(m), folder.path("mesh.vtu"));
+  folder.commit();
+  progress.end();
+
+  const mesh::Quality quality = mesh::worst_quality(m);
+  fmt::print("{} nodes, {} cells; scaled Jacobian: worst {:.4f} (cell {} in {}), mean {:.3f}\n", m.n_nodes(), m.cells.size(),
+             quality.min_scaled, quality.worst_cell, m.regions[m.cells.group[quality.worst_cell]], quality.mean_scaled);
+  for (std::size_t r = 0; r < m.regions.size(); ++r) {
+    const int region = static_cast<int>(r);
+    const double volume = mesh::volume_m3(m, region);
+    fmt::print("  region  {:<32} {:8.3f} l  {:8.1f} kg  {:6} cells\n", m.regions[r], 1e3 * volume,
+               volume * placed.materials[r].density_kg_m3, m.cells_in(region).size());
+  }
+  for (std::size_t s = 0; s < m.surfaces.size(); ++s) {
+    if (m.surfaces[s].find('@') != std::string::npos) continue;
+    fmt::print("  surface {:<32} {:8.4f} m2\n", m.surfaces[s], mesh::area_m2(m, static_cast<int>(s)));
+  }
+  for (const mesh::Joint& joint : m.joints) fmt::print("  joint   {:<32} {:8.4f} m2\n", joint.name, mesh::area_m2(m, m.surface(joint.side_a)));
+  fmt::print("written to {}\n", shown_path(folder.target() / "mesh.vtu"));
+}
+
+}  // namespace driftwright::app

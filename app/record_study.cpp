@@ -1,0 +1,69 @@
+#include "app/record_study.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace driftwright::app {
+namespace {
+
+using namespace compensation;
+
+std::vector<std::string> candidates(const scenarios::Study& settings, const Record& record) {
+  if (!settings.candidates.empty()) return settings.candidates;
+  std::vector<std::string> names;
+  for (const Channel& c : record.channels) {
+    if ((c.unit == "degC" || c.unit == "K") && &c != record.find(settings.target)) names.push_back(c.name);
+  }
+  if (names.empty()) throw InputError(fmt::format("{}: no temperature channel (degC or K) to choose from", record.source));
+  return names;
+}
+
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> d;
+  for (std::size_t i = 0; i < a.size(); ++i) d.push_back(a[i] - b[i]);
+  return d;
+}
+
+}  // namespace
+
+RecordStudy read_records(const scenarios::Study& study, const RecordOptions& options) {
+  RecordStudy records;
+  records.target = study.target;
+  for (const std::string& file : options.train) {
+    for (const std::string& test : options.test) {
+      std::error_code ignored;
+      if (std::filesystem::equivalent(file, test, ignored)) {
+        throw InputError(fmt::format("{}: a record cannot be both trained on and judged by", file));
+      }
+    }
+    records.train.push_back(read_record_csv(file));
+    (void)records.train.back().at(study.target);
+  }
+  for (const std::string& file : options.test) {
+    records.test.push_back(read_record_csv(file));
+    (void)records.test.back().at(study.target);
+  }
+  return records;
+}
+
+void rank(RecordStudy& study, const scenarios::Study& settings) {
+  study.ranking = rank_channels(study.train, study.target, candidates(settings, study.train.front()));
+}
+
+void fit_and_judge(RecordStudy& study, const scenarios::Study& settings) {
+  rank(study, settings);
+  study.regression = fit_regression(study.train, best(study.ranking, settings.sensors_to_choose), study.target);
+  for (const Record& test : study.test) {
+    const std::vector<double>& measured = test.at(study.target).values;
+    const auto add = [&](const std::string& strategy, std::vector<double> predicted) {
+      const Score error = score(difference(measured, predicted));
+      study.judged.push_back({strategy, test.source, std::move(predicted), error});
+    };
+    add("regression", study.regression.predict(test));
+    add("mean of the training records", baseline_mean(study.train, test, study.target));
+    add("training records at the same time", baseline_same_time(study.train, test, study.target));
+  }
+}
+
+}  // namespace driftwright::app

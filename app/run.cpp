@@ -1,0 +1,40 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/machine_study_output.hpp"
+#include "app/verbs.hpp"
+#include "output/json_text.hpp"
+
+namespace driftwright::app {
+
+void run(const CommonOptions& options) {
+  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::MachineModel& model = require_machine(scenario, "run");
+  (void)require_study(scenario, "run");
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress;
+  progress.begin("meshing");
+  scenarios::PlacedMachine placed = scenarios::place(model);
+  progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
+  const scenarios::Machine machine = scenarios::build(model, std::move(placed));
+
+  output::FieldSeries fields(folder, machine.placed.mesh);
+  const MachineStudy study = study_machine(scenario, machine, progress, &fields);
+  fields.finish();
+  progress.begin("writing results");
+  folder.write_text("record.csv", record_csv(study.judged.record, provenance_lines(folder.made_by(), "judged cyclogram " + scenario.study->judge)));
+  for (const SimulatedRun& run : study.train) {
+    folder.write_text("records/" + run.record.source + ".csv",
+                      record_csv(run.record, provenance_lines(folder.made_by(), "training cyclogram " + run.record.source)));
+  }
+  folder.write_text("schedule.txt", schedule_text(study));
+  folder.write_text("summary.json", output::json_text(summary_json(scenario, machine, study, folder.made_by())));
+  folder.write_text("report.html", output::render_html(study_report(scenario, machine, study, folder.made_by())));
+  folder.commit();
+  progress.end();
+  fmt::print("{}  results in {}: report.html, fields.pvd (ParaView), record.csv, summary.json\n", terminal_summary(scenario, study),
+             shown_path(folder.target()));
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,41 @@
+#include <fmt/format.h>
+
+#include "app/results.hpp"
+#include "app/verbs.hpp"
+
+namespace driftwright::app {
+
+void simulate(const SimulateOptions& options) {
+  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::MachineModel& model = require_machine(scenario, "simulate");
+  std::vector<const Cyclogram*> cyclograms;
+  for (const std::string& name : options.cyclograms) cyclograms.push_back(&scenario.cyclogram(name));
+  if (cyclograms.empty()) {
+    for (const Cyclogram& c : scenario.cyclograms) cyclograms.push_back(&c);
+  }
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress;
+  progress.begin("meshing");
+  scenarios::PlacedMachine placed = scenarios::place(model);
+  progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
+  const scenarios::Machine machine = scenarios::build(model, std::move(placed));
+  std::string summary;
+  for (const Cyclogram* cyclogram : cyclograms) {
+    // Whole fields of one cyclogram only: several would fill the disk and mix in one .pvd.
+    std::optional<output::FieldSeries> fields;
+    if (cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
+    const SimulatedRun run = simulate_cyclogram(scenario, machine, *cyclogram, progress, fields ? &*fields : nullptr);
+    if (fields) fields->finish();
+    const std::string file = cyclograms.size() == 1 ? "record.csv" : "records/" + cyclogram->name + ".csv";
+    folder.write_text(file, record_csv(run.record, provenance_lines(folder.made_by(), "cyclogram " + cyclogram->name)));
+    summary += fmt::format("{:<20} {:5.0f} min, {} steps; at its end", cyclogram->name, cyclogram->duration_s() / 60.0, run.trajectory.n_steps);
+    for (const auto& d : model.displacements) summary += fmt::format("  {} {:.1f} um", d.name, run.record.at(d.name).values.back());
+    summary += fmt::format("; energy balance {:.0e}; {}\n", std::max(1e-16, run.trajectory.energy_gap()), file);
+  }
+  folder.commit();
+  progress.end();
+  fmt::print("{}results in {}{}\n", summary, shown_path(folder.target()),
+             cyclograms.size() == 1 ? ", fields in fields.pvd (ParaView)" : "; name one cyclogram to get fields, too");
+}
+
+}  // namespace driftwright::app

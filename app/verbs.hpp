@@ -1,0 +1,38 @@
+#pragma once
+// The verbs of the command line, one file each. Every one throws InputError, SolveError or another exception; main() turns
+// them into exit codes.
+
+#include <string>
+#include <vector>
+
+namespace driftwright::app {
+
+/// What all verbs take.
+struct CommonOptions {
+  std::string scenario;
+  std::string out;     ///< folder of results; empty: results/<name of the scenario>
+  bool force = false;  ///< replace a folder that holds other files too
+};
+
+void run(const CommonOptions& options);
+void check(const CommonOptions& options);
+void mesh(const CommonOptions& options);
+
+struct SimulateOptions : CommonOptions {
+  std::vector<std::string> cyclograms;  ///< names; empty: all of the scenario
+};
+void simulate(const SimulateOptions& options);
+
+struct PredictOptions : CommonOptions {
+  std::string cyclogram;  ///< a name of the scenario, or a record CSV with the channel speed_rpm
+};
+void predict(const PredictOptions& options);
+
+struct RecordOptions : CommonOptions {
+  std::vector<std::string> train;  ///< record CSVs
+  std::vector<std::string> test;
+};
+void select(const RecordOptions& options);
+void validate(const RecordOptions& options);
+
+}  // namespace driftwright::app

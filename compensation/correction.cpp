@@ -1,0 +1,43 @@
+#include "compensation/correction.hpp"
+
+#include <algorithm>
+
+#include "compensation/injection_run.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+CorrectedRun judge(const JudgedRun& run, const char* actuator, const std::vector<double>& correction_um) {
+  CorrectedRun result{.predictor = {}, .actuator = actuator, .channel = {}, .residual_um = {}, .before = {}, .after = {},
+                      .inside_tolerance = false, .schedule = std::nullopt};
+  for (std::size_t i = 0; i < run.drift_um.size(); ++i) result.residual_um.push_back(run.drift_um[i] - correction_um[i]);
+  result.before = score(run.drift_um);
+  result.after = score(result.residual_um);
+  result.inside_tolerance =
+      result.after.n == static_cast<int>(run.drift_um.size()) && result.after.peak_abs <= run.tolerance_um;
+  return result;
+}
+
+}  // namespace
+
+CorrectedRun correct_by_injector(const JudgedRun& run, std::span<const double> predicted_um, double period_um) {
+  return judge(run, "pulse injector", simulate_injection(run.time_s, predicted_um, period_um).inserted_um);
+}
+
+CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um) {
+  const ScheduleOptions options{.tolerance_um = run.tolerance_um, .margin_um = std::min(margin_um, 0.5 * run.tolerance_um)};
+  Schedule schedule = plan_schedule(run.time_s, predicted_um, run.boundaries_s, options);
+  std::vector<double> correction_um;
+  for (double t_s : run.time_s) correction_um.push_back(correction_at(schedule, t_s));
+  CorrectedRun result = judge(run, "schedule", correction_um);
+  result.schedule = std::move(schedule);
+  return result;
+}
+
+std::vector<double> operation_boundaries_s(std::span<const double> section_durations_s) {
+  std::vector<double> boundaries_s = {0.0};
+  for (double duration_s : section_durations_s) boundaries_s.push_back(boundaries_s.back() + duration_s);
+  return boundaries_s;
+}
+
+}  // namespace driftwright::compensation

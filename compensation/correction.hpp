@@ -1,0 +1,46 @@
+#pragma once
+// A predicted drift put into the machine, and what is left: the one place where strategies are scored.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compensation/schedule.hpp"
+#include "compensation/score.hpp"
+
+namespace driftwright::compensation {
+
+/// A run that strategies are judged on: time, the drift that really happens, the operations of the cyclogram.
+struct JudgedRun {
+  std::span<const double> time_s;
+  std::span<const double> drift_um;
+  std::span<const double> boundaries_s;  ///< starts of the operations, and the end
+  double tolerance_um = 10.0;
+};
+
+/// One predictor through one actuator on one displacement channel.
+struct CorrectedRun {
+  std::string predictor;
+  std::string actuator;
+  std::string channel;
+  std::vector<double> residual_um;  ///< drift - correction in force, at each time of the run
+  Score before, after;              ///< of the drift itself, of the residual
+  bool inside_tolerance = false;    ///< no |residual| above the tolerance, and no sample missing
+  std::optional<Schedule> schedule;  ///< where the actuator is a schedule
+};
+
+/// The correction follows the prediction through the pulse injector, one encoder period at a time.
+/// @param period_um  travel of one encoder period, > 0
+/// @throws RangeError, InputError  as simulate_injection()
+[[nodiscard]] CorrectedRun correct_by_injector(const JudgedRun& run, std::span<const double> predicted_um, double period_um);
+
+/// The correction is planned ahead from the prediction and written into the program.
+/// @param margin_um  kept in reserve for the predictor's error; more than half of the tolerance is cut to that half
+/// @throws RangeError, InputError  as plan_schedule()
+[[nodiscard]] CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um);
+
+/// Starts of a run's operations and its end [s], from the sections of its cyclogram.
+[[nodiscard]] std::vector<double> operation_boundaries_s(std::span<const double> section_durations_s);
+
+}  // namespace driftwright::compensation

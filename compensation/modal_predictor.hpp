@@ -1,0 +1,26 @@
+#pragma once
+// Drift of any cyclogram without sensors: the machine's thermal modes, driven by the cyclogram and the hall.
+
+#include "solver/reduced_model.hpp"
+
+namespace driftwright::compensation {
+
+/// The slowest thermal modes of the machine at standstill, completed by its steady responses to each heat source and to
+/// the hall. The modes carry the slow memory, the steady responses what the cut-off fast modes would have settled to: 20
+/// modes alone miss a bearing by kelvins.
+struct ModalPredictor {
+  std::vector<double> time_constant_s;  ///< of the modes, falling
+  solver::ReducedSystem system;
+
+  /// Outputs in K, m and rad over a cyclogram from the reference temperature on, exact between the changes of speed.
+  [[nodiscard]] solver::Trajectory predict(const Cyclogram& cyclogram, const TimeSeries& hall,
+                                           const std::vector<double>& output_s) const;
+};
+
+/// @param n_modes  >= 1
+/// @param with_steady_responses  false leaves the bare modes, for comparison
+/// @throws InputError, SolveError  as thermal_modes()
+[[nodiscard]] ModalPredictor make_modal_predictor(const solver::FullSystem& system, int n_modes,
+                                                  bool with_steady_responses = true);
+
+}  // namespace driftwright::compensation
