@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <stdexcept>
 
 namespace driftwright::solver {
@@ -20,6 +21,27 @@ int find_entry(const SparseRow& a, int row, int column) {
 void Cliques::add(std::span<const int> members) {
   member.insert(member.end(), members.begin(), members.end());
   offset.push_back(static_cast<int>(member.size()));
+}
+
+std::vector<int> connected_sets(int n, const Cliques& cliques) {
+  std::vector<int> parent(n), set(n, -1);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root_of = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (int c = 0; c < cliques.size(); ++c) {
+    for (int k = cliques.offset[c] + 1; k < cliques.offset[c + 1]; ++k) {
+      parent[root_of(cliques.member[k])] = root_of(cliques.member[cliques.offset[c]]);
+    }
+  }
+  int n_sets = 0;
+  for (int i = 0; i < n; ++i) {
+    int& of_root = set[root_of(i)];
+    if (of_root < 0) of_root = n_sets++;
+    set[i] = of_root;
+  }
+  return set;
 }
 
 SparseRow pattern(int n, const Cliques& cliques) {

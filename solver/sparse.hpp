@@ -29,6 +29,9 @@ void scatter_add(SparseRow& a, std::span<const int> dofs, const Eigen::Ref<const
 /// @throws std::logic_error  when part has an entry that whole has not
 [[nodiscard]] std::vector<int> slots_of(const SparseRow& part, const SparseRow& whole);
 
+/// Number of the connected set each of n unknowns belongs to, where each clique connects its members.
+[[nodiscard]] std::vector<int> connected_sets(int n, const Cliques& cliques);
+
 /// Loops of fewer entries are faster on one core: waking the others costs some 10 us.
 inline constexpr int kWorthThreads = 20000;
 
