@@ -18,14 +18,16 @@ struct ConfigMap::Source {
 
 namespace {
 
-void reject_duplicate_keys(const YAML::Node& map, const std::string& file) {  // yaml-cpp lets them pass silently
+/// yaml-cpp lets duplicate keys pass silently, and takes lists and maps for keys.
+void reject_bad_keys(const YAML::Node& map, const std::string& file, const std::vector<std::string>& lines) {
   std::set<std::string> seen;
   for (const auto& entry : map) {
-    const auto key = entry.first.as<std::string>();
-    if (!seen.insert(key).second) {
-      const YAML::Mark mark = entry.first.Mark();
-      throw InputError(Where{file, mark.line + 1, mark.column + 1, key, ""}, fmt::format("key '{}' appears twice", key));
-    }
+    const YAML::Mark mark = entry.first.Mark();
+    const auto line = static_cast<std::size_t>(std::max(0, mark.line));
+    Where where{file, mark.line + 1, mark.column + 1, "", line < lines.size() ? lines[line] : ""};
+    if (!entry.first.IsScalar()) throw InputError(where, "a key must be a word, not a list, a map or nothing");
+    where.key = entry.first.Scalar();
+    if (!seen.insert(where.key).second) throw InputError(where, fmt::format("key '{}' appears twice", where.key));
   }
 }
 
@@ -79,7 +81,7 @@ ConfigMap ConfigMap::read_file(const std::string& path) {
 
 ConfigMap::ConfigMap(std::shared_ptr<const Source> source, const YAML::Node& node, std::string path)
     : source_(std::move(source)), node_(std::make_shared<const YAML::Node>(node)), path_(std::move(path)) {
-  reject_duplicate_keys(*node_, source_->path);
+  reject_bad_keys(*node_, source_->path, source_->lines);
 }
 
 const std::string& ConfigMap::file() const { return source_->path; }

@@ -33,6 +33,7 @@ std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const Ti
   double start_s = 0.0, last_speed_rpm = -1.0;
   for (const Cyclogram::Section& section : cyclogram.sections) {
     const double end_s = start_s + section.duration_s;
+    if (!(end_s > start_s)) continue;
     std::vector<double> cuts_s = {start_s};
     for (double knot_s : hall.time_s) {
       if (knot_s > start_s && knot_s < end_s) cuts_s.push_back(knot_s);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -39,9 +40,16 @@ UnitPtr parse_unit(const std::string& text) {
   return unit;
 }
 
+/// UDUNITS counts the radian as 1, so that 1 Hz would be 9.55 rpm. Here an angle is an angle.
+bool carries_angle(const UnitPtr& unit) {
+  char text[256];
+  const int length = ut_format(unit.get(), text, sizeof text, UT_ASCII | UT_DEFINITION);
+  return length > 0 && std::string(text, std::min<std::size_t>(length, sizeof text)).find("rad") != std::string::npos;
+}
+
 ConverterPtr make_converter(const std::string& from, const std::string& to) {
   const UnitPtr a = parse_unit(from), b = parse_unit(to);
-  if (ut_are_convertible(a.get(), b.get()) == 0) {
+  if (ut_are_convertible(a.get(), b.get()) == 0 || carries_angle(a) != carries_angle(b)) {
     throw RangeError(fmt::format("wrong unit '{}': a quantity in {} is wanted", from, to));
   }
   return ConverterPtr(ut_get_converter(a.get(), b.get()));

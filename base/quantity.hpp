@@ -10,7 +10,8 @@ namespace driftwright {
 ///
 /// @param text  such as "80 mm"; the unit is compulsory unless `unit` is "1"
 /// @param unit  the unit wanted, in UDUNITS syntax: "m", "W/(m^2 K)", "rpm", "1"
-/// @throws RangeError  when the number or unit cannot be read, is not finite, has another dimension, or when a
+/// @throws RangeError  when the number or unit cannot be read, is not finite, has another dimension (an angle counts as
+///                     one: Hz or 1/min is no rpm), or when a
 ///                     temperature with an offset (degC) is given where a temperature difference (K) is wanted
 [[nodiscard]] double parse_quantity(const std::string& text, const std::string& unit);
 

@@ -1,6 +1,5 @@
 #include "mesh/locate.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -41,14 +40,6 @@ Eigen::VectorXd nearest_on_simplex(const Eigen::Matrix3Xd& corners, const Eigen:
   return best;
 }
 
-/// Moves reference coordinates onto the reference simplex (in reference metric).
-Eigen::Vector3d clamp_to_reference(Eigen::Vector3d xi, int dimension) {
-  Eigen::Matrix3Xd corners = Eigen::Matrix3Xd::Zero(3, dimension + 1);
-  for (int i = 0; i < dimension; ++i) corners(i, i + 1) = 1.0;
-  if (dimension == 2) xi[2] = 0.0;
-  return corners * nearest_on_simplex(corners, xi);
-}
-
 MeshPoint nearest_in_cell(const Mesh& mesh, const Cells& cells, int cell, const Eigen::Vector3d& p) {
   const CellShape shape = cells.shape[cell];
   const auto x = cell_coords(mesh, cells.nodes(cell));
@@ -56,14 +47,17 @@ MeshPoint nearest_in_cell(const Mesh& mesh, const Cells& cells, int cell, const 
   const Eigen::VectorXd l = nearest_on_simplex(x.leftCols(n_corners), p);
   Eigen::Vector3d xi = Eigen::Vector3d::Zero();
   xi.head(dimension) = l.tail(dimension);
-  if (n_nodes_of(shape) != n_corners) {  // curved: Gauss-Newton from the straight answer, kept inside
+  if (n_nodes_of(shape) != n_corners) {
+    // Curved: Gauss-Newton from the straight answer. Each step solves for the nearest point of the cell that the tangent
+    // at xi makes, so that the distance is always the one in space, inside and outside.
     for (int i = 0; i < 12; ++i) {
       const ShapeValues s = shape_values(shape, xi);
-      const Eigen::Vector3d gap = p - x * s.N.head(s.n).transpose();
-      const auto j = jacobian(s, x, shape).dx_dxi.leftCols(dimension).eval();
-      Eigen::Vector3d step = Eigen::Vector3d::Zero();
-      step.head(dimension) = (j.transpose() * j).ldlt().solve(j.transpose() * gap);
-      const Eigen::Vector3d next = clamp_to_reference(xi + step, dimension);
+      const Eigen::Matrix3Xd j = jacobian(s, x, shape).dx_dxi.leftCols(dimension);
+      Eigen::Matrix3Xd tangent(3, n_corners);
+      tangent.colwise() = x * s.N.head(s.n).transpose() - j * xi.head(dimension);
+      tangent.rightCols(dimension) += j;
+      Eigen::Vector3d next = Eigen::Vector3d::Zero();
+      next.head(dimension) = nearest_on_simplex(tangent, p).tail(dimension);
       const double moved = (next - xi).norm();
       xi = next;
       if (moved < 1e-12) break;

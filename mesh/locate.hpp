@@ -17,8 +17,8 @@ struct MeshPoint {
   double distance_m = 0.0;                             ///< from the point asked for
 };
 
-/// The point of `candidates` (indices into `cells`) nearest to `point_m`. Exact for straight cells; for curved ones the
-/// nearest point of the reference cell after Newton's inverse map, which is exact inside and on the surface.
+/// The point of `candidates` (indices into `cells`) nearest to `point_m`. Exact for straight cells; for curved ones by
+/// Gauss-Newton, which converges inside, on the surface and, where the distance is small against the radius, outside.
 /// cell == -1 when candidates is empty.
 [[nodiscard]] MeshPoint nearest_point(const Mesh& mesh, const Cells& cells, std::span<const int> candidates,
                                       const Eigen::Vector3d& point_m);

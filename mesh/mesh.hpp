@@ -30,7 +30,7 @@ struct Cells {
   void add(CellShape cell_shape, std::span<const int> nodes, int cell_group);
 };
 
-/// Two surfaces that touch and share no node. Each facet of side_a is matched to side_b by closest points.
+/// Two surfaces that touch and share no node. Their points are matched by closest distance.
 struct Joint {
   std::string name;    ///< "<region a>/<region b>", alphabetical
   std::string side_a;  ///< surface name

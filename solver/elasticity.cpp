@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/CholmodSupport>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "base/errors.hpp"
 #include "mesh/shape.hpp"
@@ -72,6 +75,44 @@ double tie_stiffness_N_m3(const Mesh& mesh, const mesh::Joint& joint, const Regi
   return 1000.0 * e_Pa / length_m;
 }
 
+/// Looks whether the fixed directions stop all six rigid motions of each set of parts that joints hold together. A
+/// factorisation alone does not tell: rounding makes the pivot of a free motion positive as often as not.
+/// @param fixed  true for dof 3 node + direction that is held
+void require_held(const Mesh& mesh, const std::vector<std::pair<double, std::vector<JointPoint>>>& ties,
+                  const std::vector<bool>& fixed) {
+  Cliques neighbours;
+  for (int cell = 0; cell < mesh.cells.size(); ++cell) neighbours.add(mesh.cells.nodes(cell));
+  for (const auto& [stiffness, points] : ties) {
+    for (const JointPoint& point : points) neighbours.add(std::vector<int>{point.node_a[0], point.node_b[0]});
+  }
+  const std::vector<int> set_of = connected_sets(mesh.n_nodes(), neighbours);
+  const Eigen::Vector3d low = mesh.coords.rowwise().minCoeff(), high = mesh.coords.rowwise().maxCoeff();
+  const Eigen::Vector3d centre = 0.5 * (low + high);
+  const double size_m = (high - low).norm();
+  using Matrix6d = Eigen::Matrix<double, 6, 6>;
+  std::vector<Matrix6d> held(*std::max_element(set_of.begin(), set_of.end()) + 1, Matrix6d::Zero());
+  for (std::size_t dof = 0; dof < fixed.size(); ++dof) {
+    if (!fixed[dof]) continue;
+    const auto node = static_cast<Eigen::Index>(dof / 3);
+    const Eigen::Vector3d e = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(dof % 3));
+    Eigen::Matrix<double, 6, 1> motion;  // u_e of t + w x x, as factors of t and of w times the size
+    motion << e, ((mesh.coords.col(node) - centre) / size_m).cross(e);
+    held[set_of[node]] += motion * motion.transpose();
+  }
+  for (int cell = 0; cell < mesh.cells.size(); ++cell) {
+    Matrix6d& set = held[set_of[mesh.cells.nodes(cell)[0]]];
+    if (set(0, 0) < 0.0) continue;  // seen before
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(set);
+    // A held machine stands on feet of more than a thousandth of its size: 1e-6; a free motion leaves rounding, 1e-16.
+    if (!(eigen.eigenvalues()[0] > 1e-11 * eigen.eigenvalues()[5])) {
+      throw InputError(fmt::format("supports: the part with region '{}' is not held; it can still move as a rigid body. Fix more "
+                                   "surfaces or directions",
+                                   mesh.regions[mesh.cells.group[cell]]));
+    }
+    set(0, 0) = -1.0;
+  }
+}
+
 }  // namespace
 
 struct Elasticity::Parts {
@@ -135,6 +176,9 @@ Elasticity::Elasticity(const Mesh& mesh, const RegionMaterials& materials, const
       add_clique(nodes);
     }
   }
+  std::vector<bool> fixed(p.free_of.size());
+  for (std::size_t dof = 0; dof < fixed.size(); ++dof) fixed[dof] = p.free_of[dof] < 0;
+  require_held(mesh, ties, fixed);
   SparseRow k = pattern(p.n_free, cliques);
 
   std::vector<Eigen::Triplet<double>> thermal;

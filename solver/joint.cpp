@@ -1,13 +1,22 @@
 #include "solver/joint.hpp"
 
+#include <cmath>
+
 #include "mesh/locate.hpp"
+#include "mesh/quality.hpp"
 #include "mesh/shape.hpp"
 
 namespace driftwright::solver {
 
 std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint) {
-  const std::vector<int> side_a = mesh.facets_on(mesh.surface(joint.side_a));
-  const std::vector<int> side_b = mesh.facets_on(mesh.surface(joint.side_b));
+  // The rule integrates the shape functions of the side it lies on exactly, and sees those of the other only in samples:
+  // it lies on the finer side. Sides of different size are another matter: there side a says where the contact is.
+  const int surface_a = mesh.surface(joint.side_a), surface_b = mesh.surface(joint.side_b);
+  std::vector<int> side_a = mesh.facets_on(surface_a), side_b = mesh.facets_on(surface_b);
+  const double area_m2 = mesh::area_m2(mesh, surface_a);
+  const bool exchanged =
+      side_b.size() > side_a.size() && std::abs(mesh::area_m2(mesh, surface_b) - area_m2) < 0.01 * area_m2;
+  if (exchanged) std::swap(side_a, side_b);
   std::vector<std::vector<JointPoint>> of_facet(side_a.size());
 #pragma omp parallel for schedule(dynamic, 8)
   for (std::size_t f = 0; f < side_a.size(); ++f) {
@@ -27,6 +36,10 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
                        .weight_b = {sb.N.data(), sb.N.data() + sb.n},
                        .area_m2 = q.weight * mesh::jacobian(s, x, shape).det,
                        .gap_m = opposite.distance_m};
+      if (exchanged) {
+        std::swap(point.node_a, point.node_b);
+        std::swap(point.weight_a, point.weight_b);
+      }
       of_facet[f].push_back(std::move(point));
     }
   }

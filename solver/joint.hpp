@@ -1,5 +1,5 @@
 #pragma once
-// Joints between parts that share no nodes: quadrature points of side a matched with the nearest points of side b.
+// Joints between parts that share no nodes: quadrature points of the finer side matched with the nearest points of the other.
 
 #include <array>
 #include <vector>

@@ -22,9 +22,36 @@ SparseRow stiffness_at(const FullSystem& system, const effects::Inputs& at) {
   return k;
 }
 
+/// Each set of connected unknowns needs an exchange with the hall. A factorisation alone does not tell: rounding makes
+/// the pivot of a set without one positive as often as not.
+void require_way_out(const FullSystem& system, const SparseRow& k, const effects::Inputs& at) {
+  const int n = system.size();
+  Cliques neighbours;
+  for (int row = 0; row < n; ++row) {
+    for (SparseRow::InnerIterator entry(k, row); entry; ++entry) {
+      if (entry.col() > row && entry.value() != 0.0) neighbours.add(std::vector<int>{row, static_cast<int>(entry.col())});
+    }
+  }
+  const std::vector<int> set_of = connected_sets(n, neighbours);
+  std::vector<double> to_hall_W_K(n, 0.0);
+  for (const auto& e : system.exchanges) {
+    const double c = e.coefficient(at);
+    for (int i = 0; i < n; ++i) to_hall_W_K[set_of[i]] += c * e.to_hall[i];
+  }
+  for (int i = 0; i < n; ++i) {
+    if (!(to_hall_W_K[set_of[i]] > 0.0)) {
+      throw SolveError(fmt::format("the heat conduction matrix is singular: the part with unknown {} has no film, joint or link through "
+                                   "which heat leaves",
+                                   i));
+    }
+  }
+}
+
 class Factor {
  public:
-  explicit Factor(const SparseRow& k) {
+  Factor(const FullSystem& system, const effects::Inputs& at) {
+    const SparseRow k = stiffness_at(system, at);
+    require_way_out(system, k, at);
     llt_.cholmod().print = 0;
     llt_.compute(ColumnMatrix(Eigen::SparseMatrix<double, Eigen::ColMajor, int>(k.transpose())));
     if (llt_.info() != Eigen::Success) {
@@ -66,7 +93,7 @@ double phi2(double a) { return std::abs(a) < 1e-3 ? 0.5 - a / 6.0 + a * a / 24.0
 ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, int n_modes) {
   const int n = system.size();
   if (n_modes < 1 || n_modes > n - 2) throw InputError(fmt::format("{} thermal modes of {} unknowns cannot be had", n_modes, n));
-  const Factor factor(stiffness_at(system, at));
+  const Factor factor(system, at);
   InverseStiffness inverse{factor, n};
   MassProduct mass{system.mass};
   const int n_krylov = std::min(n, std::max(2 * n_modes + 1, 20));
@@ -97,7 +124,7 @@ ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, 
 }
 
 Eigen::MatrixXd steady_responses(const FullSystem& system, const effects::Inputs& at) {
-  const Factor factor(stiffness_at(system, at));
+  const Factor factor(system, at);
   const auto n_sources = static_cast<Eigen::Index>(system.sources.size());
   Eigen::MatrixXd responses(system.size(), n_sources + 1);
   for (Eigen::Index s = 0; s < n_sources; ++s) responses.col(s) = factor.solve(system.sources[s].load);

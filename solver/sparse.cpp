@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <stdexcept>
 
 namespace driftwright::solver {
@@ -20,6 +21,27 @@ int find_entry(const SparseRow& a, int row, int column) {
 void Cliques::add(std::span<const int> members) {
   member.insert(member.end(), members.begin(), members.end());
   offset.push_back(static_cast<int>(member.size()));
+}
+
+std::vector<int> connected_sets(int n, const Cliques& cliques) {
+  std::vector<int> parent(n), set(n, -1);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root_of = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (int c = 0; c < cliques.size(); ++c) {
+    for (int k = cliques.offset[c] + 1; k < cliques.offset[c + 1]; ++k) {
+      parent[root_of(cliques.member[k])] = root_of(cliques.member[cliques.offset[c]]);
+    }
+  }
+  int n_sets = 0;
+  for (int i = 0; i < n; ++i) {
+    int& of_root = set[root_of(i)];
+    if (of_root < 0) of_root = n_sets++;
+    set[i] = of_root;
+  }
+  return set;
 }
 
 SparseRow pattern(int n, const Cliques& cliques) {
@@ -81,7 +103,7 @@ void multiply(const SparseRow& a, const double* x, double* y) {
   const int* column = a.innerIndexPtr();
   const double* value = a.valuePtr();
   const int n = static_cast<int>(a.rows());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (a.nonZeros() > kWorthThreads)
   for (int row = 0; row < n; ++row) {
     double sum = 0.0;
     for (int k = start[row]; k < start[row + 1]; ++k) sum += value[k] * x[column[k]];

@@ -29,6 +29,12 @@ void scatter_add(SparseRow& a, std::span<const int> dofs, const Eigen::Ref<const
 /// @throws std::logic_error  when part has an entry that whole has not
 [[nodiscard]] std::vector<int> slots_of(const SparseRow& part, const SparseRow& whole);
 
+/// Number of the connected set each of n unknowns belongs to, where each clique connects its members.
+[[nodiscard]] std::vector<int> connected_sets(int n, const Cliques& cliques);
+
+/// Loops of fewer entries run on one core: they last some 50 us, and waking the others costs as much, far more when busy.
+inline constexpr int kWorthThreads = 100000;
+
 /// y = A x on all cores.
 void multiply(const SparseRow& a, const double* x, double* y);
 /// x . y, summed in fixed blocks, so that any number of threads gives the same bits.

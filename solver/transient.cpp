@@ -93,7 +93,7 @@ class HeatOde {
       const double* m = system_.mass.valuePtr();
       double* a = shifted_.valuePtr();
       const auto n_entries = shifted_.nonZeros();
-#pragma omp parallel for simd schedule(static)
+#pragma omp parallel for simd schedule(static) if (n_entries > kWorthThreads)
       for (Eigen::Index i = 0; i < n_entries; ++i) a[i] = m[i] + gamma * k[i];
       shifted_solver_.refresh();
       gamma_ = gamma;
@@ -255,6 +255,7 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   must(ARKStepSetLinear(mem, 0), "ARKStepSetLinear");
   must(ARKStepSetMassLinearSolver(mem, mass.get(), nullptr, SUNFALSE), "ARKStepSetMassLinearSolver");
   must(ARKStepSetMassTimes(mem, nullptr, mass_times_callback, &ode), "ARKStepSetMassTimes");
+  must(ARKStepSetMaxErrTestFails(mem, 40), "ARKStepSetMaxErrTestFails");  // a shock may need steps far below the first
   must(ARKStepSetMaxNumSteps(mem, 1000000), "ARKStepSetMaxNumSteps");
   must(ARKStepSetMaxStep(mem, options.max_step_s), "ARKStepSetMaxStep");
 

@@ -1,0 +1,56 @@
+#include "base/cyclogram.hpp"
+
+#include <gtest/gtest.h>
+
+namespace driftwright {
+namespace {
+
+const Cyclogram kCycle{.name = "c", .sections = {{100, 2000}, {50, 0}, {50, 0}, {200, 500}}};
+
+TEST(Cyclogram, SpeedHoldsFromTheStartOfASectionOn) {
+  EXPECT_EQ(kCycle.duration_s(), 400.0);
+  EXPECT_EQ(kCycle.speed_rpm(0), 2000.0);
+  EXPECT_EQ(kCycle.speed_rpm(99.999), 2000.0);
+  EXPECT_EQ(kCycle.speed_rpm(100), 0.0);
+  EXPECT_EQ(kCycle.speed_rpm(200), 500.0);
+  EXPECT_EQ(kCycle.speed_rpm(400), 500.0);
+  EXPECT_EQ(kCycle.speed_rpm(1e6), 500.0);
+}
+
+TEST(TimeSeries, IsLinearBetweenKnotsAndConstantOutside) {
+  const TimeSeries s{{10, 20, 40}, {1, 3, -1}};
+  EXPECT_EQ(s.at(0), 1.0);
+  EXPECT_EQ(s.at(10), 1.0);
+  EXPECT_DOUBLE_EQ(s.at(15), 2.0);
+  EXPECT_DOUBLE_EQ(s.at(20), 3.0);
+  EXPECT_DOUBLE_EQ(s.at(30), 1.0);
+  EXPECT_EQ(s.at(41), -1.0);
+}
+
+TEST(LinearStretches, EndAtChangesOfSpeedAndAtKnotsOfTheHall) {
+  // Knots at 0 and 100 coincide with starts of sections; 30 and 250 lie inside; 900 lies behind the end.
+  const auto stretches = linear_stretches(kCycle, {{0, 30, 100, 250, 900}, {0, 1, 2, 3, 4}});
+  const std::vector<double> start = {0, 30, 100, 150, 200, 250}, end = {30, 100, 150, 200, 250, 400};
+  const std::vector<double> speed = {2000, 2000, 0, 0, 500, 500};
+  const std::vector<bool> changed = {true, false, true, false, true, false};
+  ASSERT_EQ(stretches.size(), start.size());
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    EXPECT_EQ(stretches[i].start_s, start[i]);
+    EXPECT_EQ(stretches[i].end_s, end[i]);
+    EXPECT_EQ(stretches[i].speed_rpm, speed[i]);
+    EXPECT_EQ(stretches[i].speed_changed, changed[i]) << "stretch " << i;
+  }
+}
+
+TEST(LinearStretches, HaveNoEmptyPieces) {
+  const Cyclogram cycle{.name = "", .sections = {{0, 300}, {10, 1000}, {0, 2000}, {10, 1000}}};
+  const auto stretches = linear_stretches(cycle, {{0}, {0}});
+  ASSERT_EQ(stretches.size(), 2u);
+  EXPECT_TRUE(stretches[0].speed_changed);
+  EXPECT_EQ(stretches[0].speed_rpm, 1000.0);
+  EXPECT_EQ(stretches[1].start_s, 10.0);
+  EXPECT_FALSE(stretches[1].speed_changed);
+}
+
+}  // namespace
+}  // namespace driftwright
