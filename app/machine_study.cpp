@@ -129,12 +129,13 @@ std::vector<const CorrectedRun*> MachineStudy::of_channel(const std::string& cha
 MachineStudy study_machine(const Scenario& scenario, const Machine& machine, Progress& progress, output::FieldSeries* fields) {
   MachineStudy study;
   const scenarios::Study& settings = *scenario.study;
-  for (const std::string& name : settings.train) {
-    study.train.push_back(simulate_cyclogram(scenario, machine, scenario.cyclogram(name), progress, nullptr));
-    study.worst_energy_gap = std::max(study.worst_energy_gap, study.train.back().trajectory.energy_gap());
-  }
-  study.judged = simulate_cyclogram(scenario, machine, scenario.cyclogram(settings.judge), progress, fields);
-  study.worst_energy_gap = std::max(study.worst_energy_gap, study.judged.trajectory.energy_gap());
+  std::vector<const Cyclogram*> cyclograms;
+  for (const std::string& name : settings.train) cyclograms.push_back(&scenario.cyclogram(name));
+  cyclograms.push_back(&scenario.cyclogram(settings.judge));
+  study.train = simulate_cyclograms(scenario, machine, cyclograms, progress, cyclograms.size() - 1, fields);
+  for (const SimulatedRun& run : study.train) study.worst_energy_gap = std::max(study.worst_energy_gap, run.trajectory.energy_gap());
+  study.judged = std::move(study.train.back());
+  study.train.pop_back();
   for (const auto& d : scenario.machine->displacements) study.displacements.push_back(d.name);
   progress.begin("fitting and correcting");
   fit_regression_on_best(study, settings);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <exception>
 
 #include "app/version.hpp"
 #include "base/quantity.hpp"
@@ -34,25 +35,47 @@ const scenarios::Study& require_study(const scenarios::Scenario& scenario, const
   throw InputError(fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit", scenario.path, verb));
 }
 
-SimulatedRun simulate_cyclogram(const scenarios::Scenario& scenario, const scenarios::Machine& machine, const Cyclogram& cyclogram,
-                                Progress& progress, output::FieldSeries* fields) {
+std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
+                                              const std::vector<const Cyclogram*>& cyclograms, Progress& progress,
+                                              std::size_t with_fields, output::FieldSeries* fields) {
   const scenarios::MachineModel& model = *scenario.machine;
   const scenarios::SolverSettings& settings = scenario.solver;
-  progress.begin(fmt::format("simulating {}, {:.0f} min", cyclogram.name, cyclogram.duration_s() / 60.0));
-  const double end_s = cyclogram.duration_s();
-  double next_field_s = 0.0;
-  const auto at_output = [&](double time_s, const Eigen::VectorXd& state) {
-    progress.update(time_s / end_s);
-    if (!fields || (time_s < next_field_s - 1e-6 && time_s < end_s)) return;
-    const Eigen::VectorXd nodes = state.head(machine.placed.mesh.n_nodes());
-    fields->write(time_s, (nodes.array() + (model.reference_K - kZeroCelsius_K)).matrix(), 1e6 * machine.elasticity.displacement(nodes));
-    while (next_field_s <= time_s + 1e-6) next_field_s += settings.fields_every_s;
-  };
-  SimulatedRun run;
-  run.trajectory = solver::simulate(machine.system, cyclogram, model.hall, scenarios::output_times_s(cyclogram, settings.output_interval_s),
-                                    settings.transient, Eigen::VectorXd::Zero(machine.system.size()), at_output);
-  run.record = scenarios::to_record(run.trajectory, machine.system.outputs, cyclogram, model.reference_K);
-  return run;
+  double total_s = 0.0;
+  for (const Cyclogram* c : cyclograms) total_s += c->duration_s();
+  progress.begin(fmt::format("simulating {} cyclogram{}, {:.0f} min in all", cyclograms.size(), cyclograms.size() == 1 ? "" : "s", total_s / 60.0));
+
+  std::vector<SimulatedRun> runs(cyclograms.size());
+  std::vector<std::exception_ptr> failures(cyclograms.size());
+  double done_s = 0.0;
+  // Runs are independent, so each has a core of its own and the loops inside it stay on that core: no thread waits for
+  // another, which matters on a busy machine. A single run has all cores.
+#pragma omp parallel for schedule(dynamic, 1) if (cyclograms.size() > 1)
+  for (std::size_t i = 0; i < cyclograms.size(); ++i) {
+    const Cyclogram& cyclogram = *cyclograms[i];
+    double next_field_s = 0.0, last_s = 0.0;
+    const auto at_output = [&](double time_s, const Eigen::VectorXd& state) {
+#pragma omp critical(progress)
+      progress.update((done_s += time_s - last_s) / total_s);
+      last_s = time_s;
+      if (!fields || i != with_fields) return;
+      if (time_s < next_field_s - 1e-6 && time_s < cyclogram.duration_s()) return;
+      const Eigen::VectorXd nodes = state.head(machine.placed.mesh.n_nodes());
+      fields->write(time_s, (nodes.array() + (model.reference_K - kZeroCelsius_K)).matrix(), 1e6 * machine.elasticity.displacement(nodes));
+      while (next_field_s <= time_s + 1e-6) next_field_s += settings.fields_every_s;
+    };
+    try {
+      runs[i].trajectory =
+          solver::simulate(machine.system, cyclogram, model.hall, scenarios::output_times_s(cyclogram, settings.output_interval_s),
+                           settings.transient, Eigen::VectorXd::Zero(machine.system.size()), at_output);
+      runs[i].record = scenarios::to_record(runs[i].trajectory, machine.system.outputs, cyclogram, model.reference_K);
+    } catch (...) {
+      failures[i] = std::current_exception();  // none may leave the parallel loop
+    }
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  return runs;
 }
 
 }  // namespace driftwright::app

@@ -19,13 +19,15 @@ void simulate(const SimulateOptions& options) {
   scenarios::PlacedMachine placed = scenarios::place(model);
   progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
   const scenarios::Machine machine = scenarios::build(model, std::move(placed));
+  // Whole fields of one cyclogram only: several would fill the disk and mix in one .pvd.
+  std::optional<output::FieldSeries> fields;
+  if (cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
+  const std::vector<SimulatedRun> runs = simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
+  if (fields) fields->finish();
   std::string summary;
-  for (const Cyclogram* cyclogram : cyclograms) {
-    // Whole fields of one cyclogram only: several would fill the disk and mix in one .pvd.
-    std::optional<output::FieldSeries> fields;
-    if (cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
-    const SimulatedRun run = simulate_cyclogram(scenario, machine, *cyclogram, progress, fields ? &*fields : nullptr);
-    if (fields) fields->finish();
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const SimulatedRun& run = runs[i];
+    const Cyclogram* cyclogram = cyclograms[i];
     const std::string file = cyclograms.size() == 1 ? "record.csv" : "records/" + cyclogram->name + ".csv";
     folder.write_text(file, record_csv(run.record, provenance_lines(folder.made_by(), "cyclogram " + cyclogram->name)));
     summary += fmt::format("{:<20} {:5.0f} min, {} steps; at its end", cyclogram->name, cyclogram->duration_s() / 60.0, run.trajectory.n_steps);
