@@ -17,9 +17,12 @@ void check(const CommonOptions& options) {
   const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
   const mesh::Quality quality = mesh::worst_quality(placed.mesh);
   progress.end();
-  fmt::print("{}: fine; {} nodes, {} cells in {} regions, {} joints, {} effects, {} sensors, {} cyclograms; worst scaled Jacobian {:.3f}\n",
-             options.scenario, placed.mesh.n_nodes(), placed.mesh.cells.size(), placed.mesh.regions.size(), placed.mesh.joints.size(),
-             scenario.machine->effects.size(), scenario.machine->sensors.size(), scenario.cyclograms.size(), quality.min_scaled);
+  fmt::print(
+      "{}: fine; {} nodes, {} cells in {} regions, {} joints, {} effects, {} sensors, {} cyclograms; worst "
+      "scaled Jacobian {:.3f}\n",
+      options.scenario, placed.mesh.n_nodes(), placed.mesh.cells.size(), placed.mesh.regions.size(),
+      placed.mesh.joints.size(), scenario.machine->effects.size(), scenario.machine->sensors.size(),
+      scenario.cyclograms.size(), quality.min_scaled);
 }
 
 }  // namespace driftwright::app

@@ -27,15 +27,16 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 }
 
 /// The modal model's record of a cyclogram, at the times of the full model's.
-Record predict_record(const ModalPredictor& predictor, const Scenario& scenario, const Machine& machine, const Cyclogram& cyclogram,
-                      const std::vector<double>& time_s) {
-  return scenarios::to_record(predictor.predict(cyclogram, scenario.machine->hall, time_s), machine.system.outputs, cyclogram,
-                              scenario.machine->reference_K);
+Record predict_record(const ModalPredictor& predictor, const Scenario& scenario, const Machine& machine,
+                      const Cyclogram& cyclogram, const std::vector<double>& time_s) {
+  return scenarios::to_record(predictor.predict(cyclogram, scenario.machine->hall, time_s), machine.system.outputs,
+                              cyclogram, scenario.machine->reference_K);
 }
 
-ModalError modal_error(const Record& predicted, const Record& full, const std::vector<std::string>& displacements, int n_modes,
-                       bool with_steady_responses) {
-  ModalError error{.n_modes = n_modes, .with_steady_responses = with_steady_responses, .worst_sensor = {}, .worst_displacement_um = {}};
+ModalError modal_error(const Record& predicted, const Record& full, const std::vector<std::string>& displacements,
+                       int n_modes, bool with_steady_responses) {
+  ModalError error{
+      .n_modes = n_modes, .with_steady_responses = with_steady_responses, .worst_sensor = {}, .worst_displacement_um = {}};
   for (const std::string& sensor : full.names_with_unit("degC")) {
     const double difference_K = largest_difference(predicted.at(sensor).values, full.at(sensor).values);
     if (difference_K >= error.worst_temperature_K) {
@@ -55,16 +56,19 @@ void fit_modal(MachineStudy& study, const Scenario& scenario, const Machine& mac
   for (bool with_steady_responses : {false, true}) {
     const ModalPredictor predictor = make_modal_predictor(machine.system, n_modes, with_steady_responses);
     Record predicted = predict_record(predictor, scenario, machine, judged, study.judged.record.time_s);
-    study.modal_errors.push_back(modal_error(predicted, study.judged.record, study.displacements, n_modes, with_steady_responses));
+    study.modal_errors.push_back(
+        modal_error(predicted, study.judged.record, study.displacements, n_modes, with_steady_responses));
     if (!with_steady_responses) continue;
     study.modal_prediction = std::move(predicted);
     study.modal_time_constant_s = predictor.time_constant_s;
     study.modal_margin_um.assign(study.displacements.size(), 0.0);
     for (const SimulatedRun& run : study.train) {
-      const Record p = predict_record(predictor, scenario, machine, scenario.cyclogram(run.record.source), run.record.time_s);
+      const Record p =
+          predict_record(predictor, scenario, machine, scenario.cyclogram(run.record.source), run.record.time_s);
       for (std::size_t d = 0; d < study.displacements.size(); ++d) {
-        study.modal_margin_um[d] = std::max(study.modal_margin_um[d], largest_difference(p.at(study.displacements[d]).values,
-                                                                                         run.record.at(study.displacements[d]).values));
+        study.modal_margin_um[d] =
+            std::max(study.modal_margin_um[d],
+                     largest_difference(p.at(study.displacements[d]).values, run.record.at(study.displacements[d]).values));
       }
     }
   }
@@ -111,9 +115,9 @@ void find_ambiguities(MachineStudy& study, const Scenario& scenario) {
     const auto ambiguity = temperature_ambiguity(records, sensor.name, scenario.study->target);
     if (ambiguity) study.ambiguities.push_back({sensor.name, *ambiguity});
   }
-  std::stable_sort(study.ambiguities.begin(), study.ambiguities.end(), [](const SensorAmbiguity& a, const SensorAmbiguity& b) {
-    return a.ambiguity.spread > b.ambiguity.spread;
-  });
+  std::stable_sort(
+      study.ambiguities.begin(), study.ambiguities.end(),
+      [](const SensorAmbiguity& a, const SensorAmbiguity& b) { return a.ambiguity.spread > b.ambiguity.spread; });
 }
 
 }  // namespace
@@ -126,14 +130,16 @@ std::vector<const CorrectedRun*> MachineStudy::of_channel(const std::string& cha
   return found;
 }
 
-MachineStudy study_machine(const Scenario& scenario, const Machine& machine, Progress& progress, output::FieldSeries* fields) {
+MachineStudy study_machine(const Scenario& scenario, const Machine& machine, Progress& progress,
+                           output::FieldSeries* fields) {
   MachineStudy study;
   const scenarios::Study& settings = *scenario.study;
   std::vector<const Cyclogram*> cyclograms;
   for (const std::string& name : settings.train) cyclograms.push_back(&scenario.cyclogram(name));
   cyclograms.push_back(&scenario.cyclogram(settings.judge));
   study.train = simulate_cyclograms(scenario, machine, cyclograms, progress, cyclograms.size() - 1, fields);
-  for (const SimulatedRun& run : study.train) study.worst_energy_gap = std::max(study.worst_energy_gap, run.trajectory.energy_gap());
+  for (const SimulatedRun& run : study.train)
+    study.worst_energy_gap = std::max(study.worst_energy_gap, run.trajectory.energy_gap());
   study.judged = std::move(study.train.back());
   study.train.pop_back();
   for (const auto& d : scenario.machine->displacements) study.displacements.push_back(d.name);

@@ -32,13 +32,13 @@ struct SensorAmbiguity {
 struct MachineStudy {
   std::vector<SimulatedRun> train;
   SimulatedRun judged;
-  std::vector<std::string> displacements;  ///< channels in um
-  compensation::Ranking ranking;           ///< of the thermometers against the target
+  std::vector<std::string> displacements;               ///< channels in um
+  compensation::Ranking ranking;                        ///< of the thermometers against the target
   std::vector<compensation::Regression> regressions;    ///< on the best sensors, one per displacement
   std::vector<compensation::Regression> single_sensor;  ///< on the very best one: what temperature alone can do
   std::vector<double> modal_time_constant_s;
-  Record modal_prediction;  ///< of the judged cyclogram
-  std::vector<double> modal_margin_um;  ///< largest error on the training cyclograms, per displacement
+  Record modal_prediction;               ///< of the judged cyclogram
+  std::vector<double> modal_margin_um;   ///< largest error on the training cyclograms, per displacement
   std::vector<ModalError> modal_errors;  ///< on the judged cyclogram: bare modes, then completed ones
   /// Displacement by displacement: predictors (kPredictors) x actuators (pulse injector, schedule).
   std::vector<compensation::CorrectedRun> corrections;
@@ -49,7 +49,7 @@ struct MachineStudy {
   [[nodiscard]] std::vector<const compensation::CorrectedRun*> of_channel(const std::string& channel) const;
 };
 
-[[nodiscard]] MachineStudy study_machine(const scenarios::Scenario& scenario, const scenarios::Machine& machine, Progress& progress,
-                                         output::FieldSeries* fields);
+[[nodiscard]] MachineStudy study_machine(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
+                                         Progress& progress, output::FieldSeries* fields);
 
 }  // namespace driftwright::app

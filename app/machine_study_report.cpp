@@ -33,25 +33,33 @@ std::vector<output::SectionMark> section_marks(const Cyclogram& cyclogram) {
   return marks;
 }
 
-Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record, const std::vector<std::string>& names,
-                   const Cyclogram& cyclogram) {
-  Plot plot{.title = title, .x_label = "time [min]", .y_label = y_label, .series = {}, .bands = {}, .marks = section_marks(cyclogram)};
-  for (const std::string& name : names) plot.series.push_back({.label = name, .x = minutes(record), .y = record.at(name).values});
+Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
+                   const std::vector<std::string>& names, const Cyclogram& cyclogram) {
+  Plot plot{.title = title,
+            .x_label = "time [min]",
+            .y_label = y_label,
+            .series = {},
+            .bands = {},
+            .marks = section_marks(cyclogram)};
+  for (const std::string& name : names)
+    plot.series.push_back({.label = name, .x = minutes(record), .y = record.at(name).values});
   return plot;
 }
 
 Verdict verdict(const scenarios::Study& settings, const MachineStudy& study) {
   const auto of_target = study.of_channel(settings.target);
-  const auto best = *std::min_element(of_target.begin(), of_target.end(),
-                                      [](const CorrectedRun* a, const CorrectedRun* b) { return a->after.peak_abs < b->after.peak_abs; });
+  const auto best = *std::min_element(of_target.begin(), of_target.end(), [](const CorrectedRun* a, const CorrectedRun* b) {
+    return a->after.peak_abs < b->after.peak_abs;
+  });
   std::vector<std::string> failing;
   for (const CorrectedRun* c : of_target) {
-    if (!c->inside_tolerance) failing.push_back(fmt::format("{} by {} ({:.1f} um)", c->predictor, c->actuator, c->after.peak_abs));
+    if (!c->inside_tolerance)
+      failing.push_back(fmt::format("{} by {} ({:.1f} um)", c->predictor, c->actuator, c->after.peak_abs));
   }
-  const std::string text =
-      fmt::format("{} on '{}', which no strategy was fitted on: {:.1f} um before correction, {:.1f} um after {} by {}.{}", settings.target,
-                  settings.judge, best->before.peak_abs, best->after.peak_abs, best->predictor, best->actuator,
-                  failing.empty() ? "" : fmt::format(" Not inside {:g} um: {}.", settings.tolerance_um, fmt::join(failing, ", ")));
+  const std::string text = fmt::format(
+      "{} on '{}', which no strategy was fitted on: {:.1f} um before correction, {:.1f} um after {} by {}.{}",
+      settings.target, settings.judge, best->before.peak_abs, best->after.peak_abs, best->predictor, best->actuator,
+      failing.empty() ? "" : fmt::format(" Not inside {:g} um: {}.", settings.tolerance_um, fmt::join(failing, ", ")));
   return {best->inside_tolerance ? Verdict::Kind::kGood : Verdict::Kind::kBad,
           best->inside_tolerance ? fmt::format("Inside {:g} um by at least one strategy", settings.tolerance_um)
                                  : fmt::format("No strategy stays inside {:g} um", settings.tolerance_um),
@@ -59,12 +67,16 @@ Verdict verdict(const scenarios::Study& settings, const MachineStudy& study) {
 }
 
 Table strategies_table(const MachineStudy& study) {
-  Table table{.caption = "Peak and RMS of the drift before correction and of what is left after it, on the judged cyclogram.",
-              .headers = {"channel", "predictor", "actuator", "peak before [um]", "peak after [um]", "RMS after [um]", "inside tolerance"},
+  Table table{.caption =
+                  "Peak and RMS of the drift before correction and of what is left after it, on the judged "
+                  "cyclogram.",
+              .headers = {"channel", "predictor", "actuator", "peak before [um]", "peak after [um]", "RMS after [um]",
+                          "inside tolerance"},
               .rows = {}};
   for (const CorrectedRun& c : study.corrections) {
-    table.rows.push_back({c.channel, c.predictor, c.actuator, fmt::format("{:.1f}", c.before.peak_abs), fmt::format("{:.1f}", c.after.peak_abs),
-                          fmt::format("{:.2f}", c.after.rmse), c.inside_tolerance ? "yes" : "no"});
+    table.rows.push_back({c.channel, c.predictor, c.actuator, fmt::format("{:.1f}", c.before.peak_abs),
+                          fmt::format("{:.1f}", c.after.peak_abs), fmt::format("{:.2f}", c.after.rmse),
+                          c.inside_tolerance ? "yes" : "no"});
   }
   return table;
 }
@@ -86,8 +98,13 @@ Plot residual_plot(const std::string& channel, const scenarios::Scenario& scenar
 
 /// δ over T: one curve per cyclogram; were drift a function of temperature they would coincide.
 Plot drift_over_temperature(const std::string& sensor, const std::string& target, const MachineStudy& study) {
-  Plot plot{.title = "Drift over temperature at " + sensor, .x_label = sensor + " [degC]", .y_label = target + " [um]", .series = {}};
-  const auto add = [&](const Record& r) { plot.series.push_back({.label = r.source, .x = r.at(sensor).values, .y = r.at(target).values}); };
+  Plot plot{.title = "Drift over temperature at " + sensor,
+            .x_label = sensor + " [degC]",
+            .y_label = target + " [um]",
+            .series = {}};
+  const auto add = [&](const Record& r) {
+    plot.series.push_back({.label = r.source, .x = r.at(sensor).values, .y = r.at(target).values});
+  };
   for (const SimulatedRun& run : study.train) add(run.record);
   add(study.judged.record);
   return plot;
@@ -101,14 +118,19 @@ Table ranking_table(const MachineStudy& study) {
   for (std::size_t i = 0; i < study.ranking.channels.size(); ++i) {
     const auto& c = study.ranking.channels[i];
     const bool is_chosen = std::find(chosen.begin(), chosen.end(), c.name) != chosen.end();
-    table.rows.push_back({fmt::format("{}", i + 1), c.name, c.grade ? fmt::format("{:.4f}", *c.grade) : c.note, is_chosen ? "yes" : ""});
+    table.rows.push_back(
+        {fmt::format("{}", i + 1), c.name, c.grade ? fmt::format("{:.4f}", *c.grade) : c.note, is_chosen ? "yes" : ""});
   }
   return table;
 }
 
 Table regression_table(const MachineStudy& study) {
-  Table table{.caption = "Multiple linear regression (QR) on the training records; RMS and max are of its residual there. A condition number far above "
-                         "100 says that the chosen sensors tell the same story twice.", .headers = {"channel", "intercept [um]"}, .rows = {}};
+  Table table{.caption =
+                  "Multiple linear regression (QR) on the training records; RMS and max are of its residual "
+                  "there. A condition number far above "
+                  "100 says that the chosen sensors tell the same story twice.",
+              .headers = {"channel", "intercept [um]"},
+              .rows = {}};
   for (const std::string& input : study.regressions.front().inputs) table.headers.push_back(input + " [um/K]");
   table.headers.insert(table.headers.end(), {"RMS [um]", "max [um]", "condition [-]"});
   for (const auto& r : study.regressions) {
@@ -128,8 +150,9 @@ Table modal_table(const MachineStudy& study) {
               .rows = {}};
   for (const std::string& d : study.displacements) table.headers.push_back(d + " [um]");
   for (const ModalError& e : study.modal_errors) {
-    std::vector<std::string> row = {fmt::format("modes ({}) {}", e.n_modes, e.with_steady_responses ? "and steady responses" : "alone"),
-                                    e.worst_sensor, fmt::format("{:.3f}", e.worst_temperature_K)};
+    std::vector<std::string> row = {
+        fmt::format("modes ({}) {}", e.n_modes, e.with_steady_responses ? "and steady responses" : "alone"), e.worst_sensor,
+        fmt::format("{:.3f}", e.worst_temperature_K)};
     for (double d_um : e.worst_displacement_um) row.push_back(fmt::format("{:.2f}", d_um));
     table.rows.push_back(row);
   }
@@ -140,7 +163,8 @@ Table heat_table(const MachineStudy& study) {
   const solver::Trajectory& run = study.judged.trajectory;
   const auto last = run.heat_J.cols() - 1;
   const double duration_s = run.time_s.back();
-  Table table{.caption = fmt::format("Mean heat flow over the judged cyclogram. In = stored + lost to {:.0e}.", std::max(1e-16, run.energy_gap())),
+  Table table{.caption = fmt::format("Mean heat flow over the judged cyclogram. In = stored + lost to {:.0e}.",
+                                     std::max(1e-16, run.energy_gap())),
               .headers = {"source or film", "into the machine [W]", "to the hall [W]"},
               .rows = {}};
   double in_W = 0.0, lost_W = 0.0;
@@ -148,7 +172,8 @@ Table heat_table(const MachineStudy& study) {
     const double mean_W = run.heat_J(static_cast<Eigen::Index>(j), last) / duration_s;
     const bool is_source = static_cast<int>(j) < run.n_sources;
     (is_source ? in_W : lost_W) += mean_W;
-    table.rows.push_back({run.flow_names[j], is_source ? fmt::format("{:.1f}", mean_W) : "", is_source ? "" : fmt::format("{:.1f}", mean_W)});
+    table.rows.push_back(
+        {run.flow_names[j], is_source ? fmt::format("{:.1f}", mean_W) : "", is_source ? "" : fmt::format("{:.1f}", mean_W)});
   }
   table.rows.push_back({"sum", fmt::format("{:.1f}", in_W), fmt::format("{:.1f}", lost_W)});
   table.rows.push_back({"stored in the machine", "", fmt::format("{:.1f}", run.stored_J[last] / duration_s)});
@@ -159,7 +184,8 @@ void add_ambiguity(output::Report& report, const std::string& target, const Mach
   const auto& [sensor, a] = study.ambiguities.front();
   report.blocks.emplace_back(Heading{"Drift is not a function of temperature"});
   report.blocks.emplace_back(
-      Paragraph{fmt::format("At {} = {:.2f} degC, {} is {:.1f} um in '{}' (at {:.0f} min) and {:.1f} um in '{}' (at {:.0f} min). No "
+      Paragraph{fmt::format("At {} = {:.2f} degC, {} is {:.1f} um in '{}' (at {:.0f} min) and {:.1f} um in '{}' (at "
+                            "{:.0f} min). No "
                             "correction from this temperature alone can serve both.",
                             sensor, a.temperature, target, a.first.displacement_um, a.first.source, a.first.time_s / 60.0,
                             a.second.displacement_um, a.second.source, a.second.time_s / 60.0)});
@@ -168,28 +194,32 @@ void add_ambiguity(output::Report& report, const std::string& target, const Mach
     plot.half_width = true;
     report.blocks.emplace_back(std::move(plot));
   }
-  Table table{.caption = "Largest spread of the drift at one temperature, |d1 - d2| / min(|d1|, |d2|), between two cyclograms; drifts below 5 um "
-                         "do not count.",
-              .headers = {"sensor", "temperature [degC]", "drift 1 [um]", "drift 2 [um]", "spread [%]", "cyclogram 1", "cyclogram 2"},
+  Table table{.caption =
+                  "Largest spread of the drift at one temperature, |d1 - d2| / min(|d1|, |d2|), between two "
+                  "cyclograms; drifts below 5 um "
+                  "do not count.",
+              .headers = {"sensor", "temperature [degC]", "drift 1 [um]", "drift 2 [um]", "spread [%]", "cyclogram 1",
+                          "cyclogram 2"},
               .rows = {}};
   for (const auto& [name, b] : study.ambiguities) {
     table.rows.push_back({name, fmt::format("{:.2f}", b.temperature), fmt::format("{:.1f}", b.first.displacement_um),
-                          fmt::format("{:.1f}", b.second.displacement_um), fmt::format("{:.0f}", 100.0 * b.spread), b.first.source,
-                          b.second.source});
+                          fmt::format("{:.1f}", b.second.displacement_um), fmt::format("{:.0f}", 100.0 * b.spread),
+                          b.first.source, b.second.source});
   }
   report.blocks.emplace_back(std::move(table));
 }
 
 }  // namespace
 
-output::Report study_report(const scenarios::Scenario& scenario, const scenarios::Machine& machine, const MachineStudy& study,
-                            const output::Provenance& made_by) {
+output::Report study_report(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
+                            const MachineStudy& study, const output::Provenance& made_by) {
   const scenarios::Study& settings = *scenario.study;
   const Cyclogram& judged = scenario.cyclogram(settings.judge);
-  output::Report report{.title = scenario.name + ": thermal drift and its correction",
-                        .subtitle = fmt::format("Driftwright {}, scenario {}; {} nodes, {} cells", made_by.version, made_by.scenario,
-                                                machine.placed.mesh.n_nodes(), machine.placed.mesh.cells.size()),
-                        .blocks = {}};
+  output::Report report{
+      .title = scenario.name + ": thermal drift and its correction",
+      .subtitle = fmt::format("Driftwright {}, scenario {}; {} nodes, {} cells", made_by.version, made_by.scenario,
+                              machine.placed.mesh.n_nodes(), machine.placed.mesh.cells.size()),
+      .blocks = {}};
   const auto add = [&](auto block) { report.blocks.emplace_back(std::move(block)); };
   add(verdict(settings, study));
   add(strategies_table(study));
@@ -197,11 +227,15 @@ output::Report study_report(const scenarios::Scenario& scenario, const scenarios
   add(Heading{"The judged cyclogram: " + settings.judge});
   std::vector<std::string> temperatures = study.judged.record.names_with_unit("degC");
   const auto half = static_cast<std::ptrdiff_t>((temperatures.size() + 1) / 2);
-  add(channels_plot("Displacements of the tool against the table", "displacement [um]", study.judged.record, study.displacements, judged));
-  add(channels_plot("Temperatures (1)", "temperature [degC]", study.judged.record, {temperatures.begin(), temperatures.begin() + half}, judged));
-  add(channels_plot("Temperatures (2)", "temperature [degC]", study.judged.record, {temperatures.begin() + half, temperatures.end()}, judged));
+  add(channels_plot("Displacements of the tool against the table", "displacement [um]", study.judged.record,
+                    study.displacements, judged));
+  add(channels_plot("Temperatures (1)", "temperature [degC]", study.judged.record,
+                    {temperatures.begin(), temperatures.begin() + half}, judged));
+  add(channels_plot("Temperatures (2)", "temperature [degC]", study.judged.record,
+                    {temperatures.begin() + half, temperatures.end()}, judged));
   if (!scenario.machine->tilts.empty()) {
-    add(channels_plot("Tilts of the spindle against the table", "tilt [urad]", study.judged.record, study.judged.record.names_with_unit("urad"), judged));
+    add(channels_plot("Tilts of the spindle against the table", "tilt [urad]", study.judged.record,
+                      study.judged.record.names_with_unit("urad"), judged));
   }
   add(heat_table(study));
   for (const std::string& d : study.displacements) {
@@ -214,13 +248,15 @@ output::Report study_report(const scenarios::Scenario& scenario, const scenarios
   add(Heading{"Thermal modes"});
   std::vector<std::string> tau;
   for (double tau_s : study.modal_time_constant_s) tau.push_back(fmt::format("{:.1f}", tau_s / 60.0));
-  add(Paragraph{fmt::format("Time constants of the {} slowest modes at standstill [min]: {}.", tau.size(), fmt::join(tau, ", "))});
+  add(Paragraph{
+      fmt::format("Time constants of the {} slowest modes at standstill [min]: {}.", tau.size(), fmt::join(tau, ", "))});
   add(modal_table(study));
   add(Heading{"Correction schedules"});
   add(output::Preformatted{schedule_text(study)});
   add(Heading{"Training cyclograms"});
   for (const SimulatedRun& run : study.train) {
-    Plot plot = channels_plot(run.record.source, "displacement [um]", run.record, study.displacements, scenario.cyclogram(run.record.source));
+    Plot plot = channels_plot(run.record.source, "displacement [um]", run.record, study.displacements,
+                              scenario.cyclogram(run.record.source));
     plot.half_width = true;
     add(std::move(plot));
   }

@@ -13,10 +13,12 @@ namespace {
 using compensation::CorrectedRun;
 using Json = nlohmann::ordered_json;
 
-Json json_of(const compensation::Score& s) { return {{"rmse_um", s.rmse}, {"peak_um", s.peak_abs}, {"mean_um", s.mean}}; }
+Json json_of(const compensation::Score& s) {
+  return {{"rmse_um", s.rmse}, {"peak_um", s.peak_abs}, {"mean_um", s.mean}};
+}
 
 Json json_of(const CorrectedRun& c) {
-  Json j = {{"channel", c.channel}, {"predictor", c.predictor},        {"actuator", c.actuator},
+  Json j = {{"channel", c.channel},        {"predictor", c.predictor},  {"actuator", c.actuator},
             {"before", json_of(c.before)}, {"after", json_of(c.after)}, {"inside_tolerance", c.inside_tolerance}};
   if (c.schedule) j["schedule"] = compensation::to_text(*c.schedule);
   return j;
@@ -40,9 +42,11 @@ Json json_of(const compensation::Crossing& c) {
 
 std::string terminal_summary(const scenarios::Scenario& scenario, const MachineStudy& study) {
   const scenarios::Study& settings = *scenario.study;
-  std::string text = fmt::format("{}: judged on '{}', fitted on {}\n", scenario.name, settings.judge, fmt::join(settings.train, ", "));
+  std::string text =
+      fmt::format("{}: judged on '{}', fitted on {}\n", scenario.name, settings.judge, fmt::join(settings.train, ", "));
   std::string drift = "  peak drift before correction          ";
-  for (const std::string& d : study.displacements) drift += fmt::format("  {} {:6.1f} um", d, study.of_channel(d).front()->before.peak_abs);
+  for (const std::string& d : study.displacements)
+    drift += fmt::format("  {} {:6.1f} um", d, study.of_channel(d).front()->before.peak_abs);
   text += drift + "\n";
   for (const char* predictor : kPredictors) {
     for (const char* actuator : {"pulse injector", "schedule"}) {
@@ -61,12 +65,12 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
                       study.ranking.channels[study.regressions.front().inputs.size() - 1].grade.value());
   const ModalError& bare = study.modal_errors.front();
   const ModalError& full = study.modal_errors.back();
-  text += fmt::format("  {} thermal modes miss the full model by {:.2f} K (at {}); with steady responses by {:.2f} K\n", bare.n_modes,
-                      bare.worst_temperature_K, bare.worst_sensor, full.worst_temperature_K);
+  text += fmt::format("  {} thermal modes miss the full model by {:.2f} K (at {}); with steady responses by {:.2f} K\n",
+                      bare.n_modes, bare.worst_temperature_K, bare.worst_sensor, full.worst_temperature_K);
   if (!study.ambiguities.empty()) {
     const auto& [sensor, a] = study.ambiguities.front();
-    text += fmt::format("  drift is no function of temperature: at {} = {:.1f} degC {} is {:.1f} um or {:.1f} um\n", sensor, a.temperature,
-                        settings.target, a.first.displacement_um, a.second.displacement_um);
+    text += fmt::format("  drift is no function of temperature: at {} = {:.1f} degC {} is {:.1f} um or {:.1f} um\n", sensor,
+                        a.temperature, settings.target, a.first.displacement_um, a.second.displacement_um);
   }
   return text;
 }
@@ -74,8 +78,10 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
 Json summary_json(const scenarios::Scenario& scenario, const scenarios::Machine& machine, const MachineStudy& study,
                   const output::Provenance& made_by) {
   const scenarios::Study& settings = *scenario.study;
-  Json j = {{"program", "driftwright"}, {"version", made_by.version}, {"scenario", made_by.scenario}, {"name", scenario.name}};
-  j["model"] = {{"nodes", machine.placed.mesh.n_nodes()}, {"cells", machine.placed.mesh.cells.size()},
+  Json j = {
+      {"program", "driftwright"}, {"version", made_by.version}, {"scenario", made_by.scenario}, {"name", scenario.name}};
+  j["model"] = {{"nodes", machine.placed.mesh.n_nodes()},
+                {"cells", machine.placed.mesh.cells.size()},
                 {"temperature_unknowns", machine.system.size()}};
   j["trained_on"] = settings.train;
   j["judged_on"] = settings.judge;
@@ -84,34 +90,43 @@ Json summary_json(const scenarios::Scenario& scenario, const scenarios::Machine&
   j["energy_balance_gap"] = study.worst_energy_gap;
   j["ranking"] = {{"image_reason", study.ranking.reason}, {"channels", Json::array()}};
   for (const auto& c : study.ranking.channels) {
-    j["ranking"]["channels"].push_back({{"name", c.name}, {"grade", c.grade ? Json(*c.grade) : Json()}, {"reversed", c.reversed}});
+    j["ranking"]["channels"].push_back(
+        {{"name", c.name}, {"grade", c.grade ? Json(*c.grade) : Json()}, {"reversed", c.reversed}});
   }
   j["regressions"] = Json::array();
   for (const auto& r : study.regressions) j["regressions"].push_back(json_of(r));
   j["modal"] = {{"time_constants_min", Json::array()}, {"errors_against_full_model", Json::array()}};
   for (double tau_s : study.modal_time_constant_s) j["modal"]["time_constants_min"].push_back(tau_s / 60.0);
   for (const ModalError& e : study.modal_errors) {
-    Json error = {{"n_modes", e.n_modes}, {"with_steady_responses", e.with_steady_responses},
-                  {"worst_sensor", e.worst_sensor}, {"worst_temperature_K", e.worst_temperature_K}};
-    for (std::size_t d = 0; d < study.displacements.size(); ++d) error["worst_" + study.displacements[d] + "_um"] = e.worst_displacement_um[d];
+    Json error = {{"n_modes", e.n_modes},
+                  {"with_steady_responses", e.with_steady_responses},
+                  {"worst_sensor", e.worst_sensor},
+                  {"worst_temperature_K", e.worst_temperature_K}};
+    for (std::size_t d = 0; d < study.displacements.size(); ++d)
+      error["worst_" + study.displacements[d] + "_um"] = e.worst_displacement_um[d];
     j["modal"]["errors_against_full_model"].push_back(error);
   }
   j["corrections"] = Json::array();
   for (const CorrectedRun& c : study.corrections) j["corrections"].push_back(json_of(c));
   j["drift_at_one_temperature"] = Json::array();
   for (const auto& [sensor, a] : study.ambiguities) {
-    j["drift_at_one_temperature"].push_back({{"sensor", sensor}, {"temperature_degC", a.temperature}, {"spread", a.spread},
-                                             {"first", json_of(a.first)}, {"second", json_of(a.second)}});
+    j["drift_at_one_temperature"].push_back({{"sensor", sensor},
+                                             {"temperature_degC", a.temperature},
+                                             {"spread", a.spread},
+                                             {"first", json_of(a.first)},
+                                             {"second", json_of(a.second)}});
   }
   return j;
 }
 
 std::string schedule_text(const MachineStudy& study) {
   std::string text =
-      "# Correction schedules: one line per operation, n-{intervals in min}-{corrections in um, increments}.\n"
+      "# Correction schedules: one line per operation, n-{intervals in min}-{corrections in um, "
+      "increments}.\n"
       "# The axis moves by minus the sum of the increments so far.\n";
   for (const CorrectedRun& c : study.corrections) {
-    if (c.schedule) text += fmt::format("\n# {}, predicted by {}\n{}", c.channel, c.predictor, compensation::to_text(*c.schedule));
+    if (c.schedule)
+      text += fmt::format("\n# {}, predicted by {}\n{}", c.channel, c.predictor, compensation::to_text(*c.schedule));
   }
   return text;
 }

@@ -1,10 +1,9 @@
 // The command line: parse, call the verb, turn exceptions into exit codes.
 
-#include <CLI/CLI.hpp>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 
@@ -20,7 +19,8 @@ using namespace driftwright;
 enum ExitCode { kDone = 0, kOurBug = 1, kWrongInput = 2, kNumericsGaveUp = 3 };
 
 /// Adds a verb with the options that all have; `example` ends its help.
-CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example, app::CommonOptions& options) {
+CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example,
+                   app::CommonOptions& options) {
   CLI::App* verb = app.add_subcommand(name, what);
   verb->add_option("scenario", options.scenario, "scenario YAML")->required();
   verb->add_option("-o,--out", options.out, "folder of results [results/<name of the scenario>]");
@@ -31,7 +31,8 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
 
 void add_records(CLI::App* verb, app::RecordOptions& options, bool with_test) {
   verb->add_option("--train", options.train, "record CSV to fit on; may be repeated")->required()->allow_extra_args(false);
-  if (with_test) verb->add_option("--test", options.test, "record CSV to judge on; may be repeated")->required()->allow_extra_args(false);
+  if (with_test)
+    verb->add_option("--test", options.test, "record CSV to judge on; may be repeated")->required()->allow_extra_args(false);
 }
 
 /// CLI11 would only say that a subcommand is required.
@@ -50,25 +51,32 @@ int main(int argc, char** argv) {
   CLI::App cli{"Driftwright: digital twin of a machine tool's thermal behaviour"};
   cli.set_version_flag("--version", app::kVersion);
   cli.require_subcommand(1);
-  cli.footer("Exit codes: 0 done, 2 the input is wrong, 3 the numerics gave up, 1 a bug of ours.\nExample:\n  driftwright run scenarios/fp3_spindle.yaml");
+  cli.footer(
+      "Exit codes: 0 done, 2 the input is wrong, 3 the numerics gave up, 1 a bug of ours.\nExample:\n  "
+      "driftwright run scenarios/fp3_spindle.yaml");
 
   app::CommonOptions run, check, mesh;
   app::SimulateOptions simulate;
   app::PredictOptions predict;
   app::RecordOptions select, validate;
-  add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another", "run scenarios/fp3_spindle.yaml", run)
+  add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
+           "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
-  add_verb(cli, "check", "read and mesh a scenario, place its sensors, compute nothing", "check scenarios/fp3_spindle.yaml", check)
+  add_verb(cli, "check", "read and mesh a scenario, place its sensors, compute nothing", "check scenarios/fp3_spindle.yaml",
+           check)
       ->callback([&] { app::check(check); });
-  add_verb(cli, "mesh", "build the mesh, report its quality, write mesh.vtu", "mesh scenarios/fp3_spindle.yaml -o results/mesh", mesh)
+  add_verb(cli, "mesh", "build the mesh, report its quality, write mesh.vtu",
+           "mesh scenarios/fp3_spindle.yaml -o results/mesh", mesh)
       ->callback([&] { app::mesh(mesh); });
   CLI::App* verb = add_verb(cli, "simulate", "temperatures and drift of cyclograms; fields too where one is named",
                             "simulate scenarios/fp3_spindle.yaml --cyclogram warm_up_2000 -o results/warm_up", simulate);
-  verb->add_option("--cyclogram", simulate.cyclograms, "name in the scenario; may be repeated [all]")->allow_extra_args(false);
+  verb->add_option("--cyclogram", simulate.cyclograms, "name in the scenario; may be repeated [all]")
+      ->allow_extra_args(false);
   verb->callback([&] { app::simulate(simulate); });
   verb = add_verb(cli, "predict", "drift of a cyclogram by thermal modes, without time steps",
                   "predict scenarios/fp3_spindle.yaml --cyclogram plan.csv -o results/plan", predict);
-  verb->add_option("--cyclogram", predict.cyclogram, "name in the scenario, or a record CSV with the column speed_rpm")->required();
+  verb->add_option("--cyclogram", predict.cyclogram, "name in the scenario, or a record CSV with the column speed_rpm")
+      ->required();
   verb->callback([&] { app::predict(predict); });
   verb = add_verb(cli, "select", "rank the temperature sensors of records by grey relational analysis",
                   "select scenarios/spindle_22.yaml --train run1.csv --train run2.csv", select);

@@ -31,7 +31,8 @@ void mesh(const CommonOptions& options) {
     if (m.surfaces[s].find('@') != std::string::npos) continue;
     fmt::print("  surface {:<32} {:8.4f} m2\n", m.surfaces[s], mesh::area_m2(m, static_cast<int>(s)));
   }
-  for (const mesh::Joint& joint : m.joints) fmt::print("  joint   {:<32} {:8.4f} m2\n", joint.name, mesh::area_m2(m, m.surface(joint.side_a)));
+  for (const mesh::Joint& joint : m.joints)
+    fmt::print("  joint   {:<32} {:8.4f} m2\n", joint.name, mesh::area_m2(m, m.surface(joint.side_a)));
   fmt::print("written to {}\n", shown_path(folder.target() / "mesh.vtu"));
 }
 

@@ -47,15 +47,19 @@ void predict(const PredictOptions& options) {
   const int n_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
   const compensation::ModalPredictor predictor = compensation::make_modal_predictor(machine.system, n_modes);
   const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);
-  const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.system.outputs, cyclogram, model.reference_K);
-  folder.write_text("record.csv", record_csv(record, provenance_lines(folder.made_by(), fmt::format("predicted by {} thermal modes for {}", n_modes,
-                                                                                                     options.cyclogram))));
+  const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.system.outputs,
+                                             cyclogram, model.reference_K);
+  folder.write_text("record.csv",
+                    record_csv(record, provenance_lines(folder.made_by(), fmt::format("predicted by {} thermal modes for {}",
+                                                                                      n_modes, options.cyclogram))));
   folder.commit();
   progress.end();
-  fmt::print("{}, {:.0f} min, predicted by {} thermal modes and the steady responses\n", options.cyclogram, cyclogram.duration_s() / 60.0, n_modes);
+  fmt::print("{}, {:.0f} min, predicted by {} thermal modes and the steady responses\n", options.cyclogram,
+             cyclogram.duration_s() / 60.0, n_modes);
   for (const auto& d : model.displacements) {
     const std::vector<double>& values = record.at(d.name).values;
-    const auto peak = std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    const auto peak =
+        std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
     fmt::print("  {:<12} peak {:7.1f} um at {:.0f} min, {:7.1f} um at the end\n", d.name, *peak,
                record.time_s[static_cast<std::size_t>(peak - values.begin())] / 60.0, values.back());
   }

@@ -9,7 +9,9 @@ namespace driftwright::app {
 
 Progress::Progress() : on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
-Progress::~Progress() { end(); }
+Progress::~Progress() {
+  end();
+}
 
 void Progress::end() {
   if (on_terminal_ && !work_.empty()) fmt::print(stderr, "\r\033[K");

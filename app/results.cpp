@@ -26,13 +26,15 @@ std::string shown_path(const std::filesystem::path& path) {
 
 const scenarios::MachineModel& require_machine(const scenarios::Scenario& scenario, const std::string& verb) {
   if (scenario.machine) return *scenario.machine;
-  throw InputError(fmt::format("{}: `{}` needs the key `machine`; this scenario is about measured records alone (select, validate)",
-                               scenario.path, verb));
+  throw InputError(
+      fmt::format("{}: `{}` needs the key `machine`; this scenario is about measured records alone (select, validate)",
+                  scenario.path, verb));
 }
 
 const scenarios::Study& require_study(const scenarios::Scenario& scenario, const std::string& verb) {
   if (scenario.study) return *scenario.study;
-  throw InputError(fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit", scenario.path, verb));
+  throw InputError(
+      fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit", scenario.path, verb));
 }
 
 std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
@@ -42,7 +44,8 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
   const scenarios::SolverSettings& settings = scenario.solver;
   double total_s = 0.0;
   for (const Cyclogram* c : cyclograms) total_s += c->duration_s();
-  progress.begin(fmt::format("simulating {} cyclogram{}, {:.0f} min in all", cyclograms.size(), cyclograms.size() == 1 ? "" : "s", total_s / 60.0));
+  progress.begin(fmt::format("simulating {} cyclogram{}, {:.0f} min in all", cyclograms.size(),
+                             cyclograms.size() == 1 ? "" : "s", total_s / 60.0));
 
   std::vector<SimulatedRun> runs(cyclograms.size());
   std::vector<std::exception_ptr> failures(cyclograms.size());
@@ -60,13 +63,14 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
       if (!fields || i != with_fields) return;
       if (time_s < next_field_s - 1e-6 && time_s < cyclogram.duration_s()) return;
       const Eigen::VectorXd nodes = state.head(machine.placed.mesh.n_nodes());
-      fields->write(time_s, (nodes.array() + (model.reference_K - kZeroCelsius_K)).matrix(), 1e6 * machine.elasticity.displacement(nodes));
+      fields->write(time_s, (nodes.array() + (model.reference_K - kZeroCelsius_K)).matrix(),
+                    1e6 * machine.elasticity.displacement(nodes));
       while (next_field_s <= time_s + 1e-6) next_field_s += settings.fields_every_s;
     };
     try {
-      runs[i].trajectory =
-          solver::simulate(machine.system, cyclogram, model.hall, scenarios::output_times_s(cyclogram, settings.output_interval_s),
-                           settings.transient, Eigen::VectorXd::Zero(machine.system.size()), at_output);
+      runs[i].trajectory = solver::simulate(machine.system, cyclogram, model.hall,
+                                            scenarios::output_times_s(cyclogram, settings.output_interval_s),
+                                            settings.transient, Eigen::VectorXd::Zero(machine.system.size()), at_output);
       runs[i].record = scenarios::to_record(runs[i].trajectory, machine.system.outputs, cyclogram, model.reference_K);
     } catch (...) {
       failures[i] = std::current_exception();  // none may leave the parallel loop

@@ -33,8 +33,10 @@ struct SimulatedRun {
 /// Runs cyclograms from the reference temperature on, side by side on all cores, with one progress line for all.
 /// @param with_fields  index of the cyclogram whose whole fields go to `fields` every `fields_every` and at its end
 /// @param fields       or nullptr
-[[nodiscard]] std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
-                                                            const std::vector<const Cyclogram*>& cyclograms, Progress& progress,
-                                                            std::size_t with_fields, output::FieldSeries* fields);
+[[nodiscard]] std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario,
+                                                            const scenarios::Machine& machine,
+                                                            const std::vector<const Cyclogram*>& cyclograms,
+                                                            Progress& progress, std::size_t with_fields,
+                                                            output::FieldSeries* fields);
 
 }  // namespace driftwright::app

@@ -23,7 +23,9 @@ void run(const CommonOptions& options) {
   const MachineStudy study = study_machine(scenario, machine, progress, &fields);
   fields.finish();
   progress.begin("writing results");
-  folder.write_text("record.csv", record_csv(study.judged.record, provenance_lines(folder.made_by(), "judged cyclogram " + scenario.study->judge)));
+  folder.write_text(
+      "record.csv",
+      record_csv(study.judged.record, provenance_lines(folder.made_by(), "judged cyclogram " + scenario.study->judge)));
   for (const SimulatedRun& run : study.train) {
     folder.write_text("records/" + run.record.source + ".csv",
                       record_csv(run.record, provenance_lines(folder.made_by(), "training cyclogram " + run.record.source)));
@@ -33,8 +35,8 @@ void run(const CommonOptions& options) {
   folder.write_text("report.html", output::render_html(study_report(scenario, machine, study, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}  results in {}: report.html, fields.pvd (ParaView), record.csv, summary.json\n", terminal_summary(scenario, study),
-             shown_path(folder.target()));
+  fmt::print("{}  results in {}: report.html, fields.pvd (ParaView), record.csv, summary.json\n",
+             terminal_summary(scenario, study), shown_path(folder.target()));
 }
 
 }  // namespace driftwright::app

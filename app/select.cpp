@@ -14,15 +14,20 @@ void select(const RecordOptions& options) {
   RecordStudy study = read_records(settings, options);
   rank(study, settings);
   output::ResultsFolder folder = open_results(options, scenario.name);
-  nlohmann::ordered_json j = {{"program", "driftwright"}, {"version", folder.made_by().version}, {"scenario", folder.made_by().scenario},
-                              {"target", study.target},   {"records", options.train},            {"n_samples", study.ranking.n_samples},
+  nlohmann::ordered_json j = {{"program", "driftwright"},
+                              {"version", folder.made_by().version},
+                              {"scenario", folder.made_by().scenario},
+                              {"target", study.target},
+                              {"records", options.train},
+                              {"n_samples", study.ranking.n_samples},
                               {"image_reason", study.ranking.reason}};
   std::string csv = "rank,channel,grade_1\n", shown;
   for (std::size_t i = 0; i < study.ranking.channels.size(); ++i) {
     const auto& c = study.ranking.channels[i];
     const std::string grade = c.grade ? fmt::format("{:.6f}", *c.grade) : "";
     csv += fmt::format("{},{},{}\n", i + 1, c.name, grade);
-    j["channels"].push_back({{"name", c.name}, {"grade", c.grade ? nlohmann::ordered_json(*c.grade) : nullptr}, {"reversed", c.reversed}});
+    j["channels"].push_back(
+        {{"name", c.name}, {"grade", c.grade ? nlohmann::ordered_json(*c.grade) : nullptr}, {"reversed", c.reversed}});
     shown += fmt::format("  {:2}  {:<16} {}{}\n", i + 1, c.name, c.grade ? grade : c.note,
                          static_cast<int>(i) < settings.sensors_to_choose ? "  chosen" : "");
   }

@@ -22,7 +22,8 @@ void simulate(const SimulateOptions& options) {
   // Whole fields of one cyclogram only: several would fill the disk and mix in one .pvd.
   std::optional<output::FieldSeries> fields;
   if (cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
-  const std::vector<SimulatedRun> runs = simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
+  const std::vector<SimulatedRun> runs =
+      simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
   if (fields) fields->finish();
   std::string summary;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -30,8 +31,10 @@ void simulate(const SimulateOptions& options) {
     const Cyclogram* cyclogram = cyclograms[i];
     const std::string file = cyclograms.size() == 1 ? "record.csv" : "records/" + cyclogram->name + ".csv";
     folder.write_text(file, record_csv(run.record, provenance_lines(folder.made_by(), "cyclogram " + cyclogram->name)));
-    summary += fmt::format("{:<20} {:5.0f} min, {} steps; at its end", cyclogram->name, cyclogram->duration_s() / 60.0, run.trajectory.n_steps);
-    for (const auto& d : model.displacements) summary += fmt::format("  {} {:.1f} um", d.name, run.record.at(d.name).values.back());
+    summary += fmt::format("{:<20} {:5.0f} min, {} steps; at its end", cyclogram->name, cyclogram->duration_s() / 60.0,
+                           run.trajectory.n_steps);
+    for (const auto& d : model.displacements)
+      summary += fmt::format("  {} {:.1f} um", d.name, run.record.at(d.name).values.back());
     summary += fmt::format("; energy balance {:.0e}; {}\n", std::max(1e-16, run.trajectory.energy_gap()), file);
   }
   folder.commit();

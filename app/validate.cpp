@@ -16,13 +16,24 @@ using Json = nlohmann::ordered_json;
 
 Json summary(const RecordStudy& study, const RecordOptions& options, const output::Provenance& made_by) {
   const auto& r = study.regression;
-  Json j = {{"program", "driftwright"}, {"version", made_by.version}, {"scenario", made_by.scenario}, {"target", study.target},
+  Json j = {{"program", "driftwright"},
+            {"version", made_by.version},
+            {"scenario", made_by.scenario},
+            {"target", study.target},
             {"trained_on", options.train}};
-  j["regression"] = {{"intercept", r.intercept}, {"target_unit", r.target_unit}, {"rank", r.rank}, {"condition_number", r.condition_number}};
+  j["regression"] = {{"intercept", r.intercept},
+                     {"target_unit", r.target_unit},
+                     {"rank", r.rank},
+                     {"condition_number", r.condition_number}};
   for (std::size_t i = 0; i < r.inputs.size(); ++i) j["regression"]["coefficients"][r.inputs[i]] = r.coefficients[i];
   for (const JudgedPrediction& p : study.judged) {
-    j["judged"].push_back({{"test", p.test}, {"strategy", p.strategy}, {"rmse", p.error.rmse}, {"peak", p.error.peak_abs},
-                           {"mean", p.error.mean}, {"n", p.error.n}, {"unit", r.target_unit}});
+    j["judged"].push_back({{"test", p.test},
+                           {"strategy", p.strategy},
+                           {"rmse", p.error.rmse},
+                           {"peak", p.error.peak_abs},
+                           {"mean", p.error.mean},
+                           {"n", p.error.n},
+                           {"unit", r.target_unit}});
   }
   return j;
 }
@@ -32,27 +43,34 @@ output::Report report(const scenarios::Scenario& scenario, const RecordStudy& st
   output::Report page{.title = scenario.name + ": regression judged on records it was not fitted on",
                       .subtitle = fmt::format("Driftwright {}, scenario {}", made_by.version, made_by.scenario),
                       .blocks = {}};
-  output::Table scores{.caption = fmt::format("Error of {} (measured minus predicted) on the judged records. A strategy that does not beat both "
-                                              "baselines is none.",
-                                              study.target),
-                       .headers = {"record", "strategy", "RMS [" + unit + "]", "peak [" + unit + "]", "mean [" + unit + "]"},
-                       .rows = {}};
+  output::Table scores{
+      .caption =
+          fmt::format("Error of {} (measured minus predicted) on the judged records. A strategy that does not beat both "
+                      "baselines is none.",
+                      study.target),
+      .headers = {"record", "strategy", "RMS [" + unit + "]", "peak [" + unit + "]", "mean [" + unit + "]"},
+      .rows = {}};
   for (const JudgedPrediction& p : study.judged) {
-    scores.rows.push_back({std::filesystem::path(p.test).filename().string(), p.strategy, fmt::format("{:.2f}", p.error.rmse),
-                           fmt::format("{:.2f}", p.error.peak_abs), fmt::format("{:.2f}", p.error.mean)});
+    scores.rows.push_back({std::filesystem::path(p.test).filename().string(), p.strategy,
+                           fmt::format("{:.2f}", p.error.rmse), fmt::format("{:.2f}", p.error.peak_abs),
+                           fmt::format("{:.2f}", p.error.mean)});
   }
   page.blocks.emplace_back(std::move(scores));
   for (std::size_t t = 0; t < study.test.size(); ++t) {
     const Record& test = study.test[t];
     std::vector<double> t_min;
     for (double t_s : test.time_s) t_min.push_back(t_s / 60.0);
-    output::Plot plot{.title = std::filesystem::path(test.source).filename().string(), .x_label = "time [min]",
+    output::Plot plot{.title = std::filesystem::path(test.source).filename().string(),
+                      .x_label = "time [min]",
                       .y_label = study.target + " [" + unit + "]",
                       .series = {{.label = "measured", .x = t_min, .y = test.at(study.target).values, .width = 3.0}}};
-    for (std::size_t k = 0; k < 3; ++k) plot.series.push_back({.label = study.judged[3 * t + k].strategy, .x = t_min, .y = study.judged[3 * t + k].predicted});
+    for (std::size_t k = 0; k < 3; ++k)
+      plot.series.push_back({.label = study.judged[3 * t + k].strategy, .x = t_min, .y = study.judged[3 * t + k].predicted});
     page.blocks.emplace_back(std::move(plot));
   }
-  output::Table ranking{.caption = "Grey relational grades on the training records. " + study.ranking.reason, .headers = {"rank", "channel", "grade [-]"}, .rows = {}};
+  output::Table ranking{.caption = "Grey relational grades on the training records. " + study.ranking.reason,
+                        .headers = {"rank", "channel", "grade [-]"},
+                        .rows = {}};
   for (std::size_t i = 0; i < study.ranking.channels.size(); ++i) {
     const auto& c = study.ranking.channels[i];
     ranking.rows.push_back({fmt::format("{}", i + 1), c.name, c.grade ? fmt::format("{:.4f}", *c.grade) : c.note});
@@ -73,14 +91,15 @@ void validate(const RecordOptions& options) {
   folder.write_text("report.html", output::render_html(report(scenario, study, folder.made_by())));
   folder.commit();
   const auto& r = study.regression;
-  fmt::print("{} from {}, fitted on {} samples (rank {} of {}, condition number {:.0f})\n", study.target, fmt::join(r.inputs, ", "), r.n_samples,
-             r.rank, r.inputs.size(), r.condition_number);
+  fmt::print("{} from {}, fitted on {} samples (rank {} of {}, condition number {:.0f})\n", study.target,
+             fmt::join(r.inputs, ", "), r.n_samples, r.rank, r.inputs.size(), r.condition_number);
   for (const JudgedPrediction& p : study.judged) {
-    fmt::print("  {:<24} {:<34} RMS {:6.2f} {u}  peak {:6.2f} {u}\n", std::filesystem::path(p.test).filename().string(), p.strategy, p.error.rmse,
-               p.error.peak_abs, fmt::arg("u", r.target_unit));
+    fmt::print("  {:<24} {:<34} RMS {:6.2f} {u}  peak {:6.2f} {u}\n", std::filesystem::path(p.test).filename().string(),
+               p.strategy, p.error.rmse, p.error.peak_abs, fmt::arg("u", r.target_unit));
   }
   for (std::size_t t = 0; t < study.test.size(); ++t) {
-    const bool beats_both = study.judged[3 * t].error.rmse < std::min(study.judged[3 * t + 1].error.rmse, study.judged[3 * t + 2].error.rmse);
+    const bool beats_both =
+        study.judged[3 * t].error.rmse < std::min(study.judged[3 * t + 1].error.rmse, study.judged[3 * t + 2].error.rmse);
     fmt::print("  {}: the regression {}\n", std::filesystem::path(study.test[t].source).filename().string(),
                beats_both ? "beats both baselines" : "does NOT beat both baselines; do not use it");
   }

@@ -84,14 +84,18 @@ ConfigMap::ConfigMap(std::shared_ptr<const Source> source, const YAML::Node& nod
   reject_bad_keys(*node_, source_->path, source_->lines);
 }
 
-const std::string& ConfigMap::file() const { return source_->path; }
+const std::string& ConfigMap::file() const {
+  return source_->path;
+}
 
 bool ConfigMap::has(const std::string& key) const {
   asked_.insert(key);
   return (*node_)[key].IsDefined();
 }
 
-bool ConfigMap::is_map(const std::string& key) const { return has(key) && (*node_)[key].IsMap(); }
+bool ConfigMap::is_map(const std::string& key) const {
+  return has(key) && (*node_)[key].IsMap();
+}
 
 std::vector<std::string> ConfigMap::keys() const {
   std::vector<std::string> keys;
@@ -116,9 +120,13 @@ Where ConfigMap::where(const std::string& key) const {
   return where_of(node.IsDefined() ? node : *node_, key);
 }
 
-Where ConfigMap::where() const { return where_of(*node_, ""); }
+Where ConfigMap::where() const {
+  return where_of(*node_, "");
+}
 
-void ConfigMap::fail(const std::string& key, const std::string& message) const { throw InputError(where(key), message); }
+void ConfigMap::fail(const std::string& key, const std::string& message) const {
+  throw InputError(where(key), message);
+}
 
 YAML::Node ConfigMap::child(const std::string& key) const {
   asked_.insert(key);
@@ -200,8 +208,7 @@ double ConfigMap::quantity(const std::string& key, const std::string& unit, doub
   return value;
 }
 
-double ConfigMap::quantity(const std::string& key, const std::string& unit, double low, double high,
-                           double fallback) const {
+double ConfigMap::quantity(const std::string& key, const std::string& unit, double low, double high, double fallback) const {
   return has(key) ? quantity(key, unit, low, high) : fallback;
 }
 

@@ -74,8 +74,8 @@ class ConfigMap {
   [[nodiscard]] Where where_of(const YAML::Node& node, const std::string& key) const;
   [[nodiscard]] double read_quantity(const YAML::Node& node, const std::string& key, const std::string& unit) const;
 
-  std::shared_ptr<const Source> source_;      // shared: every map of a file points at the same lines
-  std::shared_ptr<const YAML::Node> node_;    // shared: maps are copied freely
+  std::shared_ptr<const Source> source_;    // shared: every map of a file points at the same lines
+  std::shared_ptr<const YAML::Node> node_;  // shared: maps are copied freely
   std::string path_;
   mutable std::set<std::string> asked_;
 };

@@ -18,7 +18,6 @@ std::string render(const Where& where, const std::string& message) {
 
 }  // namespace
 
-InputError::InputError(const Where& where, const std::string& message)
-    : std::runtime_error(render(where, message)) {}
+InputError::InputError(const Where& where, const std::string& message) : std::runtime_error(render(where, message)) {}
 
 }  // namespace driftwright

@@ -66,8 +66,8 @@ double seconds_per_time_unit(const std::string& header, const Where& where) {
 }  // namespace
 
 const Channel* Record::find(const std::string& name) const {
-  const auto hit = std::find_if(channels.begin(), channels.end(),
-                                [&](const Channel& c) { return c.name == name || c.header() == name; });
+  const auto hit =
+      std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == name || c.header() == name; });
   return hit == channels.end() ? nullptr : &*hit;
 }
 
@@ -86,7 +86,9 @@ std::vector<std::string> Record::names_with_unit(const std::string& unit) const 
   return names;
 }
 
-std::span<const std::string> known_units() { return unit_table(); }
+std::span<const std::string> known_units() {
+  return unit_table();
+}
 
 Record read_record_csv(const std::string& path) {
   std::ifstream file(path);
@@ -124,8 +126,8 @@ Record read_record_csv(const std::string& path) {
     const double time_s = parse_cell(cells[0], where(0)) * seconds;
     if (!std::isfinite(time_s)) throw InputError(where(0), "a row without a time");
     if (!record.time_s.empty() && !(time_s > record.time_s.back())) {
-      throw InputError(where(0), fmt::format("time {} s does not follow {} s; rows must increase in time", time_s,
-                                             record.time_s.back()));
+      throw InputError(
+          where(0), fmt::format("time {} s does not follow {} s; rows must increase in time", time_s, record.time_s.back()));
     }
     record.time_s.push_back(time_s);
     for (std::size_t i = 1; i < cells.size(); ++i) record.channels[i - 1].values.push_back(parse_cell(cells[i], where(i)));

@@ -20,9 +20,8 @@ CompleteRows complete_rows(std::span<const Record> records, const std::vector<st
       columns.push_back(&record.at(channels[j]));
       if (&record == &records.front()) rows.units.push_back(columns[j]->unit);
       if (columns[j]->unit != rows.units[j]) {
-        throw InputError(fmt::format("channel '{}' is in {} in {} but in {} in {}; give it one unit",
-                                     channels[j], rows.units[j], records.front().source, columns[j]->unit,
-                                     record.source));
+        throw InputError(fmt::format("channel '{}' is in {} in {} but in {} in {}; give it one unit", channels[j],
+                                     rows.units[j], records.front().source, columns[j]->unit, record.source));
       }
     }
     for (std::size_t i = 0; i < record.n_samples(); ++i) {

@@ -22,7 +22,6 @@ struct CompleteRows {
 /// @throws InputError  when there is no record, a record lacks a channel, or a channel changes its unit
 /// between
 ///                     records
-[[nodiscard]] CompleteRows complete_rows(std::span<const Record> records,
-                                         const std::vector<std::string>& channels);
+[[nodiscard]] CompleteRows complete_rows(std::span<const Record> records, const std::vector<std::string>& channels);
 
 }  // namespace driftwright::compensation

@@ -8,8 +8,14 @@ namespace driftwright::compensation {
 namespace {
 
 CorrectedRun judge(const JudgedRun& run, const char* actuator, const std::vector<double>& correction_um) {
-  CorrectedRun result{.predictor = {}, .actuator = actuator, .channel = {}, .residual_um = {}, .before = {}, .after = {},
-                      .inside_tolerance = false, .schedule = std::nullopt};
+  CorrectedRun result{.predictor = {},
+                      .actuator = actuator,
+                      .channel = {},
+                      .residual_um = {},
+                      .before = {},
+                      .after = {},
+                      .inside_tolerance = false,
+                      .schedule = std::nullopt};
   for (std::size_t i = 0; i < run.drift_um.size(); ++i) result.residual_um.push_back(run.drift_um[i] - correction_um[i]);
   result.before = score(run.drift_um);
   result.after = score(result.residual_um);

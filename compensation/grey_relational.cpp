@@ -38,20 +38,17 @@ Choice choose_image(Image wanted, const std::vector<std::string>& names, const C
   for (std::size_t j = 0; j < names.size(); ++j) {
     const Eigen::VectorXd x = rows.values.col(static_cast<Eigen::Index>(j));
     if (is_temperature(rows.units[j])) {
-      return {Image::kRange,
-              fmt::format("'{}' is a temperature, and its ratio to its first value depends on whether it "
-                          "is in degC or K, so the range image is used.",
-                          names[j])};
+      return {Image::kRange, fmt::format("'{}' is a temperature, and its ratio to its first value depends on whether it "
+                                         "is in degC or K, so the range image is used.",
+                                         names[j])};
     }
     if (std::abs(x(0)) < kNearZero * span_of(x)) {
-      return {Image::kRange,
-              fmt::format("'{}' starts near 0 ({:.3g} {}) and cannot be divided by its first value, so the "
-                          "range image is used.",
-                          names[j], x(0), rows.units[j])};
+      return {Image::kRange, fmt::format("'{}' starts near 0 ({:.3g} {}) and cannot be divided by its first value, so the "
+                                         "range image is used.",
+                                         names[j], x(0), rows.units[j])};
     }
   }
-  return {Image::kInitialValue,
-          "No series starts near 0 and none is a temperature, so each is divided by its first value."};
+  return {Image::kInitialValue, "No series starts near 0 and none is a temperature, so each is divided by its first value."};
 }
 
 /// The dimensionless series, or none where its divisor vanishes.
@@ -83,13 +80,11 @@ Ranking rank_channels(std::span<const Record> records, const std::string& refere
   names.insert(names.end(), candidates.begin(), candidates.end());
   const CompleteRows rows = complete_rows(records, names);
   if (rows.values.rows() < 2) {
-    throw InputError(
-        fmt::format("{} rows have a value in all of '{}' and the candidates, {} have not; two are needed",
-                    rows.values.rows(), reference, rows.n_left_out));
+    throw InputError(fmt::format("{} rows have a value in all of '{}' and the candidates, {} have not; two are needed",
+                                 rows.values.rows(), reference, rows.n_left_out));
   }
   if (is_constant(rows.values.col(0))) {
-    throw InputError(
-        fmt::format("the reference '{}' never changes; nothing can be ranked against it", reference));
+    throw InputError(fmt::format("the reference '{}' never changes; nothing can be ranked against it", reference));
   }
 
   Ranking ranking;
@@ -133,8 +128,7 @@ Ranking rank_channels(std::span<const Record> records, const std::string& refere
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (distance[i].size() == 0) continue;
     const double floor = options.rho * largest;
-    ranking.channels[i].grade =
-        largest == 0.0 ? 1.0 : ((smallest + floor) / (distance[i].array() + floor)).mean();
+    ranking.channels[i].grade = largest == 0.0 ? 1.0 : ((smallest + floor) / (distance[i].array() + floor)).mean();
   }
   std::stable_sort(ranking.channels.begin(), ranking.channels.end(),
                    [](const RankedChannel& a, const RankedChannel& b) { return a.grade > b.grade; });

@@ -37,12 +37,11 @@ struct RankedChannel {
 };
 
 struct Ranking {
-  std::vector<RankedChannel>
-      channels;                 ///< by falling grade, equals in the order given, those without grade last
-  Image image = Image::kRange;  ///< the one used, never kAutomatic
-  std::string reason;           ///< why that image, one sentence
-  int n_samples = 0;            ///< rows used
-  int n_left_out = 0;           ///< rows left out because a channel was missing in them
+  std::vector<RankedChannel> channels;  ///< by falling grade, equals in the order given, those without grade last
+  Image image = Image::kRange;          ///< the one used, never kAutomatic
+  std::string reason;                   ///< why that image, one sentence
+  int n_samples = 0;                    ///< rows used
+  int n_left_out = 0;                   ///< rows left out because a channel was missing in them
 };
 
 /// Grey relational grades of `candidates` against `reference` over the records laid end to end.
@@ -71,8 +70,7 @@ struct Ranking {
 ///                     no image of the kind asked for; and as complete_rows()
 /// Source: Deng, J. Grey System 1 (1989) 1-24; used on thermal error by Chen & Wang (2013).
 [[nodiscard]] Ranking rank_channels(std::span<const Record> records, const std::string& reference,
-                                    const std::vector<std::string>& candidates,
-                                    const GreyOptions& options = {});
+                                    const std::vector<std::string>& candidates, const GreyOptions& options = {});
 
 /// Names of the n best channels that have a grade; fewer where there are fewer.
 [[nodiscard]] std::vector<std::string> best(const Ranking& ranking, int n);

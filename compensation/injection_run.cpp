@@ -18,8 +18,7 @@ std::vector<QuadratureState> dither_rows(int n_periods) {
   const int quarters = n_periods * kQuartersPerPeriod;
   std::vector<QuadratureState> rows;
   for (int n_quarters : {+quarters, -2 * quarters, +quarters}) {
-    const std::vector<QuadratureState> leg =
-        motion_rows(home, n_quarters);  // every leg starts and ends at 00
+    const std::vector<QuadratureState> leg = motion_rows(home, n_quarters);  // every leg starts and ends at 00
     rows.insert(rows.end(), leg.begin(), leg.end());
   }
   return rows;
@@ -27,11 +26,10 @@ std::vector<QuadratureState> dither_rows(int n_periods) {
 
 }  // namespace
 
-InjectionRun simulate_injection(std::span<const double> time_s, std::span<const double> correction_um,
-                                double period_um, int n_dither_periods) {
+InjectionRun simulate_injection(std::span<const double> time_s, std::span<const double> correction_um, double period_um,
+                                int n_dither_periods) {
   if (!(period_um > 0.0)) throw RangeError(fmt::format("encoder period {} um must be positive", period_um));
-  if (n_dither_periods < 1)
-    throw RangeError(fmt::format("a dither of {} periods must be 1 or more", n_dither_periods));
+  if (n_dither_periods < 1) throw RangeError(fmt::format("a dither of {} periods must be 1 or more", n_dither_periods));
   if (time_s.size() != correction_um.size()) {
     throw InputError(fmt::format("{} times but {} corrections", time_s.size(), correction_um.size()));
   }

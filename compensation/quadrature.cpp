@@ -11,9 +11,8 @@ int phase_of(QuadratureState state) {
 }
 
 QuadratureState state_of_phase(std::int64_t phase) {
-  static constexpr std::array<QuadratureState, 4> kStates = {
-      QuadratureState{false, false}, QuadratureState{true, false}, QuadratureState{true, true},
-      QuadratureState{false, true}};
+  static constexpr std::array<QuadratureState, 4> kStates = {QuadratureState{false, false}, QuadratureState{true, false},
+                                                             QuadratureState{true, true}, QuadratureState{false, true}};
   return kStates[static_cast<std::size_t>(((phase % 4) + 4) % 4)];
 }
 

@@ -29,8 +29,7 @@ double condition_of(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
 
 Regression fit_regression(std::span<const Record> records, const std::vector<std::string>& inputs,
                           const std::string& target) {
-  if (inputs.empty())
-    throw InputError(fmt::format("the regression of '{}' was given no input channels", target));
+  if (inputs.empty()) throw InputError(fmt::format("the regression of '{}' was given no input channels", target));
   std::vector<std::string> names = inputs;
   names.push_back(target);
   const CompleteRows rows = complete_rows(records, names);
@@ -93,8 +92,8 @@ std::vector<double> Regression::predict(const Record& record) const {
   for (std::size_t j = 0; j < inputs.size(); ++j) {
     const Channel& channel = record.at(inputs[j]);
     if (channel.unit != input_units[j]) {
-      throw InputError(fmt::format("channel '{}' of {} is in {}, but the regression was fitted in {}",
-                                   inputs[j], record.source, channel.unit, input_units[j]));
+      throw InputError(fmt::format("channel '{}' of {} is in {}, but the regression was fitted in {}", inputs[j],
+                                   record.source, channel.unit, input_units[j]));
     }
     for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] += coefficients[j] * channel.values[i];
   }

@@ -45,7 +45,7 @@ struct Regression {
 /// as
 ///                     complete_rows()
 /// Source: Golub & Van Loan, Matrix Computations, 4th ed., sections 5.4 and 5.5.
-[[nodiscard]] Regression fit_regression(std::span<const Record> records,
-                                        const std::vector<std::string>& inputs, const std::string& target);
+[[nodiscard]] Regression fit_regression(std::span<const Record> records, const std::vector<std::string>& inputs,
+                                        const std::string& target);
 
 }  // namespace driftwright::compensation

@@ -21,8 +21,7 @@ struct Range {
 };
 
 /// Least and greatest drift in a cell of time.
-Range drift_range(std::span<const double> time_s, std::span<const double> drift_um, double from_s,
-                  double to_s) {
+Range drift_range(std::span<const double> time_s, std::span<const double> drift_um, double from_s, double to_s) {
   const double at_start = interpolate(time_s, drift_um, from_s);
   const double at_end = interpolate(time_s, drift_um, to_s);
   Range range{std::min(at_start, at_end), std::max(at_start, at_end)};
@@ -50,8 +49,7 @@ long next_increments(long n, const Range& drift, double band_um, double step_um)
   return serves ? changed : std::lround(0.5 * (drift.low + drift.high) / step_um);
 }
 
-void check(std::span<const double> time_s, std::span<const double> drift_um,
-           std::span<const double> boundaries_s) {
+void check(std::span<const double> time_s, std::span<const double> drift_um, std::span<const double> boundaries_s) {
   const auto rises = [](std::span<const double> x) {
     return std::adjacent_find(x.begin(), x.end(), [](double a, double b) { return !(a < b); }) == x.end();
   };
@@ -63,34 +61,30 @@ void check(std::span<const double> time_s, std::span<const double> drift_um,
   }
   for (std::size_t i = 0; i < drift_um.size(); ++i) {
     if (!std::isfinite(drift_um[i])) {
-      throw InputError(
-          fmt::format("the predicted drift has no value at {} s; a schedule needs it throughout", time_s[i]));
+      throw InputError(fmt::format("the predicted drift has no value at {} s; a schedule needs it throughout", time_s[i]));
     }
   }
   if (boundaries_s.size() < 2 || !rises(boundaries_s)) {
     throw InputError("the operations need boundaries that increase: a start and an end at least");
   }
   if (!(boundaries_s.front() >= time_s.front() && boundaries_s.back() <= time_s.back())) {
-    throw InputError(
-        fmt::format("the operations last from {} s to {} s, but the drift is predicted from {} s to {} s",
-                    boundaries_s.front(), boundaries_s.back(), time_s.front(), time_s.back()));
+    throw InputError(fmt::format("the operations last from {} s to {} s, but the drift is predicted from {} s to {} s",
+                                 boundaries_s.front(), boundaries_s.back(), time_s.front(), time_s.back()));
   }
 }
 
 void check(const ScheduleOptions& options, double step_um) {
-  if (!(options.tolerance_um > 0.0))
-    throw RangeError(fmt::format("tolerance {} um must be positive", options.tolerance_um));
+  if (!(options.tolerance_um > 0.0)) throw RangeError(fmt::format("tolerance {} um must be positive", options.tolerance_um));
   if (!(options.margin_um >= 0.0 && options.margin_um < options.tolerance_um)) {
-    throw RangeError(fmt::format("margin {} um must lie in [0, {}) um, below the tolerance",
-                                 options.margin_um, options.tolerance_um));
+    throw RangeError(
+        fmt::format("margin {} um must lie in [0, {}) um, below the tolerance", options.margin_um, options.tolerance_um));
   }
   const double band_um = options.tolerance_um - options.margin_um;
   if (!(step_um > 0.0 && step_um <= 2.0 * band_um)) {
-    throw RangeError(fmt::format("step {} um must lie in (0, {}] um: twice the tolerance less the margin",
-                                 step_um, 2.0 * band_um));
+    throw RangeError(
+        fmt::format("step {} um must lie in (0, {}] um: twice the tolerance less the margin", step_um, 2.0 * band_um));
   }
-  if (!(options.resolution_s > 0.0))
-    throw RangeError(fmt::format("resolution {} s must be positive", options.resolution_s));
+  if (!(options.resolution_s > 0.0)) throw RangeError(fmt::format("resolution {} s must be positive", options.resolution_s));
 }
 
 /// "18", "18.0167": four decimals at most, no trailing zeros.
@@ -115,8 +109,7 @@ Schedule plan_schedule(std::span<const double> time_s, std::span<const double> d
   for (std::size_t i = 0; i + 1 < boundaries_s.size(); ++i) {
     Operation operation{.start_s = boundaries_s[i], .end_s = boundaries_s[i + 1], .corrections = {{}}};
     double held_since_s = operation.start_s;
-    const long n_cells =
-        std::lround(std::ceil((operation.end_s - operation.start_s) / options.resolution_s - kRounding));
+    const long n_cells = std::lround(std::ceil((operation.end_s - operation.start_s) / options.resolution_s - kRounding));
     for (long cell = 0; cell < n_cells; ++cell) {
       const double from_s = operation.start_s + static_cast<double>(cell) * options.resolution_s;
       const double to_s = cell + 1 == n_cells ? operation.end_s : from_s + options.resolution_s;
@@ -133,8 +126,7 @@ Schedule plan_schedule(std::span<const double> time_s, std::span<const double> d
       }
       const double correction_um = static_cast<double>(n) * step_um;
       schedule.worst_remaining_um =
-          std::max({schedule.worst_remaining_um, std::abs(drift.low - correction_um),
-                    std::abs(drift.high - correction_um)});
+          std::max({schedule.worst_remaining_um, std::abs(drift.low - correction_um), std::abs(drift.high - correction_um)});
     }
     operation.corrections.back().interval_s = operation.end_s - held_since_s;
     schedule.operations.push_back(std::move(operation));

@@ -10,18 +10,16 @@
 namespace driftwright::compensation {
 
 struct ScheduleOptions {
-  double tolerance_um = 10.0;  ///< the remaining error shall stay inside [-tolerance, +tolerance]
-  std::optional<double> step_um =
-      std::nullopt;           ///< one increment of the correction; the tolerance where not given
-  double margin_um = 0.0;     ///< part of the tolerance kept in reserve for the predictor's error
+  double tolerance_um = 10.0;                    ///< the remaining error shall stay inside [-tolerance, +tolerance]
+  std::optional<double> step_um = std::nullopt;  ///< one increment of the correction; the tolerance where not given
+  double margin_um = 0.0;                        ///< part of the tolerance kept in reserve for the predictor's error
   double resolution_s = 1.0;  ///< intervals are whole multiples of this, counted from the operation's start
 };
 
 /// One pair (t, delta) of the notation: the correction changes by delta_um and is then held for interval_s.
 struct Correction {
   double interval_s = 0.0;
-  double delta_um =
-      0.0;  ///< a multiple of the increment; 0 in an operation's first interval where nothing changes
+  double delta_um = 0.0;  ///< a multiple of the increment; 0 in an operation's first interval where nothing changes
 };
 
 /// One operation R = n-{t_1..t_n}-{delta_1..delta_n}.
@@ -34,8 +32,7 @@ struct Operation {
 struct Schedule {
   std::vector<Operation> operations;  ///< each starts where the one before ends
   double tolerance_um = 0.0;
-  double worst_remaining_um =
-      0.0;  ///< largest |drift - correction| of the prediction, between samples as well
+  double worst_remaining_um = 0.0;  ///< largest |drift - correction| of the prediction, between samples as well
   /// False where the drift moves by more than the band within one resolution, or jumps over every multiple of
   /// the step: then the nearest correction was taken, and worst_remaining_um says how far it is off.
   bool inside_band = true;
@@ -59,8 +56,7 @@ struct Schedule {
 ///                     the step is larger than the band 2 (tolerance - margin), which it would jump over
 /// Source: Polyakov, Marusich & Nikitina. That their deltas are increments, not totals, is our reading.
 [[nodiscard]] Schedule plan_schedule(std::span<const double> time_s, std::span<const double> drift_um,
-                                     std::span<const double> boundaries_s,
-                                     const ScheduleOptions& options = {});
+                                     std::span<const double> boundaries_s, const ScheduleOptions& options = {});
 
 /// Correction c [um] that holds at time t [s]: 0 before the first operation; an increment counts from its own
 /// time on; after the end the last correction stays.

@@ -27,16 +27,13 @@ Score score(std::span<const double> residual) {
   return {.rmse = std::sqrt(sum_of_squares / n), .peak_abs = peak, .mean = sum / n, .n = n};
 }
 
-std::vector<double> baseline_mean(std::span<const Record> train, const Record& test,
-                                  const std::string& channel) {
+std::vector<double> baseline_mean(std::span<const Record> train, const Record& test, const std::string& channel) {
   const CompleteRows rows = complete_rows(train, {channel});
-  if (rows.values.rows() == 0)
-    throw InputError(fmt::format("channel '{}' has no value in any training record", channel));
+  if (rows.values.rows() == 0) throw InputError(fmt::format("channel '{}' has no value in any training record", channel));
   return std::vector<double>(test.n_samples(), rows.values.mean());
 }
 
-std::vector<double> baseline_same_time(std::span<const Record> train, const Record& test,
-                                       const std::string& channel) {
+std::vector<double> baseline_same_time(std::span<const Record> train, const Record& test, const std::string& channel) {
   if (train.empty()) throw InputError("no training record was given; at least one is needed");
   std::vector<double> predicted;
   for (double t_s : test.time_s) {

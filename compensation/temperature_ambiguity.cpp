@@ -26,8 +26,8 @@ struct Piece {
 };
 
 Point between(const Point& a, const Point& b, double fraction) {
-  return {std::lerp(a.temperature, b.temperature, fraction),
-          std::lerp(a.displacement_um, b.displacement_um, fraction), std::lerp(a.time_s, b.time_s, fraction)};
+  return {std::lerp(a.temperature, b.temperature, fraction), std::lerp(a.displacement_um, b.displacement_um, fraction),
+          std::lerp(a.time_s, b.time_s, fraction)};
 }
 
 /// Appends the parts of the segment from a to b that lie at or beyond the floor, at most one per sign.
@@ -50,12 +50,11 @@ std::vector<Piece> pieces_of(std::span<const Record> records, const std::string&
     const Channel& t = records[r].at(temperature);
     const Channel& d = records[r].at(displacement);
     if (d.unit != "um") {
-      throw InputError(
-          fmt::format("channel '{}' of {} is in {}; um is wanted", displacement, records[r].source, d.unit));
+      throw InputError(fmt::format("channel '{}' of {} is in {}; um is wanted", displacement, records[r].source, d.unit));
     }
     if (const std::string& unit = records.front().at(temperature).unit; t.unit != unit) {
-      throw InputError(fmt::format("channel '{}' is in {} in {} but in {} in {}; give it one unit",
-                                   temperature, unit, records.front().source, t.unit, records[r].source));
+      throw InputError(fmt::format("channel '{}' is in {} in {} but in {} in {}; give it one unit", temperature, unit,
+                                   records.front().source, t.unit, records[r].source));
     }
     for (std::size_t i = 0; i + 1 < records[r].n_samples(); ++i) {
       const Point a{t.values[i], d.values[i], records[r].time_s[i]};
@@ -92,8 +91,7 @@ double spread_of(const Point& p, const Point& q) {
 
 }  // namespace
 
-std::optional<TemperatureAmbiguity> temperature_ambiguity(std::span<const Record> records,
-                                                          const std::string& temperature,
+std::optional<TemperatureAmbiguity> temperature_ambiguity(std::span<const Record> records, const std::string& temperature,
                                                           const std::string& displacement, double floor_um) {
   if (!(floor_um > 0.0)) throw RangeError(fmt::format("the floor of {} um must be positive", floor_um));
   std::vector<Piece> pieces = pieces_of(records, temperature, displacement, floor_um);

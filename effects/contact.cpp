@@ -14,7 +14,8 @@ EffectKind contact() {
           .title = "conductance of a joint, constant",
           .law = "q = conductance (T_a - T_b)",
           .place = Place::kJoint,
-          .parameters = {{"conductance", "W/(m^2 K)", 0.0, 1e7, {}, "bolted and scraped: 2000 to 10000; a guideway: 500 to 3000"}},
+          .parameters =
+              {{"conductance", "W/(m^2 K)", 0.0, 1e7, {}, "bolted and scraped: 2000 to 10000; a guideway: 500 to 3000"}},
           .contribute = contribute};
 }
 

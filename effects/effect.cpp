@@ -7,10 +7,14 @@ namespace driftwright::effects {
 
 const char* place_key(Place place) {
   switch (place) {
-    case Place::kRegion: return "region";
-    case Place::kSurface: return "surface";
-    case Place::kJoint: return "joint";
-    case Place::kNode: return "node";
+    case Place::kRegion:
+      return "region";
+    case Place::kSurface:
+      return "surface";
+    case Place::kJoint:
+      return "joint";
+    case Place::kNode:
+      return "node";
   }
   return "";
 }

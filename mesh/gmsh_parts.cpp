@@ -19,8 +19,12 @@ struct GmshShape {
   CellShape shape;
 };
 
-GmshShape cell_shape(int order) { return order == 1 ? GmshShape{4, CellShape::kTet4} : GmshShape{11, CellShape::kTet10}; }
-GmshShape facet_shape(int order) { return order == 1 ? GmshShape{2, CellShape::kTri3} : GmshShape{9, CellShape::kTri6}; }
+GmshShape cell_shape(int order) {
+  return order == 1 ? GmshShape{4, CellShape::kTet4} : GmshShape{11, CellShape::kTet10};
+}
+GmshShape facet_shape(int order) {
+  return order == 1 ? GmshShape{2, CellShape::kTri3} : GmshShape{9, CellShape::kTri6};
+}
 
 int index_or_add(std::vector<std::string>& names, const std::string& name) {
   const auto hit = std::find(names.begin(), names.end(), name);
@@ -139,7 +143,8 @@ Mesh mesh_parts(const std::vector<Part>& parts, int order, const std::function<s
   } catch (const std::exception& e) {
     std::string last;
     gmsh::logger::getLastError(last);
-    throw SolveError(fmt::format("Gmsh could not mesh the geometry: {} {}; try other dimensions or mesh sizes", e.what(), last));
+    throw SolveError(
+        fmt::format("Gmsh could not mesh the geometry: {} {}; try other dimensions or mesh sizes", e.what(), last));
   }
   const Quality quality = worst_quality(mesh);
   if (!(quality.min_det_m3 > 0.0)) {

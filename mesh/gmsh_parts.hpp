@@ -33,7 +33,7 @@ struct Part {
 /// What is known of an outer face of a part before it has a name; lengths in m.
 struct OuterFace {
   std::string region;
-  std::array<double, 3> low;   ///< bounding box
+  std::array<double, 3> low;  ///< bounding box
   std::array<double, 3> high;
 };
 

@@ -80,17 +80,21 @@ std::vector<Named> add_parts(const KneeMill& m, const Layout& at) {
   return {
       {"column", add_column(m), m.coarse_m},
       {"headstock", add_headstock(m, at), 0.8 * m.coarse_m},
-      {"quill", add_ring(at.quill_back_m, at.quill_front_m, at.axis_z_m, m.quill_diameter_m, m.quill_bore_m), 1.5 * m.fine_m},
+      {"quill", add_ring(at.quill_back_m, at.quill_front_m, at.axis_z_m, m.quill_diameter_m, m.quill_bore_m),
+       1.5 * m.fine_m},
       {"spindle", cylinder(at.quill_back_m, at.quill_front_m + m.spindle_stick_out_m, at.axis_z_m, m.spindle_diameter_m),
        1.5 * m.fine_m},
       {"bearing_front",
-       add_ring(front_end - m.bearing_front.width_m, front_end, at.axis_z_m, m.quill_bore_m, m.spindle_diameter_m), m.fine_m},
+       add_ring(front_end - m.bearing_front.width_m, front_end, at.axis_z_m, m.quill_bore_m, m.spindle_diameter_m),
+       m.fine_m},
       {"bearing_rear",
-       add_ring(rear_start, rear_start + m.bearing_rear.width_m, at.axis_z_m, m.quill_bore_m, m.spindle_diameter_m), m.fine_m},
+       add_ring(rear_start, rear_start + m.bearing_rear.width_m, at.axis_z_m, m.quill_bore_m, m.spindle_diameter_m),
+       m.fine_m},
       {"motor", cylinder(at.head_back_m - m.motor_length_m, at.head_back_m, at.axis_z_m, m.motor_diameter_m), m.coarse_m},
       {"knee", occ::addBox(-0.5 * m.knee_width_m, 0, m.knee_bottom_m, m.knee_width_m, m.knee_depth_m, m.knee_height_m),
        1.5 * m.coarse_m},
-      {"table", occ::addBox(-0.5 * m.table_width_m, m.table_gap_m, knee_top, m.table_width_m, m.table_depth_m, m.table_thickness_m),
+      {"table",
+       occ::addBox(-0.5 * m.table_width_m, m.table_gap_m, knee_top, m.table_width_m, m.table_depth_m, m.table_thickness_m),
        1.5 * m.coarse_m},
   };
 }
@@ -111,8 +115,9 @@ std::string surface_name(const KneeMill& m, const Layout& at, const OuterFace& f
     return inner ? "column_inner" : "column_outer";
   }
   if (face.region == "headstock") {
-    const bool inner = strictly_inside(face, {-0.5 * m.headstock.width_m, at.head_back_m, at.head_bottom_m},
-                                       {0.5 * m.headstock.width_m, at.head_front_m, at.head_bottom_m + m.headstock.height_m});
+    const bool inner =
+        strictly_inside(face, {-0.5 * m.headstock.width_m, at.head_back_m, at.head_bottom_m},
+                        {0.5 * m.headstock.width_m, at.head_front_m, at.head_bottom_m + m.headstock.height_m});
     return inner ? "headstock_inner" : "headstock_outer";
   }
   if (face.region == "quill") return face.low[1] > at.head_front_m - tol ? "quill_outer" : "quill_inner";
@@ -130,7 +135,8 @@ void check_fits(const ConfigMap& in, const KneeMill& m) {
           "the walls are thicker than the column");
   require(m.headstock_overhang_m < m.headstock.depth_m, "headstock", "the headstock hangs wholly in front of the column");
   require(m.axis_height_m > half_m && m.headstock.height_m - m.axis_height_m > half_m, "headstock",
-          "the barrel does not fit between floor and roof of the headstock; change axis_height, height or barrel_diameter");
+          "the barrel does not fit between floor and roof of the headstock; change axis_height, height or "
+          "barrel_diameter");
   require(m.barrel_diameter_m > m.quill_diameter_m && m.quill_diameter_m > m.quill_bore_m &&
               m.quill_bore_m > m.spindle_diameter_m,
           "quill", "diameters must fall from barrel to quill, quill bore and spindle");

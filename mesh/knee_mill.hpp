@@ -39,7 +39,7 @@ struct KneeMill {
   double motor_diameter_m, motor_length_m;
   double knee_width_m, knee_depth_m, knee_height_m, knee_bottom_m;
   double table_width_m, table_depth_m, table_thickness_m, table_gap_m;  ///< gap between column and table
-  double coarse_m, fine_m;  ///< mesh sizes: frame; quill, spindle and bearings
+  double coarse_m, fine_m;                                              ///< mesh sizes: frame; quill, spindle and bearings
   int element_order = 2;
 };
 

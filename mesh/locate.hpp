@@ -12,9 +12,9 @@ namespace driftwright::mesh {
 /// A point of the mesh: weights N_i on the nodes of one cell or facet.
 struct MeshPoint {
   int cell = -1;
-  Eigen::Vector3d xi = Eigen::Vector3d::Zero();        ///< reference coordinates, inside the reference cell
+  Eigen::Vector3d xi = Eigen::Vector3d::Zero();          ///< reference coordinates, inside the reference cell
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< where it really lies
-  double distance_m = 0.0;                             ///< from the point asked for
+  double distance_m = 0.0;                               ///< from the point asked for
 };
 
 /// The point of `candidates` (indices into `cells`) nearest to `point_m`. Exact for straight cells; for curved ones by

@@ -22,15 +22,21 @@ std::vector<int> members(const Cells& cells, int group) {
 
 int n_nodes_of(CellShape shape) {
   switch (shape) {
-    case CellShape::kTri3: return 3;
-    case CellShape::kTri6: return 6;
-    case CellShape::kTet4: return 4;
-    case CellShape::kTet10: return 10;
+    case CellShape::kTri3:
+      return 3;
+    case CellShape::kTri6:
+      return 6;
+    case CellShape::kTet4:
+      return 4;
+    case CellShape::kTet10:
+      return 10;
   }
   return 0;
 }
 
-int n_corners_of(CellShape shape) { return shape == CellShape::kTri3 || shape == CellShape::kTri6 ? 3 : 4; }
+int n_corners_of(CellShape shape) {
+  return shape == CellShape::kTri3 || shape == CellShape::kTri6 ? 3 : 4;
+}
 
 void Cells::add(CellShape cell_shape, std::span<const int> nodes, int cell_group) {
   shape.push_back(cell_shape);
@@ -39,15 +45,23 @@ void Cells::add(CellShape cell_shape, std::span<const int> nodes, int cell_group
   group.push_back(cell_group);
 }
 
-int Mesh::region(const std::string& name) const { return index_of(regions, name); }
-int Mesh::surface(const std::string& name) const { return index_of(surfaces, name); }
+int Mesh::region(const std::string& name) const {
+  return index_of(regions, name);
+}
+int Mesh::surface(const std::string& name) const {
+  return index_of(surfaces, name);
+}
 
 const Joint* Mesh::joint(const std::string& name) const {
   const auto hit = std::find_if(joints.begin(), joints.end(), [&](const Joint& j) { return j.name == name; });
   return hit == joints.end() ? nullptr : &*hit;
 }
 
-std::vector<int> Mesh::cells_in(int region) const { return members(cells, region); }
-std::vector<int> Mesh::facets_on(int surface) const { return members(facets, surface); }
+std::vector<int> Mesh::cells_in(int region) const {
+  return members(cells, region);
+}
+std::vector<int> Mesh::facets_on(int surface) const {
+  return members(facets, surface);
+}
 
 }  // namespace driftwright::mesh

@@ -63,7 +63,8 @@ std::vector<double> scaled_jacobians(const Mesh& mesh) {
 
 Quality worst_quality(const Mesh& mesh) {
   const std::vector<double> scaled = scaled_jacobians(mesh);
-  Quality quality{.min_det_m3 = std::numeric_limits<double>::infinity(), .min_scaled = 1.0, .mean_scaled = 0.0, .worst_cell = -1};
+  Quality quality{
+      .min_det_m3 = std::numeric_limits<double>::infinity(), .min_scaled = 1.0, .mean_scaled = 0.0, .worst_cell = -1};
   for (int c = 0; c < mesh.cells.size(); ++c) {
     quality.min_det_m3 = std::min(quality.min_det_m3, min_det_m3(mesh, c));
     quality.mean_scaled += scaled[c] / mesh.cells.size();
@@ -75,7 +76,11 @@ Quality worst_quality(const Mesh& mesh) {
   return quality;
 }
 
-double volume_m3(const Mesh& mesh, int region) { return sum_over(mesh, mesh.cells, region); }
-double area_m2(const Mesh& mesh, int surface) { return sum_over(mesh, mesh.facets, surface); }
+double volume_m3(const Mesh& mesh, int region) {
+  return sum_over(mesh, mesh.cells, region);
+}
+double area_m2(const Mesh& mesh, int surface) {
+  return sum_over(mesh, mesh.facets, surface);
+}
 
 }  // namespace driftwright::mesh

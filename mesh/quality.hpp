@@ -12,8 +12,8 @@ namespace driftwright::mesh {
 [[nodiscard]] std::vector<double> scaled_jacobians(const Mesh& mesh);
 
 struct Quality {
-  double min_det_m3 = 0.0;       ///< smallest Jacobian determinant at any node of any cell
-  double min_scaled = 0.0;       ///< smallest scaled Jacobian
+  double min_det_m3 = 0.0;  ///< smallest Jacobian determinant at any node of any cell
+  double min_scaled = 0.0;  ///< smallest scaled Jacobian
   double mean_scaled = 0.0;
   int worst_cell = -1;
 };

@@ -9,8 +9,12 @@
 namespace driftwright::mesh {
 namespace {
 
-bool is_facet(CellShape shape) { return shape == CellShape::kTri3 || shape == CellShape::kTri6; }
-bool is_quadratic(CellShape shape) { return shape == CellShape::kTri6 || shape == CellShape::kTet10; }
+bool is_facet(CellShape shape) {
+  return shape == CellShape::kTri3 || shape == CellShape::kTri6;
+}
+bool is_quadratic(CellShape shape) {
+  return shape == CellShape::kTri6 || shape == CellShape::kTet10;
+}
 
 // Mid-side nodes in VTK's order: the two corners between which node n_corners + e lies.
 constexpr std::array<std::array<int, 2>, 6> kTetEdges = {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};

@@ -116,9 +116,7 @@ std::string html(const Preformatted& text) {
 }
 
 std::string html(const Verdict& verdict) {
-  const char* kind = verdict.kind == Verdict::Kind::kGood  ? "good"
-                     : verdict.kind == Verdict::Kind::kBad ? "bad"
-                                                           : "neutral";
+  const char* kind = verdict.kind == Verdict::Kind::kGood ? "good" : verdict.kind == Verdict::Kind::kBad ? "bad" : "neutral";
   return fmt::format("<div class=\"verdict {}\"><strong>{}</strong>{}</div>\n", kind, escaped(verdict.title),
                      verdict.text.empty() ? "" : fmt::format("<p>{}</p>", escaped(verdict.text)));
 }
@@ -126,8 +124,8 @@ std::string html(const Verdict& verdict) {
 std::string html(const Table& table) {
   for (const auto& row : table.rows) {
     if (row.size() != table.headers.size()) {
-      throw std::logic_error(fmt::format("table '{}': {} cells under {} headers", table.caption, row.size(),
-                                         table.headers.size()));
+      throw std::logic_error(
+          fmt::format("table '{}': {} cells under {} headers", table.caption, row.size(), table.headers.size()));
     }
   }
   std::vector<std::string> attribute;  // of the cells of each column
@@ -143,8 +141,7 @@ std::string html(const Table& table) {
   out += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
-    for (std::size_t c = 0; c < row.size(); ++c)
-      out += fmt::format("<td{}>{}</td>", attribute[c], escaped(row[c]));
+    for (std::size_t c = 0; c < row.size(); ++c) out += fmt::format("<td{}>{}</td>", attribute[c], escaped(row[c]));
     out += "</tr>\n";
   }
   return out + "</tbody></table></div>\n";
@@ -158,9 +155,7 @@ std::string legend(const Plot& plot) {
   };
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
     const Series::Style style = drawn_style(plot, s);
-    const char* kind = style == Series::Style::kPoints   ? "points"
-                       : style == Series::Style::kDashed ? "dashed"
-                                                         : "line";
+    const char* kind = style == Series::Style::kPoints ? "points" : style == Series::Style::kDashed ? "dashed" : "line";
     add(kind, series_color(plot, s), plot.series[s].label);
   }
   for (std::size_t b = 0; b < plot.bands.size(); ++b) {
@@ -170,10 +165,8 @@ std::string legend(const Plot& plot) {
 }
 
 std::string html(const Plot& plot, const std::string& svg) {
-  const std::string caption =
-      plot.title.empty() ? "" : fmt::format("<figcaption>{}</figcaption>", escaped(plot.title));
-  return fmt::format("<figure{}>{}\n{}{}</figure>\n", plot.half_width ? " class=\"half\"" : "", caption, svg,
-                     legend(plot));
+  const std::string caption = plot.title.empty() ? "" : fmt::format("<figcaption>{}</figcaption>", escaped(plot.title));
+  return fmt::format("<figure{}>{}\n{}{}</figure>\n", plot.half_width ? " class=\"half\"" : "", caption, svg, legend(plot));
 }
 
 }  // namespace
@@ -208,8 +201,8 @@ std::string render_html(const Report& report) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
       "<style>{1}</style>\n</head>\n<body>\n<header><h1>{0}</h1>{2}</header>\n{3}</body>\n</html>\n",
-      escaped(report.title), kStyle,
-      report.subtitle.empty() ? "" : fmt::format("<p>{}</p>", escaped(report.subtitle)), body);
+      escaped(report.title), kStyle, report.subtitle.empty() ? "" : fmt::format("<p>{}</p>", escaped(report.subtitle)),
+      body);
 }
 
 }  // namespace driftwright::output

@@ -12,8 +12,7 @@ nlohmann::ordered_json rounded(nlohmann::ordered_json value) {
   if (value.is_number_float()) {
     const double number = value.get<double>();
     if (!std::isfinite(number)) return nullptr;
-    return std::stod(
-        fmt::format("{:.5e}", number));  // dump() then writes the shortest text that reads back as this
+    return std::stod(fmt::format("{:.5e}", number));  // dump() then writes the shortest text that reads back as this
   }
   if (value.is_structured()) {
     for (auto& element : value) element = rounded(std::move(element));

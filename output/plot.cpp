@@ -38,8 +38,7 @@ class TemporaryFolder {
  public:
   TemporaryFolder() : path_((fs::temp_directory_path() / "driftwright-plots-XXXXXX").string()) {
     if (mkdtemp(path_.data()) == nullptr) {
-      throw std::runtime_error(
-          fmt::format("cannot make a temporary folder '{}': {}", path_, std::strerror(errno)));
+      throw std::runtime_error(fmt::format("cannot make a temporary folder '{}': {}", path_, std::strerror(errno)));
     }
   }
   ~TemporaryFolder() {
@@ -147,8 +146,8 @@ std::vector<int> label_rows(const std::vector<SectionMark>& marks, const Range& 
 void check(const Plot& plot) {
   for (const Series& s : plot.series) {
     if (s.x.size() != s.y.size()) {
-      throw std::logic_error(fmt::format("plot '{}': series '{}' has {} x and {} y", plot.title, s.label,
-                                         s.x.size(), s.y.size()));
+      throw std::logic_error(
+          fmt::format("plot '{}': series '{}' has {} x and {} y", plot.title, s.label, s.x.size(), s.y.size()));
     }
   }
   for (const Band& b : plot.bands) {
@@ -182,8 +181,8 @@ std::string script(const Plot& plot, const std::string& file) {
   const int n_rows = rows.empty() ? 0 : 1 + *std::max_element(rows.begin(), rows.end());
 
   std::string out = "reset\nunset key\n";
-  out += fmt::format("set terminal svg size {},{} fixed noenhanced font 'Arial,13' background '#ffffff'\n",
-                     width, (plot.half_width ? kHalfHeight : kHeight) + 16 * n_rows);
+  out += fmt::format("set terminal svg size {},{} fixed noenhanced font 'Arial,13' background '#ffffff'\n", width,
+                     (plot.half_width ? kHalfHeight : kHeight) + 16 * n_rows);
   out += fmt::format("set output '{}'\n", file);
   // The same left margin in every plot, so that plots above each other share their time axis.
   out += fmt::format("set lmargin 11\nset rmargin 3.5\nset bmargin 3\nset tmargin {}\n", 0.8 + n_rows);
@@ -191,8 +190,7 @@ std::string script(const Plot& plot, const std::string& file) {
       "set border 3 lc rgb '#888888' lw 1\nset tics nomirror textcolor rgb '#333333' scale 0.6\nset format "
       "'%g'\n";
   out += "set grid lt 1 lw 0.6 lc rgb '#dddddd'\nset minussign\n";
-  out += fmt::format("set xrange [{:.12g}:{:.12g}]\nset yrange [{:.12g}:{:.12g}]\n", x.low, x.high, y.low,
-                     y.high);
+  out += fmt::format("set xrange [{:.12g}:{:.12g}]\nset yrange [{:.12g}:{:.12g}]\n", x.low, x.high, y.low, y.high);
   out += fmt::format("set xlabel {} offset 0, 0.4 textcolor rgb '#333333'\n", quoted(plot.x_label));
   // A label rather than gnuplot's ylabel, which long tick labels push out of the picture.
   out += fmt::format("set label {} at screen {:.4f}, graph 0.5 center rotate by 90 textcolor rgb '#333333'\n",
@@ -218,9 +216,8 @@ std::string script(const Plot& plot, const std::string& file) {
         "set arrow from first {0:.9g}, graph 0 to first {0:.9g}, graph 1 nohead lw 1 dt (2,3) lc rgb "
         "'#777777'\n",
         mark.x);
-    out += fmt::format(
-        "set label {} at first {:.9g}, graph 1 offset 0, {} left font ',11' textcolor rgb '#555555'\n",
-        quoted(mark.label), mark.x, 0.6 + rows[m]);
+    out += fmt::format("set label {} at first {:.9g}, graph 1 offset 0, {} left font ',11' textcolor rgb '#555555'\n",
+                       quoted(mark.label), mark.x, 0.6 + rows[m]);
   }
   if (empty) out += "set label 'no data' at graph 0.5, graph 0.5 center textcolor rgb '#777777'\n";
 
@@ -230,8 +227,7 @@ std::string script(const Plot& plot, const std::string& file) {
     if (data.empty()) return;
     const std::string block = fmt::format("$data{}", n_curves++);
     out += fmt::format("{} << END\n{}END\n", block, data);
-    curves += fmt::format("{} {} using 1:2 {} title {}", curves.empty() ? "plot" : ",", block, style,
-                          quoted(label));
+    curves += fmt::format("{} {} using 1:2 {} title {}", curves.empty() ? "plot" : ",", block, style, quoted(label));
   };
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Series& s = plot.series[i];
@@ -253,8 +249,7 @@ void run_gnuplot(const std::string& commands, const fs::path& folder) {
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "messages", O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
-  std::string arguments[] = {"gnuplot", "--default-settings",
-                             "plots.gp"};  // default: no .gnuplot of the user
+  std::string arguments[] = {"gnuplot", "--default-settings", "plots.gp"};  // default: no .gnuplot of the user
   char* argv[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
   pid_t pid = 0;
   const int error = posix_spawnp(&pid, "gnuplot", &actions, nullptr, argv, environ);
@@ -269,8 +264,7 @@ void run_gnuplot(const std::string& commands, const fs::path& folder) {
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw std::runtime_error("gnuplot failed to draw the plots of the report: " +
-                             read_file(folder / "messages"));
+    throw std::runtime_error("gnuplot failed to draw the plots of the report: " + read_file(folder / "messages"));
   }
 }
 
@@ -326,8 +320,7 @@ std::vector<std::string> draw_svgs(std::span<const Plot> plots) {
   run_gnuplot(commands, folder.path());
   std::vector<std::string> svgs;
   for (std::size_t p = 0; p < plots.size(); ++p) {
-    svgs.push_back(
-        embeddable(read_file(folder.path() / fmt::format("{}.svg", p)), fmt::format("plot{}-", p + 1)));
+    svgs.push_back(embeddable(read_file(folder.path() / fmt::format("{}.svg", p)), fmt::format("plot{}-", p + 1)));
   }
   return svgs;
 }

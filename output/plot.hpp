@@ -20,7 +20,7 @@ struct Series {
   std::vector<double> y = {};  ///< same length
   Style style = Style::kLine;
   double width = 2.0;  ///< of the line, or the diameter of a point is 2 x this [px]
-  int color = -1;  ///< index into the palette, for the same thing in several plots; -1 = by order in the plot
+  int color = -1;      ///< index into the palette, for the same thing in several plots; -1 = by order in the plot
 };
 
 /// A horizontal strip behind the curves, such as a tolerance; a dashed line when low == high.

@@ -61,28 +61,26 @@ void refuse_dangerous_target(const fs::path& target) {
   const char* home = std::getenv("HOME");
   if (contains(target, fs::current_path()) ||
       (home != nullptr && *home != '\0' && contains(target, fs::weakly_canonical(home)))) {
-    throw InputError(fmt::format(
-        "-o '{}' is the current or the home folder, or contains it; results replace their folder, "
-        "so give one of their own, such as -o {}",
-        target.string(), (target / "results").string()));
+    throw InputError(
+        fmt::format("-o '{}' is the current or the home folder, or contains it; results replace their folder, "
+                    "so give one of their own, such as -o {}",
+                    target.string(), (target / "results").string()));
   }
   struct stat here, above;
-  if (stat(target.c_str(), &here) == 0 && stat(target.parent_path().c_str(), &above) == 0 &&
-      here.st_dev != above.st_dev) {
-    throw InputError(fmt::format(
-        "-o '{0}' is a mount point and cannot be replaced; give a folder inside it, such as -o {1}",
-        target.string(), (target / "results").string()));
+  if (stat(target.c_str(), &here) == 0 && stat(target.parent_path().c_str(), &above) == 0 && here.st_dev != above.st_dev) {
+    throw InputError(fmt::format("-o '{0}' is a mount point and cannot be replaced; give a folder inside it, such as -o {1}",
+                                 target.string(), (target / "results").string()));
   }
 }
 
 void refuse_foreign_files(const fs::path& target) {
   const std::vector<fs::path> foreign = foreign_files(target);
   if (foreign.empty()) return;
-  throw InputError(fmt::format(
-      "-o '{}' holds {} that {} not results of this program ({}{}); give another folder with -o, or --force "
-      "to replace the folder and delete what it holds",
-      target.string(), foreign.size() == 1 ? "a file" : fmt::format("{} files", foreign.size()),
-      foreign.size() == 1 ? "is" : "are", foreign.front().string(), foreign.size() == 1 ? "" : ", ..."));
+  throw InputError(
+      fmt::format("-o '{}' holds {} that {} not results of this program ({}{}); give another folder with -o, or --force "
+                  "to replace the folder and delete what it holds",
+                  target.string(), foreign.size() == 1 ? "a file" : fmt::format("{} files", foreign.size()),
+                  foreign.size() == 1 ? "is" : "are", foreign.front().string(), foreign.size() == 1 ? "" : ", ..."));
 }
 
 /// Creates the missing folders on the way to `folder` and returns them, outermost first.
@@ -145,8 +143,7 @@ ResultsFolder::ResultsFolder(const fs::path& target, bool force, Provenance made
     if (target_.filename().empty()) target_ = target_.parent_path();  // "out/"
     if (fs::exists(fs::symlink_status(target_))) {
       if (!fs::is_directory(target_)) {
-        throw InputError(
-            fmt::format("-o '{}' exists and is no folder; give another one with -o", target_.string()));
+        throw InputError(fmt::format("-o '{}' exists and is no folder; give another one with -o", target_.string()));
       }
       refuse_dangerous_target(target_);
       if (!force) refuse_foreign_files(target_);
@@ -158,8 +155,8 @@ ResultsFolder::ResultsFolder(const fs::path& target, bool force, Provenance made
       throw fs::filesystem_error("", work_, std::make_error_code(std::errc::file_exists));
     }
   } catch (const fs::filesystem_error& e) {
-    throw InputError(fmt::format("-o '{}' cannot be used: {} '{}'; give a folder that can be written to",
-                                 target.string(), e.code().message(), e.path1().string()));
+    throw InputError(fmt::format("-o '{}' cannot be used: {} '{}'; give a folder that can be written to", target.string(),
+                                 e.code().message(), e.path1().string()));
   }
 }
 
@@ -167,8 +164,7 @@ ResultsFolder::~ResultsFolder() {
   if (committed_) return;
   std::error_code ignored;  // nothing more can be done here, and a destructor does not throw
   fs::remove_all(work_, ignored);
-  for (auto p = created_parents_.rbegin(); p != created_parents_.rend(); ++p)
-    fs::remove(*p, ignored);  // empty ones only
+  for (auto p = created_parents_.rbegin(); p != created_parents_.rend(); ++p) fs::remove(*p, ignored);  // empty ones only
 }
 
 fs::path ResultsFolder::path(const fs::path& relative) {
@@ -186,12 +182,9 @@ void ResultsFolder::write_text(const fs::path& relative, std::string_view text) 
 }
 
 void ResultsFolder::commit() {
-  nlohmann::ordered_json manifest = {{"program", "driftwright"},
-                                     {"version", made_by_.version},
-                                     {"scenario", made_by_.scenario},
-                                     {"files", files_}};
-  write_file(work_ / kManifestName,
-             manifest.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  nlohmann::ordered_json manifest = {
+      {"program", "driftwright"}, {"version", made_by_.version}, {"scenario", made_by_.scenario}, {"files", files_}};
+  write_file(work_ / kManifestName, manifest.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   const fs::path old = swap_in(work_, target_);
   committed_ = true;
   if (old.empty()) return;

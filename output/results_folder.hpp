@@ -67,9 +67,8 @@ class ResultsFolder {
  private:
   std::filesystem::path target_;
   std::filesystem::path work_;
-  std::vector<std::filesystem::path>
-      created_parents_;          // innermost last; removed again when nothing was committed
-  std::set<std::string> files_;  // sorted, so that the manifest's bytes do not depend on order
+  std::vector<std::filesystem::path> created_parents_;  // innermost last; removed again when nothing was committed
+  std::set<std::string> files_;                         // sorted, so that the manifest's bytes do not depend on order
   Provenance made_by_;
   bool force_;
   bool committed_ = false;

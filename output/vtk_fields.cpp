@@ -61,10 +61,9 @@ void build_grid(const mesh::Mesh& mesh, vtkUnstructuredGrid* grid) {
 
   auto* region = add_array<vtkIntArray>(grid->GetCellData(), "region", 1, mesh.cells.size());
   for (int c = 0; c < mesh.cells.size(); ++c) region->SetValue(c, mesh.cells.group[c]);
-  auto* names = add_array<vtkStringArray>(grid->GetFieldData(), "region_names", 1,
-                                          static_cast<vtkIdType>(mesh.regions.size()));
-  for (std::size_t r = 0; r < mesh.regions.size(); ++r)
-    names->SetValue(static_cast<vtkIdType>(r), mesh.regions[r]);
+  auto* names =
+      add_array<vtkStringArray>(grid->GetFieldData(), "region_names", 1, static_cast<vtkIdType>(mesh.regions.size()));
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) names->SetValue(static_cast<vtkIdType>(r), mesh.regions[r]);
 }
 
 /// Through memory, so that writing to disk is checked in one place.
@@ -86,8 +85,7 @@ struct FieldSeries::Grid {
   vtkNew<vtkUnstructuredGrid> vtk;
 };
 
-FieldSeries::FieldSeries(ResultsFolder& folder, const mesh::Mesh& mesh)
-    : folder_(folder), grid_(std::make_unique<Grid>()) {
+FieldSeries::FieldSeries(ResultsFolder& folder, const mesh::Mesh& mesh) : folder_(folder), grid_(std::make_unique<Grid>()) {
   build_grid(mesh, grid_->vtk);
   const Provenance& made_by = folder.made_by();
   add_array<vtkStringArray>(grid_->vtk->GetFieldData(), "made_by", 1, 1)
@@ -96,13 +94,12 @@ FieldSeries::FieldSeries(ResultsFolder& folder, const mesh::Mesh& mesh)
 
 FieldSeries::~FieldSeries() = default;
 
-void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC,
-                        const Eigen::Matrix3Xd& displacement_um) {
+void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um) {
   vtkUnstructuredGrid* grid = grid_->vtk;
   const vtkIdType n_nodes = grid->GetNumberOfPoints();
   if (temperature_degC.size() != n_nodes || displacement_um.cols() != n_nodes) {
-    throw std::logic_error(fmt::format("fields of {} and {} nodes on a mesh of {}", temperature_degC.size(),
-                                       displacement_um.cols(), n_nodes));
+    throw std::logic_error(
+        fmt::format("fields of {} and {} nodes on a mesh of {}", temperature_degC.size(), displacement_um.cols(), n_nodes));
   }
   if (!times_s_.empty() && !(time_s > times_s_.back())) {
     throw std::logic_error(fmt::format("fields at {} s after those at {} s", time_s, times_s_.back()));
@@ -121,11 +118,9 @@ void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC,
 }
 
 void FieldSeries::finish() {
-  std::string pvd =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
+  std::string pvd = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
   for (std::size_t i = 0; i < times_s_.size(); ++i) {
-    pvd += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"fields/fields_{:04}.vtu\"/>\n",
-                       times_s_[i], i);
+    pvd += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"fields/fields_{:04}.vtu\"/>\n", times_s_[i], i);
   }
   folder_.write_text("fields.pvd", pvd + "  </Collection>\n</VTKFile>\n");
 }

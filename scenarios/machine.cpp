@@ -40,7 +40,8 @@ std::vector<std::string> joint_names(const Mesh& mesh) {
   return names;
 }
 
-void must_be_one_of(const Where& where, const std::string& what, const std::string& name, const std::vector<std::string>& known) {
+void must_be_one_of(const Where& where, const std::string& what, const std::string& name,
+                    const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), name) == known.end()) unknown_name(where, what, name, known);
 }
 
@@ -53,7 +54,8 @@ solver::RegionMaterials place_materials(const MachineModel& model, const Mesh& m
     given[mesh.region(entry.region)] = true;
   }
   for (std::size_t r = 0; r < given.size(); ++r) {
-    if (!given[r]) throw InputError(model.where, fmt::format("region '{}' has no material; add it under `materials`", mesh.regions[r]));
+    if (!given[r])
+      throw InputError(model.where, fmt::format("region '{}' has no material; add it under `materials`", mesh.regions[r]));
   }
   return materials;
 }
@@ -66,10 +68,17 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   }
   for (const effects::Effect& e : model.effects) {
     switch (e.kind->place) {
-      case effects::Place::kRegion: must_be_one_of(e.where, "region", e.place, mesh.regions); break;
-      case effects::Place::kSurface: must_be_one_of(e.where, "surface", e.place, outer_surfaces(mesh)); break;
-      case effects::Place::kJoint: must_be_one_of(e.where, "joint", e.place, joint_names(mesh)); break;
-      case effects::Place::kNode: break;  // it makes the node
+      case effects::Place::kRegion:
+        must_be_one_of(e.where, "region", e.place, mesh.regions);
+        break;
+      case effects::Place::kSurface:
+        must_be_one_of(e.where, "surface", e.place, outer_surfaces(mesh));
+        break;
+      case effects::Place::kJoint:
+        must_be_one_of(e.where, "joint", e.place, joint_names(mesh));
+        break;
+      case effects::Place::kNode:
+        break;  // it makes the node
     }
     if (e.kind->has_surrounding) must_be_one_of(e.where, "surrounding (lumped node)", e.surrounding, surroundings);
   }
@@ -77,9 +86,10 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
     const bool has_contact = std::any_of(balance.contacts.begin(), balance.contacts.end(),
                                          [&](const effects::Contact& c) { return c.joint == joint.name; });
     if (!has_contact) {
-      throw InputError(model.where, fmt::format("joint '{}' has no contact; add {{type: contact, joint: {}, conductance: ... W/(m^2 K)}} "
-                                                "to `effects` (0 W/(m^2 K) insulates)",
-                                                joint.name, joint.name));
+      throw InputError(model.where,
+                       fmt::format("joint '{}' has no contact; add {{type: contact, joint: {}, conductance: ... W/(m^2 K)}} "
+                                   "to `effects` (0 W/(m^2 K) insulates)",
+                                   joint.name, joint.name));
     }
   }
 }
@@ -90,15 +100,18 @@ mesh::MeshPoint place_point(const Mesh& mesh, const PointOnRegion& point) {
   const std::vector<int> cells = mesh.cells_in(mesh.region(point.region));
   const mesh::MeshPoint found = mesh::nearest_point(mesh, mesh.cells, cells, point.at_m);
   if (!(found.distance_m <= kSnap_m)) {
-    throw InputError(point.where, fmt::format("the point lies {:.1f} mm outside region '{}' (at most {:.0f} mm is moved); its nearest point is "
-                                              "[{:.1f} mm, {:.1f} mm, {:.1f} mm]",
-                                              1e3 * found.distance_m, point.region, 1e3 * kSnap_m, 1e3 * found.position_m[0],
-                                              1e3 * found.position_m[1], 1e3 * found.position_m[2]));
+    throw InputError(
+        point.where,
+        fmt::format("the point lies {:.1f} mm outside region '{}' (at most {:.0f} mm is moved); its nearest point is "
+                    "[{:.1f} mm, {:.1f} mm, {:.1f} mm]",
+                    1e3 * found.distance_m, point.region, 1e3 * kSnap_m, 1e3 * found.position_m[0],
+                    1e3 * found.position_m[1], 1e3 * found.position_m[2]));
   }
   return found;
 }
 
-void add_displacement(DisplacementFunctional& d, const Mesh& mesh, const mesh::MeshPoint& at, const Eigen::Vector3d& direction) {
+void add_displacement(DisplacementFunctional& d, const Mesh& mesh, const mesh::MeshPoint& at,
+                      const Eigen::Vector3d& direction) {
   const auto s = mesh::shape_values(mesh.cells.shape[at.cell], at.xi);
   const auto nodes = mesh.cells.nodes(at.cell);
   for (int i = 0; i < s.n; ++i) d.terms.push_back({nodes[i], s.N[i] * direction});
@@ -202,7 +215,8 @@ Machine build(const MachineModel& model, PlacedMachine placed) {
   return machine;
 }
 
-Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram, double reference_K) {
+Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
+                 double reference_K) {
   Record record{.source = cyclogram.name, .time_s = run.time_s, .channels = {}};
   Channel speed{"speed", "rpm", {}};
   for (double t_s : run.time_s) speed.values.push_back(cyclogram.speed_rpm(t_s));

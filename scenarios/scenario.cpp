@@ -11,7 +11,9 @@
 namespace driftwright::scenarios {
 namespace {
 
-int read_axis(const ConfigMap& in, const std::string& key) { return in.choice(key, {"x", "y", "z"})[0] - 'x'; }
+int read_axis(const ConfigMap& in, const std::string& key) {
+  return in.choice(key, {"x", "y", "z"})[0] - 'x';
+}
 
 PointOnRegion read_point(const ConfigMap& in) {
   PointOnRegion point{in.text("region"), in.vector3("at", "m"), in.where("at")};
@@ -88,7 +90,8 @@ Cyclogram read_cyclogram(const ConfigMap& in, const std::string& name) {
   Cyclogram cyclogram{.name = name, .sections = {}};
   for (const std::vector<double>& row : in.rows(name, {"s", "rpm"})) {
     if (!(row[0] > 0.0)) in.fail(name, fmt::format("a section of {:g} s; a duration above zero is wanted", row[0]));
-    if (!(row[1] >= 0.0 && row[1] <= 1e6)) in.fail(name, fmt::format("a speed of {:g} rpm; 0 to 1e6 rpm is allowed", row[1]));
+    if (!(row[1] >= 0.0 && row[1] <= 1e6))
+      in.fail(name, fmt::format("a speed of {:g} rpm; 0 to 1e6 rpm is allowed", row[1]));
     cyclogram.sections.push_back({row[0], row[1]});
   }
   return cyclogram;
@@ -124,7 +127,8 @@ MachineModel read_machine(const ConfigMap& in) {
   m.hall = read_hall(in, m.reference_K);
   m.where = in.where("machine");
   if (m.supports.empty()) in.fail("supports", "no support; name at least one surface that is held");
-  if (m.sensors.empty() || m.displacements.empty()) in.fail("sensors", "at least one sensor and one displacement are wanted");
+  if (m.sensors.empty() || m.displacements.empty())
+    in.fail("sensors", "at least one sensor and one displacement are wanted");
   reject_repeated_names(in, m);
   return m;
 }
@@ -170,7 +174,8 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
       in.fail("target", fmt::format("no displacement '{}'; there are {}", s.target, fmt::join(channels, ", ")));
     }
     if (s.sensors_to_choose > static_cast<int>(scenario.machine->sensors.size())) {
-      in.fail("sensors_to_choose", fmt::format("{} of {} sensors cannot be chosen", s.sensors_to_choose, scenario.machine->sensors.size()));
+      in.fail("sensors_to_choose",
+              fmt::format("{} of {} sensors cannot be chosen", s.sensors_to_choose, scenario.machine->sensors.size()));
     }
   }
   in.reject_unknown_keys();

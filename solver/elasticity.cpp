@@ -105,9 +105,10 @@ void require_held(const Mesh& mesh, const std::vector<std::pair<double, std::vec
     const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(set);
     // A held machine stands on feet of more than a thousandth of its size: 1e-6; a free motion leaves rounding, 1e-16.
     if (!(eigen.eigenvalues()[0] > 1e-11 * eigen.eigenvalues()[5])) {
-      throw InputError(fmt::format("supports: the part with region '{}' is not held; it can still move as a rigid body. Fix more "
-                                   "surfaces or directions",
-                                   mesh.regions[mesh.cells.group[cell]]));
+      throw InputError(
+          fmt::format("supports: the part with region '{}' is not held; it can still move as a rigid body. Fix more "
+                      "surfaces or directions",
+                      mesh.regions[mesh.cells.group[cell]]));
     }
     set(0, 0) = -1.0;
   }
@@ -234,7 +235,9 @@ Elasticity::Elasticity(const Mesh& mesh, const RegionMaterials& materials, const
     if (p.factor.cholmod().status == CHOLMOD_OUT_OF_MEMORY) {
       throw SolveError(fmt::format("not enough memory to factorise {} elastic unknowns; take a coarser mesh", p.n_free));
     }
-    throw InputError("supports: the machine is not held; some part can still move as a rigid body. Fix more surfaces or directions");
+    throw InputError(
+        "supports: the machine is not held; some part can still move as a rigid body. Fix more surfaces or "
+        "directions");
   }
 }
 

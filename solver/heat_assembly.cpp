@@ -1,10 +1,8 @@
 #include "solver/heat_assembly.hpp"
 
-
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-
 #include <stdexcept>
 
 #include "mesh/shape.hpp"
@@ -17,7 +15,9 @@ using mesh::CellShape;
 using mesh::Mesh;
 using Local = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 11, 11>;  // a film's facet and its node
 
-bool is_quadratic(CellShape shape) { return shape == CellShape::kTet10 || shape == CellShape::kTri6; }
+bool is_quadratic(CellShape shape) {
+  return shape == CellShape::kTet10 || shape == CellShape::kTri6;
+}
 
 Local cell_mass(const Mesh& mesh, int cell, double capacity_J_m3K) {
   const CellShape shape = mesh.cells.shape[cell];
@@ -37,8 +37,7 @@ Local cell_conduction(const Mesh& mesh, int cell, double conductivity_W_mK) {
   for (const auto& q : mesh::quadrature(shape, is_quadratic(shape) ? 2 : 1)) {
     const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
     const mesh::Jacobian j = mesh::jacobian(s, x, shape);
-    const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 10> gradient =
-        j.dx_dxi.inverse().transpose() * s.dN.leftCols(s.n);
+    const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 10> gradient = j.dx_dxi.inverse().transpose() * s.dN.leftCols(s.n);
     k += conductivity_W_mK * q.weight * j.det * gradient.transpose() * gradient;
   }
   return k;
@@ -134,15 +133,16 @@ std::vector<Exchange<SparseRow>> make_exchanges(const Mesh& mesh, const effects:
     const mesh::Joint* joint = mesh.joint(contact.joint);
     must_exist(joint ? 0 : -1, contact.joint);
     const double conductance = contact.conductance_W_m2K;
-    exchanges.push_back(exchange(contact.name, joint_matrix(mesh, *joint, n),
-                                 [=](const effects::Inputs&) { return conductance; }, false));
+    exchanges.push_back(exchange(
+        contact.name, joint_matrix(mesh, *joint, n), [=](const effects::Inputs&) { return conductance; }, false));
   }
   for (const effects::LumpedNode& node : balance.nodes) {
     SparseRow g(n, n);
     const int unknown = node_unknown(balance, mesh, node.name);
     g.insert(unknown, unknown) = 1.0;
     const double conductance = node.hall_conductance_W_K;
-    exchanges.push_back(exchange("air_node " + node.name, std::move(g), [=](const effects::Inputs&) { return conductance; }, true));
+    exchanges.push_back(exchange(
+        "air_node " + node.name, std::move(g), [=](const effects::Inputs&) { return conductance; }, true));
   }
   return exchanges;
 }
@@ -154,7 +154,8 @@ FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, con
   FullSystem system;
   system.exchanges = make_exchanges(mesh, balance, n);
   for (const effects::HeatInput& heat : balance.heats) {
-    system.sources.push_back({heat.name, unit_heat(mesh, must_exist(mesh.region(heat.region), heat.region), n), heat.power_W});
+    system.sources.push_back(
+        {heat.name, unit_heat(mesh, must_exist(mesh.region(heat.region), heat.region), n), heat.power_W});
   }
 
   Cliques cliques;  // the common pattern: cells, and the entries of every exchange
@@ -174,7 +175,8 @@ FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, con
     scatter_add(system.conduction, mesh.cells.nodes(cell), cell_conduction(mesh, cell, m.conductivity_W_mK));
   }
   for (std::size_t i = 0; i < balance.nodes.size(); ++i) {
-    system.mass.coeffRef(mesh.n_nodes() + static_cast<int>(i), mesh.n_nodes() + static_cast<int>(i)) = balance.nodes[i].capacity_J_K;
+    system.mass.coeffRef(mesh.n_nodes() + static_cast<int>(i), mesh.n_nodes() + static_cast<int>(i)) =
+        balance.nodes[i].capacity_J_K;
   }
   system.ones = Eigen::VectorXd::Ones(n);
   return system;

@@ -11,9 +11,10 @@ namespace driftwright::solver {
 /// One quadrature point of a joint. The jump of a nodal field across it is Σ weight_a u(node_a) - Σ weight_b u(node_b).
 struct JointPoint {
   std::vector<int> node_a, node_b;
-  std::vector<double> weight_a, weight_b;  ///< shape functions; each sums to one, so that no heat is made or lost
-  double area_m2 = 0.0;                    ///< quadrature weight times area ratio
-  double gap_m = 0.0;                      ///< distance between the two points
+  std::vector<double> weight_a,
+      weight_b;          ///< shape functions; each sums to one, so that no heat is made or lost
+  double area_m2 = 0.0;  ///< quadrature weight times area ratio
+  double gap_m = 0.0;    ///< distance between the two points
 };
 
 /// The quadrature points of a joint; the rule is exact for products of quadratic functions on straight facets.

@@ -40,9 +40,11 @@ void require_way_out(const FullSystem& system, const SparseRow& k, const effects
   }
   for (int i = 0; i < n; ++i) {
     if (!(to_hall_W_K[set_of[i]] > 0.0)) {
-      throw SolveError(fmt::format("the heat conduction matrix is singular: the part with unknown {} has no film, joint or link through "
-                                   "which heat leaves",
-                                   i));
+      throw SolveError(
+          fmt::format("the heat conduction matrix is singular: the part with unknown {} has no film, joint "
+                      "or link through "
+                      "which heat leaves",
+                      i));
     }
   }
 }
@@ -55,7 +57,9 @@ class Factor {
     llt_.cholmod().print = 0;
     llt_.compute(ColumnMatrix(Eigen::SparseMatrix<double, Eigen::ColMajor, int>(k.transpose())));
     if (llt_.info() != Eigen::Success) {
-      throw SolveError("the heat conduction matrix is singular: some part has no film, joint or link through which heat leaves");
+      throw SolveError(
+          "the heat conduction matrix is singular: some part has no film, joint or link through which heat "
+          "leaves");
     }
   }
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const { return llt_.solve(b); }
@@ -85,20 +89,25 @@ struct MassProduct {
 };
 
 /// (e^{-a} - 1 + a) / a² and (1 - e^{-a}) / a without cancellation near a = 0.
-double phi1(double a) { return std::abs(a) < 1e-8 ? 1.0 - 0.5 * a : -std::expm1(-a) / a; }
-double phi2(double a) { return std::abs(a) < 1e-3 ? 0.5 - a / 6.0 + a * a / 24.0 : (1.0 - phi1(a)) / a; }
+double phi1(double a) {
+  return std::abs(a) < 1e-8 ? 1.0 - 0.5 * a : -std::expm1(-a) / a;
+}
+double phi2(double a) {
+  return std::abs(a) < 1e-3 ? 0.5 - a / 6.0 + a * a / 24.0 : (1.0 - phi1(a)) / a;
+}
 
 }  // namespace
 
 ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, int n_modes) {
   const int n = system.size();
-  if (n_modes < 1 || n_modes > n - 2) throw InputError(fmt::format("{} thermal modes of {} unknowns cannot be had", n_modes, n));
+  if (n_modes < 1 || n_modes > n - 2)
+    throw InputError(fmt::format("{} thermal modes of {} unknowns cannot be had", n_modes, n));
   const Factor factor(system, at);
   InverseStiffness inverse{factor, n};
   MassProduct mass{system.mass};
   const int n_krylov = std::min(n, std::max(2 * n_modes + 1, 20));
   Spectra::SymGEigsShiftSolver<InverseStiffness, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(inverse, mass, n_modes,
-                                                                                                     n_krylov, 0.0);
+                                                                                                      n_krylov, 0.0);
   // A fixed start makes the modes repeatable; equal weights reach every mode of an irregular machine.
   Eigen::VectorXd start(n);
   for (int i = 0; i < n; ++i) start[i] = std::sin(1.0 + i);
@@ -141,7 +150,8 @@ Eigen::MatrixXd orthonormalise(const SparseRow& mass, const Eigen::MatrixXd& col
     Eigen::VectorXd v = columns.col(c), mv(columns.rows());
     multiply(mass, v.data(), mv.data());
     const double length = std::sqrt(v.dot(mv));
-    for (int pass = 0; pass < 2; ++pass) v -= basis.leftCols(kept) * (m_basis.leftCols(kept).transpose() * v);  // twice is enough
+    for (int pass = 0; pass < 2; ++pass)
+      v -= basis.leftCols(kept) * (m_basis.leftCols(kept).transpose() * v);  // twice is enough
     multiply(mass, v.data(), mv.data());
     const double rest = std::sqrt(v.dot(mv));
     if (!(rest > 1e-10 * length)) continue;
@@ -164,7 +174,8 @@ ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis) {
   for (const auto& e : system.exchanges) {
     reduced.exchanges.push_back({e.name, reduce(e.matrix), basis.transpose() * e.to_hall, e.hall_sum, e.coefficient});
   }
-  reduced.outputs = {system.outputs.name, system.outputs.unit, basis.transpose() * system.outputs.state, system.outputs.hall};
+  reduced.outputs = {system.outputs.name, system.outputs.unit, basis.transpose() * system.outputs.state,
+                     system.outputs.hall};
   Eigen::VectorXd m_ones(system.size());
   multiply(system.mass, system.ones.data(), m_ones.data());
   reduced.ones = basis.transpose() * m_ones;
@@ -183,7 +194,8 @@ Trajectory evolve(const ReducedSystem& system, const Cyclogram& cyclogram, const
   Eigen::MatrixXd to_modes;
   for (const LinearStretch& stretch : linear_stretches(cyclogram, hall)) {
     const double length_s = stretch.end_s - stretch.start_s;
-    const effects::Inputs at_start{stretch.speed_rpm, hall.at(stretch.start_s)}, at_end{stretch.speed_rpm, hall.at(stretch.end_s)};
+    const effects::Inputs at_start{stretch.speed_rpm, hall.at(stretch.start_s)},
+        at_end{stretch.speed_rpm, hall.at(stretch.end_s)};
     if (stretch.speed_rpm != known_speed_rpm) {
       Eigen::MatrixXd k = system.conduction;
       for (const auto& e : system.exchanges) k += e.coefficient(at_start) * e.matrix;

@@ -8,7 +8,7 @@ namespace driftwright::solver {
 
 /// The slowest thermal modes of K(u) φ = λ M φ at fixed inputs: M-orthonormal shapes and time constants τ = 1/λ.
 struct ThermalModes {
-  Eigen::MatrixXd shapes;             ///< n x n_modes
+  Eigen::MatrixXd shapes;               ///< n x n_modes
   std::vector<double> time_constant_s;  ///< falling
 };
 

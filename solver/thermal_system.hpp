@@ -27,9 +27,9 @@ struct HeatSource {
 template <class Matrix>
 struct Exchange {
   std::string name;
-  Matrix matrix;            ///< G, symmetric, in [m^2] for films and joints and [1] for links
-  Eigen::VectorXd to_hall;  ///< g = G 1 of the finite-element model (projected in a reduced one)
-  double hall_sum = 0.0;    ///< 1'G 1: surface exposed to the hall [m^2]
+  Matrix matrix;             ///< G, symmetric, in [m^2] for films and joints and [1] for links
+  Eigen::VectorXd to_hall;   ///< g = G 1 of the finite-element model (projected in a reduced one)
+  double hall_sum = 0.0;     ///< 1'G 1: surface exposed to the hall [m^2]
   effects::Law coefficient;  ///< c(u) [W/(m^2 K)], or [W/K] for links
 };
 

@@ -42,8 +42,14 @@ struct Flow {
 class HeatOde {
  public:
   HeatOde(const FullSystem& system, const TimeSeries& hall, double pcg_tolerance_K)
-      : system_(system), hall_(hall), tolerance_K_(pcg_tolerance_K), n_(system.size()),
-        stiffness_(system.conduction), shifted_(system.mass), shifted_solver_(shifted_), mass_solver_(system.mass) {
+      : system_(system),
+        hall_(hall),
+        tolerance_K_(pcg_tolerance_K),
+        n_(system.size()),
+        stiffness_(system.conduction),
+        shifted_(system.mass),
+        shifted_solver_(shifted_),
+        mass_solver_(system.mass) {
     for (const HeatSource& s : system.sources) flows_.push_back({&s, nullptr});
     for (const auto& e : system.exchanges) {
       slots_.push_back(slots_of(e.matrix, system.conduction));
@@ -75,9 +81,9 @@ class HeatOde {
     const Eigen::Map<const Eigen::VectorXd> theta(y, n_);
     for (std::size_t j = 0; j < flows_.size(); ++j) {
       const auto& [source, exchange] = flows_[j];
-      ydot[n_ + j] = source ? source->power_W(inputs_)
-                            : exchange->coefficient(inputs_) *
-                                  (exchange->to_hall.dot(theta) - exchange->hall_sum * inputs_.hall_K);
+      ydot[n_ + j] =
+          source ? source->power_W(inputs_)
+                 : exchange->coefficient(inputs_) * (exchange->to_hall.dot(theta) - exchange->hall_sum * inputs_.hall_K);
     }
   }
 
@@ -114,10 +120,18 @@ class HeatOde {
     std::copy(b + n_, b + n_ + flows_.size(), x + n_);
   }
 
-  [[nodiscard]] int n_flows() const { return static_cast<int>(flows_.size()); }
-  [[nodiscard]] const std::vector<Flow>& flows() const { return flows_; }
-  [[nodiscard]] int n_solves() const { return n_solves_; }
-  [[nodiscard]] int n_iterations() const { return n_iterations_; }
+  [[nodiscard]] int n_flows() const {
+    return static_cast<int>(flows_.size());
+  }
+  [[nodiscard]] const std::vector<Flow>& flows() const {
+    return flows_;
+  }
+  [[nodiscard]] int n_solves() const {
+    return n_solves_;
+  }
+  [[nodiscard]] int n_iterations() const {
+    return n_iterations_;
+  }
 
   void* arkode = nullptr;  ///< for the current gamma
   std::exception_ptr failure;
@@ -128,9 +142,10 @@ class HeatOde {
     ++n_solves_;
     n_iterations_ += outcome.iterations;
     if (!outcome.converged) {
-      throw SolveError(fmt::format("PCG stopped after {} iterations at a residual of {:.2e} K (wanted {:.2e} K); is a film, "
-                                   "joint or material value extreme?",
-                                   outcome.iterations, outcome.residual, tolerance_K_));
+      throw SolveError(
+          fmt::format("PCG stopped after {} iterations at a residual of {:.2e} K (wanted {:.2e} K); is a film, "
+                      "joint or material value extreme?",
+                      outcome.iterations, outcome.residual, tolerance_K_));
     }
   }
 
@@ -160,8 +175,12 @@ int guarded(HeatOde& ode, Work work) noexcept {
   }
 }
 
-const double* in(N_Vector v) { return N_VGetArrayPointer(v); }
-double* out(N_Vector v) { return N_VGetArrayPointer(v); }
+const double* in(N_Vector v) {
+  return N_VGetArrayPointer(v);
+}
+double* out(N_Vector v) {
+  return N_VGetArrayPointer(v);
+}
 
 int rhs_callback(realtype t, N_Vector y, N_Vector ydot, void* user) noexcept {
   auto& ode = *static_cast<HeatOde*>(user);
@@ -183,7 +202,9 @@ int mass_solve_callback(SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, re
   auto& ode = *static_cast<HeatOde*>(s->content);
   return guarded(ode, [&] { ode.solve_mass(in(b), out(x)); });
 }
-SUNLinearSolver_Type embedded_type(SUNLinearSolver) noexcept { return SUNLINEARSOLVER_MATRIX_EMBEDDED; }
+SUNLinearSolver_Type embedded_type(SUNLinearSolver) noexcept {
+  return SUNLINEARSOLVER_MATRIX_EMBEDDED;
+}
 
 LinearSolverPtr make_linear_solver(HeatOde& ode, SUNContext context,
                                    int (*solve)(SUNLinearSolver, SUNMatrix, N_Vector, N_Vector, realtype) noexcept) {
@@ -204,7 +225,8 @@ void check(int flag, const char* call, double time_s, HeatOde& ode) {
   if (ode.failure) std::rethrow_exception(ode.failure);
   if (flag >= 0) return;
   const std::unique_ptr<char, decltype(&std::free)> name(ARKStepGetReturnFlagName(flag), &std::free);
-  throw SolveError(fmt::format("{} failed at t = {:.1f} s with {}; try looser tolerances in `solver`", call, time_s, name.get()));
+  throw SolveError(
+      fmt::format("{} failed at t = {:.1f} s with {}; try looser tolerances in `solver`", call, time_s, name.get()));
 }
 
 }  // namespace
@@ -237,7 +259,8 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   std::fill(out(y.get()), out(y.get()) + n + n_flows, 0.0);
   std::copy(start.data(), start.data() + n, out(y.get()));
   std::fill(out(tolerance.get()), out(tolerance.get()) + n, options.absolute_tolerance_K);
-  std::fill(out(tolerance.get()) + n, out(tolerance.get()) + n + n_flows, 1e30);  // heats follow, they do not steer
+  std::fill(out(tolerance.get()) + n, out(tolerance.get()) + n + n_flows,
+            1e30);  // heats follow, they do not steer
 
   const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, hall);
   ode.set_speed(stretches.front().speed_rpm);
@@ -255,7 +278,8 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   must(ARKStepSetLinear(mem, 0), "ARKStepSetLinear");
   must(ARKStepSetMassLinearSolver(mem, mass.get(), nullptr, SUNFALSE), "ARKStepSetMassLinearSolver");
   must(ARKStepSetMassTimes(mem, nullptr, mass_times_callback, &ode), "ARKStepSetMassTimes");
-  must(ARKStepSetMaxErrTestFails(mem, 40), "ARKStepSetMaxErrTestFails");  // a shock may need steps far below the first
+  must(ARKStepSetMaxErrTestFails(mem, 40),
+       "ARKStepSetMaxErrTestFails");  // a shock may need steps far below the first
   must(ARKStepSetMaxNumSteps(mem, 1000000), "ARKStepSetMaxNumSteps");
   must(ARKStepSetMaxStep(mem, options.max_step_s), "ARKStepSetMaxStep");
 

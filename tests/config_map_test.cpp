@@ -48,18 +48,17 @@ TEST(ConfigMap, UnknownKeyIsNamedWithItsPlaceAndTheNearestKnownOne) {
   const ConfigMap part = in.map("part");
   (void)part.quantity("film", "W/(m^2 K)", 0, 10);
   (void)part.has("ambient");
-  EXPECT_THAT([&] { part.reject_unknown_keys(); },
-              ThrowsMessage<InputError>(AllOf(
-                  HasSubstr("config_map_test.yaml:4:3: unknown key 'ambeint'"), HasSubstr("ambient, film"),
-                  HasSubstr("Did you mean 'ambient'?"), HasSubstr("[part.ambeint]"),
-                  HasSubstr("\n    4 |   ambeint: 24 degC\n      |   ^"))));
+  EXPECT_THAT(
+      [&] { part.reject_unknown_keys(); },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("config_map_test.yaml:4:3: unknown key 'ambeint'"),
+                                      HasSubstr("ambient, film"), HasSubstr("Did you mean 'ambient'?"),
+                                      HasSubstr("[part.ambeint]"), HasSubstr("\n    4 |   ambeint: 24 degC\n      |   ^"))));
 }
 
 TEST(ConfigMap, AKeyFarFromAllOthersGetsNoSuggestion) {
   const ConfigMap in = read("elephant: 1\n");
   (void)in.has("film");
-  EXPECT_THAT([&] { in.reject_unknown_keys(); },
-              ThrowsMessage<InputError>(::testing::Not(HasSubstr("Did you mean"))));
+  EXPECT_THAT([&] { in.reject_unknown_keys(); }, ThrowsMessage<InputError>(::testing::Not(HasSubstr("Did you mean"))));
 }
 
 TEST(NearestWord, CountsEdits) {
@@ -75,8 +74,7 @@ struct Bad {
 class ConfigMapErrors : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(ConfigMapErrors, NameThePlaceAndWhatIsWrong) {
-  EXPECT_THAT([] { GetParam().read(read(GetParam().text)); },
-              ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+  EXPECT_THAT([] { GetParam().read(read(GetParam().text)); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
 }
 
 void nothing(const ConfigMap&) {}
@@ -91,19 +89,15 @@ INSTANTIATE_TEST_SUITE_P(
     Each, ConfigMapErrors,
     ::testing::Values(
         Bad{"a: 1\nb: 2\na: 3\n", nothing, ":3:1: key 'a' appears twice"},
-        Bad{"part:\n  a: 1\n  a: 2\n", [](const ConfigMap& in) { (void)in.map("part"); },
-            ":3:3: key 'a' appears twice"},
+        Bad{"part:\n  a: 1\n  a: 2\n", [](const ConfigMap& in) { (void)in.map("part"); }, ":3:3: key 'a' appears twice"},
         Bad{"list: [{a: 1, a: 2}]\n", [](const ConfigMap& in) { (void)in.maps("list"); }, "appears twice"},
-        Bad{"a: 1\n", length, ":1:1: key 'length' is missing"},
-        Bad{"a: 1\nlength: 80\n", length, ":2:9: '80' has no unit"},
+        Bad{"a: 1\n", length, ":1:1: key 'length' is missing"}, Bad{"a: 1\nlength: 80\n", length, ":2:9: '80' has no unit"},
         Bad{"length: .nan m\n", length, ":1:9: '.nan m' is not a number"},
         Bad{"length: nan m\n", length, "not a finite number"},
         Bad{"length: 2 m\n", length, "outside what is allowed, 0 to 1 m"},
-        Bad{"length: [1 m]\n", length, "a single value is wanted"},
-        Bad{"length:\n", length, "a single value is wanted"},
-        Bad{"count: 6\n", count, "'6' is no whole number from 1 to 5"},
-        Bad{"count: 2.5\n", count, "no whole number"}, Bad{"count: .nan\n", count, "no whole number"},
-        Bad{"count: 99999999999999\n", count, "no whole number"},
+        Bad{"length: [1 m]\n", length, "a single value is wanted"}, Bad{"length:\n", length, "a single value is wanted"},
+        Bad{"count: 6\n", count, "'6' is no whole number from 1 to 5"}, Bad{"count: 2.5\n", count, "no whole number"},
+        Bad{"count: .nan\n", count, "no whole number"}, Bad{"count: 99999999999999\n", count, "no whole number"},
         Bad{"t: -300 degC\n", [](const ConfigMap& in) { (void)in.temperature_K("t"); }, "1 K to 3000 K"},
         Bad{"kind: c\n",
             [](const ConfigMap& in) {

@@ -49,8 +49,7 @@ TEST(RotatingCylinder, FilmByHand) {
 }
 
 TEST(RotatingCylinder, GrowsWithSpeedByTheTwoThirdsPower) {
-  EXPECT_NEAR(rotating_cylinder_htc_W_m2K(0.1, 8000.0) / rotating_cylinder_htc_W_m2K(0.1, 1000.0), 4.0,
-              1e-12);
+  EXPECT_NEAR(rotating_cylinder_htc_W_m2K(0.1, 8000.0) / rotating_cylinder_htc_W_m2K(0.1, 1000.0), 4.0, 1e-12);
 }
 
 struct OutOfRange {
@@ -96,8 +95,7 @@ TEST(Catalogue, KeysAndParameterNamesAreUnique) {
   for (const EffectKind& kind : catalogue()) {
     EXPECT_TRUE(keys.insert(kind.key).second) << kind.key;
     std::set<std::string> names = {"type", place_key(kind.place), "surrounding"};
-    for (const Parameter& p : kind.parameters)
-      EXPECT_TRUE(names.insert(p.name).second) << kind.key << " " << p.name;
+    for (const Parameter& p : kind.parameters) EXPECT_TRUE(names.insert(p.name).second) << kind.key << " " << p.name;
   }
   EXPECT_GE(keys.size(), 8u);
 }
@@ -116,8 +114,7 @@ TEST(Catalogue, DefaultsLieInTheirRanges) {
 TEST(Catalogue, EveryEffectContributesExactlyOneEntryOfItsPlace) {
   for (const EffectKind& kind : catalogue()) {
     Effect effect{.kind = &kind, .place = "spot", .values = {}, .surrounding = "hall", .where = {}};
-    for (const Parameter& p : kind.parameters)
-      effect.values.push_back(p.fallback.value_or(std::max(p.low, 0.5)));
+    for (const Parameter& p : kind.parameters) effect.values.push_back(p.fallback.value_or(std::max(p.low, 0.5)));
     const HeatBalance b = heat_balance({effect});
     ASSERT_EQ(b.heats.size() + b.films.size() + b.contacts.size() + b.nodes.size(), 1u) << kind.key;
     switch (kind.place) {
@@ -156,8 +153,7 @@ TEST(Laws, BearingFrictionAddsBothTorquesTimesTheCount) {
 }
 
 TEST(Laws, MotorLossHasAnIdlePartThatStopsWithTheSpindle) {
-  const std::string motor =
-      "{type: motor_loss, region: motor, power: 0.2 kW, at_speed: 1000 rpm, exponent: 2, idle: 30 W}";
+  const std::string motor = "{type: motor_loss, region: motor, power: 0.2 kW, at_speed: 1000 rpm, exponent: 2, idle: 30 W}";
   EXPECT_DOUBLE_EQ(power_W(motor, 1000), 230.0);
   EXPECT_DOUBLE_EQ(power_W(motor, 3000), 30.0 + 9 * 200.0);
   EXPECT_EQ(power_W(motor, 0), 0.0);
@@ -185,24 +181,20 @@ TEST(Laws, ConvectionAndRotatingCylinder) {
 }
 
 TEST(Laws, ContactAndAirNodeCarryTheirNumbers) {
-  const auto contact =
-      heat_balance({read("{type: contact, joint: a/b, conductance: 0.3 W/(cm^2 K)}")}).contacts.at(0);
+  const auto contact = heat_balance({read("{type: contact, joint: a/b, conductance: 0.3 W/(cm^2 K)}")}).contacts.at(0);
   EXPECT_EQ(contact.joint, "a/b");
   EXPECT_NEAR(contact.conductance_W_m2K, 3000.0, 1e-9);
-  const auto node =
-      heat_balance({read("{type: air_node, node: air, capacity: 1.2 kJ/K, exchange: 4 W/K}")}).nodes.at(0);
+  const auto node = heat_balance({read("{type: air_node, node: air, capacity: 1.2 kJ/K, exchange: 4 W/K}")}).nodes.at(0);
   EXPECT_EQ(node.name, "air");
   EXPECT_NEAR(node.capacity_J_K, 1200.0, 1e-9);
   EXPECT_EQ(node.hall_conductance_W_K, 4.0);
 }
 
 TEST(Laws, SurroundingIsTheHallUnlessNamed) {
-  EXPECT_EQ(heat_balance({read("{type: convection, surface: s, film: 8 W/(m^2 K)}")}).films.at(0).surrounding,
-            "hall");
-  EXPECT_EQ(heat_balance({read("{type: convection, surface: s, film: 8 W/(m^2 K), surrounding: air}")})
-                .films.at(0)
-                .surrounding,
-            "air");
+  EXPECT_EQ(heat_balance({read("{type: convection, surface: s, film: 8 W/(m^2 K)}")}).films.at(0).surrounding, "hall");
+  EXPECT_EQ(
+      heat_balance({read("{type: convection, surface: s, film: 8 W/(m^2 K), surrounding: air}")}).films.at(0).surrounding,
+      "air");
 }
 
 struct Bad {
@@ -217,16 +209,15 @@ TEST_P(EffectErrors, NameWhatIsWrong) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, EffectErrors,
-    ::testing::Values(
-        Bad{"{type: convecton, surface: s}", "'convecton' is not known here"},
-        Bad{"{type: convection, film: 8 W/(m^2 K)}", "key 'surface' is missing"},
-        Bad{"{type: convection, surface: s}", "key 'film' is missing"},
-        Bad{"{type: convection, surface: s, film: 8 W/m^2}", "wrong unit"},
-        Bad{"{type: convection, surface: s, film: -8 W/(m^2 K)}", "outside what is allowed"},
-        Bad{"{type: convection, surface: s, film: 8 W/(m^2 K), surounding: air}",
-            "Did you mean 'surrounding'?"},
-        Bad{"{type: contact, joint: a/b, conductance: 1 W/(m^2 K), surrounding: air}", "unknown key"},
-        Bad{"{type: air_node, node: air, capacity: 0 J/K, exchange: 1 W/K}", "outside what is allowed"}));
+    ::testing::Values(Bad{"{type: convecton, surface: s}", "'convecton' is not known here"},
+                      Bad{"{type: convection, film: 8 W/(m^2 K)}", "key 'surface' is missing"},
+                      Bad{"{type: convection, surface: s}", "key 'film' is missing"},
+                      Bad{"{type: convection, surface: s, film: 8 W/m^2}", "wrong unit"},
+                      Bad{"{type: convection, surface: s, film: -8 W/(m^2 K)}", "outside what is allowed"},
+                      Bad{"{type: convection, surface: s, film: 8 W/(m^2 K), surounding: air}",
+                          "Did you mean 'surrounding'?"},
+                      Bad{"{type: contact, joint: a/b, conductance: 1 W/(m^2 K), surrounding: air}", "unknown key"},
+                      Bad{"{type: air_node, node: air, capacity: 0 J/K, exchange: 1 W/K}", "outside what is allowed"}));
 
 TEST(Effect, AsksForNoParameterItHasNot) {
   const Effect e = read("{type: convection, surface: s, film: 8 W/(m^2 K)}");

@@ -48,12 +48,10 @@ TEST_P(EachOrder, FreeBlockExpandsInProportionToPlace) {
 
 TEST_P(EachOrder, BlockAcrossAJointExpandsAsOnePiece) {
   // The same material on both sides: a linear displacement has no jump at the joint, whatever the two meshes.
-  const mesh::Mesh mesh =
-      fixtures::two_boxes({{0, 0, 0}, {0.2, 0.1, 0.1}, {2, 3, 3}, GetParam()},
-                          {{0.2, 0, 0}, {0.2, 0.1, 0.1}, {2, 2, 2}, GetParam()}, "a.x1", "b.x0");
-  const Elasticity elastic(
-      mesh, {steel(), steel()},
-      {{"a.x0", {true, false, false}}, {"a.y0", {false, true, false}}, {"a.z0", {false, false, true}}});
+  const mesh::Mesh mesh = fixtures::two_boxes({{0, 0, 0}, {0.2, 0.1, 0.1}, {2, 3, 3}, GetParam()},
+                                              {{0.2, 0, 0}, {0.2, 0.1, 0.1}, {2, 2, 2}, GetParam()}, "a.x1", "b.x0");
+  const Elasticity elastic(mesh, {steel(), steel()},
+                           {{"a.x0", {true, false, false}}, {"a.y0", {false, true, false}}, {"a.z0", {false, false, true}}});
   const Eigen::Matrix3Xd u = elastic.displacement(Eigen::VectorXd::Constant(mesh.n_nodes(), 10.0));
   const Eigen::Matrix3Xd exact = kAlpha_1_K * 10.0 * mesh.coords;
   EXPECT_LT((u - exact).cwiseAbs().maxCoeff(),
@@ -63,8 +61,7 @@ TEST_P(EachOrder, BlockAcrossAJointExpandsAsOnePiece) {
 INSTANTIATE_TEST_SUITE_P(Orders, EachOrder, ::testing::Values(CellShape::kTet4, CellShape::kTet10));
 
 /// Mean displacement of a surface in a direction.
-DisplacementFunctional mean_on(const mesh::Mesh& mesh, const std::string& surface,
-                               const Eigen::Vector3d& direction) {
+DisplacementFunctional mean_on(const mesh::Mesh& mesh, const std::string& surface, const Eigen::Vector3d& direction) {
   const Eigen::VectorXd load = fixtures::surface_load(mesh, surface);
   DisplacementFunctional d;
   for (int i = 0; i < load.size(); ++i) {
@@ -79,12 +76,10 @@ TEST(Rod, OfTwoPartsGrowsByTheSumOfTheirExpansions) {
   const mesh::Mesh mesh =
       fixtures::two_boxes({{0, 0, 0}, {0.3, 0.05, 0.05}, {4, 2, 2}, CellShape::kTet10},
                           {{0.3, 0, 0}, {0.2, 0.05, 0.05}, {3, 2, 2}, CellShape::kTet10}, "a.x1", "b.x0");
-  const Elasticity elastic(
-      mesh, {steel(20e-6), steel(12e-6)},
-      {{"a.x0", {true, false, false}}, {"a.y0", {false, true, false}}, {"a.z0", {false, false, true}}});
+  const Elasticity elastic(mesh, {steel(20e-6), steel(12e-6)},
+                           {{"a.x0", {true, false, false}}, {"a.y0", {false, true, false}}, {"a.z0", {false, false, true}}});
   Eigen::VectorXd theta(mesh.n_nodes());
-  for (int i = 0; i < theta.size(); ++i)
-    theta[i] = i < fixtures::box_mesh({.n = {4, 2, 2}}).n_nodes() ? 10.0 : 5.0;
+  for (int i = 0; i < theta.size(); ++i) theta[i] = i < fixtures::box_mesh({.n = {4, 2, 2}}).n_nodes() ? 10.0 : 5.0;
   const double growth_m = elastic.influence(mean_on(mesh, "b.x1", {1, 0, 0})).dot(theta);
   EXPECT_NEAR(growth_m, 72e-6, 1e-7 * 72e-6);  // rounding, as above
 }
@@ -94,9 +89,9 @@ TEST(Bimetal, StripBendsByTimoshenkosCurvature) {
   // 50 K: kappa = 0.1125 1/m, free end kappa L^2 / 2 = 562.5 um towards the layer that expands less. Timoshenko (1925)
   // leaves out the ends (a length of about the height 4 mm, error (h/L)^2) and the springs of the joint.
   const double length_m = 0.1, layer_m = 0.002;
-  const mesh::Mesh mesh = fixtures::two_boxes(
-      {{0, 0, 0}, {length_m, 0.002, layer_m}, {40, 1, 1}, CellShape::kTet10},
-      {{0, 0, layer_m}, {length_m, 0.002, layer_m}, {40, 1, 1}, CellShape::kTet10}, "a.z1", "b.z0");
+  const mesh::Mesh mesh =
+      fixtures::two_boxes({{0, 0, 0}, {length_m, 0.002, layer_m}, {40, 1, 1}, CellShape::kTet10},
+                          {{0, 0, layer_m}, {length_m, 0.002, layer_m}, {40, 1, 1}, CellShape::kTet10}, "a.z1", "b.z0");
   mesh::Mesh held = mesh;
   fixtures::add_point_surface(held, "origin", fixtures::node_at(mesh, {0, 0, 0}));
   const Elasticity elastic(held, {steel(12e-6), steel(18e-6)},
@@ -105,8 +100,7 @@ TEST(Bimetal, StripBendsByTimoshenkosCurvature) {
                             {"a.y0", {false, true, false}},
                             {"origin", {false, false, true}}});
   const Eigen::Matrix3Xd u = elastic.displacement(Eigen::VectorXd::Constant(mesh.n_nodes(), 50.0));
-  const double sag_m =
-      -u(2, fixtures::node_at(mesh, {length_m, 0, 0})) + u(2, fixtures::node_at(mesh, {0, 0, 0}));
+  const double sag_m = -u(2, fixtures::node_at(mesh, {length_m, 0, 0})) + u(2, fixtures::node_at(mesh, {0, 0, 0}));
   RecordProperty("sag_um", std::to_string(1e6 * sag_m));
   EXPECT_NEAR(sag_m, 562.5e-6, 0.005 * 562.5e-6);
 }
@@ -116,17 +110,13 @@ TEST(Bimetal, StripBendsByTimoshenkosCurvature) {
 struct BentBar {
   static constexpr double kGradient_K_m = 200.0, kLength_m = 0.5, kHeight_m = 0.05;
   mesh::Mesh mesh = [] {
-    mesh::Mesh m =
-        fixtures::box_mesh({{0, 0, 0}, {kLength_m, 0.04, kHeight_m}, {8, 1, 1}, CellShape::kTet10});
+    mesh::Mesh m = fixtures::box_mesh({{0, 0, 0}, {kLength_m, 0.04, kHeight_m}, {8, 1, 1}, CellShape::kTet10});
     fixtures::add_point_surface(m, "origin", fixtures::node_at(m, {0, 0, 0}));
     return m;
   }();
   Elasticity elastic{
-      mesh,
-      {steel()},
-      {{"x0", {true, false, false}}, {"y0", {false, true, false}}, {"origin", {false, false, true}}}};
-  Eigen::VectorXd theta =
-      fixtures::at_nodes(mesh, [](const Eigen::Vector3d& x) { return kGradient_K_m * x[2]; });
+      mesh, {steel()}, {{"x0", {true, false, false}}, {"y0", {false, true, false}}, {"origin", {false, false, true}}}};
+  Eigen::VectorXd theta = fixtures::at_nodes(mesh, [](const Eigen::Vector3d& x) { return kGradient_K_m * x[2]; });
 };
 
 TEST(Bar, LinearGradientBendsItByAlphaTimesGradient) {
@@ -138,8 +128,7 @@ TEST(Bar, LinearGradientBendsItByAlphaTimesGradient) {
   const double ag = kAlpha_1_K * BentBar::kGradient_K_m;
   for (int i = 0; i < bar.mesh.n_nodes(); ++i) {
     const Eigen::Vector3d x = bar.mesh.coords.col(i);
-    const Eigen::Vector3d exact(ag * x[0] * x[2], ag * x[1] * x[2],
-                                0.5 * ag * (x[2] * x[2] - x[0] * x[0] - x[1] * x[1]));
+    const Eigen::Vector3d exact(ag * x[0] * x[2], ag * x[1] * x[2], 0.5 * ag * (x[2] * x[2] - x[0] * x[0] - x[1] * x[1]));
     EXPECT_LT((u.col(i) - exact).norm(), kSolve * 300e-6);
   }
 }
@@ -154,13 +143,10 @@ TEST(Bar, RotationOfItsEndIsCurvatureTimesLength) {
     const auto nodes = bar.mesh.cells.nodes(cell);
     for (int corner = 0; corner < 4; ++corner) {
       if (nodes[corner] != node) continue;
-      const Eigen::Vector3d xi =
-          corner == 0 ? Eigen::Vector3d::Zero().eval() : Eigen::Vector3d::Unit(corner - 1).eval();
+      const Eigen::Vector3d xi = corner == 0 ? Eigen::Vector3d::Zero().eval() : Eigen::Vector3d::Unit(corner - 1).eval();
       const auto s = mesh::shape_values(CellShape::kTet10, xi);
       const Eigen::Matrix3d inverse_t =
-          mesh::jacobian(s, mesh::cell_coords(bar.mesh, nodes), CellShape::kTet10)
-              .dx_dxi.inverse()
-              .transpose();
+          mesh::jacobian(s, mesh::cell_coords(bar.mesh, nodes), CellShape::kTet10).dx_dxi.inverse().transpose();
       for (int i = 0; i < s.n; ++i) {
         const Eigen::Vector3d gradient = inverse_t * s.dN.col(i);
         curl.terms.push_back({nodes[i], 0.5 * Eigen::Vector3d::UnitY().cross(gradient)});
@@ -172,14 +158,12 @@ TEST(Bar, RotationOfItsEndIsCurvatureTimesLength) {
   EXPECT_NEAR(bar.elastic.influence(curl).dot(bar.theta), exact_rad, 1e-7 * exact_rad);
   const int top = fixtures::node_at(bar.mesh, {BentBar::kLength_m, 0, BentBar::kHeight_m});
   const Eigen::Vector3d across(1.0 / BentBar::kHeight_m, 0, 0);
-  EXPECT_NEAR(bar.elastic.influence({{{top, across}, {node, -across}}}).dot(bar.theta), exact_rad,
-              1e-7 * exact_rad);
+  EXPECT_NEAR(bar.elastic.influence({{{top, across}, {node, -across}}}).dot(bar.theta), exact_rad, 1e-7 * exact_rad);
 }
 
 TEST(Influence, DotProductIsTheDisplacementOfAFullSolve) {
-  const mesh::Mesh mesh =
-      fixtures::two_boxes({{0, 0, 0}, {0.2, 0.1, 0.1}, {2, 2, 2}, CellShape::kTet10},
-                          {{0.2, 0, 0}, {0.2, 0.1, 0.1}, {2, 1, 1}, CellShape::kTet10}, "a.x1", "b.x0");
+  const mesh::Mesh mesh = fixtures::two_boxes({{0, 0, 0}, {0.2, 0.1, 0.1}, {2, 2, 2}, CellShape::kTet10},
+                                              {{0.2, 0, 0}, {0.2, 0.1, 0.1}, {2, 1, 1}, CellShape::kTet10}, "a.x1", "b.x0");
   const Elasticity elastic(mesh, {steel(), steel(18e-6)}, {{"a.x0", {true, true, true}}});
   std::mt19937 random(31);
   std::normal_distribution<double> normal;
@@ -188,8 +172,7 @@ TEST(Influence, DotProductIsTheDisplacementOfAFullSolve) {
   const Eigen::Matrix3Xd u = elastic.displacement(theta);
   const int p = fixtures::node_at(mesh, {0.4, 0.1, 0.1}), q = fixtures::node_at(mesh, {0.1, 0, 0.1});
   const DisplacementFunctional d{{{p, {0.2, -1.0, 3.0}}, {q, {0.0, 2.0, -0.5}}}};
-  const double expected_m =
-      u.col(p).dot(Eigen::Vector3d(0.2, -1, 3)) + u.col(q).dot(Eigen::Vector3d(0, 2, -0.5));
+  const double expected_m = u.col(p).dot(Eigen::Vector3d(0.2, -1, 3)) + u.col(q).dot(Eigen::Vector3d(0, 2, -0.5));
   EXPECT_NEAR(elastic.influence(d).dot(theta), expected_m, 1e-7 * u.cwiseAbs().maxCoeff());
   // Temperatures of lumped nodes may follow those of the mesh.
   Eigen::VectorXd longer(mesh.n_nodes() + 2);
@@ -208,9 +191,8 @@ double goodier_error_m(CellShape shape, int n) {
     supports.push_back({face, {face[0] == 'x', face[0] == 'y', face[0] == 'z'}});
   }
   const Elasticity elastic(mesh, {m}, supports);
-  const Eigen::VectorXd theta = fixtures::at_nodes(mesh, [](const Eigen::Vector3d& x) {
-    return 10.0 * std::cos(pi * x[0]) * std::cos(pi * x[1]) * std::cos(pi * x[2]);
-  });
+  const Eigen::VectorXd theta = fixtures::at_nodes(
+      mesh, [](const Eigen::Vector3d& x) { return 10.0 * std::cos(pi * x[0]) * std::cos(pi * x[1]) * std::cos(pi * x[2]); });
   const Eigen::Matrix3Xd u = elastic.displacement(theta);
   const double c = m.expansion_1_K * (1 + m.poisson_ratio) / (1 - m.poisson_ratio) * 10.0 / (3 * pi);
   double sum = 0.0;
@@ -268,17 +250,16 @@ TEST_P(FreeToMove, IsRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Each, FreeToMove,
-    ::testing::Values(Free{"Wholly", {}}, Free{"Sliding", {{"z0", {false, false, true}}}},
-                      Free{"AlongOneAxis", {{"x0", {true, false, false}}, {"y0", {false, true, false}}}},
-                      Free{"AboutAPoint", {{"corner", {true, true, true}}}}),
-    [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Each, FreeToMove,
+                         ::testing::Values(Free{"Wholly", {}}, Free{"Sliding", {{"z0", {false, false, true}}}},
+                                           Free{"AlongOneAxis",
+                                                {{"x0", {true, false, false}}, {"y0", {false, true, false}}}},
+                                           Free{"AboutAPoint", {{"corner", {true, true, true}}}}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(FreeToMove, OnePartOfTwoIsRefused) {
-  mesh::Mesh mesh =
-      fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.1}, {2, 2, 2}, CellShape::kTet10},
-                          {{0.1, 0, 0}, {0.1, 0.1, 0.1}, {2, 2, 2}, CellShape::kTet10}, "a.x1", "b.x0");
+  mesh::Mesh mesh = fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.1}, {2, 2, 2}, CellShape::kTet10},
+                                        {{0.1, 0, 0}, {0.1, 0.1, 0.1}, {2, 2, 2}, CellShape::kTet10}, "a.x1", "b.x0");
   EXPECT_NO_THROW(Elasticity(mesh, {steel(), steel()}, {{"a.x0"}}));
   mesh.joints.clear();
   EXPECT_THROW(Elasticity(mesh, {steel(), steel()}, {{"a.x0"}}), InputError);

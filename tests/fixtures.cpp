@@ -75,8 +75,7 @@ void add_box(Mesh& mesh, const Box& box, const std::string& region, const std::s
     std::vector<int> nodes;
     for (const Index3& c : corner) nodes.push_back(node(c));
     if (quadratic) {
-      for (const auto& [a, b] :
-           std::array<std::array<int, 2>, 6>{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}}) {
+      for (const auto& [a, b] : std::array<std::array<int, 2>, 6>{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}}) {
         nodes.push_back(node(middle(corner[a], corner[b])));
       }
     }
@@ -86,8 +85,7 @@ void add_box(Mesh& mesh, const Box& box, const std::string& region, const std::s
       for (int d = 0; d < 3; ++d) {
         if (a[d] != b[d] || b[d] != c[d] || (a[d] != 0 && a[d] != last[d])) continue;
         std::vector<int> facet = {node(a), node(b), node(c)};
-        if (quadratic)
-          facet.insert(facet.end(), {node(middle(a, b)), node(middle(b, c)), node(middle(c, a))});
+        if (quadratic) facet.insert(facet.end(), {node(middle(a, b)), node(middle(b, c)), node(middle(c, a))});
         const std::string name = prefix + "xyz"[d] + (a[d] == 0 ? "0" : "1");
         mesh.facets.add(quadratic ? CellShape::kTri6 : CellShape::kTri3, facet, surface_index(mesh, name));
       }
@@ -225,8 +223,7 @@ Eigen::Vector2d TwoBodies::at(double t_s, const Eigen::Vector2d& start_K) const 
   const double root = std::sqrt(half_trace * half_trace - det);
   const double l1 = half_trace + root, l2 = half_trace - root;
   const Eigen::Matrix2d one = Eigen::Matrix2d::Identity();
-  const Eigen::Matrix2d grown =
-      (std::exp(l1 * t_s) * (a - l2 * one) - std::exp(l2 * t_s) * (a - l1 * one)) / (l1 - l2);
+  const Eigen::Matrix2d grown = (std::exp(l1 * t_s) * (a - l2 * one) - std::exp(l2 * t_s) * (a - l1 * one)) / (l1 - l2);
   // Steady state: a T = -(P/C1, 0), by Cramer's rule.
   const double p = power1_W / capacity1_J_K;
   const Eigen::Vector2d end(-p * a(1, 1) / det, p * a(1, 0) / det);

@@ -28,8 +28,7 @@ void add_box(mesh::Mesh& mesh, const Box& box, const std::string& region, const 
 [[nodiscard]] mesh::Mesh box_mesh(const Box& box);
 
 /// Two parts "a" and "b" with the joint "a/b" between the surfaces side_a and side_b, such as "a.x1" and "b.x0".
-[[nodiscard]] mesh::Mesh two_boxes(const Box& a, const Box& b, const std::string& side_a,
-                                   const std::string& side_b);
+[[nodiscard]] mesh::Mesh two_boxes(const Box& a, const Box& b, const std::string& side_a, const std::string& side_b);
 
 /// A surface for supports alone that consists of one node.
 void add_point_surface(mesh::Mesh& mesh, const std::string& name, int node);

@@ -29,13 +29,16 @@ class Fp3Spindle : public ::testing::Test {
 };
 
 TEST_F(Fp3Spindle, EnergyBalanceCloses) {
-  EXPECT_LT(summary_["energy_balance_gap"].get<double>(), 1e-6);  // the bound of the issue; rounding gives 1e-15
+  EXPECT_LT(summary_["energy_balance_gap"].get<double>(),
+            1e-6);  // the bound of the issue; rounding gives 1e-15
 }
 
 TEST_F(Fp3Spindle, ReachesTheMagnitudesOfThePaper) {
   // "Displacements up to about 50 um, sensor temperatures 20-25 degC"; 240 min at 2000 rpm is the hardest training run.
   const Record hot = read_record_csv((folder_ / "records/heat_cool_2000.csv").string());
-  const auto peak = [&](const char* name) { return *std::max_element(hot.at(name).values.begin(), hot.at(name).values.end()); };
+  const auto peak = [&](const char* name) {
+    return *std::max_element(hot.at(name).values.begin(), hot.at(name).values.end());
+  };
   EXPECT_NEAR(peak("drift_y"), 45.0, 10.0);
   for (const char* sensor : {"t01", "t02", "t03", "t04", "t07", "t08", "t09", "t12"}) {
     EXPECT_GT(peak(sensor), 23.0) << sensor;
@@ -122,12 +125,17 @@ TEST(Fp3Verbs, CheckMeshSimulateAndPredictWork) {
   std::ofstream(folder / "plan.yaml") << scenario;
   const std::string yaml = (folder / "plan.yaml").string();
   ASSERT_EQ(run_program("simulate " + yaml + " --cyclogram plan -o " + (folder / "full").string()).exit_code, 0);
-  ASSERT_EQ(run_program("predict " + yaml + " --cyclogram " + (folder / "plan.csv").string() + " -o " + (folder / "modal").string()).exit_code, 0);
-  const Record full = read_record_csv((folder / "full/record.csv").string()), modal = read_record_csv((folder / "modal/record.csv").string());
+  ASSERT_EQ(run_program("predict " + yaml + " --cyclogram " + (folder / "plan.csv").string() + " -o " +
+                        (folder / "modal").string())
+                .exit_code,
+            0);
+  const Record full = read_record_csv((folder / "full/record.csv").string()),
+               modal = read_record_csv((folder / "modal/record.csv").string());
   ASSERT_EQ(full.time_s, modal.time_s);
   EXPECT_EQ(full.at("speed").values, modal.at("speed").values);
   for (std::size_t i = 0; i < full.n_samples(); ++i) {
-    EXPECT_NEAR(full.at("drift_y").values[i], modal.at("drift_y").values[i], 1.0) << "at " << full.time_s[i] << " s";  // truncation, see docs
+    EXPECT_NEAR(full.at("drift_y").values[i], modal.at("drift_y").values[i], 1.0)
+        << "at " << full.time_s[i] << " s";  // truncation, see docs
   }
 }
 

@@ -16,13 +16,11 @@ using ::testing::ThrowsMessage;
 
 Record record_of(std::vector<Channel> channels) {
   Record record{.source = "test", .time_s = {}, .channels = std::move(channels)};
-  for (std::size_t i = 0; i < record.channels[0].values.size(); ++i)
-    record.time_s.push_back(static_cast<double>(i));
+  for (std::size_t i = 0; i < record.channels[0].values.size(); ++i) record.time_s.push_back(static_cast<double>(i));
   return record;
 }
 
-Ranking rank(const Record& record, const std::vector<std::string>& candidates,
-             const GreyOptions& options = {}) {
+Ranking rank(const Record& record, const std::vector<std::string>& candidates, const GreyOptions& options = {}) {
   return rank_channels(std::span(&record, 1), "drift", candidates, options);
 }
 
@@ -49,8 +47,7 @@ TEST(GreyRelational, MeanValueImageMatchesHandArithmetic) {
 // By hand: images (0,1/4,1), a (0,1/2,1), b (0,0,1); D = (0,1/4,0) for both; max 1/4, xi = (1, 1/3, 1), mean
 // 7/9.
 TEST(GreyRelational, RangeImageMatchesHandArithmeticAndTiesKeepTheirOrder) {
-  const Record r =
-      record_of({{"drift", "um", {0, 1, 4}}, {"b", "degC", {5, 5, 7}}, {"a", "degC", {0, 2, 4}}});
+  const Record r = record_of({{"drift", "um", {0, 1, 4}}, {"b", "degC", {5, 5, 7}}, {"a", "degC", {0, 2, 4}}});
   for (const std::vector<std::string>& order : {std::vector<std::string>{"a", "b"}, {"b", "a"}}) {
     const Ranking ranking = rank(r, order);
     EXPECT_EQ(ranking.image, Image::kRange);
@@ -112,8 +109,7 @@ TEST(GreyRelational, AutomaticRanksAlikeInCelsiusAndKelvin) {
 }
 
 TEST(GreyRelational, AConstantChannelHasNoGradeComesLastAndDisturbsNobody) {
-  const Record r =
-      record_of({{"drift", "um", {0, 1, 4}}, {"dead", "degC", {20, 20, 20}}, {"a", "degC", {0, 2, 4}}});
+  const Record r = record_of({{"drift", "um", {0, 1, 4}}, {"dead", "degC", {20, 20, 20}}, {"a", "degC", {0, 2, 4}}});
   const Ranking ranking = rank(r, {"dead", "a"});
   EXPECT_EQ(ranking.channels[0].name, "a");
   EXPECT_NEAR(*ranking.channels[0].grade, 7.0 / 9.0, 1e-14);  // as without the dead one
@@ -148,16 +144,14 @@ TEST(GreyRelational, AChannelWithoutTheImageAskedForHasNoGrade) {
 }
 
 TEST(GreyRelational, BestStopsAtN) {
-  const Record r =
-      record_of({{"drift", "um", {0, 1, 4}}, {"a", "degC", {0, 1, 4}}, {"b", "degC", {0, 4, 3}}});
+  const Record r = record_of({{"drift", "um", {0, 1, 4}}, {"a", "degC", {0, 1, 4}}, {"b", "degC", {0, 4, 3}}});
   EXPECT_THAT(best(rank(r, {"b", "a"}), 1), ElementsAre("a"));
   EXPECT_THAT(best(rank(r, {"b", "a"}), 5), ElementsAre("a", "b"));
 }
 
 TEST(GreyRelational, RefusesWhatCannotBeRanked) {
   const Record r = record_of({{"drift", "um", {0, 1, 4}}, {"a", "degC", {0, 2, 4}}});
-  for (double rho : {0.0, 1.5, double{NAN}})
-    EXPECT_THROW((void)rank(r, {"a"}, {.rho = rho}), RangeError) << rho;
+  for (double rho : {0.0, 1.5, double{NAN}}) EXPECT_THROW((void)rank(r, {"a"}, {.rho = rho}), RangeError) << rho;
   EXPECT_THAT([&] { (void)rank(r, {}); }, ThrowsMessage<InputError>(HasSubstr("no candidate")));
   EXPECT_THAT([&] { (void)rank(r, {"a"}, {.image = Image::kInitialValue}); },
               ThrowsMessage<InputError>(HasSubstr("use the range image")));

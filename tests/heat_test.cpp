@@ -24,10 +24,8 @@ effects::Film film(const std::string& surface, double htc_W_m2K, const std::stri
 }
 
 /// Runs at standstill and returns the outputs at the end.
-Eigen::VectorXd after(const FullSystem& system, double time_s, const Eigen::VectorXd& start,
-                      double tolerance) {
-  const TransientOptions options{
-      .relative_tolerance = tolerance, .absolute_tolerance_K = tolerance, .max_step_s = time_s};
+Eigen::VectorXd after(const FullSystem& system, double time_s, const Eigen::VectorXd& start, double tolerance) {
+  const TransientOptions options{.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance, .max_step_s = time_s};
   const Cyclogram rest{.name = "rest", .sections = {{time_s, 0.0}}};
   return simulate(system, rest, kStillHall, {time_s}, options, start).outputs.col(0);
 }
@@ -73,8 +71,7 @@ struct Order {
   CellShape shape;
   std::vector<int> n;
   double order;
-  double
-      error;  ///< bound on the last error: a tenth above what a correct program showed, to see the size as well
+  double error;  ///< bound on the last error: a tenth above what a correct program showed, to see the size as well
 };
 class ConductionManufactured : public ::testing::TestWithParam<Order> {};
 
@@ -100,15 +97,13 @@ INSTANTIATE_TEST_SUITE_P(Orders, ConductionManufactured,
 // The slowest mode of a slab of 1 m with a film at x = 1 and Bi = 2 decays at k/(rho c) mu^2, mu tan mu = Bi. The decay
 // rate of the discrete model is too fast by O(h^2p): it takes both matrices to be right.
 double decay_error(CellShape shape, int n) {
-  const mesh::Mesh mesh =
-      fixtures::box_mesh({.size_m = {1, 1.0 / n, 1.0 / n}, .n = {n, 1, 1}, .shape = shape});
+  const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {1, 1.0 / n, 1.0 / n}, .n = {n, 1, 1}, .shape = shape});
   const Material steel = fixtures::steel();
   effects::HeatBalance balance;
   balance.films.push_back(film("x1", kBiot * steel.conductivity_W_mK));
   const FullSystem system = assemble_heat(mesh, {steel}, balance);
   const double mu = fixtures::slab_root(kBiot, 0);
-  const double rate_1_s =
-      steel.conductivity_W_mK / (steel.density_kg_m3 * steel.heat_capacity_J_kgK) * mu * mu;
+  const double rate_1_s = steel.conductivity_W_mK / (steel.density_kg_m3 * steel.heat_capacity_J_kgK) * mu * mu;
   return 1.0 / (thermal_modes(system, {}, 1).time_constant_s[0] * rate_1_s) - 1.0;
 }
 
@@ -176,9 +171,8 @@ TEST(TransientHalfSpace, HolmanExample42) {
 
 TEST(TwoLumps, ExchangeHeatLikeTwoCoupledExponentials) {
   // Two blocks of a conductivity of 1e4 W/(m K): Biot numbers below 2e-4 make them lumps to half of that.
-  const mesh::Mesh mesh =
-      fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.1}, {1, 1, 1}, CellShape::kTet10},
-                          {{0.1, 0, 0}, {0.2, 0.1, 0.1}, {1, 1, 1}, CellShape::kTet10}, "a.x1", "b.x0");
+  const mesh::Mesh mesh = fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.1}, {1, 1, 1}, CellShape::kTet10},
+                                              {{0.1, 0, 0}, {0.2, 0.1, 0.1}, {1, 1, 1}, CellShape::kTet10}, "a.x1", "b.x0");
   effects::HeatBalance balance;
   balance.heats.push_back({"heat", "a", fixtures::constant(5.0)});
   balance.contacts.push_back({"contact", "a/b", 10.0});
@@ -212,8 +206,7 @@ TEST(AirNode, IsABodyBetweenFilmAndHall) {
   for (double time_s : {3000.0, 36000.0, 200000.0}) {
     const Eigen::VectorXd t = after(system, time_s, Eigen::VectorXd::Zero(system.size()), 1e-5);
     const Eigen::Vector2d t_exact = exact.at(time_s, {0.0, 0.0});
-    EXPECT_NEAR(t[0], t_exact[0], 1e-3)
-        << "after " << time_s << " s";  // lump to 2e-5 of 22 K, and the integrator
+    EXPECT_NEAR(t[0], t_exact[0], 1e-3) << "after " << time_s << " s";  // lump to 2e-5 of 22 K, and the integrator
     EXPECT_NEAR(t[1], t_exact[1], 1e-3) << "after " << time_s << " s";
   }
 }
@@ -232,8 +225,7 @@ TEST(HeatMatrices, UniformTemperatureDrivesNoHeatAndMassIsTheHeatCapacity) {
     EXPECT_NEAR(system.ones.dot(system.mass * system.ones), 24000.0, 1e-8);  // rho c V
     EXPECT_NEAR(system.sources[0].load.sum(), 1.0, 1e-14);
     EXPECT_NEAR(system.exchanges[0].hall_sum, 0.06, 1e-15);
-    EXPECT_LT((Eigen::MatrixXd(system.conduction) - Eigen::MatrixXd(system.conduction).transpose()).norm(),
-              1e-12);
+    EXPECT_LT((Eigen::MatrixXd(system.conduction) - Eigen::MatrixXd(system.conduction).transpose()).norm(), 1e-12);
   }
 }
 

@@ -36,11 +36,10 @@ Plot ramp(const std::string& title) {
 Report report() {
   return {.title = "A <b>bold</b> title & more",
           .subtitle = "Driftwright 0.1.0, a.yaml",
-          .blocks = {
-              Heading{"First"}, Paragraph{"1 < 2"},
-              Verdict{Verdict::Kind::kBad, "Unsafe", "worse \"after\" than before"}, ramp("One"), ramp("Two"),
-              Table{"Residuals", {"strategy", "max [µm]"}, {{"none", "21.8"}, {"modal", "−3.1"}, {"x", "–"}}},
-              Preformatted{"a: <b>\n"}, ramp("Three")}};
+          .blocks = {Heading{"First"}, Paragraph{"1 < 2"},
+                     Verdict{Verdict::Kind::kBad, "Unsafe", "worse \"after\" than before"}, ramp("One"), ramp("Two"),
+                     Table{"Residuals", {"strategy", "max [µm]"}, {{"none", "21.8"}, {"modal", "−3.1"}, {"x", "–"}}},
+                     Preformatted{"a: <b>\n"}, ramp("Three")}};
 }
 
 /// The paths of the curve with that index in the first plot of a page.
@@ -58,10 +57,9 @@ TEST(HtmlReport, LoadsNothingFromElsewhere) {
 
 TEST(HtmlReport, EscapesAllText) {
   const std::string html = render_html(report());
-  EXPECT_THAT(
-      html, AllOf(HasSubstr("A &lt;b&gt;bold&lt;/b&gt; title &amp; more"), HasSubstr("1 &lt; 2"),
-                  HasSubstr("worse &quot;after&quot;"), HasSubstr("a: &lt;b&gt;"),
-                  HasSubstr("it's &lt;predicted&gt;"), Not(HasSubstr("<b>")), Not(HasSubstr("<predicted>"))));
+  EXPECT_THAT(html, AllOf(HasSubstr("A &lt;b&gt;bold&lt;/b&gt; title &amp; more"), HasSubstr("1 &lt; 2"),
+                          HasSubstr("worse &quot;after&quot;"), HasSubstr("a: &lt;b&gt;"),
+                          HasSubstr("it's &lt;predicted&gt;"), Not(HasSubstr("<b>")), Not(HasSubstr("<predicted>"))));
 }
 
 TEST(HtmlReport, HasOneSvgPerPlotAndIdsThatDiffer) {
@@ -72,8 +70,7 @@ TEST(HtmlReport, HasOneSvgPerPlotAndIdsThatDiffer) {
   const std::set<std::string> unique(ids.begin(), ids.end());
   EXPECT_GT(ids.size(), 3u);
   EXPECT_EQ(unique.size(), ids.size());
-  for (const std::string& target : matches(html, "href='#([^']*)'"))
-    EXPECT_TRUE(unique.contains(target)) << target;
+  for (const std::string& target : matches(html, "href='#([^']*)'")) EXPECT_TRUE(unique.contains(target)) << target;
 }
 
 TEST(HtmlReport, AlignsColumnsOfNumbersOnly) {

@@ -44,8 +44,7 @@ TEST(InjectionRun, LeavesHalfAPeriodAtMostOfASlowDrift) {
   const double period_um = 0.4;
   const InjectionRun run = simulate_injection(t_s, drift_um, period_um);
   double worst_um = 0.0;
-  for (std::size_t i = 0; i < t_s.size(); ++i)
-    worst_um = std::max(worst_um, std::abs(drift_um[i] - run.inserted_um[i]));
+  for (std::size_t i = 0; i < t_s.size(); ++i) worst_um = std::max(worst_um, std::abs(drift_um[i] - run.inserted_um[i]));
   EXPECT_LE(worst_um, 0.5 * period_um + 1e-12);
   EXPECT_GT(worst_um, 0.4 * period_um);  // and it is quantised
   EXPECT_EQ(run.downstream_count - run.upstream_count, 4 * run.inserted_periods.back());

@@ -109,12 +109,11 @@ TEST_P(JointOf, SlabsInSeriesHaveTheTemperaturesOfTheClosedForm) {
 // functions of the coarser side only nearly: to 3e-5 of the jump here.
 INSTANTIATE_TEST_SUITE_P(
     Each, JointOf,
-    ::testing::Values(
-        Pair{"MatchingTet10", slab_a(3, CellShape::kTet10), slab_b(3, CellShape::kTet10), 1e-9},
-        Pair{"FineOnCoarseTet10", slab_a(5, CellShape::kTet10), slab_b(3, CellShape::kTet10), 1e-3},
-        Pair{"CoarseOnFineTet10", slab_a(2, CellShape::kTet10), slab_b(5, CellShape::kTet10), 1e-3},
-        Pair{"MatchingTet4", slab_a(3, CellShape::kTet4), slab_b(3, CellShape::kTet4), 1e-1},
-        Pair{"Tet4OnTet10", slab_a(4, CellShape::kTet4), slab_b(3, CellShape::kTet10), 1e-1}),
+    ::testing::Values(Pair{"MatchingTet10", slab_a(3, CellShape::kTet10), slab_b(3, CellShape::kTet10), 1e-9},
+                      Pair{"FineOnCoarseTet10", slab_a(5, CellShape::kTet10), slab_b(3, CellShape::kTet10), 1e-3},
+                      Pair{"CoarseOnFineTet10", slab_a(2, CellShape::kTet10), slab_b(5, CellShape::kTet10), 1e-3},
+                      Pair{"MatchingTet4", slab_a(3, CellShape::kTet4), slab_b(3, CellShape::kTet4), 1e-1},
+                      Pair{"Tet4OnTet10", slab_a(4, CellShape::kTet4), slab_b(3, CellShape::kTet10), 1e-1}),
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -15,7 +15,10 @@ TEST(Spindle22, RankingAndRegressionAgreeWithAnIndependentCalculation) {
   if (!std::filesystem::exists(data / "run3.csv")) GTEST_SKIP() << "no measured records in " << data;
   const auto folder = fresh_folder("spindle_22") / "out";
   const std::string train = " --train " + (data / "run1.csv").string() + " --train " + (data / "run2.csv").string();
-  ASSERT_EQ(run_program("validate scenarios/spindle_22.yaml" + train + " --test " + (data / "run3.csv").string() + " -o " + folder.string()).exit_code, 0);
+  ASSERT_EQ(run_program("validate scenarios/spindle_22.yaml" + train + " --test " + (data / "run3.csv").string() + " -o " +
+                        folder.string())
+                .exit_code,
+            0);
   const auto summary = nlohmann::json::parse(read_text(folder / "summary.json"));
 
   // Reference: grey relational grades (range image), regression by normal equations in exact rational arithmetic and both

@@ -23,16 +23,16 @@ TEST_P(QuantityIs, ConvertedByHand) {
   EXPECT_NEAR(parse_quantity(GetParam().text, GetParam().unit), value, 1e-14 * std::abs(value));  // rounding
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Each, QuantityIs,
-    ::testing::Values(Good{"80 mm", "m", 0.08}, Good{"80mm", "m", 0.08}, Good{"-1.5e2 um", "m", -1.5e-4},
-                      Good{"2 h", "s", 7200}, Good{"30 min", "s", 1800}, Good{"1.5 kW", "W", 1500},
-                      Good{"10 W/(m^2 K)", "W/(m^2 K)", 10}, Good{"0.01 W/(cm^2 K)", "W/(m^2 K)", 100},
-                      Good{"7.2 g/cm^3", "kg/m^3", 7200}, Good{"32 cSt", "mm^2/s", 32},
-                      Good{"210 GPa", "Pa", 2.1e11}, Good{"12 um/(m K)", "1/K", 12e-6},
-                      Good{"12e-6 1/K", "1/K", 12e-6}, Good{"0.46 kJ/(kg K)", "J/(kg K)", 460},
-                      Good{"3 K", "K", 3}, Good{"2000 rpm", "rpm", 2000}, Good{"0.3", "1", 0.3},
-                      Good{"30 percent", "1", 0.3}, Good{"010 mm", "mm", 10}));
+INSTANTIATE_TEST_SUITE_P(Each, QuantityIs,
+                         ::testing::Values(Good{"80 mm", "m", 0.08}, Good{"80mm", "m", 0.08},
+                                           Good{"-1.5e2 um", "m", -1.5e-4}, Good{"2 h", "s", 7200},
+                                           Good{"30 min", "s", 1800}, Good{"1.5 kW", "W", 1500},
+                                           Good{"10 W/(m^2 K)", "W/(m^2 K)", 10}, Good{"0.01 W/(cm^2 K)", "W/(m^2 K)", 100},
+                                           Good{"7.2 g/cm^3", "kg/m^3", 7200}, Good{"32 cSt", "mm^2/s", 32},
+                                           Good{"210 GPa", "Pa", 2.1e11}, Good{"12 um/(m K)", "1/K", 12e-6},
+                                           Good{"12e-6 1/K", "1/K", 12e-6}, Good{"0.46 kJ/(kg K)", "J/(kg K)", 460},
+                                           Good{"3 K", "K", 3}, Good{"2000 rpm", "rpm", 2000}, Good{"0.3", "1", 0.3},
+                                           Good{"30 percent", "1", 0.3}, Good{"010 mm", "mm", 10}));
 
 TEST(Quantity, TemperaturesHaveTheirOffset) {
   EXPECT_DOUBLE_EQ(parse_temperature_K("20 degC"), 293.15);
@@ -60,18 +60,17 @@ TEST_P(QuantityIsNot, ReadAndSaysWhy) {
               ThrowsMessage<RangeError>(HasSubstr(GetParam().message)));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Each, QuantityIsNot,
-    ::testing::Values(Bad{"80", "m", "no unit"}, Bad{"80 kg", "m", "wrong unit 'kg'"},
-                      Bad{"80 furlongz", "m", "unknown unit"}, Bad{"mm", "m", "not a number"},
-                      Bad{"", "m", "not a number"}, Bad{"nan mm", "m", "not a finite number"},
-                      Bad{".nan", "1", "not a number"}, Bad{"inf", "1", "not a finite number"},
-                      Bad{"1e999 mm", "m", "not a finite number"}, Bad{"1,5 mm", "m", "unknown unit"},
-                      Bad{"5 degC", "K", "temperature difference"},
-                      Bad{"5 degF", "K", "temperature difference"},
-                      Bad{"10 W/m^2", "W/(m^2 K)", "wrong unit"},
-                      // A frequency is no rate of turning: 2 pi would slip in.
-                      Bad{"33 Hz", "rpm", "wrong unit"}, Bad{"2000 1/min", "rpm", "wrong unit"}));
+INSTANTIATE_TEST_SUITE_P(Each, QuantityIsNot,
+                         ::testing::Values(Bad{"80", "m", "no unit"}, Bad{"80 kg", "m", "wrong unit 'kg'"},
+                                           Bad{"80 furlongz", "m", "unknown unit"}, Bad{"mm", "m", "not a number"},
+                                           Bad{"", "m", "not a number"}, Bad{"nan mm", "m", "not a finite number"},
+                                           Bad{".nan", "1", "not a number"}, Bad{"inf", "1", "not a finite number"},
+                                           Bad{"1e999 mm", "m", "not a finite number"}, Bad{"1,5 mm", "m", "unknown unit"},
+                                           Bad{"5 degC", "K", "temperature difference"},
+                                           Bad{"5 degF", "K", "temperature difference"},
+                                           Bad{"10 W/m^2", "W/(m^2 K)", "wrong unit"},
+                                           // A frequency is no rate of turning: 2 pi would slip in.
+                                           Bad{"33 Hz", "rpm", "wrong unit"}, Bad{"2000 1/min", "rpm", "wrong unit"}));
 
 TEST(Quantity, TemperaturesNeedAUnitOfTemperature) {
   EXPECT_THROW((void)parse_temperature_K("20"), RangeError);

@@ -21,7 +21,8 @@ std::string write_file(const std::string& name, const std::string& text) {
 }
 
 TEST(RecordCsv, ReadsNamesUnitsMinutesAndMissingValues) {
-  const Record r = read_record_csv(write_file("good.csv", "# a comment\ntime_min,tip_z_um,oil_degC,feed_mm_min\n0,1.5,20,\n2,-3,,600\n"));
+  const Record r =
+      read_record_csv(write_file("good.csv", "# a comment\ntime_min,tip_z_um,oil_degC,feed_mm_min\n0,1.5,20,\n2,-3,,600\n"));
   EXPECT_EQ(r.time_s, (std::vector<double>{0, 120}));
   EXPECT_EQ(r.at("tip_z").values, (std::vector<double>{1.5, -3}));
   EXPECT_EQ(r.at("feed").unit, "mm_min");  // longest match: not "feed_mm" in "min"

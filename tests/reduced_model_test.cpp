@@ -26,13 +26,11 @@ FullSystem machine(int n) {
                           {{0.05, 0, 0}, {0.3, 0.1, 0.1}, {3 * n, n, n}, CellShape::kTet10}, "a.x1", "b.x0");
   effects::HeatBalance balance;
   balance.heats.push_back({"bearing", "a", [](const effects::Inputs& u) { return 0.1 * u.speed_rpm; }});
-  balance.films.push_back(
-      {"side", "a.y1", [](const effects::Inputs& u) { return 5.0 + 0.02 * u.speed_rpm; }, "hall"});
+  balance.films.push_back({"side", "a.y1", [](const effects::Inputs& u) { return 5.0 + 0.02 * u.speed_rpm; }, "hall"});
   balance.films.push_back({"back", "b.x1", fixtures::constant(30.0), "hall"});
   balance.contacts.push_back({"contact", "a/b", 1500.0});
   FullSystem system = assemble_heat(mesh, {fixtures::steel(), fixtures::steel()}, balance);
-  fixtures::observe_unknowns(system,
-                             {fixtures::node_at(mesh, {0, 0, 0}), fixtures::node_at(mesh, {0.35, 0.1, 0.1})});
+  fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0, 0, 0}), fixtures::node_at(mesh, {0.35, 0.1, 0.1})});
   return system;
 }
 
@@ -50,12 +48,11 @@ TEST(ThermalModes, OfASlabHaveTheTimeConstantsOfTheTranscendentalRoots) {
     const double z = fixtures::slab_root(htc * length_m / 40.0, i);
     const double tau_s = 8000.0 * 500.0 * length_m * length_m / (40.0 * z * z);
     EXPECT_NEAR(modes.time_constant_s[i] / tau_s, 1.0, 1e-5) << "mode " << i;
-    RecordProperty("tau_" + std::to_string(i),
-                   std::to_string(modes.time_constant_s[i]) + " exact " + std::to_string(tau_s));
+    RecordProperty("tau_" + std::to_string(i), std::to_string(modes.time_constant_s[i]) + " exact " + std::to_string(tau_s));
     // Shape cos(z x / L), of length one in M: amplitude from ∫ rho c A cos^2 dx = rho c A L (1/2 + sin 2z / 4z).
     const double amplitude = 1.0 / std::sqrt(4e6 * 1e-4 * length_m * (0.5 + std::sin(2 * z) / (4 * z)));
-    const Eigen::VectorXd exact = fixtures::at_nodes(
-        mesh, [&](const Eigen::Vector3d& x) { return amplitude * std::cos(z * x[0] / length_m); });
+    const Eigen::VectorXd exact =
+        fixtures::at_nodes(mesh, [&](const Eigen::Vector3d& x) { return amplitude * std::cos(z * x[0] / length_m); });
     const double sign = modes.shapes(fixtures::node_at(mesh, {0, 0, 0}), i) > 0 ? 1.0 : -1.0;
     EXPECT_LT((sign * modes.shapes.col(i) - exact).cwiseAbs().maxCoeff(), 1e-3 * amplitude) << "mode " << i;
   }
@@ -128,15 +125,14 @@ std::vector<double> every(double interval_s) {
 
 TEST(Evolve, InACompleteBasisIsTheFullModel) {
   const FullSystem system = machine(1);
-  const Eigen::MatrixXd basis =
-      orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size()));
+  const Eigen::MatrixXd basis = orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size()));
   ASSERT_EQ(basis.cols(), system.size());
   const ReducedSystem reduced = project(system, basis);
   // Both start from 5 K everywhere.
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(system.size(), 5.0);
   const Trajectory exact = evolve(reduced, kCycle, kRampingHall, every(300), 5.0 * reduced.ones);
-  const Trajectory full = simulate(system, kCycle, kRampingHall, every(300),
-                                   {.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8}, start);
+  const Trajectory full =
+      simulate(system, kCycle, kRampingHall, every(300), {.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8}, start);
   EXPECT_GT(full.outputs.maxCoeff(), 30.0);
   RecordProperty("difference_K", std::to_string(1e9 * difference_K(exact, full)) + "e-9");
   EXPECT_LT(difference_K(exact, full), 1e-5);  // 1e-8 of 60 K a step, over some hundred steps
@@ -151,12 +147,11 @@ TEST(Evolve, ModesWithSteadyResponsesBeatModesAlone) {
   Eigen::MatrixXd more(system.size(), modes.cols() + at_rest.cols() + at_speed.cols());
   more << modes, at_rest, at_speed;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
-  const Trajectory full = simulate(system, kCycle, kRampingHall, every(300),
-                                   {.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-6}, zero);
+  const Trajectory full =
+      simulate(system, kCycle, kRampingHall, every(300), {.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-6}, zero);
   const auto error_K = [&](const Eigen::MatrixXd& columns) {
     const ReducedSystem reduced = project(system, orthonormalise(system.mass, columns));
-    return difference_K(
-        evolve(reduced, kCycle, kRampingHall, every(300), Eigen::VectorXd::Zero(reduced.size())), full);
+    return difference_K(evolve(reduced, kCycle, kRampingHall, every(300), Eigen::VectorXd::Zero(reduced.size())), full);
   };
   const double alone_K = error_K(modes), together_K = error_K(more);
   RecordProperty("alone_K", std::to_string(alone_K));
@@ -166,8 +161,7 @@ TEST(Evolve, ModesWithSteadyResponsesBeatModesAlone) {
   // In the steady state the responses leave nothing at all: 1e7 s are many time constants.
   const Cyclogram for_ever{.name = "for ever", .sections = {{1e7, 3000}}};
   const ReducedSystem reduced = project(system, orthonormalise(system.mass, more));
-  const Trajectory end =
-      evolve(reduced, for_ever, {{0}, {2.0}}, {1e7}, Eigen::VectorXd::Zero(reduced.size()));
+  const Trajectory end = evolve(reduced, for_ever, {{0}, {2.0}}, {1e7}, Eigen::VectorXd::Zero(reduced.size()));
   const Eigen::VectorXd exact =
       system.outputs.state.transpose() * fixtures::steady(system, {.speed_rpm = 3000, .hall_K = 2});
   EXPECT_LT((end.outputs.col(0) - exact).cwiseAbs().maxCoeff(), 1e-8 * exact.maxCoeff());
@@ -190,8 +184,8 @@ TEST(Evolve, FollowsARampOfTheHallExactly) {
   // tau = 4000 s; hall 2 K/h: θ = s (t - tau + tau e^(-t/tau)).
   const double slope_K_s = 2.0 / 3600;
   const std::vector<double> times_s = {1, 600, 3600, 7200};
-  const Trajectory run = evolve(one_body(4000, 1), {.name = "rest", .sections = {{7200, 0}}},
-                                {{0, 7200}, {0, 4.0}}, times_s, Eigen::VectorXd::Zero(1));
+  const Trajectory run = evolve(one_body(4000, 1), {.name = "rest", .sections = {{7200, 0}}}, {{0, 7200}, {0, 4.0}}, times_s,
+                                Eigen::VectorXd::Zero(1));
   for (std::size_t k = 0; k < times_s.size(); ++k) {
     const double exact_K = slope_K_s * (times_s[k] + 4000.0 * std::expm1(-times_s[k] / 4000.0));
     EXPECT_NEAR(run.outputs(0, static_cast<Eigen::Index>(k)), exact_K,
@@ -205,15 +199,14 @@ TEST(Evolve, HeatsInOnePieceOrInMany) {
   const Cyclogram one{.name = "", .sections = {{7200, 1000}}};
   const Cyclogram many{.name = "", .sections = {{1000, 1000}, {200, 1000}, {0.5, 1000}, {5999.5, 1000}}};
   for (const Cyclogram& cycle : {one, many}) {
-    const Trajectory run =
-        evolve(one_body(4000, 1), cycle, {{0, 100, 7000}, {0, 0, 0}}, {7200}, Eigen::VectorXd::Zero(1));
+    const Trajectory run = evolve(one_body(4000, 1), cycle, {{0, 100, 7000}, {0, 0, 0}}, {7200}, Eigen::VectorXd::Zero(1));
     EXPECT_NEAR(run.outputs(0, 0), exact_K, 1e-11);
   }
 }
 
 TEST(Evolve, WithoutLossesItRisesInAStraightLine) {
-  const Trajectory run = evolve(one_body(4000, 0), {.name = "", .sections = {{7200, 1000}}}, {{0}, {0}},
-                                {1800, 7200}, Eigen::VectorXd::Constant(1, 2.0));
+  const Trajectory run = evolve(one_body(4000, 0), {.name = "", .sections = {{7200, 1000}}}, {{0}, {0}}, {1800, 7200},
+                                Eigen::VectorXd::Constant(1, 2.0));
   EXPECT_NEAR(run.outputs(0, 0), 2.0 + 45.0, 1e-12);  // 100 W * 1800 s / 4000 J/K
   EXPECT_NEAR(run.outputs(0, 1), 2.0 + 180.0, 1e-12);
 }

@@ -55,8 +55,7 @@ class ResultsFolderTest : public ::testing::Test {
     return found;
   }
 
-  const fs::path base_ =
-      fs::canonical(::testing::TempDir()) / ("results_folder_test-" + std::to_string(getpid()));
+  const fs::path base_ = fs::canonical(::testing::TempDir()) / ("results_folder_test-" + std::to_string(getpid()));
   const fs::path out_ = base_ / "out";
 };
 
@@ -107,8 +106,8 @@ TEST_F(ResultsFolderTest, TakesAnEmptyFolder) {
 TEST_F(ResultsFolderTest, RefusesAFolderWithOtherFilesAndTouchesNothing) {
   commit_with("a.txt", "A");
   std::ofstream(out_ / "thesis.txt") << "mine";
-  EXPECT_THAT([&] { (void)folder(); }, ThrowsMessage<InputError>(AllOf(
-                                           HasSubstr("thesis.txt"), HasSubstr("--force"), HasSubstr("-o"))));
+  EXPECT_THAT([&] { (void)folder(); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("thesis.txt"), HasSubstr("--force"), HasSubstr("-o"))));
   EXPECT_THAT(all_files(), ElementsAre("out/a.txt", "out/driftwright-manifest.json", "out/thesis.txt"));
 }
 
@@ -146,8 +145,7 @@ TEST_F(ResultsFolderTest, RefusesAFile) {
 
 TEST_F(ResultsFolderTest, RefusesAParentThatIsAFile) {
   std::ofstream(out_.string()) << "text";
-  EXPECT_THAT([&] { (void)ResultsFolder(out_ / "x", false, {}); },
-              ThrowsMessage<InputError>(HasSubstr("cannot be used")));
+  EXPECT_THAT([&] { (void)ResultsFolder(out_ / "x", false, {}); }, ThrowsMessage<InputError>(HasSubstr("cannot be used")));
 }
 
 TEST_F(ResultsFolderTest, RefusesTheCurrentFolderAndThoseAboveItEvenWithForce) {
@@ -159,8 +157,7 @@ TEST_F(ResultsFolderTest, RefusesTheCurrentFolderAndThoseAboveItEvenWithForce) {
 }
 
 TEST_F(ResultsFolderTest, RefusesAMountPoint) {
-  EXPECT_THAT([&] { (void)ResultsFolder("/proc", true, {}); },
-              ThrowsMessage<InputError>(HasSubstr("mount point")));
+  EXPECT_THAT([&] { (void)ResultsFolder("/proc", true, {}); }, ThrowsMessage<InputError>(HasSubstr("mount point")));
 }
 
 TEST_F(ResultsFolderTest, TakesALinkForTheFolderItLeadsTo) {
@@ -215,8 +212,7 @@ TEST_F(ResultsFolderTest, AFullDiskIsNoticedAndNamed) {
 TEST(JsonText, RoundsToSixDigitsAndWritesNanAsNull) {
   const nlohmann::ordered_json value = {
       {"z", 0.1 + 0.2}, {"a", {1234567.0, std::numeric_limits<double>::quiet_NaN()}}, {"n", 123456789}};
-  EXPECT_EQ(nlohmann::ordered_json::parse(json_text(value)).dump(),
-            R"({"z":0.3,"a":[1234570.0,null],"n":123456789})");
+  EXPECT_EQ(nlohmann::ordered_json::parse(json_text(value)).dump(), R"({"z":0.3,"a":[1234570.0,null],"n":123456789})");
 }
 
 }  // namespace

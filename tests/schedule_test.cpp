@@ -35,10 +35,8 @@ TEST(Schedule, OfALinearRampCorrectsWhereItPassesEachTolerance) {
 // Polyakov et al.: tolerance 10 um, five operations of 60 min. The drift curve is made to pass 10, 20, 30, 40
 // um at 18, 45, 75, 115 min and 50 um never; the text is the paper's.
 TEST(Schedule, ReproducesThePapersExample) {
-  const Schedule s =
-      plan_min({0, 18, 45, 75, 115, 300}, {0, 10, 20, 30, 40, 49}, {0, 60, 120, 180, 240, 300});
-  EXPECT_EQ(to_text(s),
-            "3-{18,27,15}-{0,10,10}\n3-{15,40,5}-{0,10,10}\n1-{60}-{0}\n1-{60}-{0}\n1-{60}-{0}\n");
+  const Schedule s = plan_min({0, 18, 45, 75, 115, 300}, {0, 10, 20, 30, 40, 49}, {0, 60, 120, 180, 240, 300});
+  EXPECT_EQ(to_text(s), "3-{18,27,15}-{0,10,10}\n3-{15,40,5}-{0,10,10}\n1-{60}-{0}\n1-{60}-{0}\n1-{60}-{0}\n");
   EXPECT_DOUBLE_EQ(correction_at(s, 150 * 60.0), 40.0);
 }
 
@@ -90,9 +88,8 @@ TEST(Schedule, TakesSeveralIncrementsAtOnceForAJump) {
 // from the start.
 TEST(Schedule, SeesAPeakBetweenTwoWrittenTimes) {
   for (double sign : {1.0, -1.0}) {
-    const Schedule s =
-        plan_schedule(std::vector<double>{0, 30, 60, 120}, std::vector<double>{0, sign * 15, 0, 0},
-                      std::vector<double>{0, 120}, {.resolution_s = 60.0});
+    const Schedule s = plan_schedule(std::vector<double>{0, 30, 60, 120}, std::vector<double>{0, sign * 15, 0, 0},
+                                     std::vector<double>{0, 120}, {.resolution_s = 60.0});
     EXPECT_EQ(correction_at(s, 0.0), sign * 10.0);
     EXPECT_DOUBLE_EQ(s.worst_remaining_um, 10.0);  // at 0 s; without the correction it would be 15 at 30 s
   }
@@ -123,8 +120,8 @@ TEST(Schedule, KeepsAWildDriftInsideTheTolerance) {
     d_um.push_back(40.0 * std::sin(t / 400.0) + 15.0 * std::sin(t / 83.0) - 0.004 * t);
   }
   for (double step_um : {3.0, 10.0, 16.0}) {
-    const Schedule s = plan_schedule(t_s, d_um, std::vector<double>{100.5, 1800, 3000.25, 5000},
-                                     {.step_um = step_um, .margin_um = 1.0});
+    const Schedule s =
+        plan_schedule(t_s, d_um, std::vector<double>{100.5, 1800, 3000.25, 5000}, {.step_um = step_um, .margin_um = 1.0});
     double worst_um = 0.0;
     for (double t = 100.5; t <= 5000.0; t += 0.05) {
       worst_um = std::max(worst_um, std::abs(interpolate(t_s, d_um, t) - correction_at(s, t)));
@@ -175,8 +172,7 @@ INSTANTIATE_TEST_SUITE_P(Each, ScheduleErrors,
 TEST(Schedule, RefusesOptionsOutOfRange) {
   const auto plan = [](const ScheduleOptions& options) { (void)plan_min({0, 10}, {0, 1}, {0, 10}, options); };
   EXPECT_THAT([&] { plan({.tolerance_um = 0.0}); }, ThrowsMessage<RangeError>(HasSubstr("tolerance")));
-  EXPECT_THAT([&] { plan({.tolerance_um = NAN, .step_um = 1.0}); },
-              ThrowsMessage<RangeError>(HasSubstr("tolerance")));
+  EXPECT_THAT([&] { plan({.tolerance_um = NAN, .step_um = 1.0}); }, ThrowsMessage<RangeError>(HasSubstr("tolerance")));
   EXPECT_THAT([&] { plan({.margin_um = 10.0}); }, ThrowsMessage<RangeError>(HasSubstr("margin")));
   EXPECT_THAT([&] { plan({.margin_um = -1.0}); }, ThrowsMessage<RangeError>(HasSubstr("margin")));
   EXPECT_THAT([&] { plan({.step_um = 0.0}); }, ThrowsMessage<RangeError>(HasSubstr("step")));

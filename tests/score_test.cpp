@@ -31,9 +31,8 @@ TEST(Score, OfNothingIsNotANumberSoThatNoBoundHolds) {
 }
 
 // Two trainings: 2t on [0, 10] s and 10 + t on [0, 20] s.
-const std::vector<Record> kTrain = {
-    {.source = "a", .time_s = {0, 10}, .channels = {{"d", "um", {0, 20}}}},
-    {.source = "b", .time_s = {0, 4, 20}, .channels = {{"d", "um", {10, 14, 30}}}}};
+const std::vector<Record> kTrain = {{.source = "a", .time_s = {0, 10}, .channels = {{"d", "um", {0, 20}}}},
+                                    {.source = "b", .time_s = {0, 4, 20}, .channels = {{"d", "um", {10, 14, 30}}}}};
 const Record kTest{.source = "c", .time_s = {-1, 5, 10, 15, 25}, .channels = {}};
 
 TEST(Baselines, MeanIsThatOfAllTrainingSamples) {
@@ -53,10 +52,8 @@ TEST(Baselines, SameTimeAveragesTheRecordsThatReachIt) {
 }
 
 TEST(Baselines, RefuseTrainingWithoutData) {
-  const std::vector<Record> empty = {
-      {.source = "a", .time_s = {0, 1}, .channels = {{"d", "um", {NAN, NAN}}}}};
-  EXPECT_THAT([&] { (void)baseline_mean(empty, kTest, "d"); },
-              ThrowsMessage<InputError>(HasSubstr("no value")));
+  const std::vector<Record> empty = {{.source = "a", .time_s = {0, 1}, .channels = {{"d", "um", {NAN, NAN}}}}};
+  EXPECT_THAT([&] { (void)baseline_mean(empty, kTest, "d"); }, ThrowsMessage<InputError>(HasSubstr("no value")));
   EXPECT_THROW((void)baseline_mean({}, kTest, "d"), InputError);
   EXPECT_THROW((void)baseline_same_time({}, kTest, "d"), InputError);
   EXPECT_THROW((void)baseline_same_time(kTrain, kTest, "nowhere"), InputError);

@@ -79,8 +79,8 @@ TEST_P(EachShape, QuadratureIsExactForMonomialsToItsDegree) {
           for (const QuadraturePoint& q : quadrature(GetParam(), degree)) {
             sum += q.weight * std::pow(q.xi[0], a) * std::pow(q.xi[1], b) * std::pow(q.xi[2], c);
           }
-          const double exact = std::tgamma(a + 1) * std::tgamma(b + 1) * std::tgamma(c + 1) /
-                               std::tgamma(a + b + c + dimension() + 1);
+          const double exact =
+              std::tgamma(a + 1) * std::tgamma(b + 1) * std::tgamma(c + 1) / std::tgamma(a + b + c + dimension() + 1);
           EXPECT_NEAR(sum, exact, 1e-15) << "x^" << a << " y^" << b << " z^" << c << " by degree " << degree;
         }
       }
@@ -93,8 +93,7 @@ TEST_P(EachShape, QuadratureAboveDegreeFiveIsRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, EachShape,
-                         ::testing::Values(CellShape::kTri3, CellShape::kTri6, CellShape::kTet4,
-                                           CellShape::kTet10));
+                         ::testing::Values(CellShape::kTri3, CellShape::kTri6, CellShape::kTet4, CellShape::kTet10));
 
 TEST(Jacobian, OfAStretchedAndTurnedCellIsItsVolumeAndAreaRatio) {
   // Edges 2, 3 and 4 at right angles, turned by a permutation of the axes: volume 24/6, area of the first facet 6/2.
@@ -104,8 +103,7 @@ TEST(Jacobian, OfAStretchedAndTurnedCellIsItsVolumeAndAreaRatio) {
   const Jacobian j = jacobian(shape_values(CellShape::kTet4, {.2, .2, .2}), tet, CellShape::kTet4);
   EXPECT_DOUBLE_EQ(j.det, 24.0);
   EXPECT_EQ(j.dx_dxi.col(1), Eigen::Vector3d(0, 0, 3));
-  EXPECT_DOUBLE_EQ(jacobian(shape_values(CellShape::kTri3, {.2, .2, 0}), triangle, CellShape::kTri3).det,
-                   6.0);
+  EXPECT_DOUBLE_EQ(jacobian(shape_values(CellShape::kTri3, {.2, .2, 0}), triangle, CellShape::kTri3).det, 6.0);
 }
 
 }  // namespace

@@ -13,8 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-Record curve(const std::string& source, std::vector<double> time_s, std::vector<double> t_C,
-             std::vector<double> d_um) {
+Record curve(const std::string& source, std::vector<double> time_s, std::vector<double> t_C, std::vector<double> d_um) {
   return {.source = source,
           .time_s = std::move(time_s),
           .channels = {{"t", "degC", std::move(t_C)}, {"d", "um", std::move(d_um)}}};
@@ -27,8 +26,7 @@ std::optional<TemperatureAmbiguity> find(const std::vector<Record>& records, dou
 // theta = T - 20 degC: d1 = 10, d2 = 10 + 3 theta on theta in [0, 5]. Spread 0.3 theta, largest at the end:
 // 15/10.
 TEST(TemperatureAmbiguity, FindsTheTemperatureOfTheLargestSpread) {
-  const auto worst =
-      find({curve("slow", {0, 100}, {20, 25}, {10, 10}), curve("fast", {0, 50}, {20, 25}, {10, 25})});
+  const auto worst = find({curve("slow", {0, 100}, {20, 25}, {10, 10}), curve("fast", {0, 50}, {20, 25}, {10, 25})});
   ASSERT_TRUE(worst);
   EXPECT_DOUBLE_EQ(worst->temperature, 25.0);
   EXPECT_DOUBLE_EQ(worst->spread, 1.5);
@@ -45,8 +43,8 @@ TEST(TemperatureAmbiguity, FindsTheTemperatureOfTheLargestSpread) {
 // signs alike.
 TEST(TemperatureAmbiguity, StopsExactlyAtTheFloor) {
   for (double sign : {1.0, -1.0}) {
-    const auto worst = find({curve("a", {0, 100}, {20, 25}, {0, sign * 10}),
-                             curve("b", {0, 60}, {20, 25}, {sign * 10, sign * 20})});
+    const auto worst =
+        find({curve("a", {0, 100}, {20, 25}, {0, sign * 10}), curve("b", {0, 60}, {20, 25}, {sign * 10, sign * 20})});
     ASSERT_TRUE(worst);
     EXPECT_NEAR(worst->temperature, 22.5, 1e-12);
     EXPECT_NEAR(worst->spread, 2.0, 1e-12);
@@ -60,8 +58,8 @@ TEST(TemperatureAmbiguity, StopsExactlyAtTheFloor) {
 // "a" is there once, with 12 um. Worst pair: 30 against 12, spread 18/12 = 1.5, at 15 s. "a" is so short that
 // only 22 +- 0 counts.
 TEST(TemperatureAmbiguity, WeighsEveryCrossing) {
-  const auto worst = find({curve("a", {0, 1}, {22, 22}, {12, 12}),
-                           curve("b", {0, 10, 20, 30}, {20, 24, 20, 24}, {6, 14, 46, -22})});
+  const auto worst =
+      find({curve("a", {0, 1}, {22, 22}, {12, 12}), curve("b", {0, 10, 20, 30}, {20, 24, 20, 24}, {6, 14, 46, -22})});
   ASSERT_TRUE(worst);
   EXPECT_DOUBLE_EQ(worst->temperature, 22.0);
   EXPECT_NEAR(worst->second.displacement_um, 30.0, 1e-12);
@@ -103,7 +101,7 @@ TEST(TemperatureAmbiguity, AgreesWithTheClosedFormOfHeatingAndCooling) {
 
 TEST(TemperatureAmbiguity, NeedsTwoRecordsAtOneTemperatureAboveTheFloor) {
   const Record hysteresis = curve("a", {0, 1, 2}, {20, 25, 20}, {10, 20, 40});
-  EXPECT_FALSE(find({hysteresis}));  // one record alone proves nothing
+  EXPECT_FALSE(find({hysteresis}));                                           // one record alone proves nothing
   EXPECT_FALSE(find({hysteresis, curve("b", {0, 1}, {26, 28}, {10, 90})}));   // never as warm
   EXPECT_FALSE(find({hysteresis, curve("b", {0, 1}, {20, 25}, {0, 4.9})}));   // below the floor
   EXPECT_FALSE(find({hysteresis, curve("b", {0, 1}, {NAN, 22}, {10, 90})}));  // a gap
@@ -118,11 +116,7 @@ TEST(TemperatureAmbiguity, RefusesBadInput) {
   EXPECT_THROW((void)find({good}, 0.0), RangeError);
   EXPECT_THROW((void)find({good}, NAN), RangeError);
   EXPECT_THAT([&] { (void)find({in_mm}); }, ThrowsMessage<InputError>(HasSubstr("is in mm; um is wanted")));
-  EXPECT_THAT(
-      [&] {
-        (void)find({good, in_kelvin});
-      },
-      ThrowsMessage<InputError>(HasSubstr("in degC in a but in K")));
+  EXPECT_THAT([&] { (void)find({good, in_kelvin}); }, ThrowsMessage<InputError>(HasSubstr("in degC in a but in K")));
   EXPECT_THROW((void)temperature_ambiguity(std::vector{good}, "nowhere", "d"), InputError);
 }
 

@@ -20,9 +20,8 @@ const TimeSeries kStillHall{{0.0}, {0.0}};
 
 /// Two steel blocks with a joint: heat and a film that grow with speed, a constant film, a pocket of air.
 FullSystem machine(int n) {
-  const mesh::Mesh mesh =
-      fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.1}, {n, n, n}, CellShape::kTet10},
-                          {{0.1, 0, 0}, {0.2, 0.1, 0.1}, {n, n, n}, CellShape::kTet10}, "a.x1", "b.x0");
+  const mesh::Mesh mesh = fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.1}, {n, n, n}, CellShape::kTet10},
+                                              {{0.1, 0, 0}, {0.2, 0.1, 0.1}, {n, n, n}, CellShape::kTet10}, "a.x1", "b.x0");
   effects::HeatBalance balance;
   balance.heats.push_back({"bearing", "a", [](const effects::Inputs& u) { return 0.1 * u.speed_rpm; }});
   balance.heats.push_back({"pump", "b", fixtures::constant(20.0)});
@@ -37,8 +36,7 @@ FullSystem machine(int n) {
   return system;
 }
 
-const Cyclogram kCycle{.name = "cycle",
-                       .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}, {1800, 0}}};
+const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}, {1800, 0}}};
 const TimeSeries kRampingHall{{0, 2000, 5000, 8000}, {0.0, 1.5, 1.5, -2.0}};
 
 // --- balance ----------------------------------------------------------------------------------------------------
@@ -46,9 +44,9 @@ const TimeSeries kRampingHall{{0, 2000, 5000, 8000}, {0.0, 1.5, 1.5, -2.0}};
 TEST(EnergyBalance, ClosesToRoundingOnACyclogramWithRampsAtAnyTolerance) {
   const FullSystem system = machine(2);
   for (double tolerance : {1e-2, 5e-4, 1e-5}) {
-    const Trajectory run = simulate(system, kCycle, kRampingHall, {4000, 9000},
-                                    {.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance},
-                                    Eigen::VectorXd::Zero(system.size()));
+    const Trajectory run =
+        simulate(system, kCycle, kRampingHall, {4000, 9000},
+                 {.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance}, Eigen::VectorXd::Zero(system.size()));
     // Sums over some thousand unknowns and steps, each to 1e-16, and the last steps' projected residuals.
     EXPECT_LT(run.energy_gap(), 1e-9) << "tolerance " << tolerance;
     RecordProperty("gap_" + std::to_string(tolerance), std::to_string(1e12 * run.energy_gap()) + "e-12");
@@ -57,8 +55,7 @@ TEST(EnergyBalance, ClosesToRoundingOnACyclogramWithRampsAtAnyTolerance) {
 
 TEST(EnergyBalance, HeatOfASourceIsPowerTimesTime) {
   const FullSystem system = machine(1);
-  const Trajectory run =
-      simulate(system, kCycle, kRampingHall, {1800, 9000}, {}, Eigen::VectorXd::Zero(system.size()));
+  const Trajectory run = simulate(system, kCycle, kRampingHall, {1800, 9000}, {}, Eigen::VectorXd::Zero(system.size()));
   ASSERT_EQ(run.flow_names, (std::vector<std::string>{"bearing", "pump", "side", "back", "air_node air"}));
   ASSERT_EQ(run.n_sources, 2);
   // 0.1 W/rpm: 1800 s * 200 W = 360 kJ, then 1200 s * 50 W + 3600 s * 300 W = 1140 kJ more. Rounding of sums.
@@ -88,8 +85,8 @@ TEST(Changes, AShortPulseWithinHoursOfRestIsNotSteppedOver) {
   FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   fixtures::observe_unknowns(system, {0});
   const Cyclogram pulse{.name = "pulse", .sections = {{14400, 0}, {30, 1000}, {14400, 0}}};
-  const Trajectory run = simulate(system, pulse, kStillHall, {14400, 14415, 14430, 28830},
-                                  {.max_step_s = 7200.0}, Eigen::VectorXd::Zero(system.size()));
+  const Trajectory run = simulate(system, pulse, kStillHall, {14400, 14415, 14430, 28830}, {.max_step_s = 7200.0},
+                                  Eigen::VectorXd::Zero(system.size()));
   // The program's arithmetic conserves heat to rounding; 1e-9 of 3000 J.
   EXPECT_NEAR(run.stored_J[0], 0.0, 3e-6);
   EXPECT_NEAR(run.stored_J[1], 1500.0, 3e-6);
@@ -128,20 +125,18 @@ double error_K(double tolerance) {
   std::vector<int> all(system.size());
   for (int i = 0; i < system.size(); ++i) all[i] = i;
   fixtures::observe_unknowns(system, all);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      Eigen::MatrixXd(fixtures::stiffness(system)), Eigen::MatrixXd(system.mass));
-  const Eigen::VectorXd slow =
-      10.0 * eigen.eigenvectors().col(0) / eigen.eigenvectors().col(0).cwiseAbs().maxCoeff();
-  const Eigen::VectorXd fast =
-      5.0 * eigen.eigenvectors().col(1) / eigen.eigenvectors().col(1).cwiseAbs().maxCoeff();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(fixtures::stiffness(system)),
+                                                                        Eigen::MatrixXd(system.mass));
+  const Eigen::VectorXd slow = 10.0 * eigen.eigenvectors().col(0) / eigen.eigenvectors().col(0).cwiseAbs().maxCoeff();
+  const Eigen::VectorXd fast = 5.0 * eigen.eigenvectors().col(1) / eigen.eigenvectors().col(1).cwiseAbs().maxCoeff();
   const std::vector<double> times_s = {10, 100, 137, 1000, 3000, 9999, 20000};
-  const Trajectory run = simulate(
-      system, {.name = "rest", .sections = {{20000, 0}}}, kStillHall, times_s,
-      {.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance, .max_step_s = 1e4}, slow + fast);
+  const Trajectory run =
+      simulate(system, {.name = "rest", .sections = {{20000, 0}}}, kStillHall, times_s,
+               {.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance, .max_step_s = 1e4}, slow + fast);
   double worst = 0.0;
   for (std::size_t k = 0; k < times_s.size(); ++k) {
-    const Eigen::VectorXd exact = std::exp(-eigen.eigenvalues()[0] * times_s[k]) * slow +
-                                  std::exp(-eigen.eigenvalues()[1] * times_s[k]) * fast;
+    const Eigen::VectorXd exact =
+        std::exp(-eigen.eigenvalues()[0] * times_s[k]) * slow + std::exp(-eigen.eigenvalues()[1] * times_s[k]) * fast;
     worst = std::max(worst, (run.outputs.col(static_cast<Eigen::Index>(k)) - exact).cwiseAbs().maxCoeff());
   }
   return worst;
@@ -154,8 +149,7 @@ TEST(Accuracy, ErrorAgainstExponentialsStaysNearTheToleranceAndShrinksWithIt) {
     RecordProperty("error_at_" + std::to_string(tolerance), std::to_string(1e6 * error) + "e-6");
     // Allowed per step: tolerance (1 K + |theta|), 16 K at the start. What adds up over the run stays below it.
     EXPECT_LT(error, 16.0 * tolerance) << "tolerance " << tolerance;
-    EXPECT_LT(error, 0.5 * last) << "tolerance "
-                                 << tolerance;  // a third where an output falls badly between steps
+    EXPECT_LT(error, 0.5 * last) << "tolerance " << tolerance;  // a third where an output falls badly between steps
     last = error;
   }
 }
@@ -182,8 +176,7 @@ TEST(Threads, GiveTheSameBits) {
   const Cyclogram cycle{.name = "c", .sections = {{5, 2000}}};
   const auto run = [&](int n_threads) {
     omp_set_num_threads(n_threads);
-    return simulate(system, cycle, kRampingHall, {2, 5},
-                    {.relative_tolerance = 0.1, .absolute_tolerance_K = 0.1},
+    return simulate(system, cycle, kRampingHall, {2, 5}, {.relative_tolerance = 0.1, .absolute_tolerance_K = 0.1},
                     Eigen::VectorXd::Zero(system.size()));
   };
   const int n_before = omp_get_max_threads();
@@ -206,8 +199,7 @@ TEST(Simulate, CallsBackAtEachOutputAndStopsWhenTheCallbackThrows) {
   };
   EXPECT_THAT(
       [&] {
-        (void)simulate(system, kCycle, kStillHall, {0, 100, 700, 800}, {},
-                       Eigen::VectorXd::Zero(system.size()), note);
+        (void)simulate(system, kCycle, kStillHall, {0, 100, 700, 800}, {}, Eigen::VectorXd::Zero(system.size()), note);
       },
       ::testing::ThrowsMessage<std::runtime_error>("enough"));
   EXPECT_EQ(called_s, (std::vector<double>{0, 100, 700}));
@@ -216,8 +208,7 @@ TEST(Simulate, CallsBackAtEachOutputAndStopsWhenTheCallbackThrows) {
 TEST(Simulate, NotANumberIsASolveError) {
   FullSystem system = machine(1);
   system.sources[0].power_W = fixtures::constant(std::nan(""));
-  EXPECT_THROW((void)simulate(system, kCycle, kStillHall, {100}, {}, Eigen::VectorXd::Zero(system.size())),
-               SolveError);
+  EXPECT_THROW((void)simulate(system, kCycle, kStillHall, {100}, {}, Eigen::VectorXd::Zero(system.size())), SolveError);
 }
 
 }  // namespace

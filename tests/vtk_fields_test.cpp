@@ -97,8 +97,7 @@ TEST_F(VtkFieldsTest, RegionsKeepTheirNamesAndFilesSayTheirTimeAndOrigin) {
   EXPECT_EQ(grid->GetCellData()->GetArray("region")->GetTuple1(0), 1);
   EXPECT_EQ(grid->GetCellData()->GetArray("region")->GetTuple1(1), 0);
   const auto text = [&](const char* array, int i) {
-    return std::string(
-        vtkStringArray::SafeDownCast(grid->GetFieldData()->GetAbstractArray(array))->GetValue(i));
+    return std::string(vtkStringArray::SafeDownCast(grid->GetFieldData()->GetAbstractArray(array))->GetValue(i));
   };
   EXPECT_EQ(text("region_names", 0), "column");
   EXPECT_EQ(text("region_names", 1), "spindle_housing");
