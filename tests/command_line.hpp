@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/temporary_file.hpp"
+
 namespace driftwright {
 
 struct CommandOutcome {
@@ -37,8 +39,7 @@ inline std::string read_text(const std::filesystem::path& path) {
 
 /// An empty folder of this test's own.
 inline std::filesystem::path fresh_folder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("driftwright_" + name);
-  std::filesystem::remove_all(folder);
+  const std::filesystem::path folder = temporary_folder() / name;
   std::filesystem::create_directories(folder);
   return folder;
 }

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/fixtures.hpp"
+#include "tests/temporary_file.hpp"
 
 namespace driftwright {
 namespace {
@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 ConfigMap read(const std::string& text) {
-  return ConfigMap::read_file(fixtures::write_file("config_map_test.yaml", text));
+  return ConfigMap::read_file(write_file("config_map_test.yaml", text));
 }
 
 TEST(ConfigMap, ReadsWhatStandsThere) {

@@ -7,7 +7,7 @@
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
 #include "effects/formulas.hpp"
-#include "tests/fixtures.hpp"
+#include "tests/temporary_file.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -87,7 +87,7 @@ TEST(RotatingCylinder, IsValidUpToItsReynoldsNumber) {
 // --- the catalogue ----------------------------------------------------------------------------------------------
 
 Effect read(const std::string& text) {
-  return read_effect(ConfigMap::read_file(fixtures::write_file("effects_test.yaml", text)));
+  return read_effect(ConfigMap::read_file(write_file("effects_test.yaml", text)));
 }
 
 TEST(Catalogue, KeysAndParameterNamesAreUnique) {

@@ -239,10 +239,4 @@ double slab_root(double biot, int i) {
   return 0.5 * (low + high);
 }
 
-std::string write_file(const std::string& name, const std::string& text) {
-  const std::string path = ::testing::TempDir() + name;
-  std::ofstream(path) << text;
-  return path;
-}
-
 }  // namespace driftwright::fixtures

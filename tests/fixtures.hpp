@@ -75,7 +75,4 @@ struct TwoBodies {
 /// The i-th root (from 0) of z tan z = biot: in (i pi, i pi + pi/2). By bisection.
 [[nodiscard]] double slab_root(double biot, int i);
 
-/// Writes a text to a file in the test's own temporary folder and returns its path.
-[[nodiscard]] std::string write_file(const std::string& name, const std::string& text);
-
 }  // namespace driftwright::fixtures

@@ -1,0 +1,33 @@
+#pragma once
+// Files that tests write. Each process has a folder of its own, since CTest runs many at once, and takes it away at its end.
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace driftwright {
+
+/// This process's folder for temporary files.
+inline const std::filesystem::path& temporary_folder() {
+  struct Folder {
+    std::filesystem::path path = std::filesystem::temp_directory_path() / ("driftwright_test-" + std::to_string(getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Folder folder;
+  return folder.path;
+}
+
+/// Writes `text` to a file of that name and returns its path.
+inline std::string write_file(const std::string& name, const std::string& text) {
+  const std::filesystem::path path = temporary_folder() / name;
+  std::ofstream(path) << text;
+  return path.string();
+}
+
+}  // namespace driftwright
