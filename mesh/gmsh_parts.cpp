@@ -10,6 +10,7 @@
 
 #include "base/errors.hpp"
 #include "mesh/quality.hpp"
+#include "mesh/shape.hpp"
 
 namespace driftwright::mesh {
 namespace {
@@ -40,6 +41,48 @@ void set_sizes(std::vector<Part> parts) {  // coarse parts first, so that a shar
     for (int v : part.volumes) volumes.emplace_back(3, v);
     gmsh::model::getBoundary(volumes, points, false, false, true);
     gmsh::model::mesh::setSize(points, part.mesh_size_m);
+  }
+}
+
+/// Curved edges fold a cell that has two faces on one cylinder. Such cells, and they alone, get straight edges: their
+/// mid-side nodes move to the middle of their corners, by the sagitta at most.
+void straighten_folded_cells() {
+  constexpr double kLeastScaledJacobian = 0.05;
+  std::vector<double> parametric, coord;
+  std::vector<std::size_t> tags, cells, nodes;
+  gmsh::model::mesh::getNodes(tags, coord, parametric, -1, -1, false, false);
+  std::map<std::size_t, int> number;
+  Mesh mesh;
+  mesh.coords.resize(3, static_cast<Eigen::Index>(tags.size()));
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    number[tags[i]] = static_cast<int>(i);
+    mesh.coords.col(static_cast<Eigen::Index>(i)) << coord[3 * i], coord[3 * i + 1], coord[3 * i + 2];
+  }
+  gmsh::model::mesh::getElementsByType(11, cells, nodes);
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    std::array<int, 10> numbered{};
+    for (std::size_t i = 0; i < 10; ++i) numbered[i] = number.at(nodes[10 * c + i]);
+    std::swap(numbered[8], numbered[9]);
+    mesh.cells.add(CellShape::kTet10, numbered, 0);
+  }
+  std::set<int> moved;
+  for (int pass = 0; pass < 10; ++pass) {  // a straightened edge may fold a neighbour
+    const std::vector<double> scaled = scaled_jacobians(mesh);
+    const std::size_t n_before = moved.size();
+    for (int c = 0; c < mesh.cells.size(); ++c) {
+      if (scaled[c] > kLeastScaledJacobian) continue;
+      const auto cell = mesh.cells.nodes(c);
+      for (int e = 0; e < 6; ++e) {
+        const auto& [a, b] = kTetrahedronEdges[e];
+        mesh.coords.col(cell[4 + e]) = 0.5 * (mesh.coords.col(cell[a]) + mesh.coords.col(cell[b]));
+        moved.insert(cell[4 + e]);
+      }
+    }
+    if (moved.size() == n_before) break;
+  }
+  for (int n : moved) {
+    const Eigen::Vector3d x = mesh.coords.col(n);
+    gmsh::model::mesh::setNode(tags[n], {x[0], x[1], x[2]}, {});
   }
 }
 
@@ -99,53 +142,44 @@ GmshSession::~GmshSession() {
 
 Mesh mesh_parts(const std::vector<Part>& parts, int order, const std::function<std::string(const OuterFace&)>& name_of) {
   Mesh mesh;
-  try {
-    gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
-    gmsh::option::setNumber("Mesh.Algorithm3D", 1);  // Delaunay: repeatable, and kind to thin walls
-    gmsh::option::setNumber("Mesh.Optimize", 1);
-    set_sizes(parts);
-    gmsh::model::mesh::generate(3);
-    if (order == 2) {
-      gmsh::model::mesh::setOrder(2);
-      gmsh::model::mesh::optimize("HighOrderElastic");  // straightens the few curved cells that came out folded
-    }
-    NodeTable table;
-    std::map<int, std::vector<int>> parts_at_face;  // Gmsh surface -> parts on its sides
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      mesh.regions.push_back(parts[p].region);
-      for (int volume : parts[p].volumes) {
-        add_elements(mesh.cells, table, static_cast<int>(p), volume, cell_shape(order), static_cast<int>(p));
-        gmsh::vectorpair faces;
-        gmsh::model::getBoundary({{3, volume}}, faces, false, false, false);
-        for (const auto& [dim, face] : faces) parts_at_face[face].push_back(static_cast<int>(p));
-      }
-    }
-    for (const auto& [face, sides] : parts_at_face) {
-      if (sides.size() == 1) {
-        OuterFace outer{parts[sides[0]].region, {}, {}};
-        gmsh::model::getBoundingBox(2, face, outer.low[0], outer.low[1], outer.low[2], outer.high[0], outer.high[1],
-                                    outer.high[2]);
-        add_elements(mesh.facets, table, sides[0], face, facet_shape(order), index_or_add(mesh.surfaces, name_of(outer)));
-      } else if (sides[0] != sides[1]) {
-        std::array<int, 2> pair = {sides[0], sides[1]};
-        if (parts[pair[0]].region > parts[pair[1]].region) std::swap(pair[0], pair[1]);
-        const std::string name = parts[pair[0]].region + "/" + parts[pair[1]].region;
-        const std::array<std::string, 2> side = {name + "@" + parts[pair[0]].region, name + "@" + parts[pair[1]].region};
-        if (!mesh.joint(name)) mesh.joints.push_back({name, side[0], side[1]});
-        for (int i = 0; i < 2; ++i) {
-          add_elements(mesh.facets, table, pair[i], face, facet_shape(order), index_or_add(mesh.surfaces, side[i]));
-        }
-      }
-    }
-    mesh.coords = table.coords();
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception& e) {
-    std::string last;
-    gmsh::logger::getLastError(last);
-    throw SolveError(
-        fmt::format("Gmsh could not mesh the geometry: {} {}; try other dimensions or mesh sizes", e.what(), last));
+  gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
+  gmsh::option::setNumber("Mesh.Algorithm3D", 1);  // Delaunay: repeatable, and kind to thin walls
+  gmsh::option::setNumber("Mesh.Optimize", 1);
+  set_sizes(parts);
+  gmsh::model::mesh::generate(3);
+  if (order == 2) {
+    gmsh::model::mesh::setOrder(2);
+    straighten_folded_cells();
   }
+  NodeTable table;
+  std::map<int, std::vector<int>> parts_at_face;  // Gmsh surface -> parts on its sides
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    mesh.regions.push_back(parts[p].region);
+    for (int volume : parts[p].volumes) {
+      add_elements(mesh.cells, table, static_cast<int>(p), volume, cell_shape(order), static_cast<int>(p));
+      gmsh::vectorpair faces;
+      gmsh::model::getBoundary({{3, volume}}, faces, false, false, false);
+      for (const auto& [dim, face] : faces) parts_at_face[face].push_back(static_cast<int>(p));
+    }
+  }
+  for (const auto& [face, sides] : parts_at_face) {
+    if (sides.size() == 1) {
+      OuterFace outer{parts[sides[0]].region, {}, {}};
+      gmsh::model::getBoundingBox(2, face, outer.low[0], outer.low[1], outer.low[2], outer.high[0], outer.high[1],
+                                  outer.high[2]);
+      add_elements(mesh.facets, table, sides[0], face, facet_shape(order), index_or_add(mesh.surfaces, name_of(outer)));
+    } else if (sides[0] != sides[1]) {
+      std::array<int, 2> pair = {sides[0], sides[1]};
+      if (parts[pair[0]].region > parts[pair[1]].region) std::swap(pair[0], pair[1]);
+      const std::string name = parts[pair[0]].region + "/" + parts[pair[1]].region;
+      const std::array<std::string, 2> side = {name + "@" + parts[pair[0]].region, name + "@" + parts[pair[1]].region};
+      if (!mesh.joint(name)) mesh.joints.push_back({name, side[0], side[1]});
+      for (int i = 0; i < 2; ++i) {
+        add_elements(mesh.facets, table, pair[i], face, facet_shape(order), index_or_add(mesh.surfaces, side[i]));
+      }
+    }
+  }
+  mesh.coords = table.coords();
   const Quality quality = worst_quality(mesh);
   if (!(quality.min_det_m3 > 0.0)) {
     throw SolveError(fmt::format("cell {} in region '{}' is inverted; try a smaller mesh size there, or element_order: 1",

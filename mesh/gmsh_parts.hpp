@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/errors.hpp"
 #include "mesh/mesh.hpp"
 
 namespace driftwright::mesh {
@@ -22,6 +23,17 @@ class GmshSession {
  private:
   int n_threads_;  ///< of OpenMP, before Gmsh
 };
+
+/// Runs work that calls Gmsh. Its C++ interface throws a std::string, which no handler of ours would catch.
+/// @throws SolveError  with Gmsh's message; other exceptions pass
+template <class Work>
+auto with_gmsh_errors(Work work) {
+  try {
+    return work();
+  } catch (const std::string& message) {
+    throw SolveError("Gmsh could not mesh the geometry: " + message + "; try other dimensions or mesh sizes");
+  }
+}
 
 /// A part of the machine: which Gmsh volumes it is made of, and how fine its mesh shall be.
 struct Part {
@@ -42,7 +54,8 @@ struct OuterFace {
 /// @param parts    every volume of the model in exactly one part
 /// @param order    1: tet4, 2: tet10 with curved edges
 /// @param name_of  surface name of an outer face
-/// @throws SolveError  when Gmsh fails (its message) or a cell is inverted
+/// Throws what Gmsh throws: call it inside with_gmsh_errors().
+/// @throws SolveError  when a cell is inverted
 [[nodiscard]] Mesh mesh_parts(const std::vector<Part>& parts, int order,
                               const std::function<std::string(const OuterFace&)>& name_of);
 

@@ -199,20 +199,22 @@ KneeMill read_knee_mill(const ConfigMap& in) {
 
 Mesh build_knee_mill(const KneeMill& mill) {
   const GmshSession session;
-  const Layout at(mill);
-  const std::vector<Named> named = add_parts(mill, at);
-  gmsh::vectorpair all, out;
-  std::vector<gmsh::vectorpair> map;
-  for (const Named& n : named) all.emplace_back(3, n.volume);
-  occ::fragment({all.front()}, {all.begin() + 1, all.end()}, out, map);
-  occ::synchronize();
-  std::vector<Part> parts;
-  for (std::size_t i = 0; i < named.size(); ++i) {
-    Part part{named[i].region, {}, named[i].mesh_size_m};
-    for (const auto& [dim, tag] : map[i]) part.volumes.push_back(tag);
-    parts.push_back(std::move(part));
-  }
-  return mesh_parts(parts, mill.element_order, [&](const OuterFace& face) { return surface_name(mill, at, face); });
+  return with_gmsh_errors([&] {
+    const Layout at(mill);
+    const std::vector<Named> named = add_parts(mill, at);
+    gmsh::vectorpair all, out;
+    std::vector<gmsh::vectorpair> map;
+    for (const Named& n : named) all.emplace_back(3, n.volume);
+    occ::fragment({all.front()}, {all.begin() + 1, all.end()}, out, map);
+    occ::synchronize();
+    std::vector<Part> parts;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      Part part{named[i].region, {}, named[i].mesh_size_m};
+      for (const auto& [dim, tag] : map[i]) part.volumes.push_back(tag);
+      parts.push_back(std::move(part));
+    }
+    return mesh_parts(parts, mill.element_order, [&](const OuterFace& face) { return surface_name(mill, at, face); });
+  });
 }
 
 }  // namespace driftwright::mesh

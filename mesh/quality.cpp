@@ -13,7 +13,7 @@ namespace {
 std::vector<Eigen::Vector3d> reference_nodes(CellShape shape) {
   std::vector<Eigen::Vector3d> xi = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   if (shape == CellShape::kTet10) {
-    for (const auto& [a, b] : std::array<std::array<int, 2>, 6>{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}}) {
+    for (const auto& [a, b] : kTetrahedronEdges) {
       xi.emplace_back(0.5 * (xi[a] + xi[b]));
     }
   }

@@ -16,9 +16,6 @@ bool is_quadratic(CellShape shape) {
   return shape == CellShape::kTri6 || shape == CellShape::kTet10;
 }
 
-// Mid-side nodes in VTK's order: the two corners between which node n_corners + e lies.
-constexpr std::array<std::array<int, 2>, 6> kTetEdges = {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-
 std::vector<QuadraturePoint> tetrahedron_rule(int degree) {
   if (degree <= 1) return {{{0.25, 0.25, 0.25}, 1.0 / 6.0}};
   std::vector<QuadraturePoint> rule;
@@ -89,7 +86,7 @@ ShapeValues shape_values(CellShape shape, const Eigen::Vector3d& xi) {
     s.dN.col(i) = (4.0 * l[i] - 1.0) * dl.col(i);
   }
   for (int e = 0; e < s.n - n_corners; ++e) {
-    const auto [a, b] = kTetEdges[e];
+    const auto [a, b] = kTetrahedronEdges[e];
     s.N[n_corners + e] = 4.0 * l[a] * l[b];
     s.dN.col(n_corners + e) = 4.0 * (l[a] * dl.col(b) + l[b] * dl.col(a));
   }

@@ -2,6 +2,7 @@
 // Shape functions and quadrature of the cells and facets.
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 
 #include "mesh/mesh.hpp"
@@ -9,6 +10,10 @@
 namespace driftwright::mesh {
 
 inline constexpr int kMaxNodesPerCell = 10;
+
+/// Edges of a tetrahedron in VTK's order: mid-side node n_corners + e lies between these two corners. The first three are
+/// the edges of a triangle.
+inline constexpr std::array<std::array<int, 2>, 6> kTetrahedronEdges = {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 /// Values and derivatives of the shape functions at one reference point. Columns past n are unused.
 /// Reference tetrahedron: (0,0,0), (1,0,0), (0,1,0), (0,0,1); reference triangle: (0,0), (1,0), (0,1).

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,13 @@ class Fp3Spindle : public ::testing::Test {
 TEST_F(Fp3Spindle, EnergyBalanceCloses) {
   EXPECT_LT(summary_["energy_balance_gap"].get<double>(),
             1e-6);  // the bound of the issue; rounding gives 1e-15
+}
+
+TEST_F(Fp3Spindle, StaysUnderFourGiB) {
+  rusage children{};
+  ASSERT_EQ(getrusage(RUSAGE_CHILDREN, &children), 0);  // of the hungriest child that has ended
+  EXPECT_LT(children.ru_maxrss, 4L * 1024 * 1024) << "KiB";
+  EXPECT_GT(children.ru_maxrss, 100L * 1024) << "KiB; this does not measure the run";
 }
 
 TEST_F(Fp3Spindle, ReachesTheMagnitudesOfThePaper) {
