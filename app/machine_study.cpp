@@ -20,6 +20,16 @@ std::vector<Record> training_records(const MachineStudy& study) {
   return records;
 }
 
+/// The record as thermometers of that resolution would have given it; displacements as they are.
+Record as_read(Record record, double resolution_K) {
+  if (resolution_K == 0.0) return record;
+  for (Channel& channel : record.channels) {
+    if (channel.unit != "degC") continue;
+    for (double& value : channel.values) value = resolution_K * std::round(value / resolution_K);
+  }
+  return record;
+}
+
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
@@ -75,7 +85,8 @@ void fit_modal(MachineStudy& study, const Scenario& scenario, const Machine& mac
 }
 
 void fit_regression_on_best(MachineStudy& study, const scenarios::Study& settings) {
-  const std::vector<Record> records = training_records(study);
+  std::vector<Record> records = training_records(study);
+  for (Record& record : records) record = as_read(std::move(record), settings.sensor_resolution_K);
   study.ranking = rank_channels(records, settings.target, candidates(settings, records.front()));
   const std::vector<std::string> inputs = best(study.ranking, settings.sensors_to_choose);
   for (const std::string& d : study.displacements) {
@@ -90,20 +101,29 @@ void correct(MachineStudy& study, const Scenario& scenario) {
   for (const auto& section : scenario.cyclogram(settings.judge).sections) durations_s.push_back(section.duration_s);
   const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
   const Record& record = study.judged.record;
+  // The injector works on readings of the run itself. A schedule is written before the run: what it may know of the
+  // temperatures is the modal model's prediction of them.
+  const Record readings = as_read(record, settings.sensor_resolution_K);
+  const Record& ahead = study.modal_prediction;
   for (std::size_t d = 0; d < study.displacements.size(); ++d) {
     const std::string& channel = study.displacements[d];
     const JudgedRun run{record.time_s, record.at(channel).values, boundaries_s, settings.tolerance_um};
-    const auto add = [&](const char* predictor, const std::vector<double>& predicted_um, double margin_um) {
-      for (CorrectedRun corrected : {correct_by_injector(run, predicted_um, settings.encoder_period_um),
-                                     correct_by_schedule(run, predicted_um, margin_um)}) {
+    const auto add = [&](const char* predictor, const std::vector<double>& live_um, const std::vector<double>& ahead_um,
+                         double margin_um) {
+      for (CorrectedRun corrected :
+           {correct_by_injector(run, live_um, settings.encoder_period_um), correct_by_schedule(run, ahead_um, margin_um)}) {
         corrected.predictor = predictor;
         corrected.channel = channel;
         study.corrections.push_back(std::move(corrected));
       }
     };
-    add(kPredictors[0], study.single_sensor[d].predict(record), study.single_sensor[d].max_abs_residual);
-    add(kPredictors[1], study.regressions[d].predict(record), study.regressions[d].max_abs_residual);
-    add(kPredictors[2], study.modal_prediction.at(channel).values, study.modal_margin_um[d]);
+    const auto add_regression = [&](const char* predictor, const Regression& r) {
+      add(predictor, r.predict(readings), r.predict(ahead), r.max_abs_residual);
+    };
+    add_regression(kPredictors[0], study.single_sensor[d]);
+    add_regression(kPredictors[1], study.regressions[d]);
+    const std::vector<double>& modal_um = ahead.at(channel).values;
+    add(kPredictors[2], modal_um, modal_um, study.modal_margin_um[d]);
   }
 }
 

@@ -132,12 +132,11 @@ Table regression_table(const MachineStudy& study) {
               .headers = {"channel", "intercept [um]"},
               .rows = {}};
   for (const std::string& input : study.regressions.front().inputs) table.headers.push_back(input + " [um/K]");
-  table.headers.insert(table.headers.end(), {"RMS [um]", "max [um]", "condition [-]"});
+  table.headers.insert(table.headers.end(), {"RMS [um]", "condition [-]"});
   for (const auto& r : study.regressions) {
     std::vector<std::string> row = {r.target, fmt::format("{:.2f}", r.intercept)};
     for (double b : r.coefficients) row.push_back(fmt::format("{:.3f}", b));
     row.push_back(fmt::format("{:.2f}", r.residual_rms));
-    row.push_back(fmt::format("{:.2f}", r.max_abs_residual));
     row.push_back(fmt::format("{:.0f}", r.condition_number));
     table.rows.push_back(row);
   }

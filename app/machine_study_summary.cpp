@@ -44,7 +44,7 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
   const scenarios::Study& settings = *scenario.study;
   std::string text =
       fmt::format("{}: judged on '{}', fitted on {}\n", scenario.name, settings.judge, fmt::join(settings.train, ", "));
-  std::string drift = "  peak drift before correction          ";
+  std::string drift = "  peak drift before correction            ";
   for (const std::string& d : study.displacements)
     drift += fmt::format("  {} {:6.1f} um", d, study.of_channel(d).front()->before.peak_abs);
   text += drift + "\n";
@@ -65,8 +65,10 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
                       study.ranking.channels[study.regressions.front().inputs.size() - 1].grade.value());
   const ModalError& bare = study.modal_errors.front();
   const ModalError& full = study.modal_errors.back();
-  text += fmt::format("  {} thermal modes miss the full model by {:.2f} K (at {}); with steady responses by {:.2f} K\n",
-                      bare.n_modes, bare.worst_temperature_K, bare.worst_sensor, full.worst_temperature_K);
+  text += fmt::format(
+      "  {} thermal modes miss the full model by {:.2f} K (at {}); with steady responses by {:.2f} K (the judged machine's "
+      "own modes)\n",
+      bare.n_modes, bare.worst_temperature_K, bare.worst_sensor, full.worst_temperature_K);
   if (!study.ambiguities.empty()) {
     const auto& [sensor, a] = study.ambiguities.front();
     text += fmt::format("  drift is no function of temperature: at {} = {:.1f} degC {} is {:.1f} um or {:.1f} um\n", sensor,

@@ -105,5 +105,8 @@ int main(int argc, char** argv) {
   } catch (const std::exception& e) {
     fmt::print(stderr, "internal error: {}\n", e.what());
     return kOurBug;
+  } catch (...) {
+    fmt::print(stderr, "internal error: an exception of an unknown kind\n");
+    return kOurBug;
   }
 }

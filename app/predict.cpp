@@ -14,6 +14,10 @@ namespace {
 Cyclogram cyclogram_of(const Record& record) {
   const Channel& speed = record.at("speed");
   Cyclogram cyclogram{.name = record.source, .sections = {}};
+  if (record.time_s.front() != 0.0) {
+    throw InputError(
+        fmt::format("{}: a cyclogram starts at time 0, this one at {:g} s", record.source, record.time_s.front()));
+  }
   for (std::size_t i = 0; i + 1 < record.n_samples(); ++i) {
     if (!(speed.values[i] >= 0.0)) {
       throw InputError(fmt::format("{}: speed_rpm is missing or negative at {:g} s", record.source, record.time_s[i]));
@@ -38,6 +42,7 @@ void predict(const PredictOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   const scenarios::MachineModel& model = require_machine(scenario, "predict");
   const Cyclogram cyclogram = find_cyclogram(scenario, options.cyclogram);
+  scenarios::check_cyclogram(scenario, cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   progress.begin("meshing");

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace driftwright::app {
@@ -37,6 +39,9 @@ RecordStudy read_records(const scenarios::Study& study, const RecordOptions& opt
         throw InputError(fmt::format("{}: a record cannot be both trained on and judged by", file));
       }
     }
+    if (std::count(options.train.begin(), options.train.end(), file) > 1) {
+      throw InputError(fmt::format("{}: --train names this record twice; it would count double", file));
+    }
     records.train.push_back(read_record_csv(file));
     (void)records.train.back().at(study.target);
   }
@@ -56,13 +61,20 @@ void fit_and_judge(RecordStudy& study, const scenarios::Study& settings) {
   study.regression = fit_regression(study.train, best(study.ranking, settings.sensors_to_choose), study.target);
   for (const Record& test : study.test) {
     const std::vector<double>& measured = test.at(study.target).values;
-    const auto add = [&](const std::string& strategy, std::vector<double> predicted) {
-      const Score error = score(difference(measured, predicted));
-      study.judged.push_back({strategy, test.source, std::move(predicted), error});
-    };
-    add("regression", study.regression.predict(test));
-    add("mean of the training records", baseline_mean(study.train, test, study.target));
-    add("training records at the same time", baseline_same_time(study.train, test, study.target));
+    const std::vector<std::pair<const char*, std::vector<double>>> predictions = {
+        {"regression", study.regression.predict(test)},
+        {"mean of the training records", baseline_mean(study.train, test, study.target)},
+        {"training records at the same time", baseline_same_time(study.train, test, study.target)}};
+    // Judged on the rows that all three can predict, or they could not be compared.
+    std::vector<double> common = measured;
+    for (const auto& [strategy, predicted] : predictions) {
+      for (std::size_t i = 0; i < common.size(); ++i) {
+        if (std::isnan(predicted[i])) common[i] = predicted[i];
+      }
+    }
+    for (const auto& [strategy, predicted] : predictions) {
+      study.judged.push_back({strategy, test.source, predicted, score(difference(common, predicted))});
+    }
   }
 }
 

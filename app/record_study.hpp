@@ -14,7 +14,7 @@ struct JudgedPrediction {
   std::string strategy;
   std::string test;
   std::vector<double> predicted;  ///< per row of the test record, NaN where there is none
-  compensation::Score error;      ///< of measured - predicted
+  compensation::Score error;      ///< of measured - predicted, on the rows that every strategy predicts
 };
 
 struct RecordStudy {

@@ -29,7 +29,7 @@ void select(const RecordOptions& options) {
     j["channels"].push_back(
         {{"name", c.name}, {"grade", c.grade ? nlohmann::ordered_json(*c.grade) : nullptr}, {"reversed", c.reversed}});
     shown += fmt::format("  {:2}  {:<16} {}{}\n", i + 1, c.name, c.grade ? grade : c.note,
-                         static_cast<int>(i) < settings.sensors_to_choose ? "  chosen" : "");
+                         c.grade && static_cast<int>(i) < settings.sensors_to_choose ? "  chosen" : "");
   }
   folder.write_text("ranking.csv", csv);
   folder.write_text("summary.json", output::json_text(j));

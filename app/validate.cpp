@@ -94,8 +94,9 @@ void validate(const RecordOptions& options) {
   fmt::print("{} from {}, fitted on {} samples (rank {} of {}, condition number {:.0f})\n", study.target,
              fmt::join(r.inputs, ", "), r.n_samples, r.rank, r.inputs.size(), r.condition_number);
   for (const JudgedPrediction& p : study.judged) {
-    fmt::print("  {:<24} {:<34} RMS {:6.2f} {u}  peak {:6.2f} {u}\n", std::filesystem::path(p.test).filename().string(),
-               p.strategy, p.error.rmse, p.error.peak_abs, fmt::arg("u", r.target_unit));
+    fmt::print("  {:<24} {:<34} RMS {:6.2f} {u}  peak {:6.2f} {u}  {} rows\n",
+               std::filesystem::path(p.test).filename().string(), p.strategy, p.error.rmse, p.error.peak_abs, p.error.n,
+               fmt::arg("u", r.target_unit));
   }
   for (std::size_t t = 0; t < study.test.size(); ++t) {
     const bool beats_both =

@@ -117,7 +117,12 @@ Where ConfigMap::where_of(const YAML::Node& node, const std::string& key) const 
 
 Where ConfigMap::where(const std::string& key) const {
   const YAML::Node node = (*node_)[key];
-  return where_of(node.IsDefined() ? node : *node_, key);
+  if (!node.IsDefined()) return where_of(*node_, key);
+  if (!node.IsNull()) return where_of(node, key);
+  for (const auto& entry : *node_) {  // an empty value has the mark of whatever follows: take the key's
+    if (entry.first.as<std::string>() == key) return where_of(entry.first, key);
+  }
+  return where_of(node, key);
 }
 
 Where ConfigMap::where() const {
@@ -142,13 +147,25 @@ std::string ConfigMap::scalar(const YAML::Node& node, const std::string& key) co
 
 std::string ConfigMap::text(const std::string& key) const {
   const YAML::Node node = child(key);
+  if (node.IsNull()) fail(key, "the value is empty");
   std::string value = scalar(node, key);
-  if (value.empty()) throw InputError(where_of(node, key), "the value is empty");
+  if (value.empty()) fail(key, "the value is empty");
   return value;
 }
 
 std::string ConfigMap::text(const std::string& key, const std::string& fallback) const {
   return has(key) ? text(key) : fallback;
+}
+
+bool is_name(const std::string& text) {
+  constexpr const char* kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  return !text.empty() && text.find_first_not_of(kAllowed) == std::string::npos;
+}
+
+std::string ConfigMap::name(const std::string& key) const {
+  std::string value = text(key);
+  if (!is_name(value)) fail(key, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", value));
+  return value;
 }
 
 std::string ConfigMap::choice(const std::string& key, const std::vector<std::string>& allowed) const {

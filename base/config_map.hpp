@@ -37,6 +37,8 @@ class ConfigMap {
 
   [[nodiscard]] std::string text(const std::string& key) const;
   [[nodiscard]] std::string text(const std::string& key, const std::string& fallback) const;
+  /// A name that may become a channel, a file or a folder: letters, digits, '_' and '-'.
+  [[nodiscard]] std::string name(const std::string& key) const;
   /// A text that must be one of `allowed`.
   [[nodiscard]] std::string choice(const std::string& key, const std::vector<std::string>& allowed) const;
   [[nodiscard]] std::string choice(const std::string& key, const std::vector<std::string>& allowed,
@@ -79,6 +81,9 @@ class ConfigMap {
   std::string path_;
   mutable std::set<std::string> asked_;
 };
+
+/// Letters, digits, '_' and '-', at least one.
+[[nodiscard]] bool is_name(const std::string& text);
 
 /// The candidate nearest to `word` by edit distance, or "" when none is near.
 [[nodiscard]] std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);

@@ -11,6 +11,7 @@ struct Cyclogram {
   struct Section {
     double duration_s = 0.0;
     double speed_rpm = 0.0;
+    bool operator==(const Section&) const = default;
   };
   std::string name;
   std::vector<Section> sections;

@@ -60,6 +60,9 @@ double seconds_per_time_unit(const std::string& header, const Where& where) {
   if (header == "time_s") return 1.0;
   if (header == "time_min") return 60.0;
   if (header == "time_h") return 3600.0;
+  if (header.find(';') != std::string::npos || header.find('\t') != std::string::npos) {
+    throw InputError(where, "columns are separated by ';' or tabs; commas are wanted, with decimal points");
+  }
   throw InputError(where, fmt::format("the first column is '{}'; time_s, time_min or time_h is wanted", header));
 }
 
@@ -97,6 +100,7 @@ Record read_record_csv(const std::string& path) {
   double seconds = 0.0;
   std::string line;
   for (int line_number = 1; std::getline(file, line); ++line_number) {
+    if (line_number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a spreadsheet's byte order mark
     if (line.starts_with("#") || line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const std::vector<std::string> cells = split_cells(line);
     const auto where = [&](std::size_t cell) {

@@ -24,7 +24,9 @@ struct CorrectedRun {
   std::string predictor;
   std::string actuator;
   std::string channel;
-  std::vector<double> residual_um;   ///< drift - correction in force, at each time of the run
+  /// drift - correction in force, at each time of the run; where the correction is renewed at the samples, the larger of
+  /// just before and just after.
+  std::vector<double> residual_um;
   Score before, after;               ///< of the drift itself, of the residual
   bool inside_tolerance = false;     ///< no |residual| above the tolerance, and no sample missing
   std::optional<Schedule> schedule;  ///< where the actuator is a schedule

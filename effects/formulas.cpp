@@ -11,7 +11,7 @@ namespace driftwright::effects {
 namespace {
 
 void require(bool ok, const char* what, double value) {
-  if (!ok) throw RangeError(fmt::format("{} = {} is out of range", what, value));
+  if (!ok) throw RangeError(fmt::format("{} = {:g} is out of range", what, value));
 }
 
 }  // namespace

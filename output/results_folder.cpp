@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::runtime_error cannot(const std::string& what, const fs::path& path, int error) {
-  return std::runtime_error(fmt::format("cannot {} '{}': {}", what, path.string(), std::strerror(error)));
+InputError cannot(const std::string& what, const fs::path& path, int error) {
+  return InputError(fmt::format("cannot {} '{}': {}", what, path.string(), std::strerror(error)));
 }
 
 /// The files that a folder's manifest lists, the manifest among them; none when it has no manifest of ours.

@@ -22,7 +22,7 @@ inline constexpr const char* kManifestName = "driftwright-manifest.json";
 
 /// Writes `text` to `file`, replacing it. Every step is checked, the closing too: a full disk shows there at
 /// last.
-/// @throws std::runtime_error  naming the file and the system's reason
+/// @throws InputError  naming the file and the system's reason
 void write_file(const std::filesystem::path& file, std::string_view text);
 
 /// A folder of results under way. Make it before anything is computed, since it refuses in its constructor;
@@ -61,7 +61,7 @@ class ResultsFolder {
 
   /// Writes the manifest and puts the folder in place of the target. Files of others that have come into the
   /// target since the constructor looked (a ParaView state saved during a long run) move into the new folder.
-  /// @throws std::runtime_error  naming what could not be written or renamed; the target is then as it was
+  /// @throws InputError  naming what could not be written or renamed; the target is then as it was
   void commit();
 
  private:

@@ -33,7 +33,7 @@ class FieldSeries {
   /// @param temperature_degC  n_nodes [degC]
   /// @param displacement_um   3 x n_nodes, one column per node [um]
   /// @throws std::logic_error    when a shape does not fit the mesh, or time does not increase
-  /// @throws std::runtime_error  when a file cannot be written
+  /// @throws InputError  when a file cannot be written
   void write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um);
 
   /// Writes fields.pvd, which lists what has been written. Call it last.
@@ -50,7 +50,7 @@ class FieldSeries {
 /// @param quality  one value per cell, or empty to leave the array out
 /// @param file     a path from ResultsFolder::path()
 /// @throws std::logic_error    when `quality` has another length
-/// @throws std::runtime_error  when the file cannot be written
+/// @throws InputError  when the file cannot be written
 void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const std::filesystem::path& file);
 
 }  // namespace driftwright::output

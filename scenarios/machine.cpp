@@ -185,7 +185,13 @@ PlacedMachine place(const MachineModel& model) {
 }
 
 Machine build(const MachineModel& model, PlacedMachine placed) {
-  solver::Elasticity elasticity(placed.mesh, placed.materials, placed.supports);
+  solver::Elasticity elasticity = [&] {
+    try {
+      return solver::Elasticity(placed.mesh, placed.materials, placed.supports);
+    } catch (const InputError& e) {  // it knows what is wrong, not where that stands
+      throw InputError(model.supports.front().where, e.what());
+    }
+  }();
   Machine machine{std::move(placed), std::move(elasticity), {}};
   machine.system = solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance);
   solver::Outputs& out = machine.system.outputs;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <set>
 
@@ -22,7 +23,7 @@ PointOnRegion read_point(const ConfigMap& in) {
 }
 
 Sensor read_sensor(const ConfigMap& in) {
-  Sensor sensor{.name = in.text("name"), .place = {}, .where = in.where()};
+  Sensor sensor{.name = in.name("name"), .place = {}, .where = in.where()};
   if (in.has("node")) {
     sensor.place = in.text("node");
     sensor.where = in.where("node");
@@ -34,15 +35,18 @@ Sensor read_sensor(const ConfigMap& in) {
 }
 
 DisplacementOutput read_displacement(const ConfigMap& in) {
-  DisplacementOutput d{in.text("name"), read_axis(in, "along"), read_point(in.map("tool")), read_point(in.map("table"))};
+  DisplacementOutput d{in.name("name"), read_axis(in, "along"), read_point(in.map("tool")), read_point(in.map("table"))};
   in.reject_unknown_keys();
   return d;
 }
 
 TiltOutput read_tilt(const ConfigMap& in) {
-  TiltOutput t{in.text("name"), read_axis(in, "about"), read_point(in.map("from")), read_point(in.map("to")),
+  TiltOutput t{in.name("name"), read_axis(in, "about"), read_point(in.map("from")), read_point(in.map("to")),
                read_point(in.map("table"))};
-  if ((t.to.at_m - t.from.at_m).norm() < 1e-3) in.fail("to", "the two points of a tilt must be at least 1 mm apart");
+  const Eigen::Vector3d line_m = t.to.at_m - t.from.at_m;
+  if (line_m.cross(Eigen::Vector3d::Unit(t.axis)).norm() < 1e-3) {
+    in.fail("about", "the line from -> to must reach at least 1 mm across this axis; a line does not tilt about itself");
+  }
   in.reject_unknown_keys();
   return t;
 }
@@ -80,6 +84,10 @@ TimeSeries read_hall(const ConfigMap& in, double reference_K) {
   TimeSeries hall;
   for (const std::vector<double>& row : in.rows("hall", {"s", "degC"})) {
     if (!hall.time_s.empty() && !(row[0] > hall.time_s.back())) in.fail("hall", "times must increase from row to row");
+    if (!(row[1] >= 200.0 && row[1] <= 400.0)) {
+      in.fail("hall",
+              fmt::format("{:.0f} degC is no hall temperature; -73 to 127 degC is allowed", row[1] - kZeroCelsius_K));
+    }
     hall.time_s.push_back(row[0]);
     hall.value.push_back(row[1] - reference_K);
   }
@@ -87,9 +95,11 @@ TimeSeries read_hall(const ConfigMap& in, double reference_K) {
 }
 
 Cyclogram read_cyclogram(const ConfigMap& in, const std::string& name) {
+  if (!is_name(name)) in.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", name));
   Cyclogram cyclogram{.name = name, .sections = {}};
   for (const std::vector<double>& row : in.rows(name, {"s", "rpm"})) {
-    if (!(row[0] > 0.0)) in.fail(name, fmt::format("a section of {:g} s; a duration above zero is wanted", row[0]));
+    if (!(row[0] >= 1e-3))
+      in.fail(name, fmt::format("a section of {:g} s; a duration above zero is wanted, 1 ms or more", row[0]));
     if (!(row[1] >= 0.0 && row[1] <= 1e6))
       in.fail(name, fmt::format("a speed of {:g} rpm; 0 to 1e6 rpm is allowed", row[1]));
     cyclogram.sections.push_back({row[0], row[1]});
@@ -105,9 +115,10 @@ MeshRecipe read_mesh_recipe(const ConfigMap& in) {
 }
 
 void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
-  std::set<std::string> names;
+  std::set<std::string> names = {"speed", "time"};  // columns that every record has
   const auto add = [&](const std::string& name, const char* list) {
-    if (!names.insert(name).second) in.fail(list, fmt::format("the name '{}' is used twice", name));
+    if (!names.insert(name).second)
+      in.fail(list, fmt::format("the name '{}' is used twice, or is a column of every record", name));
   };
   for (const Sensor& s : m.sensors) add(s.name, "sensors");
   for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
@@ -143,11 +154,30 @@ SolverSettings read_solver(const ConfigMap& in) {
   return s;
 }
 
+void check_candidates(const ConfigMap& in, const Study& study, const MachineModel& machine) {
+  std::vector<std::string> sensors;
+  for (const Sensor& sensor : machine.sensors) sensors.push_back(sensor.name);
+  for (const std::string& name : study.candidates) {
+    if (std::find(sensors.begin(), sensors.end(), name) == sensors.end()) {
+      in.fail("candidates", fmt::format("no sensor '{}'; there are {}", name, fmt::join(sensors, ", ")));
+    }
+  }
+  const std::size_t n_candidates = study.candidates.empty() ? sensors.size() : study.candidates.size();
+  if (study.sensors_to_choose > static_cast<int>(n_candidates)) {
+    in.fail("sensors_to_choose", fmt::format("{} of {} sensors cannot be chosen", study.sensors_to_choose, n_candidates));
+  }
+}
+
 Study read_study(const ConfigMap& in, const Scenario& scenario) {
   Study s;
   s.where = in.where();
   s.target = in.text("target");
   if (in.has("candidates")) s.candidates = in.texts("candidates");
+  for (const std::string& name : s.candidates) {
+    if (name == s.target) in.fail("candidates", fmt::format("'{}' is the target; it cannot predict itself", name));
+    if (std::count(s.candidates.begin(), s.candidates.end(), name) > 1)
+      in.fail("candidates", fmt::format("'{}' stands there twice", name));
+  }
   s.sensors_to_choose = in.integer("sensors_to_choose", 1, 1000, s.sensors_to_choose);
   s.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, s.tolerance_um);
   s.encoder_period_um = in.quantity("encoder_period", "um", 1e-3, 1e6, s.encoder_period_um);
@@ -163,20 +193,25 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
       }
     };
     if (s.train.empty()) in.fail("train", "no cyclogram to train on");
-    for (const std::string& name : s.train) must_know("train", name);
+    for (const std::string& name : s.train) {
+      must_know("train", name);
+      if (std::count(s.train.begin(), s.train.end(), name) > 1)
+        in.fail("train", fmt::format("'{}' stands there twice", name));
+    }
     must_know("judge", s.judge);
-    if (std::find(s.train.begin(), s.train.end(), s.judge) != s.train.end()) {
-      in.fail("judge", "a strategy is judged on a cyclogram it was not fitted on; take another than those of `train`");
+    for (const std::string& name : s.train) {
+      if (name == s.judge || scenario.cyclogram(name).sections == scenario.cyclogram(s.judge).sections) {
+        in.fail("judge",
+                fmt::format("a strategy is judged on a cyclogram it was not fitted on; '{}' is one of `train`", s.judge));
+      }
     }
     std::vector<std::string> channels;
     for (const DisplacementOutput& d : scenario.machine->displacements) channels.push_back(d.name);
     if (std::find(channels.begin(), channels.end(), s.target) == channels.end()) {
       in.fail("target", fmt::format("no displacement '{}'; there are {}", s.target, fmt::join(channels, ", ")));
     }
-    if (s.sensors_to_choose > static_cast<int>(scenario.machine->sensors.size())) {
-      in.fail("sensors_to_choose",
-              fmt::format("{} of {} sensors cannot be chosen", s.sensors_to_choose, scenario.machine->sensors.size()));
-    }
+    s.sensor_resolution_K = in.quantity("sensor_resolution", "K", 0.0, 10.0, s.sensor_resolution_K);
+    check_candidates(in, s, *scenario.machine);
   }
   in.reject_unknown_keys();
   return s;
@@ -193,11 +228,34 @@ const Cyclogram& Scenario::cyclogram(const std::string& cyclogram_name) const {
   throw InputError(fmt::format("{}: no cyclogram '{}'; there are {}", path, cyclogram_name, fmt::join(known, ", ")));
 }
 
+void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
+  constexpr double kMostOutputs = 1e6;
+  const double n_outputs = cyclogram.duration_s() / scenario.solver.output_interval_s;
+  if (!(n_outputs <= kMostOutputs)) {
+    throw InputError(
+        fmt::format("{}: cyclogram '{}' would give {:.1e} rows of output, more than {:.0e}; take a longer output_interval",
+                    scenario.path, cyclogram.name, n_outputs, kMostOutputs));
+  }
+  for (const effects::Effect& effect : scenario.machine->effects) {
+    const effects::HeatBalance balance = effects::heat_balance({effect});
+    for (const Cyclogram::Section& section : cyclogram.sections) {
+      const effects::Inputs at{.speed_rpm = section.speed_rpm, .hall_K = 0.0};
+      try {
+        for (const auto& heat : balance.heats) (void)heat.power_W(at);
+        for (const auto& film : balance.films) (void)film.htc_W_m2K(at);
+      } catch (const RangeError& e) {
+        throw InputError(effect.where, fmt::format("{} at the {:g} rpm of cyclogram '{}': {}", effect.name(),
+                                                   section.speed_rpm, cyclogram.name, e.what()));
+      }
+    }
+  }
+}
+
 Scenario read_scenario(const std::string& path) {
   const ConfigMap in = ConfigMap::read_file(path);
   Scenario scenario;
   scenario.path = path;
-  scenario.name = in.text("name");
+  scenario.name = in.name("name");
   const bool has_machine = in.has("machine");
   if (has_machine) scenario.machine = read_machine(in);
   if (has_machine) {
@@ -205,6 +263,7 @@ Scenario read_scenario(const std::string& path) {
     for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
     if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);
+    for (const Cyclogram& c : scenario.cyclograms) check_cyclogram(scenario, c);
   }
   if (const auto study = in.optional_map("study")) scenario.study = read_study(*study, scenario);
   if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");

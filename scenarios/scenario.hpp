@@ -90,6 +90,8 @@ struct Study {
   std::vector<std::string> train;       ///< cyclograms
   std::string judge;                    ///< cyclogram
   int sensors_to_choose = 4;
+  /// Step of the thermometers' readings [K], 0 = exact. Predictors are fitted and judged on readings rounded to it.
+  double sensor_resolution_K = 0.0;
   int thermal_modes = 20;
   double tolerance_um = 10.0;
   double encoder_period_um = 1.0;
@@ -107,6 +109,10 @@ struct Scenario {
   /// @throws InputError  naming the cyclograms there are
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;
 };
+
+/// Looks whether a cyclogram can be run on the scenario's machine: every law defined at every speed, outputs not too many.
+/// read_scenario() has done so for the scenario's own. @throws InputError
+void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram);
 
 /// @throws InputError  with file, line and key
 [[nodiscard]] Scenario read_scenario(const std::string& path);

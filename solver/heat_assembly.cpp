@@ -13,7 +13,7 @@ namespace {
 
 using mesh::CellShape;
 using mesh::Mesh;
-using Local = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 11, 11>;  // a film's facet and its node
+using Local = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 10, 10>;
 
 bool is_quadratic(CellShape shape) {
   return shape == CellShape::kTet10 || shape == CellShape::kTri6;

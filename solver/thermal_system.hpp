@@ -82,7 +82,7 @@ struct Trajectory {
 
   int n_steps = 0, n_solves = 0, n_iterations = 0;
 
-  /// |heat in - stored - lost| / heat in at the last time [-]; heat in counts what sources and hall brought in.
+  /// |heat in - stored - lost| at the last time over the largest of the three [-].
   [[nodiscard]] double energy_gap() const;
 };
 

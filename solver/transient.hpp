@@ -19,7 +19,7 @@ struct TransientOptions {
   double max_step_s = 1200.0;
 };
 
-/// Called at each output time with the time, the state and the share of the run that is done; throwing ends the run.
+/// Called at each output time with the time and the state; throwing ends the run.
 using OutputCallback = std::function<void(double time_s, const Eigen::VectorXd& state)>;
 
 /// Runs the cyclogram from `start` (state at t = 0, zero: everything at the reference temperature).

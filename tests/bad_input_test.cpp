@@ -74,7 +74,43 @@ INSTANTIATE_TEST_SUITE_P(
             "judged_on_training", "judge: chaotic", "judge: heat_cool_1000", {"judged on a cyclogram it was not fitted on"}},
         Mistake{"unknown_cyclogram", "judge: chaotic", "judge: caotic", {"no cyclogram 'caotic'", "warm_up_2000"}},
         Mistake{"parts_do_not_fit", "bore: 95 mm", "bore: 130 mm", {"diameters must fall"}},
+        Mistake{"tilt_about_its_line",
+                "name: tilt_x, about: x",
+                "name: tilt_x, about: y",
+                {"a line does not tilt about itself"}},
+        Mistake{"target_as_candidate",
+                "  judge: chaotic",
+                "  candidates: [t01, t02, t03, drift_y]\n  judge: chaotic",
+                {"cannot predict itself"}},
+        Mistake{"unknown_candidate",
+                "  judge: chaotic",
+                "  candidates: [t01, t02, t03, t99]\n  judge: chaotic",
+                {"no sensor 't99'"}},
+        Mistake{"too_few_candidates",
+                "  judge: chaotic",
+                "  candidates: [t01, t02]\n  judge: chaotic",
+                {"4 of 2 sensors cannot be chosen"}},
+        Mistake{"name_leads_out", "name: fp3_spindle", "name: ../evil", {"'../evil' is no name"}},
+        Mistake{"sensor_named_speed", "{name: t01,", "{name: speed,", {"column of every record"}},
+        Mistake{"sensor_name_twice", "{name: t02,", "{name: t01,", {"'t01' is used twice"}},
+        Mistake{"hall_beyond_reason", "[0 min, 20.0 degC]", "[0 min, -300 degC]", {"is no hall temperature"}},
+        Mistake{"hall_backwards", "[120 min, 20.2 degC]", "[0 min, 20.2 degC]", {"times must increase"}},
+        Mistake{
+            "trained_twice", "train: [heat_cool_1000, ", "train: [heat_cool_1000, heat_cool_1000, ", {"stands there twice"}},
+        Mistake{"judged_on_a_copy",
+                "  warm_up_2000: [[300 min, 2000 rpm]]\n  chaotic: [[40 min, 1250 rpm]",
+                "  chaotic: [[240 min, 1000 rpm], [420 min, 0 rpm]]\n  other: [[40 min, 1250 rpm]",
+                {"judged on a cyclogram it was not fitted on"}},
+        Mistake{"law_out_of_range",
+                "[300 min, 2000 rpm]",
+                "[300 min, 90000 rpm]",
+                {"Reynolds number", "rotating_cylinder spindle_nose", "90000 rpm", "warm_up_2000"}},
+        Mistake{"too_long", "[300 min, 2000 rpm]", "[1e9 h, 2000 rpm]", {"rows of output"}},
+        Mistake{"no_support", "  - {surface: foot, fixed: [x, y, z]}", "  []", {"no support"}},
+        Mistake{"bad_direction", "fixed: [x, y, z]", "fixed: [x, y, w]", {"'w' is no direction"}},
+        Mistake{"empty_study", "name: fp3_spindle", "name:", {"| name:", "the value is empty"}},
         // These show only once the mesh is there.
+        Mistake{"not_held", "fixed: [x, y, z]", "fixed: [x, y]", {"'column' is not held", "supports[0]"}},
         Mistake{"unknown_region",
                 "    region: bearing_rear",
                 "    region: bearing_reer",
@@ -103,6 +139,33 @@ TEST(BadCommand, MissingFileUnknownVerbAndMissingArgumentEndWithTwo) {
   EXPECT_EQ(run_program("run").exit_code, 2);
   EXPECT_EQ(run_program("rnu scenarios/fp3_spindle.yaml").exit_code, 2);
   EXPECT_THAT(run_program("rnu scenarios/fp3_spindle.yaml").output, HasSubstr("unknown verb 'rnu'"));
+}
+
+TEST(BadCommand, AMeshThatGmshCannotMakeEndsWithThree) {
+  const std::string scenario = write_file(
+      "coarse.yaml",
+      replace_first(read_text("scenarios/fp3_spindle.yaml"), "frame: 80 mm, spindle: 20 mm", "frame: 1 m, spindle: 1 m"));
+  const auto out = fresh_folder("coarse") / "out";
+  const CommandOutcome outcome = run_program("run " + scenario + " -o " + out.string());
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("try other dimensions or mesh sizes"));
+  EXPECT_TRUE(std::filesystem::is_empty(out.parent_path()));
+}
+
+TEST(BadCommand, ACyclogramCsvMustStartAtZeroAndHaveSpeeds) {
+  const std::string late = write_file("late.csv", "time_s,speed_rpm\n100,2000\n200,0\n");
+  EXPECT_THAT(run_program("predict scenarios/fp3_spindle.yaml --cyclogram " + late).output, HasSubstr("starts at time 0"));
+  const std::string gap = write_file("gap.csv", "time_s,speed_rpm\n0,\n200,0\n");
+  EXPECT_THAT(run_program("predict scenarios/fp3_spindle.yaml --cyclogram " + gap).output, HasSubstr("missing or negative"));
+}
+
+TEST(BadCommand, ARecordCannotTrainAndJudgeOrTrainTwice) {
+  const std::string a = write_file("a.csv", "time_s,t_K,error_um\n0,1,0\n1,2,1\n"),
+                    b = write_file("b.csv", "time_s,t_K,error_um\n0,1,0\n1,2,1\n");
+  EXPECT_THAT(run_program("validate scenarios/spindle_22.yaml --train " + a + " --test " + a).output,
+              HasSubstr("both trained on and judged by"));
+  EXPECT_THAT(run_program("validate scenarios/spindle_22.yaml --train " + a + " --train " + a + " --test " + b).output,
+              HasSubstr("names this record twice"));
 }
 
 TEST(BadCommand, AFolderWithOtherFilesIsRefusedAndKept) {
