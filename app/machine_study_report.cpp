@@ -69,7 +69,9 @@ Verdict verdict(const scenarios::Study& settings, const MachineStudy& study) {
 Table strategies_table(const MachineStudy& study) {
   Table table{.caption =
                   "Peak and RMS of the drift before correction and of what is left after it, on the judged "
-                  "cyclogram.",
+                  "cyclogram. The injector acts on thermometer readings of the run; a schedule is planned ahead, on the "
+                  "temperatures that the modal model predicts. The thermal modes are those of the judged machine "
+                  "itself: their error is that of few modes, not of a wrong model.",
               .headers = {"channel", "predictor", "actuator", "peak before [um]", "peak after [um]", "RMS after [um]",
                           "inside tolerance"},
               .rows = {}};
@@ -126,9 +128,8 @@ Table ranking_table(const MachineStudy& study) {
 
 Table regression_table(const MachineStudy& study) {
   Table table{.caption =
-                  "Multiple linear regression (QR) on the training records; RMS and max are of its residual "
-                  "there. A condition number far above "
-                  "100 says that the chosen sensors tell the same story twice.",
+                  "Multiple linear regression (QR) on the training records; RMS is that of its residual "
+                  "there. A condition number far above 100 says that the chosen sensors tell the same story twice.",
               .headers = {"channel", "intercept [um]"},
               .rows = {}};
   for (const std::string& input : study.regressions.front().inputs) table.headers.push_back(input + " [um/K]");
