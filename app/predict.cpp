@@ -45,10 +45,8 @@ void predict(const PredictOptions& options) {
   scenarios::check_cyclogram(scenario, cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  progress.begin("meshing");
-  scenarios::PlacedMachine placed = scenarios::place(model);
-  progress.begin("factorising and computing thermal modes");
-  const scenarios::Machine machine = scenarios::build(model, std::move(placed));
+  const scenarios::Machine machine = build_machine(model, progress);
+  progress.begin("computing thermal modes");
   const int n_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
   const compensation::ModalPredictor predictor = compensation::make_modal_predictor(machine.system, n_modes);
   const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);

@@ -37,6 +37,13 @@ const scenarios::Study& require_study(const scenarios::Scenario& scenario, const
       fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit", scenario.path, verb));
 }
 
+scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress) {
+  progress.begin("meshing");
+  scenarios::PlacedMachine placed = scenarios::place(model);
+  progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
+  return scenarios::build(model, std::move(placed));
+}
+
 std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
                                               const std::vector<const Cyclogram*>& cyclograms, Progress& progress,
                                               std::size_t with_fields, output::FieldSeries* fields) {

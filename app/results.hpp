@@ -24,6 +24,9 @@ namespace driftwright::app {
 [[nodiscard]] const scenarios::MachineModel& require_machine(const scenarios::Scenario& scenario, const std::string& verb);
 [[nodiscard]] const scenarios::Study& require_study(const scenarios::Scenario& scenario, const std::string& verb);
 
+/// Meshes, places and factorises, saying so.
+[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress);
+
 /// A simulated cyclogram.
 struct SimulatedRun {
   Record record;

@@ -14,10 +14,7 @@ void run(const CommonOptions& options) {
   (void)require_study(scenario, "run");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  progress.begin("meshing");
-  scenarios::PlacedMachine placed = scenarios::place(model);
-  progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
-  const scenarios::Machine machine = scenarios::build(model, std::move(placed));
+  const scenarios::Machine machine = build_machine(model, progress);
 
   output::FieldSeries fields(folder, machine.placed.mesh);
   const MachineStudy study = study_machine(scenario, machine, progress, &fields);

@@ -15,10 +15,7 @@ void simulate(const SimulateOptions& options) {
   }
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  progress.begin("meshing");
-  scenarios::PlacedMachine placed = scenarios::place(model);
-  progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
-  const scenarios::Machine machine = scenarios::build(model, std::move(placed));
+  const scenarios::Machine machine = build_machine(model, progress);
   // Whole fields of one cyclogram only: several would fill the disk and mix in one .pvd.
   std::optional<output::FieldSeries> fields;
   if (cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
