@@ -38,6 +38,10 @@ int n_corners_of(CellShape shape) {
   return shape == CellShape::kTri3 || shape == CellShape::kTri6 ? 3 : 4;
 }
 
+bool is_quadratic(CellShape shape) {
+  return n_nodes_of(shape) > n_corners_of(shape);
+}
+
 void Cells::add(CellShape cell_shape, std::span<const int> nodes, int cell_group) {
   shape.push_back(cell_shape);
   node.insert(node.end(), nodes.begin(), nodes.end());

@@ -15,6 +15,8 @@ enum class CellShape : unsigned char { kTri3, kTri6, kTet4, kTet10 };
 [[nodiscard]] int n_nodes_of(CellShape shape);
 /// Number of corner nodes; they come first in a cell.
 [[nodiscard]] int n_corners_of(CellShape shape);
+/// True where edges carry a mid-side node.
+[[nodiscard]] bool is_quadratic(CellShape shape);
 
 /// Cells (or facets) of mixed shapes, each in one group: a region for cells, a surface for facets.
 struct Cells {

@@ -12,9 +12,6 @@ namespace {
 bool is_facet(CellShape shape) {
   return shape == CellShape::kTri3 || shape == CellShape::kTri6;
 }
-bool is_quadratic(CellShape shape) {
-  return shape == CellShape::kTri6 || shape == CellShape::kTet10;
-}
 
 std::vector<QuadraturePoint> tetrahedron_rule(int degree) {
   if (degree <= 1) return {{{0.25, 0.25, 0.25}, 1.0 / 6.0}};

@@ -51,7 +51,7 @@ CellMatrices cell_matrices(const Mesh& mesh, int cell, const Material& material)
   const auto d = stiffness_tensor(material);
   const auto n = x.cols();
   CellMatrices m{Eigen::MatrixXd::Zero(3 * n, 3 * n), Eigen::MatrixXd::Zero(3 * n, n)};
-  for (const auto& q : mesh::quadrature(shape, shape == CellShape::kTet10 ? 2 : 1)) {
+  for (const auto& q : mesh::quadrature(shape, mesh::is_quadratic(shape) ? 2 : 1)) {
     const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
     const mesh::Jacobian j = mesh::jacobian(s, x, shape);
     const Strain b = strain_matrix(j.dx_dxi.inverse().transpose() * s.dN.leftCols(s.n));
