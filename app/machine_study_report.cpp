@@ -27,7 +27,7 @@ std::vector<output::SectionMark> section_marks(const Cyclogram& cyclogram) {
   std::vector<output::SectionMark> marks;
   double start_s = 0.0;
   for (const auto& section : cyclogram.sections) {
-    marks.push_back({start_s / 60.0, fmt::format("{:.0f} rpm", section.speed_rpm)});
+    marks.push_back({start_s / 60.0, fmt::format("{:.0f} rpm", section.drive.speed_rpm)});
     start_s += section.duration_s;
   }
   return marks;

@@ -23,10 +23,10 @@ Cyclogram cyclogram_of(const Record& record) {
       throw InputError(fmt::format("{}: speed_rpm is missing or negative at {:g} s", record.source, record.time_s[i]));
     }
     const double duration_s = record.time_s[i + 1] - record.time_s[i];
-    if (!cyclogram.sections.empty() && cyclogram.sections.back().speed_rpm == speed.values[i]) {
+    if (!cyclogram.sections.empty() && cyclogram.sections.back().drive.speed_rpm == speed.values[i]) {
       cyclogram.sections.back().duration_s += duration_s;
     } else {
-      cyclogram.sections.push_back({duration_s, speed.values[i]});
+      cyclogram.sections.push_back({duration_s, {.speed_rpm = speed.values[i]}});
     }
   }
   return cyclogram;

@@ -102,7 +102,7 @@ Cyclogram read_cyclogram(const ConfigMap& in, const std::string& name) {
       in.fail(name, fmt::format("a section of {:g} s; a duration above zero is wanted, 1 ms or more", row[0]));
     if (!(row[1] >= 0.0 && row[1] <= 1e6))
       in.fail(name, fmt::format("a speed of {:g} rpm; 0 to 1e6 rpm is allowed", row[1]));
-    cyclogram.sections.push_back({row[0], row[1]});
+    cyclogram.sections.push_back({row[0], {.speed_rpm = row[1]}});
   }
   return cyclogram;
 }
@@ -239,13 +239,13 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
   for (const effects::Effect& effect : scenario.machine->effects) {
     const effects::HeatBalance balance = effects::heat_balance({effect});
     for (const Cyclogram::Section& section : cyclogram.sections) {
-      const effects::Inputs at{.speed_rpm = section.speed_rpm, .hall_K = 0.0};
+      const effects::Inputs at{.speed_rpm = section.drive.speed_rpm, .hall_K = 0.0};
       try {
         for (const auto& heat : balance.heats) (void)heat.power_W(at);
         for (const auto& film : balance.films) (void)film.htc_W_m2K(at);
       } catch (const RangeError& e) {
         throw InputError(effect.where, fmt::format("{} at the {:g} rpm of cyclogram '{}': {}", effect.name(),
-                                                   section.speed_rpm, cyclogram.name, e.what()));
+                                                   section.drive.speed_rpm, cyclogram.name, e.what()));
       }
     }
   }

@@ -194,14 +194,14 @@ Trajectory evolve(const ReducedSystem& system, const Cyclogram& cyclogram, const
   Eigen::MatrixXd to_modes;
   for (const LinearStretch& stretch : linear_stretches(cyclogram, hall)) {
     const double length_s = stretch.end_s - stretch.start_s;
-    const effects::Inputs at_start{stretch.speed_rpm, hall.at(stretch.start_s)},
-        at_end{stretch.speed_rpm, hall.at(stretch.end_s)};
-    if (stretch.speed_rpm != known_speed_rpm) {
+    const effects::Inputs at_start{stretch.drive.speed_rpm, hall.at(stretch.start_s)},
+        at_end{stretch.drive.speed_rpm, hall.at(stretch.end_s)};
+    if (stretch.drive.speed_rpm != known_speed_rpm) {
       Eigen::MatrixXd k = system.conduction;
       for (const auto& e : system.exchanges) k += e.coefficient(at_start) * e.matrix;
       eigen.compute(k, system.mass);
       to_modes = eigen.eigenvectors().transpose() * system.mass;  // x = V z, V'MV = 1
-      known_speed_rpm = stretch.speed_rpm;
+      known_speed_rpm = stretch.drive.speed_rpm;
     }
     const Eigen::VectorXd z0 = to_modes * state;
     const Eigen::VectorXd f0 = eigen.eigenvectors().transpose() * system.load(at_start);

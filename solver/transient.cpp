@@ -263,7 +263,7 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
             1e30);  // heats follow, they do not steer
 
   const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, hall);
-  ode.set_speed(stretches.front().speed_rpm);
+  ode.set_speed(stretches.front().drive.speed_rpm);
   // Made before ARKODE and freed after it, which still looks at them when it goes.
   const LinearSolverPtr shifted = make_linear_solver(ode, context.get(), shifted_solve_callback);
   const LinearSolverPtr mass = make_linear_solver(ode, context.get(), mass_solve_callback);
@@ -308,8 +308,8 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   double t_s = 0.0;
   if (next < n_times && output_s[next] <= 0.0) take_output(0.0, y.get());
   for (const LinearStretch& stretch : stretches) {
-    if (stretch.speed_changed) {
-      ode.set_speed(stretch.speed_rpm);
+    if (stretch.drive_changed) {
+      ode.set_speed(stretch.drive.speed_rpm);
       check(ARKStepReset(mem, stretch.start_s, y.get()), "ARKStepReset", stretch.start_s, ode);
       check(ARKStepSetInitStep(mem, std::min(5.0, 0.1 * (stretch.end_s - stretch.start_s))), "ARKStepSetInitStep", t_s, ode);
     }
