@@ -18,7 +18,7 @@ namespace {
 using mesh::CellShape;
 using mesh::Mesh;
 using ColumnMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
-using Strain = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 30>;
+using Strain = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 3 * mesh::kMaxNodesPerCell>;
 
 Eigen::Matrix<double, 6, 6> stiffness_tensor(const Material& m) {
   const double lame = m.youngs_modulus_Pa * m.poisson_ratio / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));
@@ -30,7 +30,7 @@ Eigen::Matrix<double, 6, 6> stiffness_tensor(const Material& m) {
 }
 
 /// B of the shear order xy, yz, zx with engineering strains.
-Strain strain_matrix(const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 10>& gradient) {
+Strain strain_matrix(const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, mesh::kMaxNodesPerCell>& gradient) {
   const int n = static_cast<int>(gradient.cols());
   Strain b = Strain::Zero(6, 3 * n);
   for (int i = 0; i < n; ++i) {
@@ -51,12 +51,12 @@ CellMatrices cell_matrices(const Mesh& mesh, int cell, const Material& material)
   const auto d = stiffness_tensor(material);
   const auto n = x.cols();
   CellMatrices m{Eigen::MatrixXd::Zero(3 * n, 3 * n), Eigen::MatrixXd::Zero(3 * n, n)};
-  for (const auto& q : mesh::quadrature(shape, mesh::is_quadratic(shape) ? 2 : 1)) {
+  for (const auto& q : mesh::stiffness_rule(shape)) {
     const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
     const mesh::Jacobian j = mesh::jacobian(s, x, shape);
     const Strain b = strain_matrix(j.dx_dxi.inverse().transpose() * s.dN.leftCols(s.n));
     const double volume = q.weight * j.det;
-    const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 30, 6> bd = b.transpose() * d;
+    const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 3 * mesh::kMaxNodesPerCell, 6> bd = b.transpose() * d;
     m.stiffness += volume * bd * b;
     const Eigen::VectorXd push = bd.leftCols<3>().rowwise().sum();  // B'D (1,1,1,0,0,0)'
     m.thermal_load += volume * material.expansion_1_K * push * s.N.head(s.n);
