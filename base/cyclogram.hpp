@@ -24,6 +24,7 @@ struct Cyclogram {
   };
   std::string name;
   std::vector<Section> sections;
+  std::vector<std::string> remarks = {};  ///< for the user: where it comes from and what was passed over there
 
   [[nodiscard]] double duration_s() const;
   /// Drive at time t >= 0 [s]; a section holds from its start on, the last one also at and after its end.
