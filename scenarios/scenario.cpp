@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <set>
 
-#include "base/quantity.hpp"
 #include "scenarios/read_cyclogram.hpp"
+#include "scenarios/read_hall.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -79,20 +79,6 @@ std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
     entries.push_back({region, material, in.where(region)});
   }
   return entries;
-}
-
-TimeSeries read_hall(const ConfigMap& in, double reference_K) {
-  TimeSeries hall;
-  for (const std::vector<double>& row : in.rows("hall", {"s", "degC"})) {
-    if (!hall.time_s.empty() && !(row[0] > hall.time_s.back())) in.fail("hall", "times must increase from row to row");
-    if (!(row[1] >= 200.0 && row[1] <= 400.0)) {
-      in.fail("hall",
-              fmt::format("{:.0f} degC is no hall temperature; -73 to 127 degC is allowed", row[1] - kZeroCelsius_K));
-    }
-    hall.time_s.push_back(row[0]);
-    hall.value.push_back(row[1] - reference_K);
-  }
-  return hall;
 }
 
 MeshRecipe read_mesh_recipe(const ConfigMap& in) {

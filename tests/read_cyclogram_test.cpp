@@ -8,12 +8,12 @@
 
 #include "base/nc_program.hpp"
 #include "scenarios/machine.hpp"
+#include "scenarios/read_hall.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::scenarios {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -149,6 +149,36 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"nc_ignore", "  a: {nc_program: bad.ngc, rapid: 1 m/s, ignore: [g77]}\n", {"'g77' is no G or M word"}},
         Wrong{"nc_dwell_unit", "  a: {nc_program: bad.ngc, dwell_unit: min}\n", {"one of s, ms"}}),
     [](const auto& wrong) { return std::string(wrong.param.name); });
+
+TimeSeries hall(const std::string& entry) {
+  return read_hall(ConfigMap::read_file(write_file("scenario.yaml", "hall: " + entry + "\n")), 293.15);
+}
+
+TEST(ReadHall, TakesRowsOrAChannelOfARecord) {
+  (void)write_file("hall.csv", "time_h,ambient_degC,door_1\n0,21,0\n2,25.5,1\n");
+  for (const char* entry : {"[[0 s, 21 degC], [2 h, 298.65 K]]", "{csv: hall.csv, channel: ambient}"}) {
+    const TimeSeries h = hall(entry);
+    EXPECT_EQ(h.time_s, (std::vector<double>{0, 7200}));
+    ASSERT_EQ(h.value.size(), 2u);
+    EXPECT_NEAR(h.value[0], 1.0, 1e-12);  // kelvin of some hundred, rounded
+    EXPECT_NEAR(h.value[1], 5.5, 1e-12);
+  }
+}
+
+TEST(ReadHall, RefusesWhatIsNoHallTemperature) {
+  (void)write_file("hall.csv", "time_h,ambient_degC,door_1\n0,21,0\n2,,1\n");
+  EXPECT_THAT([] { (void)hall("{csv: hall.csv, channel: ambient}"); },
+              ThrowsMessage<InputError>(HasSubstr("ambient_degC is missing or outside -73 to 127 degC at 7200 s")));
+  EXPECT_THAT([] { (void)hall("{csv: hall.csv, channel: door}"); },
+              ThrowsMessage<InputError>(HasSubstr("door_1 is no temperature in degC")));
+  EXPECT_THAT([] { (void)hall("{csv: hall.csv, channel: roof}"); },
+              ThrowsMessage<InputError>(HasSubstr("no channel 'roof'")));
+  EXPECT_THAT([] { (void)hall("{csv: hall.csv, channel: ambient, offset: 3}"); },
+              ThrowsMessage<InputError>(HasSubstr("unknown key 'offset'")));
+  EXPECT_THAT([] { (void)hall("[[0 s, 21 degC], [0 s, 22 degC]]"); },
+              ThrowsMessage<InputError>(HasSubstr("times must increase")));
+  EXPECT_THAT([] { (void)hall("[[0 s, 200 degC]]"); }, ThrowsMessage<InputError>(HasSubstr("no hall temperature")));
+}
 
 TEST(ToRecord, CarriesFeedsAndCuttingPowerWhereTheCyclogramUsesThem) {
   const solver::Outputs outputs{};
