@@ -8,7 +8,7 @@
 //   G17 G18 G19  G20 G21  G90 G91  G90.1 G91.1   planes, inch and mm, absolute and incremental. G20 and G21 hold for their
 //                                           whole block, F included (LinuxCNC would read F before)
 //   G28 G30 G53                             need NcSettings::machine_zero_m: G28 and G30 end at it, G53 counts from it
-//   G73 G81 G82 G83 G84 G85 G80 G98 G99     canned cycles (nc_drilling.hpp)
+//   G73 G81 G82 G83 G84 G85 G80 G98 G99     canned cycles (nc_drilling.hpp); Z R Q P hold within an unbroken series
 //   G93 G94 G95, F, S, T                    each of the three forgets the feed before it
 //   M0 M1 M60  M2 M30                       halt without time; end
 //   M3 M4 M5 M19                            spindle. S alone does not turn it; M3 at S0 waits for an S. M19 stops it
@@ -17,7 +17,8 @@
 // Without effect on times and speeds: D H T, G40 G43 G49 G61 G61.1 G64 (P Q) G69 G97 G15, G54 first in the program, M7 M8 M9 M48
 // M49. Without effect, with a note: G41 G42 (the path is counted along the programmed contour) and any change of G54 ... G59.3
 // (positions are counted as if in the one before). Everything else is an InputError, unless NcSettings::ignored names it.
-// At the start: axes at 0 of the program, G17 G21 G90 G91.1 G94 G98, no motion word, no feed, spindle at rest.
+// At the start: axes at 0 of the program, G17 G21 G90 G91.1 G94 G98 (LinuxCNC starts with G99), no motion word, no feed, spindle
+// at rest.
 
 #include <array>
 #include <optional>

@@ -93,7 +93,9 @@ void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
                                  "feed_y", "feed_z", "cutting_power"};
   const auto add = [&](const std::string& name, const char* list) {
     if (!names.insert(name).second)
-      in.fail(list, fmt::format("the name '{}' is used twice, or is a column that records have anyway", name));
+      in.fail(list,
+              fmt::format("the name '{}' is used twice, or is a column of every record (time, speed, feeds, cutting power)",
+                          name));
   };
   for (const Sensor& s : m.sensors) add(s.name, "sensors");
   for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
