@@ -52,7 +52,7 @@ struct LinearStretch {
 /// Cuts a cyclogram at its changes of drive and at further knots, in order, without empty pieces.
 /// @param knots_s  times at which an integrator must stop although the drive does not change: knots of the hall
 ///                 temperature or of prescribed temperatures, onsets of a draught. Any order, repetitions allowed; those
-///                 outside the cyclogram do nothing.
+///                 outside the cyclogram do nothing, nor do those within 1e-9 of the time of another cut.
 /// @throws std::logic_error  for a knot that is NaN
 [[nodiscard]] std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const std::vector<double>& knots_s);
 /// The same with the knots of the hall temperature alone.
