@@ -168,17 +168,18 @@ Table heat_table(const MachineStudy& study) {
   const solver::Trajectory& run = study.judged.trajectory;
   const auto last = run.heat_J.cols() - 1;
   const double duration_s = run.time_s.back();
-  Table table{.caption = fmt::format("Mean heat flow over the judged cyclogram. In = stored + lost to {:.0e}.",
+  Table table{.caption = fmt::format("Mean heat flow over the judged cyclogram. In = stored + out to {:.0e}.",
                                      std::max(1e-16, run.energy_gap())),
-              .headers = {"source or film", "into the machine [W]", "to the hall [W]"},
+              .headers = {"source or film", "into the machine [W]", "out of it [W]"},
               .rows = {}};
   double in_W = 0.0, lost_W = 0.0;
-  for (std::size_t j = 0; j < run.flow_names.size(); ++j) {
+  for (std::size_t j = 0; j < run.flows.size(); ++j) {
     const double mean_W = run.heat_J(static_cast<Eigen::Index>(j), last) / duration_s;
-    const bool is_source = static_cast<int>(j) < run.n_sources;
-    (is_source ? in_W : lost_W) += mean_W;
+    if (run.flows[j].kind == solver::FlowKind::kInternal) continue;
+    const bool heats = mean_W > 0.0;
+    (heats ? in_W : lost_W) += std::abs(mean_W);
     table.rows.push_back(
-        {run.flow_names[j], is_source ? fmt::format("{:.1f}", mean_W) : "", is_source ? "" : fmt::format("{:.1f}", mean_W)});
+        {run.flows[j].name, heats ? fmt::format("{:.1f}", mean_W) : "", heats ? "" : fmt::format("{:.1f}", -mean_W)});
   }
   table.rows.push_back({"sum", fmt::format("{:.1f}", in_W), fmt::format("{:.1f}", lost_W)});
   table.rows.push_back({"stored in the machine", "", fmt::format("{:.1f}", run.stored_J[last] / duration_s)});

@@ -96,6 +96,9 @@ bool ConfigMap::has(const std::string& key) const {
 bool ConfigMap::is_map(const std::string& key) const {
   return has(key) && (*node_)[key].IsMap();
 }
+bool ConfigMap::is_list(const std::string& key) const {
+  return has(key) && (*node_)[key].IsSequence();
+}
 
 std::vector<std::string> ConfigMap::keys() const {
   std::vector<std::string> keys;

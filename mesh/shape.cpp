@@ -100,6 +100,13 @@ std::span<const QuadraturePoint> quadrature(CellShape shape, int degree) {
   return is_facet(shape) ? triangles[i] : tets[i];
 }
 
+std::span<const QuadraturePoint> mass_rule(CellShape shape) {
+  return quadrature(shape, is_quadratic(shape) ? 5 : 2);
+}
+std::span<const QuadraturePoint> stiffness_rule(CellShape shape) {
+  return quadrature(shape, is_quadratic(shape) ? 2 : 1);
+}
+
 Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxNodesPerCell> cell_coords(const Mesh& mesh, std::span<const int> nodes) {
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxNodesPerCell> x(3, nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) x.col(i) = mesh.coords.col(nodes[i]);

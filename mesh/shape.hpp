@@ -32,6 +32,11 @@ struct QuadraturePoint {
 /// Sources: Keast 1986 (tetrahedron, 4 and 15 points), Dunavant 1985 (triangle, 3 and 7 points).
 [[nodiscard]] std::span<const QuadraturePoint> quadrature(CellShape shape, int degree);
 
+/// The rule that integrates products of two shape functions on straight cells and facets.
+[[nodiscard]] std::span<const QuadraturePoint> mass_rule(CellShape shape);
+/// The rule that integrates products of two gradients of shape functions on straight cells.
+[[nodiscard]] std::span<const QuadraturePoint> stiffness_rule(CellShape shape);
+
 /// Coordinates of a cell's nodes, 3 x n, in the order of the cell.
 [[nodiscard]] Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxNodesPerCell> cell_coords(const Mesh& mesh,
                                                                                            std::span<const int> nodes);

@@ -61,26 +61,25 @@ solver::RegionMaterials place_materials(const MachineModel& model, const Mesh& m
 }
 
 void check_effects(const MachineModel& model, const Mesh& mesh, const effects::HeatBalance& balance) {
-  std::vector<std::string> nodes, surroundings = {"hall"};
-  for (const effects::LumpedNode& n : balance.nodes) {
-    nodes.push_back(n.name);
-    surroundings.push_back(n.name);
-  }
-  for (const effects::Effect& e : model.effects) {
-    switch (e.kind->place) {
-      case effects::Place::kRegion:
-        must_be_one_of(e.where, "region", e.place, mesh.regions);
-        break;
-      case effects::Place::kSurface:
-        must_be_one_of(e.where, "surface", e.place, outer_surfaces(mesh));
-        break;
-      case effects::Place::kJoint:
-        must_be_one_of(e.where, "joint", e.place, joint_names(mesh));
-        break;
-      case effects::Place::kNode:
-        break;  // it makes the node
+  std::vector<std::string> nodes = {effects::kHallName};
+  for (const effects::LumpedNode& n : balance.nodes) nodes.push_back(n.name);
+  const auto must_exist = [&](const Where& where, effects::BodyKind kind, const std::string& name) {
+    switch (kind) {
+      case effects::BodyKind::kRegion:
+        return must_be_one_of(where, "region", name, mesh.regions);
+      case effects::BodyKind::kSurface:
+        return must_be_one_of(where, "surface", name, outer_surfaces(mesh));
+      case effects::BodyKind::kNode:
+        return must_be_one_of(where, "lumped node", name, nodes);
     }
-    if (e.kind->has_surrounding) must_be_one_of(e.where, "surrounding (lumped node)", e.surrounding, surroundings);
+  };
+  for (const effects::Effect& e : model.effects) {
+    if (e.place_kind == effects::Place::kJoint) {
+      must_be_one_of(e.where, "joint", e.place, joint_names(mesh));
+    } else {
+      must_exist(e.where, e.body().kind, e.body().name);
+    }
+    for (const auto& [key, body] : e.references) must_exist(e.where, body.kind, body.name);
   }
   for (const mesh::Joint& joint : mesh.joints) {
     const bool has_contact = std::any_of(balance.contacts.begin(), balance.contacts.end(),
@@ -193,7 +192,8 @@ Machine build(const MachineModel& model, PlacedMachine placed) {
     }
   }();
   Machine machine{std::move(placed), std::move(elasticity), {}};
-  machine.system = solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance);
+  machine.system =
+      solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance, model.reference_K);
   solver::Outputs& out = machine.system.outputs;
   const auto n_sensors = model.sensors.size();
   const auto n_outputs = static_cast<Eigen::Index>(n_sensors + machine.placed.functionals.size());

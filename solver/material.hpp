@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/config_map.hpp"
+#include "solver/property_curve.hpp"
 
 namespace driftwright::solver {
 
@@ -18,13 +19,15 @@ struct Material {
   double poisson_ratio = 0.0;
   double expansion_1_K = 0.0;
   std::string source;
+  PropertyCurve conductivity_curve = {},
+                heat_capacity_curve = {};  ///< over temperature; then the values above are those at 20 degC
 };
 
 /// The library, by name.
 [[nodiscard]] const std::map<std::string, Material>& material_library();
 
 /// Reads a material given by its values: density, conductivity, heat_capacity, youngs_modulus, poisson_ratio, expansion, and
-/// optionally source. @throws InputError
+/// optionally source. Conductivity and heat_capacity may be rows of [temperature, value]. @throws InputError
 [[nodiscard]] Material read_material(const ConfigMap& in);
 
 }  // namespace driftwright::solver
