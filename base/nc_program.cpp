@@ -3,177 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 #include "base/nc_arc.hpp"
-#include "base/nc_block.hpp"
 #include "base/nc_drilling.hpp"
+#include "base/nc_words.hpp"
 
 namespace driftwright {
 namespace {
 
 constexpr double kInch_m = 0.0254, kMillimetre_m = 1e-3;
 
-/// Codes of a word times ten: G5.1 is 51.
-using Code = int;
-
-const std::map<Code, const char*>& g_groups() {  // of one group, a block may name one
-  static const std::map<Code, const char*> groups = [] {
-    std::map<Code, const char*> g;
-    const auto add = [&](const char* group, std::initializer_list<Code> codes) {
-      for (Code c : codes) g[c] = group;
-    };
-    add("motion", {0, 10, 20, 30, 730, 800, 810, 820, 830, 840, 850});
-    add("plane", {170, 180, 190});
-    add("distance", {900, 910});
-    add("arc centre", {901, 911});
-    add("feed mode", {930, 940, 950});
-    add("unit", {200, 210});
-    add("cutter compensation", {400, 410, 420});
-    add("tool length", {430, 490});
-    add("retract", {980, 990});
-    add("coordinate system", {540, 550, 560, 570, 580, 590, 591, 592, 593});
-    add("path control", {610, 611, 640});
-    add("spindle mode", {970});
-    add("polar", {150});
-    add("rotation", {690});
-    add("reference point", {280, 300});
-    add("dwell", {40});
-    add("machine coordinates", {530});
-    return g;
-  }();
-  return groups;
-}
-
-const std::map<Code, const char*>& m_groups() {
-  static const std::map<Code, const char*> groups = {
-      {0, "stop"},     {10, "stop"},    {20, "stop"},        {300, "stop"},     {600, "stop"},
-      {30, "spindle"}, {40, "spindle"}, {50, "spindle"},     {190, "spindle"},  {60, "tool change"},
-      {70, "mist"},    {80, "flood"},   {90, "coolant off"}, {480, "override"}, {490, "override"}};
-  return groups;
-}
-
-const char* hint(char letter, Code code) {
-  if (letter == 'G') {
-    if (code >= 50 && code <= 53) return "splines are not computed here; let the CAM system write lines and arcs";
-    if (code == 330 || code == 331 || code == 760) return "threading is not computed here; write G1 with G95";
-    if (code == 100 || code == 520 || (code >= 920 && code <= 923))
-      return "shifts of the origin are not followed here; write the program about one origin";
-    if (code == 680 || code == 510 || code == 500 || code == 160)
-      return "rotation, scaling and polar coordinates are not computed here";
-    if (code == 960) return "constant surface speed is not computed here; write the spindle speeds with G97";
-    if (code >= 382 && code <= 385) return "probing ends nobody knows when; leave it out";
-    if (code == 650 || code == 660) return "macros are not run here; let the post-processor write them out";
-    if (code == 740 || (code >= 860 && code <= 890))
-      return "of the canned cycles G73, G81 to G85 are known; write the others out";
-  }
-  if (letter == 'M' && (code == 970 || code == 980 || code == 990))
-    return "subprograms are not called here; let the post-processor write them out";
-  return "its effect on times and speeds is not known here; if it has none, name it under `ignore`";
-}
-
-/// The words of a block, and which of them have been used.
-class Words {
- public:
-  explicit Words(const NcBlock& block) : block_(block), used_(block.words.size(), false) {
-    for (std::size_t i = 0; i < block.words.size(); ++i) {
-      const char letter = block.words[i].letter;
-      if (letter == 'G' || letter == 'M') continue;
-      for (std::size_t j = 0; j < i; ++j) {
-        if (block.words[j].letter == letter) fail(i, fmt::format("a second {} in one block", letter));
-      }
-    }
-  }
-
-  [[noreturn]] void fail(std::size_t i, const std::string& message) const {
-    throw InputError(block_.at(block_.words[i]), fmt::format("{}: {}", block_.words[i].text, message));
-  }
-  bool has(char letter) const { return find(letter) < used_.size(); }
-  bool has_any(const char* letters) const {
-    return std::any_of(letters, letters + std::char_traits<char>::length(letters), [&](char c) { return has(c); });
-  }
-  /// An unused word's value, now used.
-  std::optional<double> take(char letter) {
-    const std::size_t i = find(letter);
-    if (i >= used_.size()) return std::nullopt;
-    used_[i] = true;
-    return block_.words[i].value;
-  }
-  double take_not_negative(char letter) {
-    const std::size_t i = find(letter);
-    const double value = *take(letter);
-    if (value < 0.0) fail(i, "a value of zero or above is wanted");
-    return value;
-  }
-  int take_count(char letter) {
-    const std::size_t i = find(letter);
-    const double value = *take(letter);
-    if (!(value >= 1.0 && value <= 1e5 && value == std::floor(value))) fail(i, "a whole number from 1 to 100000 is wanted");
-    return static_cast<int>(value);
-  }
-  /// G or M codes in their order, all used now; those of `ignored` are left out, and with them words P Q R L E.
-  std::vector<Code> take_codes(char letter, const std::map<Code, const char*>& groups,
-                               const std::set<std::string>& ignored) {
-    std::vector<Code> codes;
-    for (std::size_t i = 0; i < used_.size(); ++i) {
-      if (block_.words[i].letter != letter) continue;
-      const double tenths = 10.0 * block_.words[i].value;
-      const Code code = static_cast<Code>(std::lround(std::clamp(tenths, -1.0, 1e6)));
-      if (std::abs(tenths - code) > 1e-3 || code < 0) fail(i, "no such word");
-      used_[i] = true;
-      if (ignored.count(name(letter, code)) > 0) {
-        pardoned_ = "PQRLE";
-        continue;
-      }
-      const auto group = groups.find(code);
-      if (group == groups.end()) fail(i, hint(letter, code));
-      for (Code other : codes) {
-        if (std::string(groups.at(other)) == group->second)
-          fail(i, fmt::format("it contradicts {} in the same block (group: {})", name(letter, other), group->second));
-      }
-      codes.push_back(code);
-    }
-    return codes;
-  }
-  void reject_unused() const {
-    for (std::size_t i = 0; i < used_.size(); ++i) {
-      const char letter = block_.words[i].letter;
-      if (used_[i] || pardoned_.find(letter) != std::string::npos) continue;
-      if (std::string("ABCUVW").find(letter) != std::string::npos)
-        fail(i, "rotary and further linear axes are not followed here; X, Y, Z are");
-      fail(i, "this word has no use in its block");
-    }
-  }
-  static std::string name(char letter, Code code) {
-    return code % 10 == 0 ? fmt::format("{}{}", letter, code / 10) : fmt::format("{}{}.{}", letter, code / 10, code % 10);
-  }
-
- private:
-  std::size_t find(char letter) const {
-    for (std::size_t i = 0; i < used_.size(); ++i) {
-      if (!used_[i] && block_.words[i].letter == letter) return i;
-    }
-    return used_.size();
-  }
-  const NcBlock& block_;
-  std::vector<bool> used_;
-  std::string pardoned_;
-};
-
-bool contains(const std::vector<Code>& codes, Code code) {
-  return std::find(codes.begin(), codes.end(), code) != codes.end();
-}
-
-/// The code of `group` among `codes`.
-std::optional<Code> of_group(const std::vector<Code>& codes, const char* group) {
-  for (Code c : codes) {
-    if (std::string(g_groups().at(c)) == group) return c;
-  }
-  return std::nullopt;
-}
-
-bool is_drilling(std::optional<Code> motion) {
+bool is_drilling(std::optional<NcCode> motion) {
   return motion && *motion >= 730 && *motion != 800;
 }
 
@@ -185,9 +25,9 @@ class Interpreter {
   bool run(const NcBlock& block) {
     motion_.where = block.where;
     if (block.words[0].letter == '%') return false;
-    Words words(block);
-    const std::vector<Code> g = words.take_codes('G', g_groups(), settings_.ignored);
-    const std::vector<Code> m = words.take_codes('M', m_groups(), settings_.ignored);
+    NcWords words(block);
+    const std::vector<NcCode> g = words.take_codes('G', settings_.ignored);
+    const std::vector<NcCode> m = words.take_codes('M', settings_.ignored);
     if (contains(g, 200)) unit_m_ = kInch_m;
     if (contains(g, 210)) unit_m_ = kMillimetre_m;
     set_feed(g, words);
@@ -212,8 +52,8 @@ class Interpreter {
     if (noted_.insert(word).second) notes_.push_back(fmt::format("line {}: {}: {}", motion_.where.line, word, message));
   }
 
-  void set_feed(const std::vector<Code>& g, Words& words) {
-    const std::optional<Code> mode = of_group(g, "feed mode");
+  void set_feed(const std::vector<NcCode>& g, NcWords& words) {
+    const std::optional<NcCode> mode = of_group(g, "feed mode");
     if (mode) {
       const NcFeedMode wanted = *mode == 930   ? NcFeedMode::InverseTime
                                 : *mode == 940 ? NcFeedMode::PerMinute
@@ -236,7 +76,7 @@ class Interpreter {
     }
   }
 
-  void set_spindle(const std::vector<Code>& m) {
+  void set_spindle(const std::vector<NcCode>& m) {
     if (contains(m, 60)) {
       if (!settings_.tool_change_s)
         fail("M6 changes the tool, but nobody says how long that takes; state `tool_change`, such as 8 s");
@@ -247,7 +87,7 @@ class Interpreter {
     if (contains(m, 50) || contains(m, 190)) motion_.turning = false;
   }
 
-  void dwell(const std::vector<Code>& g, Words& words) {
+  void dwell(const std::vector<NcCode>& g, NcWords& words) {
     if (words.has('P')) {
       motion_.wait(words.take_not_negative('P') * settings_.dwell_P_s);
     } else if (!of_group(g, "motion") && words.has_any("XU")) {
@@ -257,7 +97,7 @@ class Interpreter {
     }
   }
 
-  void set_modes(const std::vector<Code>& g, Words& words) {
+  void set_modes(const std::vector<NcCode>& g, NcWords& words) {
     if (contains(g, 170)) normal_ = 2;
     if (contains(g, 180)) normal_ = 1;
     if (contains(g, 190)) normal_ = 0;
@@ -270,7 +110,7 @@ class Interpreter {
     if (contains(g, 490)) (void)words.take('H');
     if (const auto system = of_group(g, "coordinate system")) {
       if (system_ && *system_ != *system)
-        note(Words::name('G', *system), "another coordinate system; positions are counted as if in the one before");
+        note(nc_word_name('G', *system), "another coordinate system; positions are counted as if in the one before");
       system_ = system;
     }
     if (contains(g, 640)) {
@@ -286,7 +126,7 @@ class Interpreter {
   }
 
   /// Where the block's X, Y, Z point to; the axes it does not name stay.
-  std::array<double, 3> take_target(Words& words, bool absolute) {
+  std::array<double, 3> take_target(NcWords& words, bool absolute) {
     std::array<double, 3> target_m = motion_.position_m;
     for (int axis = 0; axis < 3; ++axis) {
       if (const auto value = words.take(static_cast<char>('X' + axis)))
@@ -301,10 +141,10 @@ class Interpreter {
     return *settings_.machine_zero_m;
   }
 
-  void go_to_reference(Code code, Words& words) {
+  void go_to_reference(NcCode code, NcWords& words) {
     std::array<bool, 3> named = {words.has('X'), words.has('Y'), words.has('Z')};
     const bool all = !named[0] && !named[1] && !named[2];
-    const std::array<double, 3>& zero_m = machine_zero(Words::name('G', code));
+    const std::array<double, 3>& zero_m = machine_zero(nc_word_name('G', code));
     motion_.rapid_to(take_target(words, absolute_));
     std::array<double, 3> target_m = motion_.position_m;
     for (int axis = 0; axis < 3; ++axis) {
@@ -313,8 +153,8 @@ class Interpreter {
     motion_.rapid_to(target_m);
   }
 
-  void move(const std::vector<Code>& g, Words& words) {
-    const std::optional<Code> named = of_group(g, "motion");
+  void move(const std::vector<NcCode>& g, NcWords& words) {
+    const std::optional<NcCode> named = of_group(g, "motion");
     if (named) {
       if (!is_drilling(named) || !is_drilling(modal_)) drilling_ = {};
       modal_ = named;
@@ -346,7 +186,7 @@ class Interpreter {
     }
   }
 
-  void move_along_arc(Words& words) {
+  void move_along_arc(NcWords& words) {
     const bool clockwise = modal_ == 20;
     const auto [u, v] = plane_axes(normal_);
     const std::array<double, 3> target_m = take_target(words, absolute_);
@@ -376,13 +216,13 @@ class Interpreter {
   }
 
   struct Sticky {  // words of a series of canned cycles that hold until they are changed; lengths as written [m]
-    std::optional<Code> code;
+    std::optional<NcCode> code;
     std::optional<double> bottom_m, retract_m, peck_m, dwell_s, initial_m;
   };
 
-  void drill_holes(Words& words) {
+  void drill_holes(NcWords& words) {
     const auto [u, v] = plane_axes(normal_);
-    const Code code = *modal_ / 10;
+    const NcCode code = *modal_ / 10;
     if (!words.has_any("XYZ")) fail("a canned cycle without axis words; X, Y or Z is wanted");
     if (drilling_.code != code) {
       drilling_.bottom_m = drilling_.peck_m = drilling_.dwell_s = std::nullopt;
@@ -421,7 +261,7 @@ class Interpreter {
   double unit_m_ = kMillimetre_m;
   int normal_ = 2;
   bool absolute_ = true, absolute_centre_ = false, to_initial_level_ = true;
-  std::optional<Code> modal_, system_;
+  std::optional<NcCode> modal_, system_;
   Sticky drilling_;
   std::set<std::string> noted_;
   std::vector<std::string> notes_;
