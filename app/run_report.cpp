@@ -51,14 +51,17 @@ std::vector<double> minutes(const Record& record) {
 }
 
 std::vector<output::SectionMark> section_marks(const Cyclogram& cyclogram) {
-  constexpr std::size_t kMostMarks = 40;
+  constexpr std::size_t kMostMarks = 40;  // more would hide the curves: an NC program changes speed hundreds of times
   std::vector<output::SectionMark> marks;
-  if (cyclogram.sections.size() > kMostMarks) return marks;
   double start_s = 0.0;
+  const Drive* last = nullptr;
   for (const auto& section : cyclogram.sections) {
-    marks.push_back({start_s / 60.0, fmt::format("{:.0f} rpm", section.drive.speed_rpm)});
+    if (!last || section.drive.speed_rpm != last->speed_rpm)
+      marks.push_back({start_s / 60.0, fmt::format("{:.0f} rpm", section.drive.speed_rpm)});
+    last = &section.drive;
     start_s += section.duration_s;
   }
+  if (marks.size() > kMostMarks) marks.clear();
   return marks;
 }
 

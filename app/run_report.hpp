@@ -9,7 +9,7 @@ namespace driftwright::app {
 /// Times of a record in minutes, for plots.
 [[nodiscard]] std::vector<double> minutes(const Record& record);
 
-/// Where the drive changes, with what it changes to. Beyond 40 sections none are marked.
+/// Where the speed changes, with what it changes to; none where it changes more than 40 times.
 [[nodiscard]] std::vector<output::SectionMark> section_marks(const Cyclogram& cyclogram);
 
 /// Channels of a record over time.

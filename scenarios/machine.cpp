@@ -221,12 +221,33 @@ Machine build(const MachineModel& model, PlacedMachine placed) {
   return machine;
 }
 
+namespace {
+
+/// Channels of what the cyclogram uses beside the spindle speed.
+void add_feeds_and_cutting_power(Record& record, const Cyclogram& cyclogram) {
+  const auto add = [&](const char* name, const char* unit, const auto& of_drive) {
+    const auto& sections = cyclogram.sections;
+    if (std::none_of(sections.begin(), sections.end(), [&](const auto& s) { return of_drive(s.drive) != 0.0; })) return;
+    Channel channel{name, unit, {}};
+    for (double t_s : record.time_s) channel.values.push_back(of_drive(cyclogram.drive(t_s)));
+    record.channels.push_back(std::move(channel));
+  };
+  constexpr double kMmMin_per_m_s = 60e3;
+  add("feed_x", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[0]; });
+  add("feed_y", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[1]; });
+  add("feed_z", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[2]; });
+  add("cutting_power", "W", [](const Drive& d) { return d.cutting_power_W; });
+}
+
+}  // namespace
+
 Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
                  double reference_K) {
   Record record{.source = cyclogram.name, .time_s = run.time_s, .channels = {}};
   Channel speed{"speed", "rpm", {}};
   for (double t_s : run.time_s) speed.values.push_back(cyclogram.speed_rpm(t_s));
   record.channels.push_back(std::move(speed));
+  add_feeds_and_cutting_power(record, cyclogram);
   for (std::size_t i = 0; i < outputs.name.size(); ++i) {
     const auto row = run.outputs.row(static_cast<Eigen::Index>(i));
     Channel channel{outputs.name[i], "", {}};

@@ -35,7 +35,7 @@ struct Machine {
 };
 [[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed);
 
-/// A trajectory as a record: speed_rpm, sensors in degC, displacements in um, tilts in urad.
+/// A trajectory as a record: speed_rpm, feeds in mm/min and cutting power in W where the cyclogram uses them, sensors in degC, displacements in um, tilts in urad.
 [[nodiscard]] Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
                                double reference_K);
 
