@@ -75,7 +75,7 @@ StressFunctional stress_functional(const Mesh& mesh, const RegionMaterials& mate
   return functional;
 }
 
-double von_mises_Pa(const Stress& s) {
+double von_mises(const Stress& s) {
   const double normal = std::pow(s[0] - s[1], 2) + std::pow(s[1] - s[2], 2) + std::pow(s[2] - s[0], 2);
   return std::sqrt(0.5 * normal + 3.0 * s.tail<3>().squaredNorm());
 }
@@ -113,7 +113,7 @@ NodalStress nodal_stress_Pa(const Mesh& mesh, const RegionMaterials& materials, 
     for (int node = 0; node < mesh.n_nodes(); ++node) {
       if (!(volume_m3[node] > 0.0)) continue;
       const Stress mean_Pa = sum.col(node) / volume_m3[node];
-      const double mises_Pa = von_mises_Pa(mean_Pa);
+      const double mises_Pa = von_mises(mean_Pa);
       if (mises_Pa <= largest_Pa[node]) continue;
       largest_Pa[node] = mises_Pa;
       result.col(node) = mean_Pa;

@@ -30,7 +30,7 @@ using NodalStress = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 [[nodiscard]] NodalStress nodal_stress_Pa(const mesh::Mesh& mesh, const RegionMaterials& materials,
                                           const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K);
 
-/// sqrt( ½[(σx-σy)² + (σy-σz)² + (σz-σx)²] + 3(τxy² + τyz² + τzx²) ) [Pa].
-[[nodiscard]] double von_mises_Pa(const Stress& stress_Pa);
+/// sqrt( ½[(σx-σy)² + (σy-σz)² + (σz-σx)²] + 3(τxy² + τyz² + τzx²) ), in the unit of the stress.
+[[nodiscard]] double von_mises(const Stress& stress);
 
 }  // namespace driftwright::solver
