@@ -29,6 +29,18 @@ int vtk_cell_type(mesh::CellShape shape) {
       return VTK_TETRA;
     case mesh::CellShape::kTet10:
       return VTK_QUADRATIC_TETRA;
+    case mesh::CellShape::kQuad4:
+      return VTK_QUAD;
+    case mesh::CellShape::kQuad8:
+      return VTK_QUADRATIC_QUAD;
+    case mesh::CellShape::kHex8:
+      return VTK_HEXAHEDRON;
+    case mesh::CellShape::kHex20:
+      return VTK_QUADRATIC_HEXAHEDRON;
+    case mesh::CellShape::kWedge6:
+      return VTK_WEDGE;
+    case mesh::CellShape::kWedge15:
+      return VTK_QUADRATIC_WEDGE;
   }
   throw std::logic_error("a cell shape without a VTK type");
 }

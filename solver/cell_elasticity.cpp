@@ -32,8 +32,4 @@ CellPoint cell_point(mesh::CellShape shape, const Eigen::Ref<const Eigen::Matrix
   return point;
 }
 
-std::span<const mesh::QuadraturePoint> stiffness_points(mesh::CellShape shape) {
-  return mesh::quadrature(shape, mesh::is_quadratic(shape) ? 2 : 1);
-}
-
 }  // namespace driftwright::solver

@@ -4,7 +4,6 @@
 // Source of the formulas: Zienkiewicz, Taylor & Zhu, The Finite Element Method, vol. 1, ch. 2 and 6.
 
 #include <Eigen/Core>
-#include <span>
 
 #include "mesh/mesh.hpp"
 #include "mesh/shape.hpp"
@@ -33,8 +32,5 @@ struct CellPoint {
 /// @param coords  3 x n nodes of the cell [m]
 [[nodiscard]] CellPoint cell_point(mesh::CellShape shape, const Eigen::Ref<const Eigen::Matrix3Xd>& coords,
                                    const Eigen::Vector3d& xi);
-
-/// Points at which stiffness and stresses are evaluated.
-[[nodiscard]] std::span<const mesh::QuadraturePoint> stiffness_points(mesh::CellShape shape);
 
 }  // namespace driftwright::solver

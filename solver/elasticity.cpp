@@ -29,7 +29,7 @@ CellMatrices cell_matrices(const Mesh& mesh, int cell, const Material& material)
   const auto free_strain = thermal_strain_1_K(material);
   const auto n = x.cols();
   CellMatrices m{Eigen::MatrixXd::Zero(3 * n, 3 * n), Eigen::MatrixXd::Zero(3 * n, n)};
-  for (const auto& q : stiffness_points(shape)) {
+  for (const auto& q : mesh::stiffness_rule(shape)) {
     const CellPoint p = cell_point(shape, x, q.xi);
     const double volume = q.weight * p.det_m3;
     const Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 3 * mesh::kMaxNodesPerCell, 6> bd = p.strain.transpose() * d;

@@ -13,13 +13,13 @@ namespace {
 
 using mesh::CellShape;
 using mesh::Mesh;
-using Local = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 10, 10>;
+using Local = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, mesh::kMaxNodesPerCell, mesh::kMaxNodesPerCell>;
 
 Local cell_mass(const Mesh& mesh, int cell, double capacity_J_m3K) {
   const CellShape shape = mesh.cells.shape[cell];
   const auto x = mesh::cell_coords(mesh, mesh.cells.nodes(cell));
   Local m = Local::Zero(x.cols(), x.cols());
-  for (const auto& q : mesh::quadrature(shape, mesh::is_quadratic(shape) ? 5 : 2)) {
+  for (const auto& q : mesh::mass_rule(shape)) {
     const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
     m += capacity_J_m3K * q.weight * mesh::jacobian(s, x, shape).det * s.N.head(s.n).transpose() * s.N.head(s.n);
   }
@@ -30,10 +30,11 @@ Local cell_conduction(const Mesh& mesh, int cell, double conductivity_W_mK) {
   const CellShape shape = mesh.cells.shape[cell];
   const auto x = mesh::cell_coords(mesh, mesh.cells.nodes(cell));
   Local k = Local::Zero(x.cols(), x.cols());
-  for (const auto& q : mesh::quadrature(shape, mesh::is_quadratic(shape) ? 2 : 1)) {
+  for (const auto& q : mesh::stiffness_rule(shape)) {
     const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
     const mesh::Jacobian j = mesh::jacobian(s, x, shape);
-    const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 10> gradient = j.dx_dxi.inverse().transpose() * s.dN.leftCols(s.n);
+    const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, mesh::kMaxNodesPerCell> gradient =
+        j.dx_dxi.inverse().transpose() * s.dN.leftCols(s.n);
     k += conductivity_W_mK * q.weight * j.det * gradient.transpose() * gradient;
   }
   return k;
@@ -46,7 +47,7 @@ SparseRow film_matrix(const Mesh& mesh, int surface, int n_unknowns, int surroun
     const CellShape shape = mesh.facets.shape[facet];
     const auto nodes = mesh.facets.nodes(facet);
     const auto x = mesh::cell_coords(mesh, nodes);
-    for (const auto& q : mesh::quadrature(shape, mesh::is_quadratic(shape) ? 5 : 2)) {
+    for (const auto& q : mesh::mass_rule(shape)) {
       const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
       const double area_m2 = q.weight * mesh::jacobian(s, x, shape).det;
       for (int i = 0; i < s.n; ++i) {
@@ -96,7 +97,7 @@ Eigen::VectorXd unit_heat(const Mesh& mesh, int region, int n_unknowns) {
     const CellShape shape = mesh.cells.shape[cell];
     const auto nodes = mesh.cells.nodes(cell);
     const auto x = mesh::cell_coords(mesh, nodes);
-    for (const auto& q : mesh::quadrature(shape, mesh::is_quadratic(shape) ? 5 : 1)) {
+    for (const auto& q : mesh::mass_rule(shape)) {
       const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
       const double volume = q.weight * mesh::jacobian(s, x, shape).det;
       for (int i = 0; i < s.n; ++i) load[nodes[i]] += volume * s.N[i];

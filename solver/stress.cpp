@@ -19,9 +19,9 @@ Eigen::RowVectorXd polynomial(const Eigen::Vector3d& xi, int n_terms) {
   return Eigen::Map<const Eigen::RowVectorXd>(terms.data(), n_terms);
 }
 
-/// Values at the nodes from values at the stiffness_points(): n nodes x n points.
+/// Values at the nodes from values at the mesh::stiffness_rule(): n nodes x n points.
 Eigen::MatrixXd extension(mesh::CellShape shape) {
-  const auto points = stiffness_points(shape);
+  const auto points = mesh::stiffness_rule(shape);
   const auto nodes = mesh::reference_nodes(shape);
   const auto n_points = static_cast<Eigen::Index>(points.size());
   const int n_corners = mesh::n_corners_of(shape);
@@ -94,7 +94,7 @@ NodalStress nodal_stress_Pa(const Mesh& mesh, const RegionMaterials& materials, 
       const auto nodes = mesh.cells.nodes(cell);
       const auto x = mesh::cell_coords(mesh, nodes);
       const auto [u_m, t_K] = gather(nodes, displacement_m, theta_K);
-      const auto points = stiffness_points(shape);
+      const auto points = mesh::stiffness_rule(shape);
       Eigen::MatrixXd at_points(points.size(), 6);
       double cell_volume_m3 = 0.0;
       for (std::size_t i = 0; i < points.size(); ++i) {

@@ -10,7 +10,7 @@ namespace driftwright::solver {
 using NodalStress = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Stress at the reference point xi of a cell, by the derivatives of the shape functions there [Pa]. It jumps between cells;
-/// it is most accurate at the stiffness_points().
+/// it is most accurate at the mesh::stiffness_rule().
 /// @param displacement_m  3 x n_nodes;  @param theta_K  n_nodes or longer, over the reference temperature
 [[nodiscard]] Stress stress_at(const mesh::Mesh& mesh, const RegionMaterials& materials,
                                const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K, int cell,
@@ -20,7 +20,7 @@ using NodalStress = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 [[nodiscard]] StressFunctional stress_functional(const mesh::Mesh& mesh, const RegionMaterials& materials, int cell,
                                                  const Eigen::Vector3d& xi, int component);
 
-/// Stresses recovered at the nodes: in each cell the stresses of the stiffness_points() are fitted by least squares with the
+/// Stresses recovered at the nodes: in each cell the stresses of the mesh::stiffness_rule() are fitted by least squares with the
 /// polynomial that its corners can carry (tetrahedra: linear; a single point: constant) and extended to its nodes; at each
 /// node the values of the cells around it are averaged, weighted by their volumes.
 ///

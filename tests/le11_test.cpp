@@ -26,8 +26,8 @@ mesh::Mesh le11_mesh(double size_m) {
     const double low = d + 0.69, high = d + 1.09;
     const int o = point(0, 0), a = point(1, 0), b = point(1.4, 0), c = point(d, d), e = point(rd, d), f = point(d, high),
               g = point(1, high), h = point(1, low);
-    const std::vector<int> lines = {occ::addLine(a, b),           occ::addCircleArc(b, o, e), occ::addLine(e, h),
-                                    occ::addLine(h, g),           occ::addLine(g, f),         occ::addLine(f, c),
+    const std::vector<int> lines = {occ::addLine(a, b),        occ::addCircleArc(b, o, e), occ::addLine(e, h),
+                                    occ::addLine(h, g),        occ::addLine(g, f),         occ::addLine(f, c),
                                     occ::addCircleArc(c, o, a)};
     const int face = occ::addPlaneSurface({occ::addCurveLoop(lines)});
     gmsh::vectorpair solid;
@@ -36,7 +36,9 @@ mesh::Mesh le11_mesh(double size_m) {
     gmsh::vectorpair volumes;
     gmsh::model::getEntities(volumes, 3);
     return mesh::mesh_parts({{"body", {volumes.at(0).second}, size_m}}, 2, [&](const mesh::OuterFace& at) -> std::string {
-      const auto flat_at = [&](int axis, double x) { return std::abs(at.low[axis] - x) + std::abs(at.high[axis] - x) < 1e-4; };
+      const auto flat_at = [&](int axis, double x) {
+        return std::abs(at.low[axis] - x) + std::abs(at.high[axis] - x) < 1e-4;
+      };
       if (flat_at(0, 0.0)) return "x0";
       if (flat_at(1, 0.0)) return "y0";
       if (flat_at(2, 0.0)) return "bottom";
@@ -63,8 +65,7 @@ TEST(NafemsLe11, AxialStressAtAConvergesToMinus105MPa) {
     const NodalStress stress = nodal_stress_Pa(mesh, {m}, elastic.displacement(theta), theta);
     const int at = fixtures::node_at(mesh, {1, 0, 0}), other = fixtures::node_at(mesh, {0, 1, 0});
     printf("h %g  nodes %d  szz(A) %.3f %.3f MPa  %.1f s\n", size_m, mesh.n_nodes(), stress(2, at) / 1e6,
-           stress(2, other) / 1e6,
-           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+           stress(2, other) / 1e6, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     std::fflush(stdout);
   }
 }
