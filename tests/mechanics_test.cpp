@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "base/errors.hpp"
@@ -131,6 +132,89 @@ TEST(SlidingJoint, LetsOnePartGrowAlongTheOther) {
   const Eigen::Matrix3Xd u = elastic.displacement(theta);
   EXPECT_LT(largest_stress(mesh, {kSteel, kSteel}, u, theta), kSolve);
   EXPECT_NEAR(u(0, fixtures::node_at(mesh, {0.4, 0.2, 0.2})), kFree * 0.4, kSolve * kFree * 0.4);
+}
+
+/// A tube about z from r0 to r1, 60 mm long; x0 and x1 are its bore and its outside.
+mesh::Mesh tube(CellShape shape, double r0_m, double r1_m, int n_around, double turn_rad = 2 * std::numbers::pi) {
+  mesh::Mesh mesh = fixtures::box_mesh({{r0_m, 0, 0}, {r1_m - r0_m, turn_rad, 0.06}, {2, n_around, 2}, shape});
+  fixtures::map_nodes(
+      mesh, [](const Eigen::Vector3d& x) { return Eigen::Vector3d(x[0] * std::cos(x[1]), x[0] * std::sin(x[1]), x[2]); });
+  fixtures::merge_nodes(mesh);
+  return mesh;
+}
+
+class Shaft : public ::testing::TestWithParam<CellShape> {};
+
+TEST_P(Shaft, ThatSlidesInABoreCanTurnAndMoveAlongWhateverTheMesh) {
+  for (int n_around : {6, 8, 11, 16}) {
+    const mesh::Mesh mesh = tube(GetParam(), 0.02, 0.05, n_around);
+    EXPECT_THAT(
+        [&] {
+          Elasticity(mesh, {kSteel}, {{"x1", {false, false, false}, true}});
+        },
+        ThrowsMessage<InputError>(HasSubstr("can still translate along z, rotate about z through x = 0.0 mm, y = 0.0 mm.")))
+        << n_around << " cells around";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, Shaft,
+                         ::testing::Values(CellShape::kTet4, CellShape::kTet10, CellShape::kHex8, CellShape::kHex20));
+
+TEST(SlidingSupport, AroundAHeatedTubeGivesLamesPressure) {
+  // Held at the outside b: p = E alpha theta / [(b^2 + a^2)/(b^2 - a^2) - nu + l/(1000 b)], the last term the springs of the
+  // support; hoop stress at the bore -2 p b^2/(b^2 - a^2). Lame's solution with free ends has no axial stress.
+  const double a = 0.05, b = 0.1;
+  const mesh::Mesh mesh = tube(CellShape::kHex20, a, b, 12, std::numbers::pi / 2);
+  const Elasticity elastic(mesh, {kSteel},
+                           {{"y0", {false, true, false}},
+                            {"y1", {true, false, false}},
+                            {"z0", {false, false, true}},
+                            {"x1", {false, false, false}, true}});
+  const Eigen::Matrix3Xd u = elastic.displacement(uniform(mesh));
+  const NodalStress stress = nodal_stress_Pa(mesh, {kSteel}, u, uniform(mesh));
+  const double l = std::sqrt(b * std::numbers::pi / 2 * 0.06 / 24);
+  const double form = (b * b + a * a) / (b * b - a * a) - kSteel.poisson_ratio;
+  const double scale_Pa = kSteel.youngs_modulus_Pa * kFree;
+  const double pressure_Pa = scale_Pa / (form + l / (1000 * b)), hoop_Pa = -2 * pressure_Pa * b * b / (b * b - a * a);
+  const int at = fixtures::node_at(mesh, {a, 0, 0.03}), outside = fixtures::node_at(mesh, {b, 0, 0.03});
+  printf("hoop %.6f radial %.3e slip %.6f\n", stress(1, at) / hoop_Pa, stress(0, outside) / pressure_Pa,
+         u(0, outside) / (pressure_Pa * l / (1000 * kSteel.youngs_modulus_Pa)));
+}
+
+TEST(SpringJoint, OnACylinderAddsUpToItsStiffness) {
+  // A ring: its own stiffness in each direction. Normal springs: half along and half across for sideways motion.
+  mesh::Mesh mesh;
+  fixtures::add_box(mesh, {{0.03, 0, 0}, {0.02, 6.0, 0.06}, {1, 16, 2}, CellShape::kHex20}, "shaft", "a.");
+  fixtures::add_box(mesh, {{0.05, 0, 0}, {0.02, 6.0, 0.06}, {1, 20, 3}, CellShape::kTet10}, "ring", "b.");
+  fixtures::map_nodes(mesh, [](const Eigen::Vector3d& x) {
+    const double angle = x[1] * 2 * std::numbers::pi / 6.0;
+    return Eigen::Vector3d(x[0] * std::cos(angle), x[0] * std::sin(angle), x[2]);
+  });
+  mesh.joints.push_back({"bearing", "a.x1", "b.x0"});
+  const auto sum = [&](const JointKind& kind) {
+    Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
+    for (const SpringPoint& p : spring_layers(mesh, {kSteel, kSteel}, {}, {{"bearing", kind}}).at(0))
+      total += p.stiffness_N_m;
+    return total;
+  };
+  const Eigen::Matrix3d ring = Eigen::Vector3d(3e8, 3e8, 1e7).asDiagonal();
+  EXPECT_LT((sum(RingSprings{2, 1e7, 3e8}) - ring).norm(), 1e-12 * ring.norm());
+  const Eigen::Matrix3d springs = Eigen::Vector3d(2.5e8, 2.5e8, 1e8).asDiagonal();
+  EXPECT_LT((sum(NormalSprings{4e8, 1e8}) - springs).norm(), 1e-6 * springs.norm());  // smoothed normals, curved facets
+  // 1 / k_total of both sides of the joint: heat flows the same way.
+  EXPECT_NO_THROW(Elasticity(mesh, {kSteel, kSteel}, {{"b.x1"}}, {{"bearing", RingSprings{2, 1e7, 3e8}}}));
+  EXPECT_THAT(
+      [&] {
+        Elasticity(mesh, {kSteel, kSteel}, {{"b.x1"}}, {{"bearing", NormalSprings{1e9, 0.0}}});
+      },
+      ThrowsMessage<InputError>(HasSubstr("'shaft' is not held: as a rigid body it can still translate along z, "
+                                          "rotate about z through x = 0.0 mm, y = 0.0 mm.")));
+  const Elasticity tied(mesh, {kSteel, kSteel},
+                        {{"b.y0", {false, true, false}},
+                         {"b.z0", {false, false, true}},
+                         {"b.x1", {false, false, false}, false, {1e4, 1e4, 0}}});
+  const Eigen::Matrix3Xd u = tied.displacement(uniform(mesh));
+  printf("tied sleeve free expansion %g\n", largest_stress(mesh, {kSteel, kSteel}, u, uniform(mesh)));
 }
 
 Eigen::Isometry3d some_motion() {
