@@ -162,6 +162,13 @@ PlacedMachine place(const MachineModel& model) {
     must_be_one_of(s.where, "surface", s.support.surface, outer_surfaces(mesh));
     placed.supports.push_back(s.support);
   }
+  for (const JointEntry& j : model.joints) {
+    must_be_one_of(j.where, "joint", j.mechanics.joint, joint_names(mesh));
+    const bool again = std::any_of(placed.joints.begin(), placed.joints.end(),
+                                   [&](const auto& other) { return other.joint == j.mechanics.joint; });
+    if (again) throw InputError(j.where, fmt::format("joint '{}' stands under `joints` twice", j.mechanics.joint));
+    placed.joints.push_back(j.mechanics);
+  }
   for (const Sensor& sensor : model.sensors) {
     std::vector<std::pair<int, double>> weights;
     if (const auto* point = std::get_if<PointOnRegion>(&sensor.place)) {
@@ -186,9 +193,10 @@ PlacedMachine place(const MachineModel& model) {
 Machine build(const MachineModel& model, PlacedMachine placed) {
   solver::Elasticity elasticity = [&] {
     try {
-      return solver::Elasticity(placed.mesh, placed.materials, placed.supports);
+      return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints);
     } catch (const InputError& e) {  // it knows what is wrong, not where that stands
-      throw InputError(model.supports.front().where, e.what());
+      const bool about_supports = std::string_view(e.what()).starts_with("supports");
+      throw InputError(about_supports ? model.supports.front().where : model.where, e.what());
     }
   }();
   Machine machine{std::move(placed), std::move(elasticity), {}};

@@ -17,6 +17,7 @@ struct PlacedMachine {
   solver::RegionMaterials materials;
   effects::HeatBalance balance;
   std::vector<solver::Support> supports;
+  std::vector<solver::JointMechanics> joints;
   /// Weights of each thermometer on the unknowns; empty for one that reads the hall.
   std::vector<std::vector<std::pair<int, double>>> sensor_weights;
   std::vector<solver::DisplacementFunctional> functionals;  ///< displacements, then tilts

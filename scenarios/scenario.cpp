@@ -52,18 +52,6 @@ TiltOutput read_tilt(const ConfigMap& in) {
   return t;
 }
 
-SupportEntry read_support(const ConfigMap& in) {
-  SupportEntry entry{{in.text("surface"), {false, false, false}}, in.where("surface")};
-  for (const std::string& direction : in.texts("fixed")) {
-    if (direction != "x" && direction != "y" && direction != "z") {
-      in.fail("fixed", fmt::format("'{}' is no direction; a list of x, y, z is wanted", direction));
-    }
-    entry.support.fixed[direction[0] - 'x'] = true;
-  }
-  in.reject_unknown_keys();
-  return entry;
-}
-
 /// `materials:` maps each region to a name of the library or to a map of values.
 std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
   std::vector<std::string> names;
@@ -108,6 +96,7 @@ MachineModel read_machine(const ConfigMap& in) {
   m.mesh = read_mesh_recipe(in.map("machine"));
   m.materials = read_materials(in.map("materials"));
   for (const ConfigMap& entry : in.maps("supports")) m.supports.push_back(read_support(entry));
+  for (const ConfigMap& entry : in.maps("joints")) m.joints.push_back(read_joint(entry));
   for (const ConfigMap& entry : in.maps("effects")) m.effects.push_back(effects::read_effect(entry));
   for (const ConfigMap& entry : in.maps("sensors")) m.sensors.push_back(read_sensor(entry));
   for (const ConfigMap& entry : in.maps("displacements")) m.displacements.push_back(read_displacement(entry));
@@ -127,6 +116,7 @@ SolverSettings read_solver(const ConfigMap& in) {
   s.transient.absolute_tolerance_K = in.quantity("absolute_tolerance", "K", 1e-9, 1.0, s.transient.absolute_tolerance_K);
   s.output_interval_s = in.quantity("output_interval", "s", 1e-3, 1e6, s.output_interval_s);
   s.fields_every_s = in.quantity("fields_every", "s", 1e-3, 1e9, s.fields_every_s);
+  s.stresses = in.choice("stresses", {"true", "false"}, "false") == "true";
   in.reject_unknown_keys();
   return s;
 }
