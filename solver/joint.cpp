@@ -10,9 +10,10 @@
 
 namespace driftwright::solver {
 
-double normal_error(const Eigen::Vector3d& normal, const mesh::Jacobian& facet) {
+double normal_error(const Eigen::Vector3d& normal, const mesh::Jacobian& facet, mesh::CellShape shape) {
   const Eigen::Vector3d own = facet.dx_dxi.col(0).cross(facet.dx_dxi.col(1)) / facet.det;
-  return own.dot(normal) < 0.0 ? (own + normal).norm() : (own - normal).norm();
+  const double difference = own.dot(normal) < 0.0 ? (own + normal).norm() : (own - normal).norm();
+  return mesh::is_quadratic(shape) ? 3.0 * difference : difference * difference;
 }
 
 std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint) {
@@ -48,7 +49,7 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
                        .position_m = position,
                        .normal = (normals[f] * s.N.head(s.n).transpose()).normalized(),
                        .normal_error = 0.0};
-      point.normal_error = normal_error(point.normal, j);
+      point.normal_error = normal_error(point.normal, j, shape);
       if (exchanged) {
         std::swap(point.node_a, point.node_b);
         std::swap(point.weight_a, point.weight_b);

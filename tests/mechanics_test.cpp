@@ -135,10 +135,13 @@ TEST(SlidingJoint, LetsOnePartGrowAlongTheOther) {
 }
 
 /// A tube about z from r0 to r1, 60 mm long; x0 and x1 are its bore and its outside.
-mesh::Mesh tube(CellShape shape, double r0_m, double r1_m, int n_around, double turn_rad = 2 * std::numbers::pi) {
+mesh::Mesh tube(CellShape shape, double r0_m, double r1_m, int n_around, double turn_rad = 2 * std::numbers::pi,
+                double uneven = 0.0) {
   mesh::Mesh mesh = fixtures::box_mesh({{r0_m, 0, 0}, {r1_m - r0_m, turn_rad, 0.06}, {2, n_around, 2}, shape});
-  fixtures::map_nodes(
-      mesh, [](const Eigen::Vector3d& x) { return Eigen::Vector3d(x[0] * std::cos(x[1]), x[0] * std::sin(x[1]), x[2]); });
+  fixtures::map_nodes(mesh, [&](const Eigen::Vector3d& x) {
+    const double angle = x[1] + uneven * std::sin(x[1]);
+    return Eigen::Vector3d(x[0] * std::cos(angle), x[0] * std::sin(angle), x[2]);
+  });
   fixtures::merge_nodes(mesh);
   return mesh;
 }
@@ -146,14 +149,18 @@ mesh::Mesh tube(CellShape shape, double r0_m, double r1_m, int n_around, double 
 class Shaft : public ::testing::TestWithParam<CellShape> {};
 
 TEST_P(Shaft, ThatSlidesInABoreCanTurnAndMoveAlongWhateverTheMesh) {
-  for (int n_around : {6, 8, 11, 16}) {
-    const mesh::Mesh mesh = tube(GetParam(), 0.02, 0.05, n_around);
-    EXPECT_THAT(
-        [&] {
-          Elasticity(mesh, {kSteel}, {{"x1", {false, false, false}, true}});
-        },
-        ThrowsMessage<InputError>(HasSubstr("can still translate along z, rotate about z through x = 0.0 mm, y = 0.0 mm.")))
-        << n_around << " cells around";
+  for (int n_around : {8, 11, 16}) {
+    for (double uneven : {0.0, 0.3}) {
+      if (uneven > 0.0 && n_around < 11) continue;  // facets that meet at 50 degrees are edges
+      const mesh::Mesh mesh = tube(GetParam(), 0.02, 0.05, n_around, 2 * std::numbers::pi, uneven);
+      EXPECT_THAT(
+          [&] {
+            Elasticity(mesh, {kSteel}, {{"x1", {false, false, false}, true}});
+          },
+          ThrowsMessage<InputError>(
+              HasSubstr("can still translate along z, rotate about z through x = 0.0 mm, y = 0.0 mm.")))
+          << n_around << " cells around, uneven by " << uneven;
+    }
   }
 }
 
@@ -175,10 +182,12 @@ TEST(SlidingSupport, AroundAHeatedTubeGivesLamesPressure) {
   const double l = std::sqrt(b * std::numbers::pi / 2 * 0.06 / 24);
   const double form = (b * b + a * a) / (b * b - a * a) - kSteel.poisson_ratio;
   const double scale_Pa = kSteel.youngs_modulus_Pa * kFree;
-  const double pressure_Pa = scale_Pa / (form + l / (1000 * b)), hoop_Pa = -2 * pressure_Pa * b * b / (b * b - a * a);
-  const int at = fixtures::node_at(mesh, {a, 0, 0.03}), outside = fixtures::node_at(mesh, {b, 0, 0.03});
-  printf("hoop %.6f radial %.3e slip %.6f\n", stress(1, at) / hoop_Pa, stress(0, outside) / pressure_Pa,
-         u(0, outside) / (pressure_Pa * l / (1000 * kSteel.youngs_modulus_Pa)));
+  const double pressure_Pa = scale_Pa / (form + l / (1000 * b));
+  const int bore = fixtures::node_at(mesh, {a, 0, 0.03}), outside = fixtures::node_at(mesh, {b, 0, 0.03});
+  EXPECT_NEAR(u(0, bore) / (kFree * a - 2 * pressure_Pa * a * b * b / (kSteel.youngs_modulus_Pa * (b * b - a * a))), 1.0,
+              1e-3);
+  EXPECT_NEAR(u(0, outside) / (pressure_Pa * l / (1000 * kSteel.youngs_modulus_Pa)), 1.0, 1e-2);
+  EXPECT_NEAR(stress(0, outside) / -pressure_Pa, 1.0, 0.03);  // at the edge of two cells across the wall
 }
 
 TEST(SpringJoint, OnACylinderAddsUpToItsStiffness) {
@@ -193,15 +202,14 @@ TEST(SpringJoint, OnACylinderAddsUpToItsStiffness) {
   mesh.joints.push_back({"bearing", "a.x1", "b.x0"});
   const auto sum = [&](const JointKind& kind) {
     Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
-    for (const SpringPoint& p : spring_layers(mesh, {kSteel, kSteel}, {}, {{"bearing", kind}}).at(0))
-      total += p.stiffness_N_m;
+    const std::vector<SpringLayer> layers = spring_layers(mesh, {kSteel, kSteel}, {}, {{"bearing", kind}});
+    for (const SpringPoint& p : layers.at(0)) total += p.stiffness_N_m;
     return total;
   };
   const Eigen::Matrix3d ring = Eigen::Vector3d(3e8, 3e8, 1e7).asDiagonal();
   EXPECT_LT((sum(RingSprings{2, 1e7, 3e8}) - ring).norm(), 1e-12 * ring.norm());
   const Eigen::Matrix3d springs = Eigen::Vector3d(2.5e8, 2.5e8, 1e8).asDiagonal();
   EXPECT_LT((sum(NormalSprings{4e8, 1e8}) - springs).norm(), 1e-6 * springs.norm());  // smoothed normals, curved facets
-  // 1 / k_total of both sides of the joint: heat flows the same way.
   EXPECT_NO_THROW(Elasticity(mesh, {kSteel, kSteel}, {{"b.x1"}}, {{"bearing", RingSprings{2, 1e7, 3e8}}}));
   EXPECT_THAT(
       [&] {
@@ -209,12 +217,30 @@ TEST(SpringJoint, OnACylinderAddsUpToItsStiffness) {
       },
       ThrowsMessage<InputError>(HasSubstr("'shaft' is not held: as a rigid body it can still translate along z, "
                                           "rotate about z through x = 0.0 mm, y = 0.0 mm.")));
-  const Elasticity tied(mesh, {kSteel, kSteel},
-                        {{"b.y0", {false, true, false}},
-                         {"b.z0", {false, false, true}},
-                         {"b.x1", {false, false, false}, false, {1e4, 1e4, 0}}});
-  const Eigen::Matrix3Xd u = tied.displacement(uniform(mesh));
-  printf("tied sleeve free expansion %g\n", largest_stress(mesh, {kSteel, kSteel}, u, uniform(mesh)));
+}
+
+TEST(TiedJoint, OfASleeveThatDoesNotMatchLeavesFreeExpansionNearlyFree) {
+  // Facets of unlike size on a cylinder touch at their nodes at best: the gap g makes a jump of alpha theta g that the tie
+  // closes. Stress of a thousandth of E alpha theta; the finer the less.
+  double last = 1.0;
+  for (int n : {1, 2}) {
+    mesh::Mesh mesh;
+    fixtures::add_box(mesh, {{0.03, 0, 0}, {0.02, 6.0, 0.06}, {1, 16 * n, 2}, CellShape::kHex20}, "shaft", "a.");
+    fixtures::add_box(mesh, {{0.05, 0, 0}, {0.02, 6.0, 0.06}, {1, 20 * n, 3}, CellShape::kTet10}, "ring", "b.");
+    fixtures::map_nodes(mesh, [](const Eigen::Vector3d& x) {
+      const double angle = x[1] * 2 * std::numbers::pi / 6.0;
+      return Eigen::Vector3d(x[0] * std::cos(angle), x[0] * std::sin(angle), x[2]);
+    });
+    mesh.joints.push_back({"sleeve", "a.x1", "b.x0"});
+    fixtures::add_point_surface(mesh, "point", fixtures::node_at(mesh, {0.07, 0, 0}));
+    const Elasticity tied(mesh, {kSteel, kSteel},
+                          {{"point"}, {"b.z0", {false, false, true}}, {"b.y0", {false, true, false}}});
+    const double stress = largest_stress(mesh, {kSteel, kSteel}, tied.displacement(uniform(mesh)), uniform(mesh));
+    RecordProperty(n == 1 ? "coarse" : "fine", std::to_string(stress));
+    EXPECT_LT(stress, 0.3 * last);
+    last = n == 1 ? stress : last;
+  }
+  EXPECT_LT(last, 1e-3);
 }
 
 Eigen::Isometry3d some_motion() {
@@ -257,7 +283,7 @@ TEST(SlidingSupport, GivesWayByAThousandthOfTheFacetsSize) {
 
 /// A column with an arm, tied, of unlike sizes of cells; held at its foot.
 struct ArmOnColumn {
-  mesh::Mesh mesh = fixtures::two_boxes({{0, 0, 0}, {0.2, 0.2, 0.6}, {2, 2, 5}, CellShape::kTet10},
+  mesh::Mesh mesh = fixtures::two_boxes({{0, 0, 0}, {0.2, 0.2, 0.6}, {2, 2, 5}, CellShape::kHex20},
                                         {{0.2, 0, 0.4}, {0.4, 0.2, 0.2}, {4, 3, 3}, CellShape::kTet10}, "b.x0", "a.x1");
   RegionMaterials materials = {fixtures::steel(), fixtures::steel()};
   Eigen::VectorXd theta = fixtures::at_nodes(
@@ -271,7 +297,7 @@ TEST(Invariance, ATurnedAndMovedMachineDeformsAlike) {
   const Eigen::Matrix3Xd u = Elasticity(machine.mesh, machine.materials, supports).displacement(machine.theta);
   const Eigen::Matrix3Xd u_moved = Elasticity(moved(machine.mesh), machine.materials, supports).displacement(machine.theta);
   const double difference = (u_moved - some_motion().linear() * u).cwiseAbs().maxCoeff() / u.cwiseAbs().maxCoeff();
-  RecordProperty("difference", std::to_string(1e9 * difference) + "e-9");
+  RecordProperty("difference_1e-9", std::to_string(1e9 * difference));
   EXPECT_LT(difference, 1e-9);
 }
 
