@@ -23,6 +23,7 @@ void check(const CommonOptions& options) {
       options.scenario, placed.mesh.n_nodes(), placed.mesh.cells.size(), placed.mesh.regions.size(),
       placed.mesh.joints.size(), scenario.machine->effects.size(), scenario.machine->sensors.size(),
       scenario.cyclograms.size(), quality.min_scaled);
+  for (const std::string& note : placed.mesh.notes) fmt::print("note: {}\n", note);
 }
 
 }  // namespace driftwright::app

@@ -107,13 +107,6 @@ Cyclogram read_cyclogram(const ConfigMap& in, const std::string& name) {
   return cyclogram;
 }
 
-MeshRecipe read_mesh_recipe(const ConfigMap& in) {
-  (void)in.choice("generator", {"knee_mill"});
-  MeshRecipe recipe = mesh::read_knee_mill(in);
-  in.reject_unknown_keys();
-  return recipe;
-}
-
 void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
   std::set<std::string> names = {"speed", "time"};  // columns that every record has
   const auto add = [&](const std::string& name, const char* list) {
