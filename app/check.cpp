@@ -42,6 +42,7 @@ void check(const CommonOptions& options) {
       placed.mesh.joints.size(), scenario.machine->effects.size(), scenario.machine->sensors.size(),
       scenario.cyclograms.size(), quality.min_scaled);
   for (const Cyclogram& cyclogram : scenario.cyclograms) print_cyclogram(cyclogram);
+  for (const std::string& note : placed.mesh.notes) fmt::print("note: {}\n", note);
 }
 
 }  // namespace driftwright::app

@@ -55,7 +55,9 @@ class FieldSeries {
   std::vector<double> times_s_;
 };
 
-/// Writes a mesh without fields: cell arrays `region` and `quality` [-], field array `region_names`.
+/// Writes a mesh without fields: cell arrays `region` and `quality` [-], field array `region_names`; then its facets as 2-D
+/// cells with the cell array `surface` (-1 on cells) and the field array `surface_names`, sides of joints among them, so that
+/// mesh::read_vtu() has the same mesh again. Facets have region -1 and quality NaN.
 /// @param quality  one value per cell, or empty to leave the array out
 /// @param file     a path from ResultsFolder::path()
 /// @throws std::logic_error    when `quality` has another length

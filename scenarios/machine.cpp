@@ -153,7 +153,7 @@ DisplacementFunctional tilt_against_table(const Mesh& mesh, const TiltOutput& ou
 
 PlacedMachine place(const MachineModel& model) {
   PlacedMachine placed;
-  placed.mesh = std::visit([](const mesh::KneeMill& mill) { return mesh::build_knee_mill(mill); }, model.mesh);
+  placed.mesh = build_mesh(model.mesh);
   const Mesh& mesh = placed.mesh;
   placed.materials = place_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);

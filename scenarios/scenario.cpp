@@ -69,13 +69,6 @@ std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
   return entries;
 }
 
-MeshRecipe read_mesh_recipe(const ConfigMap& in) {
-  (void)in.choice("generator", {"knee_mill"});
-  MeshRecipe recipe = mesh::read_knee_mill(in);
-  in.reject_unknown_keys();
-  return recipe;
-}
-
 void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
   std::set<std::string> names = {"speed",  "time",   "feed_x",  // columns that records have beside these
                                  "feed_y", "feed_z", "cutting_power"};

@@ -11,15 +11,12 @@
 #include "base/cyclogram.hpp"
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
-#include "mesh/knee_mill.hpp"
 #include "scenarios/read_mechanics.hpp"
+#include "scenarios/read_mesh.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
 
 namespace driftwright::scenarios {
-
-/// How the mesh comes about. A new generator or reader is a new alternative.
-using MeshRecipe = std::variant<mesh::KneeMill>;
 
 /// A point on or in a region of the machine.
 struct PointOnRegion {
