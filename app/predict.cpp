@@ -28,7 +28,8 @@ void predict(const PredictOptions& options) {
   const scenarios::Machine machine = build_machine(model, progress);
   progress.begin("computing thermal modes");
   const int n_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
-  const compensation::ModalPredictor predictor = compensation::make_modal_predictor(machine.system, n_modes);
+  const compensation::ModalPredictor predictor =
+      compensation::make_modal_predictor(machine.system, n_modes, scenarios::start_state(*scenario.machine, machine));
   const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);
   const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.system.outputs,
                                              cyclogram, model.reference_K);

@@ -17,9 +17,10 @@ void run(const CommonOptions& options) {
   Progress progress;
   const scenarios::Machine machine = build_machine(model, progress);
 
-  output::FieldSeries fields(folder, machine.placed.mesh);
-  const MachineStudy study = study_machine(scenario, machine, progress, &fields);
-  fields.finish();
+  std::optional<output::FieldSeries> fields;
+  if (machine.placed.mesh.n_nodes() > 0) fields.emplace(folder, machine.placed.mesh);
+  const MachineStudy study = study_machine(scenario, machine, progress, fields ? &*fields : nullptr);
+  if (fields) fields->finish();
   progress.begin("writing results");
   folder.write_text(
       "record.csv",
@@ -36,8 +37,8 @@ void run(const CommonOptions& options) {
   folder.write_text("report.html", output::render_html(study_report(scenario, machine, study, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}  results in {}: report.html, fields.pvd (ParaView), record.csv, summary.json\n",
-             terminal_summary(scenario, study), shown_path(folder.target()));
+  fmt::print("{}  results in {}: report.html, {}record.csv, summary.json\n", terminal_summary(scenario, study),
+             shown_path(folder.target()), fields ? "fields.pvd (ParaView), " : "");
 }
 
 }  // namespace driftwright::app

@@ -20,7 +20,8 @@ void simulate(const SimulateOptions& options) {
   const scenarios::Machine machine = build_machine(model, progress);
   // Whole fields of one cyclogram only: several would fill the disk and mix in one .pvd.
   std::optional<output::FieldSeries> fields;
-  if (cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
+  const bool has_mesh = machine.placed.mesh.n_nodes() > 0;
+  if (has_mesh && cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
   const std::vector<SimulatedRun> runs =
       simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
   if (fields) fields->finish();
@@ -46,7 +47,9 @@ void simulate(const SimulateOptions& options) {
   folder.commit();
   progress.end();
   fmt::print("{}results in {}: report.html, heat flows in W{}\n", summary, shown_path(folder.target()),
-             cyclograms.size() == 1 ? ", fields in fields.pvd (ParaView)" : "; name one cyclogram to get fields, too");
+             fields      ? ", fields in fields.pvd (ParaView)"
+             : !has_mesh ? ""
+                         : "; name one cyclogram to get fields, too");
 }
 
 }  // namespace driftwright::app

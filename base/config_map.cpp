@@ -249,6 +249,15 @@ Eigen::Vector3d ConfigMap::vector3(const std::string& key, const std::string& un
   return v;
 }
 
+std::vector<double> ConfigMap::quantities(const std::string& key, const std::string& unit) const {
+  const YAML::Node node = child(key);
+  if (!node.IsSequence() || node.size() == 0)
+    fail(key, fmt::format("a list of quantities in {} is wanted, at least one", unit));
+  std::vector<double> values;
+  for (const YAML::Node& item : node) values.push_back(read_quantity(item, key, unit));
+  return values;
+}
+
 std::vector<std::vector<double>> ConfigMap::rows(const std::string& key, const std::vector<std::string>& units) const {
   const YAML::Node node = child(key);
   const std::string wanted = fmt::format("rows of [{}] are wanted", fmt::join(units, ", "));

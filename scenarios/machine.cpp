@@ -10,6 +10,7 @@
 #include "base/quantity.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/shape.hpp"
+#include "solver/steady_state.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -93,6 +94,16 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   }
 }
 
+/// Bodies of a displacement by sensitivities: regions and lumped nodes.
+void check_bodies(const BySensitivity& by, const Mesh& mesh, const effects::HeatBalance& balance) {
+  std::vector<std::string> nodes;
+  for (const effects::LumpedNode& n : balance.nodes) nodes.push_back(n.name);
+  for (const auto& [body, sensitivity_m_K] : by.terms) {
+    const bool is_node = body.kind == effects::BodyKind::kNode;
+    must_be_one_of(by.where, is_node ? "lumped node" : "region", body.name, is_node ? nodes : mesh.regions);
+  }
+}
+
 /// The point of a region nearest to where the user put it.
 mesh::MeshPoint place_point(const Mesh& mesh, const PointOnRegion& point) {
   must_be_one_of(point.where, "region", point.region, mesh.regions);
@@ -125,10 +136,12 @@ void add_rotation(DisplacementFunctional& d, const Mesh& mesh, const mesh::MeshP
   for (int i = 0; i < s.n; ++i) d.terms.push_back({nodes[i], 0.5 * c.cross(inverse_t * s.dN.col(i))});
 }
 
-DisplacementFunctional tool_against_table(const Mesh& mesh, const DisplacementOutput& output) {
-  const mesh::MeshPoint tool = place_point(mesh, output.tool), table = place_point(mesh, output.table);
+DisplacementFunctional tool_against_table(const Mesh& mesh, const ToolAgainstTable& output) {
+  PointOnRegion foot = output.table;  // the spot of the table that its travel has brought there
+  foot.at_m -= output.travel_m;
+  const mesh::MeshPoint tool = place_point(mesh, output.tool), table = place_point(mesh, foot);
   const Eigen::Vector3d direction = Eigen::Vector3d::Unit(output.axis);
-  const Eigen::Vector3d arm = tool.position_m - table.position_m;
+  const Eigen::Vector3d arm = tool.position_m - (table.position_m + output.travel_m);
   DisplacementFunctional d;  // e·(u_tool - u_table - ω_table × arm)
   add_displacement(d, mesh, tool, direction);
   add_displacement(d, mesh, table, -direction);
@@ -185,13 +198,18 @@ PlacedMachine place(const MachineModel& model) {
     }
     placed.sensor_weights.push_back(std::move(weights));
   }
-  for (const DisplacementOutput& d : model.displacements) placed.functionals.push_back(tool_against_table(mesh, d));
+  for (const DisplacementOutput& d : model.displacements) {
+    const auto* tool = std::get_if<ToolAgainstTable>(&d.how);
+    placed.functionals.push_back(tool ? tool_against_table(mesh, *tool) : DisplacementFunctional{});
+    if (const auto* by = std::get_if<BySensitivity>(&d.how)) check_bodies(*by, mesh, placed.balance);
+  }
   for (const TiltOutput& t : model.tilts) placed.functionals.push_back(tilt_against_table(mesh, t));
   return placed;
 }
 
 Machine build(const MachineModel& model, PlacedMachine placed) {
-  solver::Elasticity elasticity = [&] {
+  std::optional<solver::Elasticity> elasticity = [&]() -> std::optional<solver::Elasticity> {
+    if (placed.mesh.n_nodes() == 0) return std::nullopt;
     try {
       return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints);
     } catch (const InputError& e) {  // it knows what is wrong, not where that stands
@@ -223,10 +241,34 @@ Machine build(const MachineModel& model, PlacedMachine placed) {
     out.unit.emplace_back("rad");
   }
   for (std::size_t i = 0; i < machine.placed.functionals.size(); ++i) {
-    out.state.col(static_cast<Eigen::Index>(n_sensors + i)).head(machine.placed.mesh.n_nodes()) =
-        machine.elasticity.influence(machine.placed.functionals[i]);
+    auto output = out.state.col(static_cast<Eigen::Index>(n_sensors + i));
+    if (i < model.displacements.size()) {
+      if (const auto* by = std::get_if<BySensitivity>(&model.displacements[i].how)) {
+        for (const auto& [body, sensitivity_m_K] : by->terms) {
+          output += sensitivity_m_K * solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
+        }
+        continue;
+      }
+    }
+    output.head(machine.placed.mesh.n_nodes()) = machine.elasticity->influence(machine.placed.functionals[i]);
   }
   return machine;
+}
+
+Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine) {
+  const int n = machine.system.size();
+  const double hall_K = model.hall.at(0.0);
+  switch (model.start) {
+    case Start::kReference:
+      return Eigen::VectorXd::Zero(n);
+    case Start::kHall:
+      return Eigen::VectorXd::Constant(n, hall_K);
+    case Start::kUniform:
+      return Eigen::VectorXd::Constant(n, model.start_K - model.reference_K);
+    case Start::kSteady:
+      return solver::steady_state(machine.system, {.drive = {}, .hall_K = hall_K}, Eigen::VectorXd::Constant(n, hall_K));
+  }
+  throw std::logic_error("start_state: no such start");
 }
 
 namespace {
@@ -273,11 +315,17 @@ Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, 
   return record;
 }
 
-std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s) {
+std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s, const std::vector<double>& further_s) {
   std::vector<double> times_s;
   const double end_s = cyclogram.duration_s();
   for (int i = 0; i * interval_s < end_s * (1 - 1e-12); ++i) times_s.push_back(i * interval_s);
+  for (double t_s : further_s) {
+    if (t_s < end_s * (1 - 1e-12)) times_s.push_back(t_s);
+  }
   times_s.push_back(end_s);
+  std::sort(times_s.begin(), times_s.end());
+  const auto same = [](double a, double b) { return b - a <= 1e-9 * b; };  // sums of intervals miss by rounding
+  times_s.erase(std::unique(times_s.begin(), times_s.end(), same), times_s.end());
   return times_s;
 }
 

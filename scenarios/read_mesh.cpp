@@ -12,11 +12,18 @@ mesh::Mesh build(const mesh::ImportedMesh& import) {
   return mesh::import_mesh(import);
 }
 
+mesh::Mesh build(const LumpedMachine&) {
+  return {};
+}
+
 }  // namespace
 
 MeshRecipe read_mesh_recipe(const ConfigMap& in) {
   if (in.has("mesh")) return mesh::read_imported_mesh(in, std::filesystem::path(in.file()).parent_path().string());
-  (void)in.choice("generator", {"knee_mill"});
+  if (in.choice("generator", {"knee_mill", "lumped"}) == "lumped") {
+    in.reject_unknown_keys();
+    return LumpedMachine{};
+  }
   MeshRecipe recipe = mesh::read_knee_mill(in);
   in.reject_unknown_keys();
   return recipe;

@@ -9,8 +9,11 @@
 
 namespace driftwright::scenarios {
 
+/// No mesh: lumped nodes alone.
+struct LumpedMachine {};
+
 /// How the mesh comes about. A new generator or reader is a new alternative.
-using MeshRecipe = std::variant<mesh::KneeMill, mesh::ImportedMesh>;
+using MeshRecipe = std::variant<mesh::KneeMill, mesh::ImportedMesh, LumpedMachine>;
 
 /// Reads the map `machine`: with the key `mesh` a file, relative to the scenario's folder, else a generator.
 /// @throws InputError

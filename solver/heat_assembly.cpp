@@ -276,6 +276,10 @@ double at_reference(double constant, const PropertyCurve& curve, double referenc
 
 }  // namespace
 
+Eigen::VectorXd mean_weights(const Mesh& mesh, const effects::HeatBalance& balance, const Body& body) {
+  return Places(mesh, balance).mean_weights(body);
+}
+
 FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, const effects::HeatBalance& balance,
                          double reference_K) {
   const Places places(mesh, balance);
