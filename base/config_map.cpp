@@ -97,6 +97,10 @@ bool ConfigMap::is_map(const std::string& key) const {
   return has(key) && (*node_)[key].IsMap();
 }
 
+bool ConfigMap::is_list(const std::string& key) const {
+  return has(key) && (*node_)[key].IsSequence();
+}
+
 std::vector<std::string> ConfigMap::keys() const {
   std::vector<std::string> keys;
   for (const auto& entry : *node_) keys.push_back(entry.first.as<std::string>());

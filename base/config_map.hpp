@@ -29,6 +29,7 @@ class ConfigMap {
 
   [[nodiscard]] bool has(const std::string& key) const;
   [[nodiscard]] bool is_map(const std::string& key) const;
+  [[nodiscard]] bool is_list(const std::string& key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
   /// Where a key's value stands; where the map itself stands if the key is missing.
   [[nodiscard]] Where where(const std::string& key) const;

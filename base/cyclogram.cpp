@@ -1,8 +1,15 @@
 #include "base/cyclogram.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 namespace driftwright {
+namespace {
+
+constexpr double kRounding = 1e-9;  // of the time: sums of many durations miss a knot that is meant to be one of them
+
+}  // namespace
 
 double Cyclogram::duration_s() const {
   double sum_s = 0.0;
@@ -10,13 +17,13 @@ double Cyclogram::duration_s() const {
   return sum_s;
 }
 
-double Cyclogram::speed_rpm(double time_s) const {
+Drive Cyclogram::drive(double time_s) const {
   double end_s = 0.0;
   for (const Section& s : sections) {
     end_s += s.duration_s;
-    if (time_s < end_s) return s.speed_rpm;
+    if (time_s < end_s) return s.drive;
   }
-  return sections.empty() ? 0.0 : sections.back().speed_rpm;
+  return sections.empty() ? Drive{} : sections.back().drive;
 }
 
 double TimeSeries::at(double t_s) const {
@@ -28,25 +35,36 @@ double TimeSeries::at(double t_s) const {
   return value[i - 1] + share * (value[i] - value[i - 1]);
 }
 
-std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const TimeSeries& hall) {
+std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const std::vector<double>& knots_s) {
+  if (std::any_of(knots_s.begin(), knots_s.end(), [](double t_s) { return std::isnan(t_s); }))
+    throw std::logic_error("linear_stretches: a knot is NaN");
+  std::vector<double> knots = knots_s;
+  std::sort(knots.begin(), knots.end());
+  knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
   std::vector<LinearStretch> stretches;
-  double start_s = 0.0, last_speed_rpm = -1.0;
+  double start_s = 0.0;
+  const Drive* last = nullptr;
   for (const Cyclogram::Section& section : cyclogram.sections) {
     const double end_s = start_s + section.duration_s;
     if (!(end_s > start_s)) continue;
-    std::vector<double> cuts_s = {start_s};
-    for (double knot_s : hall.time_s) {
-      if (knot_s > start_s && knot_s < end_s) cuts_s.push_back(knot_s);
+    bool changed = !last || section.drive != *last;
+    const double rounding_s = kRounding * end_s;
+    for (auto knot = std::upper_bound(knots.begin(), knots.end(), start_s); knot != knots.end(); ++knot) {
+      if (*knot >= end_s - rounding_s) break;
+      if (*knot <= start_s + rounding_s) continue;
+      stretches.push_back({start_s, *knot, section.drive, changed});
+      start_s = *knot;
+      changed = false;
     }
-    cuts_s.push_back(end_s);
-    for (std::size_t i = 0; i + 1 < cuts_s.size(); ++i) {
-      const bool changed = i == 0 && section.speed_rpm != last_speed_rpm;
-      stretches.push_back({cuts_s[i], cuts_s[i + 1], section.speed_rpm, changed});
-    }
-    last_speed_rpm = section.speed_rpm;
+    stretches.push_back({start_s, end_s, section.drive, changed});
+    last = &section.drive;
     start_s = end_s;
   }
   return stretches;
+}
+
+std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const TimeSeries& hall) {
+  return linear_stretches(cyclogram, hall.time_s);
 }
 
 }  // namespace driftwright

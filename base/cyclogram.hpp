@@ -1,24 +1,36 @@
 #pragma once
-// What the machine is told and what surrounds it, over time: spindle speed in sections, hall temperature in knots.
+// What the machine is told and what surrounds it, over time: the drive in sections, hall temperature in knots.
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace driftwright {
 
-/// Spindle speed, piecewise constant. Sections follow each other from t = 0.
+/// What the machine is told to do at one time.
+struct Drive {
+  double speed_rpm = 0.0;                            ///< of the spindle, >= 0
+  std::array<double, 3> feed_m_s = {0.0, 0.0, 0.0};  ///< mean absolute velocity of the axes x, y, z, each >= 0
+  double cutting_power_W = 0.0;                      ///< at the cutting edge, >= 0
+  bool operator==(const Drive&) const = default;
+};
+
+/// The drive over time, piecewise constant. Sections follow each other from t = 0.
 struct Cyclogram {
   struct Section {
     double duration_s = 0.0;
-    double speed_rpm = 0.0;
+    Drive drive;
     bool operator==(const Section&) const = default;
   };
   std::string name;
   std::vector<Section> sections;
+  std::vector<std::string> remarks = {};  ///< for the user: where it comes from and what was passed over there
 
   [[nodiscard]] double duration_s() const;
-  /// Speed at time t >= 0 [s]; a section holds from its start on, the last one also at and after its end.
-  [[nodiscard]] double speed_rpm(double time_s) const;
+  /// Drive at time t >= 0 [s]; a section holds from its start on, the last one also at and after its end.
+  /// At rest where there is no section.
+  [[nodiscard]] Drive drive(double time_s) const;
+  [[nodiscard]] double speed_rpm(double time_s) const { return drive(time_s).speed_rpm; }
 };
 
 /// A quantity over time, linear between knots and constant outside them.
@@ -29,15 +41,21 @@ struct TimeSeries {
   [[nodiscard]] double at(double t_s) const;
 };
 
-/// A stretch of time in which the speed is constant and the hall temperature is linear.
+/// A stretch of time in which the drive is constant and everything else that drives the machine is linear.
 struct LinearStretch {
   double start_s = 0.0;
   double end_s = 0.0;
-  double speed_rpm = 0.0;
-  bool speed_changed = false;  ///< true where the speed before start_s was another one, or at t = 0
+  Drive drive;
+  bool drive_changed = false;  ///< true where the drive before start_s was another one, or at t = 0
 };
 
-/// Cuts a cyclogram at its changes of speed and at the knots of `hall`, in order, without empty pieces.
+/// Cuts a cyclogram at its changes of drive and at further knots, in order, without empty pieces.
+/// @param knots_s  times at which an integrator must stop although the drive does not change: knots of the hall
+///                 temperature or of prescribed temperatures, onsets of a draught. Any order, repetitions allowed; those
+///                 outside the cyclogram do nothing, nor do those within 1e-9 of the time of another cut.
+/// @throws std::logic_error  for a knot that is NaN
+[[nodiscard]] std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const std::vector<double>& knots_s);
+/// The same with the knots of the hall temperature alone.
 [[nodiscard]] std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const TimeSeries& hall);
 
 }  // namespace driftwright

@@ -1,5 +1,7 @@
 #include "compensation/modal_predictor.hpp"
 
+#include "solver/steady_state.hpp"
+
 namespace driftwright::compensation {
 
 solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const TimeSeries& hall,
@@ -7,8 +9,11 @@ solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const Tim
   return solver::evolve(system, cyclogram, hall, output_s, Eigen::VectorXd::Zero(system.size()));
 }
 
-ModalPredictor make_modal_predictor(const solver::FullSystem& system, int n_modes, bool with_steady_responses) {
-  const effects::Inputs standstill{.speed_rpm = 0.0, .hall_K = 0.0};
+ModalPredictor make_modal_predictor(const solver::FullSystem& full, int n_modes, bool with_steady_responses) {
+  const effects::Inputs standstill;
+  // Laws of temperature stay as they are at the reference temperature, where every run starts.
+  const solver::FullSystem system =
+      full.is_linear() ? full : solver::linearised(full, standstill, Eigen::VectorXd::Zero(full.size()));
   const solver::ThermalModes modes = solver::thermal_modes(system, standstill, n_modes);
   Eigen::MatrixXd columns = modes.shapes;
   if (with_steady_responses) {

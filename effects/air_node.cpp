@@ -4,7 +4,9 @@ namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  balance.nodes.push_back({e.place, e["capacity"], e["exchange"]});
+  balance.nodes.push_back({e.place, e["capacity"]});
+  const double exchange_W_K = e["exchange"];
+  balance.links.push_back({e.name(), node(e.place), [=](const Inputs&) { return exchange_W_K; }});
 }
 
 }  // namespace
@@ -13,7 +15,7 @@ EffectKind air_node() {
   return {.key = "air_node",
           .title = "air near the machine that the machine warms",
           .law = "C dT/dt = sum of films that name it as surrounding - exchange (T - T_hall)",
-          .place = Place::kNode,
+          .places = {Place::kNode},
           .parameters = {{"capacity", "J/K", 1e-3, 1e9, {}, "heat capacity of the pocket of air, 1.2 kJ/K for 1 m^3"},
                          {"exchange", "W/K", 1e-6, 1e6, {}, "conductance to the hall"}},
           .contribute = contribute};

@@ -5,7 +5,7 @@ namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double htc = e["film"];
-  balance.films.push_back({e.name(), e.place, [=](const Inputs&) { return htc; }, e.surrounding});
+  balance.films.push_back({e.name(), e.place, [=](const Inputs&) { return htc; }, e.references.at("surrounding").name});
 }
 
 }  // namespace
@@ -14,10 +14,10 @@ EffectKind convection() {
   return {.key = "convection",
           .title = "film on a surface, constant",
           .law = "q = film (T - T_surrounding)",
-          .place = Place::kSurface,
+          .places = {Place::kSurface},
           .parameters = {{"film", "W/(m^2 K)", 0.0, 1e6, {}, "film coefficient; free convection with radiation: 5 to 12"}},
           .contribute = contribute,
-          .has_surrounding = true};
+          .references = {surrounding_reference()}};
 }
 
 }  // namespace driftwright::effects

@@ -1,9 +1,112 @@
 #include "effects/effect.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace driftwright::effects {
+namespace {
+
+const char* body_key(BodyKind kind) {
+  switch (kind) {
+    case BodyKind::kRegion:
+      return "region";
+    case BodyKind::kSurface:
+      return "surface";
+    case BodyKind::kNode:
+      return "node";
+  }
+  return "";
+}
+
+/// Exactly one of the kind's places must be named.
+void read_place(const ConfigMap& in, Effect& effect) {
+  const std::vector<Place>& places = effect.kind->places;
+  if (places == std::vector<Place>{Place::kHall}) {
+    effect.place_kind = Place::kHall;
+    effect.place = kHallName;
+    effect.where = in.where();
+    return;
+  }
+  std::vector<std::string> keys, given;
+  for (Place place : places) {
+    keys.emplace_back(place_key(place));
+    if (!in.has(keys.back())) continue;
+    given.push_back(keys.back());
+    effect.place_kind = place;
+  }
+  if (given.size() > 1) {
+    in.fail(given[1], fmt::format("an effect has one place; here are {}", fmt::join(given, " and ")));
+  }
+  if (given.empty() && keys.size() > 1) {
+    in.fail(keys.front(), fmt::format("{} wants one place: {}", effect.kind->key, fmt::join(keys, " or ")));
+  }
+  const std::string key = given.empty() ? keys.front() : given.front();
+  if (given.empty()) effect.place_kind = places.front();
+  effect.place = in.text(key);
+  effect.where = in.where(key);
+}
+
+double read_parameter(const ConfigMap& in, const Parameter& p) {
+  if (p.fallback && !in.has(p.name)) return *p.fallback;
+  if (p.unit != "degC") return in.quantity(p.name, p.unit, p.low, p.high);
+  const double t_K = in.temperature_K(p.name);
+  if (!(t_K >= p.low && t_K <= p.high)) {
+    in.fail(p.name, fmt::format("{:.2f} K is out of range; {:.2f} K to {:.2f} K is allowed", t_K, p.low, p.high));
+  }
+  return t_K;
+}
+
+void read_reference(const ConfigMap& in, const Reference& r, Effect& effect) {
+  if (!in.has(r.name)) {
+    if (!r.fallback) (void)in.text(r.name);  // fails as every missing key does
+    if (!r.fallback->empty()) effect.references[r.name] = {r.kinds.front(), *r.fallback};
+    return;
+  }
+  if (!in.is_map(r.name)) {
+    effect.references[r.name] = {r.kinds.front(), in.text(r.name)};
+    return;
+  }
+  const ConfigMap body = in.map(r.name);
+  std::vector<std::string> keys;
+  for (BodyKind kind : r.kinds) {
+    keys.emplace_back(body_key(kind));
+    if (body.has(keys.back())) effect.references[r.name] = {kind, body.text(keys.back())};
+  }
+  if (!effect.references.contains(r.name)) {
+    in.fail(r.name, fmt::format("a map with one of {} is wanted", fmt::join(keys, ", ")));
+  }
+  body.reject_unknown_keys();
+}
+
+void read_table(const ConfigMap& in, const Table& t, Effect& effect) {
+  if (!t.compulsory && !in.has(t.name)) return;
+  TimeSeries series;
+  if (in.is_list(t.name)) {
+    for (const std::vector<double>& row : in.rows(t.name, {t.argument_unit, t.value_unit})) {
+      if (!series.time_s.empty() && !(row[0] > series.time_s.back())) {
+        in.fail(t.name, "the first column must increase from row to row");
+      }
+      series.time_s.push_back(row[0]);
+      series.value.push_back(row[1]);
+    }
+  } else {
+    series.time_s = {0.0};
+    series.value = {t.value_unit == "degC" ? in.temperature_K(t.name) : in.quantity(t.name, t.value_unit, t.low, t.high)};
+  }
+  for (double value : series.value) {
+    if (!(value >= t.low && value <= t.high)) {
+      in.fail(t.name, fmt::format("{:g} {} is out of range; {:g} to {:g} is allowed", value,
+                                  t.value_unit == "degC" ? "K" : t.value_unit, t.low, t.high));
+    }
+  }
+  effect.tables[t.name] = std::move(series);
+}
+
+}  // namespace
 
 const char* place_key(Place place) {
   switch (place) {
@@ -15,8 +118,14 @@ const char* place_key(Place place) {
       return "joint";
     case Place::kNode:
       return "node";
+    case Place::kHall:
+      return "hall";
   }
   return "";
+}
+
+Reference surrounding_reference() {
+  return {"surrounding", {BodyKind::kNode}, kHallName, "lumped node that the body exchanges heat with"};
 }
 
 double Effect::operator[](const std::string& parameter) const {
@@ -26,19 +135,40 @@ double Effect::operator[](const std::string& parameter) const {
   throw std::logic_error("effect " + kind->key + " has no parameter " + parameter);
 }
 
+bool Effect::has(const std::string& parameter) const {
+  return !std::isnan((*this)[parameter]);
+}
+
+Body Effect::body() const {
+  switch (place_kind) {
+    case Place::kRegion:
+      return region(place);
+    case Place::kSurface:
+      return surface(place);
+    case Place::kNode:
+    case Place::kHall:
+      return node(place);
+    case Place::kJoint:
+      break;
+  }
+  throw std::logic_error("a joint is no body");
+}
+
 Effect read_effect(const ConfigMap& in) {
   std::vector<std::string> keys;
   for (const EffectKind& kind : catalogue()) keys.push_back(kind.key);
   const std::string type = in.choice("type", keys);
   const EffectKind& kind = catalogue()[std::find(keys.begin(), keys.end(), type) - keys.begin()];
 
-  Effect effect{.kind = &kind, .place = in.text(place_key(kind.place)), .values = {}, .surrounding = {}, .where = {}};
-  effect.where = in.where(place_key(kind.place));
-  for (const Parameter& p : kind.parameters) {
-    effect.values.push_back(p.fallback ? in.quantity(p.name, p.unit, p.low, p.high, *p.fallback)
-                                       : in.quantity(p.name, p.unit, p.low, p.high));
+  Effect effect;
+  effect.kind = &kind;
+  read_place(in, effect);
+  for (const Parameter& p : kind.parameters) effect.values.push_back(read_parameter(in, p));
+  for (const Reference& r : kind.references) read_reference(in, r, effect);
+  for (const Choice& c : kind.choices) {
+    effect.words[c.name] = c.fallback ? in.choice(c.name, c.options, *c.fallback) : in.choice(c.name, c.options);
   }
-  if (kind.has_surrounding) effect.surrounding = in.text("surrounding", "hall");
+  for (const Table& t : kind.tables) read_table(in, t, effect);
   in.reject_unknown_keys();
   return effect;
 }

@@ -2,6 +2,7 @@
 // One physical effect: what it is (EffectKind, a constant) and one use of it in a machine (Effect, data).
 // An effect's file defines its EffectKind and nothing else is touched; see README.md in this folder.
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,17 +12,44 @@
 
 namespace driftwright::effects {
 
-/// What an effect's place is the name of; its YAML key is place_key().
-enum class Place { kRegion, kSurface, kJoint, kNode };
+/// What an effect's place is the name of; its YAML key is place_key(). The hall has no name and no key.
+enum class Place { kRegion, kSurface, kJoint, kNode, kHall };
 [[nodiscard]] const char* place_key(Place place);
 
 /// A number of an effect: how it is written, what is allowed, what it means.
 struct Parameter {
   std::string name;
-  std::string unit;  ///< UDUNITS syntax; Effect holds the value in this unit
-  double low = 0.0;  ///< inclusive
+  std::string unit;  ///< UDUNITS syntax; Effect holds the value in this unit. "degC": a temperature, held in K
+  double low = 0.0;  ///< inclusive; in K for a temperature
   double high = 0.0;
-  std::optional<double> fallback;  ///< value when the key is missing; compulsory without one
+  std::optional<double> fallback;  ///< value when the key is missing; compulsory without one; kNotGiven: may be left out
+  std::string meaning;
+};
+/// Value of a parameter that was left out; Effect::has() asks for it.
+inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+
+/// Another body that an effect names: `surrounding: air_nose`, or `inner: {region: spindle}` for another kind than the first.
+struct Reference {
+  std::string name;
+  std::vector<BodyKind> kinds;          ///< allowed; a bare name means the first. "hall" is a node
+  std::optional<std::string> fallback;  ///< name when the key is missing, "" for none; compulsory without one
+  std::string meaning;
+};
+
+/// One of several words.
+struct Choice {
+  std::string name;
+  std::vector<std::string> options;
+  std::optional<std::string> fallback;
+  std::string meaning;
+};
+
+/// Rows of two quantities, the first increasing; or a single quantity, which is then the second of one row at zero.
+struct Table {
+  std::string name;
+  std::string argument_unit, value_unit;  ///< "degC" columns are held in K
+  double low = 0.0, high = 0.0;           ///< of the values
+  bool compulsory = true;
   std::string meaning;
 };
 
@@ -31,24 +59,35 @@ struct EffectKind {
   std::string key;    ///< YAML and diagnosis.json
   std::string title;  ///< in words
   std::string law;    ///< formula and source, one line
-  Place place = Place::kRegion;
+  std::vector<Place> places;
   std::vector<Parameter> parameters;
   /// Adds what the effect does to heat. The Effect outlives no call: copy what a Law needs.
   void (*contribute)(const Effect&, HeatBalance&) = nullptr;
-  bool has_surrounding = false;  ///< reads the key `surrounding`, "hall" by default
+  std::vector<Reference> references = {};
+  std::vector<Choice> choices = {};
+  std::vector<Table> tables = {};
 };
+
+/// The reference `surrounding` that films share: a lumped node, "hall" by default.
+[[nodiscard]] Reference surrounding_reference();
 
 /// An effect at a place with its values.
 struct Effect {
   const EffectKind* kind = nullptr;  ///< points into catalogue(), which lives as long as the program
-  std::string place;                 ///< region, surface, joint or node
-  std::vector<double> values;        ///< as kind->parameters
-  std::string surrounding;
-  Where where;  ///< in the scenario, for errors that show only once the mesh is there
+  Place place_kind = Place::kRegion;
+  std::string place = {};                       ///< region, surface, joint or node; "hall" for the hall
+  std::vector<double> values = {};              ///< as kind->parameters
+  std::map<std::string, Body> references = {};  ///< those given or with a fallback
+  std::map<std::string, std::string> words = {};
+  std::map<std::string, TimeSeries> tables = {};  ///< argument in `time_s` whatever its unit; those given
+  Where where = {};                               ///< in the scenario, for errors that show only once the mesh is there
 
   /// Value by parameter name, in the parameter's unit. @throws std::logic_error  for a name the kind has not
   [[nodiscard]] double operator[](const std::string& parameter) const;
+  [[nodiscard]] bool has(const std::string& parameter) const;
   [[nodiscard]] std::string name() const { return kind->key + " " + place; }
+  /// Its place as a body. @throws std::logic_error  for a joint
+  [[nodiscard]] Body body() const;
 };
 
 /// Every effect there is, in the order of the documentation.

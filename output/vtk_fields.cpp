@@ -124,12 +124,16 @@ FieldSeries::FieldSeries(ResultsFolder& folder, const mesh::Mesh& mesh) : folder
 
 FieldSeries::~FieldSeries() = default;
 
-void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um) {
+void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um,
+                        const StressField* stress) {
   vtkUnstructuredGrid* grid = grid_->vtk;
   const vtkIdType n_nodes = grid->GetNumberOfPoints();
   if (temperature_degC.size() != n_nodes || displacement_um.cols() != n_nodes) {
     throw std::logic_error(
         fmt::format("fields of {} and {} nodes on a mesh of {}", temperature_degC.size(), displacement_um.cols(), n_nodes));
+  }
+  if (stress && (stress->stress_MPa.cols() != n_nodes || stress->von_mises_MPa.size() != n_nodes)) {
+    throw std::logic_error(fmt::format("stresses of {} nodes on a mesh of {}", stress->stress_MPa.cols(), n_nodes));
   }
   if (!times_s_.empty() && !(time_s > times_s_.back())) {
     throw std::logic_error(fmt::format("fields at {} s after those at {} s", time_s, times_s_.back()));
@@ -140,6 +144,16 @@ void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC, 
   for (vtkIdType n = 0; n < n_nodes; ++n) {
     temperature->SetValue(n, static_cast<float>(temperature_degC[n]));
     displacement->SetTuple(n, displacement_um.col(n).data());
+  }
+  if (stress) {
+    auto* components = add_array<vtkFloatArray>(grid->GetPointData(), "stress_MPa", 6, n_nodes);
+    int i = 0;
+    for (const char* name : {"XX", "YY", "ZZ", "XY", "YZ", "XZ"}) components->SetComponentName(i++, name);
+    auto* von_mises = add_array<vtkFloatArray>(grid->GetPointData(), "von_mises_MPa", 1, n_nodes);
+    for (vtkIdType n = 0; n < n_nodes; ++n) {
+      components->SetTuple(n, stress->stress_MPa.col(n).data());
+      von_mises->SetValue(n, static_cast<float>(stress->von_mises_MPa[n]));
+    }
   }
   add_array<vtkDoubleArray>(grid->GetFieldData(), "TimeValue", 1, 1)->SetValue(0, time_s);
 

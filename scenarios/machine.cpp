@@ -61,26 +61,25 @@ solver::RegionMaterials place_materials(const MachineModel& model, const Mesh& m
 }
 
 void check_effects(const MachineModel& model, const Mesh& mesh, const effects::HeatBalance& balance) {
-  std::vector<std::string> nodes, surroundings = {"hall"};
-  for (const effects::LumpedNode& n : balance.nodes) {
-    nodes.push_back(n.name);
-    surroundings.push_back(n.name);
-  }
-  for (const effects::Effect& e : model.effects) {
-    switch (e.kind->place) {
-      case effects::Place::kRegion:
-        must_be_one_of(e.where, "region", e.place, mesh.regions);
-        break;
-      case effects::Place::kSurface:
-        must_be_one_of(e.where, "surface", e.place, outer_surfaces(mesh));
-        break;
-      case effects::Place::kJoint:
-        must_be_one_of(e.where, "joint", e.place, joint_names(mesh));
-        break;
-      case effects::Place::kNode:
-        break;  // it makes the node
+  std::vector<std::string> nodes = {effects::kHallName};
+  for (const effects::LumpedNode& n : balance.nodes) nodes.push_back(n.name);
+  const auto must_exist = [&](const Where& where, effects::BodyKind kind, const std::string& name) {
+    switch (kind) {
+      case effects::BodyKind::kRegion:
+        return must_be_one_of(where, "region", name, mesh.regions);
+      case effects::BodyKind::kSurface:
+        return must_be_one_of(where, "surface", name, outer_surfaces(mesh));
+      case effects::BodyKind::kNode:
+        return must_be_one_of(where, "lumped node", name, nodes);
     }
-    if (e.kind->has_surrounding) must_be_one_of(e.where, "surrounding (lumped node)", e.surrounding, surroundings);
+  };
+  for (const effects::Effect& e : model.effects) {
+    if (e.place_kind == effects::Place::kJoint) {
+      must_be_one_of(e.where, "joint", e.place, joint_names(mesh));
+    } else {
+      must_exist(e.where, e.body().kind, e.body().name);
+    }
+    for (const auto& [key, body] : e.references) must_exist(e.where, body.kind, body.name);
   }
   for (const mesh::Joint& joint : mesh.joints) {
     const bool has_contact = std::any_of(balance.contacts.begin(), balance.contacts.end(),
@@ -163,6 +162,13 @@ PlacedMachine place(const MachineModel& model) {
     must_be_one_of(s.where, "surface", s.support.surface, outer_surfaces(mesh));
     placed.supports.push_back(s.support);
   }
+  for (const JointEntry& j : model.joints) {
+    must_be_one_of(j.where, "joint", j.mechanics.joint, joint_names(mesh));
+    const bool again = std::any_of(placed.joints.begin(), placed.joints.end(),
+                                   [&](const auto& other) { return other.joint == j.mechanics.joint; });
+    if (again) throw InputError(j.where, fmt::format("joint '{}' stands under `joints` twice", j.mechanics.joint));
+    placed.joints.push_back(j.mechanics);
+  }
   for (const Sensor& sensor : model.sensors) {
     std::vector<std::pair<int, double>> weights;
     if (const auto* point = std::get_if<PointOnRegion>(&sensor.place)) {
@@ -187,13 +193,15 @@ PlacedMachine place(const MachineModel& model) {
 Machine build(const MachineModel& model, PlacedMachine placed) {
   solver::Elasticity elasticity = [&] {
     try {
-      return solver::Elasticity(placed.mesh, placed.materials, placed.supports);
+      return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints);
     } catch (const InputError& e) {  // it knows what is wrong, not where that stands
-      throw InputError(model.supports.front().where, e.what());
+      const bool about_supports = std::string_view(e.what()).starts_with("supports");
+      throw InputError(about_supports ? model.supports.front().where : model.where, e.what());
     }
   }();
   Machine machine{std::move(placed), std::move(elasticity), {}};
-  machine.system = solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance);
+  machine.system =
+      solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance, model.reference_K);
   solver::Outputs& out = machine.system.outputs;
   const auto n_sensors = model.sensors.size();
   const auto n_outputs = static_cast<Eigen::Index>(n_sensors + machine.placed.functionals.size());
@@ -221,12 +229,33 @@ Machine build(const MachineModel& model, PlacedMachine placed) {
   return machine;
 }
 
+namespace {
+
+/// Channels of what the cyclogram uses beside the spindle speed.
+void add_feeds_and_cutting_power(Record& record, const Cyclogram& cyclogram) {
+  const auto add = [&](const char* name, const char* unit, const auto& of_drive) {
+    const auto& sections = cyclogram.sections;
+    if (std::none_of(sections.begin(), sections.end(), [&](const auto& s) { return of_drive(s.drive) != 0.0; })) return;
+    Channel channel{name, unit, {}};
+    for (double t_s : record.time_s) channel.values.push_back(of_drive(cyclogram.drive(t_s)));
+    record.channels.push_back(std::move(channel));
+  };
+  constexpr double kMmMin_per_m_s = 60e3;
+  add("feed_x", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[0]; });
+  add("feed_y", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[1]; });
+  add("feed_z", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[2]; });
+  add("cutting_power", "W", [](const Drive& d) { return d.cutting_power_W; });
+}
+
+}  // namespace
+
 Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
                  double reference_K) {
   Record record{.source = cyclogram.name, .time_s = run.time_s, .channels = {}};
   Channel speed{"speed", "rpm", {}};
   for (double t_s : run.time_s) speed.values.push_back(cyclogram.speed_rpm(t_s));
   record.channels.push_back(std::move(speed));
+  add_feeds_and_cutting_power(record, cyclogram);
   for (std::size_t i = 0; i < outputs.name.size(); ++i) {
     const auto row = run.outputs.row(static_cast<Eigen::Index>(i));
     Channel channel{outputs.name[i], "", {}};

@@ -1,16 +1,17 @@
 #include "solver/heat_assembly.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/LU>
 #include <stdexcept>
 
 #include "mesh/shape.hpp"
 #include "solver/joint.hpp"
+#include "solver/radiation.hpp"
 
 namespace driftwright::solver {
 namespace {
 
+using effects::Body;
+using effects::BodyKind;
 using mesh::CellShape;
 using mesh::Mesh;
 using Local = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, mesh::kMaxNodesPerCell, mesh::kMaxNodesPerCell>;
@@ -40,32 +41,151 @@ Local cell_conduction(const Mesh& mesh, int cell, double conductivity_W_mK) {
   return k;
 }
 
-/// A film's matrix: ∫ N N' dA on the surface, and where the surrounding is an unknown, its coupling.
-SparseRow film_matrix(const Mesh& mesh, int surface, int n_unknowns, int surrounding_unknown) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int facet : mesh.facets_on(surface)) {
-    const CellShape shape = mesh.facets.shape[facet];
-    const auto nodes = mesh.facets.nodes(facet);
-    const auto x = mesh::cell_coords(mesh, nodes);
-    for (const auto& q : mesh::mass_rule(shape)) {
-      const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
-      const double area_m2 = q.weight * mesh::jacobian(s, x, shape).det;
-      for (int i = 0; i < s.n; ++i) {
-        for (int j = 0; j < s.n; ++j) entries.emplace_back(nodes[i], nodes[j], area_m2 * s.N[i] * s.N[j]);
-        if (surrounding_unknown >= 0) {
-          entries.emplace_back(nodes[i], surrounding_unknown, -area_m2 * s.N[i]);
-          entries.emplace_back(surrounding_unknown, nodes[i], -area_m2 * s.N[i]);
-        }
+int must_exist(int index, const std::string& name) {
+  if (index < 0) throw std::logic_error("assemble_heat: the mesh has no '" + name + "'");
+  return index;
+}
+
+/// The machine as assembly sees it: names to unknowns and integrals.
+class Places {
+ public:
+  Places(const Mesh& mesh, const effects::HeatBalance& balance) : mesh_(mesh), balance_(balance) {}
+
+  [[nodiscard]] int n_unknowns() const { return mesh_.n_nodes() + static_cast<int>(balance_.nodes.size()); }
+  [[nodiscard]] int unknown_of_node(const std::string& name) const {
+    for (std::size_t i = 0; i < balance_.nodes.size(); ++i) {
+      if (balance_.nodes[i].name == name) return mesh_.n_nodes() + static_cast<int>(i);
+    }
+    return must_exist(-1, name);
+  }
+  /// -1 for the hall.
+  [[nodiscard]] int unknown_of_surrounding(const std::string& name) const {
+    return name == effects::kHallName ? -1 : unknown_of_node(name);
+  }
+  [[nodiscard]] int surface(const std::string& name) const { return must_exist(mesh_.surface(name), name); }
+  [[nodiscard]] int region(const std::string& name) const { return must_exist(mesh_.region(name), name); }
+
+  /// Cells of a region or facets of a surface.
+  [[nodiscard]] std::pair<const mesh::Cells&, std::vector<int>> pieces(const Body& body) const {
+    if (body.kind == BodyKind::kRegion) return {mesh_.cells, mesh_.cells_in(region(body.name))};
+    return {mesh_.facets, mesh_.facets_on(surface(body.name))};
+  }
+
+  /// ∫ N_i over the volume or area of a body divided by its size; one for a lumped node. Sums to one.
+  [[nodiscard]] Eigen::VectorXd mean_weights(const Body& body) const {
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(n_unknowns());
+    if (body.kind == BodyKind::kNode) {
+      weights[unknown_of_node(body.name)] = 1.0;
+      return weights;
+    }
+    for_each_point(body, [&](std::span<const int> nodes, const mesh::ShapeValues& s, double size, const Eigen::Vector3d&) {
+      for (int i = 0; i < s.n; ++i) weights[nodes[i]] += size * s.N[i];
+    });
+    return weights / weights.sum();
+  }
+
+  /// Calls work(nodes, shape values, volume or area of the point, position) at each quadrature point of a region or surface.
+  template <class Work>
+  void for_each_point(const Body& body, Work work) const {
+    const auto [cells, members] = pieces(body);
+    for (int c : members) {
+      const auto nodes = cells.nodes(c);
+      const auto x = mesh::cell_coords(mesh_, nodes);
+      for (const auto& q : mesh::mass_rule(cells.shape[c])) {
+        const mesh::ShapeValues s = mesh::shape_values(cells.shape[c], q.xi);
+        const Eigen::Vector3d position = x * s.N.head(s.n).transpose();
+        work(nodes, s, q.weight * mesh::jacobian(s, x, cells.shape[c]).det, position);
       }
-      if (surrounding_unknown >= 0) entries.emplace_back(surrounding_unknown, surrounding_unknown, area_m2);
     }
   }
-  SparseRow g(n_unknowns, n_unknowns);
+
+ private:
+  const Mesh& mesh_;
+  const effects::HeatBalance& balance_;
+};
+
+SparseRow from_entries(int n, const std::vector<Eigen::Triplet<double>>& entries) {
+  SparseRow g(n, n);
   g.setFromTriplets(entries.begin(), entries.end());
   return g;
 }
 
-SparseRow joint_matrix(const Mesh& mesh, const mesh::Joint& joint, int n_unknowns) {
+/// ∫ (T - T_s)² over a region or surface as a form: ∫ N N', and where the surrounding is an unknown, its coupling.
+SparseRow body_matrix(const Places& places, const Body& body, int surrounding) {
+  std::vector<Eigen::Triplet<double>> entries;
+  if (body.kind == BodyKind::kNode) {
+    const int i = places.unknown_of_node(body.name);
+    entries.emplace_back(i, i, 1.0);
+    if (surrounding >= 0) {
+      entries.emplace_back(i, surrounding, -1.0);
+      entries.emplace_back(surrounding, i, -1.0);
+      entries.emplace_back(surrounding, surrounding, 1.0);
+    }
+    return from_entries(places.n_unknowns(), entries);
+  }
+  places.for_each_point(body,
+                        [&](std::span<const int> nodes, const mesh::ShapeValues& s, double size, const Eigen::Vector3d&) {
+                          for (int i = 0; i < s.n; ++i) {
+                            for (int j = 0; j < s.n; ++j) entries.emplace_back(nodes[i], nodes[j], size * s.N[i] * s.N[j]);
+                            if (surrounding >= 0) {
+                              entries.emplace_back(nodes[i], surrounding, -size * s.N[i]);
+                              entries.emplace_back(surrounding, nodes[i], -size * s.N[i]);
+                            }
+                          }
+                          if (surrounding >= 0) entries.emplace_back(surrounding, surrounding, size);
+                        });
+  return from_entries(places.n_unknowns(), entries);
+}
+
+/// Exchange between a body and its surrounding. `size` divides the matrix: 1 for a coefficient per area, the body's size for
+/// a total conductance.
+Exchange<SparseRow> to_surrounding(const Places& places, const std::string& name, const Body& body,
+                                   const std::string& surrounding, bool total, BoundLaw coefficient,
+                                   const std::vector<effects::Stratification>& air) {
+  const int unknown = places.unknown_of_surrounding(surrounding);
+  Exchange<SparseRow> e{.name = name,
+                        .matrix = body_matrix(places, body, unknown),
+                        .to_hall = {},
+                        .coefficient = std::move(coefficient),
+                        .flow = places.mean_weights(body),
+                        .offset = {}};
+  const bool spread = body.kind != BodyKind::kNode;
+  double size = 1.0;
+  if (spread) {
+    size = 0.0;
+    places.for_each_point(body, [&](auto, auto&, double point_size, auto&) { size += point_size; });
+    if (total) e.matrix /= size;
+  }
+  const double flow_size = spread && !total ? size : 1.0;
+  e.flow *= flow_size;
+  if (unknown >= 0) {
+    e.flow[unknown] -= flow_size;
+    e.to_hall = Eigen::VectorXd::Zero(places.n_unknowns());
+    return e;
+  }
+  e.to_hall = e.matrix * Eigen::VectorXd::Ones(e.matrix.cols());
+  e.hall_sum = e.to_hall.sum();
+  if (!air.empty() && body.kind == BodyKind::kSurface) {
+    e.offset = Eigen::VectorXd::Zero(places.n_unknowns());
+    places.for_each_point(
+        body, [&](std::span<const int> nodes, const mesh::ShapeValues& s, double area_m2, const Eigen::Vector3d& position) {
+          const double share = (total ? area_m2 / size : area_m2) * hall_offset_K(air, position.z());
+          for (int i = 0; i < s.n; ++i) e.offset[nodes[i]] += share * s.N[i];
+        });
+    e.offset_sum = e.offset.sum();
+  }
+  return e;
+}
+
+Exchange<SparseRow> across_joint(const Mesh& mesh, const Places& places, const mesh::Joint& joint, const std::string& name,
+                                 BoundLaw coefficient) {
+  const int n = places.n_unknowns();
+  Exchange<SparseRow> e{.name = name,
+                        .matrix = {},
+                        .to_hall = Eigen::VectorXd::Zero(n),
+                        .coefficient = std::move(coefficient),
+                        .flow = Eigen::VectorXd::Zero(n),
+                        .offset = {}};
   std::vector<Eigen::Triplet<double>> entries;
   for (const JointPoint& p : joint_points(mesh, joint)) {
     std::vector<int> node = p.node_a;
@@ -73,89 +193,118 @@ SparseRow joint_matrix(const Mesh& mesh, const mesh::Joint& joint, int n_unknown
     std::vector<double> jump = p.weight_a;
     for (double w : p.weight_b) jump.push_back(-w);
     for (std::size_t i = 0; i < node.size(); ++i) {
+      e.flow[node[i]] += p.area_m2 * jump[i];
       for (std::size_t j = 0; j < node.size(); ++j) entries.emplace_back(node[i], node[j], p.area_m2 * jump[i] * jump[j]);
     }
   }
-  SparseRow g(n_unknowns, n_unknowns);
-  g.setFromTriplets(entries.begin(), entries.end());
-  return g;
-}
-
-Exchange<SparseRow> exchange(const std::string& name, SparseRow matrix, effects::Law coefficient, bool with_hall) {
-  Exchange<SparseRow> e{name, std::move(matrix), {}, 0.0, std::move(coefficient)};
-  e.to_hall = Eigen::VectorXd::Zero(e.matrix.rows());
-  if (with_hall) {
-    e.to_hall = e.matrix * Eigen::VectorXd::Ones(e.matrix.cols());
-    e.hall_sum = e.to_hall.sum();
-  }
+  e.matrix = from_entries(n, entries);
   return e;
 }
 
-Eigen::VectorXd unit_heat(const Mesh& mesh, int region, int n_unknowns) {
-  Eigen::VectorXd load = Eigen::VectorXd::Zero(n_unknowns);
-  for (int cell : mesh.cells_in(region)) {
-    const CellShape shape = mesh.cells.shape[cell];
-    const auto nodes = mesh.cells.nodes(cell);
-    const auto x = mesh::cell_coords(mesh, nodes);
-    for (const auto& q : mesh::mass_rule(shape)) {
-      const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
-      const double volume = q.weight * mesh::jacobian(s, x, shape).det;
-      for (int i = 0; i < s.n; ++i) load[nodes[i]] += volume * s.N[i];
+/// Finds the probes and thermostats of laws, and collects each probe once.
+class Binder {
+ public:
+  Binder(const Places& places, const effects::HeatBalance& balance, FullSystem& system)
+      : places_(places), balance_(balance), system_(system) {}
+
+  BoundLaw bind(const effects::Law& law) {
+    BoundLaw bound(law);
+    for (const Body& body : law.probes) bound.probes.push_back(probe(body));
+    for (std::size_t t = 0; t < balance_.thermostats.size() && !law.thermostat.empty(); ++t) {
+      if (balance_.thermostats[t].name == law.thermostat) bound.thermostat = static_cast<int>(t);
     }
+    if (!law.thermostat.empty()) must_exist(bound.thermostat, law.thermostat);
+    return bound;
   }
-  return load / load.sum();
-}
-
-int must_exist(int index, const std::string& name) {
-  if (index < 0) throw std::logic_error("assemble_heat: the mesh has no '" + name + "'");
-  return index;
-}
-
-int node_unknown(const effects::HeatBalance& balance, const Mesh& mesh, const std::string& name) {
-  for (std::size_t i = 0; i < balance.nodes.size(); ++i) {
-    if (balance.nodes[i].name == name) return mesh.n_nodes() + static_cast<int>(i);
+  int probe(const Body& body) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (bodies_[i] == body) return static_cast<int>(i);
+    }
+    bodies_.push_back(body);
+    if (body == effects::node(effects::kHallName)) {
+      system_.probes.push_back({Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0});
+    } else {
+      system_.probes.push_back({places_.mean_weights(body), 0.0});
+    }
+    return static_cast<int>(bodies_.size()) - 1;
   }
-  return must_exist(-1, name);
-}
 
-std::vector<Exchange<SparseRow>> make_exchanges(const Mesh& mesh, const effects::HeatBalance& balance, int n) {
+ private:
+  const Places& places_;
+  const effects::HeatBalance& balance_;
+  FullSystem& system_;
+  std::vector<Body> bodies_;
+};
+
+std::vector<Exchange<SparseRow>> make_exchanges(const Mesh& mesh, const Places& places, const effects::HeatBalance& balance,
+                                                Binder& binder) {
   std::vector<Exchange<SparseRow>> exchanges;
+  const auto& air = balance.stratifications;
   for (const effects::Film& film : balance.films) {
-    const bool to_hall = film.surrounding == "hall";
-    const int surrounding = to_hall ? -1 : node_unknown(balance, mesh, film.surrounding);
-    const int surface = must_exist(mesh.surface(film.surface), film.surface);
-    exchanges.push_back(exchange(film.name, film_matrix(mesh, surface, n, surrounding), film.htc_W_m2K, to_hall));
+    exchanges.push_back(to_surrounding(places, film.name, effects::surface(film.surface), film.surrounding, false,
+                                       binder.bind(film.htc_W_m2K), air));
+  }
+  for (const effects::Link& link : balance.links) {
+    exchanges.push_back(
+        to_surrounding(places, link.name, link.body, link.surrounding, true, binder.bind(link.conductance_W_K), air));
   }
   for (const effects::Contact& contact : balance.contacts) {
     const mesh::Joint* joint = mesh.joint(contact.joint);
     must_exist(joint ? 0 : -1, contact.joint);
-    const double conductance = contact.conductance_W_m2K;
-    exchanges.push_back(exchange(
-        contact.name, joint_matrix(mesh, *joint, n), [=](const effects::Inputs&) { return conductance; }, false));
-  }
-  for (const effects::LumpedNode& node : balance.nodes) {
-    SparseRow g(n, n);
-    const int unknown = node_unknown(balance, mesh, node.name);
-    g.insert(unknown, unknown) = 1.0;
-    const double conductance = node.hall_conductance_W_K;
-    exchanges.push_back(exchange(
-        "air_node " + node.name, std::move(g), [=](const effects::Inputs&) { return conductance; }, true));
+    exchanges.push_back(across_joint(mesh, places, *joint, contact.name, binder.bind(contact.conductance_W_m2K)));
   }
   return exchanges;
 }
 
+std::vector<int> unknowns_of(const Mesh& mesh, const Places& places, const Body& body) {
+  if (body.kind == BodyKind::kNode) return {places.unknown_of_node(body.name)};
+  std::vector<char> is_member(mesh.n_nodes(), 0);
+  const auto [cells, members] = places.pieces(body);
+  for (int c : members) {
+    for (int node : cells.nodes(c)) is_member[node] = 1;
+  }
+  std::vector<int> unknowns;
+  for (int i = 0; i < mesh.n_nodes(); ++i) {
+    if (is_member[i]) unknowns.push_back(i);
+  }
+  return unknowns;
+}
+
+double at_reference(double constant, const PropertyCurve& curve, double reference_K) {
+  return curve.empty() ? constant : curve.at(reference_K);
+}
+
 }  // namespace
 
-FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, const effects::HeatBalance& balance) {
-  const int n = mesh.n_nodes() + static_cast<int>(balance.nodes.size());
+FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, const effects::HeatBalance& balance,
+                         double reference_K) {
+  const Places places(mesh, balance);
+  const int n = places.n_unknowns();
   FullSystem system;
-  system.exchanges = make_exchanges(mesh, balance, n);
+  system.reference_K = reference_K;
+  Binder binder(places, balance, system);
+  system.exchanges = make_exchanges(mesh, places, balance, binder);
   for (const effects::HeatInput& heat : balance.heats) {
-    system.sources.push_back(
-        {heat.name, unit_heat(mesh, must_exist(mesh.region(heat.region), heat.region), n), heat.power_W});
+    system.sources.push_back({heat.name, places.mean_weights(heat.body), binder.bind(heat.power_W)});
   }
+  for (const effects::Thermostat& t : balance.thermostats) {
+    system.thermostats.push_back({t.name, binder.probe(t.probe), t.on_above_K, t.off_below_K});
+  }
+  for (const effects::Radiation& r : balance.radiations) {
+    system.nonlinear.push_back(radiating_surface(mesh, r, places.surface(r.surface),
+                                                 places.unknown_of_surrounding(r.surrounding), balance.stratifications,
+                                                 reference_K));
+  }
+  if (auto term = variable_conduction(mesh, materials, reference_K)) system.nonlinear.push_back(std::move(term));
+  system.capacity = VariableCapacity::of(mesh, materials, reference_K);
+  for (const effects::FixedTemperature& f : balance.fixed) {
+    TimeSeries theta = f.temperature_K;
+    for (double& value : theta.value) value -= reference_K;
+    system.fixed.push_back({f.name, unknowns_of(mesh, places, f.body), std::move(theta), f.follows_hall});
+  }
+  system.change_times_s = balance.change_times_s;
 
-  Cliques cliques;  // the common pattern: cells, and the entries of every exchange
+  Cliques cliques;  // the common pattern: cells, and the entries of every exchange and term
   for (int cell = 0; cell < mesh.cells.size(); ++cell) cliques.add(mesh.cells.nodes(cell));
   for (const auto& e : system.exchanges) {
     for (int row = 0; row < n; ++row) {
@@ -164,16 +313,19 @@ FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, con
       }
     }
   }
+  for (const auto& term : system.nonlinear) term->add_cliques(cliques);
   system.mass = pattern(n, cliques);
   system.conduction = system.mass;
   for (int cell = 0; cell < mesh.cells.size(); ++cell) {
     const Material& m = materials[mesh.cells.group[cell]];
-    scatter_add(system.mass, mesh.cells.nodes(cell), cell_mass(mesh, cell, m.density_kg_m3 * m.heat_capacity_J_kgK));
-    scatter_add(system.conduction, mesh.cells.nodes(cell), cell_conduction(mesh, cell, m.conductivity_W_mK));
+    const double c_J_kgK = at_reference(m.heat_capacity_J_kgK, m.heat_capacity_curve, reference_K);
+    const double k_W_mK = at_reference(m.conductivity_W_mK, m.conductivity_curve, reference_K);
+    scatter_add(system.mass, mesh.cells.nodes(cell), cell_mass(mesh, cell, m.density_kg_m3 * c_J_kgK));
+    scatter_add(system.conduction, mesh.cells.nodes(cell), cell_conduction(mesh, cell, k_W_mK));
   }
   for (std::size_t i = 0; i < balance.nodes.size(); ++i) {
-    system.mass.coeffRef(mesh.n_nodes() + static_cast<int>(i), mesh.n_nodes() + static_cast<int>(i)) =
-        balance.nodes[i].capacity_J_K;
+    const int unknown = mesh.n_nodes() + static_cast<int>(i);
+    system.mass.coeffRef(unknown, unknown) = balance.nodes[i].capacity_J_K;
   }
   system.ones = Eigen::VectorXd::Ones(n);
   return system;

@@ -12,13 +12,14 @@ namespace driftwright::solver {
 /// Material of each region, in the order of mesh.regions.
 using RegionMaterials = std::vector<Material>;
 
-/// Assembles M, K0, sources and exchanges; outputs stay empty.
+/// Assembles M, K0, sources, exchanges and the rest of the balance; outputs stay empty. The mesh may be empty.
 ///
 ///     M_ij = ∫ ρ c N_i N_j dV (consistent),  K0_ij = ∫ k ∇N_i·∇N_j dV,  film G_ij = ∫ N_i N_j dA
 ///
-/// Every name in the balance must exist in the mesh (the scenario reader sees to it).
+/// ρ, c and k are those at the reference temperature; where they vary the system carries what they add.
+/// Every name in the balance must exist in the mesh or among its nodes (the scenario reader sees to it).
 /// @throws std::logic_error  for a name that does not exist
 [[nodiscard]] FullSystem assemble_heat(const mesh::Mesh& mesh, const RegionMaterials& materials,
-                                       const effects::HeatBalance& balance);
+                                       const effects::HeatBalance& balance, double reference_K = 293.15);
 
 }  // namespace driftwright::solver

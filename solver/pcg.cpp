@@ -4,13 +4,13 @@
 
 namespace driftwright::solver {
 
-void Pcg::refresh() {
+void Pcg::refresh(const Eigen::VectorXd& ones) {
   const int n = static_cast<int>(a_.rows());
   inverse_diagonal_ = a_.diagonal().cwiseInverse();
   a_ones_.resize(n);
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
+  ones_ = ones;
   multiply(a_, ones.data(), a_ones_.data());
-  ones_a_ones_ = a_ones_.sum();
+  ones_a_ones_ = ones.dot(a_ones_);
   r_.resize(n);
   z_.resize(n);
   p_.resize(n);
@@ -19,8 +19,8 @@ void Pcg::refresh() {
 
 void Pcg::project_constant(double* x) {  // x += c so that the residual sums to zero: no heat is made or lost
   const int n = static_cast<int>(r_.size());
-  const double c = r_.sum() / ones_a_ones_;
-  Eigen::Map<Eigen::VectorXd>(x, n).array() += c;
+  const double c = ones_a_ones_ > 0.0 ? ones_.dot(r_) / ones_a_ones_ : 0.0;  // zero where every unknown is prescribed
+  Eigen::Map<Eigen::VectorXd>(x, n) += c * ones_;
   r_ -= c * a_ones_;
 }
 

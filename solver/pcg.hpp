@@ -20,7 +20,8 @@ class Pcg {
   explicit Pcg(const SparseRow& a) : a_(a) {}
 
   /// Call when the values of the matrix have changed.
-  void refresh();
+  /// @param ones  1 where heat is conserved, 0 at unknowns of prescribed temperature
+  void refresh(const Eigen::VectorXd& ones);
 
   /// Solves A x = b from the x given. Stops when |r_i| <= tolerance A_ii for every row.
   [[nodiscard]] PcgOutcome solve(const double* b, double* x, double tolerance, int max_iterations);
@@ -29,7 +30,7 @@ class Pcg {
   void project_constant(double* x);
 
   const SparseRow& a_;
-  Eigen::VectorXd inverse_diagonal_, a_ones_;
+  Eigen::VectorXd inverse_diagonal_, ones_, a_ones_;
   double ones_a_ones_ = 0.0;
   Eigen::VectorXd r_, z_, p_, q_;
 };

@@ -3,18 +3,17 @@
 #include <Spectra/SymGEigsShiftSolver.h>
 #include <fmt/format.h>
 
-#include <Eigen/CholmodSupport>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 #include "base/errors.hpp"
+#include "solver/conduction_factor.hpp"
 
 namespace driftwright::solver {
 namespace {
-
-using ColumnMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
 
 SparseRow stiffness_at(const FullSystem& system, const effects::Inputs& at) {
   SparseRow k = system.conduction;
@@ -22,56 +21,18 @@ SparseRow stiffness_at(const FullSystem& system, const effects::Inputs& at) {
   return k;
 }
 
-/// Each set of connected unknowns needs an exchange with the hall. A factorisation alone does not tell: rounding makes
-/// the pivot of a set without one positive as often as not.
-void require_way_out(const FullSystem& system, const SparseRow& k, const effects::Inputs& at) {
-  const int n = system.size();
-  Cliques neighbours;
-  for (int row = 0; row < n; ++row) {
-    for (SparseRow::InnerIterator entry(k, row); entry; ++entry) {
-      if (entry.col() > row && entry.value() != 0.0) neighbours.add(std::vector<int>{row, static_cast<int>(entry.col())});
-    }
-  }
-  const std::vector<int> set_of = connected_sets(n, neighbours);
-  std::vector<double> to_hall_W_K(n, 0.0);
-  for (const auto& e : system.exchanges) {
-    const double c = e.coefficient(at);
-    for (int i = 0; i < n; ++i) to_hall_W_K[set_of[i]] += c * e.to_hall[i];
-  }
-  for (int i = 0; i < n; ++i) {
-    if (!(to_hall_W_K[set_of[i]] > 0.0)) {
-      throw SolveError(
-          fmt::format("the heat conduction matrix is singular: the part with unknown {} has no film, joint "
-                      "or link through "
-                      "which heat leaves",
-                      i));
-    }
-  }
+/// K(u)⁻¹ of a linear system.
+ConductionFactor factor_at(const FullSystem& system, const effects::Inputs& at) {
+  if (!system.is_linear()) throw std::logic_error("thermal modes and steady responses are those of a linear system");
+  const SparseRow k = stiffness_at(system, at);
+  require_way_out(k);
+  return ConductionFactor(k);
 }
-
-class Factor {
- public:
-  Factor(const FullSystem& system, const effects::Inputs& at) {
-    const SparseRow k = stiffness_at(system, at);
-    require_way_out(system, k, at);
-    llt_.cholmod().print = 0;
-    llt_.compute(ColumnMatrix(Eigen::SparseMatrix<double, Eigen::ColMajor, int>(k.transpose())));
-    if (llt_.info() != Eigen::Success) {
-      throw SolveError(
-          "the heat conduction matrix is singular: some part has no film, joint or link through which heat "
-          "leaves");
-    }
-  }
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const { return llt_.solve(b); }
-
- private:
-  Eigen::CholmodSupernodalLLT<ColumnMatrix, Eigen::Lower> llt_;
-};
 
 // Spectra's two operators: x -> K⁻¹ x (shift zero) and x -> M x.
 struct InverseStiffness {
   using Scalar = double;
-  const Factor& factor;
+  const ConductionFactor& factor;
   int n;
   [[nodiscard]] Eigen::Index rows() const { return n; }
   [[nodiscard]] Eigen::Index cols() const { return n; }
@@ -102,7 +63,7 @@ ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, 
   const int n = system.size();
   if (n_modes < 1 || n_modes > n - 2)
     throw InputError(fmt::format("{} thermal modes of {} unknowns cannot be had", n_modes, n));
-  const Factor factor(system, at);
+  const ConductionFactor factor = factor_at(system, at);
   InverseStiffness inverse{factor, n};
   MassProduct mass{system.mass};
   const int n_krylov = std::min(n, std::max(2 * n_modes + 1, 20));
@@ -133,13 +94,20 @@ ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, 
 }
 
 Eigen::MatrixXd steady_responses(const FullSystem& system, const effects::Inputs& at) {
-  const Factor factor(system, at);
+  const ConductionFactor factor = factor_at(system, at);
   const auto n_sources = static_cast<Eigen::Index>(system.sources.size());
-  Eigen::MatrixXd responses(system.size(), n_sources + 1);
+  // One more where the air is stratified or a temperature prescribed: what stands beside sources and hall.
+  Eigen::VectorXd offset = Eigen::VectorXd::Zero(system.size());
+  for (const auto& e : system.exchanges) {
+    if (e.offset.size() > 0) offset += e.coefficient(at) * e.offset;
+  }
+  const bool has_offset = offset.cwiseAbs().maxCoeff() > 0.0;
+  Eigen::MatrixXd responses(system.size(), n_sources + (has_offset ? 2 : 1));
   for (Eigen::Index s = 0; s < n_sources; ++s) responses.col(s) = factor.solve(system.sources[s].load);
   Eigen::VectorXd hall = Eigen::VectorXd::Zero(system.size());
   for (const auto& e : system.exchanges) hall += e.coefficient(at) * e.to_hall;
   responses.col(n_sources) = factor.solve(hall);
+  if (has_offset) responses.col(n_sources + 1) = factor.solve(offset);
   return responses;
 }
 
@@ -163,16 +131,27 @@ Eigen::MatrixXd orthonormalise(const SparseRow& mass, const Eigen::MatrixXd& col
 }
 
 ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis) {
+  if (!system.is_linear()) throw std::logic_error("project: only a linear system has a reduced one");
   const auto reduce = [&](const SparseRow& a) -> Eigen::MatrixXd {
     const Eigen::MatrixXd r = basis.transpose() * (a * basis);
     return 0.5 * (r + r.transpose());
   };
   ReducedSystem reduced;
+  reduced.reference_K = system.reference_K;
+  reduced.change_times_s = system.change_times_s;
   reduced.mass = reduce(system.mass);
   reduced.conduction = reduce(system.conduction);
   for (const HeatSource& s : system.sources) reduced.sources.push_back({s.name, basis.transpose() * s.load, s.power_W});
   for (const auto& e : system.exchanges) {
-    reduced.exchanges.push_back({e.name, reduce(e.matrix), basis.transpose() * e.to_hall, e.hall_sum, e.coefficient});
+    reduced.exchanges.push_back(
+        {.name = e.name,
+         .matrix = reduce(e.matrix),
+         .to_hall = basis.transpose() * e.to_hall,
+         .hall_sum = e.hall_sum,
+         .coefficient = e.coefficient,
+         .flow = basis.transpose() * e.flow,
+         .offset = e.offset.size() > 0 ? Eigen::VectorXd(basis.transpose() * e.offset) : Eigen::VectorXd(),
+         .offset_sum = e.offset_sum});
   }
   reduced.outputs = {system.outputs.name, system.outputs.unit, basis.transpose() * system.outputs.state,
                      system.outputs.hall};
@@ -189,19 +168,23 @@ Trajectory evolve(const ReducedSystem& system, const Cyclogram& cyclogram, const
   run.outputs.resize(system.outputs.state.cols(), static_cast<Eigen::Index>(output_s.size()));
   Eigen::VectorXd state = start;
   std::size_t next = 0;
-  double known_speed_rpm = -1.0;
+  bool first = true;
   Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
   Eigen::MatrixXd to_modes;
-  for (const LinearStretch& stretch : linear_stretches(cyclogram, hall)) {
+  std::vector<double> knots_s = hall.time_s;
+  knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
+  for (const LinearStretch& stretch : linear_stretches(cyclogram, knots_s)) {
     const double length_s = stretch.end_s - stretch.start_s;
-    const effects::Inputs at_start{stretch.speed_rpm, hall.at(stretch.start_s)},
-        at_end{stretch.speed_rpm, hall.at(stretch.end_s)};
-    if (stretch.speed_rpm != known_speed_rpm) {
+    effects::Inputs at_start{
+        .drive = stretch.drive, .hall_K = hall.at(stretch.start_s), .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
+    effects::Inputs at_end = at_start;
+    at_end.hall_K = hall.at(stretch.end_s);
+    if (first || stretch.drive_changed || !system.change_times_s.empty()) {
       Eigen::MatrixXd k = system.conduction;
       for (const auto& e : system.exchanges) k += e.coefficient(at_start) * e.matrix;
       eigen.compute(k, system.mass);
       to_modes = eigen.eigenvectors().transpose() * system.mass;  // x = V z, V'MV = 1
-      known_speed_rpm = stretch.speed_rpm;
+      first = false;
     }
     const Eigen::VectorXd z0 = to_modes * state;
     const Eigen::VectorXd f0 = eigen.eigenvectors().transpose() * system.load(at_start);

@@ -1,36 +1,83 @@
 #pragma once
 // One thermal system, two sizes. The finite-element model (sparse) and its reduced model (dense) are both
 //
-//     M dθ/dt = -K(u) θ + f(u),    y = L'θ + l_hall θ_hall
-//     K(u) = K0 + Σ_e c_e(u) G_e,  f(u) = Σ_s P_s(u) b_s + θ_hall Σ_e c_e(u) g_e,   g_e = G_e 1
+//     M dθ/dt = -K(u) θ + f(u) - r(θ),   y = L'θ + l_hall θ_hall
+//     K(u) = K0 + Σ_e c_e(u) G_e,  f(u) = Σ_s P_s(u) b_s + Σ_e c_e(u) (θ_hall g_e + o_e),   g_e = G_e 1
 //
 // θ: temperature minus the reference temperature [K]. u: effects::Inputs. Everything that may change (films, joints, links)
-// is an Exchange whose matrix is fixed and whose coefficient is a number: nothing is assembled twice.
+// is an Exchange whose matrix is fixed and whose coefficient is a number: nothing is assembled twice. Coefficients may look
+// at mean temperatures (probes) of the state; r(θ), of the full model alone, is what no such number can say.
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "effects/heat_balance.hpp"
+#include "solver/nonlinear_term.hpp"
 #include "solver/sparse.hpp"
+#include "solver/variable_material.hpp"
 
 namespace driftwright::solver {
+
+/// A law with its probes and thermostat found: indices into the system's lists.
+struct BoundLaw {
+  effects::Law law;
+  std::vector<int> probes;
+  int thermostat = -1;
+
+  BoundLaw() = default;
+  BoundLaw(effects::Law free_law) : law(std::move(free_law)) {}  // NOLINT: a law without probes is bound as it is
+  template <class F>
+  requires(std::is_invocable_r_v<double, F, const effects::Inputs&> && !std::is_same_v<std::remove_cvref_t<F>, BoundLaw> &&
+           !std::is_same_v<std::remove_cvref_t<F>, effects::Law>) BoundLaw(F function)
+      : law(std::move(function)) {}  // NOLINT
+  [[nodiscard]] bool looks_at_state() const { return !probes.empty(); }
+  /// The law's value, for one without probes. @throws std::logic_error  for one that has them
+  double operator()(const effects::Inputs& u) const;
+};
 
 /// Heat P(u) [W] spread over the unknowns by b (sums to one in the finite-element model).
 struct HeatSource {
   std::string name;
   Eigen::VectorXd load;
-  effects::Law power_W;
+  BoundLaw power_W;
 };
 
 /// Heat flow c(u) G θ between unknowns, or from them to the hall where G 1 != 0.
 template <class Matrix>
 struct Exchange {
   std::string name;
-  Matrix matrix;             ///< G, symmetric, in [m^2] for films and joints and [1] for links
-  Eigen::VectorXd to_hall;   ///< g = G 1 of the finite-element model (projected in a reduced one)
-  double hall_sum = 0.0;     ///< 1'G 1: surface exposed to the hall [m^2]
-  effects::Law coefficient;  ///< c(u) [W/(m^2 K)], or [W/K] for links
+  Matrix matrix;            ///< G, symmetric, in [m^2] for films and joints and [1] for links
+  Eigen::VectorXd to_hall;  ///< g = G 1 of the finite-element model (projected in a reduced one)
+  double hall_sum = 0.0;    ///< 1'G 1: surface exposed to the hall [m^2]
+  BoundLaw coefficient;     ///< c(u) [W/(m^2 K)], or [W/K] for links
+  /// The heat that crosses is c (flow'θ - hall_sum θ_hall - 1'o): out of the surface or body, or from side a to side b.
+  Eigen::VectorXd flow = {};
+  Eigen::VectorXd offset = {};  ///< o: ∫ N_i (T_air(z) - T_hall) dA where the hall is stratified, else empty [m^2 K]
+  double offset_sum = 0.0;      ///< 1'o of the finite-element model
+
+  [[nodiscard]] bool reaches_hall() const { return hall_sum != 0.0; }
+};
+
+/// Mean temperature that laws and thermostats look at: weights'θ + hall_share θ_hall + the reference temperature.
+struct Probe {
+  Eigen::VectorXd weights;
+  double hall_share = 0.0;
+};
+
+struct Thermostat {
+  std::string name;
+  int probe = -1;
+  double on_above_K = 0.0, off_below_K = 0.0;  ///< absolute
+};
+
+/// Unknowns whose temperature is prescribed.
+struct FixedUnknowns {
+  std::string name;
+  std::vector<int> unknowns;
+  TimeSeries theta;  ///< minus the reference temperature [K]
+  bool follows_hall = false;
 };
 
 /// What is read off the state: sensor temperatures, displacements, tilts. Column j of `state` is output j.
@@ -43,21 +90,54 @@ struct Outputs {
 
 template <class Matrix>
 struct ThermalSystem {
+  double reference_K = 293.15;
   Matrix mass;        ///< M [J/K]
   Matrix conduction;  ///< K0 [W/K]
   std::vector<HeatSource> sources;
   std::vector<Exchange<Matrix>> exchanges;
+  std::vector<Probe> probes;
+  std::vector<Thermostat> thermostats;
+  std::vector<double> change_times_s;  ///< at which laws may jump by themselves
+  // Of the full model alone; a reduced model is made of a system without them. Shared: copies of a system are common and
+  // terms never change.
+  std::vector<std::shared_ptr<const NonlinearTerm>> nonlinear;
+  std::shared_ptr<const VariableCapacity> capacity;  ///< what M gains where heat capacity varies; may be null
+  std::vector<FixedUnknowns> fixed;
   Outputs outputs;
   Eigen::VectorXd ones;  ///< the state "1 K everywhere" (projected in a reduced system), for the energy balance
 
   [[nodiscard]] int size() const { return static_cast<int>(mass.rows()); }
 
-  /// f(u) [W].
+  /// True where all coefficients follow from drive and time alone and no unknown is prescribed: then f(u) and K(u) say all.
+  [[nodiscard]] bool is_linear() const {
+    return nonlinear.empty() && !capacity && fixed.empty() && thermostats.empty() && !looks_at_state();
+  }
+
+  /// True where some law looks at the state.
+  [[nodiscard]] bool looks_at_state() const {
+    for (const HeatSource& s : sources) {
+      if (s.power_W.looks_at_state()) return true;
+    }
+    for (const auto& e : exchanges) {
+      if (e.coefficient.looks_at_state()) return true;
+    }
+    return false;
+  }
+  /// True where the hall air has a gradient.
+  [[nodiscard]] bool is_stratified() const {
+    for (const auto& e : exchanges) {
+      if (e.offset.size() > 0) return true;
+    }
+    return false;
+  }
+
+  /// f(u) [W] of a linear system.
   [[nodiscard]] Eigen::VectorXd load(const effects::Inputs& u) const {
     Eigen::VectorXd f = Eigen::VectorXd::Zero(size());
     for (const HeatSource& s : sources) f += s.power_W(u) * s.load;
     for (const auto& e : exchanges) {
-      if (e.hall_sum != 0.0) f += e.coefficient(u) * u.hall_K * e.to_hall;
+      if (e.reaches_hall()) f += e.coefficient(u) * u.hall_K * e.to_hall;
+      if (e.offset.size() > 0) f += e.coefficient(u) * e.offset;
     }
     return f;
   }
@@ -70,19 +150,38 @@ struct ThermalSystem {
 using FullSystem = ThermalSystem<SparseRow>;
 using ReducedSystem = ThermalSystem<Eigen::MatrixXd>;
 
+/// Where a flow of heat comes from.
+enum class FlowKind {
+  kSource,       ///< > 0 heats the machine
+  kSurrounding,  ///< film, link or radiation to the hall; > 0 heats the machine
+  kPrescribed,   ///< through unknowns of prescribed temperature; > 0 heats the machine
+  kInternal,     ///< within the machine: out of a surface into a lumped node, or from side a of a joint to side b
+};
+struct HeatFlow {
+  std::string name;
+  FlowKind kind = FlowKind::kSource;
+};
+
+/// Where temperatures left the bounds that conduction keeps: an undershoot of the consistent mass matrix beside a jump.
+struct Overshoot {
+  double jump_s = 0.0;    ///< time of the jump that caused it
+  double time_s = 0.0;    ///< of its largest extent
+  double amount_K = 0.0;  ///< beyond the bound, > 0
+  int unknown = -1;
+};
+
 /// A simulated run: outputs at the times asked for, and the heat that flowed.
 struct Trajectory {
   std::vector<double> time_s;
   Eigen::MatrixXd outputs;  ///< n_outputs x n_times, in K, m, rad
-  /// Heat since t = 0 [J], n_flows x n_times: sources first (> 0 heats), then exchanges with the hall (> 0 leaves).
-  Eigen::MatrixXd heat_J;
-  std::vector<std::string> flow_names;
-  int n_sources = 0;
-  Eigen::VectorXd stored_J;  ///< change of the heat stored since t = 0, per time
+  std::vector<HeatFlow> flows;
+  Eigen::MatrixXd heat_J;             ///< heat since t = 0 [J], n_flows x n_times
+  Eigen::VectorXd stored_J;           ///< change of the heat stored since t = 0, per time
+  std::vector<Overshoot> overshoots;  ///< one per jump that made one
 
   int n_steps = 0, n_solves = 0, n_iterations = 0;
 
-  /// |heat in - stored - lost| at the last time over the largest of the three [-].
+  /// |heat in - stored| at the last time over half the sum of the magnitudes of all flows across the boundary [-].
   [[nodiscard]] double energy_gap() const;
 };
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace driftwright {
 namespace {
 
@@ -29,7 +31,7 @@ TEST(TimeSeries, IsLinearBetweenKnotsAndConstantOutside) {
 
 TEST(LinearStretches, EndAtChangesOfSpeedAndAtKnotsOfTheHall) {
   // Knots at 0 and 100 coincide with starts of sections; 30 and 250 lie inside; 900 lies behind the end.
-  const auto stretches = linear_stretches(kCycle, {{0, 30, 100, 250, 900}, {0, 1, 2, 3, 4}});
+  const auto stretches = linear_stretches(kCycle, TimeSeries{{0, 30, 100, 250, 900}, {0, 1, 2, 3, 4}});
   const std::vector<double> start = {0, 30, 100, 150, 200, 250}, end = {30, 100, 150, 200, 250, 400};
   const std::vector<double> speed = {2000, 2000, 0, 0, 500, 500};
   const std::vector<bool> changed = {true, false, true, false, true, false};
@@ -37,19 +39,50 @@ TEST(LinearStretches, EndAtChangesOfSpeedAndAtKnotsOfTheHall) {
   for (std::size_t i = 0; i < start.size(); ++i) {
     EXPECT_EQ(stretches[i].start_s, start[i]);
     EXPECT_EQ(stretches[i].end_s, end[i]);
-    EXPECT_EQ(stretches[i].speed_rpm, speed[i]);
-    EXPECT_EQ(stretches[i].speed_changed, changed[i]) << "stretch " << i;
+    EXPECT_EQ(stretches[i].drive.speed_rpm, speed[i]);
+    EXPECT_EQ(stretches[i].drive_changed, changed[i]) << "stretch " << i;
   }
 }
 
 TEST(LinearStretches, HaveNoEmptyPieces) {
   const Cyclogram cycle{.name = "", .sections = {{0, 300}, {10, 1000}, {0, 2000}, {10, 1000}}};
-  const auto stretches = linear_stretches(cycle, {{0}, {0}});
+  const auto stretches = linear_stretches(cycle, TimeSeries{{0}, {0}});
   ASSERT_EQ(stretches.size(), 2u);
-  EXPECT_TRUE(stretches[0].speed_changed);
-  EXPECT_EQ(stretches[0].speed_rpm, 1000.0);
+  EXPECT_TRUE(stretches[0].drive_changed);
+  EXPECT_EQ(stretches[0].drive.speed_rpm, 1000.0);
   EXPECT_EQ(stretches[1].start_s, 10.0);
-  EXPECT_FALSE(stretches[1].speed_changed);
+  EXPECT_FALSE(stretches[1].drive_changed);
+}
+
+TEST(LinearStretches, EndAtFurtherKnotsInAnyOrder) {
+  const auto stretches = linear_stretches(kCycle, std::vector<double>{350, 20, 20, 100, -5, 400, 1e9});
+  const std::vector<double> end = {20, 100, 150, 200, 350, 400};
+  ASSERT_EQ(stretches.size(), end.size());
+  for (std::size_t i = 0; i < end.size(); ++i) EXPECT_EQ(stretches[i].end_s, end[i]);
+  EXPECT_FALSE(stretches[1].drive_changed);
+  EXPECT_THROW((void)linear_stretches(kCycle, std::vector<double>{std::nan("")}), std::logic_error);
+}
+
+TEST(LinearStretches, AreNotMadeOfRounding) {
+  // 0.1 + 0.1 + 0.1 is not 0.3 in double precision.
+  const Cyclogram cycle{.name = "", .sections = {{0.1, 1000}, {0.1, 0}, {0.1, 1000}, {0.1, 0}}};
+  const auto stretches = linear_stretches(cycle, std::vector<double>{0.3, 0.2 + 1e-12, 0.35});
+  ASSERT_EQ(stretches.size(), 5u);
+  EXPECT_EQ(stretches[4].start_s, 0.35);
+}
+
+TEST(LinearStretches, AChangeOfFeedOrCuttingPowerAloneIsAChangeOfDrive) {
+  const Drive turning{.speed_rpm = 1000.0};
+  Drive moving = turning, cutting = turning;
+  moving.feed_m_s[2] = 0.1;
+  cutting.cutting_power_W = 400.0;
+  const Cyclogram cycle{.name = "", .sections = {{10, turning}, {10, moving}, {10, moving}, {10, turning}, {10, cutting}}};
+  const auto stretches = linear_stretches(cycle, std::vector<double>{});
+  const std::vector<bool> changed = {true, true, false, true, true};
+  ASSERT_EQ(stretches.size(), changed.size());
+  for (std::size_t i = 0; i < changed.size(); ++i) EXPECT_EQ(stretches[i].drive_changed, changed[i]) << "stretch " << i;
+  EXPECT_EQ(stretches[1].drive, moving);
+  EXPECT_EQ(cycle.drive(45.0), cutting);
 }
 
 }  // namespace

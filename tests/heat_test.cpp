@@ -37,10 +37,10 @@ TEST(SteadySlab, HeatedEvenlyIsAParabola) {
   // A parabola lies in the space of quadratic cells: exact to the rounding of the solve.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.2, 0.05, 0.05}, .n = {4, 1, 1}});
   effects::HeatBalance balance;
-  balance.heats.push_back({"heat", "body", fixtures::constant(5e4 * 0.2 * 0.05 * 0.05)});
+  balance.heats.push_back({"heat", effects::region("body"), fixtures::constant(5e4 * 0.2 * 0.05 * 0.05)});
   balance.films.push_back(film("x1", 25.0));
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
-  const Eigen::VectorXd t = fixtures::steady(system, {.speed_rpm = 0.0, .hall_K = 3.0});
+  const Eigen::VectorXd t = fixtures::steady(system, {.drive = {.speed_rpm = 0.0}, .hall_K = 3.0});
   const double k = fixtures::steel().conductivity_W_mK;
   for (int i = 0; i < mesh.n_nodes(); ++i) {
     const double x = mesh.coords(0, i);
@@ -250,8 +250,8 @@ TEST(TwoLumps, ExchangeHeatLikeTwoCoupledExponentials) {
   const mesh::Mesh mesh = fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.1}, {1, 1, 1}, CellShape::kTet10},
                                               {{0.1, 0, 0}, {0.2, 0.1, 0.1}, {1, 1, 1}, CellShape::kTet10}, "a.x1", "b.x0");
   effects::HeatBalance balance;
-  balance.heats.push_back({"heat", "a", fixtures::constant(5.0)});
-  balance.contacts.push_back({"contact", "a/b", 10.0});
+  balance.heats.push_back({"heat", effects::region("a"), fixtures::constant(5.0)});
+  balance.contacts.push_back({"contact", "a/b", fixtures::constant(10.0)});
   balance.films = {film("a.x0", 3.0), film("b.x1", 8.0)};
   FullSystem system = assemble_heat(mesh, {fixtures::lump(), fixtures::lump()}, balance);
   fixtures::observe_unknowns(system, {0, mesh.n_nodes() - 1});
@@ -272,9 +272,10 @@ TEST(AirNode, IsABodyBetweenFilmAndHall) {
   // A heated block in a pocket of air of 500 J/K that has 0.04 W/K to the hall; film 5 W/(m^2 K) on 0.01 m^2.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {1, 1, 1}});
   effects::HeatBalance balance;
-  balance.heats.push_back({"heat", "body", fixtures::constant(1.0)});
+  balance.heats.push_back({"heat", effects::region("body"), fixtures::constant(1.0)});
   balance.films = {film("x1", 5.0, "air"), film("y0", 2.0)};
-  balance.nodes.push_back({"air", 500.0, 0.04});
+  balance.nodes.push_back({"air", 500.0});
+  balance.links.push_back({"air_node " + std::string("air"), effects::node("air"), fixtures::constant(0.04)});
   FullSystem system = assemble_heat(mesh, {fixtures::lump()}, balance);
   ASSERT_EQ(system.size(), mesh.n_nodes() + 1);
   fixtures::observe_unknowns(system, {0, mesh.n_nodes()});
@@ -295,7 +296,7 @@ TEST(HeatMatrices, UniformTemperatureDrivesNoHeatAndMassIsTheHeatCapacity) {
     const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.2, 0.3, 0.1}, .n = {2, 3, 2}, .shape = shape});
     effects::HeatBalance balance;
     balance.films.push_back(film("z1", 25.0));
-    balance.heats.push_back({"heat", "body", fixtures::constant(1.0)});
+    balance.heats.push_back({"heat", effects::region("body"), fixtures::constant(1.0)});
     const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
     const Eigen::VectorXd flow = system.conduction * system.ones;
     EXPECT_LT(flow.cwiseAbs().maxCoeff(), 1e-12);                            // rounding of entries of 10 W/K
@@ -314,7 +315,7 @@ TEST(AssembleHeat, RefusesNamesThatTheMeshHasNot) {
   balance.films = {film("x0", 1.0, "no such node")};
   EXPECT_THROW((void)assemble_heat(mesh, {fixtures::steel()}, balance), std::logic_error);
   balance.films.clear();
-  balance.contacts.push_back({"c", "a/b", 1.0});
+  balance.contacts.push_back({"c", "a/b", fixtures::constant(1.0)});
   EXPECT_THROW((void)assemble_heat(mesh, {fixtures::steel()}, balance), std::logic_error);
 }
 

@@ -33,7 +33,7 @@ TEST(Pcg, FindsTheSolutionOfADenseSolve) {
   const Eigen::VectorXd exact = random_vector(a.rows(), 3), b = a * exact;
   const Eigen::VectorXd dense = Eigen::MatrixXd(a).ldlt().solve(b);
   Pcg pcg(a);
-  pcg.refresh();
+  pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(a.rows());
   const PcgOutcome outcome = pcg.solve(b.data(), x.data(), 1e-12, 1000);
   EXPECT_TRUE(outcome.converged);
@@ -47,7 +47,7 @@ TEST(Pcg, StopsWhereTheScaledResidualMeetsTheTolerance) {
   const SparseRow a = shifted();
   const Eigen::VectorXd b = a * random_vector(a.rows(), 4);
   Pcg pcg(a);
-  pcg.refresh();
+  pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(a.rows());
   const PcgOutcome outcome = pcg.solve(b.data(), x.data(), 1e-4, 1000);
   ASSERT_TRUE(outcome.converged);
@@ -60,7 +60,7 @@ TEST(Pcg, LooseSolvesStillConserveHeat) {
   const SparseRow a = shifted();
   const Eigen::VectorXd b = a * random_vector(a.rows(), 5);
   Pcg pcg(a);
-  pcg.refresh();
+  pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   for (int iterations : {0, 1, 3}) {
     Eigen::VectorXd x = random_vector(a.rows(), 6);
     const PcgOutcome outcome = pcg.solve(b.data(), x.data(), 1e-14, iterations);
@@ -75,7 +75,7 @@ TEST(Pcg, SaysWhenItDidNotConverge) {
   const SparseRow a = shifted();
   const Eigen::VectorXd b = a * random_vector(a.rows(), 5);
   Pcg pcg(a);
-  pcg.refresh();
+  pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(a.rows());
   const PcgOutcome outcome = pcg.solve(b.data(), x.data(), 1e-12, 2);
   EXPECT_FALSE(outcome.converged);
@@ -88,7 +88,7 @@ TEST(Pcg, NotANumberIsNoConvergence) {
   Eigen::VectorXd b = random_vector(a.rows(), 5), x = Eigen::VectorXd::Zero(a.rows());
   b[7] = NAN;
   Pcg pcg(a);
-  pcg.refresh();
+  pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   EXPECT_FALSE(pcg.solve(b.data(), x.data(), 1e-3, 100).converged);
 }
 
@@ -97,7 +97,7 @@ TEST(Pcg, StartsFromWhatItIsGiven) {
   Eigen::VectorXd x = random_vector(a.rows(), 8);
   const Eigen::VectorXd b = a * x;
   Pcg pcg(a);
-  pcg.refresh();
+  pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   EXPECT_EQ(pcg.solve(b.data(), x.data(), 1e-9, 100).iterations, 0);
 }
 

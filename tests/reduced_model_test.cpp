@@ -25,10 +25,11 @@ FullSystem machine(int n) {
       fixtures::two_boxes({{0, 0, 0}, {0.05, 0.1, 0.1}, {n, n, n}, CellShape::kTet10},
                           {{0.05, 0, 0}, {0.3, 0.1, 0.1}, {3 * n, n, n}, CellShape::kTet10}, "a.x1", "b.x0");
   effects::HeatBalance balance;
-  balance.heats.push_back({"bearing", "a", [](const effects::Inputs& u) { return 0.1 * u.speed_rpm; }});
-  balance.films.push_back({"side", "a.y1", [](const effects::Inputs& u) { return 5.0 + 0.02 * u.speed_rpm; }, "hall"});
+  balance.heats.push_back(
+      {"bearing", effects::region("a"), [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
+  balance.films.push_back({"side", "a.y1", [](const effects::Inputs& u) { return 5.0 + 0.02 * u.drive.speed_rpm; }, "hall"});
   balance.films.push_back({"back", "b.x1", fixtures::constant(30.0), "hall"});
-  balance.contacts.push_back({"contact", "a/b", 1500.0});
+  balance.contacts.push_back({"contact", "a/b", fixtures::constant(1500.0)});
   FullSystem system = assemble_heat(mesh, {fixtures::steel(), fixtures::steel()}, balance);
   fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0, 0, 0}), fixtures::node_at(mesh, {0.35, 0.1, 0.1})});
   return system;
@@ -60,7 +61,7 @@ TEST(ThermalModes, OfASlabHaveTheTimeConstantsOfTheTranscendentalRoots) {
 
 TEST(ThermalModes, AreOrthonormalInMass) {
   const FullSystem system = machine(1);
-  const ThermalModes modes = thermal_modes(system, {.speed_rpm = 1000.0, .hall_K = 0.0}, 12);
+  const ThermalModes modes = thermal_modes(system, {.drive = {.speed_rpm = 1000.0}, .hall_K = 0.0}, 12);
   const Eigen::MatrixXd gram = modes.shapes.transpose() * (system.mass * modes.shapes);
   EXPECT_LT((gram - Eigen::MatrixXd::Identity(12, 12)).cwiseAbs().maxCoeff(),
             1e-9);  // the eigensolver's 1e-10
@@ -80,10 +81,10 @@ TEST(ThermalModes, WithOneInsulatedPartAreRefused) {
   const mesh::Mesh mesh = fixtures::two_boxes({}, {.low = {1, 0, 0}}, "a.x1", "b.x0");
   effects::HeatBalance balance;
   balance.films.push_back({"film", "a.x0", fixtures::constant(10.0), "hall"});
-  balance.contacts.push_back({"contact", "a/b", 0.0});
+  balance.contacts.push_back({"contact", "a/b", fixtures::constant(0.0)});
   const RegionMaterials materials = {fixtures::steel(), fixtures::steel()};
   EXPECT_THROW((void)steady_responses(assemble_heat(mesh, materials, balance), {}), SolveError);
-  balance.contacts[0].conductance_W_m2K = 1.0;
+  balance.contacts[0].conductance_W_m2K = fixtures::constant(1.0);
   EXPECT_NO_THROW((void)steady_responses(assemble_heat(mesh, materials, balance), {}));
 }
 
@@ -95,7 +96,7 @@ TEST(ThermalModes, MoreThanThereAreUnknownsAreRefused) {
 
 TEST(SteadyResponses, AreTheSteadyTemperaturesPerWattAndPerKelvin) {
   const FullSystem system = machine(1);
-  const effects::Inputs at{.speed_rpm = 2000.0, .hall_K = 3.0};
+  const effects::Inputs at{.drive = {.speed_rpm = 2000.0}, .hall_K = 3.0};
   const Eigen::MatrixXd r = steady_responses(system, at);
   ASSERT_EQ(r.cols(), 2);
   EXPECT_LT((r.col(1).array() - 1.0).abs().maxCoeff(), 1e-9);  // a warmer hall warms all alike
@@ -141,7 +142,8 @@ TEST(Evolve, InACompleteBasisIsTheFullModel) {
 TEST(Evolve, ModesWithSteadyResponsesBeatModesAlone) {
   // Six modes without and with the steady responses at both ends of the range of speed.
   const FullSystem system = machine(2);
-  const effects::Inputs slow{.speed_rpm = 0.0, .hall_K = 0.0}, fast{.speed_rpm = 3000.0, .hall_K = 0.0};
+  const effects::Inputs slow{.drive = {.speed_rpm = 0.0}, .hall_K = 0.0},
+      fast{.drive = {.speed_rpm = 3000.0}, .hall_K = 0.0};
   const Eigen::MatrixXd modes = thermal_modes(system, fast, 6).shapes;
   const Eigen::MatrixXd at_rest = steady_responses(system, slow), at_speed = steady_responses(system, fast);
   Eigen::MatrixXd more(system.size(), modes.cols() + at_rest.cols() + at_speed.cols());
@@ -163,7 +165,7 @@ TEST(Evolve, ModesWithSteadyResponsesBeatModesAlone) {
   const ReducedSystem reduced = project(system, orthonormalise(system.mass, more));
   const Trajectory end = evolve(reduced, for_ever, {{0}, {2.0}}, {1e7}, Eigen::VectorXd::Zero(reduced.size()));
   const Eigen::VectorXd exact =
-      system.outputs.state.transpose() * fixtures::steady(system, {.speed_rpm = 3000, .hall_K = 2});
+      system.outputs.state.transpose() * fixtures::steady(system, {.drive = {.speed_rpm = 3000}, .hall_K = 2});
   EXPECT_LT((end.outputs.col(0) - exact).cwiseAbs().maxCoeff(), 1e-8 * exact.maxCoeff());
 }
 
@@ -173,7 +175,7 @@ ReducedSystem one_body(double capacity_J_K, double loss_W_K) {
   s.mass = Eigen::MatrixXd::Constant(1, 1, capacity_J_K);
   s.conduction = Eigen::MatrixXd::Zero(1, 1);
   const auto one = Eigen::VectorXd::Ones(1);
-  s.sources.push_back({"heat", one, [](const effects::Inputs& u) { return 0.1 * u.speed_rpm; }});
+  s.sources.push_back({"heat", one, [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
   s.exchanges.push_back({"film", Eigen::MatrixXd::Ones(1, 1), one, 1.0, fixtures::constant(loss_W_K)});
   s.outputs = {{"t"}, {"K"}, Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Zero(1)};
   s.ones = one;

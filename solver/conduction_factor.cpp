@@ -1,0 +1,59 @@
+#include "solver/conduction_factor.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/CholmodSupport>
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace driftwright::solver {
+
+using ColumnMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
+
+void require_way_out(const SparseRow& k, const std::vector<char>& held) {
+  // A factorisation alone does not tell: rounding makes the pivot of a set without a way out positive as often as not.
+  const int n = static_cast<int>(k.rows());
+  Cliques neighbours;
+  for (int row = 0; row < n; ++row) {
+    for (SparseRow::InnerIterator entry(k, row); entry; ++entry) {
+      if (entry.col() > row && entry.value() != 0.0) neighbours.add(std::vector<int>{row, static_cast<int>(entry.col())});
+    }
+  }
+  const std::vector<int> set_of = connected_sets(n, neighbours);
+  constexpr double kRounding = 1e-11;  // of the diagonal; a film of 1e-6 W/(m^2 K) on steel stands above it
+  const Eigen::VectorXd sums = k * Eigen::VectorXd::Ones(n), diagonal = k.diagonal();
+  std::vector<char> has_way_out(n, 0);
+  for (int i = 0; i < n; ++i) {
+    if (std::abs(sums[i]) > kRounding * diagonal[i] || (!held.empty() && held[i])) has_way_out[set_of[i]] = 1;
+  }
+  for (int i = 0; i < n; ++i) {
+    if (!has_way_out[set_of[i]]) {
+      throw SolveError(
+          fmt::format("the heat conduction matrix is singular: the part with unknown {} has no film, joint or link through "
+                      "which heat leaves",
+                      i));
+    }
+  }
+}
+
+struct ConductionFactor::Parts {
+  Eigen::CholmodSupernodalLLT<ColumnMatrix, Eigen::Lower> llt;
+};
+
+ConductionFactor::ConductionFactor(const SparseRow& k) : parts_(std::make_unique<Parts>()) {
+  parts_->llt.cholmod().print = 0;
+  parts_->llt.compute(ColumnMatrix(Eigen::SparseMatrix<double, Eigen::ColMajor, int>(k.transpose())));
+  if (parts_->llt.info() != Eigen::Success) {
+    throw SolveError(
+        "the heat conduction matrix cannot be factorised: some part has no film, joint or link through which heat leaves, "
+        "or memory ran out");
+  }
+}
+ConductionFactor::~ConductionFactor() = default;
+
+Eigen::VectorXd ConductionFactor::solve(const Eigen::VectorXd& b) const {
+  return parts_->llt.solve(b);
+}
+
+}  // namespace driftwright::solver

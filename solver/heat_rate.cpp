@@ -1,0 +1,184 @@
+#include "solver/heat_rate.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace driftwright::solver {
+
+double BoundLaw::operator()(const effects::Inputs& u) const {
+  if (looks_at_state()) throw std::logic_error("a law that looks at temperatures was asked without them");
+  return law(u);
+}
+
+HeatRate::Sparse::Sparse(const Eigen::VectorXd& dense) {
+  for (Eigen::Index i = 0; i < dense.size(); ++i) {
+    if (dense[i] == 0.0) continue;
+    index.push_back(static_cast<int>(i));
+    value.push_back(dense[i]);
+  }
+}
+double HeatRate::Sparse::dot(const double* x) const {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < index.size(); ++k) sum += value[k] * x[index[k]];
+  return sum;
+}
+void HeatRate::Sparse::add_to(double factor, double* y) const {
+  for (std::size_t k = 0; k < index.size(); ++k) y[index[k]] += factor * value[k];
+}
+
+HeatRate::HeatRate(const FullSystem& system)
+    : system_(system),
+      thermostat_on_(system.thermostats.size(), 0),
+      probe_K_(system.probes.size(), system.reference_K),
+      steady_matrix_(system.conduction),
+      tangent_(system.conduction),
+      product_(system.size()) {
+  for (const Probe& p : system.probes) probes_.emplace_back(p.weights);
+  for (const HeatSource& s : system.sources) {
+    sources_.push_back({Sparse(s.load)});
+    flows_.push_back({s.name, FlowKind::kSource});
+    looks_at_state_ |= s.power_W.looks_at_state();
+  }
+  for (const auto& e : system.exchanges) {
+    crossings_.push_back({Sparse(e.flow), Sparse(e.to_hall), Sparse(e.offset), slots_of(e.matrix, system.conduction)});
+    flows_.push_back({e.name, e.reaches_hall() ? FlowKind::kSurrounding : FlowKind::kInternal});
+    looks_at_state_ |= e.coefficient.looks_at_state();
+  }
+  for (const auto& term : system.nonlinear) {
+    if (term->is_flow()) flows_.push_back({term->name, term->reaches_hall() ? FlowKind::kSurrounding : FlowKind::kInternal});
+  }
+}
+
+double HeatRate::value_of(const BoundLaw& law) const {
+  if (law.thermostat >= 0 && !thermostat_on_[law.thermostat]) return 0.0;
+  if (!law.looks_at_state()) return law.law(inputs_);
+  effects::Inputs inputs = inputs_;
+  for (int probe : law.probes) inputs.probe_K.push_back(probe_K_[probe]);
+  return law.law(inputs);
+}
+
+bool HeatRate::set(const Drive& drive, double time_s) {
+  inputs_.drive = drive;
+  inputs_.time_s = time_s;
+  bool changed = !is_set_;
+  const auto update = [&](double& value, const BoundLaw& law) {
+    if (law.looks_at_state()) return;
+    const double now = value_of(law);
+    changed |= now != value;
+    value = now;
+  };
+  for (std::size_t s = 0; s < sources_.size(); ++s) update(sources_[s].power_W, system_.sources[s].power_W);
+  for (std::size_t e = 0; e < crossings_.size(); ++e) update(crossings_[e].coefficient, system_.exchanges[e].coefficient);
+  if (!changed) return false;
+  is_set_ = true;
+  steady_matrix_ = system_.conduction;
+  steady_load_ = Eigen::VectorXd::Zero(system_.size());
+  steady_to_hall_ = steady_load_;
+  for (std::size_t s = 0; s < sources_.size(); ++s) {
+    if (!system_.sources[s].power_W.looks_at_state()) sources_[s].load.add_to(sources_[s].power_W, steady_load_.data());
+  }
+  for (std::size_t e = 0; e < crossings_.size(); ++e) {
+    const Exchange<SparseRow>& exchange = system_.exchanges[e];
+    if (exchange.coefficient.looks_at_state()) continue;
+    const Crossing& crossing = crossings_[e];
+    for (std::size_t k = 0; k < crossing.slots.size(); ++k) {
+      steady_matrix_.valuePtr()[crossing.slots[k]] += crossing.coefficient * exchange.matrix.valuePtr()[k];
+    }
+    crossing.to_hall.add_to(crossing.coefficient, steady_to_hall_.data());
+    crossing.offset.add_to(crossing.coefficient, steady_load_.data());
+  }
+  return true;
+}
+
+void HeatRate::look_at_state(const double* theta, double hall_K) {
+  for (std::size_t p = 0; p < probes_.size(); ++p) {
+    probe_K_[p] = system_.reference_K + probes_[p].dot(theta) + system_.probes[p].hall_share * hall_K;
+  }
+  for (std::size_t s = 0; s < sources_.size(); ++s) {
+    if (system_.sources[s].power_W.looks_at_state()) sources_[s].power_W = value_of(system_.sources[s].power_W);
+  }
+  for (std::size_t e = 0; e < crossings_.size(); ++e) {
+    if (system_.exchanges[e].coefficient.looks_at_state()) {
+      crossings_[e].coefficient = value_of(system_.exchanges[e].coefficient);
+    }
+  }
+}
+
+void HeatRate::evaluate(const double* theta, double hall_K, double* heat_W) {
+  const int n = system_.size();
+  if (looks_at_state_) look_at_state(theta, hall_K);
+  multiply(steady_matrix_, theta, product_.data());
+  for (int i = 0; i < n; ++i) heat_W[i] = steady_load_[i] + hall_K * steady_to_hall_[i] - product_[i];
+  if (looks_at_state_) {
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      if (system_.sources[s].power_W.looks_at_state()) sources_[s].load.add_to(sources_[s].power_W, heat_W);
+    }
+    for (std::size_t e = 0; e < crossings_.size(); ++e) {
+      const Exchange<SparseRow>& exchange = system_.exchanges[e];
+      if (!exchange.coefficient.looks_at_state()) continue;
+      const Crossing& crossing = crossings_[e];
+      multiply(exchange.matrix, theta, product_.data());
+      for (int i = 0; i < n; ++i) heat_W[i] -= crossing.coefficient * product_[i];
+      crossing.to_hall.add_to(crossing.coefficient * hall_K, heat_W);
+      crossing.offset.add_to(crossing.coefficient, heat_W);
+    }
+  }
+  if (!system_.nonlinear.empty()) {
+    product_.setZero();
+    for (const auto& term : system_.nonlinear) term->add_heat_out(theta, hall_K, product_.data());
+    for (int i = 0; i < n; ++i) heat_W[i] -= product_[i];
+  }
+}
+
+void HeatRate::flows_W(const double* theta, double hall_K, double* flows_W) const {
+  for (const Source& s : sources_) *flows_W++ = s.power_W;
+  for (std::size_t e = 0; e < crossings_.size(); ++e) {
+    const Exchange<SparseRow>& exchange = system_.exchanges[e];
+    const double crossing_W =
+        crossings_[e].coefficient * (crossings_[e].flow.dot(theta) - exchange.hall_sum * hall_K - exchange.offset_sum);
+    *flows_W++ = exchange.reaches_hall() ? -crossing_W : crossing_W;
+  }
+  for (const auto& term : system_.nonlinear) {
+    if (!term->is_flow()) continue;
+    const double out_W = term->heat_out_W(theta, hall_K);
+    *flows_W++ = term->reaches_hall() ? -out_W : out_W;
+  }
+}
+
+void HeatRate::flows_along(const double* dtheta, double* dflows_W) const {
+  for (std::size_t s = 0; s < sources_.size(); ++s) *dflows_W++ = 0.0;
+  for (std::size_t e = 0; e < crossings_.size(); ++e) {
+    const double crossing_W = crossings_[e].coefficient * crossings_[e].flow.dot(dtheta);
+    *dflows_W++ = system_.exchanges[e].reaches_hall() ? -crossing_W : crossing_W;
+  }
+  for (const auto& term : system_.nonlinear) {
+    if (term->is_flow()) *dflows_W++ = 0.0;
+  }
+}
+
+std::pair<double, double> HeatRate::power_range_W() const {
+  std::pair<double, double> range{0.0, 0.0};
+  for (const Source& s : sources_) range = {std::min(range.first, s.power_W), std::max(range.second, s.power_W)};
+  return range;
+}
+
+const SparseRow& HeatRate::tangent(const double* theta, double hall_K) {
+  if (!looks_at_state_ && system_.nonlinear.empty()) return steady_matrix_;
+  tangent_ = steady_matrix_;
+  for (std::size_t e = 0; e < crossings_.size(); ++e) {
+    const Exchange<SparseRow>& exchange = system_.exchanges[e];
+    if (!exchange.coefficient.looks_at_state()) continue;
+    for (std::size_t k = 0; k < crossings_[e].slots.size(); ++k) {
+      tangent_.valuePtr()[crossings_[e].slots[k]] += crossings_[e].coefficient * exchange.matrix.valuePtr()[k];
+    }
+  }
+  for (const auto& term : system_.nonlinear) term->add_tangent(theta, hall_K, tangent_);
+  return tangent_;
+}
+
+double HeatRate::thermostat_probe_K(int i, const double* theta, double hall_K) const {
+  const int probe = system_.thermostats[i].probe;
+  return system_.reference_K + probes_[probe].dot(theta) + system_.probes[probe].hall_share * hall_K;
+}
+
+}  // namespace driftwright::solver

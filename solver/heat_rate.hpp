@@ -1,0 +1,78 @@
+#pragma once
+// What heat flows where at a state: f(u) - K(u) θ - r(θ), its tangent, and each flow by name. Time integration and steady
+// state both stand on it.
+
+#include <vector>
+
+#include "solver/thermal_system.hpp"
+
+namespace driftwright::solver {
+
+class HeatRate {
+ public:
+  /// @param system  borrowed
+  explicit HeatRate(const FullSystem& system);
+
+  /// Takes over drive and time of a stretch in which laws change with temperatures alone.
+  /// @param time_s  within the stretch, not at its ends
+  /// @return true when a power or a coefficient that does not look at the state is another one than before
+  bool set(const Drive& drive, double time_s);
+
+  /// Net heat into each unknown [W], n long, at θ.
+  void evaluate(const double* theta, double hall_K, double* heat_W);
+
+  /// Each flow of flows() [W] at the θ of the last evaluate().
+  void flows_W(const double* theta, double hall_K, double* flows_W) const;
+  /// Their derivative along dθ, films' and links' coefficients and radiation as at the last evaluate().
+  void flows_along(const double* dtheta, double* dflows_W) const;
+  [[nodiscard]] const std::vector<HeatFlow>& flows() const { return flows_; }
+
+  /// Smallest and largest power of any source at the last evaluate() [W]; zero where there is none.
+  [[nodiscard]] std::pair<double, double> power_range_W() const;
+
+  /// Symmetric tangent -d(heat)/dθ [W/K], laws' probes held, at the θ of the last evaluate(). Its pattern is that of K0.
+  [[nodiscard]] const SparseRow& tangent(const double* theta, double hall_K);
+
+  /// Absolute temperature of thermostat i's probe [K].
+  [[nodiscard]] double thermostat_probe_K(int i, const double* theta, double hall_K) const;
+  [[nodiscard]] bool thermostat_is_on(int i) const { return thermostat_on_[i]; }
+  /// Call set() afterwards.
+  void set_thermostat(int i, bool on) { thermostat_on_[i] = on; }
+
+ private:
+  /// A vector of few entries.
+  struct Sparse {
+    std::vector<int> index;
+    std::vector<double> value;
+    explicit Sparse(const Eigen::VectorXd& dense);
+    [[nodiscard]] double dot(const double* x) const;
+    void add_to(double factor, double* y) const;
+  };
+  struct Source {
+    Sparse load;
+    double power_W = 0.0;
+  };
+  struct Crossing {
+    Sparse flow, to_hall, offset;
+    std::vector<int> slots;  ///< of the exchange's matrix in the common pattern
+    double coefficient = 0.0;
+  };
+  void look_at_state(const double* theta, double hall_K);
+  [[nodiscard]] double value_of(const BoundLaw& law) const;
+
+  const FullSystem& system_;
+  std::vector<HeatFlow> flows_;  ///< sources, exchanges, nonlinear terms to the hall; each in the system's order
+  std::vector<Sparse> probes_;
+  std::vector<Source> sources_;
+  std::vector<Crossing> crossings_;
+  std::vector<char> thermostat_on_;
+  effects::Inputs inputs_;
+  std::vector<double> probe_K_;
+  bool looks_at_state_ = false;
+  bool is_set_ = false;
+  // What does not look at the state, merged: heat = steady_load + θ_hall steady_to_hall - steady_matrix θ - ...
+  SparseRow steady_matrix_, tangent_;
+  Eigen::VectorXd steady_load_, steady_to_hall_, product_;
+};
+
+}  // namespace driftwright::solver

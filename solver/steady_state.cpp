@@ -1,0 +1,134 @@
+#include "solver/steady_state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "solver/conduction_factor.hpp"
+#include "solver/heat_rate.hpp"
+
+namespace driftwright::solver {
+Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& start) {
+  constexpr int kMostIterations = 200;
+  HeatRate rate(system);
+  Eigen::VectorXd theta = start, heat(system.size());
+  for (std::size_t i = 0; i < system.thermostats.size(); ++i) {
+    const int t = static_cast<int>(i);
+    rate.set_thermostat(t, rate.thermostat_probe_K(t, start.data(), at.hall_K) > system.thermostats[i].on_above_K);
+  }
+  rate.set(at.drive, at.time_s);
+  std::vector<char> is_fixed(system.size(), 0);
+  for (const FixedUnknowns& f : system.fixed) {
+    for (int i : f.unknowns) {
+      is_fixed[i] = 1;
+      theta[i] = f.follows_hall ? at.hall_K : f.theta.at(at.time_s);
+    }
+  }
+  double largest_K = 0.0;
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    rate.evaluate(theta.data(), at.hall_K, heat.data());
+    SparseRow k = rate.tangent(theta.data(), at.hall_K);
+    if (iteration == 0) require_way_out(k, is_fixed);
+    for (int row = 0; row < system.size(); ++row) {
+      if (is_fixed[row]) heat[row] = 0.0;
+      for (SparseRow::InnerIterator entry(k, row); entry; ++entry) {
+        if (is_fixed[row] || is_fixed[entry.col()]) entry.valueRef() = entry.col() == row ? 1.0 : 0.0;
+      }
+    }
+    const ConductionFactor factor(k);
+    const Eigen::VectorXd step = factor.solve(heat);
+    theta += step;
+    largest_K = std::max({largest_K, theta.cwiseAbs().maxCoeff(), std::abs(at.hall_K)});
+    const double moved_K = step.cwiseAbs().maxCoeff();
+    if (!std::isfinite(moved_K)) break;
+    if (moved_K <= 1e-10 * largest_K) return theta;
+  }
+  throw SolveError(fmt::format(
+      "no steady state after {} iterations; is a law of temperature too steep, or the start far off?", kMostIterations));
+}
+
+FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& theta) {
+  if (!system.thermostats.empty()) {
+    throw InputError(fmt::format("thermostat '{}' switches; a linear model (thermal modes) cannot follow it. `simulate` can",
+                                 system.thermostats.front().name));
+  }
+  for (const FixedUnknowns& f : system.fixed) {
+    if (!f.follows_hall && f.theta.value.size() > 1) {
+      throw InputError(fmt::format(
+          "{} is prescribed over time; a linear model (thermal modes) cannot follow it. `simulate` can", f.name));
+    }
+  }
+  FullSystem linear = system;
+  const auto freeze = [&](BoundLaw& law) {
+    if (!law.looks_at_state()) return;
+    std::vector<double> probe_K;
+    for (int p : law.probes) {
+      probe_K.push_back(system.reference_K + system.probes[p].weights.dot(theta) + system.probes[p].hall_share * at.hall_K);
+    }
+    law.law = effects::Law([value = law.law.value, probe_K](const effects::Inputs& u) {
+      effects::Inputs inputs = u;
+      inputs.probe_K = probe_K;
+      return value(inputs);
+    });
+    law.probes.clear();
+  };
+  for (HeatSource& s : linear.sources) freeze(s.power_W);
+  for (auto& e : linear.exchanges) freeze(e.coefficient);
+  const effects::Law one([](const effects::Inputs&) { return 1.0; });
+  const int n = system.size();
+  for (const auto& term : system.nonlinear) {  // r(θ) ≈ r0 + J (θ - θ0), and for the hall J 1 (θ_hall - θ_hall0)
+    Exchange<SparseRow> e{.name = term->name,
+                          .matrix = system.conduction,
+                          .to_hall = Eigen::VectorXd::Zero(n),
+                          .coefficient = one,
+                          .flow = Eigen::VectorXd::Zero(n),
+                          .offset = {}};
+    std::fill(e.matrix.valuePtr(), e.matrix.valuePtr() + e.matrix.nonZeros(), 0.0);
+    term->add_tangent(theta.data(), at.hall_K, e.matrix);
+    Eigen::VectorXd heat_out = Eigen::VectorXd::Zero(n);
+    term->add_heat_out(theta.data(), at.hall_K, heat_out.data());
+    e.offset = e.matrix * theta - heat_out;
+    if (term->reaches_hall()) {
+      e.to_hall = e.matrix * Eigen::VectorXd::Ones(n);
+      e.hall_sum = e.to_hall.sum();
+      e.offset -= at.hall_K * e.to_hall;
+      e.flow = e.to_hall;
+    }
+    e.offset_sum = e.offset.sum();
+    linear.exchanges.push_back(std::move(e));
+  }
+  linear.nonlinear.clear();
+  if (system.capacity) system.capacity->add_to(theta.data(), linear.mass);
+  linear.capacity.reset();
+  // A prescribed temperature becomes an exchange a million times stiffer than the stiffest row of K.
+  const double stiff_W_K = 1e6 * system.conduction.diagonal().maxCoeff() + 1e6;
+  for (const FixedUnknowns& f : system.fixed) {
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::VectorXd members = Eigen::VectorXd::Zero(n);
+    for (int i : f.unknowns) {
+      entries.emplace_back(i, i, stiff_W_K);
+      members[i] = stiff_W_K;
+    }
+    Exchange<SparseRow> e{.name = f.name,
+                          .matrix = SparseRow(n, n),
+                          .to_hall = Eigen::VectorXd::Zero(n),
+                          .coefficient = one,
+                          .flow = members,
+                          .offset = {}};
+    e.matrix.setFromTriplets(entries.begin(), entries.end());
+    if (f.follows_hall) {
+      e.to_hall = members;
+      e.hall_sum = members.sum();
+    } else {
+      e.offset = f.theta.value.front() * members;
+      e.offset_sum = e.offset.sum();
+    }
+    linear.exchanges.push_back(std::move(e));
+  }
+  linear.fixed.clear();
+  return linear;
+}
+
+}  // namespace driftwright::solver
