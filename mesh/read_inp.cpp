@@ -207,6 +207,7 @@ class InpReader {
     if (!shape_) {
       ++n_left_out_;
       left_out_.insert(integer(words[0]));
+      if (keyword_.has("elset")) element_sets_[keyword_.at("elset")].push_back(integer(words[0]));
       return;
     }
     const long n = integer(words[0]);

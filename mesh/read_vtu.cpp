@@ -8,6 +8,7 @@
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
+#include <vtkObject.h>
 #include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -104,7 +105,9 @@ RawMesh read_vtu(const std::string& path) {
   reader->SetReaderErrorObserver(on_error);
   reader->SetParserErrorObserver(on_error);
   reader->SetFileName(path.c_str());
+  vtkObject::GlobalWarningDisplayOff();  // VTK would print what goes into our message
   reader->Update();
+  vtkObject::GlobalWarningDisplayOn();
   vtkUnstructuredGrid* grid = reader->GetOutput();
   if (!errors.empty()) fail("VTK cannot read it: " + errors.substr(0, errors.find('\n')));
   if (grid->GetNumberOfCells() == 0) fail("VTK finds no unstructured grid with cells in it");
