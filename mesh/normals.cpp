@@ -1,6 +1,7 @@
 #include "mesh/normals.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -65,6 +66,16 @@ std::vector<Eigen::Matrix3Xd> smooth_normals(const Mesh& mesh, const std::vector
     }
   }
   return smooth;
+}
+
+double normal_error(const Eigen::Matrix3Xd& normals_of_facet) {
+  double turn2 = 0.0;
+  for (Eigen::Index i = 0; i < normals_of_facet.cols(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      turn2 = std::max(turn2, (normals_of_facet.col(i) - normals_of_facet.col(j)).squaredNorm());
+    }
+  }
+  return turn2 < 1e-24 ? 0.0 : turn2 / 8.0;  // below: rounding of a plane
 }
 
 }  // namespace driftwright::mesh

@@ -17,4 +17,8 @@ namespace driftwright::mesh {
 /// @return        per facet, 3 x number of its nodes
 [[nodiscard]] std::vector<Eigen::Matrix3Xd> smooth_normals(const Mesh& mesh, const std::vector<int>& facets);
 
+/// How far normals interpolated in a facet may err [rad]: β²/8 of the angle β by which its smoothed normals turn from node to
+/// node, the sagitta of an arc over its chord. Exactly 0 on a plane; on even meshes of cylinders they err far less.
+[[nodiscard]] double normal_error(const Eigen::Matrix3Xd& normals_of_facet);
+
 }  // namespace driftwright::mesh

@@ -1,6 +1,5 @@
 #include "solver/joint.hpp"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "mesh/locate.hpp"
@@ -9,12 +8,6 @@
 #include "mesh/shape.hpp"
 
 namespace driftwright::solver {
-
-double normal_error(const Eigen::Vector3d& normal, const mesh::Jacobian& facet, mesh::CellShape shape) {
-  const Eigen::Vector3d own = facet.dx_dxi.col(0).cross(facet.dx_dxi.col(1)) / facet.det;
-  const double difference = own.dot(normal) < 0.0 ? (own + normal).norm() : (own - normal).norm();
-  return mesh::is_quadratic(shape) ? 3.0 * difference : difference * difference;
-}
 
 std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint) {
   // The rule integrates the shape functions of the side it lies on exactly, and sees those of the other only in samples:
@@ -48,8 +41,7 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
                        .gap_m = opposite.distance_m,
                        .position_m = position,
                        .normal = (normals[f] * s.N.head(s.n).transpose()).normalized(),
-                       .normal_error = 0.0};
-      point.normal_error = normal_error(point.normal, j, shape);
+                       .normal_error = mesh::normal_error(normals[f])};
       if (exchanged) {
         std::swap(point.node_a, point.node_b);
         std::swap(point.weight_a, point.weight_b);

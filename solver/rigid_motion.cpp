@@ -22,6 +22,8 @@ using Motions = Eigen::Matrix<double, 6, Eigen::Dynamic>;  // columns (t, w size
 
 /// A held machine stands on feet of more than a thousandth of its size: 1e-6; a free motion leaves rounding, 1e-16.
 constexpr double kFree = 1e-11;
+/// Parts of a free motion below this are the error of normals, not motion.
+constexpr double kSmall = 1e-2;
 
 /// Where motions are counted from, and the length that makes a turn comparable with a translation.
 struct Frame {
@@ -33,14 +35,6 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& a) {
   Eigen::Matrix3d m;
   m << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
   return m;
-}
-
-/// Motion of a body in one frame from its motion in another.
-Matrix6d change_frame(const Frame& from, const Frame& to) {
-  Matrix6d t = Matrix6d::Identity();
-  t.topRightCorner<3, 3>() = -cross_matrix(to.centre - from.centre) / from.size_m;
-  t.bottomRightCorner<3, 3>() *= to.size_m / from.size_m;
-  return t;
 }
 
 /// A point that holds some directions.
@@ -62,9 +56,28 @@ Eigen::Matrix3d directions_of(const Eigen::Matrix3d& stiffness_N_m) {
   return projector;
 }
 
-/// What a set of points resists, as a quadratic form over the motions in `frame`.
+/// Mean squares over a set of points as quadratic forms over the motions in `frame`: of the motion that they stop, and of all
+/// motion there.
+struct MeanSquares {
+  Matrix6d stopped = Matrix6d::Zero(), all = Matrix6d::Zero();
+};
+MeanSquares mean_squares(const std::vector<Hold>& holds, const Frame& frame) {
+  double sum = 0.0;
+  for (const Hold& h : holds) sum += h.weight;
+  MeanSquares form;
+  for (const Hold& h : holds) {
+    Eigen::Matrix<double, 3, 6> u;
+    u << Eigen::Matrix3d::Identity(), -cross_matrix((h.position_m - frame.centre) / frame.size_m);
+    form.stopped += h.weight / sum * u.transpose() * h.directions * u;
+    form.all += h.weight / sum * u.transpose() * u;
+  }
+  return form;
+}
+
+/// What a set of points resists for certain. Motions along a curved surface meet it by the error of its normals: of those that
+/// it stops by less than normals may err, the one that it stops most says how far they do err, and four times that share of
+/// every motion is not counted on. Negative for the motions themselves.
 Matrix6d resistance(const std::vector<Hold>& holds, const Frame& frame) {
-  Frame own;
   double sum = 0.0, error2 = 0.0;
   Eigen::AlignedBox3d box;
   for (const Hold& h : holds) {
@@ -72,32 +85,25 @@ Matrix6d resistance(const std::vector<Hold>& holds, const Frame& frame) {
     sum += h.weight;
     error2 += h.weight * h.normal_error * h.normal_error;
   }
-  own.centre = box.center();
-  own.size_m = box.diagonal().norm() > 0.0 ? box.diagonal().norm() : 1.0;
-  Matrix6d form = Matrix6d::Zero();
-  for (const Hold& h : holds) {
-    Eigen::Matrix<double, 3, 6> u;
-    u << Eigen::Matrix3d::Identity(), -cross_matrix((h.position_m - own.centre) / own.size_m);
-    form += h.weight / sum * u.transpose() * h.directions * u;
+  const MeanSquares in_frame = mean_squares(holds, frame);
+  if (error2 == 0.0) return in_frame.stopped;
+  const MeanSquares own = mean_squares(holds, {box.center(), box.diagonal().norm()});
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(own.stopped);
+  double in_doubt = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d motion = eigen.eigenvectors().col(i);
+    const double share = eigen.eigenvalues()[i] / motion.dot(own.all * motion);
+    if (share < error2 / sum) in_doubt = std::max(in_doubt, share);
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(form);
-  Vector6d kept = eigen.eigenvalues();
-  const double least = std::max(1e-14, error2 / sum) * kept[5];
-  for (double& value : kept) {
-    if (value < least) value = 0.0;
-  }
-  form = eigen.eigenvectors() * kept.asDiagonal() * eigen.eigenvectors().transpose();
-  const Matrix6d t = change_frame(frame, own);
-  return t.transpose() * form * t;
+  return in_frame.stopped - 4.0 * in_doubt * in_frame.all;
 }
 
 /// An orthonormal basis of a subspace of space, of x, y and z as far as they lie in it.
 std::vector<Eigen::Vector3d> plain_basis(const Eigen::Matrix3Xd& orthonormal) {
-  constexpr double kAligned = 1e-4;
   std::vector<Eigen::Vector3d> basis;
   const auto add_what_is_new = [&](Eigen::Vector3d v) {
     for (const Eigen::Vector3d& b : basis) v -= b.dot(v) * b;
-    if (v.norm() < 1e-2 || static_cast<Eigen::Index>(basis.size()) == orthonormal.cols()) return;
+    if (v.norm() < 2 * kSmall || static_cast<Eigen::Index>(basis.size()) == orthonormal.cols()) return;
     v.normalize();
     Eigen::Index largest = 0;
     v.cwiseAbs().maxCoeff(&largest);
@@ -105,7 +111,7 @@ std::vector<Eigen::Vector3d> plain_basis(const Eigen::Matrix3Xd& orthonormal) {
   };
   for (int d = 0; d < 3; ++d) {
     const Eigen::Vector3d e = Eigen::Vector3d::Unit(d);
-    if ((e - orthonormal * (orthonormal.transpose() * e)).norm() < kAligned) add_what_is_new(e);
+    if ((e - orthonormal * (orthonormal.transpose() * e)).norm() < kSmall) add_what_is_new(e);
   }
   for (Eigen::Index i = 0; i < orthonormal.cols(); ++i) add_what_is_new(orthonormal.col(i));
   return basis;
@@ -113,29 +119,31 @@ std::vector<Eigen::Vector3d> plain_basis(const Eigen::Matrix3Xd& orthonormal) {
 
 std::string direction_words(const Eigen::Vector3d& v) {
   for (int d = 0; d < 3; ++d) {
-    if ((v - Eigen::Vector3d::Unit(d)).norm() < 1e-3) return std::string(1, "xyz"[d]);
+    if ((v - Eigen::Vector3d::Unit(d)).norm() < kSmall) return std::string(1, "xyz"[d]);
   }
   return fmt::format("({:.3f}, {:.3f}, {:.3f})", v[0] + 0.0, v[1] + 0.0, v[2] + 0.0);
 }
 
-std::string axis_words(const Eigen::Vector3d& direction, const Eigen::Vector3d& point_m) {
+/// A turn and where its axis lies, as far as the translations that are free too leave that open.
+std::string axis_words(const Eigen::Vector3d& direction, const Eigen::Vector3d& point_m, const Eigen::Matrix3Xd& shifts) {
   std::vector<std::string> words;
   const std::string name = direction_words(direction);
+  const Eigen::Matrix3Xd open = cross_matrix(direction) * shifts;
   for (int d = 0; d < 3; ++d) {
     if (name == std::string(1, "xyz"[d])) continue;
+    if (shifts.cols() > 0 && (name.size() > 1 ? open.norm() : open.row(d).norm()) > kSmall) continue;
     const double at_mm = 1e3 * point_m[d];
     words.push_back(fmt::format("{} = {:.1f} mm", "xyz"[d], std::abs(at_mm) < 0.05 ? 0.0 : at_mm));
   }
-  return fmt::format("rotate about {} through {}", name, fmt::join(words, ", "));
+  return words.empty() ? "rotate about " + name : fmt::format("rotate about {} through {}", name, fmt::join(words, ", "));
 }
 
 /// A space of motions in words. Translations first; then turns, whose axis has a place only where no translation moves it.
 std::string motion_words(const Motions& motions, const Frame& frame) {
-  constexpr double kZero = 1e-4;
   std::vector<std::string> words;
   const Eigen::JacobiSVD<Eigen::MatrixXd> turns(motions.bottomRows<3>(), Eigen::ComputeThinU | Eigen::ComputeFullV);
   Eigen::Index n_turns = 0;
-  while (n_turns < turns.singularValues().size() && turns.singularValues()[n_turns] > kZero) ++n_turns;
+  while (n_turns < turns.singularValues().size() && turns.singularValues()[n_turns] > kSmall) ++n_turns;
   const Eigen::Index n_shifts = motions.cols() - n_turns;
   Eigen::Matrix3Xd shifts(3, n_shifts);
   if (n_shifts > 0) {
@@ -150,9 +158,9 @@ std::string motion_words(const Motions& motions, const Frame& frame) {
     Eigen::Vector3d t_m = frame.size_m * motions.topRows<3>() * factors;  // per radian
     t_m -= shifts * (shifts.transpose() * t_m);
     const double pitch_m = t_m.dot(w);
-    const bool has_place = n_shifts == 0 || (shifts - w * (w.transpose() * shifts)).norm() < 1e-2;
-    std::string turn = has_place ? axis_words(w, frame.centre + w.cross(t_m)) : "rotate about " + direction_words(w);
-    if (std::abs(pitch_m) > 1e-3 * frame.size_m) turn += fmt::format(" while it moves {:.1f} mm per radian", 1e3 * pitch_m);
+    std::string turn = axis_words(w, frame.centre + w.cross(t_m), shifts);
+    if (std::abs(pitch_m) > kSmall * frame.size_m)
+      turn += fmt::format(" while it moves {:.1f} mm per radian", 1e3 * pitch_m);
     words.push_back(turn);
   }
   return fmt::format("{}", fmt::join(words, ", "));
@@ -234,7 +242,7 @@ void require_held(const Mesh& mesh, const std::vector<SpringLayer>& layers, cons
       const Motions all = eigen.eigenvectors().block(6 * static_cast<Eigen::Index>(i), 0, 6, n_free);
       const Eigen::JacobiSVD<Eigen::MatrixXd> own(all, Eigen::ComputeThinU);
       Eigen::Index rank = 0;
-      while (rank < own.singularValues().size() && own.singularValues()[rank] > 1e-4) ++rank;
+      while (rank < own.singularValues().size() && own.singularValues()[rank] > kSmall) ++rank;
       if (rank > 0) regions_that[motion_words(own.matrixU().leftCols(rank), frame)].push_back(region_of[parts[i]]);
     }
     for (const auto& [motion, regions] : regions_that) {

@@ -144,7 +144,7 @@ SpringLayer support_layer(const Mesh& mesh, const RegionMaterials& materials, co
                        .position_m = x * s.N.head(s.n).transpose(),
                        .node_a = nodes[0],
                        .area_m2 = q.weight * j.det,
-                       .normal_error = support.sliding ? normal_error(normal, j, shape) : 0.0});
+                       .normal_error = support.sliding ? mesh::normal_error(normals[f]) : 0.0});
       area_m2 += layer.back().area_m2;
     }
   }

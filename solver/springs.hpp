@@ -21,7 +21,7 @@ struct SpringPoint {
   Eigen::Vector3d position_m;
   int node_a = -1, node_b = -1;  ///< a node of each side; -1: the ground
   double area_m2 = 0.0;
-  double normal_error = 0.0;  ///< how far the normal in the stiffness is unknown [-]; 0 where no normal enters
+  double normal_error = 0.0;  ///< of the normal in the stiffness [rad]; 0 where no normal enters
 };
 using SpringLayer = std::vector<SpringPoint>;
 

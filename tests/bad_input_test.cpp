@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"not_held",
                 "fixed: [x, y, z]",
                 "fixed: [x, y]",
-                {"'column' (and with it", "can still translate along z, rotate about x through", "supports[0]"}},
+                {"'column' (and with it", "can still translate along z, rotate about x through z = 0.0 mm, rotate about y", "supports[0]"}},
         Mistake{"spindle_not_held",
                 "\nsupports:",
                 "\njoints:\n"

@@ -236,11 +236,15 @@ TEST(Recovery, WhereRegionsShareNodesTheHigherStressedOneIsShown) {
   stiff.youngs_modulus_Pa *= 2.0;
   Eigen::Matrix3Xd u = Eigen::Matrix3Xd::Zero(3, mesh.n_nodes());
   u.row(0) = 1e-3 * mesh.coords.row(0);
-  const NodalStress stress = nodal_stress_Pa(mesh, {kSteel, stiff}, u, Eigen::VectorXd::Zero(mesh.n_nodes()));
   const double soft_Pa = elasticity_tensor_Pa(kSteel)(0, 0) * 1e-3;
-  for (int n = 0; n < mesh.n_nodes(); ++n) {
-    const bool in_soft_alone = mesh.coords(0, n) < 0.1 - 1e-9;
-    EXPECT_NEAR(stress(0, n), (in_soft_alone ? 1.0 : 2.0) * soft_Pa, 1e-9 * soft_Pa);
+  for (bool stiff_first : {false, true}) {
+    const RegionMaterials materials = stiff_first ? RegionMaterials{stiff, kSteel} : RegionMaterials{kSteel, stiff};
+    const NodalStress stress = nodal_stress_Pa(mesh, materials, u, Eigen::VectorXd::Zero(mesh.n_nodes()));
+    for (int n = 0; n < mesh.n_nodes(); ++n) {
+      const double beyond_m = mesh.coords(0, n) - 0.1;
+      const bool in_soft_alone = stiff_first ? beyond_m > 1e-9 : beyond_m < -1e-9;
+      EXPECT_NEAR(stress(0, n), (in_soft_alone ? 1.0 : 2.0) * soft_Pa, 1e-9 * soft_Pa);
+    }
   }
 }
 
