@@ -18,7 +18,7 @@ namespace {
 using fixtures::flow;
 
 const TimeSeries kStillHall{{0.0}, {0.0}};
-const TransientOptions kFine{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-6};
+const TransientOptions kFine{.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-5};
 constexpr double kSigma = 5.670374419e-8;
 
 Cyclogram at_speed(double duration_s, double speed_rpm) {
@@ -41,7 +41,7 @@ void note(const std::string& key, double value) {
 
 TEST(Radiation, LumpCoolsByTheClosedFormOfTheFourthPower) {
   // dT/dt = -k T^4 into a hall of 1 K (1e-10 of it comes back): T = (T0^-3 + 3 k t)^(-1/3), k = 0.9 sigma 0.01 m^2 / 4000 J/K.
-  FullSystem system = assemble_heat(cube(), {fixtures::lump(1e6)},
+  FullSystem system = assemble_heat(cube(), {fixtures::lump(1e5)},
                                     fixtures::balance_of({"{type: radiation, surface: x1, emissivity: 0.9}"}), 400.0);
   fixtures::observe_unknowns(system, {0});
   const TimeSeries hall{{0.0}, {-399.0}};
@@ -50,8 +50,9 @@ TEST(Radiation, LumpCoolsByTheClosedFormOfTheFourthPower) {
       simulate(system, at_speed(200000, 0), hall, times_s, kFine, Eigen::VectorXd::Constant(system.size(), 200.0));
   for (std::size_t k = 0; k < times_s.size(); ++k) {
     const double exact_K = std::pow(std::pow(600.0, -3) + 3.0 * 0.9 * kSigma * 0.01 / 4000.0 * times_s[k], -1.0 / 3.0);
-    // The cube's temperatures differ by q L / k = 6600 * 0.1 / 1e6 < 0.7 mK; the tolerance adds 1e-7 of 200 K a step.
-    EXPECT_NEAR(400.0 + run.outputs(0, static_cast<Eigen::Index>(k)), exact_K, 1e-3) << times_s[k];
+    // The cube's temperatures differ by q L / k = 6600 * 0.1 / 1e5 = 6.6 mK at first; the tolerance adds 0.2 mK a step.
+    EXPECT_NEAR(400.0 + run.outputs(0, static_cast<Eigen::Index>(k)), exact_K, 6.6e-3) << times_s[k];
+    note("error_K", 400.0 + run.outputs(0, static_cast<Eigen::Index>(k)) - exact_K);
   }
   note("gap", run.energy_gap());
   EXPECT_LT(run.energy_gap(), 1e-9);
@@ -69,16 +70,13 @@ TEST(Radiation, BetweenAPlateAndAHotNeighbourAsTheClosedForm) {
   const Eigen::VectorXd theta = steady_state(system, {}, Eigen::VectorXd::Zero(system.size()));
   const double exact_K = std::pow(0.5 * (std::pow(773.15, 4) + std::pow(293.15, 4)), 0.25);
   EXPECT_NEAR(293.15 + theta[0], exact_K, 2e-4);  // 8.1 kW/m^2 * 0.1 m / 1e7 W/(m K) = 81 uK within the cube
-  fixtures::observe_unknowns(system, {0});
-  const Trajectory run = simulate(system, at_speed(4e5, 0), kStillHall, {4e5}, {}, Eigen::VectorXd::Zero(system.size()));
-  EXPECT_NEAR(run.outputs(0, 0), theta[0], 0.05);  // 1e-4 of 360 K is allowed a step
   // 0.8 sigma (T_furnace^4 - T^4) 0.01 m^2 = 79.4 W cross the cube.
   const double through_W = 0.8 * kSigma * 0.01 * (std::pow(773.15, 4) - std::pow(exact_K, 4));
-  const Trajectory on = simulate(system, at_speed(1000, 0), kStillHall, {1000}, kFine, theta);
-  EXPECT_NEAR(on.heat_J(flow(on, "radiation x1"), 0) / 1000.0, -through_W, 1e-3);
-  EXPECT_NEAR(on.heat_J(flow(on, "fixed_temperature furnace"), 0) / 1000.0, through_W, 1e-3);
-  note("gap", run.energy_gap());
-  EXPECT_LT(run.energy_gap(), 1e-9);
+  const Trajectory on = simulate(system, at_speed(100, 0), kStillHall, {100}, {}, theta);
+  EXPECT_NEAR(on.heat_J(flow(on, "radiation x1"), 0) / 100.0, -through_W, 1e-3);
+  EXPECT_NEAR(on.heat_J(flow(on, "radiation x0"), 0) / 100.0, -through_W, 1e-3);  // out of the cube, into the node
+  EXPECT_NEAR(on.heat_J(flow(on, "fixed_temperature furnace"), 0) / 100.0, through_W, 1e-3);
+  EXPECT_LT(on.energy_gap(), 1e-9);
 }
 
 // --- laws of mean temperatures ----------------------------------------------------------------------------------
@@ -163,13 +161,13 @@ TEST(Nonlinear, SteadyStateSolvesTheLawsOfASmallModel) {
 // --- properties over temperature --------------------------------------------------------------------------------
 
 TEST(VariableConductivity, SlabFollowsTheKirchhoffTransform) {
-  // k = 40 W/(m K) at 0 K of rise, falling by 0.1 W/(m K) a kelvin; faces at 220 degC and 20 degC. F(θ) = 40 θ - 0.05 θ^2 is
-  // linear in x: θ = 400 - sqrt(160000 - 20 F), F = 6000 (1 - x / L); flux F(200) / L = 60 kW/m^2, 600 W.
+  // k = 40 W/(m K) at 0 K of rise, falling by 0.05 W/(m K) a kelvin; faces at 220 degC and 20 degC. F(θ) = 40 θ - 0.025 θ^2 is
+  // linear in x: θ = 800 - sqrt(640000 - 40 F), F = 7000 (1 - x / L); flux F(200) / L = 70 kW/m^2, 700 W.
   Material m = fixtures::steel();
-  m.conductivity_curve = {{293.15, 493.15}, {40.0, 20.0}};
+  m.conductivity_curve = {{293.15, 493.15}, {40.0, 30.0}};
   std::vector<double> h, error;
   for (int n : {2, 4, 8}) {
-    const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {n, 1, 1}});
+    const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {n, n, n}});
     FullSystem system =
         assemble_heat(mesh, {m},
                       fixtures::balance_of({"{type: fixed_temperature, surface: x0, temperature: 220 degC}",
@@ -177,19 +175,20 @@ TEST(VariableConductivity, SlabFollowsTheKirchhoffTransform) {
     const Eigen::VectorXd theta = steady_state(system, {}, Eigen::VectorXd::Zero(system.size()));
     h.push_back(1.0 / n);
     error.push_back(fixtures::l2_error(mesh, theta, [](const Eigen::Vector3d& x) {
-      return 400.0 - std::sqrt(160000.0 - 20.0 * 6000.0 * (1.0 - x[0] / 0.1));
+      return 800.0 - std::sqrt(640000.0 - 40.0 * 7000.0 * (1.0 - x[0] / 0.1));
     }));
     if (n < 8) continue;
     fixtures::observe_unknowns(system, {0});
     const Trajectory run = simulate(system, at_speed(1000, 0), kStillHall, {1000}, kFine, theta);
-    EXPECT_NEAR(run.heat_J(flow(run, "fixed_temperature x0"), 0) / 1000.0, 600.0, 0.05);  // the discretisation's error
+    EXPECT_NEAR(run.heat_J(flow(run, "fixed_temperature x0"), 0) / 1000.0, 700.0, 1e-3);  // the tolerance of steps
     EXPECT_LT(run.energy_gap(), 1e-9);
     note("gap", run.energy_gap());
-    note("flux_error_W", run.heat_J(flow(run, "fixed_temperature x0"), 0) / 1000.0 - 600.0);
+    note("flux_error_W", run.heat_J(flow(run, "fixed_temperature x0"), 0) / 1000.0 - 700.0);
   }
   note("order", fixtures::observed_order(h, error));
   note("l2_error_finest", error.back());
-  EXPECT_NEAR(fixtures::observed_order(h, error), 3.0, 0.3);  // quadratic elements; the graded field is not yet asymptotic
+  EXPECT_NEAR(fixtures::observed_order(h, error), 3.0, 0.1);  // quadratic elements
+  EXPECT_LT(error.back(), 1e-5 * 6.0);                        // of the field's own norm, 6 K m^1.5
 }
 
 TEST(VariableCapacity, LumpTakesUpTheIntegralOfItsHeatCapacity) {
@@ -204,12 +203,16 @@ TEST(VariableCapacity, LumpTakesUpTheIntegralOfItsHeatCapacity) {
   for (std::size_t k = 0; k < times_s.size(); ++k) {
     const double heat_J_kg = 400.0 * times_s[k] / 8.0;
     EXPECT_NEAR(run.outputs(0, static_cast<Eigen::Index>(k)), -500.0 + std::sqrt(250000.0 + 2.0 * heat_J_kg), 2e-3)
-        << times_s[k];  // 1e-7 of 485 K a step
+        << times_s[k];  // 1e-6 of 485 K a step
   }
-  note("gap", run.energy_gap());
+  // Where heat capacity varies the heat stored is no linear function of the temperatures; it balances as exactly as they are
+  // integrated: 1e-4 of the temperature a step by default, and with the tolerance.
   const Trajectory standard =
       simulate(system, at_speed(7200, 0), kStillHall, {7200}, {}, Eigen::VectorXd::Zero(system.size()));
+  note("gap_at_1e-6", run.energy_gap());
   note("gap_at_default", standard.energy_gap());
+  EXPECT_LT(standard.energy_gap(), 1e-4);
+  EXPECT_LT(run.energy_gap(), 1e-6);
 }
 
 // --- the linear model -------------------------------------------------------------------------------------------
@@ -235,8 +238,8 @@ TEST(Linearised, FollowsASmallPerturbationOfRadiationAndPrescribedTemperature) {
   EXPECT_GT(full_step.maxCoeff(), 5e-3);
   note("largest_step_K", full_step.maxCoeff());
   note("difference_K", (full_step - linear_step).cwiseAbs().maxCoeff());
-  // Radiation to the hall takes the surface's slope 4 T^3 for the hall's, too, which is (T_hall / T)^3 of it.
-  EXPECT_LT((full_step - linear_step).cwiseAbs().maxCoeff(), 0.02 * full_step.maxCoeff());
+  // Curvature of T^4 over 0.2 K of 294 K: 1.5 * 0.2 / 294 = 1e-3 of the step.
+  EXPECT_LT((full_step - linear_step).cwiseAbs().maxCoeff(), 1e-3 * full_step.maxCoeff());
 }
 
 }  // namespace
