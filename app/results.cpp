@@ -4,11 +4,26 @@
 
 #include <cmath>
 #include <exception>
+#include <optional>
 
 #include "app/version.hpp"
 #include "base/quantity.hpp"
+#include "solver/stress.hpp"
 
 namespace driftwright::app {
+namespace {
+
+output::StressField stress_field(const scenarios::PlacedMachine& placed, const Eigen::Matrix3Xd& displacement_m,
+                                 const Eigen::VectorXd& theta_K) {
+  output::StressField field{1e-6 * solver::nodal_stress_Pa(placed.mesh, placed.materials, displacement_m, theta_K), {}};
+  field.von_mises_MPa.resize(field.stress_MPa.cols());
+  for (Eigen::Index n = 0; n < field.stress_MPa.cols(); ++n) {
+    field.von_mises_MPa[n] = solver::von_mises(field.stress_MPa.col(n));
+  }
+  return field;
+}
+
+}  // namespace
 
 output::ResultsFolder open_results(const CommonOptions& options, const std::string& scenario_name) {
   const std::string target = options.out.empty() ? "results/" + scenario_name : options.out;
@@ -70,8 +85,11 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
       if (!fields || i != with_fields) return;
       if (time_s < next_field_s - 1e-6 && time_s < cyclogram.duration_s()) return;
       const Eigen::VectorXd nodes = state.head(machine.placed.mesh.n_nodes());
-      fields->write(time_s, (nodes.array() + (model.reference_K - kZeroCelsius_K)).matrix(),
-                    1e6 * machine.elasticity.displacement(nodes));
+      const Eigen::Matrix3Xd displacement_m = machine.elasticity.displacement(nodes);
+      const std::optional<output::StressField> stress =
+          settings.stresses ? std::optional(stress_field(machine.placed, displacement_m, nodes)) : std::nullopt;
+      fields->write(time_s, (nodes.array() + (model.reference_K - kZeroCelsius_K)).matrix(), 1e6 * displacement_m,
+                    stress ? &*stress : nullptr);
       while (next_field_s <= time_s + 1e-6) next_field_s += settings.fields_every_s;
     };
     try {

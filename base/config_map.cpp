@@ -96,6 +96,7 @@ bool ConfigMap::has(const std::string& key) const {
 bool ConfigMap::is_map(const std::string& key) const {
   return has(key) && (*node_)[key].IsMap();
 }
+
 bool ConfigMap::is_list(const std::string& key) const {
   return has(key) && (*node_)[key].IsSequence();
 }

@@ -10,7 +10,7 @@
 
 #include "base/errors.hpp"
 #include "mesh/quality.hpp"
-#include "mesh/shape.hpp"
+#include "mesh/topology.hpp"
 
 namespace driftwright::mesh {
 namespace {
@@ -73,7 +73,7 @@ void straighten_folded_cells() {
       if (scaled[c] > kLeastScaledJacobian) continue;
       const auto cell = mesh.cells.nodes(c);
       for (int e = 0; e < 6; ++e) {
-        const auto& [a, b] = kTetrahedronEdges[e];
+        const auto& [a, b] = edges_of(CellShape::kTet10)[e];
         mesh.coords.col(cell[4 + e]) = 0.5 * (mesh.coords.col(cell[a]) + mesh.coords.col(cell[b]));
         moved.insert(cell[4 + e]);
       }

@@ -2,70 +2,186 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <limits>
+#include <vector>
+
+#include "mesh/topology.hpp"
 
 namespace driftwright::mesh {
 namespace {
 
-/// Nearest point of the simplex {l >= 0, sum l = 1} spanned by the columns of `corners`, by trying each face.
-/// Returns barycentric coordinates. Small and robust: at most 15 tiny least-squares problems.
-Eigen::VectorXd nearest_on_simplex(const Eigen::Matrix3Xd& corners, const Eigen::Vector3d& p) {
-  const int n = static_cast<int>(corners.cols());
-  Eigen::VectorXd best = Eigen::VectorXd::Zero(n);
+/// A face of a reference cell of any dimension: origin + directions t.
+struct ReferenceFace {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  int dimension = 0;
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();  // the first `dimension` columns
+};
+
+/// Faces of the simplex of dimension d in the directions first .. first + d - 1, from the corners to the interior.
+std::vector<ReferenceFace> simplex_faces(int first, int d) {
+  std::vector<ReferenceFace> faces;
+  for (int mask = 1; mask < (1 << (d + 1)); ++mask) {
+    std::vector<Eigen::Vector3d> corner;
+    for (int i = 0; i <= d; ++i) {
+      if (mask & (1 << i)) {
+        corner.push_back(i == 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d::Unit(first + i - 1));
+      }
+    }
+    ReferenceFace face{corner[0], static_cast<int>(corner.size()) - 1, {}};
+    face.directions.setZero();
+    for (int j = 0; j < face.dimension; ++j) face.directions.col(j) = corner[j + 1] - corner[0];
+    faces.push_back(face);
+  }
+  return faces;
+}
+
+std::vector<ReferenceFace> product(const std::vector<ReferenceFace>& a, const std::vector<ReferenceFace>& b) {
+  std::vector<ReferenceFace> faces;
+  for (const ReferenceFace& fa : a) {
+    for (const ReferenceFace& fb : b) {
+      ReferenceFace face = fa;
+      face.origin += fb.origin;
+      face.dimension += fb.dimension;
+      face.directions.middleCols(fa.dimension, fb.dimension) = fb.directions.leftCols(fb.dimension);
+      faces.push_back(face);
+    }
+  }
+  return faces;
+}
+
+/// All faces of a reference cell, itself the last: cells are simplices or products of simplices.
+const std::vector<ReferenceFace>& reference_faces(CellShape shape) {
+  static const auto triangle = simplex_faces(0, 2), tetrahedron = simplex_faces(0, 3),
+                    quad = product(simplex_faces(0, 1), simplex_faces(1, 1)), wedge = product(triangle, simplex_faces(2, 1)),
+                    hexahedron = product(quad, simplex_faces(2, 1));
+  switch (n_corners_of(shape)) {
+    case 3:
+      return triangle;
+    case 4:
+      return dimension_of(shape) == 3 ? tetrahedron : quad;
+    case 6:
+      return wedge;
+    default:
+      return hexahedron;
+  }
+}
+
+bool inside_reference(CellShape shape, const Eigen::Vector3d& xi) {
+  constexpr double kSlack = 1e-12;
+  if (xi.minCoeff() < -kSlack) return false;
+  switch (n_corners_of(shape)) {
+    case 3:
+      return xi.head<2>().sum() <= 1.0 + kSlack;
+    case 4:
+      return dimension_of(shape) == 3 ? xi.sum() <= 1.0 + kSlack : xi.maxCoeff() <= 1.0 + kSlack;
+    case 6:
+      return xi.head<2>().sum() <= 1.0 + kSlack && xi[2] <= 1.0 + kSlack;
+    default:
+      return xi.maxCoeff() <= 1.0 + kSlack;
+  }
+}
+
+/// The point xi of the reference cell for which x0 + J xi is nearest to p: the nearest of those on its faces that are feasible.
+/// If the interior has one it is the answer, the distance being convex.
+Eigen::Vector3d nearest_of_affine(CellShape shape, const Eigen::Vector3d& x0, const Eigen::Matrix3d& j,
+                                  const Eigen::Vector3d& p) {
+  const auto& faces = reference_faces(shape);
+  Eigen::Vector3d best = faces.front().origin;
   double best_distance = std::numeric_limits<double>::infinity();
-  for (int mask = 1; mask < (1 << n); ++mask) {
-    std::vector<int> used;
-    for (int i = 0; i < n; ++i) {
-      if (mask & (1 << i)) used.push_back(i);
-    }
-    const int m = static_cast<int>(used.size()) - 1;
-    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> edges(3, m);
-    for (int j = 0; j < m; ++j) edges.col(j) = corners.col(used[j + 1]) - corners.col(used[0]);
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> t(m);
+  for (auto face = faces.rbegin(); face != faces.rend(); ++face) {
+    const int m = face->dimension;
+    Eigen::Vector3d xi = face->origin;
     if (m > 0) {
+      const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> edges = j * face->directions.leftCols(m);
       const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram = edges.transpose() * edges;
-      t = gram.fullPivLu().solve(edges.transpose() * (p - corners.col(used[0])));
+      const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> t =
+          gram.fullPivLu().solve(edges.transpose() * (p - x0 - j * face->origin));
+      xi += face->directions.leftCols(m) * t;
     }
-    Eigen::VectorXd l = Eigen::VectorXd::Zero(n);
-    l[used[0]] = 1.0 - t.sum();
-    for (int j = 0; j < m; ++j) l[used[j + 1]] = t[j];
-    if (l.minCoeff() < -1e-12) continue;
-    const double distance = (corners * l - p).norm();
+    if (!inside_reference(shape, xi)) continue;
+    const double distance = (x0 + j * xi - p).norm();
     if (distance < best_distance) {
       best_distance = distance;
-      best = l;
+      best = xi;
     }
+    if (m == dimension_of(shape)) break;
   }
   return best;
 }
 
-MeshPoint nearest_in_cell(const Mesh& mesh, const Cells& cells, int cell, const Eigen::Vector3d& p) {
-  const CellShape shape = cells.shape[cell];
-  const auto x = cell_coords(mesh, cells.nodes(cell));
-  const int n_corners = n_corners_of(shape), dimension = n_corners - 1;
-  const Eigen::VectorXd l = nearest_on_simplex(x.leftCols(n_corners), p);
-  Eigen::Vector3d xi = Eigen::Vector3d::Zero();
-  xi.head(dimension) = l.tail(dimension);
-  if (n_nodes_of(shape) != n_corners) {
-    // Curved: Gauss-Newton from the straight answer. Each step solves for the nearest point of the cell that the tangent
-    // at xi makes, so that the distance is always the one in space, inside and outside.
-    for (int i = 0; i < 12; ++i) {
+/// Gauss-Newton from a point of the reference cell. Each step goes towards the nearest point of the cell that the tangent at
+/// xi makes, and is halved until the distance falls; the reference cell being convex it never leaves it.
+Eigen::Vector3d descend(CellShape shape, const Eigen::Ref<const Eigen::Matrix3Xd>& x, Eigen::Vector3d xi,
+                        const Eigen::Vector3d& p) {
+  constexpr int kMaxSteps = 100;
+  const auto distance_at = [&](const Eigen::Vector3d& at) {
+    const ShapeValues s = shape_values(shape, at);
+    return (x * s.N.head(s.n).transpose() - p).norm();
+  };
+  double distance = distance_at(xi);
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const ShapeValues s = shape_values(shape, xi);
+    const Eigen::Matrix3d j = jacobian(s, x, shape).dx_dxi;
+    const Eigen::Vector3d step = nearest_of_affine(shape, x * s.N.head(s.n).transpose() - j * xi, j, p) - xi;
+    double share = 1.0, next = distance_at(xi + step);
+    while (next > distance && share > 1e-6) {
+      share *= 0.5;
+      next = distance_at(xi + share * step);
+    }
+    if (next > distance) break;
+    xi += share * step;
+    distance = next;
+    if (share * step.norm() < 1e-12) break;
+  }
+  return xi;
+}
+
+/// Where to start: the nearest node or middle of nodes, and the middle of the cell.
+std::vector<Eigen::Vector3d> starts(CellShape shape, const Eigen::Ref<const Eigen::Matrix3Xd>& x, const Eigen::Vector3d& p) {
+  const auto nodes = reference_nodes(shape).first(n_corners_of(shape));
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero(), nearest = nodes[0];
+  for (const Eigen::Vector3d& xi : nodes) middle += xi / static_cast<double>(nodes.size());
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& a : nodes) {
+    for (const Eigen::Vector3d& b : nodes) {
+      const Eigen::Vector3d xi = 0.5 * (a + b);
       const ShapeValues s = shape_values(shape, xi);
-      const Eigen::Matrix3Xd j = jacobian(s, x, shape).dx_dxi.leftCols(dimension);
-      Eigen::Matrix3Xd tangent(3, n_corners);
-      tangent.colwise() = x * s.N.head(s.n).transpose() - j * xi.head(dimension);
-      tangent.rightCols(dimension) += j;
-      Eigen::Vector3d next = Eigen::Vector3d::Zero();
-      next.head(dimension) = nearest_on_simplex(tangent, p).tail(dimension);
-      const double moved = (next - xi).norm();
-      xi = next;
-      if (moved < 1e-12) break;
+      const double distance = (x * s.N.head(s.n).transpose() - p).squaredNorm();
+      if (distance < least) {
+        least = distance;
+        nearest = xi;
+      }
     }
   }
-  const ShapeValues s = shape_values(shape, xi);
-  const Eigen::Vector3d position = x * s.N.head(s.n).transpose();
+  return {nearest, middle};
+}
+
+MeshPoint point_at(const Mesh& mesh, const Cells& cells, int cell, const Eigen::Vector3d& xi, const Eigen::Vector3d& p) {
+  const ShapeValues s = shape_values(cells.shape[cell], xi);
+  const Eigen::Vector3d position = cell_coords(mesh, cells.nodes(cell)) * s.N.head(s.n).transpose();
   return {cell, xi, position, (position - p).norm()};
+}
+
+MeshPoint nearest_in_cell(const Mesh& mesh, const Cells& cells, int cell, const Eigen::Vector3d& p) {
+  const CellShape shape = cells.shape[cell];
+  const Eigen::Matrix3Xd x = cell_coords(mesh, cells.nodes(cell));
+  const int n_corners = n_corners_of(shape), dimension = dimension_of(shape);
+  if (n_corners == dimension + 1) {  // the nearest point of the straight cell: the answer, or a good start
+    Eigen::Matrix3d j = Eigen::Matrix3d::Zero();
+    for (int i = 0; i < dimension; ++i) j.col(i) = x.col(i + 1) - x.col(0);
+    Eigen::Vector3d xi = nearest_of_affine(shape, x.col(0), j, p);
+    if (is_quadratic(shape)) xi = descend(shape, x, xi, p);
+    return point_at(mesh, cells, cell, xi, p);
+  }
+  const double size_m = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
+  MeshPoint best;
+  best.distance_m = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& start : starts(shape, x, p)) {
+    const MeshPoint found = point_at(mesh, cells, cell, descend(shape, x, start, p), p);
+    if (found.distance_m < best.distance_m) best = found;
+    if (best.distance_m < 1e-12 * size_m) break;
+  }
+  return best;
 }
 
 }  // namespace

@@ -17,8 +17,10 @@ struct MeshPoint {
   double distance_m = 0.0;                               ///< from the point asked for
 };
 
-/// The point of `candidates` (indices into `cells`) nearest to `point_m`. Exact for straight cells; for curved ones by
-/// Gauss-Newton, which converges inside, on the surface and, where the distance is small against the radius, outside.
+/// The point of `candidates` (indices into `cells`) nearest to `point_m`. Exact for triangles and tetrahedra with straight
+/// edges. Otherwise by Gauss-Newton within the reference cell, with step halving so that the distance never grows, from the
+/// nearest of a grid of samples and from the middle: exact inside; outside, where the distance is small against the radius of
+/// curvature, to 1e-12 of the cell's size, farther away slower and, far outside a strongly bent cell, to a local minimum.
 /// cell == -1 when candidates is empty.
 [[nodiscard]] MeshPoint nearest_point(const Mesh& mesh, const Cells& cells, std::span<const int> candidates,
                                       const Eigen::Vector3d& point_m);

@@ -20,22 +20,54 @@ std::vector<int> members(const Cells& cells, int group) {
 
 }  // namespace
 
+int dimension_of(CellShape shape) {
+  return shape <= CellShape::kQuad8 ? 2 : 3;
+}
+
 int n_nodes_of(CellShape shape) {
   switch (shape) {
     case CellShape::kTri3:
       return 3;
     case CellShape::kTri6:
       return 6;
+    case CellShape::kQuad4:
+      return 4;
+    case CellShape::kQuad8:
+      return 8;
     case CellShape::kTet4:
       return 4;
     case CellShape::kTet10:
       return 10;
+    case CellShape::kHex8:
+      return 8;
+    case CellShape::kHex20:
+      return 20;
+    case CellShape::kWedge6:
+      return 6;
+    case CellShape::kWedge15:
+      return 15;
   }
   return 0;
 }
 
 int n_corners_of(CellShape shape) {
-  return shape == CellShape::kTri3 || shape == CellShape::kTri6 ? 3 : 4;
+  switch (shape) {
+    case CellShape::kTri3:
+    case CellShape::kTri6:
+      return 3;
+    case CellShape::kQuad4:
+    case CellShape::kQuad8:
+    case CellShape::kTet4:
+    case CellShape::kTet10:
+      return 4;
+    case CellShape::kHex8:
+    case CellShape::kHex20:
+      return 8;
+    case CellShape::kWedge6:
+    case CellShape::kWedge15:
+      return 6;
+  }
+  return 0;
 }
 
 bool is_quadratic(CellShape shape) {

@@ -8,10 +8,15 @@
 
 namespace driftwright::mesh {
 
-/// Shapes of cells and facets. Node order as in VTK (quadratic tetrahedra: corners, then the mid-side nodes of the
-/// edges 01, 12, 20, 03, 13, 23; triangles: 01, 12, 20).
-enum class CellShape : unsigned char { kTri3, kTri6, kTet4, kTet10 };
+/// Shapes of cells and facets. Corners first, then the mid-side nodes of the edges (mesh/topology.hpp), in VTK's order. A
+/// wedge has its triangle 012 at the bottom and 345 above it, so that its Jacobian is positive: as VTK's shape functions, Abaqus
+/// and Gmsh have it (VTK's text says the opposite of VTK's functions).
+enum class CellShape : unsigned char { kTri3, kTri6, kQuad4, kQuad8, kTet4, kTet10, kHex8, kHex20, kWedge6, kWedge15 };
 
+inline constexpr int kMaxNodesPerCell = 20;
+
+/// 2 for facets, 3 for cells.
+[[nodiscard]] int dimension_of(CellShape shape);
 [[nodiscard]] int n_nodes_of(CellShape shape);
 /// Number of corner nodes; they come first in a cell.
 [[nodiscard]] int n_corners_of(CellShape shape);
@@ -34,7 +39,7 @@ struct Cells {
 
 /// Two surfaces that touch and share no node. Their points are matched by closest distance.
 struct Joint {
-  std::string name;    ///< "<region a>/<region b>", alphabetical
+  std::string name;    ///< "<region a>/<region b>", alphabetical; as the scenario says for an imported mesh
   std::string side_a;  ///< surface name
   std::string side_b;
 };
@@ -46,6 +51,7 @@ struct Mesh {
   std::vector<std::string> regions;
   std::vector<std::string> surfaces;
   std::vector<Joint> joints;
+  std::vector<std::string> notes;  ///< what the reader of a mesh file left out or changed, for the user
 
   [[nodiscard]] int n_nodes() const { return static_cast<int>(coords.cols()); }
   /// Index of a region or surface, -1 when there is none of that name.

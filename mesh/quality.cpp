@@ -1,33 +1,65 @@
 #include "mesh/quality.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "mesh/shape.hpp"
+#include "mesh/topology.hpp"
 
 namespace driftwright::mesh {
 namespace {
 
-std::vector<Eigen::Vector3d> reference_nodes(CellShape shape) {
-  std::vector<Eigen::Vector3d> xi = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  if (shape == CellShape::kTet10) {
-    for (const auto& [a, b] : kTetrahedronEdges) {
-      xi.emplace_back(0.5 * (xi[a] + xi[b]));
+/// Largest product of the three edge lengths at a corner of a tetrahedron.
+double largest_corner_product(const Eigen::Ref<const Eigen::Matrix3Xd>& x) {
+  double largest = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    double product = 1.0;
+    for (int j = 0; j < 4; ++j) {
+      if (j != i) product *= (x.col(i) - x.col(j)).norm();
     }
+    largest = std::max(largest, product);
   }
-  return xi;
+  return largest;
 }
 
-double min_det_m3(const Mesh& mesh, int cell) {
+/// det over the product of the edge lengths at a point of a hexahedron or wedge, 1 in the ideal cell. Of the three edges of a
+/// wedge's triangle the two longest count.
+double scaled_at(const Jacobian& j, CellShape shape) {
+  const double along_m = j.dx_dxi.col(2).norm();
+  const double a_m = j.dx_dxi.col(0).norm(), b_m = j.dx_dxi.col(1).norm();
+  if (n_corners_of(shape) == 8) {
+    const double product = a_m * b_m * along_m;
+    return product > 0.0 ? j.det / product : 0.0;
+  }
+  const double c_m = (j.dx_dxi.col(1) - j.dx_dxi.col(0)).norm();
+  const double product = a_m * b_m * c_m / std::min({a_m, b_m, c_m}) * along_m;
+  return product > 0.0 ? 2.0 / std::sqrt(3.0) * j.det / product : 0.0;
+}
+
+struct CellQuality {
+  double min_det_m3 = std::numeric_limits<double>::infinity();
+  double scaled = std::numeric_limits<double>::infinity();
+};
+
+CellQuality cell_quality(const Mesh& mesh, int cell) {
   const CellShape shape = mesh.cells.shape[cell];
   const auto x = cell_coords(mesh, mesh.cells.nodes(cell));
-  double least = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& xi : reference_nodes(shape)) {
-    least = std::min(least, jacobian(shape_values(shape, xi), x, shape).det);
+  CellQuality quality;
+  const auto look_at = [&](const Eigen::Vector3d& xi) {
+    const Jacobian j = jacobian(shape_values(shape, xi), x, shape);
+    // Written so that NaN is taken over, too.
+    if (!(j.det >= quality.min_det_m3)) quality.min_det_m3 = j.det;
+    if (n_corners_of(shape) == 4) return;
+    if (const double scaled = scaled_at(j, shape); !(scaled >= quality.scaled)) quality.scaled = scaled;
+  };
+  for (const Eigen::Vector3d& xi : reference_nodes(shape)) look_at(xi);
+  if (n_corners_of(shape) == 4) {
+    quality.scaled = std::sqrt(2.0) * quality.min_det_m3 / largest_corner_product(x.leftCols(4));
+  } else {
+    for (const QuadraturePoint& q : mass_rule(shape)) look_at(q.xi);
   }
-  return least;
+  return quality;
 }
 
 double sum_over(const Mesh& mesh, const Cells& cells, int group) {
@@ -35,7 +67,7 @@ double sum_over(const Mesh& mesh, const Cells& cells, int group) {
   for (int c = 0; c < cells.size(); ++c) {
     if (cells.group[c] != group) continue;
     const auto x = cell_coords(mesh, cells.nodes(c));
-    for (const QuadraturePoint& q : quadrature(cells.shape[c], 5)) {
+    for (const QuadraturePoint& q : mass_rule(cells.shape[c])) {
       sum += q.weight * jacobian(shape_values(cells.shape[c], q.xi), x, cells.shape[c]).det;
     }
   }
@@ -46,34 +78,23 @@ double sum_over(const Mesh& mesh, const Cells& cells, int group) {
 
 std::vector<double> scaled_jacobians(const Mesh& mesh) {
   std::vector<double> scaled(mesh.cells.size());
-  for (int c = 0; c < mesh.cells.size(); ++c) {
-    const auto nodes = mesh.cells.nodes(c);
-    double largest = 0.0;  // product of the three edge lengths at a corner
-    for (int i = 0; i < 4; ++i) {
-      double product = 1.0;
-      for (int j = 0; j < 4; ++j) {
-        if (j != i) product *= (mesh.coords.col(nodes[i]) - mesh.coords.col(nodes[j])).norm();
-      }
-      largest = std::max(largest, product);
-    }
-    scaled[c] = std::sqrt(2.0) * min_det_m3(mesh, c) / largest;
-  }
+  for (int c = 0; c < mesh.cells.size(); ++c) scaled[c] = cell_quality(mesh, c).scaled;
   return scaled;
 }
 
 Quality worst_quality(const Mesh& mesh) {
-  const std::vector<double> scaled = scaled_jacobians(mesh);
-  Quality quality{
+  Quality worst{
       .min_det_m3 = std::numeric_limits<double>::infinity(), .min_scaled = 1.0, .mean_scaled = 0.0, .worst_cell = -1};
   for (int c = 0; c < mesh.cells.size(); ++c) {
-    quality.min_det_m3 = std::min(quality.min_det_m3, min_det_m3(mesh, c));
-    quality.mean_scaled += scaled[c] / mesh.cells.size();
-    if (quality.worst_cell < 0 || scaled[c] < quality.min_scaled) {
-      quality.min_scaled = scaled[c];
-      quality.worst_cell = c;
+    const CellQuality quality = cell_quality(mesh, c);
+    if (!(quality.min_det_m3 >= worst.min_det_m3)) worst.min_det_m3 = quality.min_det_m3;
+    worst.mean_scaled += quality.scaled / mesh.cells.size();
+    if (worst.worst_cell < 0 || !(quality.scaled >= worst.min_scaled)) {
+      worst.min_scaled = quality.scaled;
+      worst.worst_cell = c;
     }
   }
-  return quality;
+  return worst;
 }
 
 double volume_m3(const Mesh& mesh, int region) {

@@ -7,8 +7,12 @@
 
 namespace driftwright::mesh {
 
-/// Scaled Jacobian of each cell [-]: sqrt(2) times the smallest det(dx/dxi) over its nodes, divided by the largest
-/// product of the three edge lengths at a corner. 1 for the regular tetrahedron, <= 0 for an inverted cell.
+/// Scaled Jacobian of each cell [-]: 1 for the ideal cell, <= 0 for an inverted one.
+/// Tetrahedra: sqrt(2) times the smallest det(dx/dxi) over the nodes, divided by the largest product of the three edge lengths
+/// at a corner; 1 for the regular one. Hexahedra: the smallest, over nodes and quadrature points, of det(dx/dxi) over the
+/// product of the lengths of its columns, which at a corner are the edges; 1 where all angles are right. Wedges: the same with
+/// the two longest of the three edges in the triangle and a factor 2/sqrt(3); 1 for the right prism on a regular triangle.
+/// For cells with straight edges these are the corner values of the Verdict library (Stimpson et al., SAND2007-1751).
 [[nodiscard]] std::vector<double> scaled_jacobians(const Mesh& mesh);
 
 struct Quality {

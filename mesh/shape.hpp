@@ -2,21 +2,16 @@
 // Shape functions and quadrature of the cells and facets.
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
 
 #include "mesh/mesh.hpp"
 
 namespace driftwright::mesh {
 
-inline constexpr int kMaxNodesPerCell = 10;
-
-/// Edges of a tetrahedron in VTK's order: mid-side node n_corners + e lies between these two corners. The first three are
-/// the edges of a triangle.
-inline constexpr std::array<std::array<int, 2>, 6> kTetrahedronEdges = {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-
-/// Values and derivatives of the shape functions at one reference point. Columns past n are unused.
-/// Reference tetrahedron: (0,0,0), (1,0,0), (0,1,0), (0,0,1); reference triangle: (0,0), (1,0), (0,1).
+/// Values and derivatives of the shape functions at one reference point (reference cells: reference_nodes() in
+/// mesh/topology.hpp). Columns past n are unused. Triangles and tetrahedra: complete polynomials; quads, hexahedra and
+/// wedges: bilinear and trilinear, and the serendipity functions of 8, 20 and 15 nodes (Zienkiewicz & Taylor, The Finite
+/// Element Method, vol. 1, ch. 8).
 struct ShapeValues {
   int n = 0;
   Eigen::Matrix<double, 1, kMaxNodesPerCell> N;
@@ -26,15 +21,19 @@ struct ShapeValues {
 
 struct QuadraturePoint {
   Eigen::Vector3d xi;
-  double weight;  ///< the weights of a rule sum to the reference volume (1/6) or area (1/2)
+  double weight;  ///< the weights of a rule sum to the reference volume (tet 1/6, wedge 1/2, hex 1) or area (1/2, 1)
 };
-/// A rule that integrates polynomials up to `degree` exactly on the reference cell; degree 1, 2 or 5.
-/// Sources: Keast 1986 (tetrahedron, 4 and 15 points), Dunavant 1985 (triangle, 3 and 7 points).
+/// A rule that integrates polynomials up to `degree` >= 0 exactly on the reference cell: the total degree for triangles and
+/// tetrahedra (at most 5), the degree in each direction for quads and hexahedra (at most 7), the total degree in the triangle
+/// and the degree along the axis for wedges (at most 5).
+/// Sources: Keast 1986 (tetrahedron, 4 and 15 points), Dunavant 1985 (triangle, 3 and 7 points), Gauss-Legendre.
+/// @throws std::logic_error  for a degree above those
 [[nodiscard]] std::span<const QuadraturePoint> quadrature(CellShape shape, int degree);
 
-/// The rule that integrates products of two shape functions on straight cells and facets.
+/// The rule for ∫ N N' and ∫ N: exact on every cell with straight edges, facets too if they are plane.
 [[nodiscard]] std::span<const QuadraturePoint> mass_rule(CellShape shape);
-/// The rule that integrates products of two gradients of shape functions on straight cells.
+/// The rule for ∫ ∇N ∇N': full integration, exact on affine cells. Tetrahedra 1 and 4 points, hexahedra 8 and 27, wedges 6
+/// and 21. @throws std::logic_error  for a facet
 [[nodiscard]] std::span<const QuadraturePoint> stiffness_rule(CellShape shape);
 
 /// Coordinates of a cell's nodes, 3 x n, in the order of the cell.

@@ -168,7 +168,7 @@ DisplacementFunctional tilt_against_table(const Mesh& mesh, const TiltOutput& ou
 
 PlacedMachine place(const MachineModel& model) {
   PlacedMachine placed;
-  placed.mesh = std::visit([](const mesh::KneeMill& mill) { return mesh::build_knee_mill(mill); }, model.mesh);
+  placed.mesh = build_mesh(model.mesh);
   const Mesh& mesh = placed.mesh;
   placed.materials = place_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);
@@ -176,6 +176,13 @@ PlacedMachine place(const MachineModel& model) {
   for (const SupportEntry& s : model.supports) {
     must_be_one_of(s.where, "surface", s.support.surface, outer_surfaces(mesh));
     placed.supports.push_back(s.support);
+  }
+  for (const JointEntry& j : model.joints) {
+    must_be_one_of(j.where, "joint", j.mechanics.joint, joint_names(mesh));
+    const bool again = std::any_of(placed.joints.begin(), placed.joints.end(),
+                                   [&](const auto& other) { return other.joint == j.mechanics.joint; });
+    if (again) throw InputError(j.where, fmt::format("joint '{}' stands under `joints` twice", j.mechanics.joint));
+    placed.joints.push_back(j.mechanics);
   }
   for (const Sensor& sensor : model.sensors) {
     std::vector<std::pair<int, double>> weights;
@@ -201,9 +208,10 @@ PlacedMachine place(const MachineModel& model) {
 Machine build(const MachineModel& model, PlacedMachine placed) {
   solver::Elasticity elasticity = [&] {
     try {
-      return solver::Elasticity(placed.mesh, placed.materials, placed.supports);
+      return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints);
     } catch (const InputError& e) {  // it knows what is wrong, not where that stands
-      throw InputError(model.supports.front().where, e.what());
+      const bool about_supports = std::string_view(e.what()).starts_with("supports");
+      throw InputError(about_supports ? model.supports.front().where : model.where, e.what());
     }
   }();
   Machine machine{std::move(placed), std::move(elasticity), {}};
@@ -236,12 +244,33 @@ Machine build(const MachineModel& model, PlacedMachine placed) {
   return machine;
 }
 
+namespace {
+
+/// Channels of what the cyclogram uses beside the spindle speed.
+void add_feeds_and_cutting_power(Record& record, const Cyclogram& cyclogram) {
+  const auto add = [&](const char* name, const char* unit, const auto& of_drive) {
+    const auto& sections = cyclogram.sections;
+    if (std::none_of(sections.begin(), sections.end(), [&](const auto& s) { return of_drive(s.drive) != 0.0; })) return;
+    Channel channel{name, unit, {}};
+    for (double t_s : record.time_s) channel.values.push_back(of_drive(cyclogram.drive(t_s)));
+    record.channels.push_back(std::move(channel));
+  };
+  constexpr double kMmMin_per_m_s = 60e3;
+  add("feed_x", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[0]; });
+  add("feed_y", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[1]; });
+  add("feed_z", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[2]; });
+  add("cutting_power", "W", [](const Drive& d) { return d.cutting_power_W; });
+}
+
+}  // namespace
+
 Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
                  double reference_K) {
   Record record{.source = cyclogram.name, .time_s = run.time_s, .channels = {}};
   Channel speed{"speed", "rpm", {}};
   for (double t_s : run.time_s) speed.values.push_back(cyclogram.speed_rpm(t_s));
   record.channels.push_back(std::move(speed));
+  add_feeds_and_cutting_power(record, cyclogram);
   for (std::size_t i = 0; i < outputs.name.size(); ++i) {
     const auto row = run.outputs.row(static_cast<Eigen::Index>(i));
     Channel channel{outputs.name[i], "", {}};

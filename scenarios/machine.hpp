@@ -17,6 +17,7 @@ struct PlacedMachine {
   solver::RegionMaterials materials;
   effects::HeatBalance balance;
   std::vector<solver::Support> supports;
+  std::vector<solver::JointMechanics> joints;
   /// Weights of each thermometer on the unknowns; empty for one that reads the hall.
   std::vector<std::vector<std::pair<int, double>>> sensor_weights;
   std::vector<solver::DisplacementFunctional> functionals;  ///< displacements, then tilts
@@ -35,7 +36,7 @@ struct Machine {
 };
 [[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed);
 
-/// A trajectory as a record: speed_rpm, sensors in degC, displacements in um, tilts in urad.
+/// A trajectory as a record: speed_rpm, feeds in mm/min and cutting power in W where the cyclogram uses them, sensors in degC, displacements in um, tilts in urad.
 [[nodiscard]] Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
                                double reference_K);
 

@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <set>
 
-#include "base/quantity.hpp"
+#include "scenarios/read_cyclogram.hpp"
+#include "scenarios/read_hall.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -51,18 +52,6 @@ TiltOutput read_tilt(const ConfigMap& in) {
   return t;
 }
 
-SupportEntry read_support(const ConfigMap& in) {
-  SupportEntry entry{{in.text("surface"), {false, false, false}}, in.where("surface")};
-  for (const std::string& direction : in.texts("fixed")) {
-    if (direction != "x" && direction != "y" && direction != "z") {
-      in.fail("fixed", fmt::format("'{}' is no direction; a list of x, y, z is wanted", direction));
-    }
-    entry.support.fixed[direction[0] - 'x'] = true;
-  }
-  in.reject_unknown_keys();
-  return entry;
-}
-
 /// `materials:` maps each region to a name of the library or to a map of values.
 std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
   std::vector<std::string> names;
@@ -80,45 +69,14 @@ std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
   return entries;
 }
 
-TimeSeries read_hall(const ConfigMap& in, double reference_K) {
-  TimeSeries hall;
-  for (const std::vector<double>& row : in.rows("hall", {"s", "degC"})) {
-    if (!hall.time_s.empty() && !(row[0] > hall.time_s.back())) in.fail("hall", "times must increase from row to row");
-    if (!(row[1] >= 200.0 && row[1] <= 400.0)) {
-      in.fail("hall",
-              fmt::format("{:.0f} degC is no hall temperature; -73 to 127 degC is allowed", row[1] - kZeroCelsius_K));
-    }
-    hall.time_s.push_back(row[0]);
-    hall.value.push_back(row[1] - reference_K);
-  }
-  return hall;
-}
-
-Cyclogram read_cyclogram(const ConfigMap& in, const std::string& name) {
-  if (!is_name(name)) in.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", name));
-  Cyclogram cyclogram{.name = name, .sections = {}};
-  for (const std::vector<double>& row : in.rows(name, {"s", "rpm"})) {
-    if (!(row[0] >= 1e-3))
-      in.fail(name, fmt::format("a section of {:g} s; a duration above zero is wanted, 1 ms or more", row[0]));
-    if (!(row[1] >= 0.0 && row[1] <= 1e6))
-      in.fail(name, fmt::format("a speed of {:g} rpm; 0 to 1e6 rpm is allowed", row[1]));
-    cyclogram.sections.push_back({row[0], {.speed_rpm = row[1]}});
-  }
-  return cyclogram;
-}
-
-MeshRecipe read_mesh_recipe(const ConfigMap& in) {
-  (void)in.choice("generator", {"knee_mill"});
-  MeshRecipe recipe = mesh::read_knee_mill(in);
-  in.reject_unknown_keys();
-  return recipe;
-}
-
 void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
-  std::set<std::string> names = {"speed", "time"};  // columns that every record has
+  std::set<std::string> names = {"speed",  "time",   "feed_x",  // columns that records have beside these
+                                 "feed_y", "feed_z", "cutting_power"};
   const auto add = [&](const std::string& name, const char* list) {
     if (!names.insert(name).second)
-      in.fail(list, fmt::format("the name '{}' is used twice, or is a column of every record", name));
+      in.fail(list,
+              fmt::format("the name '{}' is used twice, or is a column of every record (time, speed, feeds, cutting power)",
+                          name));
   };
   for (const Sensor& s : m.sensors) add(s.name, "sensors");
   for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
@@ -131,6 +89,7 @@ MachineModel read_machine(const ConfigMap& in) {
   m.mesh = read_mesh_recipe(in.map("machine"));
   m.materials = read_materials(in.map("materials"));
   for (const ConfigMap& entry : in.maps("supports")) m.supports.push_back(read_support(entry));
+  for (const ConfigMap& entry : in.maps("joints")) m.joints.push_back(read_joint(entry));
   for (const ConfigMap& entry : in.maps("effects")) m.effects.push_back(effects::read_effect(entry));
   for (const ConfigMap& entry : in.maps("sensors")) m.sensors.push_back(read_sensor(entry));
   for (const ConfigMap& entry : in.maps("displacements")) m.displacements.push_back(read_displacement(entry));
@@ -150,6 +109,7 @@ SolverSettings read_solver(const ConfigMap& in) {
   s.transient.absolute_tolerance_K = in.quantity("absolute_tolerance", "K", 1e-9, 1.0, s.transient.absolute_tolerance_K);
   s.output_interval_s = in.quantity("output_interval", "s", 1e-3, 1e6, s.output_interval_s);
   s.fields_every_s = in.quantity("fields_every", "s", 1e-3, 1e9, s.fields_every_s);
+  s.stresses = in.choice("stresses", {"true", "false"}, "false") == "true";
   in.reject_unknown_keys();
   return s;
 }

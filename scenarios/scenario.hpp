@@ -11,15 +11,12 @@
 #include "base/cyclogram.hpp"
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
-#include "mesh/knee_mill.hpp"
-#include "solver/elasticity.hpp"
+#include "scenarios/read_mechanics.hpp"
+#include "scenarios/read_mesh.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
 
 namespace driftwright::scenarios {
-
-/// How the mesh comes about. A new generator or reader is a new alternative.
-using MeshRecipe = std::variant<mesh::KneeMill>;
 
 /// A point on or in a region of the machine.
 struct PointOnRegion {
@@ -50,12 +47,6 @@ struct TiltOutput {
   PointOnRegion from, to, table;
 };
 
-/// A support with where it stands in the file.
-struct SupportEntry {
-  solver::Support support;
-  Where where;
-};
-
 /// A region and the material it is made of.
 struct MaterialEntry {
   std::string region;
@@ -69,6 +60,7 @@ struct MachineModel {
   MeshRecipe mesh;
   std::vector<MaterialEntry> materials;
   std::vector<SupportEntry> supports;
+  std::vector<JointEntry> joints;  ///< mechanics of joints that are not tied
   std::vector<effects::Effect> effects;
   std::vector<Sensor> sensors;
   std::vector<DisplacementOutput> displacements;
@@ -81,6 +73,7 @@ struct SolverSettings {
   solver::TransientOptions transient;
   double output_interval_s = 60.0;
   double fields_every_s = 1800.0;
+  bool stresses = false;  ///< stresses beside the other fields
 };
 
 /// What is fitted and what it is judged by.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "mesh/shape.hpp"
 
 namespace driftwright::solver {
 
@@ -15,9 +16,17 @@ struct JointPoint {
       weight_b;          ///< shape functions; each sums to one, so that no heat is made or lost
   double area_m2 = 0.0;  ///< quadrature weight times area ratio
   double gap_m = 0.0;    ///< distance between the two points
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, of either sense; smoothed, see mesh/normals.hpp
+  double normal_error = 0.0;                         ///< see normal_error()
 };
 
 /// The quadrature points of a joint; the rule is exact for products of quadratic functions on straight facets.
 [[nodiscard]] std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint);
+
+/// A bound on how far a smoothed normal errs [rad], from its difference to the facet's own normal: the square of that for plane
+/// facets, whose own normals err by the angle between them while the mean is exact where the corners lie on a sphere; thrice
+/// that for curved ones, whose smoothed normals are hardly better than their own. Seen on uneven meshes of cylinders.
+[[nodiscard]] double normal_error(const Eigen::Vector3d& normal, const mesh::Jacobian& facet, mesh::CellShape shape);
 
 }  // namespace driftwright::solver

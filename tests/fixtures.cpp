@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <numbers>
+#include <span>
 
 #include "mesh/shape.hpp"
+#include "mesh/topology.hpp"
 
 namespace driftwright::fixtures {
 namespace {
@@ -36,12 +39,24 @@ int surface_index(Mesh& mesh, const std::string& name) {
   return mesh.surface(name);
 }
 
-/// Runs over the quadrature points of degree 5 of all cells.
+/// The finest rule there is. Not one of three points in a line on quadratic cells: the error of those is zero there.
+std::span<const mesh::QuadraturePoint> fine_rule(CellShape shape) {
+  switch (mesh::n_corners_of(shape)) {
+    case 8:
+      return mesh::quadrature(shape, 7);
+    case 6:
+      return mesh::mass_rule(CellShape::kWedge15);
+    default:
+      return mesh::quadrature(shape, mesh::edges_of(shape).size() == 4 ? 7 : 5);
+  }
+}
+
+/// Runs over the quadrature points of all cells.
 template <class Visit>
 void each_point(const Mesh& mesh, const mesh::Cells& cells, Visit visit) {
   for (int c = 0; c < cells.size(); ++c) {
     const auto x = mesh::cell_coords(mesh, cells.nodes(c));
-    for (const auto& q : mesh::quadrature(cells.shape[c], 5)) {
+    for (const auto& q : fine_rule(cells.shape[c])) {
       const mesh::ShapeValues s = mesh::shape_values(cells.shape[c], q.xi);
       const Eigen::Vector3d position = x * s.N.head(s.n).transpose();
       visit(c, s, position, q.weight * mesh::jacobian(s, x, cells.shape[c]).det);
@@ -52,7 +67,6 @@ void each_point(const Mesh& mesh, const mesh::Cells& cells, Visit visit) {
 }  // namespace
 
 void add_box(Mesh& mesh, const Box& box, const std::string& region, const std::string& prefix) {
-  const bool quadratic = box.shape == CellShape::kTet10;
   const Index3 last = {2 * box.n[0], 2 * box.n[1], 2 * box.n[2]};
   std::vector<int> id((last[0] + 1) * (last[1] + 1) * (last[2] + 1), -1);
   std::vector<Eigen::Vector3d> added;
@@ -71,41 +85,53 @@ void add_box(Mesh& mesh, const Box& box, const std::string& region, const std::s
   mesh.regions.push_back(region);
   for (const char* face : {"x0", "x1", "y0", "y1", "z0", "z1"}) surface_index(mesh, prefix + face);
 
-  const auto add_cell = [&](const std::array<Index3, 4>& corner) {
-    std::vector<int> nodes;
-    for (const Index3& c : corner) nodes.push_back(node(c));
-    if (quadratic) {
-      for (const auto& [a, b] : std::array<std::array<int, 2>, 6>{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}}) {
-        nodes.push_back(node(middle(corner[a], corner[b])));
-      }
+  const auto add_cell = [&](const std::vector<Index3>& corner) {
+    std::vector<Index3> at = corner;
+    if (mesh::is_quadratic(box.shape)) {
+      for (const auto& [p, q] : mesh::edges_of(box.shape)) at.push_back(middle(corner[p], corner[q]));
     }
+    std::vector<int> nodes;
+    for (const Index3& g : at) nodes.push_back(node(g));
     mesh.cells.add(box.shape, nodes, region_index);
-    for (const Index3& f : {Index3{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}) {
-      const Index3 &a = corner[f[0]], &b = corner[f[1]], &c = corner[f[2]];
+    for (const mesh::Face& face : mesh::faces_of(box.shape)) {
       for (int d = 0; d < 3; ++d) {
-        if (a[d] != b[d] || b[d] != c[d] || (a[d] != 0 && a[d] != last[d])) continue;
-        std::vector<int> facet = {node(a), node(b), node(c)};
-        if (quadratic) facet.insert(facet.end(), {node(middle(a, b)), node(middle(b, c)), node(middle(c, a))});
-        const std::string name = prefix + "xyz"[d] + (a[d] == 0 ? "0" : "1");
-        mesh.facets.add(quadratic ? CellShape::kTri6 : CellShape::kTri3, facet, surface_index(mesh, name));
+        const int level = at[face.node[0]][d];
+        bool on_face = level == 0 || level == last[d];
+        std::vector<int> facet;
+        for (int i = 0; i < mesh::n_nodes_of(face.shape); ++i) {
+          on_face = on_face && at[face.node[i]][d] == level;
+          facet.push_back(nodes[face.node[i]]);
+        }
+        if (!on_face) continue;
+        mesh.facets.add(face.shape, facet, surface_index(mesh, prefix + "xyz"[d] + (level == 0 ? "0" : "1")));
       }
     }
   };
+  const auto add_brick = [&](const Index3& low) {
+    const auto at = [&](int i, int j, int k) -> Index3 { return {low[0] + 2 * i, low[1] + 2 * j, low[2] + 2 * k}; };
+    switch (mesh::n_corners_of(box.shape)) {
+      case 8:
+        add_cell({at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0), at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)});
+        return;
+      case 6:
+        add_cell({at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 0, 1), at(1, 0, 1), at(1, 1, 1)});
+        add_cell({at(0, 0, 0), at(1, 1, 0), at(0, 1, 0), at(0, 0, 1), at(1, 1, 1), at(0, 1, 1)});
+        return;
+    }
+    Index3 axes = {0, 1, 2};
+    do {  // each path along the edges from corner 000 to corner 111 is a tetrahedron
+      std::vector<Index3> corner(4, low);
+      for (int step = 0; step < 3; ++step) {
+        corner[step + 1] = corner[step];
+        corner[step + 1][axes[step]] += 2;
+      }
+      if (sign_of(axes) < 0) std::swap(corner[1], corner[2]);
+      add_cell(corner);
+    } while (std::next_permutation(axes.begin(), axes.end()));
+  };
   for (int i = 0; i < box.n[0]; ++i) {
     for (int j = 0; j < box.n[1]; ++j) {
-      for (int k = 0; k < box.n[2]; ++k) {
-        Index3 axes = {0, 1, 2};
-        do {  // each path along the edges from corner 000 to corner 111 is a tetrahedron
-          std::array<Index3, 4> corner;
-          corner[0] = {2 * i, 2 * j, 2 * k};
-          for (int step = 0; step < 3; ++step) {
-            corner[step + 1] = corner[step];
-            corner[step + 1][axes[step]] += 2;
-          }
-          if (sign_of(axes) < 0) std::swap(corner[1], corner[2]);
-          add_cell(corner);
-        } while (std::next_permutation(axes.begin(), axes.end()));
-      }
+      for (int k = 0; k < box.n[2]; ++k) add_brick({2 * i, 2 * j, 2 * k});
     }
   }
   mesh.coords.conservativeResize(3, first + static_cast<Eigen::Index>(added.size()));
@@ -126,6 +152,37 @@ Mesh two_boxes(const Box& a, const Box& b, const std::string& side_a, const std:
   add_box(mesh, b, "b", "b.");
   mesh.joints.push_back({"a/b", side_a, side_b});
   return mesh;
+}
+
+void map_nodes(Mesh& mesh, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& map) {
+  for (auto x : mesh.coords.colwise()) x = map(x);
+}
+
+void straighten_edges(Mesh& mesh) {
+  for (int c = 0; c < mesh.cells.size(); ++c) {
+    const CellShape shape = mesh.cells.shape[c];
+    if (!mesh::is_quadratic(shape)) continue;
+    const auto nodes = mesh.cells.nodes(c);
+    int middle_node = mesh::n_corners_of(shape);
+    for (const auto& [a, b] : mesh::edges_of(shape)) {
+      mesh.coords.col(nodes[middle_node++]) = 0.5 * (mesh.coords.col(nodes[a]) + mesh.coords.col(nodes[b]));
+    }
+  }
+}
+
+void merge_nodes(Mesh& mesh) {
+  std::map<std::array<long, 3>, int> number_at;
+  std::vector<int> number(mesh.n_nodes());
+  Eigen::Matrix3Xd coords(3, mesh.n_nodes());
+  for (int i = 0; i < mesh.n_nodes(); ++i) {
+    std::array<long, 3> key{};
+    for (int d = 0; d < 3; ++d) key[d] = std::lround(mesh.coords(d, i) * 1e9);
+    number[i] = number_at.try_emplace(key, static_cast<int>(number_at.size())).first->second;
+    coords.col(number[i]) = mesh.coords.col(i);
+  }
+  mesh.coords = coords.leftCols(static_cast<Eigen::Index>(number_at.size()));
+  for (int& n : mesh.cells.node) n = number[n];
+  for (int& n : mesh.facets.node) n = number[n];
 }
 
 void add_point_surface(Mesh& mesh, const std::string& name, int node) {

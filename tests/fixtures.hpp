@@ -1,5 +1,5 @@
 #pragma once
-// Small bodies for tests, without a mesher: boxes of tetrahedra with named faces, fields on them, and error norms.
+// Small bodies for tests, without a mesher: boxes of cells with named faces, fields on them, and error norms.
 
 #include <Eigen/Core>
 #include <array>
@@ -13,12 +13,13 @@
 
 namespace driftwright::fixtures {
 
-/// A box from `low` to `low + size`, of n[0] x n[1] x n[2] hexahedra, each divided into six tetrahedra (Kuhn).
+/// A box from `low` to `low + size`, of n[0] x n[1] x n[2] bricks: hexahedra, pairs of wedges (triangles in the planes z =
+/// constant, split along the diagonal of x and y) or six tetrahedra (Kuhn; the same diagonals).
 struct Box {
   Eigen::Vector3d low = Eigen::Vector3d::Zero();
   Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
   std::array<int, 3> n = {1, 1, 1};
-  mesh::CellShape shape = mesh::CellShape::kTet10;  ///< kTet4 or kTet10
+  mesh::CellShape shape = mesh::CellShape::kTet10;  ///< any cell
 };
 
 /// Adds a box as a part of its own: region `region`, surfaces `prefix` + x0, x1, y0, y1, z0, z1. Parts share no nodes.
@@ -30,6 +31,13 @@ void add_box(mesh::Mesh& mesh, const Box& box, const std::string& region, const 
 /// Two parts "a" and "b" with the joint "a/b" between the surfaces side_a and side_b, such as "a.x1" and "b.x0".
 [[nodiscard]] mesh::Mesh two_boxes(const Box& a, const Box& b, const std::string& side_a, const std::string& side_b);
 
+/// Moves every node, mid-side nodes too: x becomes map(x). Quadratic cells follow with curved edges.
+void map_nodes(mesh::Mesh& mesh, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& map);
+/// Puts the mid-side nodes of all cells into the middle of their edges.
+void straighten_edges(mesh::Mesh& mesh);
+/// Makes one node of those that lie within 1e-9 m of each other: parts that share faces become one body.
+void merge_nodes(mesh::Mesh& mesh);
+
 /// A surface for supports alone that consists of one node.
 void add_point_surface(mesh::Mesh& mesh, const std::string& name, int node);
 
@@ -40,11 +48,11 @@ using Field = std::function<double(const Eigen::Vector3d&)>;
 
 /// Values of a field at the nodes.
 [[nodiscard]] Eigen::VectorXd at_nodes(const mesh::Mesh& mesh, const Field& field);
-/// ∫ field N_i dV by the rule of degree 5.
+/// ∫ field N_i dV by a rule of degree 5 or more.
 [[nodiscard]] Eigen::VectorXd volume_load(const mesh::Mesh& mesh, const Field& field);
 /// ∫ N_i dA over a surface.
 [[nodiscard]] Eigen::VectorXd surface_load(const mesh::Mesh& mesh, const std::string& surface);
-/// sqrt(∫ (field of nodal values - exact)^2 dV) by the rule of degree 5.
+/// sqrt(∫ (field of nodal values - exact)^2 dV) by a rule of degree 5 or more.
 [[nodiscard]] double l2_error(const mesh::Mesh& mesh, const Eigen::VectorXd& nodal, const Field& exact);
 /// Order between the last two of errors that belong to mesh widths h.
 [[nodiscard]] double observed_order(const std::vector<double>& h, const std::vector<double>& error);

@@ -113,6 +113,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Pair{"FineOnCoarseTet10", slab_a(5, CellShape::kTet10), slab_b(3, CellShape::kTet10), 1e-3},
                       Pair{"CoarseOnFineTet10", slab_a(2, CellShape::kTet10), slab_b(5, CellShape::kTet10), 1e-3},
                       Pair{"MatchingTet4", slab_a(3, CellShape::kTet4), slab_b(3, CellShape::kTet4), 1e-1},
+                      Pair{"MatchingHex20", slab_a(2, CellShape::kHex20), slab_b(2, CellShape::kHex20), 1e-9},
+                      Pair{"MatchingHex8", slab_a(3, CellShape::kHex8), slab_b(3, CellShape::kHex8), 1e-1},
+                      Pair{"FineHex20OnCoarseTet10", slab_a(4, CellShape::kHex20), slab_b(3, CellShape::kTet10), 1e-3},
+                      Pair{"CoarseWedge15OnFineHex20", slab_a(2, CellShape::kWedge15), slab_b(5, CellShape::kHex20), 1e-3},
                       Pair{"Tet4OnTet10", slab_a(4, CellShape::kTet4), slab_b(3, CellShape::kTet10), 1e-1}),
     [](const auto& test) { return std::string(test.param.name); });
 

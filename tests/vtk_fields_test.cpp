@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <vtkCell.h>
 #include <vtkCellData.h>
+#include <vtkCellType.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
@@ -17,6 +19,8 @@
 #include <array>
 #include <fstream>
 #include <sstream>
+
+#include "mesh/topology.hpp"
 
 namespace driftwright::output {
 namespace {
@@ -86,6 +90,60 @@ TEST_F(VtkFieldsTest, FieldsReadBackAsWritten) {
     EXPECT_FLOAT_EQ(temperature->GetTuple1(n), temperature_degC_[n]);  // 32 bits in the file
     for (int i = 0; i < 3; ++i) EXPECT_FLOAT_EQ(displacement->GetComponent(n, i), displacement_um_(i, n));
   }
+}
+
+TEST_F(VtkFieldsTest, EveryCellIsWrittenAsItsVtkTypeWithItsNodesInOrder) {
+  const std::vector<std::pair<mesh::CellShape, int>> shapes = {
+      {mesh::CellShape::kHex8, VTK_HEXAHEDRON}, {mesh::CellShape::kHex20, VTK_QUADRATIC_HEXAHEDRON},
+      {mesh::CellShape::kWedge6, VTK_WEDGE},    {mesh::CellShape::kWedge15, VTK_QUADRATIC_WEDGE},
+      {mesh::CellShape::kTet4, VTK_TETRA},      {mesh::CellShape::kTet10, VTK_QUADRATIC_TETRA}};
+  mesh::Mesh m;
+  m.regions = {"body"};
+  for (const auto& [shape, type] : shapes) {
+    const auto xi = mesh::reference_nodes(shape);
+    std::vector<int> nodes;
+    for (const Eigen::Vector3d& x : xi) {
+      nodes.push_back(m.n_nodes());
+      m.coords.conservativeResize(3, m.n_nodes() + 1);
+      m.coords.rightCols<1>() = x;
+    }
+    m.cells.add(shape, nodes, 0);
+  }
+  ResultsFolder folder(out_, false, {});
+  const fs::path file = folder.path("mesh.vtu");
+  write_mesh(m, {}, file);
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  for (int c = 0; c < m.cells.size(); ++c) {
+    EXPECT_EQ(reader->GetOutput()->GetCellType(c), shapes[c].second);
+    vtkCell* cell = reader->GetOutput()->GetCell(c);
+    ASSERT_EQ(cell->GetNumberOfPoints(), static_cast<int>(m.cells.nodes(c).size()));
+    for (int i = 0; i < cell->GetNumberOfPoints(); ++i) EXPECT_EQ(cell->GetPointId(i), m.cells.nodes(c)[i]);
+  }
+}
+
+TEST_F(VtkFieldsTest, StressesAreWrittenIfGivenWithNamedComponents) {
+  ResultsFolder folder(out_, false, {});
+  FieldSeries series(folder, mesh_);
+  StressField stress{Eigen::Matrix<double, 6, Eigen::Dynamic>::Random(6, 11), Eigen::VectorXd::LinSpaced(11, 0.0, 5.0)};
+  series.write(0.0, temperature_degC_, displacement_um_, &stress);
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(folder.path("fields/fields_0000.vtu").c_str());
+  reader->Update();
+  vtkDataArray* components = reader->GetOutput()->GetPointData()->GetArray("stress_MPa");
+  vtkDataArray* von_mises = reader->GetOutput()->GetPointData()->GetArray("von_mises_MPa");
+  ASSERT_TRUE(components != nullptr && von_mises != nullptr);
+  ASSERT_EQ(components->GetNumberOfComponents(), 6);
+  EXPECT_STREQ(components->GetComponentName(0), "XX");
+  EXPECT_STREQ(components->GetComponentName(4), "YZ");
+  EXPECT_STREQ(components->GetComponentName(5), "XZ");
+  for (int n = 0; n < 11; ++n) {
+    for (int i = 0; i < 6; ++i) EXPECT_FLOAT_EQ(components->GetComponent(n, i), stress.stress_MPa(i, n));
+    EXPECT_FLOAT_EQ(von_mises->GetTuple1(n), stress.von_mises_MPa[n]);
+  }
+  stress.von_mises_MPa.resize(10);
+  EXPECT_THROW(series.write(1.0, temperature_degC_, displacement_um_, &stress), std::logic_error);
 }
 
 TEST_F(VtkFieldsTest, RegionsKeepTheirNamesAndFilesSayTheirTimeAndOrigin) {
