@@ -61,9 +61,22 @@ solver::RegionMaterials place_materials(const MachineModel& model, const Mesh& m
   return materials;
 }
 
-void check_effects(const MachineModel& model, const Mesh& mesh, const effects::HeatBalance& balance) {
+/// Lumped nodes and the hall. @throws InputError  where two effects make a node of the same name, or one called hall
+std::vector<std::string> node_names(const MachineModel& model) {
   std::vector<std::string> nodes = {effects::kHallName};
-  for (const effects::LumpedNode& n : balance.nodes) nodes.push_back(n.name);
+  for (const effects::Effect& e : model.effects) {
+    for (const effects::LumpedNode& n : effects::heat_balance({e}).nodes) {
+      if (std::find(nodes.begin(), nodes.end(), n.name) != nodes.end()) {
+        throw InputError(e.where, fmt::format("there is a lumped node '{}' already; each wants a name of its own", n.name));
+      }
+      nodes.push_back(n.name);
+    }
+  }
+  return nodes;
+}
+
+void check_effects(const MachineModel& model, const Mesh& mesh, const effects::HeatBalance& balance) {
+  const std::vector<std::string> nodes = node_names(model);
   const auto must_exist = [&](const Where& where, effects::BodyKind kind, const std::string& name) {
     switch (kind) {
       case effects::BodyKind::kRegion:
@@ -77,6 +90,8 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   for (const effects::Effect& e : model.effects) {
     if (e.place_kind == effects::Place::kJoint) {
       must_be_one_of(e.where, "joint", e.place, joint_names(mesh));
+    } else if (e.place_kind == effects::Place::kNode && e.place == effects::kHallName) {
+      throw InputError(e.where, "the hall is no lumped node; nothing heats or holds it");
     } else {
       must_exist(e.where, e.body().kind, e.body().name);
     }
