@@ -10,6 +10,7 @@
 #include "base/quantity.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/shape.hpp"
+#include "scenarios/ways_out.hpp"
 #include "solver/steady_state.hpp"
 
 namespace driftwright::scenarios {
@@ -186,6 +187,7 @@ PlacedMachine place(const MachineModel& model) {
   placed.materials = place_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);
   check_effects(model, mesh, placed.balance);
+  require_ways_out(mesh, placed.balance, model.where);
   for (const SupportEntry& s : model.supports) {
     must_be_one_of(s.where, "surface", s.support.surface, outer_surfaces(mesh));
     placed.supports.push_back(s.support);
