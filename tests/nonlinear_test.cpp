@@ -36,7 +36,6 @@ void note(const std::string& key, double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2e", value);
   ::testing::Test::RecordProperty(key, text);
-  std::printf("             %s = %s\n", key.c_str(), text);
 }
 
 // --- radiation --------------------------------------------------------------------------------------------------
