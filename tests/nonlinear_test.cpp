@@ -1,10 +1,12 @@
 // Systems whose laws look at temperatures: radiation, free convection, oil that thins, properties over temperature; against
 // closed forms, against their own steady state, and whether heat balances.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "effects/bearing_formulas.hpp"
 #include "effects/film_formulas.hpp"
 #include "solver/steady_state.hpp"
@@ -34,7 +36,6 @@ void note(const std::string& key, double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2e", value);
   ::testing::Test::RecordProperty(key, text);
-  std::printf("             %s = %s\n", key.c_str(), text);
 }
 
 // --- radiation --------------------------------------------------------------------------------------------------
@@ -156,6 +157,31 @@ TEST(Nonlinear, SteadyStateSolvesTheLawsOfASmallModel) {
   const Eigen::VectorXd theta = steady_state(system, {.drive = {.speed_rpm = 500}}, Eigen::VectorXd::Zero(system.size()));
   EXPECT_GT(theta[0], 3.0);
   EXPECT_NEAR(theta.mean(), low_K - 293.15, 1e-5);  // 0.7 W * 0.1 m / (1e7 W/(m K) 0.01 m^2) = 1 uK within the cube
+}
+
+TEST(Nonlinear, SteadyStateTakesShorterStepsWhereALawIsSteep) {
+  // θ = 100 exp(-θ / 5): whole steps without the law's slope (-2.2 at the solution) would swing between 0.2 K and 96 K.
+  effects::HeatBalance balance = fixtures::balance_of(
+      {"{type: node, node: a, capacity: 1 J/K}", "{type: link, node: a, to: hall, conductance: 1 W/K}"});
+  balance.heats.push_back(
+      {"steep", effects::node("a"),
+       effects::Law([](const effects::Inputs& u) { return 100.0 * std::exp(-(u.probe_K.at(0) - 293.15) / 5.0); },
+                    {effects::node("a")})});
+  const Eigen::VectorXd theta = steady_state(assemble_heat({}, {}, balance), {}, Eigen::VectorXd::Zero(1));
+  EXPECT_GT(theta[0], 10.0);
+  EXPECT_NEAR(theta[0], 100.0 * std::exp(-theta[0] / 5.0), 1e-8);  // 1e-10 of 50 K, the largest seen on the way
+}
+
+TEST(Nonlinear, ALawThatIsLeftForGoodIsNamedWhenTheRunGivesUp) {
+  // 20 kW into 4 kJ/K: after a minute or two the film is warmer than the 500 K up to which air is known.
+  const mesh::Mesh mesh = cube();
+  const FullSystem system =
+      assemble_heat(mesh, {fixtures::steel()},
+                    fixtures::balance_of({"{type: heat_source, region: body, power: 20 kW}",
+                                          "{type: natural_convection, surface: x1, orientation: vertical, length: 0.1 m}"}));
+  EXPECT_THAT(
+      [&] { (void)simulate(system, at_speed(7200, 0), kStillHall, {7200}, {}, Eigen::VectorXd::Zero(system.size())); },
+      ::testing::ThrowsMessage<SolveError>(::testing::HasSubstr("air temperature [K]")));
 }
 
 // --- properties over temperature --------------------------------------------------------------------------------
