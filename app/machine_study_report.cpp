@@ -190,6 +190,7 @@ output::Report study_report(const scenarios::Scenario& scenario, const scenarios
   }
   add(heat_plot(study.judged.trajectory, judged));
   add(heat_table(study.judged.trajectory));
+  add(inner_heat_table(study.judged.trajectory));
   if (!study.judged.trajectory.overshoots.empty()) add(overshoot_table(study.judged.trajectory, machine));
   for (const std::string& d : study.displacements) {
     if (d != settings.target) add(residual_plot(d, scenario, study));

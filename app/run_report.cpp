@@ -24,7 +24,7 @@ std::string words(FlowKind kind) {
     case FlowKind::kPrescribed:
       return "prescribed temperature";
     case FlowKind::kInternal:
-      return "within the machine";
+      break;
   }
   return "";
 }
@@ -81,29 +81,38 @@ Plot channels_plot(const std::string& title, const std::string& y_label, const R
 Table heat_table(const solver::Trajectory& run) {
   const auto last = run.heat_J.cols() - 1;
   const double duration_s = run.time_s.back();
-  Table table{
-      .caption = fmt::format("Mean heat flow over the cyclogram. In = stored + out to {:.0e}. Flows within the machine "
-                             "(> 0 out of the surface, or from the first part of a joint to the second) count in no "
-                             "sum.",
-                             std::max(1e-16, run.energy_gap())),
-      .headers = {"flow", "to or from", "into the machine [W]", "out of it [W]", "heat [kJ]"},
-      .rows = {}};
+  Table table{.caption = fmt::format("Mean heat flow over the cyclogram. In = stored + out to {:.0e}.",
+                                     std::max(1e-16, run.energy_gap())),
+              .headers = {"flow", "to or from", "into the machine [W]", "out of it [W]", "heat [kJ]"},
+              .rows = {}};
   double in_W = 0.0, lost_W = 0.0;
-  for (FlowKind kind : {FlowKind::kSource, FlowKind::kSurrounding, FlowKind::kPrescribed, FlowKind::kInternal}) {
-    if (kind == FlowKind::kInternal) {
-      table.rows.push_back({"sum", "", fmt::format("{:.1f}", in_W), fmt::format("{:.1f}", lost_W), ""});
-      table.rows.push_back({"stored in the machine", "", "", fmt::format("{:.1f}", run.stored_J[last] / duration_s),
-                            fmt::format("{:.1f}", 1e-3 * run.stored_J[last])});
-    }
+  for (FlowKind kind : {FlowKind::kSource, FlowKind::kSurrounding, FlowKind::kPrescribed}) {
     for (std::size_t j = 0; j < run.flows.size(); ++j) {
       if (run.flows[j].kind != kind) continue;
       const double heat_J = run.heat_J(static_cast<Eigen::Index>(j), last), mean_W = heat_J / duration_s;
-      const bool into = kind == FlowKind::kInternal ? false : mean_W > 0.0;
-      (into ? in_W : lost_W) += kind == FlowKind::kInternal ? 0.0 : std::abs(mean_W);
-      const double out_W = kind == FlowKind::kInternal ? mean_W : -mean_W;
-      table.rows.push_back({run.flows[j].name, words(kind), into ? fmt::format("{:.1f}", mean_W) : "",
-                            into ? "" : fmt::format("{:.1f}", out_W), fmt::format("{:.1f}", 1e-3 * heat_J)});
+      (mean_W > 0.0 ? in_W : lost_W) += std::abs(mean_W);
+      table.rows.push_back({run.flows[j].name, words(kind), mean_W > 0.0 ? fmt::format("{:.1f}", mean_W) : "",
+                            mean_W > 0.0 ? "" : fmt::format("{:.1f}", -mean_W), fmt::format("{:.1f}", 1e-3 * heat_J)});
     }
+  }
+  table.rows.push_back({"sum", "", fmt::format("{:.1f}", in_W), fmt::format("{:.1f}", lost_W), ""});
+  table.rows.push_back({"stored in the machine", "", "", fmt::format("{:.1f}", run.stored_J[last] / duration_s),
+                        fmt::format("{:.1f}", 1e-3 * run.stored_J[last])});
+  return table;
+}
+
+Table inner_heat_table(const solver::Trajectory& run) {
+  const auto last = run.heat_J.cols() - 1;
+  Table table{.caption =
+                  "Heat that flows within the machine: > 0 out of the surface or body into the lumped node, or from the "
+                  "first part of a joint to the second.",
+              .headers = {"flow", "mean [W]", "heat [kJ]"},
+              .rows = {}};
+  for (std::size_t j = 0; j < run.flows.size(); ++j) {
+    if (run.flows[j].kind != FlowKind::kInternal) continue;
+    const double heat_J = run.heat_J(static_cast<Eigen::Index>(j), last);
+    table.rows.push_back(
+        {run.flows[j].name, fmt::format("{:.1f}", heat_J / run.time_s.back()), fmt::format("{:.1f}", 1e-3 * heat_J)});
   }
   return table;
 }
@@ -175,6 +184,7 @@ output::Report simulation_report(const scenarios::Scenario& scenario, const scen
     add_channels("Temperatures", "temperature [degC]", "degC");
     add(heat_plot(runs[i].trajectory, *cyclograms[i]));
     add(heat_table(runs[i].trajectory));
+    add(inner_heat_table(runs[i].trajectory));
     if (!runs[i].trajectory.overshoots.empty()) add(overshoot_table(runs[i].trajectory, machine));
   }
   return report;

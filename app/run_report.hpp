@@ -16,8 +16,10 @@ namespace driftwright::app {
 [[nodiscard]] output::Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
                                          const std::vector<std::string>& names, const Cyclogram& cyclogram);
 
-/// Who heats, who cools: mean power and heat of each flow across the machine's boundary, and of flows within it.
+/// Who heats, who cools: mean power and heat of each flow across the machine's boundary.
 [[nodiscard]] output::Table heat_table(const solver::Trajectory& run);
+/// The same of the flows within it.
+[[nodiscard]] output::Table inner_heat_table(const solver::Trajectory& run);
 /// The same over time: the eight largest flows across the boundary, and what is stored.
 [[nodiscard]] output::Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram);
 

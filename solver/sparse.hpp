@@ -32,8 +32,8 @@ void scatter_add(SparseRow& a, std::span<const int> dofs, const Eigen::Ref<const
 /// Number of the connected set each of n unknowns belongs to, where each clique connects its members.
 [[nodiscard]] std::vector<int> connected_sets(int n, const Cliques& cliques);
 
-/// Loops of fewer entries run on one core: they last some 50 us, and waking the others costs as much, far more when busy.
-inline constexpr int kWorthThreads = 100000;
+/// Loops of fewer entries run on one core: they last some 0.2 ms, and on a busy machine waiting for the others costs more.
+inline constexpr int kWorthThreads = 400000;
 
 /// y = A x on all cores.
 void multiply(const SparseRow& a, const double* x, double* y);
