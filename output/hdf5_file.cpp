@@ -107,6 +107,9 @@ struct Hdf5File::Handle {
 };
 
 Hdf5File::Hdf5File(std::filesystem::path file) : path_(std::move(file)) {
+  // After a full disk a file cannot be closed, and HDF5 would print about it when the program ends. Here every identifier
+  // is closed anyway. (Fails when it is set already.)
+  H5dont_atexit();
   const QuietErrors quiet;
   const Id how(checked(H5Pcreate(H5P_FILE_CREATE), path_), H5Pclose);
   check(H5Pset_obj_track_times(how, false), path_);  // of the top group

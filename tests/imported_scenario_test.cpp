@@ -12,7 +12,9 @@
 namespace driftwright {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// Abaqus text of a mesh in mm: element 100 + c, node 10 + n, one ELSET a region.
 std::string inp_text(const mesh::Mesh& m) {
@@ -110,6 +112,33 @@ TEST(ImportedScenario, ReadsTheMeshThatTheProgramWrote) {
   ASSERT_EQ(again.exit_code, 0) << again.output;
   EXPECT_EQ(again.output.substr(0, again.output.find("written to")),
             first.output.substr(0, first.output.find("written to")));
+}
+
+TEST(ImportedScenario, FieldsFormatChoosesTheFilesAndTheTerminalNamesTheOneToOpen) {
+  const auto folder = write_scenario("fields_format", kScenario, inp_text(machine_mesh()));
+  const std::string solver = "solver: {output_interval: 100 h}";
+  const auto run = [&](const std::string& name, const std::string& settings) {
+    std::string text = kScenario;
+    text.replace(text.find(solver), solver.size(), "solver: {" + settings + "}");
+    std::ofstream(folder / (name + ".yaml")) << text;
+    const CommandOutcome outcome =
+        run_program("simulate " + (folder / (name + ".yaml")).string() + " -o " + (folder / name).string());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return outcome.output;
+  };
+  const char* const note = "note: fields at 201 times";
+  const std::string few = run("few", "output_interval: 100 h, fields_every: 100 h");
+  EXPECT_THAT(few, HasSubstr("fields in fields.pvd"));
+  EXPECT_THAT(few, Not(HasSubstr("note:")));
+  const std::string many = run("many", "output_interval: 5 h, fields_every: 5 h, fields_format: vtu");
+  EXPECT_THAT(many, AllOf(HasSubstr("fields in fields.pvd"), HasSubstr(note), HasSubstr("fields_format: xdmf")));
+  EXPECT_TRUE(std::filesystem::exists(folder / "many/fields/fields_0200.vtu"));
+  const std::string xdmf = run("xdmf", "output_interval: 5 h, fields_every: 5 h, fields_format: xdmf");
+  EXPECT_THAT(xdmf, AllOf(HasSubstr("fields in fields.xdmf"), Not(HasSubstr("note:"))));
+  EXPECT_THAT(read_text(folder / "xdmf/fields.xdmf"), HasSubstr("fields.h5:/times/0200/temperature_degC"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "xdmf/fields.pvd"));
+  EXPECT_LT(std::filesystem::file_size(folder / "xdmf/fields.h5"),
+            201 * std::filesystem::file_size(folder / "few/fields/fields_0000.vtu"));
 }
 
 struct Mistake {
