@@ -46,7 +46,7 @@ class QuietErrors {
   void* data_ = nullptr;
 };
 
-/// The innermost reason of the last HDF5 error; it holds the system's message where there is one.
+/// The innermost reason of the last HDF5 error; the system's message alone where it holds one.
 std::string last_reason() {
   std::string reason = "HDF5 gives no reason";
   H5Ewalk2(
@@ -56,7 +56,11 @@ std::string last_reason() {
         return 0;
       },
       &reason);
-  return reason;
+  const std::string before = "error message = '";
+  const std::size_t at = reason.find(before);
+  if (at == std::string::npos) return reason;
+  const std::size_t from = at + before.size();
+  return reason.substr(from, reason.find('\'', from) - from);
 }
 
 [[noreturn]] void fail(const std::filesystem::path& file) {

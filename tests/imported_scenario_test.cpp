@@ -89,6 +89,7 @@ TEST(ImportedScenario, IsCheckedMeshedAndSimulated) {
 
   const CommandOutcome outcome = run_program("simulate " + scenario + " -o " + (folder / "out").string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("fields in fields.pvd"), Not(HasSubstr("note:"))));  // few times, as vtu
   const Record record = read_record_csv((folder / "out" / "record.csv").string());
   // Steady: 20 W leave through 10 W/(m^2 K) on the outside, 4 x 0.03 + (2 x 0.01 + 2 x 0.02 + 0.02 + 0.01) = 0.21 m^2: 9.52 K on
   // its average. The head is warmer than the column, and iron conducts well: within 4 K of it.
@@ -126,19 +127,15 @@ TEST(ImportedScenario, FieldsFormatChoosesTheFilesAndTheTerminalNamesTheOneToOpe
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
     return outcome.output;
   };
-  const char* const note = "note: fields at 201 times";
-  const std::string few = run("few", "output_interval: 100 h, fields_every: 100 h");
-  EXPECT_THAT(few, HasSubstr("fields in fields.pvd"));
-  EXPECT_THAT(few, Not(HasSubstr("note:")));
-  const std::string many = run("many", "output_interval: 5 h, fields_every: 5 h, fields_format: vtu");
-  EXPECT_THAT(many, AllOf(HasSubstr("fields in fields.pvd"), HasSubstr(note), HasSubstr("fields_format: xdmf")));
-  EXPECT_TRUE(std::filesystem::exists(folder / "many/fields/fields_0200.vtu"));
-  const std::string xdmf = run("xdmf", "output_interval: 5 h, fields_every: 5 h, fields_format: xdmf");
+  const std::string vtu = run("vtu", "output_interval: 9 h, fields_every: 9 h, fields_format: vtu");
+  EXPECT_THAT(vtu, AllOf(HasSubstr("fields in fields.pvd"), HasSubstr("note: fields at 113 times"),
+                         HasSubstr("fields_format: xdmf")));
+  EXPECT_TRUE(std::filesystem::exists(folder / "vtu/fields/fields_0112.vtu"));
+  const std::string xdmf = run("xdmf", "output_interval: 9 h, fields_every: 9 h, fields_format: xdmf");
   EXPECT_THAT(xdmf, AllOf(HasSubstr("fields in fields.xdmf"), Not(HasSubstr("note:"))));
-  EXPECT_THAT(read_text(folder / "xdmf/fields.xdmf"), HasSubstr("fields.h5:/times/0200/temperature_degC"));
+  EXPECT_THAT(read_text(folder / "xdmf/fields.xdmf"), HasSubstr("fields.h5:/times/0112/temperature_degC"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "xdmf/fields.h5"));
   EXPECT_FALSE(std::filesystem::exists(folder / "xdmf/fields.pvd"));
-  EXPECT_LT(std::filesystem::file_size(folder / "xdmf/fields.h5"),
-            201 * std::filesystem::file_size(folder / "few/fields/fields_0000.vtu"));
 }
 
 struct Mistake {

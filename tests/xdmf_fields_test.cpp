@@ -20,7 +20,6 @@ namespace driftwright::output {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
@@ -279,12 +278,12 @@ TEST_F(XdmfFieldsTest, AFullDiskIsNoticed) {
   ResultsFolder folder(out_, false, {});
   fs::create_symlink("/dev/full", folder.path("fields.h5"));
   EXPECT_THAT([&] { FieldSeries(folder, mixed_, FieldsFormat::kXdmf); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("fields.h5"), HasSubstr("No space left"))));
+              ThrowsMessage<InputError>(HasSubstr("fields.h5': No space left on device")));
 }
 
 TEST_F(XdmfFieldsTest, AFileThatCannotBeMadeIsNamedWithTheReason) {
   EXPECT_THAT([&] { Hdf5File(out_ / "no_folder" / "a.h5"); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("no_folder/a.h5"), HasSubstr("No such file"))));
+              ThrowsMessage<InputError>(HasSubstr("no_folder/a.h5': No such file or directory")));
 }
 
 TEST_F(XdmfFieldsTest, LongArraysAreSplitIntoChunksAndRowsMustBeWhole) {
