@@ -101,7 +101,6 @@ void write_rows(hid_t file, const std::filesystem::path& path, const std::string
   Id data(checked(H5Dcreate2(file, dataset.c_str(), type, space, link, how, H5P_DEFAULT), path), H5Dclose);
   check(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path);
   check(data.close(), path);
-  check(H5Fflush(file, H5F_SCOPE_GLOBAL), path);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace driftwright::output {
 
 /// Rows of arrays in chunks of at most 65536, shuffled and deflated without loss. No time stamps: the same calls give the
-/// same bytes. The file is on the disk after each call; one that was not closed is still whole up to the last call.
+/// same bytes. One thread at a time.
 class Hdf5File {
  public:
   /// Makes the file, replacing one. @throws InputError  naming the file and the reason

@@ -3,12 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <sys/resource.h>
 #include <unistd.h>
 #include <vtkNew.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLDataParser.h>
 
 #include <array>
+#include <cmath>
+#include <csignal>
 #include <fstream>
 #include <sstream>
 
@@ -110,7 +113,7 @@ class XdmfFieldsTest : public ::testing::Test {
   /// What a reader of XDMF does: finds the array that a DataItem names and holds it against the stated form.
   Array follow(vtkXMLDataElement* parent) const {
     vtkXMLDataElement* item = parent->FindNestedElementWithName("DataItem");
-    EXPECT_NE(item, nullptr);
+    if (!item) throw std::runtime_error("no DataItem");
     EXPECT_STREQ(item->GetAttribute("Format"), "HDF");
     std::string place = item->GetCharacterData();
     const std::size_t colon = place.find(":/");
@@ -125,7 +128,7 @@ class XdmfFieldsTest : public ::testing::Test {
   }
   vtkXMLDataElement* domain() {
     parser_->SetFileName((out_ / "fields.xdmf").c_str());
-    EXPECT_EQ(parser_->Parse(), 1);
+    if (parser_->Parse() != 1) throw std::runtime_error("fields.xdmf is no XML");
     EXPECT_STREQ(parser_->GetRootElement()->GetName(), "Xdmf");
     return parser_->GetRootElement()->FindNestedElementWithName("Domain");
   }
@@ -139,7 +142,7 @@ class XdmfFieldsTest : public ::testing::Test {
   }
   static vtkXMLDataElement* attribute(vtkXMLDataElement* grid, const char* name, const char* type, const char* center) {
     vtkXMLDataElement* found = grid->FindNestedElementWithNameAndAttribute("Attribute", "Name", name);
-    EXPECT_NE(found, nullptr) << name;
+    if (!found) throw std::runtime_error(std::string("no attribute ") + name);
     EXPECT_STREQ(found->GetAttribute("AttributeType"), type);
     EXPECT_STREQ(found->GetAttribute("Center"), center);
     return found;
@@ -279,6 +282,42 @@ TEST_F(XdmfFieldsTest, AFullDiskIsNoticed) {
   fs::create_symlink("/dev/full", folder.path("fields.h5"));
   EXPECT_THAT([&] { FieldSeries(folder, mixed_, FieldsFormat::kXdmf); },
               ThrowsMessage<InputError>(HasSubstr("fields.h5': No space left on device")));
+}
+
+/// While it lives no file can grow beyond so many bytes: a disk that is full at a chosen place.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t n_bytes) : old_action_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit = {.rlim_cur = n_bytes, .rlim_max = old_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, old_action_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit old_ = {};
+  void (*old_action_)(int);
+};
+
+/// Small arrays wait in HDF5's cache until they are closed, large ones do not, and the file's own pages until it is closed.
+TEST_F(XdmfFieldsTest, AFullDiskIsNoticedAtOnceForArraysOfAnySizeAndWhenClosing) {
+  fs::create_directories(out_);
+  const auto too_large = ThrowsMessage<InputError>(HasSubstr(".h5': File too large"));
+  std::vector<double> values(3 * 70000);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(1.0 * i);
+  for (const std::size_t n_values : {std::size_t{6}, values.size()}) {
+    Hdf5File file(out_ / (std::to_string(n_values) + ".h5"));
+    const FileSizeLimit limit(200);
+    EXPECT_THAT([&] { file.write("a", std::span(values).first(n_values), 3); }, too_large) << n_values;
+  }
+  Hdf5File file(out_ / "empty.h5");
+  const FileSizeLimit limit(200);
+  EXPECT_THAT([&] { file.close(); }, too_large);
 }
 
 TEST_F(XdmfFieldsTest, AFileThatCannotBeMadeIsNamedWithTheReason) {
