@@ -3,6 +3,7 @@
 #include "app/results.hpp"
 #include "app/verbs.hpp"
 #include "mesh/quality.hpp"
+#include "output/vtk_fields.hpp"
 
 namespace driftwright::app {
 

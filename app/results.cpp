@@ -59,6 +59,14 @@ scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress&
   return scenarios::build(model, std::move(placed));
 }
 
+std::string fields_note(const output::FieldSeries& fields) {
+  constexpr std::size_t kManyTimes = 100;
+  if (fields.format() != FieldsFormat::kVtu || fields.n_times() <= kManyTimes) return "";
+  return fmt::format(
+      "note: fields at {} times, each file with the mesh; `solver: {{fields_format: xdmf}}` would hold the mesh once\n",
+      fields.n_times());
+}
+
 std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
                                               const std::vector<const Cyclogram*>& cyclograms, Progress& progress,
                                               std::size_t with_fields, output::FieldSeries* fields) {

@@ -5,8 +5,8 @@
 
 #include "app/progress.hpp"
 #include "app/verbs.hpp"
+#include "output/field_series.hpp"
 #include "output/results_folder.hpp"
-#include "output/vtk_fields.hpp"
 #include "scenarios/machine.hpp"
 
 namespace driftwright::app {
@@ -29,6 +29,9 @@ inline const std::string kHeatFlowsTitle = "mean heat flow since the row before,
 
 /// Meshes, places and factorises, saying so.
 [[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress);
+
+/// What the terminal says of a series too long for its format, a line of its own; empty otherwise.
+[[nodiscard]] std::string fields_note(const output::FieldSeries& fields);
 
 /// A simulated cyclogram.
 struct SimulatedRun {

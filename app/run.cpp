@@ -18,7 +18,7 @@ void run(const CommonOptions& options) {
   const scenarios::Machine machine = build_machine(model, progress);
 
   std::optional<output::FieldSeries> fields;
-  if (machine.placed.mesh.n_nodes() > 0) fields.emplace(folder, machine.placed.mesh);
+  if (machine.placed.mesh.n_nodes() > 0) fields.emplace(folder, machine.placed.mesh, scenario.solver.fields_format);
   const MachineStudy study = study_machine(scenario, machine, progress, fields ? &*fields : nullptr);
   if (fields) fields->finish();
   progress.begin("writing results");
@@ -37,8 +37,9 @@ void run(const CommonOptions& options) {
   folder.write_text("report.html", output::render_html(study_report(scenario, machine, study, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}  results in {}: report.html, {}record.csv, summary.json\n", terminal_summary(scenario, study),
-             shown_path(folder.target()), fields ? "fields.pvd (ParaView), " : "");
+  fmt::print("{}  results in {}: report.html, {}record.csv, summary.json\n{}", terminal_summary(scenario, study),
+             shown_path(folder.target()), fields ? fields->file_to_open() + " (ParaView), " : "",
+             fields ? fields_note(*fields) : "");
 }
 
 }  // namespace driftwright::app

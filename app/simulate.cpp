@@ -18,10 +18,10 @@ void simulate(const SimulateOptions& options) {
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   const scenarios::Machine machine = build_machine(model, progress);
-  // Whole fields of one cyclogram only: several would fill the disk and mix in one .pvd.
+  // Whole fields of one cyclogram only: several would fill the disk and mix in one list of times.
   std::optional<output::FieldSeries> fields;
   const bool has_mesh = machine.placed.mesh.n_nodes() > 0;
-  if (has_mesh && cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
+  if (has_mesh && cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh, scenario.solver.fields_format);
   const std::vector<SimulatedRun> runs =
       simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
   if (fields) fields->finish();
@@ -46,10 +46,11 @@ void simulate(const SimulateOptions& options) {
                     output::render_html(simulation_report(scenario, machine, cyclograms, runs, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}results in {}: report.html, heat flows in W{}\n", summary, shown_path(folder.target()),
-             fields      ? ", fields in fields.pvd (ParaView)"
+  fmt::print("{}results in {}: report.html, heat flows in W{}\n{}", summary, shown_path(folder.target()),
+             fields      ? fmt::format(", fields in {} (ParaView)", fields->file_to_open())
              : !has_mesh ? ""
-                         : "; name one cyclogram to get fields, too");
+                         : "; name one cyclogram to get fields, too",
+             fields ? fields_note(*fields) : "");
 }
 
 }  // namespace driftwright::app

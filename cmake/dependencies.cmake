@@ -9,6 +9,8 @@ find_package(GTest 1.12 REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(SUNDIALS 6.4 REQUIRED COMPONENTS arkode nvecserial)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
+# HDF5 also comes as a parallel library; this is the plain one.
+pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial>=1.10)
 pkg_check_modules(udunits REQUIRED IMPORTED_TARGET udunits)
 
 # Spectra is header-only; its package's own CMake file asks for nothing more than Eigen.

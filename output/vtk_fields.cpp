@@ -109,64 +109,58 @@ void write_grid(vtkUnstructuredGrid* grid, const std::filesystem::path& file) {
   write_file(file, writer->GetOutputString());
 }
 
-}  // namespace
+class VtuWriter : public FieldWriter {
+ public:
+  VtuWriter(ResultsFolder& folder, const mesh::Mesh& mesh) : folder_(folder) {
+    build_grid(mesh, false, grid_);
+    const Provenance& made_by = folder.made_by();
+    add_array<vtkStringArray>(grid_->GetFieldData(), "made_by", 1, 1)
+        ->SetValue(0, fmt::format("Driftwright {}, {}", made_by.version, made_by.scenario));
+  }
 
-struct FieldSeries::Grid {
-  vtkNew<vtkUnstructuredGrid> vtk;
+  std::string file_to_open() const override { return "fields.pvd"; }
+
+  void write(std::size_t i, double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um,
+             const StressField* stress) override {
+    vtkUnstructuredGrid* grid = grid_;
+    const vtkIdType n_nodes = grid->GetNumberOfPoints();
+    auto* temperature = add_array<vtkFloatArray>(grid->GetPointData(), "temperature_degC", 1, n_nodes);
+    auto* displacement = add_array<vtkFloatArray>(grid->GetPointData(), "displacement_um", 3, n_nodes);
+    for (vtkIdType n = 0; n < n_nodes; ++n) {
+      temperature->SetValue(n, static_cast<float>(temperature_degC[n]));
+      displacement->SetTuple(n, displacement_um.col(n).data());
+    }
+    if (stress) {
+      auto* components = add_array<vtkFloatArray>(grid->GetPointData(), "stress_MPa", 6, n_nodes);
+      int c = 0;
+      for (const char* name : {"XX", "YY", "ZZ", "XY", "YZ", "XZ"}) components->SetComponentName(c++, name);
+      auto* von_mises = add_array<vtkFloatArray>(grid->GetPointData(), "von_mises_MPa", 1, n_nodes);
+      for (vtkIdType n = 0; n < n_nodes; ++n) {
+        components->SetTuple(n, stress->stress_MPa.col(n).data());
+        von_mises->SetValue(n, static_cast<float>(stress->von_mises_MPa[n]));
+      }
+    }
+    add_array<vtkDoubleArray>(grid->GetFieldData(), "TimeValue", 1, 1)->SetValue(0, time_s);
+    write_grid(grid, folder_.path(fmt::format("fields/fields_{:04}.vtu", i)));
+  }
+
+  void finish(const std::vector<double>& times_s) override {
+    std::string pvd = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
+    for (std::size_t i = 0; i < times_s.size(); ++i) {
+      pvd += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"fields/fields_{:04}.vtu\"/>\n", times_s[i], i);
+    }
+    folder_.write_text("fields.pvd", pvd + "  </Collection>\n</VTKFile>\n");
+  }
+
+ private:
+  ResultsFolder& folder_;
+  vtkNew<vtkUnstructuredGrid> grid_;
 };
 
-FieldSeries::FieldSeries(ResultsFolder& folder, const mesh::Mesh& mesh) : folder_(folder), grid_(std::make_unique<Grid>()) {
-  build_grid(mesh, false, grid_->vtk);
-  const Provenance& made_by = folder.made_by();
-  add_array<vtkStringArray>(grid_->vtk->GetFieldData(), "made_by", 1, 1)
-      ->SetValue(0, fmt::format("Driftwright {}, {}", made_by.version, made_by.scenario));
-}
+}  // namespace
 
-FieldSeries::~FieldSeries() = default;
-
-void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um,
-                        const StressField* stress) {
-  vtkUnstructuredGrid* grid = grid_->vtk;
-  const vtkIdType n_nodes = grid->GetNumberOfPoints();
-  if (temperature_degC.size() != n_nodes || displacement_um.cols() != n_nodes) {
-    throw std::logic_error(
-        fmt::format("fields of {} and {} nodes on a mesh of {}", temperature_degC.size(), displacement_um.cols(), n_nodes));
-  }
-  if (stress && (stress->stress_MPa.cols() != n_nodes || stress->von_mises_MPa.size() != n_nodes)) {
-    throw std::logic_error(fmt::format("stresses of {} nodes on a mesh of {}", stress->stress_MPa.cols(), n_nodes));
-  }
-  if (!times_s_.empty() && !(time_s > times_s_.back())) {
-    throw std::logic_error(fmt::format("fields at {} s after those at {} s", time_s, times_s_.back()));
-  }
-
-  auto* temperature = add_array<vtkFloatArray>(grid->GetPointData(), "temperature_degC", 1, n_nodes);
-  auto* displacement = add_array<vtkFloatArray>(grid->GetPointData(), "displacement_um", 3, n_nodes);
-  for (vtkIdType n = 0; n < n_nodes; ++n) {
-    temperature->SetValue(n, static_cast<float>(temperature_degC[n]));
-    displacement->SetTuple(n, displacement_um.col(n).data());
-  }
-  if (stress) {
-    auto* components = add_array<vtkFloatArray>(grid->GetPointData(), "stress_MPa", 6, n_nodes);
-    int i = 0;
-    for (const char* name : {"XX", "YY", "ZZ", "XY", "YZ", "XZ"}) components->SetComponentName(i++, name);
-    auto* von_mises = add_array<vtkFloatArray>(grid->GetPointData(), "von_mises_MPa", 1, n_nodes);
-    for (vtkIdType n = 0; n < n_nodes; ++n) {
-      components->SetTuple(n, stress->stress_MPa.col(n).data());
-      von_mises->SetValue(n, static_cast<float>(stress->von_mises_MPa[n]));
-    }
-  }
-  add_array<vtkDoubleArray>(grid->GetFieldData(), "TimeValue", 1, 1)->SetValue(0, time_s);
-
-  write_grid(grid, folder_.path(fmt::format("fields/fields_{:04}.vtu", times_s_.size())));
-  times_s_.push_back(time_s);
-}
-
-void FieldSeries::finish() {
-  std::string pvd = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
-  for (std::size_t i = 0; i < times_s_.size(); ++i) {
-    pvd += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"fields/fields_{:04}.vtu\"/>\n", times_s_[i], i);
-  }
-  folder_.write_text("fields.pvd", pvd + "  </Collection>\n</VTKFile>\n");
+std::unique_ptr<FieldWriter> make_vtu_writer(ResultsFolder& folder, const mesh::Mesh& mesh) {
+  return std::make_unique<VtuWriter>(folder, mesh);
 }
 
 void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const std::filesystem::path& file) {

@@ -98,6 +98,7 @@ SolverSettings read_solver(const ConfigMap& in) {
     if (!(s.fields_at_s.front() >= 0.0)) in.fail("fields_at", "times from 0 s on are wanted");
   }
   s.stresses = in.choice("stresses", {"true", "false"}, "false") == "true";
+  if (in.choice("fields_format", {"vtu", "xdmf"}, "vtu") == "xdmf") s.fields_format = FieldsFormat::kXdmf;
   in.reject_unknown_keys();
   return s;
 }

@@ -10,6 +10,7 @@
 
 #include "base/cyclogram.hpp"
 #include "base/errors.hpp"
+#include "base/fields_format.hpp"
 #include "effects/effect.hpp"
 #include "scenarios/read_mechanics.hpp"
 #include "scenarios/read_mesh.hpp"
@@ -58,6 +59,7 @@ struct SolverSettings {
   std::vector<double>
       fields_at_s;        ///< instead of fields_every_s where not empty; the start and the end are written in any case
   bool stresses = false;  ///< stresses beside the other fields
+  FieldsFormat fields_format = FieldsFormat::kVtu;
 };
 
 /// What is fitted and what it is judged by.

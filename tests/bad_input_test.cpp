@@ -127,13 +127,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "\nsupports:",
                 "\njoints: [{name: knee/table, normal_stiffness: -1e9 N/m, tangential_stiffness: nan N/m}]\nsupports:",
                 {"-1e+09 N/m lies outside", "joints[0].normal_stiffness"}},
+        Mistake{"fields_format_is_a_choice", "fields_format: vtu", "fields_format: vtk", {"one of vtu, xdmf is wanted"}},
         Mistake{"stresses_is_a_choice", "output_interval: 1 min", "stresses: on", {"one of true, false is wanted"}},
         Mistake{"empty_study", "name: fp3_spindle", "name:", {"| name:", "the value is empty"}},
         // These show only once the mesh is there.
         Mistake{"not_held",
                 "fixed: [x, y, z]",
                 "fixed: [x, y]",
-                {"'column' (and with it", "can still translate along z, rotate about x through z = 0.0 mm, rotate about y", "supports[0]"}},
+                {"'column' (and with it", "can still translate along z, rotate about x through z = 0.0 mm, rotate about y",
+                 "supports[0]"}},
         Mistake{"spindle_not_held",
                 "\nsupports:",
                 "\njoints:\n"

@@ -12,7 +12,9 @@
 namespace driftwright {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// Abaqus text of a mesh in mm: element 100 + c, node 10 + n, one ELSET a region.
 std::string inp_text(const mesh::Mesh& m) {
@@ -87,6 +89,7 @@ TEST(ImportedScenario, IsCheckedMeshedAndSimulated) {
 
   const CommandOutcome outcome = run_program("simulate " + scenario + " -o " + (folder / "out").string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("fields in fields.pvd"), Not(HasSubstr("note:"))));  // few times, as vtu
   const Record record = read_record_csv((folder / "out" / "record.csv").string());
   // Steady: 20 W leave through 10 W/(m^2 K) on the outside, 4 x 0.03 + (2 x 0.01 + 2 x 0.02 + 0.02 + 0.01) = 0.21 m^2: 9.52 K on
   // its average. The head is warmer than the column, and iron conducts well: within 4 K of it.
@@ -110,6 +113,29 @@ TEST(ImportedScenario, ReadsTheMeshThatTheProgramWrote) {
   ASSERT_EQ(again.exit_code, 0) << again.output;
   EXPECT_EQ(again.output.substr(0, again.output.find("written to")),
             first.output.substr(0, first.output.find("written to")));
+}
+
+TEST(ImportedScenario, FieldsFormatChoosesTheFilesAndTheTerminalNamesTheOneToOpen) {
+  const auto folder = write_scenario("fields_format", kScenario, inp_text(machine_mesh()));
+  const std::string solver = "solver: {output_interval: 100 h}";
+  const auto run = [&](const std::string& name, const std::string& settings) {
+    std::string text = kScenario;
+    text.replace(text.find(solver), solver.size(), "solver: {" + settings + "}");
+    std::ofstream(folder / (name + ".yaml")) << text;
+    const CommandOutcome outcome =
+        run_program("simulate " + (folder / (name + ".yaml")).string() + " -o " + (folder / name).string());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return outcome.output;
+  };
+  const std::string vtu = run("vtu", "output_interval: 9 h, fields_every: 9 h, fields_format: vtu");
+  EXPECT_THAT(vtu, AllOf(HasSubstr("fields in fields.pvd"), HasSubstr("note: fields at 113 times"),
+                         HasSubstr("fields_format: xdmf")));
+  EXPECT_TRUE(std::filesystem::exists(folder / "vtu/fields/fields_0112.vtu"));
+  const std::string xdmf = run("xdmf", "output_interval: 9 h, fields_every: 9 h, fields_format: xdmf");
+  EXPECT_THAT(xdmf, AllOf(HasSubstr("fields in fields.xdmf"), Not(HasSubstr("note:"))));
+  EXPECT_THAT(read_text(folder / "xdmf/fields.xdmf"), HasSubstr("fields.h5:/times/0112/temperature_degC"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "xdmf/fields.h5"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "xdmf/fields.pvd"));
 }
 
 struct Mistake {

@@ -21,6 +21,7 @@
 #include <sstream>
 
 #include "mesh/topology.hpp"
+#include "output/field_series.hpp"
 
 namespace driftwright::output {
 namespace {

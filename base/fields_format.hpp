@@ -1,0 +1,11 @@
+#pragma once
+
+namespace driftwright {
+
+/// Files that whole fields at many times are written to.
+enum class FieldsFormat {
+  kVtu,   ///< one compressed .vtu per time, each with the mesh, and fields.pvd
+  kXdmf,  ///< one fields.h5 with the mesh once, and fields.xdmf
+};
+
+}  // namespace driftwright
