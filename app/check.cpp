@@ -1,10 +1,28 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/results.hpp"
 #include "app/verbs.hpp"
 #include "mesh/quality.hpp"
 
 namespace driftwright::app {
+
+namespace {
+
+void print_cyclogram(const Cyclogram& cyclogram) {
+  double highest_rpm = 0.0, turning_s = 0.0;
+  for (const Cyclogram::Section& section : cyclogram.sections) {
+    highest_rpm = std::max(highest_rpm, section.drive.speed_rpm);
+    if (section.drive.speed_rpm > 0.0) turning_s += section.duration_s;
+  }
+  fmt::print("  {:<20} {:7.1f} min in {} section{}, up to {:.0f} rpm, turning {:.0f} % of the time\n", cyclogram.name,
+             cyclogram.duration_s() / 60.0, cyclogram.sections.size(), cyclogram.sections.size() == 1 ? "" : "s",
+             highest_rpm, 100.0 * turning_s / cyclogram.duration_s());
+  for (const std::string& remark : cyclogram.remarks) fmt::print("    {}\n", remark);
+}
+
+}  // namespace
 
 void check(const CommonOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
@@ -23,6 +41,8 @@ void check(const CommonOptions& options) {
       options.scenario, placed.mesh.n_nodes(), placed.mesh.cells.size(), placed.mesh.regions.size(),
       placed.mesh.joints.size(), scenario.machine->effects.size(), scenario.machine->sensors.size(),
       scenario.cyclograms.size(), quality.min_scaled);
+  for (const Cyclogram& cyclogram : scenario.cyclograms) print_cyclogram(cyclogram);
+  for (const std::string& note : placed.mesh.notes) fmt::print("note: {}\n", note);
 }
 
 }  // namespace driftwright::app

@@ -63,8 +63,9 @@ ModalError modal_error(const Record& predicted, const Record& full, const std::v
 void fit_modal(MachineStudy& study, const Scenario& scenario, const Machine& machine) {
   const Cyclogram& judged = scenario.cyclogram(scenario.study->judge);
   const int n_modes = scenario.study->thermal_modes;
+  const Eigen::VectorXd start = scenarios::start_state(*scenario.machine, machine);
   for (bool with_steady_responses : {false, true}) {
-    const ModalPredictor predictor = make_modal_predictor(machine.system, n_modes, with_steady_responses);
+    const ModalPredictor predictor = make_modal_predictor(machine.system, n_modes, start, with_steady_responses);
     Record predicted = predict_record(predictor, scenario, machine, judged, study.judged.record.time_s);
     study.modal_errors.push_back(
         modal_error(predicted, study.judged.record, study.displacements, n_modes, with_steady_responses));

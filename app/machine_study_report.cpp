@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/machine_study_output.hpp"
+#include "app/run_report.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -16,35 +17,6 @@ using output::Plot;
 using output::Series;
 using output::Table;
 using output::Verdict;
-
-std::vector<double> minutes(const Record& record) {
-  std::vector<double> t_min;
-  for (double t_s : record.time_s) t_min.push_back(t_s / 60.0);
-  return t_min;
-}
-
-std::vector<output::SectionMark> section_marks(const Cyclogram& cyclogram) {
-  std::vector<output::SectionMark> marks;
-  double start_s = 0.0;
-  for (const auto& section : cyclogram.sections) {
-    marks.push_back({start_s / 60.0, fmt::format("{:.0f} rpm", section.drive.speed_rpm)});
-    start_s += section.duration_s;
-  }
-  return marks;
-}
-
-Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
-                   const std::vector<std::string>& names, const Cyclogram& cyclogram) {
-  Plot plot{.title = title,
-            .x_label = "time [min]",
-            .y_label = y_label,
-            .series = {},
-            .bands = {},
-            .marks = section_marks(cyclogram)};
-  for (const std::string& name : names)
-    plot.series.push_back({.label = name, .x = minutes(record), .y = record.at(name).values});
-  return plot;
-}
 
 Verdict verdict(const scenarios::Study& settings, const MachineStudy& study) {
   const auto of_target = study.of_channel(settings.target);
@@ -159,28 +131,6 @@ Table modal_table(const MachineStudy& study) {
   return table;
 }
 
-Table heat_table(const MachineStudy& study) {
-  const solver::Trajectory& run = study.judged.trajectory;
-  const auto last = run.heat_J.cols() - 1;
-  const double duration_s = run.time_s.back();
-  Table table{.caption = fmt::format("Mean heat flow over the judged cyclogram. In = stored + out to {:.0e}.",
-                                     std::max(1e-16, run.energy_gap())),
-              .headers = {"source or film", "into the machine [W]", "out of it [W]"},
-              .rows = {}};
-  double in_W = 0.0, lost_W = 0.0;
-  for (std::size_t j = 0; j < run.flows.size(); ++j) {
-    const double mean_W = run.heat_J(static_cast<Eigen::Index>(j), last) / duration_s;
-    if (run.flows[j].kind == solver::FlowKind::kInternal) continue;
-    const bool heats = mean_W > 0.0;
-    (heats ? in_W : lost_W) += std::abs(mean_W);
-    table.rows.push_back(
-        {run.flows[j].name, heats ? fmt::format("{:.1f}", mean_W) : "", heats ? "" : fmt::format("{:.1f}", -mean_W)});
-  }
-  table.rows.push_back({"sum", fmt::format("{:.1f}", in_W), fmt::format("{:.1f}", lost_W)});
-  table.rows.push_back({"stored in the machine", "", fmt::format("{:.1f}", run.stored_J[last] / duration_s)});
-  return table;
-}
-
 void add_ambiguity(output::Report& report, const std::string& target, const MachineStudy& study) {
   const auto& [sensor, a] = study.ambiguities.front();
   report.blocks.emplace_back(Heading{"Drift is not a function of temperature"});
@@ -238,7 +188,9 @@ output::Report study_report(const scenarios::Scenario& scenario, const scenarios
     add(channels_plot("Tilts of the spindle against the table", "tilt [urad]", study.judged.record,
                       study.judged.record.names_with_unit("urad"), judged));
   }
-  add(heat_table(study));
+  add(heat_plot(study.judged.trajectory, judged));
+  add(heat_table(study.judged.trajectory));
+  if (!study.judged.trajectory.overshoots.empty()) add(overshoot_table(study.judged.trajectory, machine));
   for (const std::string& d : study.displacements) {
     if (d != settings.target) add(residual_plot(d, scenario, study));
   }

@@ -75,7 +75,8 @@ int main(int argc, char** argv) {
   verb->callback([&] { app::simulate(simulate); });
   verb = add_verb(cli, "predict", "drift of a cyclogram by thermal modes, without time steps",
                   "predict scenarios/fp3_spindle.yaml --cyclogram plan.csv -o results/plan", predict);
-  verb->add_option("--cyclogram", predict.cyclogram, "name in the scenario, or a record CSV with the column speed_rpm")
+  verb->add_option("--cyclogram", predict.cyclogram,
+                   "name in the scenario, or a record CSV with the column speed_rpm (docs/cyclograms.md)")
       ->required();
   verb->callback([&] { app::predict(predict); });
   verb = add_verb(cli, "select", "rank the temperature sensors of records by grey relational analysis",

@@ -33,6 +33,7 @@ void mesh(const CommonOptions& options) {
   }
   for (const mesh::Joint& joint : m.joints)
     fmt::print("  joint   {:<32} {:8.4f} m2\n", joint.name, mesh::area_m2(m, m.surface(joint.side_a)));
+  for (const std::string& note : m.notes) fmt::print("note: {}\n", note);
   fmt::print("written to {}\n", shown_path(folder.target() / "mesh.vtu"));
 }
 

@@ -6,34 +6,14 @@
 #include "app/results.hpp"
 #include "app/verbs.hpp"
 #include "compensation/modal_predictor.hpp"
+#include "scenarios/read_cyclogram.hpp"
 
 namespace driftwright::app {
 namespace {
 
-/// The sections of a record's channel `speed`, which holds from each row to the next.
-Cyclogram cyclogram_of(const Record& record) {
-  const Channel& speed = record.at("speed");
-  Cyclogram cyclogram{.name = record.source, .sections = {}};
-  if (record.time_s.front() != 0.0) {
-    throw InputError(
-        fmt::format("{}: a cyclogram starts at time 0, this one at {:g} s", record.source, record.time_s.front()));
-  }
-  for (std::size_t i = 0; i + 1 < record.n_samples(); ++i) {
-    if (!(speed.values[i] >= 0.0)) {
-      throw InputError(fmt::format("{}: speed_rpm is missing or negative at {:g} s", record.source, record.time_s[i]));
-    }
-    const double duration_s = record.time_s[i + 1] - record.time_s[i];
-    if (!cyclogram.sections.empty() && cyclogram.sections.back().drive.speed_rpm == speed.values[i]) {
-      cyclogram.sections.back().duration_s += duration_s;
-    } else {
-      cyclogram.sections.push_back({duration_s, {.speed_rpm = speed.values[i]}});
-    }
-  }
-  return cyclogram;
-}
-
 Cyclogram find_cyclogram(const scenarios::Scenario& scenario, const std::string& name_or_file) {
-  return name_or_file.ends_with(".csv") ? cyclogram_of(read_record_csv(name_or_file)) : scenario.cyclogram(name_or_file);
+  if (name_or_file.ends_with(".csv")) return scenarios::cyclogram_of(read_record_csv(name_or_file));
+  return scenario.cyclogram(name_or_file);
 }
 
 }  // namespace
@@ -48,7 +28,8 @@ void predict(const PredictOptions& options) {
   const scenarios::Machine machine = build_machine(model, progress);
   progress.begin("computing thermal modes");
   const int n_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
-  const compensation::ModalPredictor predictor = compensation::make_modal_predictor(machine.system, n_modes);
+  const compensation::ModalPredictor predictor =
+      compensation::make_modal_predictor(machine.system, n_modes, scenarios::start_state(*scenario.machine, machine));
   const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);
   const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.system.outputs,
                                              cyclogram, model.reference_K);

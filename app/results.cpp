@@ -4,11 +4,26 @@
 
 #include <cmath>
 #include <exception>
+#include <optional>
 
 #include "app/version.hpp"
 #include "base/quantity.hpp"
+#include "solver/stress.hpp"
 
 namespace driftwright::app {
+namespace {
+
+output::StressField stress_field(const scenarios::PlacedMachine& placed, const Eigen::Matrix3Xd& displacement_m,
+                                 const Eigen::VectorXd& theta_K) {
+  output::StressField field{1e-6 * solver::nodal_stress_Pa(placed.mesh, placed.materials, displacement_m, theta_K), {}};
+  field.von_mises_MPa.resize(field.stress_MPa.cols());
+  for (Eigen::Index n = 0; n < field.stress_MPa.cols(); ++n) {
+    field.von_mises_MPa[n] = solver::von_mises(field.stress_MPa.col(n));
+  }
+  return field;
+}
+
+}  // namespace
 
 output::ResultsFolder open_results(const CommonOptions& options, const std::string& scenario_name) {
   const std::string target = options.out.empty() ? "results/" + scenario_name : options.out;
@@ -40,7 +55,7 @@ const scenarios::Study& require_study(const scenarios::Scenario& scenario, const
 scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress) {
   progress.begin("meshing");
   scenarios::PlacedMachine placed = scenarios::place(model);
-  progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
+  if (placed.mesh.n_nodes() > 0) progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
   return scenarios::build(model, std::move(placed));
 }
 
@@ -54,6 +69,7 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
   progress.begin(fmt::format("simulating {} cyclogram{}, {:.0f} min in all", cyclograms.size(),
                              cyclograms.size() == 1 ? "" : "s", total_s / 60.0));
 
+  const Eigen::VectorXd start = scenarios::start_state(model, machine);
   std::vector<SimulatedRun> runs(cyclograms.size());
   std::vector<std::exception_ptr> failures(cyclograms.size());
   double done_s = 0.0;
@@ -68,16 +84,24 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
       progress.update((done_s += time_s - last_s) / total_s);
       last_s = time_s;
       if (!fields || i != with_fields) return;
-      if (time_s < next_field_s - 1e-6 && time_s < cyclogram.duration_s()) return;
+      const auto& wanted_s = settings.fields_at_s;
+      const bool listed =
+          std::any_of(wanted_s.begin(), wanted_s.end(), [&](double t_s) { return std::abs(t_s - time_s) <= 1e-9 * t_s; });
+      const bool due = wanted_s.empty() ? time_s >= next_field_s - 1e-6 : listed || time_s == 0.0;
+      if (!due && time_s < cyclogram.duration_s()) return;
       const Eigen::VectorXd nodes = state.head(machine.placed.mesh.n_nodes());
-      fields->write(time_s, (nodes.array() + (model.reference_K - kZeroCelsius_K)).matrix(),
-                    1e6 * machine.elasticity.displacement(nodes));
+      const Eigen::Matrix3Xd displacement_m = machine.elasticity->displacement(nodes);
+      const std::optional<output::StressField> stress =
+          settings.stresses ? std::optional(stress_field(machine.placed, displacement_m, nodes)) : std::nullopt;
+      fields->write(time_s, (nodes.array() + (model.reference_K - kZeroCelsius_K)).matrix(), 1e6 * displacement_m,
+                    stress ? &*stress : nullptr);
       while (next_field_s <= time_s + 1e-6) next_field_s += settings.fields_every_s;
     };
     try {
-      runs[i].trajectory = solver::simulate(machine.system, cyclogram, model.hall,
-                                            scenarios::output_times_s(cyclogram, settings.output_interval_s),
-                                            settings.transient, Eigen::VectorXd::Zero(machine.system.size()), at_output);
+      runs[i].trajectory =
+          solver::simulate(machine.system, cyclogram, model.hall,
+                           scenarios::output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s),
+                           settings.transient, start, at_output);
       runs[i].record = scenarios::to_record(runs[i].trajectory, machine.system.outputs, cyclogram, model.reference_K);
     } catch (...) {
       failures[i] = std::current_exception();  // none may leave the parallel loop

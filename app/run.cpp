@@ -5,6 +5,7 @@
 #include "app/machine_study_output.hpp"
 #include "app/verbs.hpp"
 #include "output/json_text.hpp"
+#include "scenarios/heat_flow_record.hpp"
 
 namespace driftwright::app {
 
@@ -16,9 +17,10 @@ void run(const CommonOptions& options) {
   Progress progress;
   const scenarios::Machine machine = build_machine(model, progress);
 
-  output::FieldSeries fields(folder, machine.placed.mesh);
-  const MachineStudy study = study_machine(scenario, machine, progress, &fields);
-  fields.finish();
+  std::optional<output::FieldSeries> fields;
+  if (machine.placed.mesh.n_nodes() > 0) fields.emplace(folder, machine.placed.mesh);
+  const MachineStudy study = study_machine(scenario, machine, progress, fields ? &*fields : nullptr);
+  if (fields) fields->finish();
   progress.begin("writing results");
   folder.write_text(
       "record.csv",
@@ -27,13 +29,16 @@ void run(const CommonOptions& options) {
     folder.write_text("records/" + run.record.source + ".csv",
                       record_csv(run.record, provenance_lines(folder.made_by(), "training cyclogram " + run.record.source)));
   }
+  folder.write_text("heat_flows.csv",
+                    record_csv(scenarios::heat_flow_record(study.judged.trajectory, scenario.study->judge),
+                               provenance_lines(folder.made_by(), kHeatFlowsTitle + scenario.study->judge)));
   folder.write_text("schedule.txt", schedule_text(study));
   folder.write_text("summary.json", output::json_text(summary_json(scenario, machine, study, folder.made_by())));
   folder.write_text("report.html", output::render_html(study_report(scenario, machine, study, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}  results in {}: report.html, fields.pvd (ParaView), record.csv, summary.json\n",
-             terminal_summary(scenario, study), shown_path(folder.target()));
+  fmt::print("{}  results in {}: report.html, {}record.csv, summary.json\n", terminal_summary(scenario, study),
+             shown_path(folder.target()), fields ? "fields.pvd (ParaView), " : "");
 }
 
 }  // namespace driftwright::app

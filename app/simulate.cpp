@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include "app/results.hpp"
+#include "app/run_report.hpp"
 #include "app/verbs.hpp"
+#include "scenarios/heat_flow_record.hpp"
 
 namespace driftwright::app {
 
@@ -18,7 +20,8 @@ void simulate(const SimulateOptions& options) {
   const scenarios::Machine machine = build_machine(model, progress);
   // Whole fields of one cyclogram only: several would fill the disk and mix in one .pvd.
   std::optional<output::FieldSeries> fields;
-  if (cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
+  const bool has_mesh = machine.placed.mesh.n_nodes() > 0;
+  if (has_mesh && cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh);
   const std::vector<SimulatedRun> runs =
       simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
   if (fields) fields->finish();
@@ -28,16 +31,25 @@ void simulate(const SimulateOptions& options) {
     const Cyclogram* cyclogram = cyclograms[i];
     const std::string file = cyclograms.size() == 1 ? "record.csv" : "records/" + cyclogram->name + ".csv";
     folder.write_text(file, record_csv(run.record, provenance_lines(folder.made_by(), "cyclogram " + cyclogram->name)));
+    folder.write_text(cyclograms.size() == 1 ? "heat_flows.csv" : "heat_flows/" + cyclogram->name + ".csv",
+                      record_csv(scenarios::heat_flow_record(run.trajectory, cyclogram->name),
+                                 provenance_lines(folder.made_by(), kHeatFlowsTitle + cyclogram->name)));
     summary += fmt::format("{:<20} {:5.0f} min, {} steps; at its end", cyclogram->name, cyclogram->duration_s() / 60.0,
                            run.trajectory.n_steps);
     for (const auto& d : model.displacements)
       summary += fmt::format("  {} {:.1f} um", d.name, run.record.at(d.name).values.back());
     summary += fmt::format("; energy balance {:.0e}; {}\n", std::max(1e-16, run.trajectory.energy_gap()), file);
+    const std::string overshoot = overshoot_text(run.trajectory, machine);
+    if (!overshoot.empty()) summary += "    " + overshoot + "\n";
   }
+  folder.write_text("report.html",
+                    output::render_html(simulation_report(scenario, machine, cyclograms, runs, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}results in {}{}\n", summary, shown_path(folder.target()),
-             cyclograms.size() == 1 ? ", fields in fields.pvd (ParaView)" : "; name one cyclogram to get fields, too");
+  fmt::print("{}results in {}: report.html, heat flows in W{}\n", summary, shown_path(folder.target()),
+             fields      ? ", fields in fields.pvd (ParaView)"
+             : !has_mesh ? ""
+                         : "; name one cyclogram to get fields, too");
 }
 
 }  // namespace driftwright::app

@@ -24,7 +24,7 @@ struct SimulateOptions : CommonOptions {
 void simulate(const SimulateOptions& options);
 
 struct PredictOptions : CommonOptions {
-  std::string cyclogram;  ///< a name of the scenario, or a record CSV with the channel speed_rpm
+  std::string cyclogram;  ///< a name of the scenario, or a record CSV (scenarios/read_cyclogram.hpp)
 };
 void predict(const PredictOptions& options);
 

@@ -96,6 +96,7 @@ bool ConfigMap::has(const std::string& key) const {
 bool ConfigMap::is_map(const std::string& key) const {
   return has(key) && (*node_)[key].IsMap();
 }
+
 bool ConfigMap::is_list(const std::string& key) const {
   return has(key) && (*node_)[key].IsSequence();
 }
@@ -246,6 +247,15 @@ Eigen::Vector3d ConfigMap::vector3(const std::string& key, const std::string& un
   Eigen::Vector3d v;
   for (int i = 0; i < 3; ++i) v[i] = read_quantity(node[i], key, unit);
   return v;
+}
+
+std::vector<double> ConfigMap::quantities(const std::string& key, const std::string& unit) const {
+  const YAML::Node node = child(key);
+  if (!node.IsSequence() || node.size() == 0)
+    fail(key, fmt::format("a list of quantities in {} is wanted, at least one", unit));
+  std::vector<double> values;
+  for (const YAML::Node& item : node) values.push_back(read_quantity(item, key, unit));
+  return values;
 }
 
 std::vector<std::vector<double>> ConfigMap::rows(const std::string& key, const std::vector<std::string>& units) const {

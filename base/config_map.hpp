@@ -51,6 +51,8 @@ class ConfigMap {
   [[nodiscard]] double quantity(const std::string& key, const std::string& unit, double low, double high) const;
   [[nodiscard]] double quantity(const std::string& key, const std::string& unit, double low, double high,
                                 double fallback) const;
+  /// A list of quantities in `unit`: [10 min, 20 min]; "degC" comes in kelvin. At least one.
+  [[nodiscard]] std::vector<double> quantities(const std::string& key, const std::string& unit) const;
   /// An absolute temperature, "20 degC" or "293.15 K", in kelvin; 1 K to 3000 K.
   [[nodiscard]] double temperature_K(const std::string& key) const;
   /// A point or direction with a unit each: [10 mm, 0 mm, 1.2 m].

@@ -5,6 +5,11 @@
 #include <stdexcept>
 
 namespace driftwright {
+namespace {
+
+constexpr double kRounding = 1e-9;  // of the time: sums of many durations miss a knot that is meant to be one of them
+
+}  // namespace
 
 double Cyclogram::duration_s() const {
   double sum_s = 0.0;
@@ -43,7 +48,10 @@ std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const st
     const double end_s = start_s + section.duration_s;
     if (!(end_s > start_s)) continue;
     bool changed = !last || section.drive != *last;
-    for (auto knot = std::upper_bound(knots.begin(), knots.end(), start_s); knot != knots.end() && *knot < end_s; ++knot) {
+    const double rounding_s = kRounding * end_s;
+    for (auto knot = std::upper_bound(knots.begin(), knots.end(), start_s); knot != knots.end(); ++knot) {
+      if (*knot >= end_s - rounding_s) break;
+      if (*knot <= start_s + rounding_s) continue;
       stretches.push_back({start_s, *knot, section.drive, changed});
       start_s = *knot;
       changed = false;

@@ -24,6 +24,7 @@ struct Cyclogram {
   };
   std::string name;
   std::vector<Section> sections;
+  std::vector<std::string> remarks = {};  ///< for the user: where it comes from and what was passed over there
 
   [[nodiscard]] double duration_s() const;
   /// Drive at time t >= 0 [s]; a section holds from its start on, the last one also at and after its end.
@@ -51,7 +52,7 @@ struct LinearStretch {
 /// Cuts a cyclogram at its changes of drive and at further knots, in order, without empty pieces.
 /// @param knots_s  times at which an integrator must stop although the drive does not change: knots of the hall
 ///                 temperature or of prescribed temperatures, onsets of a draught. Any order, repetitions allowed; those
-///                 outside the cyclogram do nothing.
+///                 outside the cyclogram do nothing, nor do those within 1e-9 of the time of another cut.
 /// @throws std::logic_error  for a knot that is NaN
 [[nodiscard]] std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const std::vector<double>& knots_s);
 /// The same with the knots of the hall temperature alone.

@@ -1,19 +1,21 @@
 #include "compensation/modal_predictor.hpp"
 
+#include <algorithm>
+
 #include "solver/steady_state.hpp"
 
 namespace driftwright::compensation {
 
 solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const TimeSeries& hall,
                                            const std::vector<double>& output_s) const {
-  return solver::evolve(system, cyclogram, hall, output_s, Eigen::VectorXd::Zero(system.size()));
+  return solver::evolve(system, cyclogram, hall, output_s, start);
 }
 
-ModalPredictor make_modal_predictor(const solver::FullSystem& full, int n_modes, bool with_steady_responses) {
+ModalPredictor make_modal_predictor(const solver::FullSystem& full, int most_modes, const Eigen::VectorXd& start,
+                                    bool with_steady_responses) {
   const effects::Inputs standstill;
-  // Laws of temperature stay as they are at the reference temperature, where every run starts.
-  const solver::FullSystem system =
-      full.is_linear() ? full : solver::linearised(full, standstill, Eigen::VectorXd::Zero(full.size()));
+  const int n_modes = std::min(most_modes, full.size());
+  const solver::FullSystem system = full.is_linear() ? full : solver::linearised(full, standstill, start);
   const solver::ThermalModes modes = solver::thermal_modes(system, standstill, n_modes);
   Eigen::MatrixXd columns = modes.shapes;
   if (with_steady_responses) {
@@ -21,7 +23,10 @@ ModalPredictor make_modal_predictor(const solver::FullSystem& full, int n_modes,
     columns.conservativeResize(Eigen::NoChange, n_modes + steady.cols());
     columns.rightCols(steady.cols()) = steady;
   }
-  return {modes.time_constant_s, solver::project(system, solver::orthonormalise(system.mass, columns))};
+  columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+  columns.rightCols(1) = start;  // dropped again where it adds nothing
+  const Eigen::MatrixXd basis = solver::orthonormalise(system.mass, columns);
+  return {modes.time_constant_s, solver::project(system, basis), basis.transpose() * (system.mass * start)};
 }
 
 }  // namespace driftwright::compensation

@@ -11,16 +11,18 @@ namespace driftwright::compensation {
 struct ModalPredictor {
   std::vector<double> time_constant_s;  ///< of the modes, falling
   solver::ReducedSystem system;
+  Eigen::VectorXd start;  ///< reduced state at t = 0
 
-  /// Outputs in K, m and rad over a cyclogram from the reference temperature on, exact between the changes of speed.
+  /// Outputs in K, m and rad over a cyclogram from `start` on, exact between the changes of speed.
   [[nodiscard]] solver::Trajectory predict(const Cyclogram& cyclogram, const TimeSeries& hall,
                                            const std::vector<double>& output_s) const;
 };
 
-/// @param n_modes  >= 1
+/// @param n_modes  >= 1; a machine of fewer lumped nodes has all of its own
+/// @param start    temperatures at t = 0 minus the reference temperature; laws of temperature are frozen there
 /// @param with_steady_responses  false leaves the bare modes, for comparison
 /// @throws InputError, SolveError  as thermal_modes()
 [[nodiscard]] ModalPredictor make_modal_predictor(const solver::FullSystem& system, int n_modes,
-                                                  bool with_steady_responses = true);
+                                                  const Eigen::VectorXd& start, bool with_steady_responses = true);
 
 }  // namespace driftwright::compensation

@@ -1,37 +1,73 @@
-#include <cmath>
-
+#include "effects/bearing_formulas.hpp"
 #include "effects/effect.hpp"
-#include "effects/formulas.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double f0 = e["f0"], nu = e["viscosity"], f1 = e["f1"], load_N = e["load"], d_mm = e["mean_diameter"];
-  const double count = e["count"];
+  const double f0 = e["f0"], f1 = e["f1"], preload_N = e["load"], d_mm = e["mean_diameter"], count = e["count"];
+  const bool thins = !e.has("viscosity"), tightens = e.has("preload_growth");
+  const double nu = e["viscosity"], nu_40 = e["viscosity_40"], nu_100 = e["viscosity_100"], growth_N_K = e["preload_growth"];
+  std::vector<Body> probes;
+  if (thins) probes.push_back(e.references.contains("oil") ? e.references.at("oil") : e.body());
+  if (tightens) {
+    probes.push_back(e.references.at("inner"));
+    probes.push_back(e.references.at("outer"));
+  }
   const auto power_W = [=](const Inputs& u) {
     if (u.drive.speed_rpm <= 0.0) return 0.0;
+    const double nu_now = thins ? walther_viscosity_mm2_s(nu_40, nu_100, u.probe_K.at(0)) : nu;
+    const std::size_t inner = thins ? 1 : 0;
+    const double load_N =
+        tightens ? thermal_preload_N(preload_N, growth_N_K, u.probe_K.at(inner), u.probe_K.at(inner + 1)) : preload_N;
     const double torque_Nmm =
-        palmgren_viscous_torque_Nmm(f0, nu, u.drive.speed_rpm, d_mm) + palmgren_load_torque_Nmm(f1, load_N, d_mm);
+        palmgren_viscous_torque_Nmm(f0, nu_now, u.drive.speed_rpm, d_mm) + palmgren_load_torque_Nmm(f1, load_N, d_mm);
     return count * friction_power_W(torque_Nmm, u.drive.speed_rpm);
   };
-  balance.heats.push_back({e.name(), e.body(), power_W});
+  balance.heats.push_back({e.name(), e.body(), Law(power_W, probes)});
+}
+
+void check(const Effect& e, const ConfigMap& in) {
+  const bool at_40 = e.has("viscosity_40"), at_100 = e.has("viscosity_100");
+  if (e.has("viscosity") == (at_40 || at_100)) {
+    in.fail("viscosity", "one of two is wanted: `viscosity`, held constant, or `viscosity_40` with `viscosity_100`");
+  }
+  if (at_40 != at_100) in.fail(at_40 ? "viscosity_40" : "viscosity_100", "`viscosity_40` and `viscosity_100` go together");
+  if (at_40 && !(e["viscosity_40"] > e["viscosity_100"])) {
+    in.fail("viscosity_100", "an oil is thinner at 100 degC than at 40 degC");
+  }
+  if (e.references.contains("oil") && !at_40) in.fail("oil", "only `viscosity_40` with `viscosity_100` looks at the oil");
+  for (const char* ring : {"inner", "outer"}) {
+    if (e.references.contains(ring) != e.has("preload_growth")) {
+      in.fail(e.references.contains(ring) ? ring : "preload_growth", "`preload_growth`, `inner` and `outer` go together");
+    }
+  }
 }
 
 }  // namespace
 
 EffectKind bearing_friction() {
-  return {.key = "bearing_friction",
-          .title = "friction of a rolling bearing",
-          .law = "P = count (M0 + M1) omega; M0 = f0 1e-7 (nu n)^(2/3) d_m^3, M1 = f1 P1 d_m [N mm] (Palmgren 1957)",
-          .places = {Place::kRegion, Place::kNode},
-          .parameters = {{"f0", "1", 1e-3, 20.0, {}, "lubrication factor"},
-                         {"viscosity", "mm^2/s", 1.0, 1000.0, {}, "kinematic viscosity of the lubricant, held constant"},
-                         {"mean_diameter", "mm", 1.0, 2000.0, {}, "mean of bore and outer diameter"},
-                         {"f1", "1", 0.0, 0.1, 0.0, "load factor"},
-                         {"load", "N", 0.0, 1e6, 0.0, "load that decides friction: the preload at idle"},
-                         {"count", "1", 1.0, 20.0, 1.0, "equal bearings in this region"}},
-          .contribute = contribute};
+  return {
+      .key = "bearing_friction",
+      .title = "friction of a rolling bearing",
+      .law =
+          "P = count (M0 + M1) omega; M0 = f0 1e-7 (nu n)^(2/3) d_m^3, M1 = f1 P1 d_m [N mm] (Palmgren 1957); lg lg(nu + "
+          "0.8) = A - B lg T (Ubbelohde-Walther, DIN 51563); P1 = max(0, load + preload_growth (T_inner - T_outer))",
+      .places = {Place::kRegion, Place::kNode},
+      .parameters = {{"f0", "1", 1e-3, 20.0, {}, "lubrication factor"},
+                     {"viscosity", "mm^2/s", 1.0, 1000.0, kNotGiven, "kinematic viscosity of the lubricant, held constant"},
+                     {"viscosity_40", "mm^2/s", 1.0, 1000.0, kNotGiven, "or: that at 40 degC of an oil that thins"},
+                     {"viscosity_100", "mm^2/s", 0.3, 1000.0, kNotGiven, "and that at 100 degC"},
+                     {"mean_diameter", "mm", 1.0, 2000.0, {}, "mean of bore and outer diameter"},
+                     {"f1", "1", 0.0, 0.1, 0.0, "load factor"},
+                     {"load", "N", 0.0, 1e6, 0.0, "load that decides friction: the preload at idle"},
+                     {"preload_growth", "N/K", 0.0, 1e5, kNotGiven, "load gained where `inner` is warmer than `outer`"},
+                     {"count", "1", 1.0, 20.0, 1.0, "equal bearings in this place"}},
+      .contribute = contribute,
+      .references = {{"oil", {BodyKind::kNode, BodyKind::kRegion}, "", "body as warm as the oil; else the bearing's place"},
+                     {"inner", {BodyKind::kRegion, BodyKind::kNode}, "", "body of the inner rings"},
+                     {"outer", {BodyKind::kRegion, BodyKind::kNode}, "", "body of the outer rings"}},
+      .check = check};
 }
 
 }  // namespace driftwright::effects

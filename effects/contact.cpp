@@ -1,23 +1,44 @@
+#include <fmt/format.h>
+
 #include "effects/effect.hpp"
 
 namespace driftwright::effects {
 namespace {
 
+constexpr const char* kTable = "conductance_over_pressure";
+
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double conductance_W_m2K = e["conductance"];
+  const double conductance_W_m2K = e.tables.contains(kTable) ? e.tables.at(kTable).at(e["pressure"]) : e["conductance"];
   balance.contacts.push_back({e.name(), e.place, [=](const Inputs&) { return conductance_W_m2K; }});
+}
+
+void check(const Effect& e, const ConfigMap& in) {
+  const bool has_table = e.tables.contains(kTable);
+  if (e.has("conductance") == has_table) {
+    in.fail("conductance", "one of two is wanted: `conductance`, or `conductance_over_pressure` with `pressure`");
+  }
+  if (e.has("pressure") != has_table) in.fail("pressure", "`conductance_over_pressure` and `pressure` go together");
+  if (!has_table) return;
+  const std::vector<double>& pressure_Pa = e.tables.at(kTable).time_s;
+  if (!(e["pressure"] >= pressure_Pa.front() && e["pressure"] <= pressure_Pa.back())) {
+    in.fail("pressure", fmt::format("{:g} Pa lies outside the table, {:g} Pa to {:g} Pa", e["pressure"], pressure_Pa.front(),
+                                    pressure_Pa.back()));
+  }
 }
 
 }  // namespace
 
 EffectKind contact() {
   return {.key = "contact",
-          .title = "conductance of a joint, constant",
-          .law = "q = conductance (T_a - T_b)",
+          .title = "conductance of a joint, constant or at a pressure",
+          .law = "q = conductance (T_a - T_b); from a table: linear between its rows",
           .places = {Place::kJoint},
-          .parameters =
-              {{"conductance", "W/(m^2 K)", 0.0, 1e7, {}, "bolted and scraped: 2000 to 10000; a guideway: 500 to 3000"}},
-          .contribute = contribute};
+          .parameters = {{"conductance", "W/(m^2 K)", 0.0, 1e7, kNotGiven,
+                          "bolted and scraped: 2000 to 10000; a guideway: 500 to 3000"},
+                         {"pressure", "Pa", 0.0, 1e10, kNotGiven, "mean pressure in the joint, where there is a table"}},
+          .contribute = contribute,
+          .tables = {{kTable, "Pa", "W/(m^2 K)", 0.0, 1e7, false, "rows of [pressure, conductance]"}},
+          .check = check};
 }
 
 }  // namespace driftwright::effects

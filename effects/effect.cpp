@@ -170,6 +170,7 @@ Effect read_effect(const ConfigMap& in) {
   }
   for (const Table& t : kind.tables) read_table(in, t, effect);
   in.reject_unknown_keys();
+  if (kind.check) kind.check(effect, in);
   return effect;
 }
 

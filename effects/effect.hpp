@@ -66,6 +66,8 @@ struct EffectKind {
   std::vector<Reference> references = {};
   std::vector<Choice> choices = {};
   std::vector<Table> tables = {};
+  /// What no single range says (this or that, not both). Called when all is read; fails at the key with ConfigMap::fail().
+  void (*check)(const Effect&, const ConfigMap&) = nullptr;
 };
 
 /// The reference `surrounding` that films share: a lumped node, "hall" by default.

@@ -98,7 +98,7 @@ struct LumpedNode {
   double capacity_J_K = 0.0;
 };
 
-/// A surface or a node whose temperature is prescribed.
+/// A surface or a node whose temperature is prescribed. Where two surfaces meet, the first of the list rules.
 struct FixedTemperature {
   std::string name;
   Body body;

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "effects/effect.hpp"
+#include "effects/time_window.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -11,7 +11,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
     if (exponent == 0.0) return power_W;  // constant, also at standstill
     return power_W * std::pow(u.drive.speed_rpm / n0_rpm, exponent);
   };
-  balance.heats.push_back({e.name(), e.body(), law});
+  balance.heats.push_back({e.name(), e.body(), in_window(e, law, balance)});
 }
 
 }  // namespace
@@ -21,10 +21,11 @@ EffectKind heat_source() {
           .title = "heat by a power law of speed, or constant",
           .law = "P = power (n / at_speed)^exponent; exponent 0: constant, also at standstill",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
-          .parameters = {{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools"},
-                         {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
-                         {"exponent", "1", 0.0, 4.0, 0.0, "growth with speed"}},
-          .contribute = contribute};
+          .parameters = with_window({{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools"},
+                                     {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
+                                     {"exponent", "1", 0.0, 4.0, 0.0, "growth with speed"}}),
+          .contribute = contribute,
+          .check = check_window};
 }
 
 }  // namespace driftwright::effects

@@ -1,5 +1,5 @@
 #include "effects/effect.hpp"
-#include "effects/formulas.hpp"
+#include "effects/film_formulas.hpp"
 
 namespace driftwright::effects {
 namespace {

@@ -39,7 +39,7 @@ struct Cells {
 
 /// Two surfaces that touch and share no node. Their points are matched by closest distance.
 struct Joint {
-  std::string name;    ///< "<region a>/<region b>", alphabetical
+  std::string name;    ///< "<region a>/<region b>", alphabetical; as the scenario says for an imported mesh
   std::string side_a;  ///< surface name
   std::string side_b;
 };
@@ -51,6 +51,7 @@ struct Mesh {
   std::vector<std::string> regions;
   std::vector<std::string> surfaces;
   std::vector<Joint> joints;
+  std::vector<std::string> notes;  ///< what the reader of a mesh file left out or changed, for the user
 
   [[nodiscard]] int n_nodes() const { return static_cast<int>(coords.cols()); }
   /// Index of a region or surface, -1 when there is none of that name.

@@ -14,6 +14,7 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <limits>
 #include <stdexcept>
 
 namespace driftwright::output {
@@ -56,26 +57,43 @@ Array* add_array(vtkFieldData* data, const char* name, int n_components, vtkIdTy
   return array;  // kept alive by `data`
 }
 
-/// Points, cells and regions of a mesh, without fields.
-void build_grid(const mesh::Mesh& mesh, vtkUnstructuredGrid* grid) {
+void add_names(vtkUnstructuredGrid* grid, const char* array, const std::vector<std::string>& names) {
+  auto* strings = add_array<vtkStringArray>(grid->GetFieldData(), array, 1, static_cast<vtkIdType>(names.size()));
+  for (std::size_t i = 0; i < names.size(); ++i) strings->SetValue(static_cast<vtkIdType>(i), names[i]);
+}
+
+void add_cells(const mesh::Cells& cells, vtkUnstructuredGrid* grid) {
+  for (int c = 0; c < cells.size(); ++c) {
+    const auto nodes = cells.nodes(c);
+    const std::vector<vtkIdType> ids(nodes.begin(), nodes.end());
+    grid->InsertNextCell(vtk_cell_type(cells.shape[c]), static_cast<vtkIdType>(ids.size()), ids.data());
+  }
+}
+
+/// Points, cells and regions of a mesh, without fields. With facets, these follow the cells as 2-D cells of region -1.
+void build_grid(const mesh::Mesh& mesh, bool with_facets, vtkUnstructuredGrid* grid) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(mesh.n_nodes());
   for (int n = 0; n < mesh.n_nodes(); ++n) points->SetPoint(n, mesh.coords.col(n).data());
   grid->SetPoints(points);
 
-  grid->AllocateExact(mesh.cells.size(), static_cast<vtkIdType>(mesh.cells.node.size()));
-  for (int c = 0; c < mesh.cells.size(); ++c) {
-    const auto nodes = mesh.cells.nodes(c);
-    const std::vector<vtkIdType> ids(nodes.begin(), nodes.end());
-    grid->InsertNextCell(vtk_cell_type(mesh.cells.shape[c]), static_cast<vtkIdType>(ids.size()), ids.data());
-  }
+  const int n_facets = with_facets ? mesh.facets.size() : 0;
+  grid->AllocateExact(mesh.cells.size() + n_facets,
+                      static_cast<vtkIdType>(mesh.cells.node.size() + mesh.facets.node.size()));
+  add_cells(mesh.cells, grid);
+  if (n_facets > 0) add_cells(mesh.facets, grid);
 
-  auto* region = add_array<vtkIntArray>(grid->GetCellData(), "region", 1, mesh.cells.size());
+  auto* region = add_array<vtkIntArray>(grid->GetCellData(), "region", 1, mesh.cells.size() + n_facets);
+  region->FillValue(-1);
   for (int c = 0; c < mesh.cells.size(); ++c) region->SetValue(c, mesh.cells.group[c]);
-  auto* names =
-      add_array<vtkStringArray>(grid->GetFieldData(), "region_names", 1, static_cast<vtkIdType>(mesh.regions.size()));
-  for (std::size_t r = 0; r < mesh.regions.size(); ++r) names->SetValue(static_cast<vtkIdType>(r), mesh.regions[r]);
+  add_names(grid, "region_names", mesh.regions);
+  if (n_facets > 0) {
+    auto* surface = add_array<vtkIntArray>(grid->GetCellData(), "surface", 1, mesh.cells.size() + n_facets);
+    surface->FillValue(-1);
+    for (int f = 0; f < n_facets; ++f) surface->SetValue(mesh.cells.size() + f, mesh.facets.group[f]);
+    add_names(grid, "surface_names", mesh.surfaces);
+  }
 }
 
 /// Through memory, so that writing to disk is checked in one place.
@@ -98,7 +116,7 @@ struct FieldSeries::Grid {
 };
 
 FieldSeries::FieldSeries(ResultsFolder& folder, const mesh::Mesh& mesh) : folder_(folder), grid_(std::make_unique<Grid>()) {
-  build_grid(mesh, grid_->vtk);
+  build_grid(mesh, false, grid_->vtk);
   const Provenance& made_by = folder.made_by();
   add_array<vtkStringArray>(grid_->vtk->GetFieldData(), "made_by", 1, 1)
       ->SetValue(0, fmt::format("Driftwright {}, {}", made_by.version, made_by.scenario));
@@ -106,12 +124,16 @@ FieldSeries::FieldSeries(ResultsFolder& folder, const mesh::Mesh& mesh) : folder
 
 FieldSeries::~FieldSeries() = default;
 
-void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um) {
+void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um,
+                        const StressField* stress) {
   vtkUnstructuredGrid* grid = grid_->vtk;
   const vtkIdType n_nodes = grid->GetNumberOfPoints();
   if (temperature_degC.size() != n_nodes || displacement_um.cols() != n_nodes) {
     throw std::logic_error(
         fmt::format("fields of {} and {} nodes on a mesh of {}", temperature_degC.size(), displacement_um.cols(), n_nodes));
+  }
+  if (stress && (stress->stress_MPa.cols() != n_nodes || stress->von_mises_MPa.size() != n_nodes)) {
+    throw std::logic_error(fmt::format("stresses of {} nodes on a mesh of {}", stress->stress_MPa.cols(), n_nodes));
   }
   if (!times_s_.empty() && !(time_s > times_s_.back())) {
     throw std::logic_error(fmt::format("fields at {} s after those at {} s", time_s, times_s_.back()));
@@ -122,6 +144,16 @@ void FieldSeries::write(double time_s, const Eigen::VectorXd& temperature_degC, 
   for (vtkIdType n = 0; n < n_nodes; ++n) {
     temperature->SetValue(n, static_cast<float>(temperature_degC[n]));
     displacement->SetTuple(n, displacement_um.col(n).data());
+  }
+  if (stress) {
+    auto* components = add_array<vtkFloatArray>(grid->GetPointData(), "stress_MPa", 6, n_nodes);
+    int i = 0;
+    for (const char* name : {"XX", "YY", "ZZ", "XY", "YZ", "XZ"}) components->SetComponentName(i++, name);
+    auto* von_mises = add_array<vtkFloatArray>(grid->GetPointData(), "von_mises_MPa", 1, n_nodes);
+    for (vtkIdType n = 0; n < n_nodes; ++n) {
+      components->SetTuple(n, stress->stress_MPa.col(n).data());
+      von_mises->SetValue(n, static_cast<float>(stress->von_mises_MPa[n]));
+    }
   }
   add_array<vtkDoubleArray>(grid->GetFieldData(), "TimeValue", 1, 1)->SetValue(0, time_s);
 
@@ -139,12 +171,13 @@ void FieldSeries::finish() {
 
 void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const std::filesystem::path& file) {
   vtkNew<vtkUnstructuredGrid> grid;
-  build_grid(mesh, grid);
+  build_grid(mesh, true, grid);
   if (!quality.empty()) {
     if (quality.size() != static_cast<std::size_t>(mesh.cells.size())) {
       throw std::logic_error(fmt::format("{} qualities for {} cells", quality.size(), mesh.cells.size()));
     }
-    auto* array = add_array<vtkFloatArray>(grid->GetCellData(), "quality", 1, mesh.cells.size());
+    auto* array = add_array<vtkFloatArray>(grid->GetCellData(), "quality", 1, grid->GetNumberOfCells());
+    array->FillValue(std::numeric_limits<float>::quiet_NaN());
     for (int c = 0; c < mesh.cells.size(); ++c) array->SetValue(c, static_cast<float>(quality[c]));
   }
   write_grid(grid, file);

@@ -13,10 +13,17 @@
 
 namespace driftwright::output {
 
-/// Temperature and displacement of one mesh at a series of times.
+/// Stresses at the nodes.
+struct StressField {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> stress_MPa;  ///< rows xx, yy, zz, xy, yz, xz: VTK's order of a symmetric tensor
+  Eigen::VectorXd von_mises_MPa;
+};
+
+/// Temperature, displacement and, if given, stress of one mesh at a series of times.
 ///
 /// Each file fields/fields_<0000...>.vtu carries the point arrays `temperature_degC` and `displacement_um` (3
-/// components, X Y Z of the machine), the cell array `region` (index into the region names), and the field
+/// components, X Y Z of the machine), with stresses also `stress_MPa` (6 components, named XX, YY, ZZ, XY, YZ, XZ) and
+/// `von_mises_MPa`, the cell array `region` (index into the region names), and the field
 /// arrays `region_names`, `TimeValue` [s] and `made_by`. Coordinates are in m and 64 bits wide, the point
 /// arrays 32 bits: seven digits. The same input gives the same bytes.
 class FieldSeries {
@@ -32,9 +39,11 @@ class FieldSeries {
   /// @param time_s            later than that of the call before [s]
   /// @param temperature_degC  n_nodes [degC]
   /// @param displacement_um   3 x n_nodes, one column per node [um]
+  /// @param stress            of n_nodes, or nullptr; the same choice for all times
   /// @throws std::logic_error    when a shape does not fit the mesh, or time does not increase
   /// @throws InputError  when a file cannot be written
-  void write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um);
+  void write(double time_s, const Eigen::VectorXd& temperature_degC, const Eigen::Matrix3Xd& displacement_um,
+             const StressField* stress = nullptr);
 
   /// Writes fields.pvd, which lists what has been written. Call it last.
   void finish();
@@ -46,7 +55,9 @@ class FieldSeries {
   std::vector<double> times_s_;
 };
 
-/// Writes a mesh without fields: cell arrays `region` and `quality` [-], field array `region_names`.
+/// Writes a mesh without fields: cell arrays `region` and `quality` [-], field array `region_names`; then its facets as 2-D
+/// cells with the cell array `surface` (-1 on cells) and the field array `surface_names`, sides of joints among them, so that
+/// mesh::read_vtu() has the same mesh again. Facets have region -1 and quality NaN.
 /// @param quality  one value per cell, or empty to leave the array out
 /// @param file     a path from ResultsFolder::path()
 /// @throws std::logic_error    when `quality` has another length

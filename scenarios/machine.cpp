@@ -10,6 +10,8 @@
 #include "base/quantity.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/shape.hpp"
+#include "scenarios/ways_out.hpp"
+#include "solver/steady_state.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -60,9 +62,22 @@ solver::RegionMaterials place_materials(const MachineModel& model, const Mesh& m
   return materials;
 }
 
-void check_effects(const MachineModel& model, const Mesh& mesh, const effects::HeatBalance& balance) {
+/// Lumped nodes and the hall. @throws InputError  where two effects make a node of the same name, or one called hall
+std::vector<std::string> node_names(const MachineModel& model) {
   std::vector<std::string> nodes = {effects::kHallName};
-  for (const effects::LumpedNode& n : balance.nodes) nodes.push_back(n.name);
+  for (const effects::Effect& e : model.effects) {
+    for (const effects::LumpedNode& n : effects::heat_balance({e}).nodes) {
+      if (std::find(nodes.begin(), nodes.end(), n.name) != nodes.end()) {
+        throw InputError(e.where, fmt::format("there is a lumped node '{}' already; each wants a name of its own", n.name));
+      }
+      nodes.push_back(n.name);
+    }
+  }
+  return nodes;
+}
+
+void check_effects(const MachineModel& model, const Mesh& mesh, const effects::HeatBalance& balance) {
+  const std::vector<std::string> nodes = node_names(model);
   const auto must_exist = [&](const Where& where, effects::BodyKind kind, const std::string& name) {
     switch (kind) {
       case effects::BodyKind::kRegion:
@@ -76,6 +91,8 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   for (const effects::Effect& e : model.effects) {
     if (e.place_kind == effects::Place::kJoint) {
       must_be_one_of(e.where, "joint", e.place, joint_names(mesh));
+    } else if (e.place_kind == effects::Place::kNode && e.place == effects::kHallName) {
+      throw InputError(e.where, "the hall is no lumped node; nothing heats or holds it");
     } else {
       must_exist(e.where, e.body().kind, e.body().name);
     }
@@ -90,6 +107,16 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
                                    "to `effects` (0 W/(m^2 K) insulates)",
                                    joint.name, joint.name));
     }
+  }
+}
+
+/// Bodies of a displacement by sensitivities: regions and lumped nodes.
+void check_bodies(const BySensitivity& by, const Mesh& mesh, const effects::HeatBalance& balance) {
+  std::vector<std::string> nodes;
+  for (const effects::LumpedNode& n : balance.nodes) nodes.push_back(n.name);
+  for (const auto& [body, sensitivity_m_K] : by.terms) {
+    const bool is_node = body.kind == effects::BodyKind::kNode;
+    must_be_one_of(by.where, is_node ? "lumped node" : "region", body.name, is_node ? nodes : mesh.regions);
   }
 }
 
@@ -125,10 +152,12 @@ void add_rotation(DisplacementFunctional& d, const Mesh& mesh, const mesh::MeshP
   for (int i = 0; i < s.n; ++i) d.terms.push_back({nodes[i], 0.5 * c.cross(inverse_t * s.dN.col(i))});
 }
 
-DisplacementFunctional tool_against_table(const Mesh& mesh, const DisplacementOutput& output) {
-  const mesh::MeshPoint tool = place_point(mesh, output.tool), table = place_point(mesh, output.table);
+DisplacementFunctional tool_against_table(const Mesh& mesh, const ToolAgainstTable& output) {
+  PointOnRegion foot = output.table;  // the spot of the table that its travel has brought there
+  foot.at_m -= output.travel_m;
+  const mesh::MeshPoint tool = place_point(mesh, output.tool), table = place_point(mesh, foot);
   const Eigen::Vector3d direction = Eigen::Vector3d::Unit(output.axis);
-  const Eigen::Vector3d arm = tool.position_m - table.position_m;
+  const Eigen::Vector3d arm = tool.position_m - (table.position_m + output.travel_m);
   DisplacementFunctional d;  // e·(u_tool - u_table - ω_table × arm)
   add_displacement(d, mesh, tool, direction);
   add_displacement(d, mesh, table, -direction);
@@ -153,14 +182,22 @@ DisplacementFunctional tilt_against_table(const Mesh& mesh, const TiltOutput& ou
 
 PlacedMachine place(const MachineModel& model) {
   PlacedMachine placed;
-  placed.mesh = std::visit([](const mesh::KneeMill& mill) { return mesh::build_knee_mill(mill); }, model.mesh);
+  placed.mesh = build_mesh(model.mesh);
   const Mesh& mesh = placed.mesh;
   placed.materials = place_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);
   check_effects(model, mesh, placed.balance);
+  require_ways_out(mesh, placed.balance, model.where);
   for (const SupportEntry& s : model.supports) {
     must_be_one_of(s.where, "surface", s.support.surface, outer_surfaces(mesh));
     placed.supports.push_back(s.support);
+  }
+  for (const JointEntry& j : model.joints) {
+    must_be_one_of(j.where, "joint", j.mechanics.joint, joint_names(mesh));
+    const bool again = std::any_of(placed.joints.begin(), placed.joints.end(),
+                                   [&](const auto& other) { return other.joint == j.mechanics.joint; });
+    if (again) throw InputError(j.where, fmt::format("joint '{}' stands under `joints` twice", j.mechanics.joint));
+    placed.joints.push_back(j.mechanics);
   }
   for (const Sensor& sensor : model.sensors) {
     std::vector<std::pair<int, double>> weights;
@@ -178,17 +215,23 @@ PlacedMachine place(const MachineModel& model) {
     }
     placed.sensor_weights.push_back(std::move(weights));
   }
-  for (const DisplacementOutput& d : model.displacements) placed.functionals.push_back(tool_against_table(mesh, d));
+  for (const DisplacementOutput& d : model.displacements) {
+    const auto* tool = std::get_if<ToolAgainstTable>(&d.how);
+    placed.functionals.push_back(tool ? tool_against_table(mesh, *tool) : DisplacementFunctional{});
+    if (const auto* by = std::get_if<BySensitivity>(&d.how)) check_bodies(*by, mesh, placed.balance);
+  }
   for (const TiltOutput& t : model.tilts) placed.functionals.push_back(tilt_against_table(mesh, t));
   return placed;
 }
 
 Machine build(const MachineModel& model, PlacedMachine placed) {
-  solver::Elasticity elasticity = [&] {
+  std::optional<solver::Elasticity> elasticity = [&]() -> std::optional<solver::Elasticity> {
+    if (placed.mesh.n_nodes() == 0) return std::nullopt;
     try {
-      return solver::Elasticity(placed.mesh, placed.materials, placed.supports);
+      return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints);
     } catch (const InputError& e) {  // it knows what is wrong, not where that stands
-      throw InputError(model.supports.front().where, e.what());
+      const bool about_supports = std::string_view(e.what()).starts_with("supports");
+      throw InputError(about_supports ? model.supports.front().where : model.where, e.what());
     }
   }();
   Machine machine{std::move(placed), std::move(elasticity), {}};
@@ -215,11 +258,55 @@ Machine build(const MachineModel& model, PlacedMachine placed) {
     out.unit.emplace_back("rad");
   }
   for (std::size_t i = 0; i < machine.placed.functionals.size(); ++i) {
-    out.state.col(static_cast<Eigen::Index>(n_sensors + i)).head(machine.placed.mesh.n_nodes()) =
-        machine.elasticity.influence(machine.placed.functionals[i]);
+    auto output = out.state.col(static_cast<Eigen::Index>(n_sensors + i));
+    if (i < model.displacements.size()) {
+      if (const auto* by = std::get_if<BySensitivity>(&model.displacements[i].how)) {
+        for (const auto& [body, sensitivity_m_K] : by->terms) {
+          output += sensitivity_m_K * solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
+        }
+        continue;
+      }
+    }
+    output.head(machine.placed.mesh.n_nodes()) = machine.elasticity->influence(machine.placed.functionals[i]);
   }
   return machine;
 }
+
+Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine) {
+  const int n = machine.system.size();
+  const double hall_K = model.hall.at(0.0);
+  switch (model.start) {
+    case Start::kReference:
+      return Eigen::VectorXd::Zero(n);
+    case Start::kHall:
+      return Eigen::VectorXd::Constant(n, hall_K);
+    case Start::kUniform:
+      return Eigen::VectorXd::Constant(n, model.start_K - model.reference_K);
+    case Start::kSteady:
+      return solver::steady_state(machine.system, {.drive = {}, .hall_K = hall_K}, Eigen::VectorXd::Constant(n, hall_K));
+  }
+  throw std::logic_error("start_state: no such start");
+}
+
+namespace {
+
+/// Channels of what the cyclogram uses beside the spindle speed.
+void add_feeds_and_cutting_power(Record& record, const Cyclogram& cyclogram) {
+  const auto add = [&](const char* name, const char* unit, const auto& of_drive) {
+    const auto& sections = cyclogram.sections;
+    if (std::none_of(sections.begin(), sections.end(), [&](const auto& s) { return of_drive(s.drive) != 0.0; })) return;
+    Channel channel{name, unit, {}};
+    for (double t_s : record.time_s) channel.values.push_back(of_drive(cyclogram.drive(t_s)));
+    record.channels.push_back(std::move(channel));
+  };
+  constexpr double kMmMin_per_m_s = 60e3;
+  add("feed_x", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[0]; });
+  add("feed_y", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[1]; });
+  add("feed_z", "mm_min", [](const Drive& d) { return kMmMin_per_m_s * d.feed_m_s[2]; });
+  add("cutting_power", "W", [](const Drive& d) { return d.cutting_power_W; });
+}
+
+}  // namespace
 
 Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
                  double reference_K) {
@@ -227,6 +314,7 @@ Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, 
   Channel speed{"speed", "rpm", {}};
   for (double t_s : run.time_s) speed.values.push_back(cyclogram.speed_rpm(t_s));
   record.channels.push_back(std::move(speed));
+  add_feeds_and_cutting_power(record, cyclogram);
   for (std::size_t i = 0; i < outputs.name.size(); ++i) {
     const auto row = run.outputs.row(static_cast<Eigen::Index>(i));
     Channel channel{outputs.name[i], "", {}};
@@ -244,11 +332,17 @@ Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, 
   return record;
 }
 
-std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s) {
+std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s, const std::vector<double>& further_s) {
   std::vector<double> times_s;
   const double end_s = cyclogram.duration_s();
   for (int i = 0; i * interval_s < end_s * (1 - 1e-12); ++i) times_s.push_back(i * interval_s);
+  for (double t_s : further_s) {
+    if (t_s < end_s * (1 - 1e-12)) times_s.push_back(t_s);
+  }
   times_s.push_back(end_s);
+  std::sort(times_s.begin(), times_s.end());
+  const auto same = [](double a, double b) { return b - a <= 1e-9 * b; };  // sums of intervals miss by rounding
+  times_s.erase(std::unique(times_s.begin(), times_s.end(), same), times_s.end());
   return times_s;
 }
 

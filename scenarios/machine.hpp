@@ -17,9 +17,11 @@ struct PlacedMachine {
   solver::RegionMaterials materials;
   effects::HeatBalance balance;
   std::vector<solver::Support> supports;
+  std::vector<solver::JointMechanics> joints;
   /// Weights of each thermometer on the unknowns; empty for one that reads the hall.
   std::vector<std::vector<std::pair<int, double>>> sensor_weights;
-  std::vector<solver::DisplacementFunctional> functionals;  ///< displacements, then tilts
+  /// Displacements, then tilts; of no terms for a displacement by sensitivities.
+  std::vector<solver::DisplacementFunctional> functionals;
 };
 
 /// Meshes the machine and finds every region, surface, joint, node and point of the scenario in it.
@@ -30,16 +32,21 @@ struct PlacedMachine {
 /// The full model, ready to run.
 struct Machine {
   PlacedMachine placed;
-  solver::Elasticity elasticity;
+  std::optional<solver::Elasticity> elasticity;  ///< none without a mesh
   solver::FullSystem system;  ///< outputs: sensors [K], displacements [m], tilts [rad], in the scenario's order
 };
 [[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed);
 
-/// A trajectory as a record: speed_rpm, sensors in degC, displacements in um, tilts in urad.
+/// Temperatures minus the reference temperature at t = 0, by the scenario's `start`.
+/// @throws SolveError  when there is no steady state to start from
+[[nodiscard]] Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine);
+
+/// A trajectory as a record: speed_rpm, feeds in mm/min and cutting power in W where the cyclogram uses them, sensors in degC, displacements in um, tilts in urad.
 [[nodiscard]] Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
                                double reference_K);
 
-/// 0, interval, 2 interval, ... and the end of the cyclogram [s].
-[[nodiscard]] std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s);
+/// 0, interval, 2 interval, ..., further times within the cyclogram, and its end [s].
+[[nodiscard]] std::vector<double> output_times_s(const Cyclogram& cyclogram, double interval_s,
+                                                 const std::vector<double>& further_s = {});
 
 }  // namespace driftwright::scenarios

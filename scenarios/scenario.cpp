@@ -7,61 +7,11 @@
 #include <algorithm>
 #include <set>
 
-#include "base/quantity.hpp"
+#include "scenarios/read_cyclogram.hpp"
+#include "scenarios/read_hall.hpp"
 
 namespace driftwright::scenarios {
 namespace {
-
-int read_axis(const ConfigMap& in, const std::string& key) {
-  return in.choice(key, {"x", "y", "z"})[0] - 'x';
-}
-
-PointOnRegion read_point(const ConfigMap& in) {
-  PointOnRegion point{in.text("region"), in.vector3("at", "m"), in.where("at")};
-  in.reject_unknown_keys();
-  return point;
-}
-
-Sensor read_sensor(const ConfigMap& in) {
-  Sensor sensor{.name = in.name("name"), .place = {}, .where = in.where()};
-  if (in.has("node")) {
-    sensor.place = in.text("node");
-    sensor.where = in.where("node");
-  } else {
-    sensor.place = PointOnRegion{in.text("region"), in.vector3("at", "m"), in.where("at")};
-  }
-  in.reject_unknown_keys();
-  return sensor;
-}
-
-DisplacementOutput read_displacement(const ConfigMap& in) {
-  DisplacementOutput d{in.name("name"), read_axis(in, "along"), read_point(in.map("tool")), read_point(in.map("table"))};
-  in.reject_unknown_keys();
-  return d;
-}
-
-TiltOutput read_tilt(const ConfigMap& in) {
-  TiltOutput t{in.name("name"), read_axis(in, "about"), read_point(in.map("from")), read_point(in.map("to")),
-               read_point(in.map("table"))};
-  const Eigen::Vector3d line_m = t.to.at_m - t.from.at_m;
-  if (line_m.cross(Eigen::Vector3d::Unit(t.axis)).norm() < 1e-3) {
-    in.fail("about", "the line from -> to must reach at least 1 mm across this axis; a line does not tilt about itself");
-  }
-  in.reject_unknown_keys();
-  return t;
-}
-
-SupportEntry read_support(const ConfigMap& in) {
-  SupportEntry entry{{in.text("surface"), {false, false, false}}, in.where("surface")};
-  for (const std::string& direction : in.texts("fixed")) {
-    if (direction != "x" && direction != "y" && direction != "z") {
-      in.fail("fixed", fmt::format("'{}' is no direction; a list of x, y, z is wanted", direction));
-    }
-    entry.support.fixed[direction[0] - 'x'] = true;
-  }
-  in.reject_unknown_keys();
-  return entry;
-}
 
 /// `materials:` maps each region to a name of the library or to a map of values.
 std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
@@ -80,64 +30,56 @@ std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
   return entries;
 }
 
-TimeSeries read_hall(const ConfigMap& in, double reference_K) {
-  TimeSeries hall;
-  for (const std::vector<double>& row : in.rows("hall", {"s", "degC"})) {
-    if (!hall.time_s.empty() && !(row[0] > hall.time_s.back())) in.fail("hall", "times must increase from row to row");
-    if (!(row[1] >= 200.0 && row[1] <= 400.0)) {
-      in.fail("hall",
-              fmt::format("{:.0f} degC is no hall temperature; -73 to 127 degC is allowed", row[1] - kZeroCelsius_K));
-    }
-    hall.time_s.push_back(row[0]);
-    hall.value.push_back(row[1] - reference_K);
-  }
-  return hall;
-}
-
-Cyclogram read_cyclogram(const ConfigMap& in, const std::string& name) {
-  if (!is_name(name)) in.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", name));
-  Cyclogram cyclogram{.name = name, .sections = {}};
-  for (const std::vector<double>& row : in.rows(name, {"s", "rpm"})) {
-    if (!(row[0] >= 1e-3))
-      in.fail(name, fmt::format("a section of {:g} s; a duration above zero is wanted, 1 ms or more", row[0]));
-    if (!(row[1] >= 0.0 && row[1] <= 1e6))
-      in.fail(name, fmt::format("a speed of {:g} rpm; 0 to 1e6 rpm is allowed", row[1]));
-    cyclogram.sections.push_back({row[0], {.speed_rpm = row[1]}});
-  }
-  return cyclogram;
-}
-
-MeshRecipe read_mesh_recipe(const ConfigMap& in) {
-  (void)in.choice("generator", {"knee_mill"});
-  MeshRecipe recipe = mesh::read_knee_mill(in);
-  in.reject_unknown_keys();
-  return recipe;
-}
-
 void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
-  std::set<std::string> names = {"speed", "time"};  // columns that every record has
+  std::set<std::string> names = {"speed",  "time",   "feed_x",  // columns that records have beside these
+                                 "feed_y", "feed_z", "cutting_power"};
   const auto add = [&](const std::string& name, const char* list) {
     if (!names.insert(name).second)
-      in.fail(list, fmt::format("the name '{}' is used twice, or is a column of every record", name));
+      in.fail(list,
+              fmt::format("the name '{}' is used twice, or is a column of every record (time, speed, feeds, cutting power)",
+                          name));
   };
   for (const Sensor& s : m.sensors) add(s.name, "sensors");
   for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
   for (const TiltOutput& t : m.tilts) add(t.name, "tilts");
 }
 
+/// `start: reference | hall | steady`, or a temperature.
+void read_start(const ConfigMap& in, MachineModel& m) {
+  if (!in.has("start")) return;
+  const std::string text = in.text("start");
+  if (text == "reference") {
+    m.start = Start::kReference;
+  } else if (text == "hall") {
+    m.start = Start::kHall;
+  } else if (text == "steady") {
+    m.start = Start::kSteady;
+  } else if (std::isdigit(static_cast<unsigned char>(text.front())) || text.front() == '-') {
+    m.start = Start::kUniform;
+    m.start_K = in.temperature_K("start");
+  } else {
+    in.fail("start", fmt::format("'{}' is no start; reference, hall, steady or a temperature is wanted", text));
+  }
+}
+
 MachineModel read_machine(const ConfigMap& in) {
   MachineModel m;
   m.reference_K = in.temperature_K("reference_temperature");
   m.mesh = read_mesh_recipe(in.map("machine"));
-  m.materials = read_materials(in.map("materials"));
+  if (const auto materials = in.optional_map("materials")) m.materials = read_materials(*materials);
   for (const ConfigMap& entry : in.maps("supports")) m.supports.push_back(read_support(entry));
+  for (const ConfigMap& entry : in.maps("joints")) m.joints.push_back(read_joint(entry));
   for (const ConfigMap& entry : in.maps("effects")) m.effects.push_back(effects::read_effect(entry));
   for (const ConfigMap& entry : in.maps("sensors")) m.sensors.push_back(read_sensor(entry));
-  for (const ConfigMap& entry : in.maps("displacements")) m.displacements.push_back(read_displacement(entry));
+  for (const ConfigMap& entry : in.maps("displacements")) {
+    for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));
+  }
   for (const ConfigMap& entry : in.maps("tilts")) m.tilts.push_back(read_tilt(entry));
   m.hall = read_hall(in, m.reference_K);
+  read_start(in, m);
   m.where = in.where("machine");
-  if (m.supports.empty()) in.fail("supports", "no support; name at least one surface that is held");
+  const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
+  if (has_mesh && m.supports.empty()) in.fail("supports", "no support; name at least one surface that is held");
   if (m.sensors.empty() || m.displacements.empty())
     in.fail("sensors", "at least one sensor and one displacement are wanted");
   reject_repeated_names(in, m);
@@ -150,6 +92,12 @@ SolverSettings read_solver(const ConfigMap& in) {
   s.transient.absolute_tolerance_K = in.quantity("absolute_tolerance", "K", 1e-9, 1.0, s.transient.absolute_tolerance_K);
   s.output_interval_s = in.quantity("output_interval", "s", 1e-3, 1e6, s.output_interval_s);
   s.fields_every_s = in.quantity("fields_every", "s", 1e-3, 1e9, s.fields_every_s);
+  if (in.has("fields_at")) {
+    s.fields_at_s = in.quantities("fields_at", "s");
+    std::sort(s.fields_at_s.begin(), s.fields_at_s.end());
+    if (!(s.fields_at_s.front() >= 0.0)) in.fail("fields_at", "times from 0 s on are wanted");
+  }
+  s.stresses = in.choice("stresses", {"true", "false"}, "false") == "true";
   in.reject_unknown_keys();
   return s;
 }

@@ -11,50 +11,13 @@
 #include "base/cyclogram.hpp"
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
-#include "mesh/knee_mill.hpp"
-#include "solver/elasticity.hpp"
+#include "scenarios/read_mechanics.hpp"
+#include "scenarios/read_mesh.hpp"
+#include "scenarios/read_outputs.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
 
 namespace driftwright::scenarios {
-
-/// How the mesh comes about. A new generator or reader is a new alternative.
-using MeshRecipe = std::variant<mesh::KneeMill>;
-
-/// A point on or in a region of the machine.
-struct PointOnRegion {
-  std::string region;
-  Eigen::Vector3d at_m;
-  Where where;
-};
-
-/// A thermometer: at a point of a region, or on a lumped node ("hall" is the hall).
-struct Sensor {
-  std::string name;
-  std::variant<PointOnRegion, std::string> place;
-  Where where;
-};
-
-/// Error of the tool against the table along an axis: actual - commanded. The stand of the indicator is a rigid body that
-/// moves and turns with the table at its foot.
-struct DisplacementOutput {
-  std::string name;
-  int axis = 0;  ///< 0, 1, 2 = x, y, z
-  PointOnRegion tool, table;
-};
-
-/// Change of angle of the line from -> to about an axis, against the table (ISO 230-3); right-handed.
-struct TiltOutput {
-  std::string name;
-  int axis = 0;
-  PointOnRegion from, to, table;
-};
-
-/// A support with where it stands in the file.
-struct SupportEntry {
-  solver::Support support;
-  Where where;
-};
 
 /// A region and the material it is made of.
 struct MaterialEntry {
@@ -63,17 +26,28 @@ struct MaterialEntry {
   Where where;
 };
 
+/// The state at t = 0.
+enum class Start {
+  kReference,  ///< everything at the reference temperature
+  kHall,       ///< everything at the hall's first temperature
+  kUniform,    ///< everything at MachineModel::start_K
+  kSteady,     ///< the steady state at standstill in the hall's first temperature
+};
+
 /// All that the simulation needs.
 struct MachineModel {
   double reference_K = 293.15;
   MeshRecipe mesh;
   std::vector<MaterialEntry> materials;
   std::vector<SupportEntry> supports;
+  std::vector<JointEntry> joints;  ///< mechanics of joints that are not tied
   std::vector<effects::Effect> effects;
   std::vector<Sensor> sensors;
   std::vector<DisplacementOutput> displacements;
   std::vector<TiltOutput> tilts;
-  TimeSeries hall;  ///< minus reference_K [K]
+  Start start = Start::kReference;
+  double start_K = 293.15;  ///< for Start::kUniform
+  TimeSeries hall;          ///< minus reference_K [K]
   Where where;
 };
 
@@ -81,6 +55,9 @@ struct SolverSettings {
   solver::TransientOptions transient;
   double output_interval_s = 60.0;
   double fields_every_s = 1800.0;
+  std::vector<double>
+      fields_at_s;        ///< instead of fields_every_s where not empty; the start and the end are written in any case
+  bool stresses = false;  ///< stresses beside the other fields
 };
 
 /// What is fitted and what it is judged by.

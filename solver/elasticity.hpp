@@ -1,24 +1,21 @@
 #pragma once
-// Quasi-static thermo-elasticity: K u = G θ, with small strains, isotropic materials and strain α θ.
+// Quasi-static thermo-elasticity: K u = G θ, with small strains and the free strain α θ.
 //
-//     K = ∫ B'D B dV + joints,   G θ = ∫ B'D ε_th dV,   ε_th = α θ (1,1,1,0,0,0)
+//     K = ∫ B'D B dV + springs of joints and supports,   G θ = ∫ B'D ε_th dV,   ε_th = θ (α_x, α_y, α_z, 0, 0, 0)
 //
-// Outputs d = l'u become influence vectors g = G'K⁻¹l: one solve per output, then a dot product per time.
+// θ is the temperature over that at which the machine is straight and free of stress. Outputs d = l'u become influence
+// vectors g = G'K⁻¹l: one solve per output, then a dot product per time.
 // Source of the formulas: Zienkiewicz, Taylor & Zhu, The Finite Element Method, vol. 1, ch. 2 and 6.
 
-#include <array>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "mesh/mesh.hpp"
 #include "solver/heat_assembly.hpp"
+#include "solver/mechanics.hpp"
 
 namespace driftwright::solver {
-
-/// A surface held in some directions.
-struct Support {
-  std::string surface;
-  std::array<bool, 3> fixed = {true, true, true};  ///< x, y, z
-};
 
 /// Σ weight u(node) along a direction: a displacement, a difference of two, or an angle.
 struct DisplacementFunctional {
@@ -29,19 +26,31 @@ struct DisplacementFunctional {
   std::vector<Term> terms;
 };
 
-/// The factorised elastic machine. Joints are tied: springs a thousand times stiffer than the parts over one facet.
+/// A component of stress at a point: of the displacements, and of the temperatures there [Pa].
+struct StressFunctional {
+  DisplacementFunctional displacement;
+  std::vector<std::pair<int, double>> temperature;  ///< node, Pa/K
+};
+
+/// The factorised elastic machine.
 class Elasticity {
  public:
+  /// @param joints  those that are not tied
   /// @throws SolveError  when the factorisation fails for want of memory
-  /// @throws InputError  when the supports leave a part free to move
-  Elasticity(const mesh::Mesh& mesh, const RegionMaterials& materials, const std::vector<Support>& supports);
+  /// @throws InputError  when supports and joints leave a part free to move (it names part and motion), for unknown joints
+  ///                     and such as do not touch, and for a material without sense: E > 0, -1 < nu < 0.5, finite expansion
+  Elasticity(const mesh::Mesh& mesh, const RegionMaterials& materials, const std::vector<Support>& supports,
+             const std::vector<JointMechanics>& joints = {});
   ~Elasticity();
   Elasticity(Elasticity&&) noexcept;
 
   /// Influence vector over the mesh's nodes [unit of the functional per K].
   [[nodiscard]] Eigen::VectorXd influence(const DisplacementFunctional& functional) const;
+  /// [Pa/K]
+  [[nodiscard]] Eigen::VectorXd influence(const StressFunctional& functional) const;
 
   /// Displacement of all nodes, 3 x n_nodes [m], under temperatures θ of the nodes [K] (longer vectors: the head counts).
+  /// Nodes in no cell stay where they are.
   [[nodiscard]] Eigen::Matrix3Xd displacement(const Eigen::VectorXd& theta) const;
 
  private:

@@ -276,6 +276,10 @@ double at_reference(double constant, const PropertyCurve& curve, double referenc
 
 }  // namespace
 
+Eigen::VectorXd mean_weights(const Mesh& mesh, const effects::HeatBalance& balance, const Body& body) {
+  return Places(mesh, balance).mean_weights(body);
+}
+
 FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, const effects::HeatBalance& balance,
                          double reference_K) {
   const Places places(mesh, balance);
@@ -297,10 +301,16 @@ FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, con
   }
   if (auto term = variable_conduction(mesh, materials, reference_K)) system.nonlinear.push_back(std::move(term));
   system.capacity = VariableCapacity::of(mesh, materials, reference_K);
+  std::vector<char> is_fixed(n, 0);
   for (const effects::FixedTemperature& f : balance.fixed) {
     TimeSeries theta = f.temperature_K;
     for (double& value : theta.value) value -= reference_K;
-    system.fixed.push_back({f.name, unknowns_of(mesh, places, f.body), std::move(theta), f.follows_hall});
+    std::vector<int> unknowns;
+    for (int i : unknowns_of(mesh, places, f.body)) {
+      if (!is_fixed[i]) unknowns.push_back(i);
+      is_fixed[i] = 1;
+    }
+    system.fixed.push_back({f.name, std::move(unknowns), std::move(theta), f.follows_hall});
   }
   system.change_times_s = balance.change_times_s;
 

@@ -22,4 +22,8 @@ using RegionMaterials = std::vector<Material>;
 [[nodiscard]] FullSystem assemble_heat(const mesh::Mesh& mesh, const RegionMaterials& materials,
                                        const effects::HeatBalance& balance, double reference_K = 293.15);
 
+/// Weights that give the mean temperature of a body from the unknowns; they sum to one.
+[[nodiscard]] Eigen::VectorXd mean_weights(const mesh::Mesh& mesh, const effects::HeatBalance& balance,
+                                           const effects::Body& body);
+
 }  // namespace driftwright::solver

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mesh/locate.hpp"
+#include "mesh/normals.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/shape.hpp"
 
@@ -17,6 +18,7 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
   const bool exchanged =
       side_b.size() > side_a.size() && std::abs(mesh::area_m2(mesh, surface_b) - area_m2) < 0.01 * area_m2;
   if (exchanged) std::swap(side_a, side_b);
+  const std::vector<Eigen::Matrix3Xd> normals = mesh::smooth_normals(mesh, side_a);
   std::vector<std::vector<JointPoint>> of_facet(side_a.size());
 #pragma omp parallel for schedule(dynamic, 8)
   for (std::size_t f = 0; f < side_a.size(); ++f) {
@@ -26,6 +28,7 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
     const auto x = mesh::cell_coords(mesh, nodes_a);
     for (const mesh::QuadraturePoint& q : mesh::quadrature(shape, 5)) {
       const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
+      const mesh::Jacobian j = mesh::jacobian(s, x, shape);
       const Eigen::Vector3d position = x * s.N.head(s.n).transpose();
       const mesh::MeshPoint opposite = mesh::nearest_point(mesh, mesh.facets, side_b, position);
       const mesh::ShapeValues sb = mesh::shape_values(mesh.facets.shape[opposite.cell], opposite.xi);
@@ -34,8 +37,11 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
                        .node_b = {nodes_b.begin(), nodes_b.end()},
                        .weight_a = {s.N.data(), s.N.data() + s.n},
                        .weight_b = {sb.N.data(), sb.N.data() + sb.n},
-                       .area_m2 = q.weight * mesh::jacobian(s, x, shape).det,
-                       .gap_m = opposite.distance_m};
+                       .area_m2 = q.weight * j.det,
+                       .gap_m = opposite.distance_m,
+                       .position_m = position,
+                       .normal = (normals[f] * s.N.head(s.n).transpose()).normalized(),
+                       .normal_error = mesh::normal_error(normals[f])};
       if (exchanged) {
         std::swap(point.node_a, point.node_b);
         std::swap(point.weight_a, point.weight_b);

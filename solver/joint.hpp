@@ -15,6 +15,9 @@ struct JointPoint {
       weight_b;          ///< shape functions; each sums to one, so that no heat is made or lost
   double area_m2 = 0.0;  ///< quadrature weight times area ratio
   double gap_m = 0.0;    ///< distance between the two points
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, of either sense; smoothed, see mesh/normals.hpp
+  double normal_error = 0.0;                         ///< of the normal [rad], see mesh/normals.hpp
 };
 
 /// The quadrature points of a joint; the rule is exact for products of quadratic functions on straight facets.

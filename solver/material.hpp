@@ -10,14 +10,22 @@
 
 namespace driftwright::solver {
 
-/// Isotropic, at about 20 degC.
+/// Linear thermal expansion along x, y and z of the machine [1/K]. One number: the same along all.
+struct Expansion {
+  double x = 0.0, y = 0.0, z = 0.0;
+  Expansion() = default;
+  Expansion(double all_1_K) : x(all_1_K), y(all_1_K), z(all_1_K) {}  // NOLINT(google-explicit-constructor)
+  Expansion(double x_1_K, double y_1_K, double z_1_K) : x(x_1_K), y(y_1_K), z(z_1_K) {}
+};
+
+/// Isotropic but for the expansion, at about 20 degC.
 struct Material {
   double density_kg_m3 = 0.0;
   double conductivity_W_mK = 0.0;
   double heat_capacity_J_kgK = 0.0;
   double youngs_modulus_Pa = 0.0;
   double poisson_ratio = 0.0;
-  double expansion_1_K = 0.0;
+  Expansion expansion_1_K;
   std::string source;
   PropertyCurve conductivity_curve = {},
                 heat_capacity_curve = {};  ///< over temperature; then the values above are those at 20 degC
@@ -26,8 +34,9 @@ struct Material {
 /// The library, by name.
 [[nodiscard]] const std::map<std::string, Material>& material_library();
 
-/// Reads a material given by its values: density, conductivity, heat_capacity, youngs_modulus, poisson_ratio, expansion, and
-/// optionally source. Conductivity and heat_capacity may be rows of [temperature, value]. @throws InputError
+/// Reads a material given by its values: density, conductivity, heat_capacity, youngs_modulus, poisson_ratio, expansion (one
+/// number, or a list of three for x, y and z), and optionally source. Conductivity and heat_capacity may be rows of
+/// [temperature, value]. @throws InputError
 [[nodiscard]] Material read_material(const ConfigMap& in);
 
 }  // namespace driftwright::solver

@@ -59,10 +59,28 @@ double phi2(double a) {
 
 }  // namespace
 
+namespace {
+
+/// All modes of a small system by a dense solver, then the slowest of them.
+ThermalModes dense_modes(const FullSystem& system, const effects::Inputs& at, int n_modes) {
+  const SparseRow k = stiffness_at(system, at);
+  require_way_out(k);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen{Eigen::MatrixXd(k), Eigen::MatrixXd(system.mass)};
+  ThermalModes modes{eigen.eigenvectors().leftCols(n_modes), {}};
+  for (int i = 0; i < n_modes; ++i) modes.time_constant_s.push_back(1.0 / eigen.eigenvalues()[i]);
+  return modes;
+}
+
+}  // namespace
+
 ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, int n_modes) {
   const int n = system.size();
-  if (n_modes < 1 || n_modes > n - 2)
+  constexpr int kDense = 60;  // unknowns up to which a dense solver is no slower, and gives every mode there is
+  if (!system.is_linear()) throw std::logic_error("thermal modes are those of a linear system");
+  if (n_modes < 1 || n_modes > (n <= kDense ? n : n - 2)) {
     throw InputError(fmt::format("{} thermal modes of {} unknowns cannot be had", n_modes, n));
+  }
+  if (n <= kDense) return dense_modes(system, at, n_modes);
   const ConductionFactor factor = factor_at(system, at);
   InverseStiffness inverse{factor, n};
   MassProduct mass{system.mass};

@@ -4,12 +4,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/errors.hpp"
 #include "solver/conduction_factor.hpp"
 #include "solver/heat_rate.hpp"
 
 namespace driftwright::solver {
+namespace {
+
+/// Goes from θ along a step as far as laws are defined: all of it, or a half, a quarter, ... Leaves the rate at the new state.
+/// @return false when none of forty halvings will do
+bool advance(HeatRate& rate, double hall_K, const Eigen::VectorXd& step, double share, Eigen::VectorXd& theta,
+             Eigen::VectorXd& heat) {
+  const Eigen::VectorXd from = theta;
+  for (int halving = 0; halving < 40; ++halving, share *= 0.5) {
+    theta = from + share * step;
+    try {
+      rate.evaluate(theta.data(), hall_K, heat.data());
+      return true;
+    } catch (const RangeError&) {  // a trial state that no law is defined at
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& start) {
   constexpr int kMostIterations = 200;
   HeatRate rate(system);
@@ -26,9 +47,9 @@ Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at
       theta[i] = f.follows_hall ? at.hall_K : f.theta.at(at.time_s);
     }
   }
-  double largest_K = 0.0;
+  rate.evaluate(theta.data(), at.hall_K, heat.data());
+  double largest_K = 0.0, last_moved_K = std::numeric_limits<double>::infinity(), share = 1.0;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    rate.evaluate(theta.data(), at.hall_K, heat.data());
     SparseRow k = rate.tangent(theta.data(), at.hall_K);
     if (iteration == 0) require_way_out(k, is_fixed);
     for (int row = 0; row < system.size(); ++row) {
@@ -39,10 +60,13 @@ Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at
     }
     const ConductionFactor factor(k);
     const Eigen::VectorXd step = factor.solve(heat);
-    theta += step;
-    largest_K = std::max({largest_K, theta.cwiseAbs().maxCoeff(), std::abs(at.hall_K)});
     const double moved_K = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(moved_K)) break;
+    // The slope of laws is left out of K: where it is steeper than K, whole steps would swing to and fro ever wider.
+    if (moved_K > 0.9 * last_moved_K) share = std::max(0.5 * share, 1.0 / 64.0);
+    last_moved_K = moved_K;
+    if (!advance(rate, at.hall_K, step, share, theta, heat)) break;
+    largest_K = std::max({largest_K, theta.cwiseAbs().maxCoeff(), std::abs(at.hall_K)});
     if (moved_K <= 1e-10 * largest_K) return theta;
   }
   throw SolveError(fmt::format(
@@ -78,7 +102,7 @@ FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const
   for (auto& e : linear.exchanges) freeze(e.coefficient);
   const effects::Law one([](const effects::Inputs&) { return 1.0; });
   const int n = system.size();
-  for (const auto& term : system.nonlinear) {  // r(θ) ≈ r0 + J (θ - θ0), and for the hall J 1 (θ_hall - θ_hall0)
+  for (const auto& term : system.nonlinear) {  // r(θ) ≈ r0 + J (θ - θ0) + dr/dθ_hall (θ_hall - θ_hall0)
     Exchange<SparseRow> e{.name = term->name,
                           .matrix = system.conduction,
                           .to_hall = Eigen::VectorXd::Zero(n),
@@ -90,11 +114,15 @@ FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const
     Eigen::VectorXd heat_out = Eigen::VectorXd::Zero(n);
     term->add_heat_out(theta.data(), at.hall_K, heat_out.data());
     e.offset = e.matrix * theta - heat_out;
-    if (term->reaches_hall()) {
-      e.to_hall = e.matrix * Eigen::VectorXd::Ones(n);
+    if (term->reaches_hall()) {  // the hall's own slope: a surface of another temperature radiates by another one
+      constexpr double kHalfStep_K = 0.05;
+      Eigen::VectorXd below = Eigen::VectorXd::Zero(n), above = below;
+      term->add_heat_out(theta.data(), at.hall_K - kHalfStep_K, below.data());
+      term->add_heat_out(theta.data(), at.hall_K + kHalfStep_K, above.data());
+      e.to_hall = (below - above) / (2.0 * kHalfStep_K);
       e.hall_sum = e.to_hall.sum();
       e.offset -= at.hall_K * e.to_hall;
-      e.flow = e.to_hall;
+      e.flow = e.matrix * Eigen::VectorXd::Ones(n);
     }
     e.offset_sum = e.offset.sum();
     linear.exchanges.push_back(std::move(e));

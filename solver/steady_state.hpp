@@ -6,17 +6,20 @@
 namespace driftwright::solver {
 
 /// Temperatures θ at which no unknown gains heat, at constant drive and hall. Laws, radiation and properties are taken at the
-/// temperatures found (Newton's method without the slope of laws over their probes; the residual is exact).
+/// temperatures found (Newton's method without the slope of laws over their probes; the residual is exact). Steps are halved
+/// where they would leave the range of a law, or where they do not shrink.
 ///
 /// @param at     drive, hall and time; prescribed temperatures are those of that time
 /// @param start  first guess, and the state that thermostats are set by (they keep that setting)
+/// @throws RangeError  when a law is not defined at the first guess
 /// @throws SolveError  when some part has no way for heat to leave (names an unknown of it), or after 200 iterations without
 ///                     convergence to 1e-10 of the largest temperature difference
 [[nodiscard]] Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at,
                                            const Eigen::VectorXd& start);
 
 /// The system with every law that looks at temperatures, every nonlinear term and every property frozen at a state: linear,
-/// and alike to first order where laws do not change with temperature.
+/// and alike to first order where laws and properties do not change with temperature. Radiation to a lumped node takes the
+/// slope between both ends' temperatures for either.
 /// @throws InputError  when it has thermostats or temperatures prescribed over time, which no linear system can follow
 [[nodiscard]] FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& theta);
 

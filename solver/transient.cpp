@@ -39,6 +39,7 @@ struct Callee {
   int n_thermostats = 0;
   void* arkode = nullptr;  ///< for the current gamma
   std::exception_ptr failure;
+  std::string out_of_range;  ///< what the law said that refused a trial state last
 };
 
 // No exception crosses a C frame: keep it, return a code, rethrow when ARKODE has returned.
@@ -48,7 +49,8 @@ int guarded(void* user, Work work) noexcept {
   try {
     work(callee);
     return 0;
-  } catch (const RangeError&) {
+  } catch (const RangeError& e) {
+    callee.out_of_range = e.what();
     return +1;  // a trial state that no law is defined at: ARKODE tries a smaller step
   } catch (...) {
     callee.failure = std::current_exception();
@@ -107,8 +109,9 @@ void check(int flag, const char* call, double time_s, Callee& callee) {
   if (callee.failure) std::rethrow_exception(callee.failure);
   if (flag >= 0) return;
   const std::unique_ptr<char, decltype(&std::free)> name(ARKStepGetReturnFlagName(flag), &std::free);
-  throw SolveError(
-      fmt::format("{} failed at t = {:.1f} s with {}; try looser tolerances in `solver`", call, time_s, name.get()));
+  const std::string remedy = callee.out_of_range.empty() ? "try looser tolerances in `solver`"
+                                                         : "a law refused a trial state: " + callee.out_of_range;
+  throw SolveError(fmt::format("{} failed at t = {:.1f} s with {}; {}", call, time_s, name.get(), remedy));
 }
 
 /// Times at which the drive stays but something else bends or jumps.
@@ -162,7 +165,7 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   std::fill(out(tolerance.get()) + n, out(tolerance.get()) + ode.size(), 1e30);  // heats follow, they do not steer
 
   const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, knots_s(system, hall));
-  Callee callee{ode, static_cast<int>(system.thermostats.size()), nullptr, nullptr};
+  Callee callee{ode, static_cast<int>(system.thermostats.size()), nullptr, nullptr, {}};
   ode.set_thermostats(0.0, in(y.get()));
   (void)ode.begin_stretch(stretches.front());
   // Made before ARKODE and freed after it, which still looks at them when it goes.
@@ -227,6 +230,7 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
     while (t_s < stretch.end_s) {
       const int flag = ARKStepEvolve(mem, stretch.end_s, y.get(), &t_s, ARK_ONE_STEP);
       check(flag, "ARKStepEvolve", t_s, callee);
+      callee.out_of_range.clear();
       if (t_s > stretch.end_s - 1e-9 * stretch.end_s) t_s = stretch.end_s;
       if (bounds_hold) {
         const auto [low_K, high_K] = surroundings_K(system, hall, t_s);

@@ -63,6 +63,14 @@ TEST(LinearStretches, EndAtFurtherKnotsInAnyOrder) {
   EXPECT_THROW((void)linear_stretches(kCycle, std::vector<double>{std::nan("")}), std::logic_error);
 }
 
+TEST(LinearStretches, AreNotMadeOfRounding) {
+  // 0.1 + 0.1 + 0.1 is not 0.3 in double precision.
+  const Cyclogram cycle{.name = "", .sections = {{0.1, 1000}, {0.1, 0}, {0.1, 1000}, {0.1, 0}}};
+  const auto stretches = linear_stretches(cycle, std::vector<double>{0.3, 0.2 + 1e-12, 0.35});
+  ASSERT_EQ(stretches.size(), 5u);
+  EXPECT_EQ(stretches[4].start_s, 0.35);
+}
+
 TEST(LinearStretches, AChangeOfFeedOrCuttingPowerAloneIsAChangeOfDrive) {
   const Drive turning{.speed_rpm = 1000.0};
   Drive moving = turning, cutting = turning;

@@ -5,8 +5,9 @@
 #include <set>
 
 #include "base/errors.hpp"
+#include "effects/bearing_formulas.hpp"
 #include "effects/effect.hpp"
-#include "effects/formulas.hpp"
+#include "effects/film_formulas.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::effects {

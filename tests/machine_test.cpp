@@ -74,12 +74,12 @@ TEST_F(PlacedFp3, ATurnOfTheSpindleIsItsTilt) {
 TEST_F(PlacedFp3, ATurnOfTheTableIsSeenThroughTheStand) {
   // Only the table turns, about its own foot point of the stand: an indicator at arm a reads -(ω × a), the tilts -ω.
   const auto& d = scenario_.machine->displacements;
-  const Eigen::Vector3d foot = d[0].table.at_m;
+  const Eigen::Vector3d foot = std::get<ToolAgainstTable>(d[0].how).table.at_m;
   const Eigen::VectorXd r = readings([&](const std::string& region, const Eigen::Vector3d& x) -> Eigen::Vector3d {
     return region == "table" ? Eigen::Vector3d(kTurn.cross(x - foot)) : Eigen::Vector3d::Zero();
   });
   for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_NEAR(r[axis], -kTurn.cross(d[axis].tool.at_m - foot)[axis],
+    EXPECT_NEAR(r[axis], -kTurn.cross(std::get<ToolAgainstTable>(d[axis].how).tool.at_m - foot)[axis],
                 1e-5);  // the tool point was moved onto the mesh: mm x mrad
   }
   EXPECT_NEAR(r[3], -kTurn.x(), 1e-12);

@@ -123,6 +123,29 @@ TEST_F(VtkFieldsTest, EveryCellIsWrittenAsItsVtkTypeWithItsNodesInOrder) {
   }
 }
 
+TEST_F(VtkFieldsTest, StressesAreWrittenIfGivenWithNamedComponents) {
+  ResultsFolder folder(out_, false, {});
+  FieldSeries series(folder, mesh_);
+  StressField stress{Eigen::Matrix<double, 6, Eigen::Dynamic>::Random(6, 11), Eigen::VectorXd::LinSpaced(11, 0.0, 5.0)};
+  series.write(0.0, temperature_degC_, displacement_um_, &stress);
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(folder.path("fields/fields_0000.vtu").c_str());
+  reader->Update();
+  vtkDataArray* components = reader->GetOutput()->GetPointData()->GetArray("stress_MPa");
+  vtkDataArray* von_mises = reader->GetOutput()->GetPointData()->GetArray("von_mises_MPa");
+  ASSERT_TRUE(components != nullptr && von_mises != nullptr);
+  ASSERT_EQ(components->GetNumberOfComponents(), 6);
+  EXPECT_STREQ(components->GetComponentName(0), "XX");
+  EXPECT_STREQ(components->GetComponentName(4), "YZ");
+  EXPECT_STREQ(components->GetComponentName(5), "XZ");
+  for (int n = 0; n < 11; ++n) {
+    for (int i = 0; i < 6; ++i) EXPECT_FLOAT_EQ(components->GetComponent(n, i), stress.stress_MPa(i, n));
+    EXPECT_FLOAT_EQ(von_mises->GetTuple1(n), stress.von_mises_MPa[n]);
+  }
+  stress.von_mises_MPa.resize(10);
+  EXPECT_THROW(series.write(1.0, temperature_degC_, displacement_um_, &stress), std::logic_error);
+}
+
 TEST_F(VtkFieldsTest, RegionsKeepTheirNamesAndFilesSayTheirTimeAndOrigin) {
   write_two_times(out_);
   vtkNew<vtkXMLUnstructuredGridReader> reader;

@@ -1,0 +1,183 @@
+#include "app/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/heat_flow_record.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using output::Heading;
+using output::Plot;
+using output::Table;
+using solver::FlowKind;
+
+std::string words(FlowKind kind) {
+  switch (kind) {
+    case FlowKind::kSource:
+      return "source";
+    case FlowKind::kSurrounding:
+      return "hall";
+    case FlowKind::kPrescribed:
+      return "prescribed temperature";
+    case FlowKind::kInternal:
+      return "within the machine";
+  }
+  return "";
+}
+
+/// Region of an unknown, or the name of the lumped node.
+std::string place_of(int unknown, const scenarios::Machine& machine) {
+  const mesh::Mesh& mesh = machine.placed.mesh;
+  if (unknown >= mesh.n_nodes()) return "node " + machine.placed.balance.nodes[unknown - mesh.n_nodes()].name;
+  for (int c = 0; c < mesh.cells.size(); ++c) {
+    const auto nodes = mesh.cells.nodes(c);
+    if (std::find(nodes.begin(), nodes.end(), unknown) == nodes.end()) continue;
+    const Eigen::Vector3d x_mm = 1e3 * mesh.coords.col(unknown);
+    return fmt::format("{} at [{:.0f}, {:.0f}, {:.0f}] mm", mesh.regions[mesh.cells.group[c]], x_mm[0], x_mm[1], x_mm[2]);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<double> minutes(const Record& record) {
+  std::vector<double> t_min;
+  for (double t_s : record.time_s) t_min.push_back(t_s / 60.0);
+  return t_min;
+}
+
+std::vector<output::SectionMark> section_marks(const Cyclogram& cyclogram) {
+  constexpr std::size_t kMostMarks = 40;  // more would hide the curves: an NC program changes speed hundreds of times
+  std::vector<output::SectionMark> marks;
+  double start_s = 0.0;
+  const Drive* last = nullptr;
+  for (const auto& section : cyclogram.sections) {
+    if (!last || section.drive.speed_rpm != last->speed_rpm)
+      marks.push_back({start_s / 60.0, fmt::format("{:.0f} rpm", section.drive.speed_rpm)});
+    last = &section.drive;
+    start_s += section.duration_s;
+  }
+  if (marks.size() > kMostMarks) marks.clear();
+  return marks;
+}
+
+Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
+                   const std::vector<std::string>& names, const Cyclogram& cyclogram) {
+  Plot plot{.title = title,
+            .x_label = "time [min]",
+            .y_label = y_label,
+            .series = {},
+            .bands = {},
+            .marks = section_marks(cyclogram)};
+  for (const std::string& name : names)
+    plot.series.push_back({.label = name, .x = minutes(record), .y = record.at(name).values});
+  return plot;
+}
+
+Table heat_table(const solver::Trajectory& run) {
+  const auto last = run.heat_J.cols() - 1;
+  const double duration_s = run.time_s.back();
+  Table table{
+      .caption = fmt::format("Mean heat flow over the cyclogram. In = stored + out to {:.0e}. Flows within the machine "
+                             "(> 0 out of the surface, or from the first part of a joint to the second) count in no "
+                             "sum.",
+                             std::max(1e-16, run.energy_gap())),
+      .headers = {"flow", "to or from", "into the machine [W]", "out of it [W]", "heat [kJ]"},
+      .rows = {}};
+  double in_W = 0.0, lost_W = 0.0;
+  for (FlowKind kind : {FlowKind::kSource, FlowKind::kSurrounding, FlowKind::kPrescribed, FlowKind::kInternal}) {
+    if (kind == FlowKind::kInternal) {
+      table.rows.push_back({"sum", "", fmt::format("{:.1f}", in_W), fmt::format("{:.1f}", lost_W), ""});
+      table.rows.push_back({"stored in the machine", "", "", fmt::format("{:.1f}", run.stored_J[last] / duration_s),
+                            fmt::format("{:.1f}", 1e-3 * run.stored_J[last])});
+    }
+    for (std::size_t j = 0; j < run.flows.size(); ++j) {
+      if (run.flows[j].kind != kind) continue;
+      const double heat_J = run.heat_J(static_cast<Eigen::Index>(j), last), mean_W = heat_J / duration_s;
+      const bool into = kind == FlowKind::kInternal ? false : mean_W > 0.0;
+      (into ? in_W : lost_W) += kind == FlowKind::kInternal ? 0.0 : std::abs(mean_W);
+      const double out_W = kind == FlowKind::kInternal ? mean_W : -mean_W;
+      table.rows.push_back({run.flows[j].name, words(kind), into ? fmt::format("{:.1f}", mean_W) : "",
+                            into ? "" : fmt::format("{:.1f}", out_W), fmt::format("{:.1f}", 1e-3 * heat_J)});
+    }
+  }
+  return table;
+}
+
+Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram) {
+  constexpr std::size_t kMostCurves = 8;
+  const Record record = scenarios::heat_flow_record(run, cyclogram.name);
+  std::vector<std::pair<double, std::size_t>> by_size;  // total heat moved, channel
+  for (std::size_t j = 0; j < run.flows.size(); ++j) {
+    if (run.flows[j].kind == FlowKind::kInternal) continue;
+    double moved = 0.0;
+    for (double power_W : record.channels[j + 1].values) moved += std::isnan(power_W) ? 0.0 : std::abs(power_W);
+    by_size.emplace_back(-moved, j + 1);
+  }
+  std::sort(by_size.begin(), by_size.end());
+  std::vector<std::string> names = {"stored"};
+  for (const auto& [size, channel] : by_size) {
+    if (names.size() <= kMostCurves) names.push_back(record.channels[channel].name);
+  }
+  Plot plot = channels_plot("Heat into the machine", "heat flow [W]", record, names, cyclogram);
+  plot.series.front().style = output::Series::Style::kDashed;
+  return plot;
+}
+
+Table overshoot_table(const solver::Trajectory& run, const scenarios::Machine& machine) {
+  Table table{.caption =
+                  "Where temperatures left the bounds that conduction keeps, beside a jump that is sharper than the mesh "
+                  "(consistent mass matrix); the largest of each jump, above the solver's tolerance.",
+              .headers = {"jump at [min]", "overshoot [K]", "at [min]", "where"},
+              .rows = {}};
+  for (const solver::Overshoot& o : run.overshoots) {
+    table.rows.push_back({fmt::format("{:.2f}", o.jump_s / 60.0), fmt::format("{:.4f}", o.amount_K),
+                          fmt::format("{:.2f}", o.time_s / 60.0), place_of(o.unknown, machine)});
+  }
+  return table;
+}
+
+std::string overshoot_text(const solver::Trajectory& run, const scenarios::Machine& machine) {
+  if (run.overshoots.empty()) return "";
+  const auto worst = std::max_element(run.overshoots.begin(), run.overshoots.end(),
+                                      [](const auto& a, const auto& b) { return a.amount_K < b.amount_K; });
+  return fmt::format("overshoot of {:.3f} K in {}, {:.0f} s after the jump at {:.1f} min", worst->amount_K,
+                     place_of(worst->unknown, machine), worst->time_s - worst->jump_s, worst->jump_s / 60.0);
+}
+
+output::Report simulation_report(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
+                                 const std::vector<const Cyclogram*>& cyclograms, const std::vector<SimulatedRun>& runs,
+                                 const output::Provenance& made_by) {
+  output::Report report{.title = scenario.name + ": simulation",
+                        .subtitle = fmt::format("Driftwright {}, scenario {}; {} nodes, {} cells, {} lumped nodes",
+                                                made_by.version, made_by.scenario, machine.placed.mesh.n_nodes(),
+                                                machine.placed.mesh.cells.size(), machine.placed.balance.nodes.size()),
+                        .blocks = {}};
+  const auto add = [&](auto block) { report.blocks.emplace_back(std::move(block)); };
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Record& record = runs[i].record;
+    add(Heading{"Cyclogram " + cyclograms[i]->name});
+    const auto add_channels = [&](const std::string& title, const std::string& label, const std::string& unit) {
+      std::vector<std::string> names = record.names_with_unit(unit);
+      constexpr std::size_t kPerPlot = 8;
+      for (std::size_t first = 0; first < names.size(); first += kPerPlot) {
+        const auto begin = names.begin() + static_cast<std::ptrdiff_t>(first);
+        const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(first + kPerPlot, names.size()));
+        add(channels_plot(title, label, record, {begin, end}, *cyclograms[i]));
+      }
+    };
+    add_channels("Displacements", "displacement [um]", "um");
+    add_channels("Tilts", "tilt [urad]", "urad");
+    add_channels("Temperatures", "temperature [degC]", "degC");
+    add(heat_plot(runs[i].trajectory, *cyclograms[i]));
+    add(heat_table(runs[i].trajectory));
+    if (!runs[i].trajectory.overshoots.empty()) add(overshoot_table(runs[i].trajectory, machine));
+  }
+  return report;
+}
+
+}  // namespace driftwright::app

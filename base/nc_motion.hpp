@@ -1,0 +1,53 @@
+#pragma once
+// The machine that an NC program drives: where its axes stand, how its spindle turns, and what each move takes. It keeps
+// every speed as programmed: acceleration, look-ahead and overrides are not modelled, so real programs run somewhat longer.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "base/errors.hpp"
+
+namespace driftwright {
+
+/// One stretch of a program: a line, an arc or a standstill of the axes, at one spindle speed.
+struct NcMove {
+  double duration_s = 0.0;
+  double speed_rpm = 0.0;                      ///< of the spindle in either sense, >= 0
+  std::array<double, 3> travel_m = {0, 0, 0};  ///< integral of |velocity| of x, y, z
+  bool cutting = false;                        ///< a feed move while the spindle turns
+};
+
+enum class NcFeedMode { PerMinute, InverseTime, PerRevolution };
+
+class NcMotion {
+ public:
+  explicit NcMotion(std::optional<double> rapid_m_s) : rapid_m_s_(rapid_m_s) {}
+
+  Where where;  ///< of the block in hand, for messages
+  std::array<double, 3> position_m = {0, 0, 0};
+  NcFeedMode feed_mode = NcFeedMode::PerMinute;
+  double feed = 0.0;  ///< [m/s], [1/s] (moves per second) or [m/rev], by the mode; 0: none
+  double programmed_rpm = 0.0;
+  bool turning = false;
+
+  [[nodiscard]] double speed_rpm() const { return turning ? programmed_rpm : 0.0; }
+
+  /// A straight line at the speed of rapids along it. @throws InputError  when there is none
+  void rapid_to(const std::array<double, 3>& target_m);
+  /// A straight line at the feed. @throws InputError  without a feed, or per revolution of a spindle at rest
+  void feed_to(const std::array<double, 3>& target_m);
+  /// An arc at the feed (see nc_arc.hpp). @throws InputError  as feed_to, and for an impossible arc
+  void arc_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, int normal, bool clockwise,
+              int turns);
+  void wait(double duration_s);
+
+  [[nodiscard]] const std::vector<NcMove>& moves() const { return moves_; }
+
+ private:
+  void feed_along(double length_m, const std::array<double, 3>& travel_m);
+  std::optional<double> rapid_m_s_;
+  std::vector<NcMove> moves_;
+};
+
+}  // namespace driftwright

@@ -1,0 +1,16 @@
+#pragma once
+// Effects of an axis' motion.
+
+#include "effects/effect.hpp"
+
+namespace driftwright::effects {
+
+[[nodiscard]] inline Choice axis_choice() {
+  return {"axis", {"x", "y", "z"}, {}, "axis whose feed drives it"};
+}
+/// Index into Drive::feed_m_s of an effect with axis_choice().
+[[nodiscard]] inline std::size_t axis_of(const Effect& effect) {
+  return static_cast<std::size_t>(effect.words.at("axis")[0] - 'x');
+}
+
+}  // namespace driftwright::effects

@@ -1,0 +1,40 @@
+#include <numbers>
+
+#include "effects/axis.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void contribute(const Effect& e, HeatBalance& balance) {
+  const double torque_Nm = e["torque"], lead_m = 1e-3 * e["lead"], thrust_N = e["thrust"], efficiency = e["efficiency"];
+  const double share = e["share"];
+  const std::size_t axis = axis_of(e);
+  const auto law = [=](const Inputs& u) {
+    const double v_m_s = u.drive.feed_m_s[axis];
+    return share * (2.0 * std::numbers::pi * torque_Nm * v_m_s / lead_m + thrust_N * v_m_s * (1.0 / efficiency - 1.0));
+  };
+  balance.heats.push_back({e.name(), e.body(), law});
+}
+
+}  // namespace
+
+EffectKind ball_screw() {
+  return {
+      .key = "ball_screw",
+      .title = "friction of a ball screw and its nut",
+      .law =
+          "P = share (2 pi torque v / lead + thrust v (1 / efficiency - 1)): drag of the preloaded nut times the screw's "
+          "angular velocity, and what the drive loses on a thrust (drag torque and efficiency as in THK's or NSK's "
+          "catalogue of ball screws)",
+      .places = {Place::kRegion, Place::kSurface, Place::kNode},
+      .parameters = {{"torque", "N m", 0.0, 1e4, {}, "drag torque of the preloaded nut"},
+                     {"lead", "mm", 0.1, 1000.0, {}, "travel per turn"},
+                     {"thrust", "N", 0.0, 1e7, 0.0, "mean axial load"},
+                     {"efficiency", "1", 0.1, 1.0, 0.9, "from torque to thrust"},
+                     {"share", "1", 0.0, 1.0, 1.0,
+                      "part of the heat that enters this body; nut and screw: about half each"}},
+      .contribute = contribute,
+      .choices = {axis_choice()}};
+}
+
+}  // namespace driftwright::effects

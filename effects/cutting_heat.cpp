@@ -1,0 +1,25 @@
+#include "effects/effect.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void contribute(const Effect& e, HeatBalance& balance) {
+  const double share = e["share"];
+  balance.heats.push_back({e.name(), e.body(), [=](const Inputs& u) { return share * u.drive.cutting_power_W; }});
+}
+
+}  // namespace
+
+EffectKind cutting_heat() {
+  return {
+      .key = "cutting_heat",
+      .title = "heat of cutting",
+      .law =
+          "P = share P_cutting: nearly all of the cutting power becomes heat in chips, tool, workpiece and coolant (Shaw, "
+          "Metal Cutting Principles, ch. on temperatures)",
+      .places = {Place::kRegion, Place::kSurface, Place::kNode},
+      .parameters = {{"share", "1", 0.0, 1.0, {}, "part of the heat that enters this body; chips keep most of it"}},
+      .contribute = contribute};
+}
+
+}  // namespace driftwright::effects

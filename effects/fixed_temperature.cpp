@@ -1,0 +1,34 @@
+#include "effects/effect.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void contribute(const Effect& e, HeatBalance& balance) {
+  const bool follows_hall = e.words.at("follows") == kHallName;
+  const TimeSeries temperature_K =
+      follows_hall || !e.tables.contains("temperature") ? TimeSeries{} : e.tables.at("temperature");
+  balance.fixed.push_back({e.name(), e.body(), temperature_K, follows_hall});
+}
+
+void check(const Effect& e, const ConfigMap& in) {
+  if (e.tables.contains("temperature") == (e.words.at("follows") == kHallName)) {
+    in.fail("temperature",
+            "one of two is wanted: `temperature`, a value or rows of [time, temperature], or `follows: hall`");
+  }
+}
+
+}  // namespace
+
+EffectKind fixed_temperature() {
+  return {.key = "fixed_temperature",
+          .title = "prescribed temperature",
+          .law = "T = temperature(t), linear between rows and constant outside them, or that of the hall",
+          .places = {Place::kSurface, Place::kNode},
+          .parameters = {},
+          .contribute = contribute,
+          .choices = {{"follows", {"nothing", kHallName}, "nothing", "`hall`: as warm as the hall at every time"}},
+          .tables = {{"temperature", "s", "degC", 1.0, 3000.0, false, "over time, or one value"}},
+          .check = check};
+}
+
+}  // namespace driftwright::effects

@@ -1,0 +1,21 @@
+#include "effects/effect.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void contribute(const Effect& e, HeatBalance& balance) {
+  balance.nodes.push_back({e.place, e["capacity"]});
+}
+
+}  // namespace
+
+EffectKind lumped_node() {
+  return {.key = "node",
+          .title = "lumped body with one temperature: a rotor, a tank, a motor",
+          .law = "C dT/dt = sum of what links, films, sources and circuits bring",
+          .places = {Place::kNode},
+          .parameters = {{"capacity", "J/K", 1e-6, 1e12, {}, "heat capacity"}},
+          .contribute = contribute};
+}
+
+}  // namespace driftwright::effects

@@ -1,0 +1,33 @@
+#include <cmath>
+
+#include "effects/axis.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void contribute(const Effect& e, HeatBalance& balance) {
+  const double idle_W = e["idle"], power_W = e["power"], v0_m_s = e["at_feed"], exponent = e["exponent"];
+  const std::size_t axis = axis_of(e);
+  const auto law = [=](const Inputs& u) {
+    const double v_m_s = u.drive.feed_m_s[axis];
+    return idle_W + (v_m_s > 0.0 ? power_W * std::pow(v_m_s / v0_m_s, exponent) : 0.0);
+  };
+  balance.heats.push_back({e.name(), e.body(), law});
+}
+
+}  // namespace
+
+EffectKind servo_loss() {
+  return {.key = "servo_loss",
+          .title = "loss of an axis' servo motor",
+          .law = "P = idle + power (v / at_feed)^exponent; v: mean absolute feed. A power law fitted to measured heat",
+          .places = {Place::kRegion, Place::kNode},
+          .parameters = {{"power", "W", 0.0, 1e6, {}, "part that grows with feed, at the stated feed"},
+                         {"at_feed", "m/s", 1e-6, 100.0, {}, "the stated feed"},
+                         {"exponent", "1", 0.0, 4.0, 1.0, "growth with feed; friction alone: 1"},
+                         {"idle", "W", 0.0, 1e6, 0.0, "holding current, also at standstill"}},
+          .contribute = contribute,
+          .choices = {axis_choice()}};
+}
+
+}  // namespace driftwright::effects

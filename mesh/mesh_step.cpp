@@ -1,0 +1,145 @@
+#include "mesh/mesh_step.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <set>
+
+#include "mesh/gmsh_parts.hpp"
+
+namespace driftwright::mesh {
+namespace {
+
+namespace occ = gmsh::model::occ;
+
+struct Solid {
+  int tag;
+  std::string region;
+};
+
+std::vector<Solid> import_solids(const std::string& path) {
+  gmsh::option::setString("Geometry.OCCTargetUnit", "M");
+  gmsh::option::setNumber("Geometry.OCCImportLabels", 1);
+  gmsh::vectorpair shapes;
+  try {
+    occ::importShapes(path, shapes, true, "step");
+  } catch (const std::string& message) {
+    throw InputError(path + ": Gmsh cannot read it: " + message);
+  }
+  occ::synchronize();
+  std::vector<Solid> solids;
+  for (const auto& [dim, tag] : shapes) {
+    if (dim != 3) continue;
+    std::string label;
+    gmsh::model::getEntityName(3, tag, label);
+    solids.push_back({tag, label.substr(label.rfind('/') + 1)});  // the whole label if it has no '/'
+  }
+  if (solids.empty()) throw InputError(path + ": there is no solid in it");
+  return solids;
+}
+
+/// What a point and a solid have in common is the point, or nothing.
+bool holds(int solid, const Eigen::Vector3d& at_m) {
+  const int point = occ::addPoint(at_m[0], at_m[1], at_m[2]);
+  gmsh::vectorpair out;
+  std::vector<gmsh::vectorpair> map;
+  occ::intersect({{0, point}}, {{3, solid}}, out, map, -1, true, false);
+  if (out.empty()) return false;
+  occ::remove(out);
+  return true;
+}
+
+void name_by_points(std::vector<Solid>& solids, const std::vector<RegionPoint>& points) {
+  std::set<int> named;
+  for (const RegionPoint& point : points) {
+    std::vector<Solid*> hits;
+    for (Solid& solid : solids) {
+      if (holds(solid.tag, point.at_m)) hits.push_back(&solid);
+    }
+    if (hits.size() != 1) {
+      throw InputError(point.where,
+                       fmt::format("the point of region '{}' lies in {} solids; in one is wanted, away from where "
+                                   "solids touch",
+                                   point.region, hits.size()));
+    }
+    if (!named.insert(hits[0]->tag).second) {
+      throw InputError(point.where, fmt::format("the solid at the point of region '{}' is named twice", point.region));
+    }
+    hits[0]->region = point.region;
+  }
+}
+
+std::string describe(int solid) {
+  double mass = 0.0, x = 0.0, y = 0.0, z = 0.0;
+  occ::getMass(3, solid, mass);
+  occ::getCenterOfMass(3, solid, x, y, z);
+  return fmt::format("solid {} ({:.4g} l, centre [{:.1f} mm, {:.1f} mm, {:.1f} mm])", solid, 1e3 * mass, 1e3 * x, 1e3 * y,
+                     1e3 * z);
+}
+
+}  // namespace
+
+Mesh mesh_step(const ImportedMesh& recipe) {
+  const GmshSession session;
+  return with_gmsh_errors([&] {
+    std::vector<Solid> solids = import_solids(recipe.path);
+    name_by_points(solids, recipe.region_points);
+    gmsh::vectorpair all, out;
+    std::vector<gmsh::vectorpair> map;
+    for (const Solid& solid : solids) {
+      if (solid.region.empty()) {
+        throw InputError(recipe.where, fmt::format("{}: {} has no name; give it one by a point in it, under `regions`",
+                                                   recipe.path, describe(solid.tag)));
+      }
+      all.emplace_back(3, solid.tag);
+    }
+    if (all.size() > 1) {
+      occ::fragment({all.front()}, {all.begin() + 1, all.end()}, out, map);
+    } else {
+      map = {all};
+    }
+    occ::synchronize();
+    std::vector<Part> parts;
+    std::set<int> taken;
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+      auto part = std::find_if(parts.begin(), parts.end(), [&](const Part& p) { return p.region == solids[i].region; });
+      if (part == parts.end()) {
+        const auto size = recipe.mesh_size_of_region_m.find(solids[i].region);
+        parts.push_back(
+            {solids[i].region, {}, size == recipe.mesh_size_of_region_m.end() ? recipe.mesh_size_m : size->second});
+        part = parts.end() - 1;
+      }
+      for (const auto& [dim, tag] : map[i]) {
+        if (!taken.insert(tag).second) {
+          throw InputError(recipe.where, fmt::format("{}: the solids of '{}' and another region overlap; they may touch",
+                                                     recipe.path, solids[i].region));
+        }
+        part->volumes.push_back(tag);
+      }
+    }
+    for (const auto& [region, size] : recipe.mesh_size_of_region_m) {
+      if (std::none_of(parts.begin(), parts.end(), [&, &name = region](const Part& p) { return p.region == name; })) {
+        std::vector<std::string> known;
+        for (const Part& p : parts) known.push_back(p.region);
+        throw InputError(recipe.where,
+                         fmt::format("`mesh_size` names the region '{}'; there are {}", region, fmt::join(known, ", ")));
+      }
+    }
+    const std::string outer = "outer";
+    Mesh mesh = mesh_parts(parts, recipe.element_order, [&](const OuterFace&) { return outer; });
+    // Outer faces get their names by picking; until then they are on no surface.
+    Cells sides;
+    const int unnamed = mesh.surface(outer);
+    for (int f = 0; f < mesh.facets.size(); ++f) {
+      const int group = mesh.facets.group[f];
+      if (group != unnamed) sides.add(mesh.facets.shape[f], mesh.facets.nodes(f), group - (group > unnamed ? 1 : 0));
+    }
+    mesh.facets = std::move(sides);
+    mesh.surfaces.erase(mesh.surfaces.begin() + unnamed);
+    return mesh;
+  });
+}
+
+}  // namespace driftwright::mesh

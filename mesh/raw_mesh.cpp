@@ -1,0 +1,203 @@
+#include "mesh/raw_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "base/errors.hpp"
+#include "mesh/outer_faces.hpp"
+#include "mesh/quality.hpp"
+
+namespace driftwright::mesh {
+namespace {
+
+[[noreturn]] void fail(const RawMesh& raw, const std::string& message) {
+  throw InputError(raw.path + ": " + message);
+}
+
+void check_size(const RawMesh& raw, const Eigen::Matrix3Xd& coords, double unit_m) {
+  constexpr double kLargest_m = 100.0, kSmallest_m = 1e-3;
+  const double size_m = (coords.rowwise().maxCoeff() - coords.rowwise().minCoeff()).maxCoeff();
+  if (size_m <= kLargest_m && size_m >= kSmallest_m) return;
+  std::string likely;
+  for (const auto& [name, other_m] : {std::pair{"mm", 1e-3}, {"inch", 0.0254}, {"m", 1.0}}) {
+    const double as_m = size_m / unit_m * other_m;
+    if (as_m <= 10.0 && as_m >= 0.01) likely += fmt::format("{}{} ({:.3g} m)", likely.empty() ? "" : " or ", name, as_m);
+  }
+  fail(raw, fmt::format("the mesh is {:.3g} m large; 1 mm to 100 m is allowed. {}", size_m,
+                        likely.empty() ? "Is the unit right?" : "Is its unit " + likely + "?"));
+}
+
+void check_cells(const RawMesh& raw, const Mesh& mesh) {
+  std::map<std::vector<int>, int> seen;
+  for (int c = 0; c < mesh.cells.size(); ++c) {
+    const auto nodes = mesh.cells.nodes(c).first(n_corners_of(mesh.cells.shape[c]));
+    std::vector<int> sorted(nodes.begin(), nodes.end());
+    std::sort(sorted.begin(), sorted.end());
+    const auto [other, is_new] = seen.try_emplace(sorted, c);
+    if (!is_new) {
+      fail(raw, fmt::format("elements {} and {} have the same nodes; a cell may stand there once",
+                            raw.cell_number[other->second], raw.cell_number[c]));
+    }
+  }
+  int n_inverted = 0, first = -1;
+  const std::vector<double> scaled = scaled_jacobians(mesh);
+  for (int c = 0; c < mesh.cells.size(); ++c) {
+    if (scaled[c] > 0.0) continue;
+    if (n_inverted++ == 0) first = c;
+  }
+  if (n_inverted > 0) {
+    fail(raw,
+         fmt::format("element {} in region '{}' is inverted or folded (scaled Jacobian {:.3g}, above 0 is allowed){}; mend "
+                     "the mesh, or take straight edges there",
+                     raw.cell_number[first], mesh.regions[mesh.cells.group[first]], scaled[first],
+                     n_inverted > 1 ? fmt::format(", and {} more", n_inverted - 1) : ""));
+  }
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    if (std::find(mesh.cells.group.begin(), mesh.cells.group.end(), static_cast<int>(r)) == mesh.cells.group.end()) {
+      fail(raw, fmt::format("region '{}' has no cells", mesh.regions[r]));
+    }
+  }
+}
+
+/// Neighbours must see the same nodes on what they share, or the field tears there.
+void check_conformity(const RawMesh& raw, const Mesh& mesh, const std::map<FaceKey, std::vector<CellFace>>& faces) {
+  std::map<std::pair<int, int>, std::pair<int, int>> edges;  // corners -> mid-side node or -1, and a cell that says so
+  for (int c = 0; c < mesh.cells.size(); ++c) {
+    const CellShape shape = mesh.cells.shape[c];
+    const auto nodes = mesh.cells.nodes(c);
+    int e = n_corners_of(shape);
+    for (const auto& [a, b] : edges_of(shape)) {
+      const int middle = is_quadratic(shape) ? nodes[e++] : -1;
+      const auto [known, is_new] = edges.try_emplace(std::minmax({nodes[a], nodes[b]}), middle, c);
+      if (!is_new && known->second.first != middle) {
+        fail(raw,
+             fmt::format("elements {} and {} share an edge but not the node in its middle; take one order for all cells "
+                         "of a body",
+                         raw.cell_number[known->second.second], raw.cell_number[c]));
+      }
+    }
+  }
+  std::map<std::array<int, 3>, int> triangles;  // of outer faces
+  for (const auto& [key, at] : faces) {
+    if (at.size() > 2) {
+      fail(raw, fmt::format("elements {}, {} and {} have one face in common; cells overlap", raw.cell_number[at[0].cell],
+                            raw.cell_number[at[1].cell], raw.cell_number[at[2].cell]));
+    }
+    if (at.size() == 1 && key[0] < 0) triangles[{key[1], key[2], key[3]}] = at[0].cell;
+  }
+  for (const auto& [key, at] : faces) {
+    if (at.size() != 1 || key[0] < 0) continue;
+    for (int left_out = 0; left_out < 4; ++left_out) {
+      std::array<int, 3> corners{};
+      for (int i = 0, j = 0; i < 4; ++i) {
+        if (i != left_out) corners[j++] = key[i];
+      }
+      if (const auto hit = triangles.find(corners); hit != triangles.end()) {
+        fail(raw,
+             fmt::format("element {} meets a four-sided face of element {} with a triangle; the field would tear there. "
+                         "Wedges can go between, or separate parts with a joint",
+                         raw.cell_number[hit->second], raw.cell_number[at[0].cell]));
+      }
+    }
+  }
+}
+
+/// Collects facets by surface, each face once.
+class SurfaceTable {
+ public:
+  explicit SurfaceTable(Mesh& mesh) : mesh_(mesh) {}
+  bool add(const std::string& name, CellFace face) {
+    if (mesh_.surface(name) < 0) mesh_.surfaces.push_back(name);
+    const int surface = mesh_.surface(name);
+    if (!seen_.insert({surface, face_key(mesh_.cells, face)}).second) return false;
+    mesh_.facets.add(shape_of(mesh_.cells, face), nodes_of(mesh_.cells, face), surface);
+    return true;
+  }
+
+ private:
+  Mesh& mesh_;
+  std::set<std::pair<int, FaceKey>> seen_;
+};
+
+void add_surfaces(const RawMesh& raw, const std::vector<int>& new_number, Mesh& mesh,
+                  const std::map<FaceKey, std::vector<CellFace>>& faces) {
+  SurfaceTable table(mesh);
+  for (const auto& surface : raw.facet_surfaces) {
+    for (std::size_t i = 0; i < surface.corners.size(); ++i) {
+      std::vector<int> corners;
+      for (int n : surface.corners[i]) corners.push_back(new_number[n]);
+      const auto hit =
+          std::find(corners.begin(), corners.end(), -1) == corners.end() ? faces.find(face_key(corners)) : faces.end();
+      if (hit == faces.end()) {
+        fail(raw, fmt::format("element {} of surface '{}' is no face of a cell", surface.number[i], surface.name));
+      }
+      table.add(surface.name, hit->second.front());
+    }
+  }
+  for (const auto& surface : raw.face_surfaces) {
+    if (surface.face.empty()) fail(raw, fmt::format("surface '{}' has no faces", surface.name));
+    for (const auto& [cell, face] : surface.face) table.add(surface.name, {cell, face});
+  }
+  for (const auto& surface : raw.node_surfaces) {
+    std::vector<bool> in_set(mesh.n_nodes(), false);
+    for (int n : surface.nodes) {
+      if (new_number[n] >= 0) in_set[new_number[n]] = true;
+    }
+    bool any = false;
+    for (const auto& [key, at] : faces) {
+      const bool covered = std::all_of(key.begin(), key.end(), [&](int n) { return n < 0 || in_set[n]; });
+      if (at.size() == 1 && covered) any |= table.add(surface.name, at.front());
+    }
+    if (!any && !surface.may_be_empty) {
+      fail(raw, fmt::format("the nodes of surface '{}' cover no outer face of a cell wholly", surface.name));
+    }
+  }
+  for (const std::string& name : mesh.surfaces) {
+    const auto at = name.find('@');
+    if (at == std::string::npos) continue;
+    const std::string joint = name.substr(0, at);
+    if (mesh.joint(joint)) continue;
+    const auto other = std::find_if(mesh.surfaces.begin(), mesh.surfaces.end(),
+                                    [&](const std::string& s) { return s != name && s.starts_with(joint + "@"); });
+    if (other == mesh.surfaces.end())
+      fail(raw, fmt::format("surface '{}' is one side of a joint; the other is missing", name));
+    mesh.joints.push_back({joint, name, *other});
+  }
+}
+
+}  // namespace
+
+Mesh check_and_build(const RawMesh& raw, double unit_m) {
+  if (raw.cells.size() == 0) fail(raw, "there are no 3-D cells (tetrahedra, hexahedra, wedges) in it");
+  Mesh mesh;
+  mesh.regions = raw.regions;
+  mesh.notes = raw.notes;
+  mesh.cells = raw.cells;
+  std::vector<int> new_number(raw.coords.cols(), -1);
+  for (int n : raw.cells.node) new_number[n] = 0;
+  int n_used = 0;
+  for (int& n : new_number) n = n < 0 ? -1 : n_used++;
+  mesh.coords.resize(3, n_used);
+  for (std::size_t i = 0; i < new_number.size(); ++i) {
+    if (new_number[i] < 0) continue;
+    const Eigen::Vector3d x = raw.coords.col(static_cast<Eigen::Index>(i));
+    if (!x.allFinite()) fail(raw, fmt::format("node {} has a coordinate that is not a finite number", raw.node_number[i]));
+    mesh.coords.col(new_number[i]) = unit_m * x;
+  }
+  for (int& n : mesh.cells.node) n = new_number[n];
+  if (const auto n_dropped = static_cast<int>(new_number.size()) - n_used; n_dropped > 0) {
+    mesh.notes.push_back(fmt::format("{} nodes that no cell uses were left out", n_dropped));
+  }
+  check_size(raw, mesh.coords, unit_m);
+  check_cells(raw, mesh);
+  const auto faces = all_faces(mesh.cells);
+  check_conformity(raw, mesh, faces);
+  add_surfaces(raw, new_number, mesh, faces);
+  return mesh;
+}
+
+}  // namespace driftwright::mesh

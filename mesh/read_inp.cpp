@@ -1,0 +1,375 @@
+#include "mesh/read_inp.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "base/config_map.hpp"
+#include "base/errors.hpp"
+#include "mesh/topology.hpp"
+
+namespace driftwright::mesh {
+namespace {
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r\""), last = text.find_last_not_of(" \t\r\"");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> words;
+  std::size_t start = 0;
+  while (start <= line.size()) {
+    const auto comma = std::min(line.find(',', start), line.size());
+    words.push_back(trimmed(line.substr(start, comma - start)));
+    start = comma + 1;
+  }
+  while (!words.empty() && words.back().empty()) words.pop_back();
+  return words;
+}
+
+/// The shape of an element type, "c3d20r" for one; nothing for those that are not 3-D.
+std::optional<CellShape> shape_of_type(const std::string& type) {
+  const auto at = type.find("c3d");
+  if (at != 0 && !(at == 1 && type[0] == 'd')) return std::nullopt;
+  int n = 0;
+  std::from_chars(type.data() + at + 3, type.data() + type.size(), n);
+  switch (n) {
+    case 4:
+      return CellShape::kTet4;
+    case 10:
+      return CellShape::kTet10;
+    case 8:
+      return CellShape::kHex8;
+    case 20:
+      return CellShape::kHex20;
+    case 6:
+      return CellShape::kWedge6;
+    case 15:
+      return CellShape::kWedge15;
+    default:
+      return std::nullopt;
+  }
+}
+
+struct Keyword {
+  std::string name;                           // "*element", without blanks
+  std::map<std::string, std::string> option;  // keys and values in lower case; "" for one without a value
+  int line = 0;
+
+  [[nodiscard]] bool has(const std::string& key) const { return option.contains(key); }
+  [[nodiscard]] std::string at(const std::string& key) const { return has(key) ? option.at(key) : ""; }
+};
+
+class InpReader {
+ public:
+  explicit InpReader(const std::string& path) {
+    raw_.path = path;
+    std::ifstream file(path);
+    if (!file) throw InputError(path + ": the file cannot be opened");
+    std::string line;
+    while (std::getline(file, line)) {
+      ++line_;
+      line = trimmed(line);
+      if (line.empty() || line.starts_with("**")) continue;
+      if (line[0] == '*') {
+        while (line.ends_with(',') && std::getline(file, more_)) {  // options go on in the next line
+          ++line_;
+          line += trimmed(more_);
+        }
+        begin(line);
+      } else if (!keyword_.name.empty()) {
+        data(line);
+      }
+    }
+    end_element();
+    finish_surfaces();
+  }
+
+  RawMesh read(const std::vector<std::string>& region_sets) {
+    assign_regions(region_sets);
+    for (const auto& [name, nodes] : node_sets_) {
+      RawMesh::NodeSurface surface{name, {}, true};
+      for (long n : nodes) surface.nodes.push_back(node_.at(n));
+      const bool is_region = std::find(raw_.regions.begin(), raw_.regions.end(), name) != raw_.regions.end();
+      const bool is_surface = std::any_of(raw_.face_surfaces.begin(), raw_.face_surfaces.end(),
+                                          [&, &set = name](const auto& s) { return s.name == set; });
+      const bool all_nodes = std::set<long>(nodes.begin(), nodes.end()).size() == node_.size();
+      if (!is_region && !is_surface && !all_nodes) raw_.node_surfaces.push_back(std::move(surface));
+    }
+    raw_.coords.resize(3, static_cast<Eigen::Index>(position_.size()));
+    for (std::size_t i = 0; i < position_.size(); ++i) raw_.coords.col(static_cast<Eigen::Index>(i)) = position_[i];
+    if (n_left_out_ > 0) raw_.notes.push_back(fmt::format("{} elements that are not 3-D were left out", n_left_out_));
+    return std::move(raw_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { fail(line_, message); }
+  [[noreturn]] void fail(int line, const std::string& message) const {
+    throw InputError(fmt::format("{}:{}: {}", raw_.path, line, message));
+  }
+
+  [[nodiscard]] long integer(const std::string& word) const {
+    long value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size()) fail(fmt::format("'{}' is no integer", word));
+    return value;
+  }
+  [[nodiscard]] double number(std::string word) const {
+    std::replace(word.begin(), word.end(), 'd', 'e');  // Fortran's exponent
+    std::replace(word.begin(), word.end(), 'D', 'e');
+    const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size()) fail(fmt::format("'{}' is no number", word));
+    return value;
+  }
+
+  void begin(const std::string& line) {
+    end_element();
+    std::vector<std::string> words = split(line);
+    keyword_ = {};
+    keyword_.line = line_;
+    for (char c : lower(words[0])) {
+      if (c != ' ' && c != '\t') keyword_.name += c;
+    }
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const auto equals = words[i].find('=');
+      std::string key = lower(trimmed(words[i].substr(0, equals)));
+      keyword_.option[key] = equals == std::string::npos ? "" : lower(trimmed(words[i].substr(equals + 1)));
+    }
+    if (keyword_.name == "*include") fail("*INCLUDE is not followed; put the mesh into one file");
+    if (keyword_.name == "*element") begin_elements();
+    if (keyword_.name == "*surface") begin_surface();
+    if (keyword_.name == "*nset" && !keyword_.has("nset")) fail("*NSET without NSET=name");
+    if (keyword_.name == "*elset" && !keyword_.has("elset")) fail("*ELSET without ELSET=name");
+  }
+
+  void data(const std::string& line) {
+    const std::vector<std::string> words = split(line);
+    const std::string& name = keyword_.name;
+    if (name == "*node") add_node(words);
+    if (name == "*element") add_to_element(words);
+    if (name == "*nset") add_to_set(words, node_sets_[keyword_.at("nset")], node_sets_);
+    if (name == "*elset") add_to_set(words, element_sets_[keyword_.at("elset")], element_sets_);
+    if (name == "*surface") surface_lines_.push_back({keyword_.at("name"), keyword_.at("type"), words, line_});
+    if (name == "*instance") fail("an *INSTANCE that is shifted or turned is not followed; export a flat input file");
+  }
+
+  void add_node(const std::vector<std::string>& words) {
+    if (words.size() < 2) fail("a node is: number, x, y, z");
+    const long n = integer(words[0]);
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    for (std::size_t i = 1; i < std::min<std::size_t>(4, words.size()); ++i)
+      x[static_cast<Eigen::Index>(i) - 1] = number(words[i]);
+    if (!node_.try_emplace(n, static_cast<int>(position_.size())).second) fail(fmt::format("node {} stands there twice", n));
+    position_.push_back(x);
+    raw_.node_number.push_back(n);
+    if (keyword_.has("nset")) node_sets_[keyword_.at("nset")].push_back(n);
+  }
+
+  void begin_elements() {
+    const std::string type = keyword_.at("type");
+    shape_ = shape_of_type(type);
+    if (!shape_ && (type.find("c3d") != std::string::npos || type.starts_with("sc") || type.starts_with("csc"))) {
+      fail(fmt::format("elements of type {} are not computed with; C3D4, C3D10, C3D8, C3D20, C3D6, C3D15 and their DC3D are",
+                       type.empty() ? "?" : type));
+    }
+  }
+
+  void add_to_element(const std::vector<std::string>& words) {  // an element may take several lines
+    if (element_words_.empty()) element_line_ = line_;
+    element_words_.insert(element_words_.end(), words.begin(), words.end());
+    if (!shape_) {
+      end_element();
+    } else if (element_words_.size() > static_cast<std::size_t>(n_nodes_of(*shape_))) {
+      end_element();
+    }
+  }
+
+  void end_element() {
+    if (element_words_.empty()) return;
+    const std::vector<std::string> words = std::move(element_words_);
+    element_words_.clear();
+    if (!shape_) {
+      ++n_left_out_;
+      left_out_.insert(integer(words[0]));
+      if (keyword_.has("elset")) element_sets_[keyword_.at("elset")].push_back(integer(words[0]));
+      return;
+    }
+    const long n = integer(words[0]);
+    if (static_cast<int>(words.size()) - 1 != n_nodes_of(*shape_)) {
+      fail(element_line_, fmt::format("element {} has {} nodes; {} are wanted", n, words.size() - 1, n_nodes_of(*shape_)));
+    }
+    std::vector<int> nodes;
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const auto hit = node_.find(integer(words[i]));
+      if (hit == node_.end()) fail(element_line_, fmt::format("element {}: there is no node {}", n, words[i]));
+      nodes.push_back(hit->second);
+    }
+    if (!element_.try_emplace(n, raw_.cells.size()).second) {
+      fail(element_line_, fmt::format("element {} stands there twice", n));
+    }
+    raw_.cells.add(*shape_, nodes, -1);
+    raw_.cell_number.push_back(n);
+    const std::string set = keyword_.at("elset");
+    set_of_line_.push_back(set);
+    if (!set.empty()) element_sets_[set].push_back(n);
+  }
+
+  using Sets = std::map<std::string, std::vector<long>>;
+  void add_to_set(const std::vector<std::string>& words, std::vector<long>& set, const Sets& sets) {
+    if (keyword_.has("generate")) {
+      if (words.size() < 2) fail("GENERATE wants: first, last, step");
+      const long first = integer(words[0]), last = integer(words[1]), step = words.size() > 2 ? integer(words[2]) : 1;
+      if (step <= 0 || last < first) fail("GENERATE wants first <= last and a step above 0");
+      for (long n = first; n <= last; n += step) set.push_back(n);
+      check_members(set, &sets == &node_sets_);
+      return;
+    }
+    for (const std::string& word : words) {
+      if (word.empty()) continue;
+      if (std::isdigit(static_cast<unsigned char>(word[0]))) {
+        set.push_back(integer(word));
+      } else {
+        const auto other = sets.find(lower(word));
+        if (other == sets.end()) fail(fmt::format("there is no set '{}' above this line", word));
+        const std::vector<long> members = other->second;  // a copy: it may be the set itself
+        set.insert(set.end(), members.begin(), members.end());
+      }
+    }
+    check_members(set, &sets == &node_sets_);
+  }
+  void check_members(const std::vector<long>& set, bool of_nodes) const {
+    for (long n : set) {
+      if (of_nodes && !node_.contains(n)) fail(fmt::format("there is no node {} above this line", n));
+      if (!of_nodes && !element_.contains(n) && !left_out_.contains(n)) {
+        fail(fmt::format("there is no element {} above this line", n));
+      }
+    }
+  }
+
+  void begin_surface() {
+    if (!keyword_.has("name")) fail("*SURFACE without NAME=");
+    const std::string type = keyword_.at("type");
+    if (!type.empty() && type != "element" && type != "node") fail("*SURFACE of TYPE=ELEMENT or TYPE=NODE is wanted");
+  }
+
+  struct SurfaceLine {
+    std::string name, type;
+    std::vector<std::string> words;
+    int line;
+  };
+
+  void finish_surfaces() {  // last, since sets may come after them
+    std::map<std::string, RawMesh::FaceSurface> by_face;
+    std::map<std::string, RawMesh::NodeSurface> by_node;
+    for (const SurfaceLine& s : surface_lines_) {
+      line_ = s.line;
+      if (s.type == "node") {
+        RawMesh::NodeSurface& surface = by_node.try_emplace(s.name, RawMesh::NodeSurface{s.name, {}, false}).first->second;
+        for (long n : members(s.words.at(0), node_sets_, "node")) {
+          if (!node_.contains(n)) fail(fmt::format("there is no node {}", n));
+          surface.nodes.push_back(node_.at(n));
+        }
+        continue;
+      }
+      RawMesh::FaceSurface& surface = by_face.try_emplace(s.name, RawMesh::FaceSurface{s.name, {}}).first->second;
+      const std::string face = s.words.size() > 1 ? lower(s.words[1]) : "";
+      for (long n : members(s.words.at(0), element_sets_, "element")) {
+        const auto cell = element_.find(n);
+        if (cell == element_.end()) fail(fmt::format("there is no 3-D element {}", n));
+        const int n_faces = static_cast<int>(faces_of(raw_.cells.shape[cell->second]).size());
+        const int index = face.size() == 2 && face[0] == 's' ? face[1] - '1' : -1;
+        if (index < 0 || index >= n_faces) {
+          fail(fmt::format("face '{}' of element {}; S1 to S{} are allowed", face, n, n_faces));
+        }
+        surface.face.emplace_back(cell->second, index);
+      }
+    }
+    for (auto& [name, surface] : by_face) raw_.face_surfaces.push_back(std::move(surface));
+    for (auto& [name, surface] : by_node) raw_.node_surfaces.push_back(std::move(surface));
+  }
+
+  [[nodiscard]] std::vector<long> members(const std::string& word, const Sets& sets, const std::string& kind) const {
+    if (!word.empty() && std::isdigit(static_cast<unsigned char>(word[0]))) return {integer(word)};
+    const auto set = sets.find(lower(word));
+    if (set == sets.end()) fail(fmt::format("there is no {} set '{}'", kind, word));
+    return set->second;
+  }
+
+  void assign_regions(const std::vector<std::string>& region_sets) {
+    const auto region = [&](const std::string& name) {
+      const auto hit = std::find(raw_.regions.begin(), raw_.regions.end(), name);
+      if (hit != raw_.regions.end()) return static_cast<int>(hit - raw_.regions.begin());
+      raw_.regions.push_back(name);
+      return static_cast<int>(raw_.regions.size()) - 1;
+    };
+    if (region_sets.empty()) {
+      const std::string rest = std::filesystem::path(raw_.path).stem().string();
+      for (int c = 0; c < raw_.cells.size(); ++c)
+        raw_.cells.group[c] = region(set_of_line_[c].empty() ? rest : set_of_line_[c]);
+      return;
+    }
+    for (const std::string& name : region_sets) {
+      const auto set = element_sets_.find(lower(name));
+      if (set == element_sets_.end()) {
+        std::vector<std::string> known;
+        for (const auto& [other, elements] : element_sets_) known.push_back(other);
+        const std::string near = nearest_word(lower(name), known);
+        throw InputError(fmt::format("{}: there is no ELSET '{}' for the region; there are {}.{}", raw_.path, name,
+                                     fmt::join(known, ", "), near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+      }
+      for (long n : set->second) {
+        const auto cell = element_.find(n);
+        if (cell == element_.end()) continue;  // a 2-D element
+        int& group = raw_.cells.group[cell->second];
+        if (group >= 0 && group != region(name)) {
+          throw InputError(fmt::format("{}: element {} is in the regions '{}' and '{}'; one is allowed", raw_.path, n,
+                                       raw_.regions[group], name));
+        }
+        group = region(name);
+      }
+      (void)region(name);  // a set without cells is found later
+    }
+    for (int c = 0; c < raw_.cells.size(); ++c) {
+      if (raw_.cells.group[c] < 0) {
+        throw InputError(fmt::format("{}: element {} is in none of the regions {}", raw_.path, raw_.cell_number[c],
+                                     fmt::join(region_sets, ", ")));
+      }
+    }
+  }
+
+  RawMesh raw_;
+  Keyword keyword_;
+  std::string more_;
+  int line_ = 0, element_line_ = 0, n_left_out_ = 0;
+  std::map<long, int> node_, element_;
+  std::vector<Eigen::Vector3d> position_;
+  std::optional<CellShape> shape_;
+  std::vector<std::string> element_words_, set_of_line_;
+  Sets node_sets_, element_sets_;
+  std::set<long> left_out_;
+  std::vector<SurfaceLine> surface_lines_;
+};
+
+}  // namespace
+
+RawMesh read_inp(const std::string& path, const std::vector<std::string>& region_sets) {
+  return InpReader(path).read(region_sets);
+}
+
+}  // namespace driftwright::mesh

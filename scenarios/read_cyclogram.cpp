@@ -1,0 +1,183 @@
+#include "scenarios/read_cyclogram.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/nc_program.hpp"
+#include "base/nc_sections.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+constexpr double kShortest_s = 1e-3, kMostSpeed_rpm = 1e6, kMostFeed_m_s = 100.0, kMostPower_W = 1e9;
+constexpr int kMostRepeats = 100000;
+constexpr double kMostSections = 1e6;
+
+/// A column of rows, and the channel of a record that says the same.
+struct Column {
+  const char* name;  ///< in `columns`, and of the channel
+  const char* unit;  ///< of rows
+  const char* channel_unit;
+  double to_si;        ///< from the channel's unit
+  double most;         ///< in `unit`
+  bool may_be_signed;  ///< in records
+  double* (*place)(Drive& drive);
+};
+
+const std::array<Column, 5>& columns() {
+  static const std::array<Column, 5> table = {{
+      {"speed", "rpm", "rpm", 1.0, kMostSpeed_rpm, false, [](Drive& d) { return &d.speed_rpm; }},
+      {"feed_x", "m/s", "mm_min", 1e-3 / 60.0, kMostFeed_m_s, true, [](Drive& d) { return &d.feed_m_s[0]; }},
+      {"feed_y", "m/s", "mm_min", 1e-3 / 60.0, kMostFeed_m_s, true, [](Drive& d) { return &d.feed_m_s[1]; }},
+      {"feed_z", "m/s", "mm_min", 1e-3 / 60.0, kMostFeed_m_s, true, [](Drive& d) { return &d.feed_m_s[2]; }},
+      {"cutting_power", "W", "W", 1.0, kMostPower_W, false, [](Drive& d) { return &d.cutting_power_W; }},
+  }};
+  return table;
+}
+
+std::string beside(const ConfigMap& in, const std::string& key) {
+  return (std::filesystem::path(in.file()).parent_path() / in.text(key)).string();  // an absolute path replaces the folder
+}
+
+std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std::string& key,
+                                                 const std::vector<const Column*>& given) {
+  std::vector<std::string> units = {"s"};
+  for (const Column* column : given) units.emplace_back(column->unit);
+  std::vector<Cyclogram::Section> sections;
+  for (const std::vector<double>& row : in.rows(key, units)) {
+    if (!(row[0] >= kShortest_s))
+      in.fail(key, fmt::format("a section of {:g} s; a duration above zero is wanted, 1 ms or more", row[0]));
+    Cyclogram::Section section{row[0], {}};
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      const double value = row[i + 1];
+      if (!(value >= 0.0 && value <= given[i]->most)) {
+        in.fail(key, fmt::format("a {} of {:g} {}; 0 to {:g} {} is allowed", given[i]->name, value, given[i]->unit,
+                                 given[i]->most, given[i]->unit));
+      }
+      *given[i]->place(section.drive) = value;
+    }
+    sections.push_back(section);
+  }
+  return sections;
+}
+
+/// `columns:` without its first, the duration.
+std::vector<const Column*> read_columns(const ConfigMap& in) {
+  std::vector<std::string> known;
+  for (const Column& c : columns()) known.emplace_back(c.name);
+  const std::vector<std::string> names = in.texts("columns");
+  if (names.empty() || names[0] != "duration")
+    in.fail("columns", fmt::format("the first column is duration; after it any of {}", fmt::join(known, ", ")));
+  std::vector<const Column*> given;
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    const auto column =
+        std::find_if(columns().begin(), columns().end(), [&](const Column& c) { return c.name == names[i]; });
+    if (column == columns().end())
+      in.fail("columns", fmt::format("'{}' is no column; duration, then any of {}", names[i], fmt::join(known, ", ")));
+    if (std::find(given.begin(), given.end(), &*column) != given.end())
+      in.fail("columns", fmt::format("'{}' stands there twice", names[i]));
+    given.push_back(&*column);
+  }
+  return given;
+}
+
+NcSettings read_nc_settings(const ConfigMap& in) {
+  NcSettings settings;
+  if (in.has("rapid")) settings.rapid_m_s = in.quantity("rapid", "m/s", 1e-6, kMostFeed_m_s);
+  if (in.has("tool_change")) settings.tool_change_s = in.quantity("tool_change", "s", 0.0, 3600.0);
+  settings.dwell_P_s = in.choice("dwell_unit", {"s", "ms"}, "s") == "s" ? 1.0 : 1e-3;
+  if (in.has("machine_zero")) {
+    const Eigen::Vector3d zero_m = in.vector3("machine_zero", "m");
+    settings.machine_zero_m = {zero_m[0], zero_m[1], zero_m[2]};
+  }
+  if (in.has("ignore")) {
+    for (const std::string& word : in.texts("ignore")) {
+      const bool fine = word.size() >= 2 && (word[0] == 'G' || word[0] == 'M') && (word[1] != '0' || word.size() == 2) &&
+                        word.find_first_not_of("0123456789.", 1) == std::string::npos;
+      if (!fine) in.fail("ignore", fmt::format("'{}' is no G or M word such as M88 (capital, no leading zero)", word));
+      settings.ignored.insert(word);
+    }
+  }
+  return settings;
+}
+
+void read_nc_cyclogram(const ConfigMap& in, Cyclogram& cyclogram) {
+  const NcProgram program = read_nc_program(beside(in, "nc_program"), read_nc_settings(in));
+  const double resolution_s = in.quantity("resolution", "s", 0.0, 1e6, 10.0);
+  const double cutting_power_W = in.quantity("cutting_power", "W", 0.0, kMostPower_W, 0.0);
+  cyclogram.sections = merged_sections(program.moves, resolution_s, cutting_power_W);
+  cyclogram.remarks.push_back(fmt::format("{}: machining time {:.1f} s, {} moves", in.text("nc_program"),
+                                          program.duration_s(), program.moves.size()));
+  cyclogram.remarks.insert(cyclogram.remarks.end(), program.notes.begin(), program.notes.end());
+  for (const Cyclogram::Section& section : cyclogram.sections) {
+    if (!(section.drive.speed_rpm <= kMostSpeed_rpm)) {
+      in.fail("nc_program", fmt::format("the program turns the spindle at {:g} rpm; 0 to {:g} rpm is allowed",
+                                        section.drive.speed_rpm, kMostSpeed_rpm));
+    }
+  }
+}
+
+}  // namespace
+
+Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
+  if (!is_name(name)) cyclograms.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", name));
+  Cyclogram cyclogram{.name = name, .sections = {}};
+  if (!cyclograms.is_map(name)) {
+    cyclogram.sections = sections_of_rows(cyclograms, name, {&columns()[0]});
+    return cyclogram;
+  }
+  const ConfigMap in = cyclograms.map(name);
+  const int n_kinds =
+      static_cast<int>(in.has("rows")) + static_cast<int>(in.has("csv")) + static_cast<int>(in.has("nc_program"));
+  if (n_kinds != 1)
+    cyclograms.fail(name, "a cyclogram is a list of [duration, speed], or a map with one of the keys rows, csv, nc_program");
+  if (in.has("rows")) {
+    cyclogram.sections = sections_of_rows(in, "rows", read_columns(in));
+  } else if (in.has("csv")) {
+    cyclogram.sections = cyclogram_of(read_record_csv(beside(in, "csv"))).sections;
+  } else {
+    read_nc_cyclogram(in, cyclogram);
+  }
+  const int repeat = in.integer("repeat", 1, kMostRepeats, 1);
+  in.reject_unknown_keys();
+  if (static_cast<double>(repeat) * static_cast<double>(cyclogram.sections.size()) > kMostSections)
+    in.fail("repeat",
+            fmt::format("{} times {} sections are more than {:g}", repeat, cyclogram.sections.size(), kMostSections));
+  cyclogram.sections = repeated(cyclogram.sections, repeat);
+  if (cyclogram.sections.empty()) cyclograms.fail(name, "the cyclogram takes no time; at least one move or dwell is wanted");
+  return cyclogram;
+}
+
+Cyclogram cyclogram_of(const Record& record) {
+  if (record.time_s.front() != 0.0) {
+    throw InputError(
+        fmt::format("{}: a cyclogram starts at time 0, this one at {:g} s", record.source, record.time_s.front()));
+  }
+  (void)record.at("speed");
+  std::vector<Cyclogram::Section> sections(record.n_samples() - 1);
+  for (std::size_t i = 0; i < sections.size(); ++i) sections[i].duration_s = record.time_s[i + 1] - record.time_s[i];
+  for (const Column& column : columns()) {
+    const Channel* channel = record.find(column.name);
+    if (!channel) continue;
+    if (channel->unit != column.channel_unit) {
+      throw InputError(fmt::format("{}: column '{}' is of no use in a cyclogram; {}_{} is wanted", record.source,
+                                   channel->header(), column.name, column.channel_unit));
+    }
+    for (std::size_t i = 0; i < sections.size(); ++i) {
+      const double told = channel->values[i], value = column.to_si * (column.may_be_signed ? std::abs(told) : told);
+      if (!(value >= 0.0 && value <= column.most)) {
+        throw InputError(fmt::format("{}: {} is missing or {}above {:g} at {:g} s", record.source, channel->header(),
+                                     column.may_be_signed ? "" : "negative or ", column.most / column.to_si,
+                                     record.time_s[i]));
+      }
+      *column.place(sections[i].drive) = value;
+    }
+  }
+  return {.name = record.source, .sections = repeated(sections, 1)};
+}
+
+}  // namespace driftwright::scenarios

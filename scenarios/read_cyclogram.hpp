@@ -1,0 +1,21 @@
+#pragma once
+// What drives the machine, as scenarios write it: rows, a record CSV or an NC program (docs/cyclograms.md).
+
+#include "base/config_map.hpp"
+#include "base/cyclogram.hpp"
+#include "base/record.hpp"
+
+namespace driftwright::scenarios {
+
+/// The cyclogram `name` of the map `cyclograms`. Paths in it are relative to the folder of the scenario.
+/// @throws InputError  file, line and column of the scenario, the CSV or the NC program
+[[nodiscard]] Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name);
+
+/// The cyclogram that a record tells: channels speed [rpm], and if there feed_x, feed_y, feed_z [mm/min] (their sign does not
+/// count) and cutting_power [W]. Values hold from their row on; the last row ends it and its values do not count. Other
+/// channels are not looked at.
+/// @throws InputError  when the record does not start at time 0, when speed is missing or has another unit, and for values
+///                     that are missing or out of range
+[[nodiscard]] Cyclogram cyclogram_of(const Record& record);
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,102 @@
+#include "scenarios/ways_out.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "solver/sparse.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+/// Vertices: the mesh's nodes, the lumped nodes, and the outside.
+class Paths {
+ public:
+  Paths(const mesh::Mesh& mesh, const effects::HeatBalance& balance) : mesh_(mesh) {
+    for (const effects::LumpedNode& node : balance.nodes) {
+      lumped_[node.name] = mesh.n_nodes() + static_cast<int>(lumped_.size());
+    }
+    outside_ = mesh.n_nodes() + static_cast<int>(lumped_.size());
+    for (int c = 0; c < mesh.cells.size(); ++c) paths_.add(mesh.cells.nodes(c));
+  }
+  /// Some vertex of a body; all of it hangs together or is heated alike.
+  void connect(const effects::Body& a, int b) {
+    for (int vertex : vertices(a)) paths_.add(std::vector<int>{vertex, b});
+  }
+  void connect_joint(const mesh::Joint& joint) {
+    const int a = mesh_.facets.nodes(mesh_.facets_on(mesh_.surface(joint.side_a)).front())[0];
+    const int b = mesh_.facets.nodes(mesh_.facets_on(mesh_.surface(joint.side_b)).front())[0];
+    paths_.add(std::vector<int>{a, b});
+  }
+  [[nodiscard]] int of_surrounding(const std::string& name) const {
+    return name == effects::kHallName ? outside_ : lumped_.at(name);
+  }
+  [[nodiscard]] int outside() const { return outside_; }
+
+  /// Names of regions and nodes that are not connected with the outside.
+  [[nodiscard]] std::set<std::string> shut_in() const {
+    const std::vector<int> set_of = solver::connected_sets(outside_ + 1, paths_);
+    std::set<std::string> names;
+    for (int c = 0; c < mesh_.cells.size(); ++c) {
+      if (set_of[mesh_.cells.nodes(c)[0]] != set_of[outside_]) names.insert("region " + mesh_.regions[mesh_.cells.group[c]]);
+    }
+    for (const auto& [name, vertex] : lumped_) {
+      if (set_of[vertex] != set_of[outside_]) names.insert("node " + name);
+    }
+    return names;
+  }
+
+ private:
+  [[nodiscard]] std::vector<int> vertices(const effects::Body& body) const {
+    if (body.kind == effects::BodyKind::kNode) return {of_surrounding(body.name)};
+    std::vector<int> found;
+    if (body.kind == effects::BodyKind::kRegion) {
+      for (int c : mesh_.cells_in(mesh_.region(body.name))) found.push_back(mesh_.cells.nodes(c)[0]);
+    } else {
+      for (int f : mesh_.facets_on(mesh_.surface(body.name))) found.push_back(mesh_.facets.nodes(f)[0]);
+    }
+    return found;
+  }
+
+  const mesh::Mesh& mesh_;
+  std::map<std::string, int> lumped_;
+  int outside_ = 0;
+  solver::Cliques paths_;
+};
+
+/// Laws that look at temperatures count as open; they vanish at single temperatures at most.
+bool is_open(const effects::Law& law) {
+  return !law.probes.empty() || !law.thermostat.empty() || law(effects::Inputs{}) != 0.0;
+}
+
+}  // namespace
+
+void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where) {
+  Paths paths(mesh, balance);
+  for (const auto& film : balance.films) {
+    if (is_open(film.htc_W_m2K)) paths.connect(effects::surface(film.surface), paths.of_surrounding(film.surrounding));
+  }
+  for (const auto& link : balance.links) {
+    if (is_open(link.conductance_W_K)) paths.connect(link.body, paths.of_surrounding(link.surrounding));
+  }
+  for (const auto& radiation : balance.radiations) {
+    if (radiation.emissivity > 0.0) {
+      paths.connect(effects::surface(radiation.surface), paths.of_surrounding(radiation.surrounding));
+    }
+  }
+  for (const auto& contact : balance.contacts) {
+    if (is_open(contact.conductance_W_m2K)) paths.connect_joint(*mesh.joint(contact.joint));
+  }
+  for (const auto& fixed : balance.fixed) paths.connect(fixed.body, paths.outside());
+  const std::set<std::string> shut_in = paths.shut_in();
+  if (shut_in.empty()) return;
+  throw InputError(where,
+                   fmt::format("heat cannot leave {} while the spindle stands: no film, contact, link, radiation or fixed "
+                               "temperature leads to the hall. Add one (a film of 0.001 W/(m^2 K) insulates)",
+                               fmt::join(shut_in, ", ")));
+}
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,15 @@
+#pragma once
+// Can heat leave every part of the machine?
+
+#include "base/errors.hpp"
+#include "effects/heat_balance.hpp"
+#include "mesh/mesh.hpp"
+
+namespace driftwright::scenarios {
+
+/// Looks, without any matrix, whether from each part heat can reach the hall or a prescribed temperature at standstill: through
+/// cells, contacts, films, links and radiation whose coefficient is not zero there.
+/// @throws InputError  at `where`, naming the regions or nodes that cannot
+void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where);
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,36 @@
+#pragma once
+// Stresses from displacements and temperatures: σ = D (B u - α θ), components as in cell_elasticity.hpp.
+
+#include "solver/cell_elasticity.hpp"
+#include "solver/elasticity.hpp"
+
+namespace driftwright::solver {
+
+/// Six components per node [Pa], one column each.
+using NodalStress = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/// Stress at the reference point xi of a cell, by the derivatives of the shape functions there [Pa]. It jumps between cells;
+/// it is most accurate at the mesh::stiffness_rule().
+/// @param displacement_m  3 x n_nodes;  @param theta_K  n_nodes or longer, over the reference temperature
+[[nodiscard]] Stress stress_at(const mesh::Mesh& mesh, const RegionMaterials& materials,
+                               const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K, int cell,
+                               const Eigen::Vector3d& xi);
+
+/// The same as a functional, for Elasticity::influence(). @param component  0 ... 5 = xx, yy, zz, xy, yz, zx
+[[nodiscard]] StressFunctional stress_functional(const mesh::Mesh& mesh, const RegionMaterials& materials, int cell,
+                                                 const Eigen::Vector3d& xi, int component);
+
+/// Stresses recovered at the nodes: in each cell the stresses of the mesh::stiffness_rule() are fitted by least squares with the
+/// polynomial that its corners can carry (tetrahedra: linear; a single point: constant) and extended to its nodes; at each
+/// node the values of the cells around it are averaged, weighted by their volumes.
+///
+/// The mean is taken over cells of one region. A node that several regions share (a mesh imported with welded parts) carries
+/// the value of the region with the largest von Mises stress there: stress jumps between materials, and the mean of both
+/// would occur in neither. Nodes in no cell carry zero.
+[[nodiscard]] NodalStress nodal_stress_Pa(const mesh::Mesh& mesh, const RegionMaterials& materials,
+                                          const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K);
+
+/// sqrt( ½[(σx-σy)² + (σy-σz)² + (σz-σx)²] + 3(τxy² + τyz² + τzx²) ), in the unit of the stress.
+[[nodiscard]] double von_mises(const Stress& stress);
+
+}  // namespace driftwright::solver

@@ -1,0 +1,277 @@
+// Effects of bearings, axes, cutting, joints and time windows, as the user writes them, by value; and what they refuse.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "base/errors.hpp"
+#include "effects/bearing_formulas.hpp"
+#include "effects/effect.hpp"
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+Effect read(const std::string& text) {
+  return read_effect(ConfigMap::read_file(write_file("effect_laws_test.yaml", text)));
+}
+HeatBalance balance_of(const std::string& text) {
+  return heat_balance({read(text)});
+}
+Inputs moving(double x_m_s, double y_m_s, double z_m_s) {
+  return {.drive = {.feed_m_s = {x_m_s, y_m_s, z_m_s}}};
+}
+
+// --- bearings ---------------------------------------------------------------------------------------------------
+
+TEST(Viscosity, PassesThroughItsTwoPoints) {
+  EXPECT_NEAR(walther_viscosity_mm2_s(32.0, 5.4, 313.15), 32.0, 1e-12);
+  EXPECT_NEAR(walther_viscosity_mm2_s(32.0, 5.4, 373.15), 5.4, 1e-12);
+}
+
+TEST(Viscosity, ByHandAt20degC) {
+  // lg lg 32.8 = 0.180663, lg lg 6.2 = -0.101060; B = 0.281723 / lg(373.15 / 313.15) = 0.281723 / 0.0761312 = 3.70049;
+  // at 293.15 K: 0.180663 + 3.70049 * 0.0286622 = 0.286727; 10^10^0.286727 - 0.8 = 85.34 mm^2/s.
+  EXPECT_NEAR(walther_viscosity_mm2_s(32.0, 5.4, 293.15), 85.34, 0.02);  // six digits in a double exponent
+}
+
+TEST(Viscosity, IsGuarded) {
+  for (double bad_K : {233.0, 453.5, std::nan("")}) EXPECT_THROW((void)walther_viscosity_mm2_s(32, 5, bad_K), RangeError);
+  for (double bad : {0.29, -1.0, std::nan("")}) EXPECT_THROW((void)walther_viscosity_mm2_s(32, bad, 300), RangeError);
+  for (double bad : {5.0, HUGE_VAL, std::nan("")}) EXPECT_THROW((void)walther_viscosity_mm2_s(bad, 5, 300), RangeError);
+}
+
+TEST(Preload, GrowsWithTheInnerRingAndEndsAtZero) {
+  EXPECT_DOUBLE_EQ(thermal_preload_N(300.0, 20.0, 310.0, 300.0), 500.0);
+  EXPECT_DOUBLE_EQ(thermal_preload_N(300.0, 20.0, 300.0, 310.0), 100.0);
+  EXPECT_DOUBLE_EQ(thermal_preload_N(300.0, 20.0, 300.0, 330.0), 0.0);
+  EXPECT_THROW((void)thermal_preload_N(300.0, 20.0, std::nan(""), 300.0), RangeError);
+}
+
+const std::string kOiled =
+    "{type: bearing_friction, region: front, f0: 2, viscosity_40: 32 mm^2/s, viscosity_100: 5.4 mm^2/s, mean_diameter: 90 "
+    "mm";
+
+TEST(BearingFriction, LooksAtItsOwnTemperatureForTheViscosity) {
+  const Law power_W = balance_of(kOiled + "}").heats.at(0).power_W;
+  ASSERT_EQ(power_W.probes, std::vector<Body>{region("front")});
+  const auto at = [&](double t_K) { return power_W({.drive = {.speed_rpm = 2000.0}, .probe_K = {t_K}}); };
+  EXPECT_NEAR(at(313.15), 48.86, 0.005);                                    // 32 mm^2/s: 233.28 N mm, two decimals
+  EXPECT_NEAR(at(373.15) / at(313.15), std::pow(5.4 / 32, 2.0 / 3), 1e-9);  // nu n = 10800: still the upper branch
+  EXPECT_THROW((void)at(500.0), RangeError);
+}
+
+TEST(BearingFriction, LooksAtTheOilAndAtBothRingsWhereTold) {
+  const Law power_W = balance_of(kOiled +
+                                 ", oil: tank, f1: 0.001, load: 300 N, preload_growth: 20 N/K, inner: shaft, "
+                                 "outer: {node: housing}}")
+                          .heats.at(0)
+                          .power_W;
+  ASSERT_EQ(power_W.probes, (std::vector<Body>{node("tank"), region("shaft"), node("housing")}));
+  // 233.28 N mm and 0.001 * (300 + 20 * 10) * 90 = 45 N mm at 209.4395 rad/s: 58.2828 W.
+  EXPECT_NEAR(power_W({.drive = {.speed_rpm = 2000.0}, .probe_K = {313.15, 320.0, 310.0}}), 58.2828, 1e-4);
+  // Rings 20 K the other way: no load left.
+  EXPECT_NEAR(power_W({.drive = {.speed_rpm = 2000.0}, .probe_K = {313.15, 300.0, 320.0}}), 48.8580, 1e-4);
+  EXPECT_EQ(power_W({.drive = {}, .probe_K = {1.0, 300.0, 320.0}}), 0.0);  // at rest the oil does not matter
+}
+
+TEST(BearingFriction, TightensWithoutLookingAtTheOil) {
+  const Law power_W = balance_of(
+                          "{type: bearing_friction, node: front, f0: 2, viscosity: 32 mm^2/s, mean_diameter: 90 mm, f1: "
+                          "0.001, load: 300 N, preload_growth: 20 N/K, inner: shaft, outer: bore}")
+                          .heats.at(0)
+                          .power_W;
+  ASSERT_EQ(power_W.probes, (std::vector<Body>{region("shaft"), region("bore")}));
+  EXPECT_NEAR(power_W({.drive = {.speed_rpm = 2000.0}, .probe_K = {320.0, 310.0}}), 58.2828, 1e-4);
+}
+
+// --- axes and cutting -------------------------------------------------------------------------------------------
+
+TEST(Axes, ServoHoldsAndGrowsWithItsOwnFeed) {
+  const Law p =
+      balance_of("{type: servo_loss, region: motor, axis: y, power: 80 W, at_feed: 12 m/min, exponent: 2, idle: 15 W}")
+          .heats.at(0)
+          .power_W;
+  EXPECT_NEAR(p(moving(0, 0.2, 0)), 95.0, 1e-9);  // 12 m/min = 0.2 m/s
+  EXPECT_NEAR(p(moving(0, 0.1, 0)), 35.0, 1e-9);
+  EXPECT_EQ(p(moving(0.3, 0, 0.3)), 15.0);
+  // With exponent 0 the grown part is there while the axis moves, and only then.
+  const Law step =
+      balance_of("{type: servo_loss, region: m, axis: x, power: 80 W, at_feed: 1 m/s, exponent: 0}").heats[0].power_W;
+  EXPECT_EQ(step(moving(0.1, 0, 0)), 80.0);
+  EXPECT_EQ(step(moving(0, 0, 0)), 0.0);
+}
+
+TEST(Axes, BallScrewTurnsDragAndThrustIntoHeat) {
+  // 2 N m, lead 10 mm, 0.2 m/s = 20 turns a second: 2 * 2 pi * 20 = 251.327 W. A thrust of 900 N at 0.9: 900 * 0.2 / 9 = 20 W.
+  const std::string screw = "{type: ball_screw, region: nut, axis: z, torque: 2 N m, lead: 10 mm, thrust: 900 N";
+  EXPECT_NEAR(balance_of(screw + "}").heats[0].power_W(moving(0, 0, 0.2)), 271.3274, 1e-4);
+  EXPECT_NEAR(balance_of(screw + ", share: 0.5, efficiency: 1}").heats[0].power_W(moving(0, 0, 0.2)), 125.6637, 1e-4);
+  EXPECT_EQ(balance_of(screw + "}").heats[0].power_W(moving(1, 1, 0)), 0.0);
+}
+
+TEST(Axes, GuidewayRubsByLoadAndByVelocity) {
+  // 0.05 * 8 kN = 400 N, and 100 N s/m * 0.25 m/s = 25 N: 425 N * 0.25 m/s = 106.25 W, half of it here.
+  const std::string way =
+      "{type: guideway_friction, surface: rail, axis: x, friction: 0.05, load: 8 kN, viscous: 100 N s/m, share: 0.5}";
+  EXPECT_NEAR(balance_of(way).heats[0].power_W(moving(0.25, 0, 0)), 53.125, 1e-12);
+  EXPECT_EQ(balance_of(way).heats[0].power_W(moving(0, 1, 1)), 0.0);
+  EXPECT_EQ(balance_of(way).heats[0].body, surface("rail"));
+}
+
+TEST(Cutting, GivesItsShare) {
+  const Law p = balance_of("{type: cutting_heat, node: workpiece, share: 0.15}").heats[0].power_W;
+  EXPECT_DOUBLE_EQ(p({.drive = {.cutting_power_W = 2000.0}}), 300.0);
+  EXPECT_EQ(p({}), 0.0);
+}
+
+// --- films, joints, windows -------------------------------------------------------------------------------------
+
+TEST(NaturalConvection, LooksAtTheSurfaceAndItsSurrounding) {
+  const Film film =
+      balance_of("{type: natural_convection, surface: s, orientation: vertical, length: 710 mm, surrounding: air}")
+          .films.at(0);
+  ASSERT_EQ(film.htc_W_m2K.probes, (std::vector<Body>{surface("s"), node("air")}));
+  EXPECT_EQ(film.surrounding, "air");
+  EXPECT_NEAR(film.htc_W_m2K({.drive = {}, .probe_K = {505.15, 296.15}}), 7.0,
+              0.07);  // as film_formulas_test: the textbook's rounding
+}
+
+TEST(Joints, ConductanceOverPressureIsLinearBetweenRows) {
+  const std::string joint =
+      "{type: contact, joint: a/b, conductance_over_pressure: [[0 MPa, 500 W/(m^2 K)], [1 MPa, 3000 W/(m^2 K)], [4 MPa, "
+      "6000 "
+      "W/(m^2 K)]], pressure: ";
+  EXPECT_NEAR(balance_of(joint + "0.5 MPa}").contacts.at(0).conductance_W_m2K({}), 1750.0, 1e-9);
+  EXPECT_NEAR(balance_of(joint + "2 MPa}").contacts.at(0).conductance_W_m2K({}), 4000.0, 1e-9);
+  EXPECT_NEAR(balance_of(joint + "4 MPa}").contacts.at(0).conductance_W_m2K({}), 6000.0, 1e-9);
+}
+
+TEST(Joints, AirGapConductsAtRestAndMoreWithSpeed) {
+  // Air at 300 K: k = 26.3e-3, nu = 15.89e-6. At rest k / gap = 26.3 W/(m^2 K). 3000 rpm: Ta = 98696 * 0.0505 * 1e-9 /
+  // (15.89e-6)^2 = 19739.9; Nu = 0.409 * 19739.9^0.241 = 4.4351; h = 4.4351 * 26.3e-3 / 2e-3 = 58.32 W/(m^2 K).
+  const Law h = balance_of("{type: air_gap, joint: rotor/stator, diameter: 100 mm, gap: 1 mm, air: 300 K}")
+                    .contacts.at(0)
+                    .conductance_W_m2K;
+  EXPECT_NEAR(h({}), 26.3, 1e-10);
+  EXPECT_NEAR(h({.drive = {.speed_rpm = 3000.0}}), 58.32, 0.01);
+  EXPECT_THROW((void)h({.drive = {.speed_rpm = 1e5}}), RangeError);  // Ta = 2.2e7
+}
+
+TEST(Windows, BeginInclusivelyEndExclusivelyAndStopTheIntegrator) {
+  const HeatBalance b = balance_of("{type: convection, surface: door, film: 40 W/(m^2 K), from: 10 min, until: 0.5 h}");
+  EXPECT_EQ(b.change_times_s, (std::vector<double>{600.0, 1800.0}));
+  const Law& htc = b.films.at(0).htc_W_m2K;
+  EXPECT_EQ(htc({.drive = {}, .time_s = 599.0}), 0.0);
+  EXPECT_EQ(htc({.drive = {}, .time_s = 600.0}), 40.0);
+  EXPECT_EQ(htc({.drive = {}, .time_s = 1799.0}), 40.0);
+  EXPECT_EQ(htc({.drive = {}, .time_s = 1800.0}), 0.0);
+  EXPECT_TRUE(balance_of("{type: heat_source, node: n, power: 5 W}").change_times_s.empty());
+  const HeatBalance open = balance_of("{type: heat_source, node: n, power: 5 W, from: 60 s}");
+  EXPECT_EQ(open.change_times_s, std::vector<double>{60.0});
+  EXPECT_EQ(open.heats.at(0).power_W({.drive = {}, .time_s = 1e9}), 5.0);
+}
+
+// --- documentation and errors -----------------------------------------------------------------------------------
+
+TEST(Documentation, ListsEveryEffectOfTheCatalogueInItsOrder) {
+  std::ifstream file("docs/scenario.md");
+  std::vector<std::string> listed;
+  bool in_table = false;
+  for (std::string line; std::getline(file, line);) {
+    in_table |= line.starts_with("| type |");
+    if (in_table && line.starts_with("| `")) listed.push_back(line.substr(3, line.find('`', 3) - 3));
+    if (in_table && line.empty()) break;
+  }
+  std::vector<std::string> keys;
+  for (const EffectKind& kind : catalogue()) keys.push_back(kind.key);
+  EXPECT_EQ(listed, keys);
+}
+
+struct Bad {
+  const char* text;
+  const char* message;
+};
+class EffectErrors : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(EffectErrors, NameWhatIsWrong) {
+  EXPECT_THAT([] { (void)read(GetParam().text); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, EffectErrors,
+    ::testing::Values(
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm}", "one of two is wanted"},
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity: 32 mm^2/s, viscosity_40: 32 "
+            "mm^2/s, "
+            "viscosity_100: 5 mm^2/s}",
+            "one of two is wanted"},
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity_40: 32 mm^2/s}", "go together"},
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity_100: 5 mm^2/s}", "go together"},
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity_40: 5 mm^2/s, viscosity_100: 5 "
+            "mm^2/s}",
+            "thinner at 100 degC"},
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity: 32 mm^2/s, oil: tank}",
+            "looks at the oil"},
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity: 32 mm^2/s, preload_growth: 5 N/K, "
+            "inner: a}",
+            "go together"},
+        Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity: 32 mm^2/s, inner: a, outer: b}",
+            "go together"},
+        Bad{"{type: servo_loss, region: m, axis: w, power: 1 W, at_feed: 1 m/s}", "'w' is not known here"},
+        Bad{"{type: servo_loss, region: m, axis: x, power: 1 W, at_feed: 0 m/s}", "outside what is allowed"},
+        Bad{"{type: ball_screw, region: n, axis: x, torque: 1 N m, lead: 0 mm}", "outside what is allowed"},
+        Bad{"{type: ball_screw, region: n, axis: x, torque: 1 N m, lead: 5 mm, efficiency: 0}", "outside what is allowed"},
+        Bad{"{type: guideway_friction, region: n, axis: x, friction: 2, load: 1 N}", "outside what is allowed"},
+        Bad{"{type: cutting_heat, region: n, share: 1.2}", "outside what is allowed"},
+        Bad{"{type: heat_source, region: n, power: 1 W, from: 20 s, until: 20 s}", "behind `from`"},
+        Bad{"{type: convection, surface: s, film: 1 W/(m^2 K), from: -1 s}", "outside what is allowed"},
+        Bad{"{type: natural_convection, surface: s, length: 1 m}", "key 'orientation' is missing"},
+        Bad{"{type: natural_convection, surface: s, orientation: up, length: 0 m}", "outside what is allowed"},
+        Bad{"{type: radiation, surface: s, emissivity: 1.1}", "outside what is allowed"},
+        Bad{"{type: fixed_temperature, surface: s}", "one of two is wanted"},
+        Bad{"{type: fixed_temperature, surface: s, temperature: 20 degC, follows: hall}", "one of two is wanted"},
+        Bad{"{type: fixed_temperature, surface: s, temperature: [[0 s, 20 degC], [0 s, 30 degC]]}", "must increase"},
+        Bad{"{type: contact, joint: j}", "one of two is wanted"},
+        Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), conductance_over_pressure: [[0 Pa, 1 W/(m^2 K)]], "
+            "pressure: 0 "
+            "Pa}",
+            "one of two is wanted"},
+        Bad{"{type: contact, joint: j, conductance_over_pressure: [[0 Pa, 1 W/(m^2 K)]]}", "go together"},
+        Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), pressure: 1 Pa}", "go together"},
+        Bad{"{type: contact, joint: j, conductance_over_pressure: [[0 Pa, 1 W/(m^2 K)], [2 Pa, 3 W/(m^2 K)]], pressure: 3 "
+            "Pa}",
+            "outside the table"},
+        Bad{"{type: contact, joint: j, conductance_over_pressure: [[0 Pa, 1 W/(m^2 K)], [2 Pa, -3 W/(m^2 K)]], pressure: 1 "
+            "Pa}",
+            "is out of range"},
+        Bad{"{type: air_gap, joint: j, diameter: 10 mm, gap: 1 mm}", "narrow gaps"},
+        Bad{"{type: air_gap, joint: j, diameter: 10 mm, gap: 0 mm}", "outside what is allowed"},
+        Bad{"{type: node, node: n, capacity: 0 J/K}", "outside what is allowed"},
+        Bad{"{type: node, node: n, capacity: -1 J/K}", "outside what is allowed"},
+        Bad{"{type: link, node: n, conductance: 1 W/K}", "key 'to' is missing"},
+        Bad{"{type: link, node: n, conductance: 1 W/K, to: n}", "joins two bodies"},
+        Bad{"{type: link, node: n, conductance: -1 W/K, to: hall}", "outside what is allowed"},
+        Bad{"{type: coolant, region: r, tank: hall, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L}", "is no tank"},
+        Bad{"{type: coolant, region: r, tank: t, flow: 0 L/min, passage_conductance: 1 W/K, volume: 1 L}",
+            "outside what is allowed"},
+        Bad{"{type: coolant, region: r, tank: t, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L, cooling_power: 1 "
+            "kW}",
+            "go together"},
+        Bad{"{type: coolant, region: r, tank: t, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L, set_point: 20 "
+            "degC}",
+            "go together"},
+        Bad{"{type: coolant, region: r, tank: t, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L, cooling_power: 1 "
+            "kW, "
+            "set_point: 20 degC, hysteresis: 0 K}",
+            "outside what is allowed"},
+        Bad{"{type: stratification, gradient: 100 K/m}", "outside what is allowed"},
+        Bad{"{type: stratification, hall: hall, gradient: 1 K/m}", "unknown key 'hall'"}));
+
+}  // namespace
+}  // namespace driftwright::effects
