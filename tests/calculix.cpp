@@ -79,7 +79,7 @@ std::string calculix_model(const mesh::Mesh& mesh, const solver::RegionMaterials
     deck += fmt::format(
         "*MATERIAL, NAME=M{0}\n*ELASTIC\n{1:.12e}, {2:.12e}\n*EXPANSION, ZERO=0.\n{3:.12e}\n*CONDUCTIVITY\n{4:.12e}\n"
         "*DENSITY\n{5:.12e}\n*SPECIFIC HEAT\n{6:.12e}\n*SOLID SECTION, ELSET=E{0}, MATERIAL=M{0}\n",
-        mesh.regions[region], m.youngs_modulus_Pa, m.poisson_ratio, m.expansion_1_K, m.conductivity_W_mK, m.density_kg_m3,
+        mesh.regions[region], m.youngs_modulus_Pa, m.poisson_ratio, m.expansion_1_K.x, m.conductivity_W_mK, m.density_kg_m3,
         m.heat_capacity_J_kgK);
   }
   return deck + "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n";
