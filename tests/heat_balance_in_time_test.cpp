@@ -88,7 +88,7 @@ TEST_P(EachCell, HeatBalancesNearlyWithRadiationLawsOfTemperatureAndProperties) 
   const Trajectory run = run_everything(balance, GetParam(), {varying, fixtures::steel()});
   RecordProperty("gap", text(run.energy_gap()));
   RecordProperty("steps", run.n_steps);
-  EXPECT_LT(run.energy_gap(), 1e-4);
+  EXPECT_LT(run.energy_gap(), 1e-5);
 }
 
 // --- pulses -----------------------------------------------------------------------------------------------------
