@@ -207,6 +207,12 @@ void HeatOde::run(Pcg& solver, const double* b, double* x) {
                     "joint or material value extreme?",
                     outcome.iterations, outcome.residual, tolerance_K_));
   }
+  // Rows of prescribed unknowns are those of the identity. Solved to the tolerance only, they would leave their curve, and the
+  // heat that M couples to them would be missing in the balance.
+  if (is_fixed_.empty()) return;
+  for (int i = 0; i < n_; ++i) {
+    if (is_fixed_[i]) x[i] = b[i];
+  }
 }
 
 Eigen::VectorXd HeatOde::heats_J(const double* y, const double* start) const {
