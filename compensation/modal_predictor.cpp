@@ -12,8 +12,8 @@ solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const Tim
 }
 
 ModalPredictor make_modal_predictor(const solver::FullSystem& full, int most_modes, const Eigen::VectorXd& start,
-                                    bool with_steady_responses) {
-  const effects::Inputs standstill;
+                                    double hall_K, bool with_steady_responses) {
+  const effects::Inputs standstill{.drive = {}, .hall_K = hall_K};
   const int n_modes = std::min(most_modes, full.size());
   const solver::FullSystem system = full.is_linear() ? full : solver::linearised(full, standstill, start);
   const solver::ThermalModes modes = solver::thermal_modes(system, standstill, n_modes);

@@ -101,5 +101,20 @@ TEST(FixedTemperature, OfTwoFacesThatMeetAtAnEdgeCountsTheEdgeOnce) {
   EXPECT_NEAR(run.outputs(0, 0), 15.0, 1e-9);  // the first of the two rules where they meet
 }
 
+TEST(FixedTemperature, TheJumpAtTheStartBringsItsHeatOnAnyMesh) {
+  // 30 K for 4000 J/K: 120 kJ, of which one cell of 0.1 m takes up half in the jump of its nodes.
+  for (int n : {1, 6}) {
+    const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {n, 1, 1}});
+    FullSystem system = assemble_heat(
+        mesh, {fixtures::steel()}, fixtures::balance_of({"{type: fixed_temperature, surface: x0, temperature: 50 degC}"}));
+    fixtures::observe_unknowns(system, {0});
+    const Trajectory run = simulate(system, rest(40000), kStillHall, {0, 40000}, {}, Eigen::VectorXd::Zero(system.size()));
+    EXPECT_EQ(run.stored_J[0], 0.0);
+    EXPECT_NEAR(run.stored_J[1], 120e3, 1.0);  // exp(-pi^2 a t / (4 L^2)) = 5e-5 of a part of it
+    EXPECT_NEAR(run.heat_J(flow(run, "fixed_temperature x0"), 1), run.stored_J[1], 1e-4);
+    EXPECT_LT(run.energy_gap(), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace driftwright::solver
