@@ -14,19 +14,20 @@ namespace driftwright::solver {
 namespace {
 
 /// Goes from θ along a step as far as laws are defined: all of it, or a half, a quarter, ... Leaves the rate at the new state.
-/// @return false when none of forty halvings will do
-bool advance(HeatRate& rate, double hall_K, const Eigen::VectorXd& step, double share, Eigen::VectorXd& theta,
+/// @throws RangeError  of the law that refuses the last of forty halvings
+void advance(HeatRate& rate, double hall_K, const Eigen::VectorXd& step, double share, Eigen::VectorXd& theta,
              Eigen::VectorXd& heat) {
   const Eigen::VectorXd from = theta;
-  for (int halving = 0; halving < 40; ++halving, share *= 0.5) {
+  constexpr int kMostHalvings = 40;
+  for (int halving = 0;; ++halving, share *= 0.5) {
     theta = from + share * step;
     try {
       rate.evaluate(theta.data(), hall_K, heat.data());
-      return true;
+      return;
     } catch (const RangeError&) {  // a trial state that no law is defined at
+      if (halving == kMostHalvings) throw;
     }
   }
-  return false;
 }
 
 /// @throws InputError  where a thermostat would switch at the temperatures that its setting leads to
@@ -80,7 +81,11 @@ Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at
     // The slope of laws is left out of K: where it is steeper than K, whole steps would swing to and fro ever wider.
     if (moved_K > 0.9 * last_moved_K) share = std::max(0.5 * share, 1.0 / 64.0);
     last_moved_K = moved_K;
-    if (!advance(rate, at.hall_K, step, share, theta, heat)) break;
+    try {
+      advance(rate, at.hall_K, step, share, theta, heat);
+    } catch (const RangeError& e) {
+      throw SolveError(fmt::format("no steady state where every law is defined: {}", e.what()));
+    }
     largest_K = std::max({largest_K, theta.cwiseAbs().maxCoeff(), std::abs(at.hall_K)});
     if (moved_K <= 1e-10 * largest_K) {
       require_thermostats_at_rest(system, rate, theta, at.hall_K);

@@ -48,5 +48,22 @@ TEST(ModalPredictor, FollowsADraughtByTheClock) {
   EXPECT_LT((predictor.predict(rest, hall, times_s).outputs - full.outputs).cwiseAbs().maxCoeff(), 1e-5);  // K of 60 K
 }
 
+TEST(ModalPredictor, StartsWithWhatIsHeldAtItsTemperature) {
+  const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {1, 1, 1}});
+  solver::FullSystem system =
+      solver::assemble_heat(mesh, {fixtures::steel()},
+                            fixtures::balance_of({"{type: fixed_temperature, surface: x0, temperature: 60 degC}",
+                                                  "{type: convection, surface: x1, film: 200 W/(m^2 K)}"}));
+  fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0, 0, 0}), fixtures::node_at(mesh, {0.1, 0, 0})});
+  const TimeSeries hall{{0.0}, {0.0}};
+  const Cyclogram rest{.name = "rest", .sections = {{3600, {}}}};
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
+  const solver::TransientOptions fine{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
+  const solver::Trajectory full = solver::simulate(system, rest, hall, {0, 60, 600, 3600}, fine, start);
+  const ModalPredictor predictor = make_modal_predictor(system, system.size(), start, 0.0);
+  // Prescribed temperatures are rows a million times stiffer than the others: 1e-6 of 40 K.
+  EXPECT_LT((predictor.predict(rest, hall, {0, 60, 600, 3600}).outputs - full.outputs).cwiseAbs().maxCoeff(), 1e-4);
+}
+
 }  // namespace
 }  // namespace driftwright::compensation

@@ -298,6 +298,20 @@ TEST(Nonlinear, TemperaturesThatNoMachineHasEndTheRun) {
   }
 }
 
+TEST(Nonlinear, ASteadyStateBeyondALawNamesTheLaw) {
+  // 300 W by one face of 0.01 m^2 would want thousands of kelvins; air is known up to 500 K.
+  const FullSystem system =
+      assemble_heat(cube(), {fixtures::steel()},
+                    fixtures::balance_of({"{type: natural_convection, surface: x0, orientation: vertical, length: 100 mm}",
+                                          "{type: heat_source, region: body, power: 300 W}"}));
+  try {
+    (void)steady_state(system, {}, Eigen::VectorXd::Zero(system.size()));
+    FAIL() << "no error";
+  } catch (const SolveError& e) {
+    EXPECT_NE(std::string(e.what()).find("air temperature"), std::string::npos) << e.what();
+  }
+}
+
 TEST(Linearised, KeepsTheHeatCapacityOfItsTemperature) {
   // c rises by 1 J/(kg K^2) from 500 J/(kg K): at +300 K a lump of 8 kg has 6400 J/K.
   Material m = fixtures::lump(1e6);

@@ -101,6 +101,13 @@ TEST(FixedTemperature, OfTwoFacesThatMeetAtAnEdgeCountsTheEdgeOnce) {
   EXPECT_NEAR(run.outputs(0, 0), 15.0, 1e-9);  // the first of the two rules where they meet
 }
 
+TEST(FixedTemperature, SteadyStateTakesItAtTheTimeAskedFor) {
+  const FullSystem system =
+      fixtures::lumped_system({"{type: node, node: bath, capacity: 1 kJ/K}",
+                               "{type: fixed_temperature, node: bath, temperature: [[0 s, 20 degC], [100 s, 40 degC]]}"});
+  EXPECT_NEAR(steady_state(system, {.drive = {}, .time_s = 75.0}, Eigen::VectorXd::Zero(1))[0], 15.0, 1e-12);
+}
+
 TEST(FixedTemperature, TheJumpAtTheStartBringsItsHeatOnAnyMesh) {
   // 30 K for 4000 J/K: 120 kJ, of which one cell of 0.1 m takes up half in the jump of its nodes.
   for (int n : {1, 6}) {
