@@ -65,7 +65,8 @@ void fit_modal(MachineStudy& study, const Scenario& scenario, const Machine& mac
   const int n_modes = scenario.study->thermal_modes;
   const Eigen::VectorXd start = scenarios::start_state(*scenario.machine, machine);
   for (bool with_steady_responses : {false, true}) {
-    const ModalPredictor predictor = make_modal_predictor(machine.system, n_modes, start, with_steady_responses);
+    const ModalPredictor predictor =
+        make_modal_predictor(machine.system, n_modes, start, scenario.machine->hall.at(0.0), with_steady_responses);
     Record predicted = predict_record(predictor, scenario, machine, judged, study.judged.record.time_s);
     study.modal_errors.push_back(
         modal_error(predicted, study.judged.record, study.displacements, n_modes, with_steady_responses));

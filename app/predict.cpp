@@ -27,9 +27,10 @@ void predict(const PredictOptions& options) {
   Progress progress;
   const scenarios::Machine machine = build_machine(model, progress);
   progress.begin("computing thermal modes");
-  const int n_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
-  const compensation::ModalPredictor predictor =
-      compensation::make_modal_predictor(machine.system, n_modes, scenarios::start_state(*scenario.machine, machine));
+  const int most_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
+  const compensation::ModalPredictor predictor = compensation::make_modal_predictor(
+      machine.system, most_modes, scenarios::start_state(model, machine), model.hall.at(0.0));
+  const std::size_t n_modes = predictor.time_constant_s.size();  // a machine of few nodes has fewer
   const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);
   const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.system.outputs,
                                              cyclogram, model.reference_K);
@@ -40,6 +41,11 @@ void predict(const PredictOptions& options) {
   progress.end();
   fmt::print("{}, {:.0f} min, predicted by {} thermal modes and the steady responses\n", options.cyclogram,
              cyclogram.duration_s() / 60.0, n_modes);
+  if (!machine.system.is_linear()) {
+    fmt::print(
+        "  radiation, films, friction and properties that change with temperature stay as they are at the start; "
+        "`simulate` follows them\n");
+  }
   for (const auto& d : model.displacements) {
     const std::vector<double>& values = record.at(d.name).values;
     const auto peak =

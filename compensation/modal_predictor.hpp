@@ -20,9 +20,11 @@ struct ModalPredictor {
 
 /// @param n_modes  >= 1; a machine of fewer lumped nodes has all of its own
 /// @param start    temperatures at t = 0 minus the reference temperature; laws of temperature are frozen there
+/// @param hall_K   hall temperature at t = 0 minus the reference temperature; laws are frozen at it, too
 /// @param with_steady_responses  false leaves the bare modes, for comparison
 /// @throws InputError, SolveError  as thermal_modes()
 [[nodiscard]] ModalPredictor make_modal_predictor(const solver::FullSystem& system, int n_modes,
-                                                  const Eigen::VectorXd& start, bool with_steady_responses = true);
+                                                  const Eigen::VectorXd& start, double hall_K,
+                                                  bool with_steady_responses = true);
 
 }  // namespace driftwright::compensation

@@ -98,6 +98,14 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
     }
     for (const auto& [key, body] : e.references) must_exist(e.where, body.kind, body.name);
   }
+  for (std::size_t i = 0; i < model.effects.size(); ++i) {
+    const effects::Effect& e = model.effects[i];
+    const bool is_single = e.kind->key == "fixed_temperature" || e.kind->key == "stratification";
+    const bool again = std::any_of(
+        model.effects.begin(), model.effects.begin() + static_cast<std::ptrdiff_t>(i),
+        [&](auto& other) { return other.kind == e.kind && other.place_kind == e.place_kind && other.place == e.place; });
+    if (is_single && again) throw InputError(e.where, fmt::format("{} stands there twice; which one is meant?", e.name()));
+  }
   for (const mesh::Joint& joint : mesh.joints) {
     const bool has_contact = std::any_of(balance.contacts.begin(), balance.contacts.end(),
                                          [&](const effects::Contact& c) { return c.joint == joint.name; });

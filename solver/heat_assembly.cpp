@@ -207,9 +207,13 @@ class Binder {
   Binder(const Places& places, const effects::HeatBalance& balance, FullSystem& system)
       : places_(places), balance_(balance), system_(system) {}
 
-  BoundLaw bind(const effects::Law& law) {
+  /// @param surface  that the law's film lies on: its hall is the air before it, which may be stratified; nullptr for none
+  BoundLaw bind(const effects::Law& law, const Body* surface = nullptr) {
     BoundLaw bound(law);
-    for (const Body& body : law.probes) bound.probes.push_back(probe(body));
+    for (const Body& body : law.probes) {
+      const bool before_surface = surface && body == effects::node(effects::kHallName) && !balance_.stratifications.empty();
+      bound.probes.push_back(before_surface ? air_before(*surface) : probe(body));
+    }
     for (std::size_t t = 0; t < balance_.thermostats.size() && !law.thermostat.empty(); ++t) {
       if (balance_.thermostats[t].name == law.thermostat) bound.thermostat = static_cast<int>(t);
     }
@@ -230,6 +234,17 @@ class Binder {
   }
 
  private:
+  int air_before(const Body& surface) {
+    double offset_K_m2 = 0.0, area_m2 = 0.0;
+    places_.for_each_point(surface, [&](auto, auto&, double point_m2, const Eigen::Vector3d& position) {
+      offset_K_m2 += point_m2 * hall_offset_K(balance_.stratifications, position.z());
+      area_m2 += point_m2;
+    });
+    bodies_.push_back({});  // none that probe() could be asked for
+    system_.probes.push_back({Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0, offset_K_m2 / area_m2});
+    return static_cast<int>(bodies_.size()) - 1;
+  }
+
   const Places& places_;
   const effects::HeatBalance& balance_;
   FullSystem& system_;
@@ -241,8 +256,9 @@ std::vector<Exchange<SparseRow>> make_exchanges(const Mesh& mesh, const Places& 
   std::vector<Exchange<SparseRow>> exchanges;
   const auto& air = balance.stratifications;
   for (const effects::Film& film : balance.films) {
-    exchanges.push_back(to_surrounding(places, film.name, effects::surface(film.surface), film.surrounding, false,
-                                       binder.bind(film.htc_W_m2K), air));
+    const Body surface = effects::surface(film.surface);
+    exchanges.push_back(
+        to_surrounding(places, film.name, surface, film.surrounding, false, binder.bind(film.htc_W_m2K, &surface), air));
   }
   for (const effects::Link& link : balance.links) {
     exchanges.push_back(

@@ -54,11 +54,16 @@ void HeatOde::decouple(SparseRow& a) const {
   }
 }
 
-void HeatOde::prescribe(double t_s, double* y) const {
+Eigen::VectorXd HeatOde::prescribe(double t_s, double* y) const {
+  Eigen::VectorXd heat_J = Eigen::VectorXd::Zero(n_flows());
+  auto flow = static_cast<Eigen::Index>(rate_.flows().size());
   for (const FixedUnknowns& f : system_.fixed) {
+    const std::vector<double> before(y, y + n_);
     const double theta_K = (f.follows_hall ? hall_ : f.theta).at(t_s);
     for (int i : f.unknowns) y[i] = theta_K;
+    heat_J[flow++] = stored_J(y, before.data());
   }
+  return heat_J;
 }
 
 bool HeatOde::begin_stretch(const LinearStretch& stretch) {

@@ -24,8 +24,8 @@ class HeatOde {
   [[nodiscard]] int n_flows() const { return static_cast<int>(flows_.size()); }
   [[nodiscard]] const std::vector<HeatFlow>& flows() const { return flows_; }
 
-  /// Sets prescribed unknowns of a state to their temperature at t.
-  void prescribe(double t_s, double* y) const;
+  /// Sets prescribed unknowns of a state to their temperature at t. @return the heat that takes, per flow [J]
+  Eigen::VectorXd prescribe(double t_s, double* y) const;
   /// Begins a stretch of constant drive and linear hall. @return true when some power or coefficient jumps
   bool begin_stretch(const LinearStretch& stretch);
   /// True when a thermostat is not as the state at t says; sets all of them. Call begin_stretch() afterwards if so.

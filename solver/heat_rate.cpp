@@ -92,7 +92,8 @@ bool HeatRate::set(const Drive& drive, double time_s) {
 
 void HeatRate::look_at_state(const double* theta, double hall_K) {
   for (std::size_t p = 0; p < probes_.size(); ++p) {
-    probe_K_[p] = system_.reference_K + probes_[p].dot(theta) + system_.probes[p].hall_share * hall_K;
+    probe_K_[p] =
+        system_.reference_K + probes_[p].dot(theta) + system_.probes[p].hall_share * hall_K + system_.probes[p].offset_K;
   }
   for (std::size_t s = 0; s < sources_.size(); ++s) {
     if (system_.sources[s].power_W.looks_at_state()) sources_[s].power_W = value_of(system_.sources[s].power_W);
@@ -178,7 +179,8 @@ const SparseRow& HeatRate::tangent(const double* theta, double hall_K) {
 
 double HeatRate::thermostat_probe_K(int i, const double* theta, double hall_K) const {
   const int probe = system_.thermostats[i].probe;
-  return system_.reference_K + probes_[probe].dot(theta) + system_.probes[probe].hall_share * hall_K;
+  return system_.reference_K + probes_[probe].dot(theta) + system_.probes[probe].hall_share * hall_K +
+         system_.probes[probe].offset_K;
 }
 
 }  // namespace driftwright::solver

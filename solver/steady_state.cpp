@@ -14,19 +14,35 @@ namespace driftwright::solver {
 namespace {
 
 /// Goes from θ along a step as far as laws are defined: all of it, or a half, a quarter, ... Leaves the rate at the new state.
-/// @return false when none of forty halvings will do
-bool advance(HeatRate& rate, double hall_K, const Eigen::VectorXd& step, double share, Eigen::VectorXd& theta,
+/// @throws RangeError  of the law that refuses the last of forty halvings
+void advance(HeatRate& rate, double hall_K, const Eigen::VectorXd& step, double share, Eigen::VectorXd& theta,
              Eigen::VectorXd& heat) {
   const Eigen::VectorXd from = theta;
-  for (int halving = 0; halving < 40; ++halving, share *= 0.5) {
+  constexpr int kMostHalvings = 40;
+  for (int halving = 0;; ++halving, share *= 0.5) {
     theta = from + share * step;
     try {
       rate.evaluate(theta.data(), hall_K, heat.data());
-      return true;
+      return;
     } catch (const RangeError&) {  // a trial state that no law is defined at
+      if (halving == kMostHalvings) throw;
     }
   }
-  return false;
+}
+
+/// @throws InputError  where a thermostat would switch at the temperatures that its setting leads to
+void require_thermostats_at_rest(const FullSystem& system, const HeatRate& rate, const Eigen::VectorXd& theta,
+                                 double hall_K) {
+  for (std::size_t i = 0; i < system.thermostats.size(); ++i) {
+    const Thermostat& thermostat = system.thermostats[i];
+    const bool on = rate.thermostat_is_on(static_cast<int>(i));
+    const double probe_K = rate.thermostat_probe_K(static_cast<int>(i), theta.data(), hall_K);
+    if (on ? probe_K >= thermostat.off_below_K : probe_K <= thermostat.on_above_K) continue;
+    throw InputError(
+        fmt::format("there is no steady state: thermostat '{}' switches {} on the way there, to {:.1f} K with it "
+                    "{}. Start at the hall's or at a given temperature",
+                    thermostat.name, on ? "off" : "on", probe_K, on ? "on" : "off"));
+  }
 }
 
 }  // namespace
@@ -65,9 +81,16 @@ Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at
     // The slope of laws is left out of K: where it is steeper than K, whole steps would swing to and fro ever wider.
     if (moved_K > 0.9 * last_moved_K) share = std::max(0.5 * share, 1.0 / 64.0);
     last_moved_K = moved_K;
-    if (!advance(rate, at.hall_K, step, share, theta, heat)) break;
+    try {
+      advance(rate, at.hall_K, step, share, theta, heat);
+    } catch (const RangeError& e) {
+      throw SolveError(fmt::format("no steady state where every law is defined: {}", e.what()));
+    }
     largest_K = std::max({largest_K, theta.cwiseAbs().maxCoeff(), std::abs(at.hall_K)});
-    if (moved_K <= 1e-10 * largest_K) return theta;
+    if (moved_K <= 1e-10 * largest_K) {
+      require_thermostats_at_rest(system, rate, theta, at.hall_K);
+      return theta;
+    }
   }
   throw SolveError(fmt::format(
       "no steady state after {} iterations; is a law of temperature too steep, or the start far off?", kMostIterations));
@@ -89,7 +112,7 @@ FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const
     if (!law.looks_at_state()) return;
     std::vector<double> probe_K;
     for (int p : law.probes) {
-      probe_K.push_back(system.reference_K + system.probes[p].weights.dot(theta) + system.probes[p].hall_share * at.hall_K);
+      probe_K.push_back(system.reference_K + system.probes[p].theta_K(theta, at.hall_K));
     }
     law.law = effects::Law([value = law.law.value, probe_K](const effects::Inputs& u) {
       effects::Inputs inputs = u;

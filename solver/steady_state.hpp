@@ -10,7 +10,8 @@ namespace driftwright::solver {
 /// where they would leave the range of a law, or where they do not shrink.
 ///
 /// @param at     drive, hall and time; prescribed temperatures are those of that time
-/// @param start  first guess, and the state that thermostats are set by (they keep that setting)
+/// @param start  first guess, and the state that thermostats are set by
+/// @throws InputError  when a thermostat would not keep that setting
 /// @throws RangeError  when a law is not defined at the first guess
 /// @throws SolveError  when some part has no way for heat to leave (names an unknown of it), or after 200 iterations without
 ///                     convergence to 1e-10 of the largest temperature difference

@@ -60,10 +60,14 @@ struct Exchange {
   [[nodiscard]] bool reaches_hall() const { return hall_sum != 0.0; }
 };
 
-/// Mean temperature that laws and thermostats look at: weights'θ + hall_share θ_hall + the reference temperature.
+/// Mean temperature that laws and thermostats look at: weights'θ + hall_share θ_hall + offset + the reference temperature.
 struct Probe {
   Eigen::VectorXd weights;
   double hall_share = 0.0;
+  double offset_K = 0.0;  ///< of stratified air before a surface above that at the hall's thermometer, mean
+  [[nodiscard]] double theta_K(const Eigen::VectorXd& theta, double hall_K) const {
+    return weights.dot(theta) + hall_share * hall_K + offset_K;
+  }
 };
 
 struct Thermostat {
@@ -175,8 +179,8 @@ struct Trajectory {
   std::vector<double> time_s;
   Eigen::MatrixXd outputs;  ///< n_outputs x n_times, in K, m, rad
   std::vector<HeatFlow> flows;
-  Eigen::MatrixXd heat_J;             ///< heat since t = 0 [J], n_flows x n_times
-  Eigen::VectorXd stored_J;           ///< change of the heat stored since t = 0, per time
+  Eigen::MatrixXd heat_J;             ///< heat since the start state [J], n_flows x n_times; zero at t = 0
+  Eigen::VectorXd stored_J;           ///< change of the heat stored since then, per time
   std::vector<Overshoot> overshoots;  ///< one per jump that made one
 
   int n_steps = 0, n_solves = 0, n_iterations = 0;

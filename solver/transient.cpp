@@ -122,6 +122,19 @@ std::vector<double> knots_s(const FullSystem& system, const TimeSeries& hall) {
   return knots;
 }
 
+/// @throws SolveError  at temperatures that no machine has: below absolute zero, or above what melts any part of it
+void require_sane(const double* theta, int n, double reference_K, double t_s) {
+  constexpr double kMost_K = 5000.0;
+  for (int i = 0; i < n; ++i) {
+    const double t_K = reference_K + theta[i];
+    if (t_K >= 0.0 && t_K <= kMost_K) continue;
+    throw SolveError(
+        fmt::format("a temperature of {:.3g} K at t = {:.1f} s: a source cools or heats more than films, links "
+                    "and joints can make up for",
+                    t_K, t_s));
+  }
+}
+
 /// Coldest and warmest of what surrounds the machine at a time.
 std::pair<double, double> surroundings_K(const FullSystem& system, const TimeSeries& hall, double t_s) {
   double low = hall.at(t_s), high = low;
@@ -159,7 +172,8 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   const VectorPtr y(N_VNew_Serial(ode.size(), context.get())), tolerance(N_VNew_Serial(ode.size(), context.get()));
   std::fill(out(y.get()), out(y.get()) + ode.size(), 0.0);
   std::copy(start.data(), start.data() + n, out(y.get()));
-  ode.prescribe(0.0, out(y.get()));
+  // What is held at another temperature than it starts with jumps at once; the heat of that jump belongs to the balance.
+  const Eigen::VectorXd jump_J = ode.prescribe(0.0, out(y.get()));
   const std::vector<double> began(in(y.get()), in(y.get()) + n);
   std::fill(out(tolerance.get()), out(tolerance.get()) + n, options.absolute_tolerance_K);
   std::fill(out(tolerance.get()) + n, out(tolerance.get()) + ode.size(), 1e30);  // heats follow, they do not steer
@@ -207,8 +221,12 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   const auto take_output = [&](double t_s, N_Vector state_vector) {
     const Eigen::VectorXd state = Eigen::Map<const Eigen::VectorXd>(in(state_vector), n);
     run.outputs.col(next) = system.observe(state, hall.at(t_s));
-    run.heat_J.col(next) = ode.heats_J(in(state_vector), began.data());
-    run.stored_J[next] = ode.stored_J(in(state_vector), began.data());
+    run.heat_J.col(next).setZero();
+    run.stored_J[next] = 0.0;
+    if (t_s > 0.0) {
+      run.heat_J.col(next) = jump_J + ode.heats_J(in(state_vector), began.data());
+      run.stored_J[next] = jump_J.sum() + ode.stored_J(in(state_vector), began.data());
+    }
     ++next;
     if (callback) callback(t_s, state);
   };
@@ -222,6 +240,7 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
     watch.begin(t_s, in(y.get()), n);
   };
   bool first = true;
+  int n_switches = 0;
   for (const LinearStretch& stretch : stretches) {
     const bool jumps = ode.begin_stretch(stretch);
     if (jumps || first) restart(stretch.end_s);
@@ -231,6 +250,7 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
       const int flag = ARKStepEvolve(mem, stretch.end_s, y.get(), &t_s, ARK_ONE_STEP);
       check(flag, "ARKStepEvolve", t_s, callee);
       callee.out_of_range.clear();
+      require_sane(in(y.get()), n, system.reference_K, t_s);
       if (t_s > stretch.end_s - 1e-9 * stretch.end_s) t_s = stretch.end_s;
       if (bounds_hold) {
         const auto [low_K, high_K] = surroundings_K(system, hall, t_s);
@@ -249,7 +269,13 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
         std::vector<int> reached(callee.n_thermostats);
         check(ARKStepGetRootInfo(mem, reached.data()), "ARKStepGetRootInfo", t_s, callee);
         for (int i = 0; i < callee.n_thermostats; ++i) {
-          if (reached[i] != 0) ode.toggle(i);
+          if (reached[i] == 0) continue;
+          ode.toggle(i);
+          if (++n_switches <= options.most_switches) continue;
+          throw SolveError(
+              fmt::format("thermostat '{}' switched for the {}th time at t = {:.1f} s; is its hysteresis too small "
+                          "for its volume?",
+                          system.thermostats[i].name, n_switches, t_s));
         }
         (void)ode.begin_stretch(stretch);
         restart(stretch.end_s);

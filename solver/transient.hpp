@@ -17,6 +17,7 @@ struct TransientOptions {
   double relative_tolerance = 1e-4;  ///< of θ
   double absolute_tolerance_K = 5e-4;
   double max_step_s = 1200.0;
+  int most_switches = 100000;  ///< of all thermostats; more are no control but a slip in its data
 };
 
 /// Called at each output time with the time and the state; throwing ends the run.
@@ -26,7 +27,8 @@ using OutputCallback = std::function<void(double time_s, const Eigen::VectorXd& 
 ///
 /// @param hall     hall temperature minus the reference temperature [K]
 /// @param output_s times of the outputs, increasing, within the cyclogram
-/// @throws SolveError  with time and ARKODE's flag when it gives up
+/// @throws SolveError  with time and ARKODE's flag when it gives up; at temperatures below absolute zero or above 5000 K;
+///                     when thermostats switch too often
 [[nodiscard]] Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
                                   const std::vector<double>& output_s, const TransientOptions& options,
                                   const Eigen::VectorXd& start, const OutputCallback& callback = {});

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"
 #include "tests/effect_list.hpp"
@@ -120,6 +121,31 @@ TEST(Coolant, ThermostatOfALoadedSpindleHoldsTheTankWithinItsHysteresis) {
   EXPECT_GT(run.outputs.minCoeff(), 21.5 - 20.0 - 1e-3);
   EXPECT_GT(run.outputs.maxCoeff() - run.outputs.minCoeff(), 0.98);  // and uses it
   EXPECT_LT(run.energy_gap(), 1e-9);
+}
+
+TEST(Coolant, HasNoSteadyStateWhereItsChillerSwitches) {
+  const auto steady_at = [](double hall_K) {
+    const FullSystem system =
+        fixtures::lumped_system({"{type: node, node: spindle, capacity: 5 kJ/K}",
+                                 "{type: coolant, node: spindle, tank: tank, flow: 6 L/min, passage_conductance: 380 W/K, "
+                                 "volume: 10 L, tank_exchange: "
+                                 "10 W/K, pump_power: 20 W, cooling_power: 1.5 kW, set_point: 25 degC, hysteresis: 2 K}"});
+    return steady_state(system, {.drive = {}, .hall_K = hall_K}, Eigen::VectorXd::Constant(2, hall_K));
+  };
+  EXPECT_NEAR(steady_at(0.0)[1], 2.0, 1e-9);              // 20 W by 10 W/K: 22 degC, the chiller stays off
+  EXPECT_THROW((void)steady_at(4.5), InputError);         // 26.5 degC without the chiller, which starts off and comes on
+  EXPECT_THROW((void)steady_at(10.0), InputError);        // on from the start: -118 degC
+  EXPECT_NEAR(steady_at(160.0)[1], 160.0 - 148.0, 1e-9);  // 32 degC with a chiller that never rests
+}
+
+TEST(Coolant, AThermostatThatSwitchesWithoutEndIsNamed) {
+  // A period of 228 s: 40 switches take 4560 s.
+  try {
+    (void)simulate(cycling_tank(), rest(86400), kStillHall, {86400}, {.most_switches = 40}, Eigen::VectorXd::Zero(2));
+    FAIL() << "no error";
+  } catch (const SolveError& e) {
+    EXPECT_NE(std::string(e.what()).find("thermostat 'tank' switched for the 41th time"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace

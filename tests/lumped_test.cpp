@@ -79,7 +79,8 @@ TEST(Start, SetsTheFirstRow) {
 
 TEST(Start, SteadyStaysWhereItIs) {
   // 35 W into the cold body at rest, too: 35 / 5 = 7 K over the hall.
-  const Simulated run = simulate(two_bodies("start: steady\n", "  - {type: heat_source, node: cold, power: 35 W}\n"), "rest");
+  const Simulated run =
+      simulate(two_bodies("start: steady\n", "  - {type: heat_source, node: cold, power: 35 W}\n"), "rest");
   for (double t_degC : run.record.at("t_cold").values) EXPECT_NEAR(t_degC, 32.0, 1e-6);
   for (double t_degC : run.record.at("t_hot").values) EXPECT_NEAR(t_degC, 32.0, 1e-6);
 }
@@ -105,6 +106,16 @@ TEST(WaysOut, ANodeWithoutOneIsNamed) {
       at("  - {type: node, node: alone, capacity: 1 J/K}\n  - {type: link, node: alone, to: hot, conductance: 1 W/K}\n"));
   EXPECT_NO_THROW(at(
       "  - {type: node, node: alone, capacity: 1 J/K}\n  - {type: fixed_temperature, node: alone, temperature: 30 degC}\n"));
+}
+
+TEST(Effects, WhatOnlyOneCanRuleIsRefusedTwice) {
+  const std::string held = "  - {type: fixed_temperature, node: hot, temperature: 30 degC}\n";
+  const auto at = [](const std::string& effects) { (void)place(*read(two_bodies("", effects)).machine); };
+  EXPECT_NO_THROW(at(held));
+  EXPECT_THAT([&] { at(held + "  - {type: fixed_temperature, node: hot, follows: hall}\n"); },
+              ThrowsMessage<InputError>(HasSubstr("fixed_temperature hot stands there twice")));
+  const std::string air = "  - {type: stratification, gradient: 1 K/m}\n";
+  EXPECT_THAT([&] { at(air + air); }, ThrowsMessage<InputError>(HasSubstr("stratification hall stands there twice")));
 }
 
 TEST(Sensitivities, OfABodyThatIsNotThereAreRefused) {

@@ -9,6 +9,7 @@
 #include "base/errors.hpp"
 #include "effects/bearing_formulas.hpp"
 #include "effects/film_formulas.hpp"
+#include "solver/heat_rate.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"
 #include "tests/effect_list.hpp"
@@ -266,6 +267,58 @@ TEST(Linearised, FollowsASmallPerturbationOfRadiationAndPrescribedTemperature) {
   note("difference_K", (full_step - linear_step).cwiseAbs().maxCoeff());
   // Curvature of T^4 over 0.2 K of 294 K: 1.5 * 0.2 / 294 = 1e-3 of the step.
   EXPECT_LT((full_step - linear_step).cwiseAbs().maxCoeff(), 1e-3 * full_step.maxCoeff());
+}
+
+TEST(Nonlinear, FreeConvectionInStratifiedAirGrowsWithTheDifferenceToTheAirBeforeItsSurface) {
+  // A face of 0.01 m^2 with its middle 10.05 m over the thermometer: 20.1 K warmer air, the film of that difference.
+  const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {2, 2, 2}});
+  const FullSystem system =
+      assemble_heat(mesh, {fixtures::steel()},
+                    fixtures::balance_of({"{type: natural_convection, surface: x0, orientation: vertical, length: 100 mm}",
+                                          "{type: stratification, gradient: 2 K/m, level: -10 m}"}));
+  HeatRate rate(system);
+  rate.set({}, 0.0);
+  const Eigen::VectorXd theta = Eigen::VectorXd::Zero(system.size());
+  Eigen::VectorXd heat_W(system.size());
+  rate.evaluate(theta.data(), 0.0, heat_W.data());
+  double flow_W = 0.0;
+  rate.flows_W(theta.data(), 0.0, &flow_W);
+  const double htc = effects::natural_convection_htc_W_m2K(effects::Orientation::kVertical, 0.1, 293.15, 293.15 + 20.1);
+  EXPECT_NEAR(flow_W, htc * 0.01 * 20.1, 1e-9);
+  EXPECT_NEAR(heat_W.sum(), flow_W, 1e-9);
+}
+
+TEST(Nonlinear, TemperaturesThatNoMachineHasEndTheRun) {
+  // 3 kW out of a node that 2 W/K keep warm tends to -1480 degC; 1 MW into it to 500 000 degC.
+  for (const char* power : {"-3 kW", "1 MW"}) {
+    const FullSystem system = fixtures::lumped_system({"{type: node, node: b, capacity: 10 kJ/K}",
+                                                       "{type: link, node: b, to: hall, conductance: 2 W/K}",
+                                                       std::string("{type: heat_source, node: b, power: ") + power + "}"});
+    EXPECT_THROW((void)simulate(system, at_speed(36000, 0), kStillHall, {36000}, {}, Eigen::VectorXd::Zero(1)), SolveError);
+  }
+}
+
+TEST(Nonlinear, ASteadyStateBeyondALawNamesTheLaw) {
+  // 300 W by one face of 0.01 m^2 would want thousands of kelvins; air is known up to 500 K.
+  const FullSystem system =
+      assemble_heat(cube(), {fixtures::steel()},
+                    fixtures::balance_of({"{type: natural_convection, surface: x0, orientation: vertical, length: 100 mm}",
+                                          "{type: heat_source, region: body, power: 300 W}"}));
+  try {
+    (void)steady_state(system, {}, Eigen::VectorXd::Zero(system.size()));
+    FAIL() << "no error";
+  } catch (const SolveError& e) {
+    EXPECT_NE(std::string(e.what()).find("air temperature"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Linearised, KeepsTheHeatCapacityOfItsTemperature) {
+  // c rises by 1 J/(kg K^2) from 500 J/(kg K): at +300 K a lump of 8 kg has 6400 J/K.
+  Material m = fixtures::lump(1e6);
+  m.heat_capacity_curve = {{293.15, 1293.15}, {500.0, 1500.0}};
+  const FullSystem system = assemble_heat(cube(), {m}, {});
+  const FullSystem linear = linearised(system, {}, Eigen::VectorXd::Constant(system.size(), 300.0));
+  EXPECT_NEAR(linear.ones.dot(linear.mass * linear.ones), 6400.0, 1e-6);
 }
 
 }  // namespace

@@ -101,5 +101,47 @@ TEST(FixedTemperature, OfTwoFacesThatMeetAtAnEdgeCountsTheEdgeOnce) {
   EXPECT_NEAR(run.outputs(0, 0), 15.0, 1e-9);  // the first of the two rules where they meet
 }
 
+TEST(FixedTemperature, SteadyStateTakesItAtTheTimeAskedFor) {
+  const FullSystem system =
+      fixtures::lumped_system({"{type: node, node: bath, capacity: 1 kJ/K}",
+                               "{type: fixed_temperature, node: bath, temperature: [[0 s, 20 degC], [100 s, 40 degC]]}"});
+  EXPECT_NEAR(steady_state(system, {.drive = {}, .time_s = 75.0}, Eigen::VectorXd::Zero(1))[0], 15.0, 1e-12);
+}
+
+TEST(FixedTemperature, TheJumpAtTheStartBringsItsHeatOnAnyMesh) {
+  // 30 K for 4000 J/K: 120 kJ, of which one cell of 0.1 m takes up half in the jump of its nodes.
+  for (int n : {1, 6}) {
+    const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {n, 1, 1}});
+    FullSystem system = assemble_heat(
+        mesh, {fixtures::steel()}, fixtures::balance_of({"{type: fixed_temperature, surface: x0, temperature: 50 degC}"}));
+    fixtures::observe_unknowns(system, {0});
+    const Trajectory run = simulate(system, rest(40000), kStillHall, {0, 40000}, {}, Eigen::VectorXd::Zero(system.size()));
+    EXPECT_EQ(run.stored_J[0], 0.0);
+    EXPECT_NEAR(run.stored_J[1], 120e3, 1.0);  // exp(-pi^2 a t / (4 L^2)) = 5e-5 of a part of it
+    EXPECT_NEAR(run.heat_J(flow(run, "fixed_temperature x0"), 1), run.stored_J[1], 1e-4);
+    EXPECT_LT(run.energy_gap(), 1e-9);
+  }
+}
+
+TEST(FixedTemperature, RampOfABodyWhoseHeatCapacityIsNotThatOfTheReference) {
+  // As above with 1000 J/(kg K) from 0.1 K on, twice that at the reference temperature: a = 5e-6 m^2/s, the far face lags by
+  // 0.01 / 5e-6 * 0.005 = 10 K and the held one takes up 80 W.
+  const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {2, 1, 1}});
+  Material steel = fixtures::steel();
+  steel.heat_capacity_curve = {{293.15, 293.25}, {500.0, 1000.0}};
+  FullSystem system = assemble_heat(
+      mesh, {steel},
+      fixtures::balance_of({"{type: fixed_temperature, surface: x0, temperature: [[0 h, 20 degC], [8 h, 308 degC]]}"}));
+  fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0.1, 0, 0})});
+  const TransientOptions fine{.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-5};
+  const Trajectory run =
+      simulate(system, rest(28800), kStillHall, {25200, 28800}, fine, Eigen::VectorXd::Zero(system.size()));
+  EXPECT_NEAR(run.outputs(0, 1), 288.0 - 10.0, 2e-3);  // exp(-pi^2 a t / (4 L^2)) of the start is left: 4e-16; tolerance
+  const Eigen::Index held = flow(run, "fixed_temperature x0");
+  EXPECT_NEAR((run.heat_J(held, 1) - run.heat_J(held, 0)) / 3600.0, 80.0, 1e-2);
+  EXPECT_NEAR(run.heat_J(held, 1), 8.0 * (1000.0 * (288.0 - 20.0 / 3.0) - 25.0), 5.0);  // mean lag 20/3 K; 1e-6 of it
+  EXPECT_LT(run.energy_gap(), 1e-6);
+}
+
 }  // namespace
 }  // namespace driftwright::solver

@@ -1,0 +1,69 @@
+// The modal model of a machine with laws of temperature: frozen where the run starts.
+
+#include "compensation/modal_predictor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "solver/transient.hpp"
+#include "tests/effect_list.hpp"
+#include "tests/fixtures.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+TEST(ModalPredictor, FreezesFilmsAtTheDifferenceToTheHallOfTheStart) {
+  // 10 K over a hall that is itself 20 K over the reference temperature: the film is that of 10 K.
+  const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {2, 2, 2}});
+  solver::FullSystem system = solver::assemble_heat(
+      mesh, {fixtures::steel()},
+      fixtures::balance_of({"{type: natural_convection, surface: x0, orientation: vertical, length: 100 mm}"}));
+  fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0, 0, 0})});
+  const TimeSeries hall{{0.0}, {20.0}};
+  const Cyclogram rest{.name = "rest", .sections = {{3600, {}}}};
+  const Eigen::VectorXd start = Eigen::VectorXd::Constant(system.size(), 30.0);
+  const solver::Trajectory full = solver::simulate(system, rest, hall, {3600}, {}, start);
+  const ModalPredictor predictor = make_modal_predictor(system, 10, start, hall.at(0.0));
+  const double drop_K = 30.0 - full.outputs(0, 0), predicted_K = 30.0 - predictor.predict(rest, hall, {3600}).outputs(0, 0);
+  EXPECT_GT(drop_K, 0.2);
+  // The film falls with the fourth root of the difference, which shrinks by 4 % meanwhile: 1 %. At 30 K it would be 1.3 times.
+  EXPECT_NEAR(predicted_K / drop_K, 1.0, 0.015);
+}
+
+TEST(ModalPredictor, FollowsADraughtByTheClock) {
+  // evolve() against simulate() where a film comes and goes within one section of the drive.
+  const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {1, 1, 1}});
+  solver::FullSystem system = solver::assemble_heat(
+      mesh, {fixtures::steel()},
+      fixtures::balance_of({"{type: convection, surface: x0, film: 10 W/(m^2 K)}",
+                            "{type: convection, surface: x1, film: 200 W/(m^2 K), from: 10 min, until: 20 min}",
+                            "{type: heat_source, region: body, power: 100 W}"}));
+  fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0.1, 0, 0})});
+  const TimeSeries hall{{0.0}, {0.0}};
+  const Cyclogram rest{.name = "rest", .sections = {{3600, {}}}};
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
+  const ModalPredictor predictor = make_modal_predictor(system, system.size(), start, 0.0);  // a complete basis
+  const solver::TransientOptions fine{.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8};
+  const std::vector<double> times_s = {600, 900, 1200, 3600};
+  const solver::Trajectory full = solver::simulate(system, rest, hall, times_s, fine, start);
+  EXPECT_LT((predictor.predict(rest, hall, times_s).outputs - full.outputs).cwiseAbs().maxCoeff(), 1e-5);  // K of 60 K
+}
+
+TEST(ModalPredictor, StartsWithWhatIsHeldAtItsTemperature) {
+  const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {1, 1, 1}});
+  solver::FullSystem system =
+      solver::assemble_heat(mesh, {fixtures::steel()},
+                            fixtures::balance_of({"{type: fixed_temperature, surface: x0, temperature: 60 degC}",
+                                                  "{type: convection, surface: x1, film: 200 W/(m^2 K)}"}));
+  fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0, 0, 0}), fixtures::node_at(mesh, {0.1, 0, 0})});
+  const TimeSeries hall{{0.0}, {0.0}};
+  const Cyclogram rest{.name = "rest", .sections = {{3600, {}}}};
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
+  const solver::TransientOptions fine{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
+  const solver::Trajectory full = solver::simulate(system, rest, hall, {0, 60, 600, 3600}, fine, start);
+  const ModalPredictor predictor = make_modal_predictor(system, system.size(), start, 0.0);
+  // Prescribed temperatures are rows a million times stiffer than the others: 1e-6 of 40 K.
+  EXPECT_LT((predictor.predict(rest, hall, {0, 60, 600, 3600}).outputs - full.outputs).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+}  // namespace
+}  // namespace driftwright::compensation
