@@ -33,8 +33,15 @@ void check(const CommonOptions& options) {
   Progress progress;
   progress.begin("meshing");
   const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
-  const mesh::Quality quality = mesh::worst_quality(placed.mesh);
   progress.end();
+  if (placed.mesh.n_nodes() == 0) {
+    fmt::print("{}: fine; {} lumped nodes, {} effects, {} sensors, {} cyclograms\n", options.scenario,
+               placed.balance.nodes.size(), scenario.machine->effects.size(), scenario.machine->sensors.size(),
+               scenario.cyclograms.size());
+    for (const Cyclogram& cyclogram : scenario.cyclograms) print_cyclogram(cyclogram);
+    return;
+  }
+  const mesh::Quality quality = mesh::worst_quality(placed.mesh);
   fmt::print(
       "{}: fine; {} nodes, {} cells in {} regions, {} joints, {} effects, {} sensors, {} cyclograms; worst "
       "scaled Jacobian {:.3f}\n",

@@ -64,9 +64,12 @@ void fit_modal(MachineStudy& study, const Scenario& scenario, const Machine& mac
   const Cyclogram& judged = scenario.cyclogram(scenario.study->judge);
   const int n_modes = scenario.study->thermal_modes;
   const Eigen::VectorXd start = scenarios::start_state(*scenario.machine, machine);
+  std::vector<const Cyclogram*> training;
+  for (const SimulatedRun& run : study.train) training.push_back(&scenario.cyclogram(run.record.source));
+  const Drive typical = mean_drive(training);
   for (bool with_steady_responses : {false, true}) {
     const ModalPredictor predictor =
-        make_modal_predictor(machine.system, n_modes, start, scenario.machine->hall.at(0.0), with_steady_responses);
+        make_modal_predictor(machine.system, n_modes, start, scenario.machine->hall.at(0.0), typical, with_steady_responses);
     Record predicted = predict_record(predictor, scenario, machine, judged, study.judged.record.time_s);
     study.modal_errors.push_back(
         modal_error(predicted, study.judged.record, study.displacements, n_modes, with_steady_responses));

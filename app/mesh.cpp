@@ -4,12 +4,15 @@
 #include "app/verbs.hpp"
 #include "mesh/quality.hpp"
 #include "output/vtk_fields.hpp"
+#include "solver/joint.hpp"
 
 namespace driftwright::app {
 
 void mesh(const CommonOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   const scenarios::MachineModel& model = require_machine(scenario, "mesh");
+  if (std::holds_alternative<scenarios::LumpedMachine>(model.mesh))
+    throw InputError(model.where, "a lumped machine has no mesh");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   progress.begin("meshing");
@@ -32,8 +35,14 @@ void mesh(const CommonOptions& options) {
     if (m.surfaces[s].find('@') != std::string::npos) continue;
     fmt::print("  surface {:<32} {:8.4f} m2\n", m.surfaces[s], mesh::area_m2(m, static_cast<int>(s)));
   }
-  for (const mesh::Joint& joint : m.joints)
-    fmt::print("  joint   {:<32} {:8.4f} m2\n", joint.name, mesh::area_m2(m, m.surface(joint.side_a)));
+  for (const mesh::Joint& joint : m.joints) {
+    double area_m2 = 0.0, gap_m = 0.0;
+    for (const solver::JointPoint& p : solver::joint_points(m, joint)) {
+      area_m2 += p.area_m2;
+      gap_m = std::max(gap_m, p.gap_m);
+    }
+    fmt::print("  joint   {:<32} {:8.4f} m2 in contact, sides up to {:.3f} mm apart\n", joint.name, area_m2, 1e3 * gap_m);
+  }
   for (const std::string& note : m.notes) fmt::print("note: {}\n", note);
   fmt::print("written to {}\n", shown_path(folder.target() / "mesh.vtu"));
 }

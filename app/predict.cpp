@@ -7,6 +7,7 @@
 #include "app/verbs.hpp"
 #include "compensation/modal_predictor.hpp"
 #include "scenarios/read_cyclogram.hpp"
+#include "scenarios/ways_out.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -26,10 +27,11 @@ void predict(const PredictOptions& options) {
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   const scenarios::Machine machine = build_machine(model, progress);
+  scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
   progress.begin("computing thermal modes");
   const int most_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
   const compensation::ModalPredictor predictor = compensation::make_modal_predictor(
-      machine.system, most_modes, scenarios::start_state(model, machine), model.hall.at(0.0));
+      machine.system, most_modes, scenarios::start_state(model, machine), model.hall.at(0.0), mean_drive({&cyclogram}));
   const std::size_t n_modes = predictor.time_constant_s.size();  // a machine of few nodes has fewer
   const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);
   const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.system.outputs,
@@ -43,8 +45,8 @@ void predict(const PredictOptions& options) {
              cyclogram.duration_s() / 60.0, n_modes);
   if (!machine.system.is_linear()) {
     fmt::print(
-        "  radiation, films, friction and properties that change with temperature stay as they are at the start; "
-        "`simulate` follows them\n");
+        "  radiation, films, friction and properties that change with temperature stay as they are in the steady state of "
+        "the mean drive; `simulate` follows them\n");
   }
   for (const auto& d : model.displacements) {
     const std::vector<double>& values = record.at(d.name).values;

@@ -18,7 +18,8 @@ namespace driftwright::app {
 [[nodiscard]] std::vector<std::string> provenance_lines(const output::Provenance& made_by, const std::string& what);
 
 /// Comment lines of a heat-flow CSV begin with this and end with the cyclogram.
-inline const std::string kHeatFlowsTitle = "mean heat flow since the row before, > 0 into the machine; cyclogram ";
+inline const std::string kHeatFlowsTitle =
+    "mean heat flow since the row before; > 0 into the machine, within_...: > 0 out of the body; cyclogram ";
 
 /// A path as the user would type it: relative to the current folder where it lies below it.
 [[nodiscard]] std::string shown_path(const std::filesystem::path& path);
@@ -39,7 +40,7 @@ struct SimulatedRun {
   solver::Trajectory trajectory;
 };
 
-/// Runs cyclograms from the reference temperature on, side by side on all cores, with one progress line for all.
+/// Runs cyclograms from the scenario's start on, side by side on all cores, with one progress line for all.
 /// @param with_fields  index of the cyclogram whose whole fields go to `fields` every `fields_every` and at its end
 /// @param fields       or nullptr
 [[nodiscard]] std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario,

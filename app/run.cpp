@@ -6,6 +6,7 @@
 #include "app/verbs.hpp"
 #include "output/json_text.hpp"
 #include "scenarios/heat_flow_record.hpp"
+#include "scenarios/ways_out.hpp"
 
 namespace driftwright::app {
 
@@ -16,6 +17,7 @@ void run(const CommonOptions& options) {
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   const scenarios::Machine machine = build_machine(model, progress);
+  scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);  // thermal modes need them
 
   std::optional<output::FieldSeries> fields;
   if (machine.placed.mesh.n_nodes() > 0) fields.emplace(folder, machine.placed.mesh, scenario.solver.fields_format);

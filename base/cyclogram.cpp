@@ -26,6 +26,21 @@ Drive Cyclogram::drive(double time_s) const {
   return sections.empty() ? Drive{} : sections.back().drive;
 }
 
+Drive mean_drive(const std::vector<const Cyclogram*>& cyclograms) {
+  Drive mean;
+  double total_s = 0.0;
+  for (const Cyclogram* cyclogram : cyclograms) total_s += cyclogram->duration_s();
+  for (const Cyclogram* cyclogram : cyclograms) {
+    for (const Cyclogram::Section& section : cyclogram->sections) {
+      const double share = section.duration_s / total_s;
+      mean.speed_rpm += share * section.drive.speed_rpm;
+      for (std::size_t axis = 0; axis < 3; ++axis) mean.feed_m_s[axis] += share * section.drive.feed_m_s[axis];
+      mean.cutting_power_W += share * section.drive.cutting_power_W;
+    }
+  }
+  return mean;
+}
+
 double TimeSeries::at(double t_s) const {
   if (t_s <= time_s.front()) return value.front();
   if (t_s >= time_s.back()) return value.back();

@@ -33,6 +33,9 @@ struct Cyclogram {
   [[nodiscard]] double speed_rpm(double time_s) const { return drive(time_s).speed_rpm; }
 };
 
+/// The mean drive over all the time of some cyclograms.
+[[nodiscard]] Drive mean_drive(const std::vector<const Cyclogram*>& cyclograms);
+
 /// A quantity over time, linear between knots and constant outside them.
 struct TimeSeries {
   std::vector<double> time_s;  ///< strictly increasing

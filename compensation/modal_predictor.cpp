@@ -12,14 +12,19 @@ solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const Tim
 }
 
 ModalPredictor make_modal_predictor(const solver::FullSystem& full, int most_modes, const Eigen::VectorXd& from,
-                                    double hall_K, bool with_steady_responses) {
+                                    double hall_K, const Drive& typical, bool with_steady_responses) {
   const effects::Inputs standstill{.drive = {}, .hall_K = hall_K};
   Eigen::VectorXd start = from;  // what is held jumps at once, as in simulate()
   for (const solver::FixedUnknowns& f : full.fixed) {
     for (int i : f.unknowns) start[i] = f.follows_hall ? hall_K : f.theta.at(0.0);
   }
   const int n_modes = std::min(most_modes, full.size());
-  const solver::FullSystem system = full.is_linear() ? full : solver::linearised(full, standstill, start);
+  const auto frozen = [&] {
+    solver::require_linearisable(full);
+    const effects::Inputs at{.drive = typical, .hall_K = hall_K};
+    return solver::linearised(full, at, solver::steady_state(full, at, start));
+  };
+  const solver::FullSystem system = full.is_linear() ? full : frozen();
   const solver::ThermalModes modes = solver::thermal_modes(system, standstill, n_modes);
   Eigen::MatrixXd columns = modes.shapes;
   if (with_steady_responses) {

@@ -19,12 +19,14 @@ struct ModalPredictor {
 };
 
 /// @param n_modes  >= 1; a machine of fewer lumped nodes has all of its own
-/// @param start    temperatures at t = 0 minus the reference temperature; laws of temperature are frozen there
-/// @param hall_K   hall temperature at t = 0 minus the reference temperature; laws are frozen at it, too
+/// @param start    temperatures at t = 0 minus the reference temperature
+/// @param hall_K   hall temperature at t = 0 minus the reference temperature
+/// @param typical  drive whose steady state in that hall laws of temperature are frozen at: the mean of the cyclograms to come.
+///                 A film that grows with the temperature difference, frozen at the start, would be none at all
 /// @param with_steady_responses  false leaves the bare modes, for comparison
 /// @throws InputError, SolveError  as thermal_modes()
 [[nodiscard]] ModalPredictor make_modal_predictor(const solver::FullSystem& system, int n_modes,
-                                                  const Eigen::VectorXd& start, double hall_K,
+                                                  const Eigen::VectorXd& start, double hall_K, const Drive& typical,
                                                   bool with_steady_responses = true);
 
 }  // namespace driftwright::compensation

@@ -5,6 +5,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -86,6 +87,25 @@ void straighten_folded_cells() {
   }
 }
 
+/// Gmsh would mesh for hours, and then abort for want of memory, where a size is small against its part.
+void require_bearable(const std::vector<Part>& parts) {
+  constexpr double kMostCells = 5e6, kCellsPerCube = 8.5;  // tetrahedra of edge h in a cube of edge h, about
+  for (const Part& part : parts) {
+    double n_cells = 0.0;
+    for (int volume : part.volumes) {
+      double volume_m3 = 0.0;
+      gmsh::model::occ::getMass(3, volume, volume_m3);
+      n_cells += kCellsPerCube * volume_m3 / std::pow(part.mesh_size_m, 3);
+    }
+    if (n_cells > kMostCells) {
+      throw InputError(
+          fmt::format("region '{}' would take some {:.0e} cells at a mesh size of {:g} mm, more than {:.0e}; "
+                      "take a larger mesh size",
+                      part.region, n_cells, 1e3 * part.mesh_size_m, kMostCells));
+    }
+  }
+}
+
 /// Node numbers of the Mesh: one per (part, Gmsh node), so that parts share none.
 class NodeTable {
  public:
@@ -145,6 +165,7 @@ Mesh mesh_parts(const std::vector<Part>& parts, int order, const std::function<s
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
   gmsh::option::setNumber("Mesh.Algorithm3D", 1);  // Delaunay: repeatable, and kind to thin walls
   gmsh::option::setNumber("Mesh.Optimize", 1);
+  require_bearable(parts);
   set_sizes(parts);
   gmsh::model::mesh::generate(3);
   if (order == 2) {

@@ -46,7 +46,10 @@ std::optional<CellShape> shape_of_type(const std::string& type) {
   const auto at = type.find("c3d");
   if (at != 0 && !(at == 1 && type[0] == 'd')) return std::nullopt;
   int n = 0;
-  std::from_chars(type.data() + at + 3, type.data() + type.size(), n);
+  const auto rest = std::from_chars(type.data() + at + 3, type.data() + type.size(), n);
+  const std::string suffix(rest.ptr,
+                           type.data() + type.size());  // reduced, incompatible, hybrid, thermal, modified, electric
+  if (suffix.find_first_not_of("rihtme") != std::string::npos) return std::nullopt;
   switch (n) {
     case 4:
       return CellShape::kTet4;
@@ -170,7 +173,10 @@ class InpReader {
   }
 
   void add_node(const std::vector<std::string>& words) {
-    if (words.size() < 2) fail("a node is: number, x, y, z");
+    if (words.size() < 2 || words.size() > 4) {
+      fail(
+          fmt::format("a node is: number, x, y, z; here are {} values (a decimal point is wanted, no comma)", words.size()));
+    }
     const long n = integer(words[0]);
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
     for (std::size_t i = 1; i < std::min<std::size_t>(4, words.size()); ++i)
@@ -235,6 +241,8 @@ class InpReader {
     if (keyword_.has("generate")) {
       if (words.size() < 2) fail("GENERATE wants: first, last, step");
       const long first = integer(words[0]), last = integer(words[1]), step = words.size() > 2 ? integer(words[2]) : 1;
+      constexpr long kMost = 100000000;
+      if (step > 0 && (last - first) / step > kMost) fail(fmt::format("GENERATE of more than {} numbers", kMost));
       if (step <= 0 || last < first) fail("GENERATE wants first <= last and a step above 0");
       for (long n = first; n <= last; n += step) set.push_back(n);
       check_members(set, &sets == &node_sets_);

@@ -38,8 +38,10 @@ Record heat_flow_record(const solver::Trajectory& run, const std::string& source
   std::set<std::string> taken = {"time"};
   record.channels.push_back({channel_name("stored", taken), "W", mean_power_W(run.time_s, run.stored_J)});
   for (std::size_t j = 0; j < run.flows.size(); ++j) {
+    const bool within = run.flows[j].kind == solver::FlowKind::kInternal;
     const Eigen::VectorXd heat_J = run.heat_J.row(static_cast<Eigen::Index>(j)).transpose();
-    record.channels.push_back({channel_name(run.flows[j].name, taken), "W", mean_power_W(run.time_s, heat_J)});
+    record.channels.push_back(
+        {channel_name((within ? "within_" : "") + run.flows[j].name, taken), "W", mean_power_W(run.time_s, heat_J)});
   }
   return record;
 }

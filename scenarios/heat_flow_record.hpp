@@ -10,7 +10,7 @@ namespace driftwright::scenarios {
 /// before, so that power times interval sums to the heat exactly, however short a pulse; the first row is empty.
 ///
 /// Signs: sources, surroundings and prescribed temperatures > 0 heat the machine, and together they make `stored`. Flows within
-/// it (films to a lumped node, joints) > 0 leave the surface, or side a of "a/b"; they count in no sum.
+/// it (films to a lumped node, joints) begin with `within_`, > 0 leave the surface, or side a of "a/b", and count in no sum.
 /// Channel names are those of the flows with '_' for what no name may hold; a repeated one gets a number.
 [[nodiscard]] Record heat_flow_record(const solver::Trajectory& run, const std::string& source);
 

@@ -76,6 +76,27 @@ std::vector<std::string> node_names(const MachineModel& model) {
   return nodes;
 }
 
+/// Films and supports belong outside: a surface may hold no facet that lies between two cells.
+void require_outside(const Mesh& mesh, const std::string& surface, const Where& where) {
+  std::vector<std::vector<int>> cells_at(mesh.n_nodes());
+  for (int c = 0; c < mesh.cells.size(); ++c) {
+    for (int node : mesh.cells.nodes(c)) cells_at[node].push_back(c);
+  }
+  for (int facet : mesh.facets_on(mesh.surface(surface))) {
+    const auto nodes = mesh.facets.nodes(facet);
+    const auto n_behind = std::count_if(cells_at[nodes[0]].begin(), cells_at[nodes[0]].end(), [&](int c) {
+      const auto of_cell = mesh.cells.nodes(c);
+      return std::all_of(nodes.begin(), nodes.end(),
+                         [&](int n) { return std::find(of_cell.begin(), of_cell.end(), n) != of_cell.end(); });
+    });
+    if (n_behind < 2) continue;
+    const Eigen::Vector3d x_mm = 1e3 * mesh.coords.col(nodes[0]);
+    throw InputError(where, fmt::format("surface '{}' lies inside a body at [{:.1f} mm, {:.1f} mm, {:.1f} mm]; films, heat, "
+                                        "radiation, supports and joints want outer faces",
+                                        surface, x_mm[0], x_mm[1], x_mm[2]));
+  }
+}
+
 void check_effects(const MachineModel& model, const Mesh& mesh, const effects::HeatBalance& balance) {
   const std::vector<std::string> nodes = node_names(model);
   const auto must_exist = [&](const Where& where, effects::BodyKind kind, const std::string& name) {
@@ -98,9 +119,12 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
     }
     for (const auto& [key, body] : e.references) must_exist(e.where, body.kind, body.name);
   }
+  for (const effects::Effect& e : model.effects) {
+    if (e.place_kind == effects::Place::kSurface) require_outside(mesh, e.place, e.where);
+  }
   for (std::size_t i = 0; i < model.effects.size(); ++i) {
     const effects::Effect& e = model.effects[i];
-    const bool is_single = e.kind->key == "fixed_temperature" || e.kind->key == "stratification";
+    const bool is_single = e.kind->key == "fixed_temperature" || e.kind->key == "stratification" || e.kind->key == "contact";
     const bool again = std::any_of(
         model.effects.begin(), model.effects.begin() + static_cast<std::ptrdiff_t>(i),
         [&](auto& other) { return other.kind == e.kind && other.place_kind == e.place_kind && other.place == e.place; });
@@ -109,6 +133,7 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   for (const mesh::Joint& joint : mesh.joints) {
     const bool has_contact = std::any_of(balance.contacts.begin(), balance.contacts.end(),
                                          [&](const effects::Contact& c) { return c.joint == joint.name; });
+    for (const std::string& side : {joint.side_a, joint.side_b}) require_outside(mesh, side, model.where);
     if (!has_contact) {
       throw InputError(model.where,
                        fmt::format("joint '{}' has no contact; add {{type: contact, joint: {}, conductance: ... W/(m^2 K)}} "
@@ -195,9 +220,10 @@ PlacedMachine place(const MachineModel& model) {
   placed.materials = place_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);
   check_effects(model, mesh, placed.balance);
-  require_ways_out(mesh, placed.balance, model.where);
+  require_reached(mesh, placed.balance, model.where);
   for (const SupportEntry& s : model.supports) {
     must_be_one_of(s.where, "surface", s.support.surface, outer_surfaces(mesh));
+    require_outside(mesh, s.support.surface, s.where);
     placed.supports.push_back(s.support);
   }
   for (const JointEntry& j : model.joints) {
@@ -291,6 +317,7 @@ Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine) {
     case Start::kUniform:
       return Eigen::VectorXd::Constant(n, model.start_K - model.reference_K);
     case Start::kSteady:
+      require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
       return solver::steady_state(machine.system, {.drive = {}, .hall_K = hall_K}, Eigen::VectorXd::Constant(n, hall_K));
   }
   throw std::logic_error("start_state: no such start");

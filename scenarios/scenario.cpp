@@ -54,7 +54,7 @@ void read_start(const ConfigMap& in, MachineModel& m) {
     m.start = Start::kHall;
   } else if (text == "steady") {
     m.start = Start::kSteady;
-  } else if (std::isdigit(static_cast<unsigned char>(text.front())) || text.front() == '-') {
+  } else if (std::isdigit(static_cast<unsigned char>(text.front())) || text.find_first_of("+-.") == 0) {
     m.start = Start::kUniform;
     m.start_K = in.temperature_K("start");
   } else {
@@ -80,8 +80,8 @@ MachineModel read_machine(const ConfigMap& in) {
   m.where = in.where("machine");
   const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
   if (has_mesh && m.supports.empty()) in.fail("supports", "no support; name at least one surface that is held");
-  if (m.sensors.empty() || m.displacements.empty())
-    in.fail("sensors", "at least one sensor and one displacement are wanted");
+  if (m.sensors.empty() && m.displacements.empty())
+    in.fail("sensors", "neither a sensor nor a displacement; what is wanted?");
   reject_repeated_names(in, m);
   return m;
 }
@@ -96,6 +96,7 @@ SolverSettings read_solver(const ConfigMap& in) {
     s.fields_at_s = in.quantities("fields_at", "s");
     std::sort(s.fields_at_s.begin(), s.fields_at_s.end());
     if (!(s.fields_at_s.front() >= 0.0)) in.fail("fields_at", "times from 0 s on are wanted");
+    if (in.has("fields_every")) in.fail("fields_at", "either `fields_at` or `fields_every` is wanted, not both");
   }
   s.stresses = in.choice("stresses", {"true", "false"}, "false") == "true";
   if (in.choice("fields_format", {"vtu", "xdmf"}, "vtu") == "xdmf") s.fields_format = FieldsFormat::kXdmf;
@@ -218,6 +219,12 @@ Scenario read_scenario(const std::string& path) {
     if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);
     for (const Cyclogram& c : scenario.cyclograms) check_cyclogram(scenario, c);
+    double longest_s = 0.0;
+    for (const Cyclogram& c : scenario.cyclograms) longest_s = std::max(longest_s, c.duration_s());
+    if (!scenario.solver.fields_at_s.empty() && scenario.solver.fields_at_s.back() > longest_s) {
+      in.fail("solver", fmt::format("`fields_at` names {:g} min; the longest cyclogram ends at {:g} min",
+                                    scenario.solver.fields_at_s.back() / 60.0, longest_s / 60.0));
+    }
   }
   if (const auto study = in.optional_map("study")) scenario.study = read_study(*study, scenario);
   if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");

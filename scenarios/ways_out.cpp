@@ -72,31 +72,48 @@ bool is_open(const effects::Law& law) {
   return !law.probes.empty() || !law.thermostat.empty() || law(effects::Inputs{}) != 0.0;
 }
 
+/// Films, links, radiation and contacts whose law counts as open.
+template <class IsOpen>
+void add_exchanges(Paths& paths, const mesh::Mesh& mesh, const effects::HeatBalance& balance, IsOpen open) {
+  for (const auto& film : balance.films) {
+    if (open(film.htc_W_m2K)) paths.connect(effects::surface(film.surface), paths.of_surrounding(film.surrounding));
+  }
+  for (const auto& link : balance.links) {
+    if (open(link.conductance_W_K)) paths.connect(link.body, paths.of_surrounding(link.surrounding));
+  }
+  for (const auto& radiation : balance.radiations) {
+    paths.connect(effects::surface(radiation.surface), paths.of_surrounding(radiation.surrounding));
+  }
+  for (const auto& contact : balance.contacts) {
+    if (open(contact.conductance_W_m2K)) paths.connect_joint(*mesh.joint(contact.joint));
+  }
+}
+
 }  // namespace
 
 void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where) {
   Paths paths(mesh, balance);
-  for (const auto& film : balance.films) {
-    if (is_open(film.htc_W_m2K)) paths.connect(effects::surface(film.surface), paths.of_surrounding(film.surrounding));
-  }
-  for (const auto& link : balance.links) {
-    if (is_open(link.conductance_W_K)) paths.connect(link.body, paths.of_surrounding(link.surrounding));
-  }
-  for (const auto& radiation : balance.radiations) {
-    if (radiation.emissivity > 0.0) {
-      paths.connect(effects::surface(radiation.surface), paths.of_surrounding(radiation.surrounding));
-    }
-  }
-  for (const auto& contact : balance.contacts) {
-    if (is_open(contact.conductance_W_m2K)) paths.connect_joint(*mesh.joint(contact.joint));
-  }
+  add_exchanges(paths, mesh, balance, is_open);
   for (const auto& fixed : balance.fixed) paths.connect(fixed.body, paths.outside());
   const std::set<std::string> shut_in = paths.shut_in();
   if (shut_in.empty()) return;
   throw InputError(where,
                    fmt::format("heat cannot leave {} while the spindle stands: no film, contact, link, radiation or fixed "
-                               "temperature leads to the hall. Add one (a film of 0.001 W/(m^2 K) insulates)",
+                               "temperature leads to the hall, so there is no steady state and there are no thermal "
+                               "modes. Add one (a film of 0.001 W/(m^2 K) insulates)",
                                fmt::join(shut_in, ", ")));
+}
+
+void require_reached(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where) {
+  Paths paths(mesh, balance);
+  add_exchanges(paths, mesh, balance, [](const effects::Law&) { return true; });
+  for (const auto& fixed : balance.fixed) paths.connect(fixed.body, paths.outside());
+  for (const auto& heat : balance.heats) paths.connect(heat.body, paths.outside());
+  const std::set<std::string> unreached = paths.shut_in();
+  if (unreached.empty()) return;
+  throw InputError(where, fmt::format("no heat reaches or leaves {}: no source, film, contact, link, radiation or fixed "
+                                      "temperature among `effects` names it or a neighbour",
+                                      fmt::join(unreached, ", ")));
 }
 
 }  // namespace driftwright::scenarios

@@ -47,7 +47,7 @@ ConductionFactor::ConductionFactor(const SparseRow& k) : parts_(std::make_unique
   if (parts_->llt.info() != Eigen::Success) {
     throw SolveError(
         "the heat conduction matrix cannot be factorised: some part has no film, joint or link through which heat leaves, "
-        "or memory ran out");
+        "temperatures fell below 0 K on the way, or memory ran out");
   }
 }
 ConductionFactor::~ConductionFactor() = default;

@@ -82,17 +82,11 @@ bool HeatOde::begin_stretch(const LinearStretch& stretch) {
   return jumps;
 }
 
-bool HeatOde::set_thermostats(double t_s, const double* y) {
-  bool changed = false;
+void HeatOde::set_thermostats(double t_s, const double* y) {
   for (std::size_t i = 0; i < system_.thermostats.size(); ++i) {
-    const Thermostat& thermostat = system_.thermostats[i];
     const double probe_K = rate_.thermostat_probe_K(static_cast<int>(i), y, hall_.at(t_s));
-    const bool was_on = rate_.thermostat_is_on(static_cast<int>(i));
-    const bool on = was_on ? probe_K >= thermostat.off_below_K : probe_K > thermostat.on_above_K;
-    changed |= on != was_on;
-    rate_.set_thermostat(static_cast<int>(i), on);
+    rate_.set_thermostat(static_cast<int>(i), probe_K > system_.thermostats[i].on_above_K);
   }
-  return changed;
 }
 
 double HeatOde::distance_to_switch_K(int i, double t_s, const double* y) const {

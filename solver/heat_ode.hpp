@@ -28,8 +28,8 @@ class HeatOde {
   Eigen::VectorXd prescribe(double t_s, double* y) const;
   /// Begins a stretch of constant drive and linear hall. @return true when some power or coefficient jumps
   bool begin_stretch(const LinearStretch& stretch);
-  /// True when a thermostat is not as the state at t says; sets all of them. Call begin_stretch() afterwards if so.
-  bool set_thermostats(double t_s, const double* y);
+  /// Thermostats at the start: on where the probe is above on_above_K. Call begin_stretch() afterwards.
+  void set_thermostats(double t_s, const double* y);
   /// Zero where thermostat i switches next [K].
   [[nodiscard]] double distance_to_switch_K(int i, double t_s, const double* y) const;
   /// Smallest and largest power of any source at the last rhs [W].

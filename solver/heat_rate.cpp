@@ -3,7 +3,22 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/errors.hpp"
+
 namespace driftwright::solver {
+namespace {
+
+/// A law's value; what it says against an argument gets its name.
+template <class Value>
+double named(const std::string& name, Value value) {
+  try {
+    return value();
+  } catch (const RangeError& e) {
+    throw RangeError(name + ": " + e.what());
+  }
+}
+
+}  // namespace
 
 double BoundLaw::operator()(const effects::Inputs& u) const {
   if (looks_at_state()) throw std::logic_error("a law that looks at temperatures was asked without them");
@@ -96,11 +111,13 @@ void HeatRate::look_at_state(const double* theta, double hall_K) {
         system_.reference_K + probes_[p].dot(theta) + system_.probes[p].hall_share * hall_K + system_.probes[p].offset_K;
   }
   for (std::size_t s = 0; s < sources_.size(); ++s) {
-    if (system_.sources[s].power_W.looks_at_state()) sources_[s].power_W = value_of(system_.sources[s].power_W);
+    const HeatSource& source = system_.sources[s];
+    if (source.power_W.looks_at_state()) sources_[s].power_W = named(source.name, [&] { return value_of(source.power_W); });
   }
   for (std::size_t e = 0; e < crossings_.size(); ++e) {
-    if (system_.exchanges[e].coefficient.looks_at_state()) {
-      crossings_[e].coefficient = value_of(system_.exchanges[e].coefficient);
+    const Exchange<SparseRow>& exchange = system_.exchanges[e];
+    if (exchange.coefficient.looks_at_state()) {
+      crossings_[e].coefficient = named(exchange.name, [&] { return value_of(exchange.coefficient); });
     }
   }
 }

@@ -1,22 +1,36 @@
 #include "solver/joint.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "base/errors.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/normals.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/shape.hpp"
 
 namespace driftwright::solver {
+namespace {
+
+/// Does the nearest point of the other side lie across, not beyond the other's edge? Where one side overhangs there is no
+/// contact. Facets that do not match lie apart along the normal; what that costs sideways on curved sides is less than half.
+bool faces(const Eigen::Vector3d& to_other, const Eigen::Vector3d& normal, double facet_size_m) {
+  constexpr double kSideways = 0.05;  // of the facet's size
+  const double across_m = std::abs(to_other.dot(normal));
+  const double sideways_m = (to_other - to_other.dot(normal) * normal).norm();
+  return sideways_m <= kSideways * facet_size_m + 0.5 * across_m;
+}
+
+}  // namespace
 
 std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint) {
   // The rule integrates the shape functions of the side it lies on exactly, and sees those of the other only in samples:
-  // it lies on the finer side. Sides of different size are another matter: there side a says where the contact is.
+  // it lies on the finer side.
   const int surface_a = mesh.surface(joint.side_a), surface_b = mesh.surface(joint.side_b);
   std::vector<int> side_a = mesh.facets_on(surface_a), side_b = mesh.facets_on(surface_b);
-  const double area_m2 = mesh::area_m2(mesh, surface_a);
-  const bool exchanged =
-      side_b.size() > side_a.size() && std::abs(mesh::area_m2(mesh, surface_b) - area_m2) < 0.01 * area_m2;
+  const bool exchanged = static_cast<double>(side_b.size()) * mesh::area_m2(mesh, surface_a) >
+                         static_cast<double>(side_a.size()) * mesh::area_m2(mesh, surface_b);
   if (exchanged) std::swap(side_a, side_b);
   const std::vector<Eigen::Matrix3Xd> normals = mesh::smooth_normals(mesh, side_a);
   std::vector<std::vector<JointPoint>> of_facet(side_a.size());
@@ -31,6 +45,8 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
       const mesh::Jacobian j = mesh::jacobian(s, x, shape);
       const Eigen::Vector3d position = x * s.N.head(s.n).transpose();
       const mesh::MeshPoint opposite = mesh::nearest_point(mesh, mesh.facets, side_b, position);
+      const Eigen::Vector3d normal = (normals[f] * s.N.head(s.n).transpose()).normalized();
+      if (!faces(opposite.position_m - position, normal, (x.col(0) - x.col(1)).norm())) continue;
       const mesh::ShapeValues sb = mesh::shape_values(mesh.facets.shape[opposite.cell], opposite.xi);
       const auto nodes_b = mesh.facets.nodes(opposite.cell);
       JointPoint point{.node_a = {nodes_a.begin(), nodes_a.end()},
@@ -40,7 +56,7 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
                        .area_m2 = q.weight * j.det,
                        .gap_m = opposite.distance_m,
                        .position_m = position,
-                       .normal = (normals[f] * s.N.head(s.n).transpose()).normalized(),
+                       .normal = normal,
                        .normal_error = mesh::normal_error(normals[f])};
       if (exchanged) {
         std::swap(point.node_a, point.node_b);
@@ -51,6 +67,10 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
   }
   std::vector<JointPoint> points;
   for (auto& list : of_facet) std::move(list.begin(), list.end(), std::back_inserter(points));
+  if (points.empty()) {
+    throw InputError(fmt::format("joint '{}': the surfaces '{}' and '{}' nowhere face each other", joint.name, joint.side_a,
+                                 joint.side_b));
+  }
   return points;
 }
 

@@ -20,7 +20,9 @@ struct JointPoint {
   double normal_error = 0.0;                         ///< of the normal [rad], see mesh/normals.hpp
 };
 
-/// The quadrature points of a joint; the rule is exact for products of quadratic functions on straight facets.
+/// The quadrature points of a joint where its sides face each other; the rule is exact for products of quadratic functions on
+/// straight facets. Where one side overhangs the other there are none; the edge of the overlap is met to a twentieth of a facet.
+/// @throws InputError  when they nowhere face each other
 [[nodiscard]] std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint);
 
 }  // namespace driftwright::solver

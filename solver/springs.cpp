@@ -73,18 +73,19 @@ double total_area_m2(const std::vector<JointPoint>& points) {
 SpringLayer joint_layer(const Mesh& mesh, const RegionMaterials& materials, const mesh::Joint& joint,
                         const JointKind& kind) {
   const int side_a = mesh.surface(joint.side_a), side_b = mesh.surface(joint.side_b);
-  const double size_m = std::max(facet_size_m(mesh, side_a), facet_size_m(mesh, side_b));
+  constexpr double kMostGap = 0.1;  // of a facet: what coarse facets of a cylinder stand apart from those of its sleeve
+  const double most_m = kMostGap * std::max(facet_size_m(mesh, side_a), facet_size_m(mesh, side_b));
   const std::vector<JointPoint> points = joint_points(mesh, joint);
   const double area_m2 = total_area_m2(points);
   if (!(area_m2 > 0.0)) throw InputError(fmt::format("joint '{}': surface '{}' has no area", joint.name, joint.side_a));
   for (const JointPoint& p : points) {
-    if (p.gap_m <= size_m) continue;
+    if (p.gap_m <= most_m) continue;
     throw InputError(fmt::format(
-        "joint '{}': at [{:.1f} mm, {:.1f} mm, {:.1f} mm] its surfaces '{}' and '{}' are {:.2f} mm apart, more than the "
-        "size of a facet, {:.2f} mm; joints are for surfaces that touch. Mend the geometry, name smaller surfaces, or give "
-        "the joint `mechanics: none`",
+        "joint '{}': at [{:.1f} mm, {:.1f} mm, {:.1f} mm] its surfaces '{}' and '{}' are {:.2f} mm apart, more than a "
+        "tenth of a facet, {:.2f} mm; a mechanical joint is for surfaces that touch. Mend the geometry, or give the joint "
+        "`mechanics: none`",
         joint.name, 1e3 * p.position_m[0], 1e3 * p.position_m[1], 1e3 * p.position_m[2], joint.side_a, joint.side_b,
-        1e3 * p.gap_m, 1e3 * size_m));
+        1e3 * p.gap_m, 1e3 * most_m));
   }
   const double tie_N_m3 = kTieFactor *
                           std::max(modulus_behind_Pa(mesh, materials, side_a), modulus_behind_Pa(mesh, materials, side_b)) /

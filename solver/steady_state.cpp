@@ -96,7 +96,7 @@ Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at
       "no steady state after {} iterations; is a law of temperature too steep, or the start far off?", kMostIterations));
 }
 
-FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& theta) {
+void require_linearisable(const FullSystem& system) {
   if (!system.thermostats.empty()) {
     throw InputError(fmt::format("thermostat '{}' switches; a linear model (thermal modes) cannot follow it. `simulate` can",
                                  system.thermostats.front().name));
@@ -107,6 +107,10 @@ FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const
           "{} is prescribed over time; a linear model (thermal modes) cannot follow it. `simulate` can", f.name));
     }
   }
+}
+
+FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& theta) {
+  require_linearisable(system);
   FullSystem linear = system;
   const auto freeze = [&](BoundLaw& law) {
     if (!law.looks_at_state()) return;

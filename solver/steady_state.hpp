@@ -18,10 +18,13 @@ namespace driftwright::solver {
 [[nodiscard]] Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at,
                                            const Eigen::VectorXd& start);
 
+/// @throws InputError  when the system has thermostats or temperatures prescribed over time, which no linear system can follow
+void require_linearisable(const FullSystem& system);
+
 /// The system with every law that looks at temperatures, every nonlinear term and every property frozen at a state: linear,
 /// and alike to first order where laws and properties do not change with temperature. Radiation to a lumped node takes the
 /// slope between both ends' temperatures for either.
-/// @throws InputError  when it has thermostats or temperatures prescribed over time, which no linear system can follow
+/// @throws InputError  as require_linearisable()
 [[nodiscard]] FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& theta);
 
 }  // namespace driftwright::solver

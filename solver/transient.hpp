@@ -17,7 +17,7 @@ struct TransientOptions {
   double relative_tolerance = 1e-4;  ///< of θ
   double absolute_tolerance_K = 5e-4;
   double max_step_s = 1200.0;
-  int most_switches = 100000;  ///< of all thermostats; more are no control but a slip in its data
+  int most_switches = 20000;  ///< of all thermostats; more are no control but a slip in its data
 };
 
 /// Called at each output time with the time and the state; throwing ends the run.

@@ -41,7 +41,7 @@ TEST(HeatFlowRecord, NamesAreFitForAColumnAndUnlike) {
   ASSERT_EQ(r.channels.size(), 5u);
   EXPECT_EQ(r.channels[2].header(), "convection_side_W");
   EXPECT_EQ(r.channels[3].header(), "convection_side_2_W");
-  EXPECT_EQ(r.channels[4].header(), "contact_a_b_W");
+  EXPECT_EQ(r.channels[4].header(), "within_contact_a_b_W");
 }
 
 }  // namespace

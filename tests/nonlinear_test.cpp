@@ -78,7 +78,8 @@ TEST(Radiation, BetweenAPlateAndAHotNeighbourAsTheClosedForm) {
   EXPECT_NEAR(on.heat_J(flow(on, "radiation x1"), 0) / 100.0, -through_W, 1e-3);
   EXPECT_NEAR(on.heat_J(flow(on, "radiation x0"), 0) / 100.0, -through_W, 1e-3);  // out of the cube, into the node
   EXPECT_NEAR(on.heat_J(flow(on, "fixed_temperature furnace"), 0) / 100.0, through_W, 1e-3);
-  EXPECT_LT(on.energy_gap(), 1e-9);
+  // Radiation's share of the heats is that of Newton's last iterate: linear problems alone close to rounding.
+  EXPECT_LT(on.energy_gap(), 1e-7);
 }
 
 // --- laws of mean temperatures ----------------------------------------------------------------------------------
