@@ -23,6 +23,7 @@ constexpr double kSnap_m = 5e-3;  ///< how far a sensor may be moved onto its re
 
 [[noreturn]] void unknown_name(const Where& where, const std::string& what, const std::string& name,
                                const std::vector<std::string>& known) {
+  if (known.empty()) throw InputError(where, fmt::format("the machine has no {} '{}', nor any other", what, name));
   const std::string near = nearest_word(name, known);
   throw InputError(where, fmt::format("the mesh has no {} '{}'; there are {}.{}", what, name, fmt::join(known, ", "),
                                       near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));

@@ -21,7 +21,7 @@ struct JointPoint {
 };
 
 /// The quadrature points of a joint where its sides face each other; the rule is exact for products of quadratic functions on
-/// straight facets. Where one side overhangs the other there are none; the edge of the overlap is met to a twentieth of a facet.
+/// straight facets. Where one side overhangs the other there are none; the edge of the overlap is met to half a facet.
 /// @throws InputError  when they nowhere face each other
 [[nodiscard]] std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& joint);
 

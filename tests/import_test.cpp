@@ -385,6 +385,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "113, 21, 22, 20, 23\n*Element, Type=S4",
                 {"elements 13 and 113 have the same nodes"}},
         Mistake{"nan", "9, 2, 0, 0", "9, nan, 0, 0", {"node 9", "not a finite number"}},
+        Mistake{"decimal_comma", "9, 2, 0, 0", "9, 2,0, 0,0, 0,0", {":13: a node is", "decimal point"}},
         Mistake{"no_number", "9, 2, 0, 0", "9, two, 0, 0", {":13: 'two' is no number"}},
         Mistake{"unknown_node", "13, 20, 21, 22, 23", "13, 20, 21, 22, 77", {":27: element 13: there is no node 77"}},
         Mistake{"too_few_nodes", "12, 2, 9, 3, 6, 10, 7", "12, 2, 9, 3, 6, 10", {"element 12 has 5 nodes; 6 are wanted"}},

@@ -138,6 +138,17 @@ TEST(ImportedScenario, FieldsFormatChoosesTheFilesAndTheTerminalNamesTheOneToOpe
   EXPECT_FALSE(std::filesystem::exists(folder / "xdmf/fields.pvd"));
 }
 
+TEST(ImportedScenario, AFilmInsideABodyIsRefused) {
+  std::string inp = inp_text(machine_mesh());
+  inp += "*SURFACE, NAME=inner\n100, S2\n";  // upper face of the lowest element of the column, under another one
+  std::string text = kScenario;
+  text.replace(text.find("surface: outside, film"), 22, "surface: inner, film");
+  const auto folder = write_scenario("inner_film", text, inp);
+  const CommandOutcome outcome = run_program("check " + (folder / "scenario.yaml").string());
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("surface 'inner' lies inside a body at ["), HasSubstr("effects[1].surface")));
+}
+
 struct Mistake {
   const char* name;
   const char* right;
@@ -186,6 +197,19 @@ INSTANTIATE_TEST_SUITE_P(
                 "  - {type: contact, joint: column/head, conductance: 2000 W/(m^2 K)}\n",
                 "",
                 {"joint 'column/head' has no contact"}},
+        Mistake{"element_type",
+                "TYPE=C3D20, ELSET=column",
+                "TYPE=C3D20X, ELSET=column",
+                {"elements of type c3d20x are not computed with"}},
+        Mistake{"contact_twice",
+                "  - {type: contact, joint: column/head, conductance: 2000 W/(m^2 K)}\n",
+                "  - {type: contact, joint: column/head, conductance: 2000 W/(m^2 K)}\n"
+                "  - {type: contact, joint: column/head, conductance: 2000 W/(m^2 K)}\n",
+                {"contact column/head stands there twice"}},
+        Mistake{"fields_after_the_end",
+                "output_interval: 100 h",
+                "output_interval: 100 h, fields_at: [1 h, 2000 h]",
+                {"`fields_at` names 120000 min", "ends at 60000 min"}},
         Mistake{"joint_of_itself", "b: head_bottom", "b: column_top", {"share nodes"}},
         Mistake{"at_in_name", "name: outside, remaining", "name: out@side, remaining", {"'@' marks the sides of joints"}},
         Mistake{"inverted", "\n100, 10, 11,", "\n100, 11, 10,", {"element 100 in region 'column' is inverted"}}),

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "base/errors.hpp"
 #include "solver/heat_assembly.hpp"
 #include "tests/fixtures.hpp"
 
@@ -119,6 +120,30 @@ INSTANTIATE_TEST_SUITE_P(
                       Pair{"CoarseWedge15OnFineHex20", slab_a(2, CellShape::kWedge15), slab_b(5, CellShape::kHex20), 1e-3},
                       Pair{"Tet4OnTet10", slab_a(4, CellShape::kTet4), slab_b(3, CellShape::kTet10), 1e-1}),
     [](const auto& test) { return std::string(test.param.name); });
+
+double contact_m2(const mesh::Mesh& mesh) {
+  double area_m2 = 0.0;
+  for (const JointPoint& p : joint_points(mesh, *mesh.joint("a/b"))) area_m2 += p.area_m2;
+  return area_m2;
+}
+
+TEST(OverhangingJoint, IsInContactWhereItsSidesFaceEachOther) {
+  // b stands on the upper face of a, shifted so that 0.06 m of its 0.1 m lie on it, whichever side is the finer.
+  for (int n : {4, 16}) {
+    const mesh::Mesh mesh =
+        fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.05}, {n, n, 1}, CellShape::kTet10},
+                            {{0.04, 0, 0.05}, {0.1, 0.1, 0.05}, {10, 10, 1}, CellShape::kTet10}, "a.z1", "b.z0");
+    // Cut between quadrature points: a cell at the edge may count by half its width, 0.1/10 or 0.1/16 m along 0.1 m.
+    EXPECT_NEAR(contact_m2(mesh), 0.06 * 0.1, 0.5 * 0.1 * 0.1 / std::max(n, 10)) << n;
+  }
+}
+
+TEST(OverhangingJoint, OfSidesThatNowhereMeetIsRefused) {
+  const mesh::Mesh mesh =
+      fixtures::two_boxes({{0, 0, 0}, {0.1, 0.1, 0.05}, {2, 2, 1}, CellShape::kTet10},
+                          {{0.2, 0, 0.05}, {0.1, 0.1, 0.05}, {2, 2, 1}, CellShape::kTet10}, "a.z1", "b.z0");
+  EXPECT_THROW((void)joint_points(mesh, *mesh.joint("a/b")), InputError);
+}
 
 }  // namespace
 }  // namespace driftwright::solver

@@ -69,5 +69,24 @@ TEST(CFrame, FromADrawingToFieldsWithStresses) {
   EXPECT_EQ(draught[31], 0.0);
 }
 
+TEST(Mesh, OfALumpedMachineIsRefused) {
+  const CommandOutcome outcome =
+      run_program("mesh scenarios/lumped_spindle.yaml -o " + (fresh_folder("lumped_mesh") / "out").string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("a lumped machine has no mesh"));
+}
+
+TEST(Mesh, OfUnbearableFinenessIsRefusedBeforeItIsMade) {
+  std::string text = read_text("scenarios/c_frame.yaml");
+  text.replace(text.find("parts/c_frame.step"), 18, std::filesystem::absolute("scenarios/parts/c_frame.step").string());
+  text.replace(text.find("parts/pocket.ngc"), 16, std::filesystem::absolute("scenarios/parts/pocket.ngc").string());
+  text.replace(text.find("default: 90 mm"), 14, "default: 0.1 mm");
+  const std::string file = (fresh_folder("fine") / "scenario.yaml").string();
+  std::ofstream(file) << text;
+  const CommandOutcome outcome = run_program("mesh " + file + " -o " + file + ".out");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("take a larger mesh size"));
+}
+
 }  // namespace
 }  // namespace driftwright
