@@ -140,7 +140,11 @@ void ConfigMap::fail(const std::string& key, const std::string& message) const {
 YAML::Node ConfigMap::child(const std::string& key) const {
   asked_.insert(key);
   YAML::Node node = (*node_)[key];
-  if (!node.IsDefined()) throw InputError(where_of(*node_, key), fmt::format("key '{}' is missing", key));
+  if (!node.IsDefined()) {
+    const std::string near = nearest_word(key, keys());
+    throw InputError(where_of(*node_, key), fmt::format("key '{}' is missing{}", key,
+                                                        near.empty() ? "" : fmt::format("; is '{}' meant for it?", near)));
+  }
   return node;
 }
 

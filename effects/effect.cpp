@@ -66,6 +66,7 @@ void read_reference(const ConfigMap& in, const Reference& r, Effect& effect) {
     if (!r.fallback->empty()) effect.references[r.name] = {r.kinds.front(), *r.fallback};
     return;
   }
+  effect.reference_where[r.name] = in.where(r.name);
   if (!in.is_map(r.name)) {
     effect.references[r.name] = {r.kinds.front(), in.text(r.name)};
     return;

@@ -77,9 +77,10 @@ struct EffectKind {
 struct Effect {
   const EffectKind* kind = nullptr;  ///< points into catalogue(), which lives as long as the program
   Place place_kind = Place::kRegion;
-  std::string place = {};                       ///< region, surface, joint or node; "hall" for the hall
-  std::vector<double> values = {};              ///< as kind->parameters
-  std::map<std::string, Body> references = {};  ///< those given or with a fallback
+  std::string place = {};                             ///< region, surface, joint or node; "hall" for the hall
+  std::vector<double> values = {};                    ///< as kind->parameters
+  std::map<std::string, Body> references = {};        ///< those given or with a fallback
+  std::map<std::string, Where> reference_where = {};  ///< of those that are written
   std::map<std::string, std::string> words = {};
   std::map<std::string, TimeSeries> tables = {};  ///< argument in `time_s` whatever its unit; those given
   Where where = {};                               ///< in the scenario, for errors that show only once the mesh is there

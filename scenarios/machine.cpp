@@ -118,7 +118,10 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
     } else {
       must_exist(e.where, e.body().kind, e.body().name);
     }
-    for (const auto& [key, body] : e.references) must_exist(e.where, body.kind, body.name);
+    for (const auto& [key, body] : e.references) {
+      const auto written = e.reference_where.find(key);
+      must_exist(written == e.reference_where.end() ? e.where : written->second, body.kind, body.name);
+    }
   }
   for (const effects::Effect& e : model.effects) {
     if (e.place_kind == effects::Place::kSurface) require_outside(mesh, e.place, e.where);
