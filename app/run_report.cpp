@@ -118,7 +118,7 @@ Table inner_heat_table(const solver::Trajectory& run) {
 }
 
 Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram) {
-  constexpr std::size_t kMostCurves = 8;
+  constexpr std::size_t kMostCurves = 6;  // and `stored`: as many as there are colours
   const Record record = scenarios::heat_flow_record(run, cyclogram.name);
   std::vector<std::pair<double, std::size_t>> by_size;  // total heat moved, channel
   for (std::size_t j = 0; j < run.flows.size(); ++j) {

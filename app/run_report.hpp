@@ -20,7 +20,7 @@ namespace driftwright::app {
 [[nodiscard]] output::Table heat_table(const solver::Trajectory& run);
 /// The same of the flows within it.
 [[nodiscard]] output::Table inner_heat_table(const solver::Trajectory& run);
-/// The same over time: the eight largest flows across the boundary, and what is stored.
+/// The same over time: the six largest flows across the boundary, and what is stored.
 [[nodiscard]] output::Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram);
 
 /// Where temperatures left the bounds of conduction: each jump's largest overshoot with its region; empty rows for none.
