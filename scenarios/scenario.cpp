@@ -219,6 +219,10 @@ Scenario read_scenario(const std::string& path) {
     if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);
     for (const Cyclogram& c : scenario.cyclograms) check_cyclogram(scenario, c);
+    const bool has_fields = scenario.solver.stresses || !scenario.solver.fields_at_s.empty();
+    if (has_fields && std::holds_alternative<LumpedMachine>(scenario.machine->mesh)) {
+      in.fail("solver", "a lumped machine has no fields; leave out `fields_at` and `stresses`");
+    }
     double longest_s = 0.0;
     for (const Cyclogram& c : scenario.cyclograms) longest_s = std::max(longest_s, c.duration_s());
     if (!scenario.solver.fields_at_s.empty() && scenario.solver.fields_at_s.back() > longest_s) {

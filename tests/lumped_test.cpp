@@ -119,6 +119,12 @@ TEST(Effects, WhatOnlyOneCanRuleIsRefusedTwice) {
   EXPECT_THAT([&] { at(air + air); }, ThrowsMessage<InputError>(HasSubstr("stratification hall stands there twice")));
 }
 
+TEST(LumpedMachine, HasNoFieldsToAskFor) {
+  std::string text = two_bodies();
+  text.replace(text.find("solver: {"), 9, "solver: {stresses: true, ");
+  EXPECT_THAT([&] { (void)read(text); }, ThrowsMessage<InputError>(HasSubstr("a lumped machine has no fields")));
+}
+
 TEST(Sensitivities, OfABodyThatIsNotThereAreRefused) {
   std::string text = two_bodies();
   text.replace(text.find("node: hot, sensitivity"), 9, "node: hat");
