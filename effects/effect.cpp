@@ -112,13 +112,13 @@ void read_table(const ConfigMap& in, const Table& t, Effect& effect) {
 const char* place_key(Place place) {
   switch (place) {
     case Place::kRegion:
-      return "region";
+      return body_key(BodyKind::kRegion);
     case Place::kSurface:
-      return "surface";
+      return body_key(BodyKind::kSurface);
     case Place::kJoint:
       return "joint";
     case Place::kNode:
-      return "node";
+      return body_key(BodyKind::kNode);
     case Place::kHall:
       return "hall";
   }

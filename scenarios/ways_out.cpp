@@ -72,7 +72,7 @@ bool is_open(const effects::Law& law) {
   return !law.probes.empty() || !law.thermostat.empty() || law(effects::Inputs{}) != 0.0;
 }
 
-/// Films, links, radiation and contacts whose law counts as open.
+/// Films, links, radiation and contacts whose law counts as open, and prescribed temperatures.
 template <class IsOpen>
 void add_exchanges(Paths& paths, const mesh::Mesh& mesh, const effects::HeatBalance& balance, IsOpen open) {
   for (const auto& film : balance.films) {
@@ -87,6 +87,7 @@ void add_exchanges(Paths& paths, const mesh::Mesh& mesh, const effects::HeatBala
   for (const auto& contact : balance.contacts) {
     if (open(contact.conductance_W_m2K)) paths.connect_joint(*mesh.joint(contact.joint));
   }
+  for (const auto& fixed : balance.fixed) paths.connect(fixed.body, paths.outside());
 }
 
 }  // namespace
@@ -94,7 +95,6 @@ void add_exchanges(Paths& paths, const mesh::Mesh& mesh, const effects::HeatBala
 void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where) {
   Paths paths(mesh, balance);
   add_exchanges(paths, mesh, balance, is_open);
-  for (const auto& fixed : balance.fixed) paths.connect(fixed.body, paths.outside());
   const std::set<std::string> shut_in = paths.shut_in();
   if (shut_in.empty()) return;
   throw InputError(where,
@@ -107,7 +107,6 @@ void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balanc
 void require_reached(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where) {
   Paths paths(mesh, balance);
   add_exchanges(paths, mesh, balance, [](const effects::Law&) { return true; });
-  for (const auto& fixed : balance.fixed) paths.connect(fixed.body, paths.outside());
   for (const auto& heat : balance.heats) paths.connect(heat.body, paths.outside());
   const std::set<std::string> unreached = paths.shut_in();
   if (unreached.empty()) return;
