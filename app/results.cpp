@@ -8,6 +8,7 @@
 
 #include "app/version.hpp"
 #include "base/quantity.hpp"
+#include "scenarios/heat_flow_record.hpp"
 #include "solver/stress.hpp"
 
 namespace driftwright::app {
@@ -32,6 +33,14 @@ output::ResultsFolder open_results(const CommonOptions& options, const std::stri
 
 std::vector<std::string> provenance_lines(const output::Provenance& made_by, const std::string& what) {
   return {fmt::format("{}; Driftwright {}, scenario {}", what, made_by.version, made_by.scenario)};
+}
+
+std::string heat_flows_csv(const solver::Trajectory& run, const std::string& cyclogram, const output::Provenance& made_by) {
+  return record_csv(scenarios::heat_flow_record(run, cyclogram),
+                    provenance_lines(made_by,
+                                     "mean heat flow since the row before; > 0 into the machine, within_...: > 0 out of "
+                                     "the body; cyclogram " +
+                                         cyclogram));
 }
 
 std::string shown_path(const std::filesystem::path& path) {

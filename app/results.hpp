@@ -17,9 +17,9 @@ namespace driftwright::app {
 /// Comment lines of a record CSV: who made it from what.
 [[nodiscard]] std::vector<std::string> provenance_lines(const output::Provenance& made_by, const std::string& what);
 
-/// Comment lines of a heat-flow CSV begin with this and end with the cyclogram.
-inline const std::string kHeatFlowsTitle =
-    "mean heat flow since the row before; > 0 into the machine, within_...: > 0 out of the body; cyclogram ";
+/// Text of heat_flows.csv of a run.
+[[nodiscard]] std::string heat_flows_csv(const solver::Trajectory& run, const std::string& cyclogram,
+                                         const output::Provenance& made_by);
 
 /// A path as the user would type it: relative to the current folder where it lies below it.
 [[nodiscard]] std::string shown_path(const std::filesystem::path& path);

@@ -5,7 +5,6 @@
 #include "app/machine_study_output.hpp"
 #include "app/verbs.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/heat_flow_record.hpp"
 #include "scenarios/ways_out.hpp"
 
 namespace driftwright::app {
@@ -31,9 +30,7 @@ void run(const CommonOptions& options) {
     folder.write_text("records/" + run.record.source + ".csv",
                       record_csv(run.record, provenance_lines(folder.made_by(), "training cyclogram " + run.record.source)));
   }
-  folder.write_text("heat_flows.csv",
-                    record_csv(scenarios::heat_flow_record(study.judged.trajectory, scenario.study->judge),
-                               provenance_lines(folder.made_by(), kHeatFlowsTitle + scenario.study->judge)));
+  folder.write_text("heat_flows.csv", heat_flows_csv(study.judged.trajectory, scenario.study->judge, folder.made_by()));
   folder.write_text("schedule.txt", schedule_text(study));
   folder.write_text("summary.json", output::json_text(summary_json(scenario, machine, study, folder.made_by())));
   folder.write_text("report.html", output::render_html(study_report(scenario, machine, study, folder.made_by())));

@@ -3,7 +3,6 @@
 #include "app/results.hpp"
 #include "app/run_report.hpp"
 #include "app/verbs.hpp"
-#include "scenarios/heat_flow_record.hpp"
 
 namespace driftwright::app {
 
@@ -32,8 +31,7 @@ void simulate(const SimulateOptions& options) {
     const std::string file = cyclograms.size() == 1 ? "record.csv" : "records/" + cyclogram->name + ".csv";
     folder.write_text(file, record_csv(run.record, provenance_lines(folder.made_by(), "cyclogram " + cyclogram->name)));
     folder.write_text(cyclograms.size() == 1 ? "heat_flows.csv" : "heat_flows/" + cyclogram->name + ".csv",
-                      record_csv(scenarios::heat_flow_record(run.trajectory, cyclogram->name),
-                                 provenance_lines(folder.made_by(), kHeatFlowsTitle + cyclogram->name)));
+                      heat_flows_csv(run.trajectory, cyclogram->name, folder.made_by()));
     summary += fmt::format("{:<20} {:5.0f} min, {} steps; at its end", cyclogram->name, cyclogram->duration_s() / 60.0,
                            run.trajectory.n_steps);
     for (const auto& d : model.displacements)
