@@ -2,13 +2,16 @@
 
 #include <algorithm>
 
+#include "solver/propagator.hpp"
+#include "solver/reduced_model.hpp"
 #include "solver/steady_state.hpp"
+#include "solver/thermal_modes.hpp"
 
 namespace driftwright::compensation {
 
 solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const TimeSeries& hall,
                                            const std::vector<double>& output_s) const {
-  return solver::evolve(system, cyclogram, hall, output_s, start);
+  return solver::Propagator(system).run(cyclogram, hall, output_s, start);
 }
 
 ModalPredictor make_modal_predictor(const solver::FullSystem& full, int most_modes, const Eigen::VectorXd& from,

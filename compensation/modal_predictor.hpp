@@ -1,7 +1,8 @@
 #pragma once
 // Drift of any cyclogram without sensors: the machine's thermal modes, driven by the cyclogram and the hall.
 
-#include "solver/reduced_model.hpp"
+#include "base/cyclogram.hpp"
+#include "solver/thermal_system.hpp"
 
 namespace driftwright::compensation {
 

@@ -25,7 +25,6 @@ void read_property(const ConfigMap& in, const std::string& key, const std::strin
   value = curve.at(293.15);
 }
 
-
 constexpr double kLeastExpansion_1_K = -1e-4, kMostExpansion_1_K = 1e-3;
 
 Expansion read_expansion(const ConfigMap& in) {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "solver/heat_assembly.hpp"
-#include "solver/reduced_model.hpp"
+#include "solver/thermal_modes.hpp"
 #include "solver/transient.hpp"
 #include "tests/fixtures.hpp"
 

@@ -1,0 +1,411 @@
+#include "solver/krylov_reduction.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "solver/conduction_factor.hpp"
+#include "solver/reduced_model.hpp"
+
+namespace driftwright::solver {
+namespace {
+
+constexpr double kShortest_s = 15.0;  // the fastest answer that a basis is made for; outputs are minutes apart
+constexpr double kWarmest_K = 40.0;   // over the hall: how warm laws of temperature are looked at
+
+std::vector<double> log_spaced(double from, double to, int n) {
+  std::vector<double> values;
+  for (int i = 0; i < n; ++i) values.push_back(from * std::pow(to / from, i / (n - 1.0)));
+  return values;
+}
+
+/// Values of a law at a drive and a time, over the temperatures that its probes may take.
+std::vector<double> values_of(const FullSystem& system, const BoundLaw& law, effects::Inputs at) {
+  std::vector<double> values;
+  if (law.thermostat >= 0) values.push_back(0.0);
+  if (!law.looks_at_state()) {
+    values.push_back(law.law(at));
+    return values;
+  }
+  for (double warmer_K : {2.0, 0.5 * kWarmest_K, kWarmest_K}) {
+    at.probe_K.clear();
+    for (int p : law.probes) {
+      const bool is_air = system.probes[p].hall_share != 0.0;
+      at.probe_K.push_back(system.reference_K + at.hall_K + (is_air ? system.probes[p].offset_K : warmer_K));
+    }
+    try {
+      values.push_back(law.law(at));
+    } catch (const RangeError&) {  // the law says by itself where it ends, should a run come there
+    }
+  }
+  return values;
+}
+
+/// The system's matrices applied to a growing basis, and that basis projected.
+class Basis {
+ public:
+  Basis(const FullSystem& system, const ReductionDemand& demand)
+      : system_(system), vectors_(system.size(), 0), m_vectors_(system.size(), 0) {
+    for (const Eigen::VectorXd& c : demand.coefficients) {
+      SparseRow k = system.conduction;
+      for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
+        if (c[static_cast<Eigen::Index>(e)] != 0.0) k += c[static_cast<Eigen::Index>(e)] * system.exchanges[e].matrix;
+      }
+      stiffness_.push_back(std::move(k));
+    }
+    k_vectors_.resize(stiffness_.size(), Eigen::MatrixXd(system.size(), 0));
+  }
+
+  [[nodiscard]] const SparseRow& stiffness(std::size_t point) const { return stiffness_[point]; }
+  [[nodiscard]] Eigen::Index size() const { return vectors_.cols(); }
+  [[nodiscard]] const Eigen::MatrixXd& vectors() const { return vectors_; }
+  [[nodiscard]] const Eigen::MatrixXd& m_vectors() const { return m_vectors_; }
+  [[nodiscard]] const Eigen::MatrixXd& k_vectors(std::size_t point) const { return k_vectors_[point]; }
+
+  /// @return the number of columns that were new
+  int add(const Eigen::MatrixXd& columns) {
+    const Eigen::Index before = size();
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+      Eigen::VectorXd v = columns.col(c), mv = system_.mass * v;
+      const double length = std::sqrt(v.dot(mv));
+      for (int pass = 0; pass < 3; ++pass) v -= vectors_ * (m_vectors_.transpose() * v);
+      mv = system_.mass * v;
+      const double rest = std::sqrt(v.dot(mv));
+      if (!(rest > 1e-8 * length)) continue;
+      append(vectors_, v / rest);
+      append(m_vectors_, mv / rest);
+    }
+    const Eigen::Index fresh = size() - before;
+    for (std::size_t p = 0; p < stiffness_.size() && fresh > 0; ++p) {
+      append(k_vectors_[p], stiffness_[p] * vectors_.rightCols(fresh));
+    }
+    return static_cast<int>(fresh);
+  }
+
+ private:
+  static void append(Eigen::MatrixXd& to, const Eigen::MatrixXd& columns) {
+    to.conservativeResize(columns.rows(), to.cols() + columns.cols());
+    to.rightCols(columns.cols()) = columns;
+  }
+  const FullSystem& system_;
+  std::vector<SparseRow> stiffness_;
+  Eigen::MatrixXd vectors_, m_vectors_;
+  std::vector<Eigen::MatrixXd> k_vectors_;
+};
+
+/// What drives the system, each of its largest magnitude, at one set of coefficients. The start drives as an impulse.
+struct Inputs {
+  Eigen::MatrixXd loads;    ///< n x n_inputs: steps, the start, switches between sets of coefficients
+  Eigen::Index start = -1;  ///< column that is M θ0, -1 for none
+  Eigen::Index n_switches = 0;
+
+  [[nodiscard]] Eigen::Index n_steps() const { return loads.cols() - n_switches - (start >= 0 ? 1 : 0); }
+};
+
+Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const Eigen::VectorXd& c) {
+  std::vector<Eigen::VectorXd> loads;
+  for (std::size_t s = 0; s < system.sources.size(); ++s) {
+    const double power_W = demand.power_W[static_cast<Eigen::Index>(s)];
+    if (power_W > 0.0) loads.push_back(power_W * system.sources[s].load);
+  }
+  Eigen::VectorXd hall = Eigen::VectorXd::Zero(system.size()), offset = hall;
+  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
+    const auto& exchange = system.exchanges[e];
+    hall += c[static_cast<Eigen::Index>(e)] * exchange.to_hall;
+    if (exchange.offset.size() > 0) offset += c[static_cast<Eigen::Index>(e)] * exchange.offset;
+  }
+  for (const Eigen::VectorXd& load : {Eigen::VectorXd(demand.hall_K * hall), offset}) {
+    if (load.cwiseAbs().maxCoeff() > 0.0) loads.push_back(load);
+  }
+  Inputs inputs;
+  if (demand.start.cwiseAbs().maxCoeff() > 0.0) {
+    inputs.start = static_cast<Eigen::Index>(loads.size());
+    loads.push_back(system.mass * demand.start);
+  }
+  inputs.loads.resize(system.size(), static_cast<Eigen::Index>(loads.size()));
+  for (std::size_t i = 0; i < loads.size(); ++i) inputs.loads.col(static_cast<Eigen::Index>(i)) = loads[i];
+  return inputs;
+}
+
+/// Reduced states after a step of each input, one block of columns per time.
+Eigen::MatrixXd step_states(const Eigen::MatrixXd& k, const Eigen::MatrixXd& loads, Eigen::Index start,
+                            const std::vector<double>& times_s) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+  const Eigen::MatrixXd f = eigen.eigenvectors().transpose() * loads;
+  Eigen::MatrixXd states(k.rows(), loads.cols() * static_cast<Eigen::Index>(times_s.size()));
+  for (std::size_t t = 0; t < times_s.size(); ++t) {
+    const Eigen::ArrayXd x = eigen.eigenvalues().array() * times_s[t];
+    const Eigen::ArrayXd stepped = -(-x).unaryExpr([](double v) { return std::expm1(v); }) / eigen.eigenvalues().array();
+    Eigen::MatrixXd z = stepped.matrix().asDiagonal() * f;
+    if (start >= 0) z.col(start) = (-x).exp().matrix().asDiagonal() * f.col(start);
+    states.middleCols(static_cast<Eigen::Index>(t) * loads.cols(), loads.cols()).noalias() = eigen.eigenvectors() * z;
+  }
+  return states;
+}
+
+/// Largest difference of an output, by unit: the sum over steps and start, twice since they may step back as far, and the
+/// largest of the switches.
+ReductionError difference(const Outputs& outputs, const std::vector<Eigen::MatrixXd>& a,
+                          const std::vector<Eigen::MatrixXd>& b, const Inputs& inputs) {
+  const Eigen::Index n_inputs = inputs.loads.cols();
+  ReductionError error;
+  for (std::size_t p = 0; p < a.size(); ++p) {
+    const Eigen::MatrixXd apart = (a[p] - b[p]).cwiseAbs();
+    for (Eigen::Index first = 0; first < apart.cols(); first += n_inputs) {
+      Eigen::VectorXd sum = 2.0 * apart.middleCols(first, n_inputs - inputs.n_switches).rowwise().sum();
+      if (inputs.n_switches > 0) {
+        sum += apart.middleCols(first + n_inputs - inputs.n_switches, inputs.n_switches).rowwise().maxCoeff();
+      }
+      for (std::size_t o = 0; o < outputs.unit.size(); ++o) {
+        double& worst = outputs.unit[o] == "K"   ? error.temperature_K
+                        : outputs.unit[o] == "m" ? error.displacement_m
+                                                 : error.angle_rad;
+        worst = std::max(worst, sum[static_cast<Eigen::Index>(o)]);
+      }
+    }
+  }
+  return error;
+}
+
+bool is_within(const ReductionError& error, const ReductionOptions& options, double share) {
+  return error.temperature_K <= share * options.temperature_K && error.displacement_m <= share * options.displacement_m &&
+         error.angle_rad <= share * options.angle_rad;
+}
+
+class Reducer {
+ public:
+  Reducer(const FullSystem& system, const ReductionDemand& demand, const ReductionOptions& options)
+      : system_(system), demand_(demand), options_(options), basis_(system, demand) {
+    for (const Eigen::VectorXd& c : demand.coefficients) inputs_.push_back(inputs_at(system, demand, c));
+    shifts_1_s_ = log_spaced(0.3 / demand.duration_s, 1.0 / kShortest_s, 14);
+    shifts_1_s_.insert(shifts_1_s_.begin(), 0.0);
+    times_s_ = log_spaced(kShortest_s, demand.duration_s, 40);
+  }
+
+  Reduction run() {
+    Reduction result;
+    basis_.add(system_.ones);
+    if (demand_.start.cwiseAbs().maxCoeff() > 0.0) basis_.add(demand_.start);
+    std::vector<Choice> round(inputs_.size());  // the steady states first
+    for (std::size_t p = 0; p < round.size(); ++p) {
+      round[p].point = p;
+      for (Eigen::Index i = 0; i < inputs_[p].loads.cols(); ++i) round[p].inputs.push_back(i);
+    }
+    std::vector<Eigen::MatrixXd> last;  // outputs of the step test a round ago
+    while (true) {
+      for (const Choice& choice : round) {
+        const Eigen::MatrixXd found = respond(choice);
+        result.shifts_1_s.push_back(shifts_1_s_[choice.shift]);
+        result.n_solves += static_cast<int>(found.cols());
+        basis_.add(found);
+      }
+      if (++result.n_rounds == 1) add_switches();
+      std::vector<Eigen::MatrixXd> now = step_test();
+      if (!last.empty()) {
+        result.error = difference(system_.outputs, last, now, inputs_[0]);
+        if (is_within(result.error, options_, 0.5)) {
+          compress(result, now);
+          return result;
+        }
+      }
+      last = std::move(now);
+      if (result.n_rounds >= options_.most_rounds) {
+        throw SolveError(fmt::format(
+            "the reduced model misses by about {:.2g} K and {:.2g} um after {} rounds; take `model: full` in `solver`",
+            result.error.temperature_K, 1e6 * result.error.displacement_m, result.n_rounds));
+      }
+      for (std::size_t p = 0; p < round.size(); ++p) round[p] = worst_residual(p);
+    }
+  }
+
+ private:
+  struct Choice {
+    std::size_t point = 0, shift = 0;
+    std::vector<Eigen::Index> inputs;
+  };
+
+  /// (s M + K)⁻¹ of the chosen inputs.
+  Eigen::MatrixXd respond(const Choice& at) const {
+    const SparseRow a = basis_.stiffness(at.point) + shifts_1_s_[at.shift] * system_.mass;
+    if (at.shift == 0) require_way_out(a);
+    const ConductionFactor factor(a);
+    Eigen::MatrixXd x(system_.size(), static_cast<Eigen::Index>(at.inputs.size()));
+    for (std::size_t i = 0; i < at.inputs.size(); ++i) {
+      x.col(static_cast<Eigen::Index>(i)) = factor.solve(inputs_[at.point].loads.col(at.inputs[i]));
+    }
+    return x;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd stiffness(std::size_t point) const {
+    const Eigen::MatrixXd k = basis_.vectors().transpose() * basis_.k_vectors(point);
+    return 0.5 * (k + k.transpose());
+  }
+
+  /// A coefficient that changes is one more input: what was steady with c' drives the system with c by (K(c') - K(c)) θ'.
+  void add_switches() {
+    std::vector<Eigen::VectorXd> steady;
+    for (std::size_t p = 0; p < inputs_.size(); ++p) {
+      const Eigen::VectorXd load = inputs_[p].loads.leftCols(inputs_[p].n_steps()).rowwise().sum();
+      steady.push_back(basis_.vectors() * stiffness(p).llt().solve(basis_.vectors().transpose() * load));
+    }
+    for (std::size_t p = 0; p < inputs_.size(); ++p) {
+      Eigen::MatrixXd& loads = inputs_[p].loads;
+      for (std::size_t other = 0; other < inputs_.size(); ++other) {
+        if (other == p) continue;
+        const Eigen::VectorXd jump = basis_.stiffness(other) * steady[other] - basis_.stiffness(p) * steady[other];
+        loads.conservativeResize(Eigen::NoChange, loads.cols() + 1);
+        loads.rightCols(1) = jump;
+        ++inputs_[p].n_switches;
+      }
+    }
+  }
+
+  /// Outputs after steps, per set of coefficients: n_outputs x (inputs of a time, time after time).
+  std::vector<Eigen::MatrixXd> step_test() const {
+    std::vector<Eigen::MatrixXd> found;
+    for (std::size_t p = 0; p < inputs_.size(); ++p) {
+      found.push_back(
+          system_.outputs.state.transpose() * basis_.vectors() *
+          step_states(stiffness(p), basis_.vectors().transpose() * inputs_[p].loads, inputs_[p].start, times_s_));
+    }
+    return found;
+  }
+
+  /// Where the response at one set of coefficients misses most, in the energy that a Jacobi step would take from it.
+  Choice worst_residual(std::size_t p) const {
+    Choice worst;
+    double largest = -1.0;
+    Eigen::VectorXd of_inputs;
+    const Eigen::MatrixXd k = stiffness(p), f = basis_.vectors().transpose() * inputs_[p].loads;
+    const Eigen::VectorXd k_diagonal = basis_.stiffness(p).diagonal(), m_diagonal = system_.mass.diagonal();
+    for (std::size_t j = 0; j < shifts_1_s_.size(); ++j) {
+      const double s = shifts_1_s_[j];
+      const Eigen::MatrixXd z = (k + s * Eigen::MatrixXd::Identity(k.rows(), k.cols())).llt().solve(f);
+      const Eigen::MatrixXd residual = inputs_[p].loads - basis_.k_vectors(p) * z - s * (basis_.m_vectors() * z);
+      const Eigen::VectorXd weight = (k_diagonal + s * m_diagonal).cwiseInverse();
+      const Eigen::VectorXd energy = (residual.cwiseAbs2().transpose() * weight);
+      if (energy.maxCoeff() <= largest) continue;
+      largest = energy.maxCoeff();
+      of_inputs = energy;
+      worst.point = p;
+      worst.shift = j;
+    }
+    for (Eigen::Index i = 0; i < of_inputs.size(); ++i) {
+      if (of_inputs[i] > 0.01 * largest) worst.inputs.push_back(i);
+    }
+    return worst;
+  }
+
+  /// Keeps the directions that the step tests use most, as few as the other half of the tolerance allows.
+  void compress(Reduction& result, const std::vector<Eigen::MatrixXd>& reference) const {
+    const Eigen::Index n = basis_.size();
+    Eigen::MatrixXd kept(n, 1 + (inputs_[0].start >= 0 ? 1 : 0));  // 1 and the start stay
+    kept.col(0) = basis_.m_vectors().transpose() * system_.ones;
+    if (inputs_[0].start >= 0) kept.col(1) = basis_.m_vectors().transpose() * demand_.start;
+    const Eigen::MatrixXd held =
+        Eigen::HouseholderQR<Eigen::MatrixXd>(kept).householderQ() * Eigen::MatrixXd::Identity(n, kept.cols());
+    std::vector<Eigen::MatrixXd> k, f, states;
+    Eigen::Index n_states = 0;
+    for (std::size_t p = 0; p < inputs_.size(); ++p) {
+      k.push_back(stiffness(p));
+      f.push_back(basis_.vectors().transpose() * inputs_[p].loads);
+      states.push_back(step_states(k[p], f[p], inputs_[p].start, times_s_));
+      n_states += states[p].cols();
+    }
+    Eigen::MatrixXd all(n, n_states);
+    for (Eigen::Index p = 0, at = 0; p < static_cast<Eigen::Index>(states.size());
+         at += states[static_cast<std::size_t>(p)].cols(), ++p) {
+      all.middleCols(at, states[static_cast<std::size_t>(p)].cols()) = states[static_cast<std::size_t>(p)];
+    }
+    all -= held * (held.transpose() * all);
+    const Eigen::BDCSVD<Eigen::MatrixXd> svd(all, Eigen::ComputeThinU);
+    Eigen::MatrixXd directions(n, n);
+    directions << held, svd.matrixU().leftCols(n - held.cols());
+    directions =
+        Eigen::HouseholderQR<Eigen::MatrixXd>(directions).householderQ();  // clean where singular values are rounding
+    const auto truncation = [&](Eigen::Index size) {
+      const Eigen::MatrixXd u = directions.leftCols(size), c = system_.outputs.state.transpose() * (basis_.vectors() * u);
+      std::vector<Eigen::MatrixXd> found;
+      for (std::size_t p = 0; p < inputs_.size(); ++p) {
+        found.push_back(c * step_states(u.transpose() * k[p] * u, u.transpose() * f[p], inputs_[p].start, times_s_));
+      }
+      return difference(system_.outputs, found, reference, inputs_[0]);
+    };
+    Eigen::Index size = n;
+    ReductionError lost;
+    for (Eigen::Index step = 8; step >= 1; step /= 2) {  // errors fall nearly monotonously with the size
+      while (size - step > held.cols()) {
+        const ReductionError trial = truncation(size - step);
+        if (!is_within(trial, options_, 0.5)) break;
+        lost = trial;
+        size -= step;
+      }
+    }
+    result.error.temperature_K += lost.temperature_K;
+    result.error.displacement_m += lost.displacement_m;
+    result.error.angle_rad += lost.angle_rad;
+    result.basis = basis_.vectors() * directions.leftCols(size);
+  }
+
+  const FullSystem& system_;
+  const ReductionDemand& demand_;
+  const ReductionOptions& options_;
+  Basis basis_;
+  std::vector<Inputs> inputs_;  ///< per set of coefficients
+  std::vector<double> shifts_1_s_, times_s_;
+};
+
+}  // namespace
+
+ReductionDemand reduction_demand(const FullSystem& system, const std::vector<const Cyclogram*>& cyclograms,
+                                 const TimeSeries& hall, const Eigen::VectorXd& start) {
+  ReductionDemand demand{.coefficients = {},
+                         .power_W = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.sources.size())),
+                         .start = start};
+  std::vector<Drive> drives = {Drive{}};
+  for (const Cyclogram* c : cyclograms) {
+    demand.duration_s = std::max(demand.duration_s, c->duration_s());
+    for (const auto& section : c->sections) drives.push_back(section.drive);
+  }
+  demand.hall_K = 1.0;
+  for (double hall_K : hall.value) demand.hall_K = std::max(demand.hall_K, std::abs(hall_K));
+  std::vector<double> changes_s = system.change_times_s, times_s = {0.0};  // one time in each interval between changes
+  std::sort(changes_s.begin(), changes_s.end());
+  for (double t_s : changes_s) times_s.push_back(t_s * (1.0 + 1e-9));
+  const auto n_exchanges = static_cast<Eigen::Index>(system.exchanges.size());
+  Eigen::VectorXd low = Eigen::VectorXd::Constant(n_exchanges, std::numeric_limits<double>::max()),
+                  high = Eigen::VectorXd::Zero(n_exchanges);
+  for (const Drive& drive : drives) {
+    for (double t_s : times_s) {
+      const effects::Inputs at{.drive = drive, .hall_K = hall.at(t_s), .time_s = t_s};
+      for (Eigen::Index s = 0; s < demand.power_W.size(); ++s) {
+        for (double power_W : values_of(system, system.sources[static_cast<std::size_t>(s)].power_W, at)) {
+          demand.power_W[s] = std::max(demand.power_W[s], std::abs(power_W));
+        }
+      }
+      for (Eigen::Index e = 0; e < n_exchanges; ++e) {
+        for (double c : values_of(system, system.exchanges[static_cast<std::size_t>(e)].coefficient, at)) {
+          low[e] = std::min(low[e], c);
+          high[e] = std::max(high[e], c);
+        }
+      }
+    }
+  }
+  low = low.cwiseMin(high);
+  demand.coefficients.push_back(0.5 * (low + high));
+  if ((high - low).cwiseAbs().maxCoeff() > 0.0) {
+    demand.coefficients.push_back(low);
+    demand.coefficients.push_back(high);
+  }
+  return demand;
+}
+
+Reduction reduce(const FullSystem& system, const ReductionDemand& demand, const ReductionOptions& options) {
+  return Reducer(system, demand, options).run();
+}
+
+}  // namespace driftwright::solver

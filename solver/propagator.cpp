@@ -1,0 +1,207 @@
+#include "solver/propagator.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace driftwright::solver {
+namespace {
+
+constexpr std::size_t kMostKept = 16;  // sections of a usual cyclogram
+/// Modes that decay less than this in a stretch: there a and b are differences of large numbers, and series take over.
+constexpr double kSlow = 1e-3;
+
+/// φ1 = (1 - e^{-x}) / x, φ2 = (1 - φ1) / x, φ3 = (1/2 - φ2) / x for 0 <= x < kSlow, to x^4.
+double phi1(double x) {
+  return 1.0 - x / 2 * (1.0 - x / 3 * (1.0 - x / 4 * (1.0 - x / 5)));
+}
+double phi2(double x) {
+  return 0.5 - x / 6 * (1.0 - x / 4 * (1.0 - x / 5 * (1.0 - x / 6)));
+}
+double phi3(double x) {
+  return 1.0 / 6 - x / 24 * (1.0 - x / 5 * (1.0 - x / 6 * (1.0 - x / 7)));
+}
+
+}  // namespace
+
+struct Propagator::Solution {
+  const Eigen::VectorXd& lambda;
+  Eigen::VectorXd z0, f0, f1;  // at the stretch's start; load and its slope
+  Eigen::VectorXd a, b, w;     // z = a + b t + w e^{-λt}
+  std::vector<Eigen::Index> slow;
+
+  Solution(const Eigen::VectorXd& lambda_1_s, Eigen::VectorXd start, Eigen::VectorXd load, Eigen::VectorXd slope,
+           double length_s)
+      : lambda(lambda_1_s), z0(std::move(start)), f0(std::move(load)), f1(std::move(slope)) {
+    for (Eigen::Index i = 0; i < lambda.size(); ++i) {
+      if (!(lambda[i] * length_s > kSlow)) slow.push_back(i);
+    }
+    b = f1.cwiseQuotient(lambda);
+    a = (f0 - b).cwiseQuotient(lambda);
+    w = z0 - a;
+  }
+
+  /// z at t, e = e^{-λt}.
+  template <class Column>
+  void state(double t_s, const Eigen::ArrayXd& e, Column z) const {
+    z = a.array() + t_s * b.array() + w.array() * e;
+    for (Eigen::Index i : slow) {
+      const double x = lambda[i] * t_s;
+      z[i] = z0[i] * e[i] + t_s * (phi1(x) * f0[i] + t_s * phi2(x) * f1[i]);
+    }
+  }
+  /// ∫ z from 0 to t.
+  template <class Column>
+  void integral(double t_s, const Eigen::ArrayXd& e, Column sum) const {
+    sum = t_s * (a.array() + 0.5 * t_s * b.array()) + w.array() * (1.0 - e) / lambda.array();
+    for (Eigen::Index i : slow) {
+      const double x = lambda[i] * t_s;
+      sum[i] = t_s * (phi1(x) * z0[i] + t_s * (phi2(x) * f0[i] + t_s * phi3(x) * f1[i]));
+    }
+  }
+};
+
+Propagator::Propagator(const ReducedSystem& system) : system_(system) {
+  if (!system.is_linear()) throw std::logic_error("only linear systems evolve as exponentials");
+  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("a reduced system has a unit mass matrix");
+  kept_.reserve(kMostKept);
+}
+
+const Propagator::Decomposition& Propagator::decompose(const Eigen::VectorXd& coefficient) {
+  for (const Decomposition& d : kept_) {
+    if (d.coefficient == coefficient) return d;
+  }
+  if (kept_.size() < kMostKept) {
+    kept_.emplace_back();
+    oldest_ = kept_.size() - 1;
+  } else {
+    oldest_ = (oldest_ + 1) % kMostKept;
+  }
+  Decomposition& d = kept_[oldest_];
+  ++n_decompositions_;
+  d.coefficient = coefficient;
+  const auto n = static_cast<Eigen::Index>(system_.size()), n_exchanges = coefficient.size();
+  Eigen::MatrixXd k = system_.conduction;
+  Eigen::VectorXd to_hall = Eigen::VectorXd::Zero(n), offset = to_hall;
+  d.flows.resize(n_exchanges, n);
+  d.hall_W_K.resize(n_exchanges);
+  d.offset_W.resize(n_exchanges);
+  for (Eigen::Index i = 0; i < n_exchanges; ++i) {
+    const Exchange<Eigen::MatrixXd>& e = system_.exchanges[static_cast<std::size_t>(i)];
+    const double c = coefficient[i];
+    k += c * e.matrix;
+    to_hall += c * e.to_hall;
+    if (e.offset.size() > 0) offset += c * e.offset;
+    d.flows.row(i) = c * e.flow.transpose();
+    d.hall_W_K[i] = c * e.hall_sum;
+    d.offset_W[i] = c * e.offset_sum;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+  d.lambda_1_s = eigen.eigenvalues();
+  d.vectors = eigen.eigenvectors();
+  d.outputs.noalias() = system_.outputs.state.transpose() * d.vectors;
+  d.loads.resize(n, static_cast<Eigen::Index>(system_.sources.size()));
+  for (std::size_t s = 0; s < system_.sources.size(); ++s) {
+    d.loads.col(static_cast<Eigen::Index>(s)).noalias() = d.vectors.transpose() * system_.sources[s].load;
+  }
+  d.to_hall.noalias() = d.vectors.transpose() * to_hall;
+  d.offset.noalias() = d.vectors.transpose() * offset;
+  d.flows = d.flows * d.vectors;
+  d.stored_J_K.noalias() = system_.ones.transpose() * d.vectors;
+  return d;
+}
+
+Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
+                           const Eigen::VectorXd& start, bool with_heat, Eigen::MatrixXd* states) {
+  const auto n = static_cast<Eigen::Index>(system_.size()), n_times = static_cast<Eigen::Index>(output_s.size());
+  const auto n_sources = static_cast<Eigen::Index>(system_.sources.size()),
+             n_exchanges = static_cast<Eigen::Index>(system_.exchanges.size());
+  Trajectory run;
+  run.time_s = output_s;
+  run.outputs.resize(system_.outputs.state.cols(), n_times);
+  if (states) states->resize(n, n_times);
+  Eigen::VectorXd heat_J;  // of every flow up to the stretch's start
+  double initial_J = 0.0;
+  if (with_heat) {
+    for (const HeatSource& s : system_.sources) run.flows.push_back({s.name, FlowKind::kSource});
+    for (const auto& e : system_.exchanges) {
+      run.flows.push_back({e.name, e.reaches_hall() ? FlowKind::kSurrounding : FlowKind::kInternal});
+    }
+    heat_J = Eigen::VectorXd::Zero(n_sources + n_exchanges);
+    run.heat_J.resize(n_sources + n_exchanges, n_times);
+    run.stored_J.resize(n_times);
+    initial_J = system_.ones.dot(start);
+  }
+
+  std::vector<double> knots_s = hall.time_s;
+  knots_s.insert(knots_s.end(), system_.change_times_s.begin(), system_.change_times_s.end());
+  Eigen::VectorXd state = start, coefficient(n_exchanges), power_W(n_sources);
+  Eigen::MatrixXd block, integrals;  // z and ∫ z at the outputs of a stretch, in its eigenvectors
+  Eigen::ArrayXd e(n), decay(n);
+  std::size_t next = 0;
+  for (const LinearStretch& stretch : linear_stretches(cyclogram, knots_s)) {
+    const double length_s = stretch.end_s - stretch.start_s, hall_K = hall.at(stretch.start_s),
+                 hall_slope = (hall.at(stretch.end_s) - hall_K) / length_s;
+    effects::Inputs at{.drive = stretch.drive, .hall_K = hall_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
+    for (Eigen::Index i = 0; i < n_exchanges; ++i) {
+      coefficient[i] = system_.exchanges[static_cast<std::size_t>(i)].coefficient(at);
+    }
+    for (Eigen::Index s = 0; s < n_sources; ++s) power_W[s] = system_.sources[static_cast<std::size_t>(s)].power_W(at);
+    const Decomposition& d = decompose(coefficient);
+    const Solution solution(d.lambda_1_s, d.vectors.transpose() * state, d.loads * power_W + hall_K * d.to_hall + d.offset,
+                            hall_slope * d.to_hall, length_s);
+
+    std::size_t last = next;
+    while (last < output_s.size() && output_s[last] <= stretch.end_s) ++last;
+    const auto first_column = static_cast<Eigen::Index>(next), n_columns = static_cast<Eigen::Index>(last - next);
+    block.resize(n, n_columns);
+    if (with_heat) integrals.resize(n, n_columns);
+    double t_s = 0.0, step_s = -1.0;
+    e.setOnes();
+    for (Eigen::Index k = 0; k < n_columns; ++k) {  // evenly spaced outputs take one exponential per mode
+      const double now_s = output_s[next + static_cast<std::size_t>(k)] - stretch.start_s;
+      if (std::abs(now_s - t_s - step_s) > 1e-9 * step_s) {
+        step_s = now_s - t_s;
+        decay = (-step_s * d.lambda_1_s.array()).exp();
+      }
+      e *= decay;
+      t_s = now_s;
+      solution.state(t_s, e, block.col(k));
+      if (with_heat) solution.integral(t_s, e, integrals.col(k));
+    }
+    run.outputs.middleCols(first_column, n_columns).noalias() = d.outputs * block;
+    if (states) states->middleCols(first_column, n_columns).noalias() = d.vectors * block;
+    const auto heats_after = [&](double dt_s, const auto& integral) {
+      const double hall_Ks = dt_s * (hall_K + 0.5 * hall_slope * dt_s);
+      Eigen::VectorXd heat = heat_J;
+      heat.head(n_sources) += dt_s * power_W;
+      const Eigen::VectorXd crossed = d.flows * integral - hall_Ks * d.hall_W_K - dt_s * d.offset_W;
+      for (Eigen::Index i = 0; i < n_exchanges; ++i) {
+        const bool reaches_hall = system_.exchanges[static_cast<std::size_t>(i)].reaches_hall();
+        heat[n_sources + i] += reaches_hall ? -crossed[i] : crossed[i];
+      }
+      return heat;
+    };
+    for (Eigen::Index k = 0; k < n_columns; ++k) {
+      const double now_s = output_s[next + static_cast<std::size_t>(k)];
+      run.outputs.col(first_column + k) += hall.at(now_s) * system_.outputs.hall;
+      if (!with_heat) continue;
+      run.heat_J.col(first_column + k) = heats_after(now_s - stretch.start_s, integrals.col(k));
+      run.stored_J[first_column + k] = d.stored_J_K.dot(block.col(k)) - initial_J;
+    }
+    next = last;
+
+    e = (-length_s * d.lambda_1_s.array()).exp();
+    Eigen::VectorXd z(n);
+    if (with_heat) {
+      solution.integral(length_s, e, z.head(n));
+      heat_J = heats_after(length_s, z);
+    }
+    solution.state(length_s, e, z.head(n));
+    state.noalias() = d.vectors * z;
+  }
+  return run;
+}
+
+}  // namespace driftwright::solver

@@ -1,0 +1,120 @@
+#include "solver/krylov_reduction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "solver/propagator.hpp"
+#include "solver/reduced_model.hpp"
+#include "tests/two_blocks.hpp"
+
+namespace driftwright::solver {
+namespace {
+
+const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
+const TimeSeries kRampingHall{{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}};
+
+std::vector<double> every_minute() {
+  std::vector<double> times_s;
+  for (double t_s = 0.0; t_s <= kCycle.duration_s(); t_s += 60.0) times_s.push_back(t_s);
+  return times_s;
+}
+
+Trajectory run_in(const FullSystem& system, const Eigen::MatrixXd& basis, const Eigen::VectorXd& start,
+                  const Cyclogram& cycle = kCycle) {
+  const ReducedSystem reduced = project(system, basis);
+  return Propagator(reduced).run(cycle, kRampingHall, every_minute(), basis.transpose() * (system.mass * start), true);
+}
+
+/// The exact answer: in a basis of all unknowns.
+Trajectory complete(const FullSystem& system, const Eigen::VectorXd& start, const Cyclogram& cycle = kCycle) {
+  return run_in(system, orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size())), start, cycle);
+}
+
+TEST(KrylovReduction, MeetsItsToleranceAndItsEstimateBoundsTheError) {
+  const FullSystem system = fixtures::two_blocks(2);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
+  const ReductionDemand demand = reduction_demand(system, {&kCycle}, kRampingHall, zero);
+  const Trajectory exact = complete(system, zero);
+  EXPECT_GT(exact.outputs.maxCoeff(), 30.0);
+  Eigen::Index last_size = 0;
+  for (double tolerance_K : {0.5, 0.05, 5e-3}) {
+    const Reduction reduction = reduce(system, demand, {.temperature_K = tolerance_K});
+    const double error_K = (run_in(system, reduction.basis, zero).outputs - exact.outputs).cwiseAbs().maxCoeff();
+    RecordProperty("of_" + std::to_string(tolerance_K), std::to_string(reduction.basis.cols()) + " vectors, estimate " +
+                                                            std::to_string(reduction.error.temperature_K) + " K, error " +
+                                                            std::to_string(error_K) + " K");
+    EXPECT_LE(reduction.error.temperature_K, tolerance_K);
+    EXPECT_LE(error_K, reduction.error.temperature_K);
+    EXPECT_GT(error_K, 1e-3 * reduction.error.temperature_K);  // an estimate that says nothing would also bound it
+    EXPECT_GE(reduction.basis.cols(), last_size);
+    last_size = reduction.basis.cols();
+  }
+  EXPECT_LT(last_size, 50);  // of 450 unknowns
+}
+
+TEST(KrylovReduction, HoldsAtEverySpeedInBetween) {
+  const FullSystem system = fixtures::two_blocks(2);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
+  const Reduction reduction =
+      reduce(system, reduction_demand(system, {&kCycle}, kRampingHall, zero), {.temperature_K = 5e-3});
+  for (double rpm : {100.0, 900.0, 2700.0}) {
+    const Cyclogram other{.name = "other", .sections = {{3000, rpm}, {900, 0.5 * rpm}, {3300, 0}}};
+    EXPECT_LT(
+        (run_in(system, reduction.basis, zero, other).outputs - complete(system, zero, other).outputs).cwiseAbs().maxCoeff(),
+        5e-3)
+        << rpm;
+  }
+}
+
+TEST(KrylovReduction, KeepsTheStartAndTheHeatBalance) {
+  const FullSystem system = fixtures::two_blocks(2);
+  Eigen::VectorXd start(system.size());
+  for (Eigen::Index i = 0; i < start.size(); ++i) start[i] = 10.0 * std::sin(0.01 * static_cast<double>(i));
+  const Reduction reduction =
+      reduce(system, reduction_demand(system, {&kCycle}, kRampingHall, start), {.temperature_K = 5e-3});
+  const Trajectory run = run_in(system, reduction.basis, start);
+  EXPECT_NEAR(run.outputs(0, 0), system.observe(start, 0.0)[0], 1e-9);  // rounding: the start itself is in the basis
+  EXPECT_LT((run.outputs - complete(system, start).outputs).cwiseAbs().maxCoeff(), 5e-3);
+  EXPECT_LT(run.energy_gap(), 1e-10);
+}
+
+TEST(KrylovReduction, BasisIsOrthonormalInMass) {
+  const FullSystem system = fixtures::two_blocks(1);
+  const Eigen::MatrixXd basis =
+      reduce(system, reduction_demand(system, {&kCycle}, kRampingHall, Eigen::VectorXd::Zero(system.size()))).basis;
+  const Eigen::MatrixXd gram = basis.transpose() * (system.mass * basis);
+  EXPECT_LT((gram - Eigen::MatrixXd::Identity(basis.cols(), basis.cols())).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+TEST(KrylovReduction, DemandSpansTheDrivesAndTheTemperatures) {
+  FullSystem system = fixtures::two_blocks(1);
+  // A third exchange that grows with the temperature of block a over the hall: 1 W/(m^2 K) per K.
+  system.probes.push_back({Eigen::VectorXd::Constant(system.size(), 1.0 / system.size())});
+  BoundLaw growing(effects::Law([](const effects::Inputs& u) { return u.probe_K[0] - 293.15; }, {effects::region("a")}));
+  growing.probes = {0};
+  system.exchanges.push_back(system.exchanges[1]);
+  system.exchanges.back().coefficient = growing;
+  const ReductionDemand demand = reduction_demand(system, {&kCycle}, {{0}, {0}}, Eigen::VectorXd::Zero(system.size()));
+  EXPECT_DOUBLE_EQ(demand.power_W[0], 300.0);
+  EXPECT_DOUBLE_EQ(demand.duration_s, 7200.0);
+  ASSERT_EQ(demand.coefficients.size(), 3u);
+  EXPECT_DOUBLE_EQ(demand.coefficients[1][0], 5.0);   // the film at rest
+  EXPECT_DOUBLE_EQ(demand.coefficients[2][0], 65.0);  // and at 3000 rpm
+  EXPECT_DOUBLE_EQ(demand.coefficients[0][0], 35.0);
+  EXPECT_NEAR(demand.coefficients[1][3], 2.0, 1e-9);
+  EXPECT_NEAR(demand.coefficients[2][3], 40.0, 1e-9);
+}
+
+TEST(KrylovReduction, SaysWhenHeatHasNoWayOutOrTheToleranceIsOutOfReach) {
+  FullSystem system = fixtures::two_blocks(1);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
+  const ReductionDemand demand = reduction_demand(system, {&kCycle}, kRampingHall, zero);
+  EXPECT_THROW((void)reduce(system, demand, {.temperature_K = 1e-6, .most_rounds = 4}), SolveError);
+  system.exchanges.erase(system.exchanges.begin(), system.exchanges.begin() + 2);  // both films
+  EXPECT_THROW((void)reduce(system, reduction_demand(system, {&kCycle}, kRampingHall, zero)), SolveError);
+}
+
+}  // namespace
+}  // namespace driftwright::solver
