@@ -15,7 +15,6 @@ namespace driftwright::solver {
 namespace {
 
 constexpr double kShortest_s = 15.0;  // the fastest answer that a basis is made for; outputs are minutes apart
-constexpr double kWarmest_K = 40.0;   // over the hall: how warm laws of temperature are looked at
 
 std::vector<double> log_spaced(double from, double to, int n) {
   std::vector<double> values;
@@ -23,34 +22,12 @@ std::vector<double> log_spaced(double from, double to, int n) {
   return values;
 }
 
-/// Values of a law at a drive and a time, over the temperatures that its probes may take.
-std::vector<double> values_of(const FullSystem& system, const BoundLaw& law, effects::Inputs at) {
-  std::vector<double> values;
-  if (law.thermostat >= 0) values.push_back(0.0);
-  if (!law.looks_at_state()) {
-    values.push_back(law.law(at));
-    return values;
-  }
-  for (double warmer_K : {2.0, 0.5 * kWarmest_K, kWarmest_K}) {
-    at.probe_K.clear();
-    for (int p : law.probes) {
-      const bool is_air = system.probes[p].hall_share != 0.0;
-      at.probe_K.push_back(system.reference_K + at.hall_K + (is_air ? system.probes[p].offset_K : warmer_K));
-    }
-    try {
-      values.push_back(law.law(at));
-    } catch (const RangeError&) {  // the law says by itself where it ends, should a run come there
-    }
-  }
-  return values;
-}
-
 /// The system's matrices applied to a growing basis, and that basis projected.
 class Basis {
  public:
-  Basis(const FullSystem& system, const ReductionDemand& demand)
+  Basis(const FullSystem& system, const std::vector<Eigen::VectorXd>& points)
       : system_(system), vectors_(system.size(), 0), m_vectors_(system.size(), 0) {
-    for (const Eigen::VectorXd& c : demand.coefficients) {
+    for (const Eigen::VectorXd& c : points) {
       SparseRow k = system.conduction;
       for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
         if (c[static_cast<Eigen::Index>(e)] != 0.0) k += c[static_cast<Eigen::Index>(e)] * system.exchanges[e].matrix;
@@ -106,7 +83,8 @@ struct Inputs {
   [[nodiscard]] Eigen::Index n_steps() const { return loads.cols() - n_switches - (start >= 0 ? 1 : 0); }
 };
 
-Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const Eigen::VectorXd& c) {
+Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const Eigen::VectorXd& start,
+                 const Eigen::VectorXd& c) {
   std::vector<Eigen::VectorXd> loads;
   for (std::size_t s = 0; s < system.sources.size(); ++s) {
     const double power_W = demand.power_W[static_cast<Eigen::Index>(s)];
@@ -122,9 +100,9 @@ Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const 
     if (load.cwiseAbs().maxCoeff() > 0.0) loads.push_back(load);
   }
   Inputs inputs;
-  if (demand.start.cwiseAbs().maxCoeff() > 0.0) {
+  if (start.cwiseAbs().maxCoeff() > 0.0) {
     inputs.start = static_cast<Eigen::Index>(loads.size());
-    loads.push_back(system.mass * demand.start);
+    loads.push_back(system.mass * start);
   }
   inputs.loads.resize(system.size(), static_cast<Eigen::Index>(loads.size()));
   for (std::size_t i = 0; i < loads.size(); ++i) inputs.loads.col(static_cast<Eigen::Index>(i)) = loads[i];
@@ -178,9 +156,10 @@ bool is_within(const ReductionError& error, const ReductionOptions& options, dou
 
 class Reducer {
  public:
-  Reducer(const FullSystem& system, const ReductionDemand& demand, const ReductionOptions& options)
-      : system_(system), demand_(demand), options_(options), basis_(system, demand) {
-    for (const Eigen::VectorXd& c : demand.coefficients) inputs_.push_back(inputs_at(system, demand, c));
+  Reducer(const FullSystem& system, const ReductionDemand& demand, const Eigen::VectorXd& start,
+          const ReductionOptions& options)
+      : system_(system), start_(start), options_(options), points_(demand.points()), basis_(system, points_) {
+    for (const Eigen::VectorXd& c : points_) inputs_.push_back(inputs_at(system, demand, start, c));
     shifts_1_s_ = log_spaced(0.3 / demand.duration_s, 1.0 / kShortest_s, 14);
     shifts_1_s_.insert(shifts_1_s_.begin(), 0.0);
     times_s_ = log_spaced(kShortest_s, demand.duration_s, 40);
@@ -189,7 +168,7 @@ class Reducer {
   Reduction run() {
     Reduction result;
     basis_.add(system_.ones);
-    if (demand_.start.cwiseAbs().maxCoeff() > 0.0) basis_.add(demand_.start);
+    if (start_.cwiseAbs().maxCoeff() > 0.0) basis_.add(start_);
     std::vector<Choice> round(inputs_.size());  // the steady states first
     for (std::size_t p = 0; p < round.size(); ++p) {
       round[p].point = p;
@@ -305,7 +284,7 @@ class Reducer {
     const Eigen::Index n = basis_.size();
     Eigen::MatrixXd kept(n, 1 + (inputs_[0].start >= 0 ? 1 : 0));  // 1 and the start stay
     kept.col(0) = basis_.m_vectors().transpose() * system_.ones;
-    if (inputs_[0].start >= 0) kept.col(1) = basis_.m_vectors().transpose() * demand_.start;
+    if (inputs_[0].start >= 0) kept.col(1) = basis_.m_vectors().transpose() * start_;
     const Eigen::MatrixXd held =
         Eigen::HouseholderQR<Eigen::MatrixXd>(kept).householderQ() * Eigen::MatrixXd::Identity(n, kept.cols());
     std::vector<Eigen::MatrixXd> k, f, states;
@@ -352,8 +331,9 @@ class Reducer {
   }
 
   const FullSystem& system_;
-  const ReductionDemand& demand_;
+  const Eigen::VectorXd& start_;
   const ReductionOptions& options_;
+  std::vector<Eigen::VectorXd> points_;  ///< sets of coefficients
   Basis basis_;
   std::vector<Inputs> inputs_;  ///< per set of coefficients
   std::vector<double> shifts_1_s_, times_s_;
@@ -361,51 +341,9 @@ class Reducer {
 
 }  // namespace
 
-ReductionDemand reduction_demand(const FullSystem& system, const std::vector<const Cyclogram*>& cyclograms,
-                                 const TimeSeries& hall, const Eigen::VectorXd& start) {
-  ReductionDemand demand{.coefficients = {},
-                         .power_W = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.sources.size())),
-                         .start = start};
-  std::vector<Drive> drives = {Drive{}};
-  for (const Cyclogram* c : cyclograms) {
-    demand.duration_s = std::max(demand.duration_s, c->duration_s());
-    for (const auto& section : c->sections) drives.push_back(section.drive);
-  }
-  demand.hall_K = 1.0;
-  for (double hall_K : hall.value) demand.hall_K = std::max(demand.hall_K, std::abs(hall_K));
-  std::vector<double> changes_s = system.change_times_s, times_s = {0.0};  // one time in each interval between changes
-  std::sort(changes_s.begin(), changes_s.end());
-  for (double t_s : changes_s) times_s.push_back(t_s * (1.0 + 1e-9));
-  const auto n_exchanges = static_cast<Eigen::Index>(system.exchanges.size());
-  Eigen::VectorXd low = Eigen::VectorXd::Constant(n_exchanges, std::numeric_limits<double>::max()),
-                  high = Eigen::VectorXd::Zero(n_exchanges);
-  for (const Drive& drive : drives) {
-    for (double t_s : times_s) {
-      const effects::Inputs at{.drive = drive, .hall_K = hall.at(t_s), .time_s = t_s};
-      for (Eigen::Index s = 0; s < demand.power_W.size(); ++s) {
-        for (double power_W : values_of(system, system.sources[static_cast<std::size_t>(s)].power_W, at)) {
-          demand.power_W[s] = std::max(demand.power_W[s], std::abs(power_W));
-        }
-      }
-      for (Eigen::Index e = 0; e < n_exchanges; ++e) {
-        for (double c : values_of(system, system.exchanges[static_cast<std::size_t>(e)].coefficient, at)) {
-          low[e] = std::min(low[e], c);
-          high[e] = std::max(high[e], c);
-        }
-      }
-    }
-  }
-  low = low.cwiseMin(high);
-  demand.coefficients.push_back(0.5 * (low + high));
-  if ((high - low).cwiseAbs().maxCoeff() > 0.0) {
-    demand.coefficients.push_back(low);
-    demand.coefficients.push_back(high);
-  }
-  return demand;
-}
-
-Reduction reduce(const FullSystem& system, const ReductionDemand& demand, const ReductionOptions& options) {
-  return Reducer(system, demand, options).run();
+Reduction reduce(const FullSystem& system, const ReductionDemand& demand, const Eigen::VectorXd& start,
+                 const ReductionOptions& options) {
+  return Reducer(system, demand, start, options).run();
 }
 
 }  // namespace driftwright::solver

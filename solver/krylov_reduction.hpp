@@ -8,29 +8,13 @@
 // Source: Grimme, Krylov Projection Methods for Model Reduction (1997); the greedy choice of shifts by the residual follows
 // Druskin & Simoncini, Systems & Control Letters 60 (2011) 546-560.
 
-#include "base/cyclogram.hpp"
+#include "solver/reduction_demand.hpp"
 #include "solver/thermal_system.hpp"
 
 namespace driftwright::solver {
 
-/// What a reduced model will be asked.
-struct ReductionDemand {
-  /// Sets of coefficients, one entry per exchange: the middle first, then corners of the range.
-  std::vector<Eigen::VectorXd> coefficients;
-  Eigen::VectorXd power_W;  ///< largest magnitude of each source
-  double hall_K = 0.0;      ///< largest hall temperature over the reference, in magnitude, at least 1 K
-  Eigen::VectorXd start;    ///< θ at t = 0
-  double duration_s = 0.0;  ///< of the longest cyclogram
-};
-
-/// @param drives   all drives to come; standstill is added
-/// @param systems' laws of temperature are looked at from the hall's temperature to 40 K above it
-/// @throws InputError  when a coefficient is negative
-[[nodiscard]] ReductionDemand reduction_demand(const FullSystem& system, const std::vector<const Cyclogram*>& cyclograms,
-                                               const TimeSeries& hall, const Eigen::VectorXd& start);
-
 struct ReductionOptions {
-  double temperature_K = 8e-3;   ///< error allowed at outputs in K
+  double temperature_K = 8e-3;    ///< error allowed at outputs in K
   double displacement_m = 16e-9;  ///< and at those in m, with all inputs stepping at once
   double angle_rad = 16e-8;
   int most_rounds = 20;
@@ -50,9 +34,10 @@ struct Reduction {
   std::vector<double> shifts_1_s;  ///< in the order they were chosen
 };
 
-/// @param system  without nonlinear terms, varying capacity and prescribed unknowns (reducible())
+/// @param start   θ at t = 0; it is in the basis
+/// @param system  with exchanges in the order of the demand's coefficients; without nonlinear terms, varying capacity and prescribed unknowns (reducible())
 /// @throws SolveError  when K has no inverse (some part has no way for heat to leave), or the tolerance is not met
-[[nodiscard]] Reduction reduce(const FullSystem& system, const ReductionDemand& demand,
+[[nodiscard]] Reduction reduce(const FullSystem& system, const ReductionDemand& demand, const Eigen::VectorXd& start,
                                const ReductionOptions& options = {});
 
 }  // namespace driftwright::solver

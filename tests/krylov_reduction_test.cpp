@@ -21,6 +21,10 @@ std::vector<double> every_minute() {
   return times_s;
 }
 
+ReductionDemand demand() {
+  return reduction_demand(fixtures::two_blocks_balance(), {&kCycle}, kRampingHall, 293.15);
+}
+
 Trajectory run_in(const FullSystem& system, const Eigen::MatrixXd& basis, const Eigen::VectorXd& start,
                   const Cyclogram& cycle = kCycle) {
   const ReducedSystem reduced = project(system, basis);
@@ -35,12 +39,11 @@ Trajectory complete(const FullSystem& system, const Eigen::VectorXd& start, cons
 TEST(KrylovReduction, MeetsItsToleranceAndItsEstimateBoundsTheError) {
   const FullSystem system = fixtures::two_blocks(2);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
-  const ReductionDemand demand = reduction_demand(system, {&kCycle}, kRampingHall, zero);
   const Trajectory exact = complete(system, zero);
   EXPECT_GT(exact.outputs.maxCoeff(), 30.0);
   Eigen::Index last_size = 0;
   for (double tolerance_K : {0.5, 0.05, 5e-3}) {
-    const Reduction reduction = reduce(system, demand, {.temperature_K = tolerance_K});
+    const Reduction reduction = reduce(system, demand(), zero, {.temperature_K = tolerance_K});
     const double error_K = (run_in(system, reduction.basis, zero).outputs - exact.outputs).cwiseAbs().maxCoeff();
     RecordProperty("of_" + std::to_string(tolerance_K), std::to_string(reduction.basis.cols()) + " vectors, estimate " +
                                                             std::to_string(reduction.error.temperature_K) + " K, error " +
@@ -57,8 +60,7 @@ TEST(KrylovReduction, MeetsItsToleranceAndItsEstimateBoundsTheError) {
 TEST(KrylovReduction, HoldsAtEverySpeedInBetween) {
   const FullSystem system = fixtures::two_blocks(2);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
-  const Reduction reduction =
-      reduce(system, reduction_demand(system, {&kCycle}, kRampingHall, zero), {.temperature_K = 5e-3});
+  const Reduction reduction = reduce(system, demand(), zero, {.temperature_K = 5e-3});
   for (double rpm : {100.0, 900.0, 2700.0}) {
     const Cyclogram other{.name = "other", .sections = {{3000, rpm}, {900, 0.5 * rpm}, {3300, 0}}};
     EXPECT_LT(
@@ -72,8 +74,7 @@ TEST(KrylovReduction, KeepsTheStartAndTheHeatBalance) {
   const FullSystem system = fixtures::two_blocks(2);
   Eigen::VectorXd start(system.size());
   for (Eigen::Index i = 0; i < start.size(); ++i) start[i] = 10.0 * std::sin(0.01 * static_cast<double>(i));
-  const Reduction reduction =
-      reduce(system, reduction_demand(system, {&kCycle}, kRampingHall, start), {.temperature_K = 5e-3});
+  const Reduction reduction = reduce(system, demand(), start, {.temperature_K = 5e-3});
   const Trajectory run = run_in(system, reduction.basis, start);
   EXPECT_NEAR(run.outputs(0, 0), system.observe(start, 0.0)[0], 1e-9);  // rounding: the start itself is in the basis
   EXPECT_LT((run.outputs - complete(system, start).outputs).cwiseAbs().maxCoeff(), 5e-3);
@@ -82,38 +83,62 @@ TEST(KrylovReduction, KeepsTheStartAndTheHeatBalance) {
 
 TEST(KrylovReduction, BasisIsOrthonormalInMass) {
   const FullSystem system = fixtures::two_blocks(1);
-  const Eigen::MatrixXd basis =
-      reduce(system, reduction_demand(system, {&kCycle}, kRampingHall, Eigen::VectorXd::Zero(system.size()))).basis;
+  const Eigen::MatrixXd basis = reduce(system, demand(), Eigen::VectorXd::Zero(system.size())).basis;
   const Eigen::MatrixXd gram = basis.transpose() * (system.mass * basis);
   EXPECT_LT((gram - Eigen::MatrixXd::Identity(basis.cols(), basis.cols())).cwiseAbs().maxCoeff(), 1e-10);
 }
 
-TEST(KrylovReduction, DemandSpansTheDrivesAndTheTemperatures) {
-  FullSystem system = fixtures::two_blocks(1);
-  // A third exchange that grows with the temperature of block a over the hall: 1 W/(m^2 K) per K.
-  system.probes.push_back({Eigen::VectorXd::Constant(system.size(), 1.0 / system.size())});
-  BoundLaw growing(effects::Law([](const effects::Inputs& u) { return u.probe_K[0] - 293.15; }, {effects::region("a")}));
-  growing.probes = {0};
-  system.exchanges.push_back(system.exchanges[1]);
-  system.exchanges.back().coefficient = growing;
-  const ReductionDemand demand = reduction_demand(system, {&kCycle}, {{0}, {0}}, Eigen::VectorXd::Zero(system.size()));
-  EXPECT_DOUBLE_EQ(demand.power_W[0], 300.0);
-  EXPECT_DOUBLE_EQ(demand.duration_s, 7200.0);
-  ASSERT_EQ(demand.coefficients.size(), 3u);
-  EXPECT_DOUBLE_EQ(demand.coefficients[1][0], 5.0);   // the film at rest
-  EXPECT_DOUBLE_EQ(demand.coefficients[2][0], 65.0);  // and at 3000 rpm
-  EXPECT_DOUBLE_EQ(demand.coefficients[0][0], 35.0);
-  EXPECT_NEAR(demand.coefficients[1][3], 2.0, 1e-9);
-  EXPECT_NEAR(demand.coefficients[2][3], 40.0, 1e-9);
+TEST(ReductionDemand, SpansDrivesAndTemperaturesRoundedOutwards) {
+  effects::HeatBalance balance = fixtures::two_blocks_balance();
+  // A link that grows with the temperature of block a over the hall: 1 W/K per K.
+  balance.links.push_back({"growing", effects::region("a"),
+                           effects::Law([](const effects::Inputs& u) { return u.probe_K[0] - u.probe_K[1]; },
+                                        {effects::region("a"), effects::node("hall")})});
+  const ReductionDemand demand = reduction_demand(balance, {&kCycle}, {{0}, {0}}, 293.15);
+  EXPECT_DOUBLE_EQ(demand.power_W[0], 512.0);  // 300 W
+  EXPECT_DOUBLE_EQ(demand.duration_s, 8192.0);
+  EXPECT_DOUBLE_EQ(demand.low[0], 4.0);     // the film at rest: 5
+  EXPECT_DOUBLE_EQ(demand.high[0], 128.0);  // and at 3000 rpm: 65
+  EXPECT_DOUBLE_EQ(demand.low[1], 30.0);    // never moves: not rounded
+  EXPECT_DOUBLE_EQ(demand.high[1], 30.0);
+  EXPECT_DOUBLE_EQ(demand.low[2], 2.0);  // links after films, before contacts
+  EXPECT_DOUBLE_EQ(demand.high[2], 64.0);
+  EXPECT_DOUBLE_EQ(demand.low[3], 1500.0);
+  EXPECT_EQ(demand.points().size(), 3u);
+  EXPECT_DOUBLE_EQ(demand.points()[0][0], 66.0);
+}
+
+TEST(ReductionDemand, IsTheSameForCyclogramsThatAskNearlyTheSame) {
+  const effects::HeatBalance balance = fixtures::two_blocks_balance();
+  const Cyclogram other{.name = "other", .sections = {{7000, 3100}}};
+  const ReductionDemand a = reduction_demand(balance, {&kCycle}, {{0}, {0}}, 293.15),
+                        b = reduction_demand(balance, {&other}, {{0}, {0.5}}, 293.15);
+  EXPECT_EQ(a.low, b.low);
+  EXPECT_EQ(a.high, b.high);
+  EXPECT_EQ(a.power_W, b.power_W);
+  EXPECT_EQ(a.duration_s, b.duration_s);
+  EXPECT_EQ(a.hall_K, b.hall_K);
+}
+
+TEST(ReductionDemand, LooksAtBothSidesOfEachChangeAndOfEachThermostat) {
+  effects::HeatBalance balance;
+  balance.change_times_s = {600.0, 1200.0};
+  balance.films.push_back(
+      {"draught", "a", [](const effects::Inputs& u) { return u.time_s > 600.0 && u.time_s < 1200.0 ? 16.0 : 4.0; }});
+  balance.films.push_back({"chiller", "a", effects::Law([](const effects::Inputs&) { return 32.0; }, {}, "t")});
+  const ReductionDemand demand = reduction_demand(balance, {}, {{0}, {0}}, 293.15);
+  EXPECT_DOUBLE_EQ(demand.low[0], 4.0);
+  EXPECT_DOUBLE_EQ(demand.high[0], 16.0);
+  EXPECT_DOUBLE_EQ(demand.low[1], 0.0);
+  EXPECT_DOUBLE_EQ(demand.high[1], 32.0);
 }
 
 TEST(KrylovReduction, SaysWhenHeatHasNoWayOutOrTheToleranceIsOutOfReach) {
   FullSystem system = fixtures::two_blocks(1);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
-  const ReductionDemand demand = reduction_demand(system, {&kCycle}, kRampingHall, zero);
-  EXPECT_THROW((void)reduce(system, demand, {.temperature_K = 1e-6, .most_rounds = 4}), SolveError);
-  system.exchanges.erase(system.exchanges.begin(), system.exchanges.begin() + 2);  // both films
-  EXPECT_THROW((void)reduce(system, reduction_demand(system, {&kCycle}, kRampingHall, zero)), SolveError);
+  EXPECT_THROW((void)reduce(system, demand(), zero, {.temperature_K = 1e-6, .most_rounds = 4}), SolveError);
+  for (std::size_t e = 0; e < 2; ++e) system.exchanges[e].matrix *= 0.0;  // both films
+  EXPECT_THROW((void)reduce(system, demand(), zero), SolveError);
 }
 
 }  // namespace

@@ -6,17 +6,21 @@
 
 namespace driftwright::fixtures {
 
-/// Two blocks; a is heated and has a film, both growing with speed.
-inline solver::FullSystem two_blocks(int n) {
-  const mesh::Mesh mesh = two_boxes({{0, 0, 0}, {0.05, 0.1, 0.1}, {n, n, n}, mesh::CellShape::kTet10},
-                                    {{0.05, 0, 0}, {0.3, 0.1, 0.1}, {3 * n, n, n}, mesh::CellShape::kTet10}, "a.x1", "b.x0");
+/// Block a is heated and has a film, both growing with speed; block b is cooled.
+inline effects::HeatBalance two_blocks_balance() {
   effects::HeatBalance balance;
   balance.heats.push_back(
       {"bearing", effects::region("a"), [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
   balance.films.push_back({"side", "a.y1", [](const effects::Inputs& u) { return 5.0 + 0.02 * u.drive.speed_rpm; }, "hall"});
   balance.films.push_back({"back", "b.x1", constant(30.0), "hall"});
   balance.contacts.push_back({"contact", "a/b", constant(1500.0)});
-  solver::FullSystem system = solver::assemble_heat(mesh, {steel(), steel()}, balance);
+  return balance;
+}
+
+inline solver::FullSystem two_blocks(int n) {
+  const mesh::Mesh mesh = two_boxes({{0, 0, 0}, {0.05, 0.1, 0.1}, {n, n, n}, mesh::CellShape::kTet10},
+                                    {{0.05, 0, 0}, {0.3, 0.1, 0.1}, {3 * n, n, n}, mesh::CellShape::kTet10}, "a.x1", "b.x0");
+  solver::FullSystem system = solver::assemble_heat(mesh, {steel(), steel()}, two_blocks_balance());
   observe_unknowns(system, {node_at(mesh, {0, 0, 0}), node_at(mesh, {0.35, 0.1, 0.1})});
   return system;
 }

@@ -1,0 +1,94 @@
+#include "solver/reduction_demand.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/errors.hpp"
+
+namespace driftwright::solver {
+namespace {
+
+constexpr double kWarmer_K[] = {2.0, 20.0, 40.0};  // over the hall: where laws of temperature are looked at
+
+double up(double value) {
+  return value == 0.0 ? 0.0 : std::exp2(std::ceil(std::log2(value) - 1e-9));
+}
+double down(double value) {
+  return value == 0.0 ? 0.0 : std::exp2(std::floor(std::log2(value) + 1e-9));
+}
+
+struct Range {
+  double low = std::numeric_limits<double>::max(), high = 0.0;
+  void take(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+/// Widens a range by what a law says at a drive and a time.
+void look(const effects::Law& law, effects::Inputs at, double reference_K, Range& range) {
+  if (!law.thermostat.empty()) range.take(0.0);
+  if (law.probes.empty()) return range.take(std::abs(law(at)));
+  for (double warmer_K : kWarmer_K) {
+    at.probe_K.clear();
+    for (const effects::Body& body : law.probes) {
+      at.probe_K.push_back(reference_K + at.hall_K + (body == effects::node(effects::kHallName) ? 0.0 : warmer_K));
+    }
+    try {
+      range.take(std::abs(law(at)));
+    } catch (const RangeError&) {  // the law says by itself where it ends, should a run come there
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Eigen::VectorXd> ReductionDemand::points() const {
+  std::vector<Eigen::VectorXd> sets = {0.5 * (low + high)};
+  if (low != high) sets.insert(sets.end(), {low, high});
+  return sets;
+}
+
+ReductionDemand reduction_demand(const effects::HeatBalance& balance, const std::vector<const Cyclogram*>& cyclograms,
+                                 const TimeSeries& hall, double reference_K) {
+  std::vector<const effects::Law*> sources, exchanges;
+  for (const effects::HeatInput& h : balance.heats) sources.push_back(&h.power_W);
+  for (const effects::Film& f : balance.films) exchanges.push_back(&f.htc_W_m2K);
+  for (const effects::Link& l : balance.links) exchanges.push_back(&l.conductance_W_K);
+  for (const effects::Contact& c : balance.contacts) exchanges.push_back(&c.conductance_W_m2K);
+  std::vector<Range> of_source(sources.size()), of_exchange(exchanges.size());
+
+  double duration_s = 3600.0, hall_K = 1.0;
+  std::vector<Drive> drives = {Drive{}};
+  for (const Cyclogram* c : cyclograms) {
+    duration_s = std::max(duration_s, c->duration_s());
+    for (const auto& section : c->sections) drives.push_back(section.drive);
+  }
+  for (double value_K : hall.value) hall_K = std::max(hall_K, std::abs(value_K));
+  std::vector<double> times_s = {0.0};  // one in each interval between changes
+  for (double t_s : balance.change_times_s) times_s.push_back(t_s * (1.0 + 1e-9));
+  for (const Drive& drive : drives) {
+    for (double t_s : times_s) {
+      const effects::Inputs at{.drive = drive, .hall_K = hall.at(t_s), .time_s = t_s};
+      for (std::size_t s = 0; s < sources.size(); ++s) look(*sources[s], at, reference_K, of_source[s]);
+      for (std::size_t e = 0; e < exchanges.size(); ++e) look(*exchanges[e], at, reference_K, of_exchange[e]);
+    }
+  }
+  ReductionDemand demand;
+  demand.hall_K = up(hall_K);
+  demand.duration_s = up(duration_s);
+  demand.power_W.resize(static_cast<Eigen::Index>(sources.size()));
+  demand.low.resize(static_cast<Eigen::Index>(exchanges.size()));
+  demand.high.resize(demand.low.size());
+  for (std::size_t s = 0; s < sources.size(); ++s) demand.power_W[static_cast<Eigen::Index>(s)] = up(of_source[s].high);
+  for (std::size_t e = 0; e < exchanges.size(); ++e) {
+    const Range& r = of_exchange[e];
+    const bool moves = r.low < r.high;
+    demand.low[static_cast<Eigen::Index>(e)] = moves ? down(r.low) : r.high;
+    demand.high[static_cast<Eigen::Index>(e)] = moves ? up(r.high) : r.high;
+  }
+  return demand;
+}
+
+}  // namespace driftwright::solver
