@@ -7,7 +7,6 @@ namespace driftwright::app {
 namespace {
 
 using namespace compensation;
-using scenarios::Machine;
 using scenarios::Scenario;
 
 std::vector<std::string> candidates(const scenarios::Study& study, const Record& record) {
@@ -37,10 +36,10 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 }
 
 /// The modal model's record of a cyclogram, at the times of the full model's.
-Record predict_record(const ModalPredictor& predictor, const Scenario& scenario, const Machine& machine,
+Record predict_record(const ModalPredictor& predictor, const Scenario& scenario, const Model& model,
                       const Cyclogram& cyclogram, const std::vector<double>& time_s) {
-  return scenarios::to_record(predictor.predict(cyclogram, scenario.machine->hall, time_s), machine.system.outputs,
-                              cyclogram, scenario.machine->reference_K);
+  return scenarios::to_record(predictor.predict(cyclogram, scenario.machine->hall, time_s), model.outputs(), cyclogram,
+                              scenario.machine->reference_K);
 }
 
 ModalError modal_error(const Record& predicted, const Record& full, const std::vector<std::string>& displacements,
@@ -60,17 +59,15 @@ ModalError modal_error(const Record& predicted, const Record& full, const std::v
   return error;
 }
 
-void fit_modal(MachineStudy& study, const Scenario& scenario, const Machine& machine) {
+void fit_modal(MachineStudy& study, const Scenario& scenario, const Model& model) {
   const Cyclogram& judged = scenario.cyclogram(scenario.study->judge);
   const int n_modes = scenario.study->thermal_modes;
-  const Eigen::VectorXd start = scenarios::start_state(*scenario.machine, machine);
   std::vector<const Cyclogram*> training;
   for (const SimulatedRun& run : study.train) training.push_back(&scenario.cyclogram(run.record.source));
   const Drive typical = mean_drive(training);
   for (bool with_steady_responses : {false, true}) {
-    const ModalPredictor predictor =
-        make_modal_predictor(machine.system, n_modes, start, scenario.machine->hall.at(0.0), typical, with_steady_responses);
-    Record predicted = predict_record(predictor, scenario, machine, judged, study.judged.record.time_s);
+    const ModalPredictor predictor = modal_predictor(scenario, model, n_modes, typical, with_steady_responses);
+    Record predicted = predict_record(predictor, scenario, model, judged, study.judged.record.time_s);
     study.modal_errors.push_back(
         modal_error(predicted, study.judged.record, study.displacements, n_modes, with_steady_responses));
     if (!with_steady_responses) continue;
@@ -78,8 +75,7 @@ void fit_modal(MachineStudy& study, const Scenario& scenario, const Machine& mac
     study.modal_time_constant_s = predictor.time_constant_s;
     study.modal_margin_um.assign(study.displacements.size(), 0.0);
     for (const SimulatedRun& run : study.train) {
-      const Record p =
-          predict_record(predictor, scenario, machine, scenario.cyclogram(run.record.source), run.record.time_s);
+      const Record p = predict_record(predictor, scenario, model, scenario.cyclogram(run.record.source), run.record.time_s);
       for (std::size_t d = 0; d < study.displacements.size(); ++d) {
         study.modal_margin_um[d] =
             std::max(study.modal_margin_um[d],
@@ -155,14 +151,13 @@ std::vector<const CorrectedRun*> MachineStudy::of_channel(const std::string& cha
   return found;
 }
 
-MachineStudy study_machine(const Scenario& scenario, const Machine& machine, Progress& progress,
-                           output::FieldSeries* fields) {
+MachineStudy study_machine(const Scenario& scenario, const Model& model, Progress& progress, output::FieldSeries* fields) {
   MachineStudy study;
   const scenarios::Study& settings = *scenario.study;
   std::vector<const Cyclogram*> cyclograms;
   for (const std::string& name : settings.train) cyclograms.push_back(&scenario.cyclogram(name));
   cyclograms.push_back(&scenario.cyclogram(settings.judge));
-  study.train = simulate_cyclograms(scenario, machine, cyclograms, progress, cyclograms.size() - 1, fields);
+  study.train = simulate_cyclograms(scenario, model, cyclograms, progress, cyclograms.size() - 1, fields);
   for (const SimulatedRun& run : study.train)
     study.worst_energy_gap = std::max(study.worst_energy_gap, run.trajectory.energy_gap());
   study.judged = std::move(study.train.back());
@@ -170,7 +165,7 @@ MachineStudy study_machine(const Scenario& scenario, const Machine& machine, Pro
   for (const auto& d : scenario.machine->displacements) study.displacements.push_back(d.name);
   progress.begin("fitting and correcting");
   fit_regression_on_best(study, settings);
-  fit_modal(study, scenario, machine);
+  fit_modal(study, scenario, model);
   correct(study, scenario);
   find_ambiguities(study, scenario);
   return study;

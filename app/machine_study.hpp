@@ -49,7 +49,7 @@ struct MachineStudy {
   [[nodiscard]] std::vector<const compensation::CorrectedRun*> of_channel(const std::string& channel) const;
 };
 
-[[nodiscard]] MachineStudy study_machine(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
-                                         Progress& progress, output::FieldSeries* fields);
+[[nodiscard]] MachineStudy study_machine(const scenarios::Scenario& scenario, const Model& model, Progress& progress,
+                                         output::FieldSeries* fields);
 
 }  // namespace driftwright::app

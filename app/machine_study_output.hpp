@@ -12,11 +12,11 @@ namespace driftwright::app {
 [[nodiscard]] std::string terminal_summary(const scenarios::Scenario& scenario, const MachineStudy& study);
 
 /// Everything that a script would want, with units in the keys (docs/outputs.md).
-[[nodiscard]] nlohmann::ordered_json summary_json(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
+[[nodiscard]] nlohmann::ordered_json summary_json(const scenarios::Scenario& scenario, const Model& model,
                                                   const MachineStudy& study, const output::Provenance& made_by);
 
-[[nodiscard]] output::Report study_report(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
-                                          const MachineStudy& study, const output::Provenance& made_by);
+[[nodiscard]] output::Report study_report(const scenarios::Scenario& scenario, const Model& model, const MachineStudy& study,
+                                          const output::Provenance& made_by);
 
 /// The correction schedules of all channels in the paper's notation, for the person who edits the NC program.
 [[nodiscard]] std::string schedule_text(const MachineStudy& study);

@@ -162,14 +162,14 @@ void add_ambiguity(output::Report& report, const std::string& target, const Mach
 
 }  // namespace
 
-output::Report study_report(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
-                            const MachineStudy& study, const output::Provenance& made_by) {
+output::Report study_report(const scenarios::Scenario& scenario, const Model& model, const MachineStudy& study,
+                            const output::Provenance& made_by) {
   const scenarios::Study& settings = *scenario.study;
   const Cyclogram& judged = scenario.cyclogram(settings.judge);
   output::Report report{
       .title = scenario.name + ": thermal drift and its correction",
-      .subtitle = fmt::format("Driftwright {}, scenario {}; {} nodes, {} cells", made_by.version, made_by.scenario,
-                              machine.placed.mesh.n_nodes(), machine.placed.mesh.cells.size()),
+      .subtitle = fmt::format("Driftwright {}, scenario {}; {} nodes, {} cells; {}", made_by.version, made_by.scenario,
+                              model.mesh().n_nodes(), model.mesh().cells.size(), model.words()),
       .blocks = {}};
   const auto add = [&](auto block) { report.blocks.emplace_back(std::move(block)); };
   add(verdict(settings, study));
@@ -191,7 +191,7 @@ output::Report study_report(const scenarios::Scenario& scenario, const scenarios
   add(heat_plot(study.judged.trajectory, judged));
   add(heat_table(study.judged.trajectory));
   add(inner_heat_table(study.judged.trajectory));
-  if (!study.judged.trajectory.overshoots.empty()) add(overshoot_table(study.judged.trajectory, machine));
+  if (!study.judged.trajectory.overshoots.empty()) add(overshoot_table(study.judged.trajectory, model));
   for (const std::string& d : study.displacements) {
     if (d != settings.target) add(residual_plot(d, scenario, study));
   }

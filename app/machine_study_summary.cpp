@@ -77,14 +77,19 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
   return text;
 }
 
-Json summary_json(const scenarios::Scenario& scenario, const scenarios::Machine& machine, const MachineStudy& study,
+Json summary_json(const scenarios::Scenario& scenario, const Model& model, const MachineStudy& study,
                   const output::Provenance& made_by) {
   const scenarios::Study& settings = *scenario.study;
   Json j = {
       {"program", "driftwright"}, {"version", made_by.version}, {"scenario", made_by.scenario}, {"name", scenario.name}};
-  j["model"] = {{"nodes", machine.placed.mesh.n_nodes()},
-                {"cells", machine.placed.mesh.cells.size()},
-                {"temperature_unknowns", machine.system.size()}};
+  j["model"] = {
+      {"nodes", model.mesh().n_nodes()}, {"cells", model.mesh().cells.size()}, {"temperature_unknowns", model.n_unknowns()}};
+  if (const scenarios::ReducedMachine* reduced = model.reduced()) {
+    j["model"]["reduced_states"] = reduced->system.size();
+    j["model"]["estimated_error"] = {{"temperature_K", reduced->error.temperature_K},
+                                     {"displacement_um", 1e6 * reduced->error.displacement_m},
+                                     {"angle_urad", 1e6 * reduced->error.angle_rad}};
+  }
   j["trained_on"] = settings.train;
   j["judged_on"] = settings.judge;
   j["target"] = settings.target;

@@ -26,16 +26,18 @@ void predict(const PredictOptions& options) {
   scenarios::check_cyclogram(scenario, cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const scenarios::Machine machine = build_machine(model, progress);
-  scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
+  const Model machine = open_model(scenario, {&cyclogram}, progress);
+  if (const scenarios::Machine* full = machine.full()) {
+    scenarios::require_ways_out(full->placed.mesh, full->placed.balance, model.where);
+  }
   progress.begin("computing thermal modes");
   const int most_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
-  const compensation::ModalPredictor predictor = compensation::make_modal_predictor(
-      machine.system, most_modes, scenarios::start_state(model, machine), model.hall.at(0.0), mean_drive({&cyclogram}));
+  const compensation::ModalPredictor predictor =
+      modal_predictor(scenario, machine, most_modes, mean_drive({&cyclogram}), true);
   const std::size_t n_modes = predictor.time_constant_s.size();  // a machine of few nodes has fewer
   const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);
-  const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.system.outputs,
-                                             cyclogram, model.reference_K);
+  const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.outputs(), cyclogram,
+                                             model.reference_K);
   folder.write_text("record.csv",
                     record_csv(record, provenance_lines(folder.made_by(), fmt::format("predicted by {} thermal modes for {}",
                                                                                       n_modes, options.cyclogram))));
@@ -43,7 +45,7 @@ void predict(const PredictOptions& options) {
   progress.end();
   fmt::print("{}, {:.0f} min, predicted by {} thermal modes and the steady responses\n", options.cyclogram,
              cyclogram.duration_s() / 60.0, n_modes);
-  if (!machine.system.is_linear()) {
+  if (!machine.is_linear()) {
     fmt::print(
         "  radiation, films, friction and properties that change with temperature stay as they are in the steady state of "
         "the mean drive; `simulate` follows them\n");

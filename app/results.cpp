@@ -9,14 +9,15 @@
 #include "app/version.hpp"
 #include "base/quantity.hpp"
 #include "scenarios/heat_flow_record.hpp"
+#include "solver/reduced_transient.hpp"
 #include "solver/stress.hpp"
 
 namespace driftwright::app {
 namespace {
 
-output::StressField stress_field(const scenarios::PlacedMachine& placed, const Eigen::Matrix3Xd& displacement_m,
-                                 const Eigen::VectorXd& theta_K) {
-  output::StressField field{1e-6 * solver::nodal_stress_Pa(placed.mesh, placed.materials, displacement_m, theta_K), {}};
+output::StressField stress_field(const mesh::Mesh& mesh, const solver::RegionMaterials& materials,
+                                 const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K) {
+  output::StressField field{1e-6 * solver::nodal_stress_Pa(mesh, materials, displacement_m, theta_K), {}};
   field.von_mises_MPa.resize(field.stress_MPa.cols());
   for (Eigen::Index n = 0; n < field.stress_MPa.cols(); ++n) {
     field.von_mises_MPa[n] = solver::von_mises(field.stress_MPa.col(n));
@@ -61,13 +62,6 @@ const scenarios::Study& require_study(const scenarios::Scenario& scenario, const
       fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit", scenario.path, verb));
 }
 
-scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress) {
-  progress.begin("meshing");
-  scenarios::PlacedMachine placed = scenarios::place(model);
-  if (placed.mesh.n_nodes() > 0) progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
-  return scenarios::build(model, std::move(placed));
-}
-
 std::string fields_note(const output::FieldSeries& fields) {
   constexpr std::size_t kManyTimes = 100;
   if (fields.format() != FieldsFormat::kVtu || fields.n_times() <= kManyTimes) return "";
@@ -76,17 +70,56 @@ std::string fields_note(const output::FieldSeries& fields) {
       fields.n_times());
 }
 
-std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
+namespace {
+
+/// Which output times get whole fields.
+class FieldTimes {
+ public:
+  FieldTimes(const scenarios::SolverSettings& settings, double end_s) : settings_(settings), end_s_(end_s) {}
+  bool is_due(double time_s) {
+    const auto& wanted_s = settings_.fields_at_s;
+    const bool listed =
+        std::any_of(wanted_s.begin(), wanted_s.end(), [&](double t_s) { return std::abs(t_s - time_s) <= 1e-9 * t_s; });
+    const bool due = wanted_s.empty() ? time_s >= next_s_ - 1e-6 : listed || time_s == 0.0;
+    if (!due && time_s < end_s_) return false;
+    while (next_s_ <= time_s + 1e-6) next_s_ += settings_.fields_every_s;
+    return true;
+  }
+
+ private:
+  const scenarios::SolverSettings& settings_;
+  double end_s_, next_s_ = 0.0;
+};
+
+void write_fields(const scenarios::Scenario& scenario, const Model& model, const solver::RegionMaterials& materials,
+                  double time_s, const Eigen::VectorXd& state, output::FieldSeries& fields) {
+  const scenarios::ReducedMachine* reduced = model.reduced();
+  const Eigen::VectorXd nodes =
+      reduced ? reduced->node_temperature_K(state) : Eigen::VectorXd(state.head(model.mesh().n_nodes()));
+  const Eigen::Matrix3Xd displacement_m =
+      reduced ? reduced->node_displacement_m(state) : model.full()->elasticity->displacement(nodes);
+  const std::optional<output::StressField> stress =
+      scenario.solver.stresses ? std::optional(stress_field(model.mesh(), materials, displacement_m, nodes)) : std::nullopt;
+  fields.write(time_s, (nodes.array() + (scenario.machine->reference_K - kZeroCelsius_K)).matrix(), 1e6 * displacement_m,
+               stress ? &*stress : nullptr);
+}
+
+}  // namespace
+
+std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const Model& model,
                                               const std::vector<const Cyclogram*>& cyclograms, Progress& progress,
                                               std::size_t with_fields, output::FieldSeries* fields) {
-  const scenarios::MachineModel& model = *scenario.machine;
+  const scenarios::MachineModel& machine = *scenario.machine;
   const scenarios::SolverSettings& settings = scenario.solver;
   double total_s = 0.0;
   for (const Cyclogram* c : cyclograms) total_s += c->duration_s();
   progress.begin(fmt::format("simulating {} cyclogram{}, {:.0f} min in all", cyclograms.size(),
                              cyclograms.size() == 1 ? "" : "s", total_s / 60.0));
 
-  const Eigen::VectorXd start = scenarios::start_state(model, machine);
+  solver::RegionMaterials materials;
+  if (fields && settings.stresses) materials = scenarios::region_materials(machine, model.mesh());
+  const scenarios::ReducedMachine* reduced = model.reduced();
+  const Eigen::VectorXd start = reduced ? reduced->start : scenarios::start_state(machine, *model.full());
   std::vector<SimulatedRun> runs(cyclograms.size());
   std::vector<std::exception_ptr> failures(cyclograms.size());
   double done_s = 0.0;
@@ -95,31 +128,24 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
 #pragma omp parallel for schedule(dynamic, 1) if (cyclograms.size() > 1)
   for (std::size_t i = 0; i < cyclograms.size(); ++i) {
     const Cyclogram& cyclogram = *cyclograms[i];
-    double next_field_s = 0.0, last_s = 0.0;
+    FieldTimes field_times(settings, cyclogram.duration_s());
+    double last_s = 0.0;
     const auto at_output = [&](double time_s, const Eigen::VectorXd& state) {
 #pragma omp critical(progress)
       progress.update((done_s += time_s - last_s) / total_s);
       last_s = time_s;
-      if (!fields || i != with_fields) return;
-      const auto& wanted_s = settings.fields_at_s;
-      const bool listed =
-          std::any_of(wanted_s.begin(), wanted_s.end(), [&](double t_s) { return std::abs(t_s - time_s) <= 1e-9 * t_s; });
-      const bool due = wanted_s.empty() ? time_s >= next_field_s - 1e-6 : listed || time_s == 0.0;
-      if (!due && time_s < cyclogram.duration_s()) return;
-      const Eigen::VectorXd nodes = state.head(machine.placed.mesh.n_nodes());
-      const Eigen::Matrix3Xd displacement_m = machine.elasticity->displacement(nodes);
-      const std::optional<output::StressField> stress =
-          settings.stresses ? std::optional(stress_field(machine.placed, displacement_m, nodes)) : std::nullopt;
-      fields->write(time_s, (nodes.array() + (model.reference_K - kZeroCelsius_K)).matrix(), 1e6 * displacement_m,
-                    stress ? &*stress : nullptr);
-      while (next_field_s <= time_s + 1e-6) next_field_s += settings.fields_every_s;
+      if (fields && i == with_fields && field_times.is_due(time_s)) {
+        write_fields(scenario, model, materials, time_s, state, *fields);
+      }
     };
+    const std::vector<double> times_s =
+        scenarios::output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
     try {
       runs[i].trajectory =
-          solver::simulate(machine.system, cyclogram, model.hall,
-                           scenarios::output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s),
-                           settings.transient, start, at_output);
-      runs[i].record = scenarios::to_record(runs[i].trajectory, machine.system.outputs, cyclogram, model.reference_K);
+          reduced ? solver::simulate(reduced->system, cyclogram, machine.hall, times_s, settings.transient, start, at_output)
+                  : solver::simulate(model.full()->system, cyclogram, machine.hall, times_s, settings.transient, start,
+                                     at_output);
+      runs[i].record = scenarios::to_record(runs[i].trajectory, model.outputs(), cyclogram, machine.reference_K);
     } catch (...) {
       failures[i] = std::current_exception();  // none may leave the parallel loop
     }

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "app/model.hpp"
 #include "app/progress.hpp"
 #include "app/verbs.hpp"
 #include "output/field_series.hpp"
@@ -28,9 +29,6 @@ namespace driftwright::app {
 [[nodiscard]] const scenarios::MachineModel& require_machine(const scenarios::Scenario& scenario, const std::string& verb);
 [[nodiscard]] const scenarios::Study& require_study(const scenarios::Scenario& scenario, const std::string& verb);
 
-/// Meshes, places and factorises, saying so.
-[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress);
-
 /// What the terminal says of a series too long for its format, a line of its own; empty otherwise.
 [[nodiscard]] std::string fields_note(const output::FieldSeries& fields);
 
@@ -43,8 +41,7 @@ struct SimulatedRun {
 /// Runs cyclograms from the scenario's start on, side by side on all cores, with one progress line for all.
 /// @param with_fields  index of the cyclogram whose whole fields go to `fields` every `fields_every` and at its end
 /// @param fields       or nullptr
-[[nodiscard]] std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario,
-                                                            const scenarios::Machine& machine,
+[[nodiscard]] std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const Model& model,
                                                             const std::vector<const Cyclogram*>& cyclograms,
                                                             Progress& progress, std::size_t with_fields,
                                                             output::FieldSeries* fields);

@@ -15,11 +15,13 @@ void run(const CommonOptions& options) {
   (void)require_study(scenario, "run");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const scenarios::Machine machine = build_machine(model, progress);
-  scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);  // thermal modes need them
+  const Model machine = open_model(scenario, {}, progress);
+  if (const scenarios::Machine* full = machine.full()) {  // thermal modes need them
+    scenarios::require_ways_out(full->placed.mesh, full->placed.balance, model.where);
+  }
 
   std::optional<output::FieldSeries> fields;
-  if (machine.placed.mesh.n_nodes() > 0) fields.emplace(folder, machine.placed.mesh, scenario.solver.fields_format);
+  if (machine.mesh().n_nodes() > 0) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const MachineStudy study = study_machine(scenario, machine, progress, fields ? &*fields : nullptr);
   if (fields) fields->finish();
   progress.begin("writing results");
@@ -36,9 +38,9 @@ void run(const CommonOptions& options) {
   folder.write_text("report.html", output::render_html(study_report(scenario, machine, study, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}  results in {}: report.html, {}record.csv, summary.json\n{}", terminal_summary(scenario, study),
-             shown_path(folder.target()), fields ? fields->file_to_open() + " (ParaView), " : "",
-             fields ? fields_note(*fields) : "");
+  fmt::print("{}  {}{}\n  results in {}: report.html, {}record.csv, summary.json\n{}", terminal_summary(scenario, study),
+             machine.words(), machine.was_known ? " (known from disk)" : "", shown_path(folder.target()),
+             fields ? fields->file_to_open() + " (ParaView), " : "", fields ? fields_note(*fields) : "");
 }
 
 }  // namespace driftwright::app

@@ -30,9 +30,9 @@ std::string words(FlowKind kind) {
 }
 
 /// Region of an unknown, or the name of the lumped node.
-std::string place_of(int unknown, const scenarios::Machine& machine) {
-  const mesh::Mesh& mesh = machine.placed.mesh;
-  if (unknown >= mesh.n_nodes()) return "node " + machine.placed.balance.nodes[unknown - mesh.n_nodes()].name;
+std::string place_of(int unknown, const Model& model) {
+  const mesh::Mesh& mesh = model.mesh();
+  if (unknown >= mesh.n_nodes()) return "node " + model.balance.nodes[unknown - mesh.n_nodes()].name;
   for (int c = 0; c < mesh.cells.size(); ++c) {
     const auto nodes = mesh.cells.nodes(c);
     if (std::find(nodes.begin(), nodes.end(), unknown) == nodes.end()) continue;
@@ -137,7 +137,7 @@ Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram) {
   return plot;
 }
 
-Table overshoot_table(const solver::Trajectory& run, const scenarios::Machine& machine) {
+Table overshoot_table(const solver::Trajectory& run, const Model& model) {
   Table table{.caption =
                   "Where temperatures left the bounds that conduction keeps, beside a jump that is sharper than the mesh "
                   "(consistent mass matrix); the largest of each jump, above the solver's tolerance.",
@@ -145,26 +145,26 @@ Table overshoot_table(const solver::Trajectory& run, const scenarios::Machine& m
               .rows = {}};
   for (const solver::Overshoot& o : run.overshoots) {
     table.rows.push_back({fmt::format("{:.2f}", o.jump_s / 60.0), fmt::format("{:.4f}", o.amount_K),
-                          fmt::format("{:.2f}", o.time_s / 60.0), place_of(o.unknown, machine)});
+                          fmt::format("{:.2f}", o.time_s / 60.0), place_of(o.unknown, model)});
   }
   return table;
 }
 
-std::string overshoot_text(const solver::Trajectory& run, const scenarios::Machine& machine) {
+std::string overshoot_text(const solver::Trajectory& run, const Model& model) {
   if (run.overshoots.empty()) return "";
   const auto worst = std::max_element(run.overshoots.begin(), run.overshoots.end(),
                                       [](const auto& a, const auto& b) { return a.amount_K < b.amount_K; });
   return fmt::format("overshoot of {:.3f} K in {}, {:.0f} s after the jump at {:.1f} min", worst->amount_K,
-                     place_of(worst->unknown, machine), worst->time_s - worst->jump_s, worst->jump_s / 60.0);
+                     place_of(worst->unknown, model), worst->time_s - worst->jump_s, worst->jump_s / 60.0);
 }
 
-output::Report simulation_report(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
+output::Report simulation_report(const scenarios::Scenario& scenario, const Model& model,
                                  const std::vector<const Cyclogram*>& cyclograms, const std::vector<SimulatedRun>& runs,
                                  const output::Provenance& made_by) {
   output::Report report{.title = scenario.name + ": simulation",
-                        .subtitle = fmt::format("Driftwright {}, scenario {}; {} nodes, {} cells, {} lumped nodes",
-                                                made_by.version, made_by.scenario, machine.placed.mesh.n_nodes(),
-                                                machine.placed.mesh.cells.size(), machine.placed.balance.nodes.size()),
+                        .subtitle = fmt::format("Driftwright {}, scenario {}; {} nodes, {} cells, {} lumped nodes; {}",
+                                                made_by.version, made_by.scenario, model.mesh().n_nodes(),
+                                                model.mesh().cells.size(), model.balance.nodes.size(), model.words()),
                         .blocks = {}};
   const auto add = [&](auto block) { report.blocks.emplace_back(std::move(block)); };
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -185,7 +185,7 @@ output::Report simulation_report(const scenarios::Scenario& scenario, const scen
     add(heat_plot(runs[i].trajectory, *cyclograms[i]));
     add(heat_table(runs[i].trajectory));
     add(inner_heat_table(runs[i].trajectory));
-    if (!runs[i].trajectory.overshoots.empty()) add(overshoot_table(runs[i].trajectory, machine));
+    if (!runs[i].trajectory.overshoots.empty()) add(overshoot_table(runs[i].trajectory, model));
   }
   return report;
 }

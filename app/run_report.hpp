@@ -24,12 +24,12 @@ namespace driftwright::app {
 [[nodiscard]] output::Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram);
 
 /// Where temperatures left the bounds of conduction: each jump's largest overshoot with its region; empty rows for none.
-[[nodiscard]] output::Table overshoot_table(const solver::Trajectory& run, const scenarios::Machine& machine);
+[[nodiscard]] output::Table overshoot_table(const solver::Trajectory& run, const Model& model);
 /// The largest of all, in a line; "" for none.
-[[nodiscard]] std::string overshoot_text(const solver::Trajectory& run, const scenarios::Machine& machine);
+[[nodiscard]] std::string overshoot_text(const solver::Trajectory& run, const Model& model);
 
 /// The report of `simulate`: each cyclogram's channels, heat flows and overshoots.
-[[nodiscard]] output::Report simulation_report(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
+[[nodiscard]] output::Report simulation_report(const scenarios::Scenario& scenario, const Model& model,
                                                const std::vector<const Cyclogram*>& cyclograms,
                                                const std::vector<SimulatedRun>& runs, const output::Provenance& made_by);
 

@@ -16,11 +16,11 @@ void simulate(const SimulateOptions& options) {
   }
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const scenarios::Machine machine = build_machine(model, progress);
+  const Model machine = open_model(scenario, cyclograms, progress);
   // Whole fields of one cyclogram only: several would fill the disk and mix in one list of times.
   std::optional<output::FieldSeries> fields;
-  const bool has_mesh = machine.placed.mesh.n_nodes() > 0;
-  if (has_mesh && cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh, scenario.solver.fields_format);
+  const bool has_mesh = machine.mesh().n_nodes() > 0;
+  if (has_mesh && cyclograms.size() == 1) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const std::vector<SimulatedRun> runs =
       simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
   if (fields) fields->finish();
@@ -44,7 +44,8 @@ void simulate(const SimulateOptions& options) {
                     output::render_html(simulation_report(scenario, machine, cyclograms, runs, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}results in {}: report.html, heat flows in W{}\n{}", summary, shown_path(folder.target()),
+  fmt::print("{}{}{}\nresults in {}: report.html, heat flows in W{}\n{}", summary, machine.words(),
+             machine.was_known ? " (known from disk)" : "", shown_path(folder.target()),
              fields      ? fmt::format(", fields in {} (ParaView)", fields->file_to_open())
              : !has_mesh ? ""
                          : "; name one cyclogram to get fields, too",

@@ -107,6 +107,15 @@ std::vector<std::string> ConfigMap::keys() const {
   return keys;
 }
 
+std::string ConfigMap::written(const std::string& key) const {
+  if (!has(key)) return "";
+  YAML::Emitter out;
+  out.SetSeqFormat(YAML::Flow);
+  out.SetMapFormat(YAML::Flow);
+  out << (*node_)[key];
+  return out.c_str();
+}
+
 std::string ConfigMap::path_of(const std::string& key) const {
   if (key.empty()) return path_;
   return path_.empty() ? key : path_ + "." + key;

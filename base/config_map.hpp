@@ -60,6 +60,9 @@ class ConfigMap {
   /// Rows of quantities, [[30 min, 2000 rpm], ...]; row i column j in units[j]; "degC" columns come in kelvin.
   [[nodiscard]] std::vector<std::vector<double>> rows(const std::string& key, const std::vector<std::string>& units) const;
 
+  /// A key's value as YAML in one writing, without comments; "" when the key is missing.
+  [[nodiscard]] std::string written(const std::string& key) const;
+
   [[nodiscard]] ConfigMap map(const std::string& key) const;
   [[nodiscard]] std::optional<ConfigMap> optional_map(const std::string& key) const;
   /// A list of maps; empty when the key is missing.

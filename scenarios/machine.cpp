@@ -48,21 +48,6 @@ void must_be_one_of(const Where& where, const std::string& what, const std::stri
   if (std::find(known.begin(), known.end(), name) == known.end()) unknown_name(where, what, name, known);
 }
 
-solver::RegionMaterials place_materials(const MachineModel& model, const Mesh& mesh) {
-  solver::RegionMaterials materials(mesh.regions.size());
-  std::vector<bool> given(mesh.regions.size(), false);
-  for (const MaterialEntry& entry : model.materials) {
-    must_be_one_of(entry.where, "region", entry.region, mesh.regions);
-    materials[mesh.region(entry.region)] = entry.material;
-    given[mesh.region(entry.region)] = true;
-  }
-  for (std::size_t r = 0; r < given.size(); ++r) {
-    if (!given[r])
-      throw InputError(model.where, fmt::format("region '{}' has no material; add it under `materials`", mesh.regions[r]));
-  }
-  return materials;
-}
-
 /// Lumped nodes and the hall. @throws InputError  where two effects make a node of the same name, or one called hall
 std::vector<std::string> node_names(const MachineModel& model) {
   std::vector<std::string> nodes = {effects::kHallName};
@@ -217,11 +202,26 @@ DisplacementFunctional tilt_against_table(const Mesh& mesh, const TiltOutput& ou
 
 }  // namespace
 
+solver::RegionMaterials region_materials(const MachineModel& model, const Mesh& mesh) {
+  solver::RegionMaterials materials(mesh.regions.size());
+  std::vector<bool> given(mesh.regions.size(), false);
+  for (const MaterialEntry& entry : model.materials) {
+    must_be_one_of(entry.where, "region", entry.region, mesh.regions);
+    materials[mesh.region(entry.region)] = entry.material;
+    given[mesh.region(entry.region)] = true;
+  }
+  for (std::size_t r = 0; r < given.size(); ++r) {
+    if (!given[r])
+      throw InputError(model.where, fmt::format("region '{}' has no material; add it under `materials`", mesh.regions[r]));
+  }
+  return materials;
+}
+
 PlacedMachine place(const MachineModel& model) {
   PlacedMachine placed;
   placed.mesh = build_mesh(model.mesh);
   const Mesh& mesh = placed.mesh;
-  placed.materials = place_materials(model, mesh);
+  placed.materials = region_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);
   check_effects(model, mesh, placed.balance);
   require_reached(mesh, placed.balance, model.where);

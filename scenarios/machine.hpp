@@ -29,6 +29,9 @@ struct PlacedMachine {
 /// @throws SolveError  when the mesh cannot be made
 [[nodiscard]] PlacedMachine place(const MachineModel& model);
 
+/// Materials by region of the mesh. @throws InputError  for a region without material, or a material without region
+[[nodiscard]] solver::RegionMaterials region_materials(const MachineModel& model, const mesh::Mesh& mesh);
+
 /// The full model, ready to run.
 struct Machine {
   PlacedMachine placed;

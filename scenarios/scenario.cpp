@@ -78,6 +78,10 @@ MachineModel read_machine(const ConfigMap& in) {
   m.hall = read_hall(in, m.reference_K);
   read_start(in, m);
   m.where = in.where("machine");
+  for (const char* key : {"reference_temperature", "machine", "materials", "supports", "joints", "sensors", "displacements",
+                          "tilts", "start"}) {
+    m.written += fmt::format("{}: {}\n", key, in.written(key));
+  }
   const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
   if (has_mesh && m.supports.empty()) in.fail("supports", "no support; name at least one surface that is held");
   if (m.sensors.empty() && m.displacements.empty())
@@ -88,6 +92,8 @@ MachineModel read_machine(const ConfigMap& in) {
 
 SolverSettings read_solver(const ConfigMap& in) {
   SolverSettings s;
+  if (in.choice("model", {"full", "reduced"}, "full") == "reduced") s.model = ModelKind::kReduced;
+  s.reduction_tolerance_K = in.quantity("reduction_tolerance", "K", 1e-5, 1.0, s.reduction_tolerance_K);
   s.transient.relative_tolerance = in.quantity("relative_tolerance", "1", 1e-10, 1e-1, s.transient.relative_tolerance);
   s.transient.absolute_tolerance_K = in.quantity("absolute_tolerance", "K", 1e-9, 1.0, s.transient.absolute_tolerance_K);
   s.output_interval_s = in.quantity("output_interval", "s", 1e-3, 1e6, s.output_interval_s);

@@ -50,9 +50,20 @@ struct MachineModel {
   double start_K = 293.15;  ///< for Start::kUniform
   TimeSeries hall;          ///< minus reference_K [K]
   Where where;
+  std::string
+      written;  ///< the keys that decide mesh and matrices, as the scenario has them; numbers of effects are not among them
+};
+
+/// What a cyclogram is run on.
+enum class ModelKind {
+  kFull,     ///< the finite elements themselves
+  kReduced,  ///< a small system made of them, which is kept on disk
 };
 
 struct SolverSettings {
+  ModelKind model = ModelKind::kFull;
+  double reduction_tolerance_K =
+      8e-3;  ///< error of the reduced model against the full one, estimated; with 2 um/K and 20 urad/K
   solver::TransientOptions transient;
   double output_interval_s = 60.0;
   double fields_every_s = 1800.0;

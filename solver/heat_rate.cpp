@@ -22,7 +22,10 @@ double named(const std::string& name, Value value) {
 
 double BoundLaw::operator()(const effects::Inputs& u) const {
   if (looks_at_state()) throw std::logic_error("a law that looks at temperatures was asked without them");
-  return law(u);
+  if (frozen_K.empty()) return law(u);
+  effects::Inputs inputs = u;
+  inputs.probe_K = frozen_K;
+  return law(inputs);
 }
 
 HeatRate::Sparse::Sparse(const Eigen::VectorXd& dense) {
@@ -66,7 +69,7 @@ HeatRate::HeatRate(const FullSystem& system)
 
 double HeatRate::value_of(const BoundLaw& law) const {
   if (law.thermostat >= 0 && !thermostat_on_[law.thermostat]) return 0.0;
-  if (!law.looks_at_state()) return law.law(inputs_);
+  if (!law.looks_at_state()) return law(inputs_);
   effects::Inputs inputs = inputs_;
   for (int probe : law.probes) inputs.probe_K.push_back(probe_K_[probe]);
   return law.law(inputs);

@@ -126,7 +126,9 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
   if (with_heat) {
     for (const HeatSource& s : system_.sources) run.flows.push_back({s.name, FlowKind::kSource});
     for (const auto& e : system_.exchanges) {
-      run.flows.push_back({e.name, e.reaches_hall() ? FlowKind::kSurrounding : FlowKind::kInternal});
+      run.flows.push_back({e.name, e.prescribes      ? FlowKind::kPrescribed
+                                   : e.reaches_hall() ? FlowKind::kSurrounding
+                                                      : FlowKind::kInternal});
     }
     heat_J = Eigen::VectorXd::Zero(n_sources + n_exchanges);
     run.heat_J.resize(n_sources + n_exchanges, n_times);
@@ -178,8 +180,8 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
       heat.head(n_sources) += dt_s * power_W;
       const Eigen::VectorXd crossed = d.flows * integral - hall_Ks * d.hall_W_K - dt_s * d.offset_W;
       for (Eigen::Index i = 0; i < n_exchanges; ++i) {
-        const bool reaches_hall = system_.exchanges[static_cast<std::size_t>(i)].reaches_hall();
-        heat[n_sources + i] += reaches_hall ? -crossed[i] : crossed[i];
+        const bool is_internal = run.flows[static_cast<std::size_t>(n_sources + i)].kind == FlowKind::kInternal;
+        heat[n_sources + i] += is_internal ? crossed[i] : -crossed[i];
       }
       return heat;
     };

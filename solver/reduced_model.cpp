@@ -49,7 +49,8 @@ ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis) {
          .coefficient = e.coefficient,
          .flow = basis.transpose() * e.flow,
          .offset = e.offset.size() > 0 ? Eigen::VectorXd(basis.transpose() * e.offset) : Eigen::VectorXd(),
-         .offset_sum = e.offset_sum});
+         .offset_sum = e.offset_sum,
+         .prescribes = e.prescribes});
   }
   reduced.outputs = {system.outputs.name, system.outputs.unit, basis.transpose() * system.outputs.state,
                      system.outputs.hall};

@@ -109,24 +109,50 @@ void require_linearisable(const FullSystem& system) {
   }
 }
 
+void freeze_laws(FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& theta) {
+  const auto freeze = [&](BoundLaw& law) {
+    for (int p : law.probes) law.frozen_K.push_back(system.reference_K + system.probes[p].theta_K(theta, at.hall_K));
+    law.probes.clear();
+  };
+  for (HeatSource& s : system.sources) freeze(s.power_W);
+  for (auto& e : system.exchanges) freeze(e.coefficient);
+}
+
+void hold_by_exchanges(FullSystem& system) {
+  const effects::Law one([](const effects::Inputs&) { return 1.0; });
+  const int n = system.size();
+  const double stiff_W_K = 1e6 * system.conduction.diagonal().maxCoeff() + 1e6;
+  for (const FixedUnknowns& f : system.fixed) {
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::VectorXd members = Eigen::VectorXd::Zero(n);
+    for (int i : f.unknowns) {
+      entries.emplace_back(i, i, stiff_W_K);
+      members[i] = stiff_W_K;
+    }
+    Exchange<SparseRow> e{.name = f.name,
+                          .matrix = SparseRow(n, n),
+                          .to_hall = Eigen::VectorXd::Zero(n),
+                          .coefficient = one,
+                          .flow = members,
+                          .offset = {}};
+    e.matrix.setFromTriplets(entries.begin(), entries.end());
+    if (f.follows_hall) {
+      e.to_hall = members;
+      e.hall_sum = members.sum();
+    } else {
+      e.offset = f.theta.value.front() * members;
+      e.offset_sum = e.offset.sum();
+    }
+    e.prescribes = true;
+    system.exchanges.push_back(std::move(e));
+  }
+  system.fixed.clear();
+}
+
 FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& theta) {
   require_linearisable(system);
   FullSystem linear = system;
-  const auto freeze = [&](BoundLaw& law) {
-    if (!law.looks_at_state()) return;
-    std::vector<double> probe_K;
-    for (int p : law.probes) {
-      probe_K.push_back(system.reference_K + system.probes[p].theta_K(theta, at.hall_K));
-    }
-    law.law = effects::Law([value = law.law.value, probe_K](const effects::Inputs& u) {
-      effects::Inputs inputs = u;
-      inputs.probe_K = probe_K;
-      return value(inputs);
-    });
-    law.probes.clear();
-  };
-  for (HeatSource& s : linear.sources) freeze(s.power_W);
-  for (auto& e : linear.exchanges) freeze(e.coefficient);
+  freeze_laws(linear, at, theta);
   const effects::Law one([](const effects::Inputs&) { return 1.0; });
   const int n = system.size();
   for (const auto& term : system.nonlinear) {  // r(θ) ≈ r0 + J (θ - θ0) + dr/dθ_hall (θ_hall - θ_hall0)
@@ -157,32 +183,7 @@ FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const
   linear.nonlinear.clear();
   if (system.capacity) system.capacity->add_to(theta.data(), linear.mass);
   linear.capacity.reset();
-  // A prescribed temperature becomes an exchange a million times stiffer than the stiffest row of K.
-  const double stiff_W_K = 1e6 * system.conduction.diagonal().maxCoeff() + 1e6;
-  for (const FixedUnknowns& f : system.fixed) {
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd members = Eigen::VectorXd::Zero(n);
-    for (int i : f.unknowns) {
-      entries.emplace_back(i, i, stiff_W_K);
-      members[i] = stiff_W_K;
-    }
-    Exchange<SparseRow> e{.name = f.name,
-                          .matrix = SparseRow(n, n),
-                          .to_hall = Eigen::VectorXd::Zero(n),
-                          .coefficient = one,
-                          .flow = members,
-                          .offset = {}};
-    e.matrix.setFromTriplets(entries.begin(), entries.end());
-    if (f.follows_hall) {
-      e.to_hall = members;
-      e.hall_sum = members.sum();
-    } else {
-      e.offset = f.theta.value.front() * members;
-      e.offset_sum = e.offset.sum();
-    }
-    linear.exchanges.push_back(std::move(e));
-  }
-  linear.fixed.clear();
+  hold_by_exchanges(linear);
   return linear;
 }
 

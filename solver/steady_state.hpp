@@ -21,6 +21,13 @@ namespace driftwright::solver {
 /// @throws InputError  when the system has thermostats or temperatures prescribed over time, which no linear system can follow
 void require_linearisable(const FullSystem& system);
 
+/// Laws that look at temperatures look at those of this state from now on.
+void freeze_laws(FullSystem& system, const effects::Inputs& at, const Eigen::VectorXd& theta);
+
+/// Makes of each prescribed temperature an exchange a million times stiffer than the stiffest row of K, with the coefficient 1. They
+/// come last, in their order. Temperatures prescribed over time keep their first value: require_linearisable() refuses them.
+void hold_by_exchanges(FullSystem& system);
+
 /// The system with every law that looks at temperatures, every nonlinear term and every property frozen at a state: linear,
 /// and alike to first order where laws and properties do not change with temperature. Radiation to a lumped node takes the
 /// slope between both ends' temperatures for either.

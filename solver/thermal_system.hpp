@@ -25,6 +25,7 @@ struct BoundLaw {
   effects::Law law;
   std::vector<int> probes;
   int thermostat = -1;
+  std::vector<double> frozen_K = {};  ///< temperatures that a law without probes of its own is given in their place
 
   BoundLaw() = default;
   BoundLaw(effects::Law free_law) : law(std::move(free_law)) {}  // NOLINT: a law without probes is bound as it is
@@ -56,6 +57,7 @@ struct Exchange {
   Eigen::VectorXd flow = {};
   Eigen::VectorXd offset = {};  ///< o: ∫ N_i (T_air(z) - T_hall) dA where the hall is stratified, else empty [m^2 K]
   double offset_sum = 0.0;      ///< 1'o of the finite-element model
+  bool prescribes = false;      ///< it stands for a prescribed temperature (hold_by_exchanges())
 
   [[nodiscard]] bool reaches_hall() const { return hall_sum != 0.0; }
 };

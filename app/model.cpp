@@ -1,0 +1,65 @@
+#include "app/model.hpp"
+
+#include <fmt/format.h>
+
+#include "app/version.hpp"
+#include "scenarios/machine_store.hpp"
+#include "scenarios/ways_out.hpp"
+
+namespace driftwright::app {
+
+std::string Model::words() const {
+  if (full()) return fmt::format("full model of {} temperature unknowns", n_unknowns());
+  const solver::ReductionError& e = reduced()->error;
+  return fmt::format(
+      "reduced model of {} states for {} unknowns, estimated to miss the full one by at most {:.2g} K, {:.2g} um and "
+      "{:.2g} "
+      "urad",
+      reduced()->system.size(), n_unknowns(), e.temperature_K, 1e6 * e.displacement_m, 1e6 * e.angle_rad);
+}
+
+compensation::ModalPredictor modal_predictor(const scenarios::Scenario& scenario, const Model& model, int n_modes,
+                                             const Drive& typical, bool with_steady_responses) {
+  const scenarios::MachineModel& machine = *scenario.machine;
+  if (const scenarios::ReducedMachine* reduced = model.reduced()) {
+    if (!reduced->modal.empty()) return reduced->modal[with_steady_responses ? 1 : 0];
+    throw InputError(machine.where, fmt::format("thermostat '{}' switches; a linear model (thermal modes) cannot follow it. "
+                                                "`simulate` can",
+                                                reduced->system.thermostats.front().name));
+  }
+  return compensation::make_modal_predictor(model.full()->system, n_modes, scenarios::start_state(machine, *model.full()),
+                                            machine.hall.at(0.0), typical, with_steady_responses);
+}
+
+scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress) {
+  progress.begin("meshing");
+  scenarios::PlacedMachine placed = scenarios::place(model);
+  if (placed.mesh.n_nodes() > 0) progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
+  return scenarios::build(model, std::move(placed));
+}
+
+Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms, Progress& progress) {
+  const scenarios::MachineModel& model = *scenario.machine;
+  effects::HeatBalance balance = effects::heat_balance(model.effects);
+  if (scenario.solver.model == scenarios::ModelKind::kFull) {
+    return {build_machine(model, progress), std::move(balance), false};
+  }
+  std::vector<const Cyclogram*> asked = cyclograms;
+  for (const Cyclogram& c : scenario.cyclograms) asked.push_back(&c);
+  const scenarios::ReductionPlan plan = scenarios::reduction_plan(scenario, asked);
+  const std::string key = scenarios::machine_key(model, plan, kVersion);
+  const std::filesystem::path store = scenarios::machine_store();
+  if (auto known = scenarios::load_machine(store, key, balance)) return {std::move(*known), std::move(balance), true};
+  const scenarios::Machine machine = build_machine(model, progress);
+  scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
+  progress.begin(fmt::format("reducing {} temperature unknowns", machine.system.size()));
+  scenarios::ReducedMachine reduced = scenarios::reduce(model, machine, plan);
+  try {
+    scenarios::save_machine(store, key, reduced);
+  } catch (const InputError& e) {  // the run is none the worse for it
+    fmt::print(stderr, "note: the reduced model is not kept: {}\n", e.what());
+  }
+  return {std::move(reduced), std::move(balance), false};
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,44 @@
+#pragma once
+// What a verb runs cyclograms on: the finite elements, or the reduced model of the same machine.
+
+#include <optional>
+#include <variant>
+
+#include "app/progress.hpp"
+#include "scenarios/reduced_machine.hpp"
+
+namespace driftwright::app {
+
+struct Model {
+  std::variant<scenarios::Machine, scenarios::ReducedMachine> machine;
+  effects::HeatBalance balance;
+  bool was_known = false;  ///< the reduced model came from disk
+
+  [[nodiscard]] const scenarios::Machine* full() const { return std::get_if<scenarios::Machine>(&machine); }
+  [[nodiscard]] const scenarios::ReducedMachine* reduced() const { return std::get_if<scenarios::ReducedMachine>(&machine); }
+  [[nodiscard]] const mesh::Mesh& mesh() const { return full() ? full()->placed.mesh : reduced()->mesh; }
+  [[nodiscard]] const solver::Outputs& outputs() const {
+    return full() ? full()->system.outputs : reduced()->system.outputs;
+  }
+  [[nodiscard]] int n_unknowns() const { return full() ? full()->system.size() : reduced()->n_unknowns; }
+  /// True where coefficients and powers follow from the drive alone.
+  [[nodiscard]] bool is_linear() const { return full() ? full()->system.is_linear() : reduced()->system.is_linear(); }
+  /// For terminal and report: what was run, and how far it is from the full model. Ends without a full stop.
+  [[nodiscard]] std::string words() const;
+};
+
+/// Drift from the thermal modes of a model.
+/// @throws InputError  when thermostats leave it without a linear model
+[[nodiscard]] compensation::ModalPredictor modal_predictor(const scenarios::Scenario& scenario, const Model& model,
+                                                           int n_modes, const Drive& typical, bool with_steady_responses);
+
+/// Meshes, places and factorises, saying so.
+[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress);
+
+/// The model that the scenario asks for. A reduced one comes from disk where the machine is known for such cyclograms, else it is
+/// made and kept.
+/// @param cyclograms  that it will be asked; those of the scenario are always among them
+[[nodiscard]] Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
+                               Progress& progress);
+
+}  // namespace driftwright::app

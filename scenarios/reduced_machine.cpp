@@ -1,0 +1,206 @@
+#include "scenarios/reduced_machine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "solver/conduction_factor.hpp"
+#include "solver/reduced_model.hpp"
+#include "solver/steady_state.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+constexpr double kStefanBoltzmann_W_m2K4 = 5.670374419e-8;  // CODATA 2018
+
+bool has_curves(const solver::RegionMaterials& materials) {
+  return std::any_of(materials.begin(), materials.end(), [](const solver::Material& m) {
+    return !m.conductivity_curve.empty() || !m.heat_capacity_curve.empty();
+  });
+}
+
+/// The demand of a system in which some exchanges stand for prescribed temperatures, last and with the coefficient 1.
+solver::ReductionDemand with_prescriptions(solver::ReductionDemand demand, std::size_t n_exchanges) {
+  const auto n = static_cast<Eigen::Index>(n_exchanges), before = demand.low.size();
+  demand.low.conservativeResize(n);
+  demand.high.conservativeResize(n);
+  demand.low.tail(n - before).setOnes();
+  demand.high.tail(n - before).setOnes();
+  return demand;
+}
+
+/// Materials with conductivity and capacity as they are at each region's mean temperature, in the steady state of half the
+/// demanded power, in the middle of the coefficients.
+solver::RegionMaterials at_work(const Machine& machine, const effects::HeatBalance& balance,
+                                const solver::FullSystem& system, const solver::ReductionDemand& demand, double hall_K) {
+  const Eigen::VectorXd c = demand.points().front();
+  solver::SparseRow k = system.conduction;
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(system.size());
+  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
+    const auto& exchange = system.exchanges[e];
+    const double coefficient = c[static_cast<Eigen::Index>(e)];
+    k += coefficient * exchange.matrix;
+    load += coefficient * hall_K * exchange.to_hall;
+    if (exchange.offset.size() > 0) load += coefficient * exchange.offset;
+  }
+  for (std::size_t s = 0; s < system.sources.size(); ++s) {
+    load += 0.5 * demand.power_W[static_cast<Eigen::Index>(s)] * system.sources[s].load;
+  }
+  solver::require_way_out(k);
+  const Eigen::VectorXd theta = solver::ConductionFactor(k).solve(load);
+  solver::RegionMaterials materials = machine.placed.materials;
+  for (std::size_t r = 0; r < materials.size(); ++r) {
+    const effects::Body region = effects::region(machine.placed.mesh.regions[r]);
+    const double t_K = system.reference_K + solver::mean_weights(machine.placed.mesh, balance, region).dot(theta);
+    solver::Material& m = materials[r];
+    if (!m.conductivity_curve.empty()) m.conductivity_W_mK = m.conductivity_curve.at(t_K);
+    if (!m.heat_capacity_curve.empty()) m.heat_capacity_J_kgK = m.heat_capacity_curve.at(t_K);
+    m.conductivity_curve = {};
+    m.heat_capacity_curve = {};
+  }
+  return materials;
+}
+
+/// The full system without what has no projection.
+solver::FullSystem reducible_system(const MachineModel& model, const Machine& machine, const effects::HeatBalance& balance,
+                                    const solver::ReductionDemand& demand) {
+  for (const solver::FixedUnknowns& f : machine.system.fixed) {
+    if (!f.follows_hall && f.theta.value.size() > 1) {
+      throw InputError(model.where, fmt::format("{} is prescribed over time; no reduced model follows it. Take `solver: "
+                                                "{{model: full}}`",
+                                                f.name));
+    }
+  }
+  const mesh::Mesh& mesh = machine.placed.mesh;
+  solver::FullSystem system = machine.system;
+  if (!system.nonlinear.empty() || system.capacity) {
+    solver::RegionMaterials materials = machine.placed.materials;
+    for (solver::Material& m : materials) {  // at the reference temperature first
+      if (!m.conductivity_curve.empty()) m.conductivity_W_mK = m.conductivity_curve.at(model.reference_K);
+      if (!m.heat_capacity_curve.empty()) m.heat_capacity_J_kgK = m.heat_capacity_curve.at(model.reference_K);
+      m.conductivity_curve = {};
+      m.heat_capacity_curve = {};
+    }
+    const auto assemble = [&] {
+      solver::FullSystem assembled = solver::assemble_heat(mesh, materials, balance, model.reference_K);
+      solver::hold_by_exchanges(assembled);
+      return assembled;
+    };
+    system = assemble();
+    if (has_curves(machine.placed.materials)) {
+      materials = at_work(machine, balance, system, with_prescriptions(demand, system.exchanges.size()), model.hall.at(0.0));
+      system = assemble();
+    }
+    system.outputs = machine.system.outputs;
+    return system;
+  }
+  solver::hold_by_exchanges(system);
+  return system;
+}
+
+std::vector<compensation::ModalPredictor> modal_predictors(const solver::FullSystem& system, const Eigen::VectorXd& start,
+                                                           double hall_K, const ReductionPlan& plan) {
+  if (!system.thermostats.empty()) return {};
+  solver::FullSystem frozen = system;
+  if (system.looks_at_state()) {
+    const effects::Inputs at{.drive = plan.typical, .hall_K = hall_K};
+    solver::freeze_laws(frozen, at, solver::steady_state(system, at, start));
+  }
+  std::vector<compensation::ModalPredictor> predictors;
+  for (bool with_steady_responses : {false, true}) {
+    predictors.push_back(
+        compensation::make_modal_predictor(frozen, plan.n_modes, start, hall_K, plan.typical, with_steady_responses));
+  }
+  return predictors;
+}
+
+}  // namespace
+
+ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms) {
+  const MachineModel& model = *scenario.machine;
+  ReductionPlan plan;
+  plan.demand =
+      solver::reduction_demand(reducible(effects::heat_balance(model.effects)), cyclograms, model.hall, model.reference_K);
+  plan.tolerance_K = scenario.solver.reduction_tolerance_K;
+  std::vector<const Cyclogram*> typical;
+  for (const Cyclogram& c : scenario.cyclograms) {
+    const bool trains = !scenario.study || std::find(scenario.study->train.begin(), scenario.study->train.end(), c.name) !=
+                                               scenario.study->train.end();
+    if (trains) typical.push_back(&c);
+  }
+  plan.typical = mean_drive(typical);
+  if (scenario.study) plan.n_modes = scenario.study->thermal_modes;
+  return plan;
+}
+
+Eigen::VectorXd ReducedMachine::node_temperature_K(const Eigen::VectorXd& state) const {
+  return (temperature * state.cast<float>()).cast<double>();
+}
+
+Eigen::Matrix3Xd ReducedMachine::node_displacement_m(const Eigen::VectorXd& state) const {
+  const Eigen::VectorXd u = (displacement_m * state.cast<float>()).cast<double>();
+  return Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
+}
+
+effects::HeatBalance reducible(effects::HeatBalance balance) {
+  for (const effects::Radiation& r : balance.radiations) {
+    const auto coefficient_W_m2K = [emissivity = r.emissivity](const effects::Inputs& u) {
+      const double t_K = u.probe_K[0], around_K = u.probe_K[1];
+      return kStefanBoltzmann_W_m2K4 * emissivity * (t_K * t_K + around_K * around_K) * (t_K + around_K);
+    };
+    balance.films.push_back({r.name, r.surface,
+                             effects::Law(coefficient_W_m2K, {effects::surface(r.surface), effects::node(r.surrounding)}),
+                             r.surrounding});
+  }
+  balance.radiations.clear();
+  return balance;
+}
+
+void bind_laws(solver::ReducedSystem& system, const effects::HeatBalance& balance) {
+  std::vector<const effects::Law*> exchanges;
+  for (const effects::Film& f : balance.films) exchanges.push_back(&f.htc_W_m2K);
+  for (const effects::Link& l : balance.links) exchanges.push_back(&l.conductance_W_K);
+  for (const effects::Contact& c : balance.contacts) exchanges.push_back(&c.conductance_W_m2K);
+  if (system.sources.size() != balance.heats.size() || system.exchanges.size() < exchanges.size()) {
+    throw std::logic_error("bind_laws: a reduced system of another balance");
+  }
+  for (std::size_t s = 0; s < system.sources.size(); ++s) system.sources[s].power_W.law = balance.heats[s].power_W;
+  const effects::Law one([](const effects::Inputs&) { return 1.0; });  // of prescribed temperatures
+  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
+    system.exchanges[e].coefficient.law = e < exchanges.size() ? *exchanges[e] : one;
+  }
+}
+
+ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan) {
+  const effects::HeatBalance balance = reducible(machine.placed.balance);
+  const solver::FullSystem system = reducible_system(model, machine, balance, plan.demand);
+  const double hall_K = model.hall.at(0.0);
+  Eigen::VectorXd start = start_state(model, machine);
+  for (const solver::FixedUnknowns& f : machine.system.fixed) {  // what is held jumps at once, as in simulate()
+    for (int i : f.unknowns) start[i] = f.follows_hall ? hall_K : f.theta.at(0.0);
+  }
+  const solver::Reduction reduction = solver::reduce(
+      system, with_prescriptions(plan.demand, system.exchanges.size()), start,
+      {.temperature_K = plan.tolerance_K, .displacement_m = 2e-6 * plan.tolerance_K, .angle_rad = 2e-5 * plan.tolerance_K});
+  ReducedMachine reduced{.mesh = machine.placed.mesh,
+                         .n_unknowns = system.size(),
+                         .system = solver::project(system, reduction.basis),
+                         .start = reduction.basis.transpose() * (system.mass * start),
+                         .error = reduction.error,
+                         .modal = modal_predictors(system, start, hall_K, plan),
+                         .temperature = {},
+                         .displacement_m = {}};
+  const int n_nodes = machine.placed.mesh.n_nodes();
+  if (!machine.elasticity) return reduced;
+  reduced.temperature = reduction.basis.topRows(n_nodes).cast<float>();
+  reduced.displacement_m.resize(3 * n_nodes, reduction.basis.cols());
+  for (Eigen::Index c = 0; c < reduction.basis.cols(); ++c) {
+    const Eigen::Matrix3Xd u = machine.elasticity->displacement(reduction.basis.col(c));
+    reduced.displacement_m.col(c) = Eigen::Map<const Eigen::VectorXd>(u.data(), u.size()).cast<float>();
+  }
+  return reduced;
+}
+
+}  // namespace driftwright::scenarios
