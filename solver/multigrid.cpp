@@ -106,19 +106,18 @@ class Hierarchy {
     }
   }
 
-  template <int K>
   void cycle(const double* r, double* z) const {
-    const std::ptrdiff_t n = static_cast<std::ptrdiff_t>(fine_.a.n_rows) * B * K;
-    fine_.resize_vectors(K);
-    for (const auto& level : coarse_) level.resize_vectors(K);
+    const std::ptrdiff_t n = static_cast<std::ptrdiff_t>(fine_.a.n_rows) * B;
+    fine_.resize_vectors();
+    for (const auto& level : coarse_) level.resize_vectors();
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t i = 0; i < n; ++i) fine_.b[i] = static_cast<float>(r[i]);
     if (coarse_.empty()) {
-      solve_coarsest<K>(fine_);
+      solve_coarsest(fine_);
     } else {
-      descend<K>(fine_, coarse_.front());
-      coarse_cycle<K>(0);
-      ascend<K>(fine_, coarse_.front());
+      descend(fine_, coarse_.front());
+      coarse_cycle(0);
+      ascend(fine_, coarse_.front());
     }
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t i = 0; i < n; ++i) z[i] = fine_.x[i];
@@ -172,38 +171,37 @@ class Hierarchy {
     if (factor_.info() != Eigen::Success) throw SolveError("multigrid: the coarsest matrix is not positive definite");
   }
 
-  template <int K, class T, int B1, int N1>
+  template <class T, int B1, int N1>
   void solve_coarsest(const Level<T, B1, N1>& level) const {
-    using Map = Eigen::Map<Eigen::Matrix<T, Eigen::Dynamic, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor>>;
-    const Eigen::Index n = static_cast<Eigen::Index>(level.a.n_rows) * B1;
-    const Eigen::Matrix<double, Eigen::Dynamic, K> right = Map(level.b.data(), n, K).template cast<double>();
-    const Eigen::Matrix<double, Eigen::Dynamic, K> solution = factor_.solve(right);
-    Map(level.x.data(), n, K) = solution.template cast<T>();
+    using Vector = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+    const Eigen::VectorXd b =
+        Eigen::Map<const Vector>(level.b.data(), static_cast<Eigen::Index>(level.b.size())).template cast<double>();
+    const Eigen::VectorXd x = factor_.solve(b);
+    Eigen::Map<Vector>(level.x.data(), x.size()) = x.template cast<T>();
   }
 
-  template <int K, class T, int B1>
+  template <class T, int B1>
   void descend(const Level<T, B1, N>& level, const Level<double, N, N>& next) const {
     level.r = level.b;
     std::fill(level.x.begin(), level.x.end(), T{});
-    smooth<K>(level);
-    set_residual<K>(level);
-    transfer<K, T>(level.restrictor, level.r.data(), next.b.data());
+    smooth(level);
+    set_residual(level);
+    transfer<T>(level.restrictor, level.r.data(), next.b.data());
   }
 
-  template <int K, class T, int B1>
+  template <class T, int B1>
   void ascend(const Level<T, B1, N>& level, const Level<double, N, N>& next) const {
-    transfer<K, T>(level.prolongator, next.x.data(), level.d.data());
+    transfer<T>(level.prolongator, next.x.data(), level.d.data());
     for (std::size_t i = 0; i < level.x.size(); ++i) level.x[i] += level.d[i];
-    set_residual<K>(level);
-    smooth<K>(level);
+    set_residual(level);
+    smooth(level);
   }
 
-  template <int K>
   void coarse_cycle(std::size_t l) const {
-    if (l + 1 == coarse_.size()) return solve_coarsest<K>(coarse_[l]);
-    descend<K>(coarse_[l], coarse_[l + 1]);
-    coarse_cycle<K>(l + 1);
-    ascend<K>(coarse_[l], coarse_[l + 1]);
+    if (l + 1 == coarse_.size()) return solve_coarsest(coarse_[l]);
+    descend(coarse_[l], coarse_[l + 1]);
+    coarse_cycle(l + 1);
+    ascend(coarse_[l], coarse_[l + 1]);
   }
 
   Level<float, B, N> fine_;
@@ -264,17 +262,9 @@ void Multigrid::refresh(const SparseRow& a) {
 
 void Multigrid::precondition(const double* r, double* z) const {
   if (parts_->heat) {
-    parts_->heat->cycle<1>(r, z);
+    parts_->heat->cycle(r, z);
   } else {
-    parts_->elastic->cycle<1>(r, z);
-  }
-}
-
-void Multigrid::precondition_four(const double* r, double* z) const {
-  if (parts_->heat) {
-    parts_->heat->cycle<4>(r, z);
-  } else {
-    parts_->elastic->cycle<4>(r, z);
+    parts_->elastic->cycle(r, z);
   }
 }
 

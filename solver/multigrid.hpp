@@ -36,10 +36,8 @@ class Multigrid {
 
   /// z = B r, B close to A⁻¹. May be called by one thread at a time.
   void precondition(const double* r, double* z) const;
-  /// Four at once, interleaved: r[4 i + k] is unknown i of vector k. Takes little more time than two.
-  void precondition_four(const double* r, double* z) const;
 
-  /// Nodes and stored numbers of each level in a line, for the user and for tests: "97329 / 5210 / 240".
+  /// Nodes of each level: "97329 / 5210 / 240".
   [[nodiscard]] std::string levels() const;
   /// Stored numbers of all levels over those of the first.
   [[nodiscard]] double operator_complexity() const;

@@ -20,8 +20,8 @@ struct Level {
   BlockRows<float, N, B> restrictor;     ///< its transpose
   mutable std::vector<T> x, b, r, d, e;  ///< vectors of a cycle
 
-  void resize_vectors(int n_vectors) const {
-    for (auto* v : {&x, &b, &r, &d, &e}) v->resize(static_cast<std::size_t>(a.n_rows) * B * n_vectors + 4);
+  void resize_vectors() const {
+    for (auto* v : {&x, &b, &r, &d, &e}) v->resize(static_cast<std::size_t>(a.n_rows) * B);
   }
 };
 
@@ -57,7 +57,7 @@ double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B
 #pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
     for (int i = 0; i < a.n_rows; ++i) {
       Eigen::Matrix<double, B, 1> row;
-      multiply_row<1>(a, i, x.data(), row.data());
+      multiply_row(a, i, x.data(), row.data());
       Eigen::Map<Eigen::Matrix<double, B, 1>>(y.data() + static_cast<std::ptrdiff_t>(i) * B) =
           scale * (inverse_diagonal[i] * row);
     }
@@ -71,52 +71,46 @@ double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B
 inline constexpr int kSmoothingSteps = 2;
 inline constexpr std::array<double, kSmoothingSteps> kSmoothingWeights = {1.02387287570313, 1.26408905371085};
 
-/// y = A x for K vectors, computed in T whatever x and y are held in.
-template <int K, class T, class TA, int R, int C, class TX, class TY>
+/// y = A x, computed in T whatever A, x and y are held in.
+template <class T, class TA, int R, int C, class TX, class TY>
 void transfer(const BlockRows<TA, R, C>& a, const TX* x, TY* y) {
-  constexpr int kOrder = (K == 1 ? Eigen::ColMajor : Eigen::RowMajor) | Eigen::DontAlign;
 #pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
   for (int i = 0; i < a.n_rows; ++i) {
-    Eigen::Matrix<T, R, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor> sum;
-    sum.setZero();
+    Eigen::Matrix<T, R, 1> sum = Eigen::Matrix<T, R, 1>::Zero();
     for (int k = a.start[i]; k < a.start[i + 1]; ++k) {
-      const Eigen::Map<const Eigen::Matrix<TX, C, K, kOrder>> in(x + static_cast<std::ptrdiff_t>(a.column[k]) * C * K);
+      const Eigen::Map<const Eigen::Matrix<TX, C, 1>> in(x + static_cast<std::ptrdiff_t>(a.column[k]) * C);
       sum += a.block(k).template cast<T>().lazyProduct(in.template cast<T>());
     }
-    Eigen::Map<Eigen::Matrix<TY, R, K, kOrder>>(y + static_cast<std::ptrdiff_t>(i) * R * K) = sum.template cast<TY>();
+    Eigen::Map<Eigen::Matrix<TY, R, 1>>(y + static_cast<std::ptrdiff_t>(i) * R, R) = sum.template cast<TY>();
   }
 }
 
-template <int K, class T, int B>
-using NodeVector = Eigen::Matrix<T, B, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-
-/// K vectors at node i.
-template <int K, int B, class T>
+/// The unknowns of node i.
+template <int B, class T>
 auto at_node(std::vector<T>& v, int i) {
-  constexpr int kOrder = (K == 1 ? Eigen::ColMajor : Eigen::RowMajor) | Eigen::DontAlign;
-  return Eigen::Map<Eigen::Matrix<T, B, K, kOrder>>(&v[static_cast<std::size_t>(i) * B * K]);
+  return Eigen::Map<Eigen::Matrix<T, B, 1>>(v.data() + static_cast<std::ptrdiff_t>(i) * B);
 }
 
-/// r = b - A x for K vectors.
-template <int K, class T, int B, int N>
+/// r = b - A x.
+template <class T, int B, int N>
 void set_residual(const Level<T, B, N>& level) {
 #pragma omp parallel for schedule(static) if (level.a.value.size() > kWorthThreadsNumbers)
   for (int i = 0; i < level.a.n_rows; ++i) {
-    NodeVector<K, T, B> ax;
-    multiply_row<K>(level.a, i, level.x.data(), ax.data());
-    at_node<K, B>(level.r, i) = at_node<K, B>(level.b, i) - ax;
+    Eigen::Matrix<T, B, 1> ax;
+    multiply_row(level.a, i, level.x.data(), ax.data());
+    at_node<B>(level.r, i) = at_node<B>(level.b, i) - ax;
   }
 }
 
-/// x += p(D⁻¹A) D⁻¹ r for K vectors, where r is the residual b - A x; it is used up.
-template <int K, class T, int B, int N>
+/// x += p(D⁻¹A) D⁻¹ r, where r is the residual b - A x; it is used up.
+template <class T, int B, int N>
 void smooth(const Level<T, B, N>& level) {
   const int n = level.a.n_rows;
   const bool parallel = level.a.value.size() > kWorthThreadsNumbers;
   const T first = static_cast<T>(4.0 / 3.0 / level.largest_eigenvalue);
 #pragma omp parallel for schedule(static) if (parallel)
   for (int i = 0; i < n; ++i) {
-    at_node<K, B>(level.d, i) = first * level.inverse_diagonal[i].lazyProduct(at_node<K, B>(level.r, i));
+    at_node<B>(level.d, i) = first * level.inverse_diagonal[i].lazyProduct(at_node<B>(level.r, i));
   }
   for (int step = 1; step <= kSmoothingSteps; ++step) {
     const bool last = step == kSmoothingSteps;
@@ -126,13 +120,13 @@ void smooth(const Level<T, B, N>& level) {
     // Row by row: x += weight d, r -= A d, and the next direction beside the old one, which other rows still read.
 #pragma omp parallel for schedule(static) if (parallel)
     for (int i = 0; i < n; ++i) {
-      at_node<K, B>(level.x, i) += weight * at_node<K, B>(level.d, i);
+      at_node<B>(level.x, i) += weight * at_node<B>(level.d, i);
       if (last) continue;
-      NodeVector<K, T, B> ad;
-      multiply_row<K>(level.a, i, level.d.data(), ad.data());
-      auto r = at_node<K, B>(level.r, i);
+      Eigen::Matrix<T, B, 1> ad;
+      multiply_row(level.a, i, level.d.data(), ad.data());
+      auto r = at_node<B>(level.r, i);
       r -= ad;
-      at_node<K, B>(level.e, i) = keep * at_node<K, B>(level.d, i) + add * level.inverse_diagonal[i].lazyProduct(r);
+      at_node<B>(level.e, i) = keep * at_node<B>(level.d, i) + add * level.inverse_diagonal[i].lazyProduct(r);
     }
     level.d.swap(level.e);
   }

@@ -42,7 +42,7 @@ struct Solved {
 Solved solve(const SparseRow& a, const Multigrid& multigrid, const Eigen::VectorXd& b, double tolerance) {
   Solved solved{Eigen::VectorXd(b.size()), 0};
   const CgOutcome outcome = conjugate_gradients(
-      static_cast<int>(b.size()), 1, [&](const double* x, double* y) { multiply(a, x, y); },
+      static_cast<int>(b.size()), [&](const double* x, double* y) { multiply(a, x, y); },
       [&](const double* r, double* z) { multigrid.precondition(r, z); }, b.data(), solved.x.data(), tolerance, 200);
   EXPECT_TRUE(outcome.converged);
   solved.iterations = outcome.iterations;
