@@ -39,6 +39,22 @@ void check_materials(const Mesh& mesh, const RegionMaterials& materials) {
   }
 }
 
+/// Nodes at which springs make up more than half of the diagonal.
+std::vector<int> held_stiffly(const NodeMatrix& k, const std::vector<SpringLayer>& layers) {
+  std::vector<double> of_springs(k.n_rows, 0.0);
+  for (const SpringLayer& layer : layers) {
+    for (const SpringPoint& p : layer) {
+      for (std::size_t i = 0; i < p.node.size(); ++i)
+        of_springs[p.node[i]] += p.weight[i] * p.weight[i] * p.stiffness_N_m.trace();
+    }
+  }
+  std::vector<int> nodes;
+  for (int i = 0; i < k.n_rows; ++i) {
+    if (of_springs[i] > 0.5 * k.block(k.find(i, i)).trace()) nodes.push_back(i);
+  }
+  return nodes;
+}
+
 }  // namespace
 
 struct Elasticity::Parts {
@@ -46,7 +62,7 @@ struct Elasticity::Parts {
 
   ThermalLoad thermal_load;
   std::vector<char> held;  // not 0 for dof 3 node + direction that cannot move
-  ElasticReport report;
+  mutable ElasticReport report;
   std::unique_ptr<StiffnessFactor> factor;  // this, or the rest
   NodeMatrix k;
   std::unique_ptr<Multigrid> multigrid;
@@ -61,6 +77,7 @@ struct Elasticity::Parts {
         static_cast<int>(force.size()), [&](const double* x, double* y) { multiply(k, x, y); },
         [&](const double* r, double* z) { multigrid->precondition(r, z); }, force.data(), u.data(), kElasticTolerance,
         kMostIterations);
+    report.most_iterations = std::max(report.most_iterations, outcome.iterations);
     if (!outcome.converged) {
       throw SolveError(fmt::format(
           "elastic displacements: multigrid came to a relative error of {:.1e} in {} iterations, {:.0e} is wanted. "
@@ -111,7 +128,7 @@ Elasticity::Elasticity(const Mesh& mesh, const RegionMaterials& materials, const
     report.text = fmt::format("elastic displacements by a factor: {} unknowns, {:.1f} GB", report.n_unknowns,
                               1e-9 * report.factor_bytes);
   } else {
-    p.multigrid = std::make_unique<Multigrid>(p.k, mesh.coords);
+    p.multigrid = std::make_unique<Multigrid>(p.k, mesh.coords, held_stiffly(p.k, layers));
     report.text = fmt::format("elastic displacements by multigrid: {} unknowns", report.n_unknowns);
   }
 }

@@ -29,7 +29,7 @@ DoubleBlocks<B> set_smoother(Level<T, B, N>& level, BlockRows<double, B, B>& a) 
   DoubleBlocks<B> inverse = invert_diagonal(a);
   level.inverse_diagonal.resize(inverse.size());
   for (std::size_t i = 0; i < inverse.size(); ++i) level.inverse_diagonal[i] = inverse[i].template cast<T>();
-  level.largest_eigenvalue = largest_eigenvalue(a, inverse);
+  level.largest_eigenvalue = largest_eigenvalue(a, inverse, level.cluster);
   return inverse;
 }
 
@@ -75,7 +75,8 @@ bool set_transfer(Level<T, B, N>& level, const BlockRows<double, B, B>& a, const
 template <int B, int N>
 class Hierarchy {
  public:
-  Hierarchy(BlockRows<double, B, B> a, const NearNull<B, N>& near_null) {
+  Hierarchy(BlockRows<double, B, B> a, const NearNull<B, N>& near_null, Cluster cluster) {
+    fine_.cluster = std::move(cluster);
     DoubleBlocks<B> inverse = set_smoother(fine_, a);
     NearNull<N, N> coarse_near_null;
     if (!fits(a) && set_transfer(fine_, a, inverse, near_null, kStrong, coarse_near_null)) {
@@ -238,6 +239,29 @@ NearNull<3, 6> rigid_motions(const NodeMatrix& a, const Eigen::Matrix3Xd& coords
   return motions;
 }
 
+Cluster cluster_of(const NodeMatrix& a, const std::vector<int>& nodes) {
+  if (nodes.empty()) return {};
+  std::vector<int> position(a.n_rows, -1);
+  for (std::size_t k = 0; k < nodes.size(); ++k) position[nodes[k]] = static_cast<int>(k);
+  const auto n = static_cast<int>(nodes.size());
+  BlockPattern pattern{n, n, {0}, {}};
+  std::vector<int> source;
+  for (int node : nodes) {
+    for (int k = a.start[node]; k < a.start[node + 1]; ++k) {
+      if (position[a.column[k]] < 0) continue;
+      pattern.column.push_back(position[a.column[k]]);
+      source.push_back(k);
+    }
+    pattern.start.push_back(static_cast<int>(source.size()));
+  }
+  NodeMatrix between;
+  between.take(std::move(pattern));
+  for (int k = 0; k < static_cast<int>(source.size()); ++k) between.block(k) = a.block(source[k]);
+  Cluster cluster{nodes, std::make_unique<StiffnessFactor>(between)};
+  cluster.factor->factorise();
+  return cluster;
+}
+
 }  // namespace
 
 struct Multigrid::Parts {
@@ -247,10 +271,11 @@ struct Multigrid::Parts {
 
 Multigrid::Multigrid(const SparseRow& a) : parts_(std::make_unique<Parts>()) {
   const NearNull<1, 1> constant(a.rows(), Eigen::Matrix<double, 1, 1>::Ones());
-  parts_->heat = std::make_unique<Hierarchy<1, 1>>(nodes_of(a), constant);
+  parts_->heat = std::make_unique<Hierarchy<1, 1>>(nodes_of(a), constant, Cluster{});
 }
-Multigrid::Multigrid(const NodeMatrix& a, const Eigen::Matrix3Xd& coords) : parts_(std::make_unique<Parts>()) {
-  parts_->elastic = std::make_unique<Hierarchy<3, 6>>(a, rigid_motions(a, coords));
+Multigrid::Multigrid(const NodeMatrix& a, const Eigen::Matrix3Xd& coords, const std::vector<int>& stiff)
+    : parts_(std::make_unique<Parts>()) {
+  parts_->elastic = std::make_unique<Hierarchy<3, 6>>(a, rigid_motions(a, coords), cluster_of(a, stiff));
 }
 Multigrid::~Multigrid() = default;
 Multigrid::Multigrid(Multigrid&&) noexcept = default;

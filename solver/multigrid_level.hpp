@@ -3,11 +3,29 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <memory>
 
 #include "solver/prolongator.hpp"
 #include "solver/sparse.hpp"
+#include "solver/stiffness_factor.hpp"
 
 namespace driftwright::solver {
+
+/// Nodes that stiff springs hold together. Point by point a smoother hardly moves them, so it takes them as one block of D.
+struct Cluster {
+  std::vector<int> nodes;
+  std::unique_ptr<StiffnessFactor> factor;  ///< of the matrix between these nodes
+
+  /// Sets use(k, D⁻¹ r at nodes[k]) for each.
+  template <class T, class Use>
+  void solve(const std::vector<T>& r, const Use& use) const {
+    if (nodes.empty()) return;
+    Eigen::VectorXd b(3 * static_cast<Eigen::Index>(nodes.size()));
+    for (Eigen::Index k = 0; k < b.size(); ++k) b[k] = r[3 * static_cast<std::size_t>(nodes[k / 3]) + k % 3];
+    const Eigen::VectorXd z = factor->solve(b);
+    for (std::size_t k = 0; k < nodes.size(); ++k) use(nodes[k], z.segment<3>(3 * static_cast<Eigen::Index>(k)).eval());
+  }
+};
 
 /// @tparam T  numbers of matrix and vectors;  @tparam B  unknowns a node;  @tparam N  unknowns a node of the next level
 template <class T, int B, int N>
@@ -15,6 +33,7 @@ struct Level {
   using InverseBlock = Eigen::Matrix<T, B, B, Eigen::DontAlign>;
   BlockRows<T, B, B> a;
   std::vector<InverseBlock> inverse_diagonal;
+  Cluster cluster;
   double largest_eigenvalue = 0.0;  ///< of D⁻¹ A, or a little above
   BlockRows<float, B, N> prolongator;
   BlockRows<float, N, B> restrictor;     ///< its transpose
@@ -24,6 +43,12 @@ struct Level {
     for (auto* v : {&x, &b, &r, &d, &e}) v->resize(static_cast<std::size_t>(a.n_rows) * B);
   }
 };
+
+/// The unknowns of node i.
+template <int B, class T>
+auto at_node(std::vector<T>& v, int i) {
+  return Eigen::Map<Eigen::Matrix<T, B, 1>>(v.data() + static_cast<std::ptrdiff_t>(i) * B);
+}
 
 template <int B>
 using DoubleBlocks = std::vector<Eigen::Matrix<double, B, B, Eigen::DontAlign>>;
@@ -46,7 +71,8 @@ DoubleBlocks<B> invert_diagonal(BlockRows<double, B, B>& a) {
 
 /// Largest eigenvalue of D⁻¹ A by power iteration, with a margin for what that misses.
 template <int B>
-double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B>& inverse_diagonal) {
+double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B>& inverse_diagonal,
+                          const Cluster& cluster) {
   const int n = a.n_rows * B;
   std::vector<double> x(n), y(n);
   unsigned state = 12345;  // any start will do, the same each time
@@ -54,14 +80,12 @@ double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B
   double value = 0.0;
   for (int iteration = 0; iteration < 12; ++iteration) {
     const double scale = 1.0 / std::sqrt(dot(x.data(), x.data(), n));
+    multiply(a, x.data(), y.data());
 #pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
-    for (int i = 0; i < a.n_rows; ++i) {
-      Eigen::Matrix<double, B, 1> row;
-      multiply_row(a, i, x.data(), row.data());
-      Eigen::Map<Eigen::Matrix<double, B, 1>>(y.data() + static_cast<std::ptrdiff_t>(i) * B) =
-          scale * (inverse_diagonal[i] * row);
+    for (int i = 0; i < a.n_rows; ++i) at_node<B>(x, i) = scale * inverse_diagonal[i].lazyProduct(at_node<B>(y, i));
+    if constexpr (B == 3) {
+      cluster.solve(y, [&](int node, const Eigen::Vector3d& z) { at_node<B>(x, node) = scale * z; });
     }
-    x.swap(y);
     value = std::sqrt(dot(x.data(), x.data(), n));
   }
   return 1.15 * value;
@@ -85,12 +109,6 @@ void transfer(const BlockRows<TA, R, C>& a, const TX* x, TY* y) {
   }
 }
 
-/// The unknowns of node i.
-template <int B, class T>
-auto at_node(std::vector<T>& v, int i) {
-  return Eigen::Map<Eigen::Matrix<T, B, 1>>(v.data() + static_cast<std::ptrdiff_t>(i) * B);
-}
-
 /// r = b - A x.
 template <class T, int B, int N>
 void set_residual(const Level<T, B, N>& level) {
@@ -112,6 +130,10 @@ void smooth(const Level<T, B, N>& level) {
   for (int i = 0; i < n; ++i) {
     at_node<B>(level.d, i) = first * level.inverse_diagonal[i].lazyProduct(at_node<B>(level.r, i));
   }
+  if constexpr (B == 3) {
+    level.cluster.solve(level.r,
+                        [&](int node, const Eigen::Vector3d& z) { at_node<B>(level.d, node) = first * z.cast<T>(); });
+  }
   for (int step = 1; step <= kSmoothingSteps; ++step) {
     const bool last = step == kSmoothingSteps;
     const T weight = static_cast<T>(kSmoothingWeights[step - 1]);
@@ -127,6 +149,13 @@ void smooth(const Level<T, B, N>& level) {
       auto r = at_node<B>(level.r, i);
       r -= ad;
       at_node<B>(level.e, i) = keep * at_node<B>(level.d, i) + add * level.inverse_diagonal[i].lazyProduct(r);
+    }
+    if constexpr (B == 3) {
+      if (!last) {
+        level.cluster.solve(level.r, [&](int node, const Eigen::Vector3d& z) {
+          at_node<B>(level.e, node) = keep * at_node<B>(level.d, node) + add * z.cast<T>();
+        });
+      }
     }
     level.d.swap(level.e);
   }

@@ -4,7 +4,7 @@
 
 #include "mesh/mesh.hpp"
 #include "solver/heat_assembly.hpp"
-#include "solver/multigrid.hpp"
+#include "solver/node_matrix.hpp"
 #include "solver/springs.hpp"
 
 namespace driftwright::solver {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "solver/multigrid.hpp"
+#include "solver/node_matrix.hpp"
 
 namespace driftwright::solver {
 
