@@ -26,7 +26,7 @@ void predict(const PredictOptions& options) {
   scenarios::check_cyclogram(scenario, cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const scenarios::Machine machine = build_machine(model, progress);
+  const scenarios::Machine machine = build_machine(model, progress, false);
   scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
   progress.begin("computing thermal modes");
   const int most_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;

@@ -61,11 +61,12 @@ const scenarios::Study& require_study(const scenarios::Scenario& scenario, const
       fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit", scenario.path, verb));
 }
 
-scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress) {
+scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, bool with_fields) {
   progress.begin("meshing");
   scenarios::PlacedMachine placed = scenarios::place(model);
-  if (placed.mesh.n_nodes() > 0) progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
-  return scenarios::build(model, std::move(placed));
+  const bool is_elastic = scenarios::needs_elasticity(placed, with_fields);
+  progress.begin(is_elastic ? fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()) : "assembling");
+  return scenarios::build(model, std::move(placed), is_elastic);
 }
 
 std::string fields_note(const output::FieldSeries& fields) {

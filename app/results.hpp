@@ -29,7 +29,8 @@ namespace driftwright::app {
 [[nodiscard]] const scenarios::Study& require_study(const scenarios::Scenario& scenario, const std::string& verb);
 
 /// Meshes, places and factorises, saying so.
-[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress);
+/// @param with_fields  whether whole fields are to be written, which takes displacements everywhere
+[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, bool with_fields);
 
 /// What the terminal says of a series too long for its format, a line of its own; empty otherwise.
 [[nodiscard]] std::string fields_note(const output::FieldSeries& fields);

@@ -15,11 +15,13 @@ void run(const CommonOptions& options) {
   (void)require_study(scenario, "run");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const scenarios::Machine machine = build_machine(model, progress);
+  const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
+  const scenarios::Machine machine = build_machine(model, progress, wants_fields);
   scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);  // thermal modes need them
 
   std::optional<output::FieldSeries> fields;
-  if (machine.placed.mesh.n_nodes() > 0) fields.emplace(folder, machine.placed.mesh, scenario.solver.fields_format);
+  if (machine.placed.mesh.n_nodes() > 0 && wants_fields)
+    fields.emplace(folder, machine.placed.mesh, scenario.solver.fields_format);
   const MachineStudy study = study_machine(scenario, machine, progress, fields ? &*fields : nullptr);
   if (fields) fields->finish();
   progress.begin("writing results");

@@ -16,11 +16,13 @@ void simulate(const SimulateOptions& options) {
   }
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const scenarios::Machine machine = build_machine(model, progress);
   // Whole fields of one cyclogram only: several would fill the disk and mix in one list of times.
+  const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
+  const bool writes_fields = wants_fields && cyclograms.size() == 1;
+  const scenarios::Machine machine = build_machine(model, progress, writes_fields);
   std::optional<output::FieldSeries> fields;
   const bool has_mesh = machine.placed.mesh.n_nodes() > 0;
-  if (has_mesh && cyclograms.size() == 1) fields.emplace(folder, machine.placed.mesh, scenario.solver.fields_format);
+  if (has_mesh && writes_fields) fields.emplace(folder, machine.placed.mesh, scenario.solver.fields_format);
   const std::vector<SimulatedRun> runs =
       simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
   if (fields) fields->finish();
@@ -45,9 +47,9 @@ void simulate(const SimulateOptions& options) {
   folder.commit();
   progress.end();
   fmt::print("{}results in {}: report.html, heat flows in W{}\n{}", summary, shown_path(folder.target()),
-             fields      ? fmt::format(", fields in {} (ParaView)", fields->file_to_open())
-             : !has_mesh ? ""
-                         : "; name one cyclogram to get fields, too",
+             fields                       ? fmt::format(", fields in {} (ParaView)", fields->file_to_open())
+             : !has_mesh || !wants_fields ? ""
+                                          : "; name one cyclogram to get fields, too",
              fields ? fields_note(*fields) : "");
 }
 
