@@ -1,0 +1,134 @@
+#pragma once
+// Sparse matrices of small dense blocks, one block row a node, and the products multigrid is made of. Each row is summed in
+// one order by one thread, so that results do not depend on the number of threads.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <vector>
+
+namespace driftwright::solver {
+
+/// Which block columns each block row has, ascending.
+struct BlockPattern {
+  int n_rows = 0, n_cols = 0;
+  std::vector<int> start = {0};  ///< columns of row i: column[start[i]] .. column[start[i + 1] - 1]
+  std::vector<int> column;
+};
+
+/// Blocks of R x C numbers T, each stored by columns.
+template <class T, int R, int C>
+struct BlockRows : BlockPattern {
+  using Block = Eigen::Matrix<T, R, C, Eigen::ColMajor | Eigen::DontAlign>;
+  std::vector<T> value;  ///< R C per entry, and kPad unused at the end, which wide loads may touch
+  static constexpr int kPad = 4;
+
+  void take(BlockPattern pattern) {
+    static_cast<BlockPattern&>(*this) = std::move(pattern);
+    value.assign(column.size() * R * C + kPad, T{});
+  }
+  [[nodiscard]] Eigen::Map<const Block> block(int slot) const { return Eigen::Map<const Block>(&value[offset(slot)]); }
+  [[nodiscard]] Eigen::Map<Block> block(int slot) { return Eigen::Map<Block>(&value[offset(slot)]); }
+  /// Entry of (row, column), -1 where there is none.
+  [[nodiscard]] int find(int row, int col) const {
+    const auto first = column.begin() + start[row], last = column.begin() + start[row + 1];
+    const auto hit = std::lower_bound(first, last, col);
+    return hit == last || *hit != col ? -1 : static_cast<int>(hit - column.begin());
+  }
+
+ private:
+  static std::size_t offset(int slot) { return static_cast<std::size_t>(slot) * R * C; }
+};
+
+/// The pattern of A B.
+[[nodiscard]] BlockPattern product_pattern(const BlockPattern& a, const BlockPattern& b);
+/// The pattern of A'; `source` becomes the entry of A that each entry comes from.
+[[nodiscard]] BlockPattern transposed_pattern(const BlockPattern& a, std::vector<int>& source);
+
+template <class T, int R, int C>
+BlockRows<T, C, R> transposed(const BlockRows<T, R, C>& a) {
+  std::vector<int> source;
+  BlockRows<T, C, R> t;
+  t.take(transposed_pattern(a, source));
+#pragma omp parallel for schedule(static)
+  for (int k = 0; k < static_cast<int>(source.size()); ++k) t.block(k) = a.block(source[k]).transpose();
+  return t;
+}
+
+/// C = A B in double, into the pattern of C, which holds that of the product.
+/// @param symmetric  C is symmetric: only its upper triangle is computed, the lower one mirrored
+template <class TA, class TB, int R, int M, int C>
+void multiply_into(const BlockRows<TA, R, M>& a, const BlockRows<TB, M, C>& b, BlockRows<double, R, C>& c, bool symmetric) {
+#pragma omp parallel
+  {
+    std::vector<int> slot_of(c.n_cols, -1);
+#pragma omp for schedule(dynamic, 64)
+    for (int i = 0; i < c.n_rows; ++i) {
+      for (int k = c.start[i]; k < c.start[i + 1]; ++k) {
+        slot_of[c.column[k]] = k;
+        c.block(k).setZero();
+      }
+      for (int ka = a.start[i]; ka < a.start[i + 1]; ++ka) {
+        const int m = a.column[ka];
+        const Eigen::Matrix<double, R, M> left = a.block(ka).template cast<double>();
+        for (int kb = b.start[m]; kb < b.start[m + 1]; ++kb) {
+          if (symmetric && b.column[kb] < i) continue;
+          const Eigen::Matrix<double, M, C> right = b.block(kb).template cast<double>();
+          c.block(slot_of[b.column[kb]]) += left.lazyProduct(right);
+        }
+      }
+    }
+  }
+  if constexpr (R == C) {
+    if (!symmetric) return;
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int i = 0; i < c.n_rows; ++i) {
+      for (int k = c.start[i]; k < c.start[i + 1] && c.column[k] < i; ++k) {
+        c.block(k) = c.block(c.find(c.column[k], i)).transpose().eval();
+      }
+    }
+  }
+}
+
+/// Row i of A x for K vectors at once, x[(column C + c) K + k]; into y[r K + k].
+template <int K, class T, int R, int C>
+inline void multiply_row(const BlockRows<T, R, C>& a, int i, const T* x, T* y) {
+  if constexpr (K == 1 && R == 1 && C == 1) {
+    T sum{};
+    for (int k = a.start[i]; k < a.start[i + 1]; ++k) sum += a.value[k] * x[a.column[k]];
+    y[0] = sum;
+  } else if constexpr (K == 1 && R == 3 && C == 3 && sizeof(T) == 4) {
+    // Columns of three as four lanes; the fourth is the next number in memory and is thrown away.
+    using Lanes [[gnu::vector_size(16)]] = T;
+    using Unaligned [[gnu::vector_size(16), gnu::aligned(4)]] = T;
+    Lanes sum{};
+    const T* v = &a.value[static_cast<std::size_t>(a.start[i]) * 9];
+    for (int k = a.start[i]; k < a.start[i + 1]; ++k, v += 9) {
+      const T* const xk = x + static_cast<std::ptrdiff_t>(a.column[k]) * 3;
+      const Lanes v0 = *reinterpret_cast<const Unaligned*>(v), v1 = *reinterpret_cast<const Unaligned*>(v + 3),
+                  v2 = *reinterpret_cast<const Unaligned*>(v + 6);
+      sum += v0 * xk[0] + v1 * xk[1] + v2 * xk[2];
+    }
+    for (int r = 0; r < 3; ++r) y[r] = sum[r];
+  } else {
+    constexpr int kOrder = (K == 1 ? Eigen::ColMajor : Eigen::RowMajor) | Eigen::DontAlign;
+    using In = Eigen::Map<const Eigen::Matrix<T, C, K, kOrder>>;
+    Eigen::Matrix<T, R, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor> sum;
+    sum.setZero();
+    for (int k = a.start[i]; k < a.start[i + 1]; ++k) {
+      sum += a.block(k).lazyProduct(In(x + static_cast<std::ptrdiff_t>(a.column[k]) * C * K));
+    }
+    Eigen::Map<Eigen::Matrix<T, R, K, kOrder>>(y, R, K) = sum;
+  }
+}
+
+/// Loops over fewer numbers than this stay on one core: waiting for the others costs more.
+inline constexpr std::size_t kWorthThreadsNumbers = 100000;
+
+/// y = A x for K vectors at once, laid out as for multiply_row().
+template <int K, class T, int R, int C>
+void multiply(const BlockRows<T, R, C>& a, const T* x, T* y) {
+#pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
+  for (int i = 0; i < a.n_rows; ++i) multiply_row<K>(a, i, x, y + static_cast<std::ptrdiff_t>(i) * R * K);
+}
+
+}  // namespace driftwright::solver
