@@ -31,18 +31,20 @@ compensation::ModalPredictor modal_predictor(const scenarios::Scenario& scenario
                                             machine.hall.at(0.0), typical, with_steady_responses);
 }
 
-scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress) {
+scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, bool with_fields) {
   progress.begin("meshing");
   scenarios::PlacedMachine placed = scenarios::place(model);
-  if (placed.mesh.n_nodes() > 0) progress.begin(fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()));
-  return scenarios::build(model, std::move(placed));
+  const bool is_elastic = scenarios::needs_elasticity(placed, with_fields);
+  progress.begin(is_elastic ? fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()) : "assembling");
+  return scenarios::build(model, std::move(placed), is_elastic);
 }
 
-Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms, Progress& progress) {
+Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms, Progress& progress,
+                 bool with_fields) {
   const scenarios::MachineModel& model = *scenario.machine;
   effects::HeatBalance balance = effects::heat_balance(model.effects);
   if (scenario.solver.model == scenarios::ModelKind::kFull) {
-    return {build_machine(model, progress), std::move(balance), false};
+    return {build_machine(model, progress, with_fields), std::move(balance), false};
   }
   std::vector<const Cyclogram*> asked = cyclograms;
   for (const Cyclogram& c : scenario.cyclograms) asked.push_back(&c);
@@ -50,7 +52,7 @@ Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cy
   const std::string key = scenarios::machine_key(model, plan, kVersion);
   const std::filesystem::path store = scenarios::machine_store();
   if (auto known = scenarios::load_machine(store, key, balance)) return {std::move(*known), std::move(balance), true};
-  const scenarios::Machine machine = build_machine(model, progress);
+  const scenarios::Machine machine = build_machine(model, progress, plan.with_fields);
   scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
   progress.begin(fmt::format("reducing {} temperature unknowns", machine.system.size()));
   scenarios::ReducedMachine reduced = scenarios::reduce(model, machine, plan);

@@ -33,12 +33,13 @@ struct Model {
                                                            int n_modes, const Drive& typical, bool with_steady_responses);
 
 /// Meshes, places and factorises, saying so.
-[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress);
+/// @param with_fields  whether whole fields are to be written, which takes displacements everywhere
+[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, bool with_fields);
 
 /// The model that the scenario asks for. A reduced one comes from disk where the machine is known for such cyclograms, else it is
 /// made and kept.
 /// @param cyclograms  that it will be asked; those of the scenario are always among them
 [[nodiscard]] Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
-                               Progress& progress);
+                               Progress& progress, bool with_fields);
 
 }  // namespace driftwright::app

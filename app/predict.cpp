@@ -26,7 +26,7 @@ void predict(const PredictOptions& options) {
   scenarios::check_cyclogram(scenario, cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const Model machine = open_model(scenario, {&cyclogram}, progress);
+  const Model machine = open_model(scenario, {&cyclogram}, progress, false);
   if (const scenarios::Machine* full = machine.full()) {
     scenarios::require_ways_out(full->placed.mesh, full->placed.balance, model.where);
   }

@@ -15,13 +15,14 @@ void run(const CommonOptions& options) {
   (void)require_study(scenario, "run");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const Model machine = open_model(scenario, {}, progress);
+  const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
+  const Model machine = open_model(scenario, {}, progress, wants_fields);
   if (const scenarios::Machine* full = machine.full()) {  // thermal modes need them
     scenarios::require_ways_out(full->placed.mesh, full->placed.balance, model.where);
   }
 
   std::optional<output::FieldSeries> fields;
-  if (machine.mesh().n_nodes() > 0) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
+  if (machine.mesh().n_nodes() > 0 && wants_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const MachineStudy study = study_machine(scenario, machine, progress, fields ? &*fields : nullptr);
   if (fields) fields->finish();
   progress.begin("writing results");

@@ -16,11 +16,13 @@ void simulate(const SimulateOptions& options) {
   }
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const Model machine = open_model(scenario, cyclograms, progress);
   // Whole fields of one cyclogram only: several would fill the disk and mix in one list of times.
+  const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
+  const bool writes_fields = wants_fields && cyclograms.size() == 1;
+  const Model machine = open_model(scenario, cyclograms, progress, writes_fields);
   std::optional<output::FieldSeries> fields;
   const bool has_mesh = machine.mesh().n_nodes() > 0;
-  if (has_mesh && cyclograms.size() == 1) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
+  if (has_mesh && writes_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const std::vector<SimulatedRun> runs =
       simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
   if (fields) fields->finish();
@@ -46,9 +48,9 @@ void simulate(const SimulateOptions& options) {
   progress.end();
   fmt::print("{}{}{}\nresults in {}: report.html, heat flows in W{}\n{}", summary, machine.words(),
              machine.was_known ? " (known from disk)" : "", shown_path(folder.target()),
-             fields      ? fmt::format(", fields in {} (ParaView)", fields->file_to_open())
-             : !has_mesh ? ""
-                         : "; name one cyclogram to get fields, too",
+             fields                       ? fmt::format(", fields in {} (ParaView)", fields->file_to_open())
+             : !has_mesh || !wants_fields ? ""
+                                          : "; name one cyclogram to get fields, too",
              fields ? fields_note(*fields) : "");
 }
 

@@ -6,6 +6,7 @@ namespace driftwright {
 enum class FieldsFormat {
   kVtu,   ///< one compressed .vtu per time, each with the mesh, and fields.pvd
   kXdmf,  ///< one fields.h5 with the mesh once, and fields.xdmf
+  kNone,  ///< no fields
 };
 
 }  // namespace driftwright

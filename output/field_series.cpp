@@ -16,6 +16,8 @@ std::unique_ptr<FieldWriter> make_writer(ResultsFolder& folder, const mesh::Mesh
       return make_vtu_writer(folder, mesh);
     case FieldsFormat::kXdmf:
       return make_xdmf_writer(folder, mesh);
+    case FieldsFormat::kNone:
+      break;
   }
   throw std::logic_error("a format of fields without a writer");
 }

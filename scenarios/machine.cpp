@@ -175,13 +175,15 @@ void add_rotation(DisplacementFunctional& d, const Mesh& mesh, const mesh::MeshP
 }
 
 DisplacementFunctional tool_against_table(const Mesh& mesh, const ToolAgainstTable& output) {
-  PointOnRegion foot = output.table;  // the spot of the table that its travel has brought there
-  foot.at_m -= output.travel_m;
-  const mesh::MeshPoint tool = place_point(mesh, output.tool), table = place_point(mesh, foot);
+  const mesh::MeshPoint tool = place_point(mesh, output.tool);
   const Eigen::Vector3d direction = Eigen::Vector3d::Unit(output.axis);
-  const Eigen::Vector3d arm = tool.position_m - (table.position_m + output.travel_m);
   DisplacementFunctional d;  // e·(u_tool - u_table - ω_table × arm)
   add_displacement(d, mesh, tool, direction);
+  if (!output.table) return d;
+  PointOnRegion foot = *output.table;  // the spot of the table that its travel has brought there
+  foot.at_m -= output.travel_m;
+  const mesh::MeshPoint table = place_point(mesh, foot);
+  const Eigen::Vector3d arm = tool.position_m - (table.position_m + output.travel_m);
   add_displacement(d, mesh, table, -direction);
   add_rotation(d, mesh, table, -arm.cross(direction));
   return d;
@@ -262,9 +264,15 @@ PlacedMachine place(const MachineModel& model) {
   return placed;
 }
 
-Machine build(const MachineModel& model, PlacedMachine placed) {
+bool needs_elasticity(const PlacedMachine& placed, bool with_fields) {
+  const auto& f = placed.functionals;
+  const bool has_output = std::any_of(f.begin(), f.end(), [](const DisplacementFunctional& d) { return !d.terms.empty(); });
+  return placed.mesh.n_nodes() > 0 && (with_fields || has_output);
+}
+
+Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity) {
   std::optional<solver::Elasticity> elasticity = [&]() -> std::optional<solver::Elasticity> {
-    if (placed.mesh.n_nodes() == 0) return std::nullopt;
+    if (placed.mesh.n_nodes() == 0 || !with_elasticity) return std::nullopt;
     try {
       return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints);
     } catch (const InputError& e) {  // it knows what is wrong, not where that stands

@@ -35,10 +35,13 @@ struct PlacedMachine {
 /// The full model, ready to run.
 struct Machine {
   PlacedMachine placed;
-  std::optional<solver::Elasticity> elasticity;  ///< none without a mesh
+  std::optional<solver::Elasticity> elasticity;  ///< none without a mesh, or where nothing needs it
   solver::FullSystem system;  ///< outputs: sensors [K], displacements [m], tilts [rad], in the scenario's order
 };
-[[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed);
+/// @param with_elasticity  as needs_elasticity() says, or true
+[[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity = true);
+/// True where displacements or tilts of a mesh are asked for, or whole fields of it.
+[[nodiscard]] bool needs_elasticity(const PlacedMachine& placed, bool with_fields);
 
 /// Temperatures minus the reference temperature at t = 0, by the scenario's `start`.
 /// @throws SolveError  when there is no steady state to start from

@@ -271,8 +271,9 @@ std::string machine_key(const MachineModel& model, const ReductionPlan& plan, co
     }
   }
   const solver::ReductionDemand& d = plan.demand;
-  key += fmt::format("power {}\nlow {}\nhigh {}\nhall {} K, {} s, tolerance {} K, {} modes\n", numbers(d.power_W),
-                     numbers(d.low), numbers(d.high), d.hall_K, d.duration_s, plan.tolerance_K, plan.n_modes);
+  key +=
+      fmt::format("power {}\nlow {}\nhigh {}\nhall {} K, {} s, tolerance {} K, {} modes, fields {}\n", numbers(d.power_W),
+                  numbers(d.low), numbers(d.high), d.hall_K, d.duration_s, plan.tolerance_K, plan.n_modes, plan.with_fields);
   return key;
 }
 

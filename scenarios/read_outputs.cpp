@@ -71,9 +71,11 @@ std::vector<DisplacementOutput> read_displacements(const ConfigMap& in) {
     in.reject_unknown_keys();
     return {output};
   }
-  const ToolAgainstTable base{
-      .axis = read_axis(in, "along"), .tool = read_point(in.map("tool")), .table = read_point(in.map("table"))};
+  ToolAgainstTable base{.axis = read_axis(in, "along"), .tool = read_point(in.map("tool")), .table = {}};
+  if (const auto table = in.optional_map("table")) base.table = read_point(*table);
   const auto positions = in.optional_map("positions");
+  if (positions && !base.table)
+    in.fail("positions", "these are positions of the table; `table` says where it is in the mesh");
   in.reject_unknown_keys();
   if (positions) return at_positions(*positions, name, base);
   return {{name, base}};

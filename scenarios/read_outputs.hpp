@@ -2,6 +2,7 @@
 // What is measured on the machine: thermometers, displacements, tilts.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -28,7 +29,8 @@ struct Sensor {
 /// Tool and table as the mesh has them.
 struct ToolAgainstTable {
   int axis = 0;  ///< 0, 1, 2 = x, y, z
-  PointOnRegion tool, table;
+  PointOnRegion tool;
+  std::optional<PointOnRegion> table;  ///< none: the tool against the ground, which neither moves nor turns
   /// How far the table has travelled from where the mesh has it: the indicator then stands on another spot of it.
   Eigen::Vector3d travel_m = Eigen::Vector3d::Zero();
 };
@@ -44,7 +46,7 @@ struct BySensitivity {
 };
 
 /// Error of the tool against the table along an axis: actual - commanded. The stand of the indicator is a rigid body that
-/// moves and turns with the table at its foot.
+/// moves and turns with the table at its foot; without a table it stands on the ground.
 struct DisplacementOutput {
   std::string name;
   std::variant<ToolAgainstTable, BySensitivity> how;

@@ -124,6 +124,7 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
   plan.demand =
       solver::reduction_demand(reducible(effects::heat_balance(model.effects)), cyclograms, model.hall, model.reference_K);
   plan.tolerance_K = scenario.solver.reduction_tolerance_K;
+  plan.with_fields = scenario.solver.fields_format != FieldsFormat::kNone;
   std::vector<const Cyclogram*> typical;
   for (const Cyclogram& c : scenario.cyclograms) {
     const bool trains = !scenario.study || std::find(scenario.study->train.begin(), scenario.study->train.end(), c.name) !=
@@ -193,7 +194,7 @@ ReducedMachine reduce(const MachineModel& model, const Machine& machine, const R
                          .temperature = {},
                          .displacement_m = {}};
   const int n_nodes = machine.placed.mesh.n_nodes();
-  if (!machine.elasticity) return reduced;
+  if (!plan.with_fields || !machine.elasticity) return reduced;
   reduced.temperature = reduction.basis.topRows(n_nodes).cast<float>();
   reduced.displacement_m.resize(3 * n_nodes, reduction.basis.cols());
   for (Eigen::Index c = 0; c < reduction.basis.cols(); ++c) {

@@ -12,8 +12,9 @@ namespace driftwright::scenarios {
 struct ReductionPlan {
   solver::ReductionDemand demand;
   double tolerance_K = 8e-3;
-  Drive typical;     ///< mean drive, which the modal predictors freeze laws of temperature at
-  int n_modes = 20;  ///< of the modal predictors
+  Drive typical;            ///< mean drive, which the modal predictors freeze laws of temperature at
+  int n_modes = 20;         ///< of the modal predictors
+  bool with_fields = true;  ///< whether displacements everywhere may be asked for
 };
 [[nodiscard]] ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms);
 
@@ -26,7 +27,7 @@ struct ReducedMachine {
   /// Thermal modes alone, and with the steady responses; empty where a thermostat keeps the machine from having a linear model.
   std::vector<compensation::ModalPredictor> modal;
   Eigen::MatrixXf temperature;     ///< of the nodes [K], n_nodes x size
-  Eigen::MatrixXf displacement_m;  ///< 3 n_nodes x size
+  Eigen::MatrixXf displacement_m;  ///< 3 n_nodes x size; empty without fields
 
   /// Temperatures of the nodes over the reference [K], and their displacements, 3 x n_nodes [m], in a reduced state.
   [[nodiscard]] Eigen::VectorXd node_temperature_K(const Eigen::VectorXd& state) const;

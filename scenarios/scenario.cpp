@@ -105,7 +105,12 @@ SolverSettings read_solver(const ConfigMap& in) {
     if (in.has("fields_every")) in.fail("fields_at", "either `fields_at` or `fields_every` is wanted, not both");
   }
   s.stresses = in.choice("stresses", {"true", "false"}, "false") == "true";
-  if (in.choice("fields_format", {"vtu", "xdmf"}, "vtu") == "xdmf") s.fields_format = FieldsFormat::kXdmf;
+  const std::string format = in.choice("fields_format", {"vtu", "xdmf", "none"}, "vtu");
+  s.fields_format = format == "none" ? FieldsFormat::kNone : format == "xdmf" ? FieldsFormat::kXdmf : FieldsFormat::kVtu;
+  if (s.fields_format == FieldsFormat::kNone && (s.stresses || !s.fields_at_s.empty())) {
+    in.fail("fields_format",
+            "without fields there are neither stresses nor times for them; leave out `stresses` and `fields_at`");
+  }
   in.reject_unknown_keys();
   return s;
 }

@@ -1,12 +1,19 @@
 #include "solver/pcg.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "solver/multigrid.hpp"
 
 namespace driftwright::solver {
 
-void Pcg::refresh(const Eigen::VectorXd& ones) {
+// Each loop goes over the fixed blocks of sparse.hpp and leaves one partial sum a block, so that the sums do not depend on the
+// number of threads; what can share a pass over the vectors does.
+
+void Pcg::refresh(const Eigen::VectorXd& ones, const Eigen::VectorXd& scale) {
   const int n = static_cast<int>(a_.rows());
   inverse_diagonal_ = a_.diagonal().cwiseInverse();
+  inverse_scale_ = scale.size() > 0 ? scale.cwiseInverse() : inverse_diagonal_;
   a_ones_.resize(n);
   ones_ = ones;
   multiply(a_, ones.data(), a_ones_.data());
@@ -15,51 +22,140 @@ void Pcg::refresh(const Eigen::VectorXd& ones) {
   z_.resize(n);
   p_.resize(n);
   q_.resize(n);
+  block_sum_.resize(n_blocks(n));
+  block_largest_.resize(n_blocks(n));
 }
 
-void Pcg::project_constant(double* x) {  // x += c so that the residual sums to zero: no heat is made or lost
-  const int n = static_cast<int>(r_.size());
-  const double c = ones_a_ones_ > 0.0 ? ones_.dot(r_) / ones_a_ones_ : 0.0;  // zero where every unknown is prescribed
+void Pcg::project_constant(double* r, double* x) const {  // x += c so that r sums to zero: no heat is made or lost
+  const int n = static_cast<int>(ones_.size());
+  if (!(ones_a_ones_ > 0.0)) return;  // every unknown is prescribed
+  const double c = dot(ones_.data(), r, n) / ones_a_ones_;
   Eigen::Map<Eigen::VectorXd>(x, n) += c * ones_;
-  r_ -= c * a_ones_;
+  Eigen::Map<Eigen::VectorXd>(r, n) -= c * a_ones_;
 }
 
-PcgOutcome Pcg::solve(const double* b, double* x, double tolerance, int max_iterations) {
-  const int n = static_cast<int>(r_.size());
-  multiply(a_, x, q_.data());
-  r_ = Eigen::Map<const Eigen::VectorXd>(b, n) - q_;
-  project_constant(x);
+void Pcg::conserve(const double* b, double* x) const {
+  const int n = static_cast<int>(ones_.size());
+  if (!(ones_a_ones_ > 0.0)) return;
+  const double c = (dot(ones_.data(), b, n) - dot(a_ones_.data(), x, n)) / ones_a_ones_;
+  Eigen::Map<Eigen::VectorXd>(x, n) += c * ones_;
+}
+
+Pcg::Sums Pcg::sum_blocks(bool with_rz) const {
+  Sums sums;
+  for (std::size_t b = 0; b < block_sum_.size(); ++b) {
+    if (with_rz) sums.rz += block_sum_[b];
+    // Written so that NaN is taken over.
+    if (!(block_largest_[b] <= sums.largest)) sums.largest = block_largest_[b];
+  }
+  return sums;
+}
+
+double Pcg::multiply_p() {  // q = A p, and p . q
+  const int n = static_cast<int>(p_.size());
+  const int* start = a_.outerIndexPtr();
+  const int* column = a_.innerIndexPtr();
+  const double* value = a_.valuePtr();
+  const double* p = p_.data();
+  double* q = q_.data();
+  for_blocks(n, [&](int block, int begin, int end) {
+    double sum = 0.0;
+    for (int row = begin; row < end; ++row) {
+      double product = 0.0;
+      for (int k = start[row]; k < start[row + 1]; ++k) product += value[k] * p[column[k]];
+      q[row] = product;
+      sum += p[row] * product;
+    }
+    block_sum_[block] = sum;
+  });
+  double sum = 0.0;
+  for (double of_block : block_sum_) sum += of_block;
+  return sum;
+}
+
+Pcg::Sums Pcg::start(const double* r, const Multigrid* multigrid) {  // p = B r
+  const int n = static_cast<int>(p_.size());
+  if (multigrid) multigrid->precondition(r, z_.data());
+  for_blocks(n, [&](int block, int begin, int end) {
+    double sum = 0.0, largest = 0.0;
+    for (int i = begin; i < end; ++i) {
+      const double z = multigrid ? z_[i] : inverse_diagonal_[i] * r[i];
+      p_[i] = z;
+      sum += r[i] * z;
+      const double scaled = std::abs(r[i]) * inverse_scale_[i];
+      if (!(scaled <= largest)) largest = scaled;
+    }
+    block_sum_[block] = sum;
+    block_largest_[block] = largest;
+  });
+  return sum_blocks(true);
+}
+
+Pcg::Sums Pcg::advance(double alpha, double* r, double* x, const Multigrid* multigrid) {
+  const int n = static_cast<int>(p_.size());
+  const double* p = p_.data();
+  const double* q = q_.data();
+  const double* d = inverse_diagonal_.data();
+  const double* s = inverse_scale_.data();
+  for_blocks(n, [&](int block, int begin, int end) {
+    double sum = 0.0, largest = 0.0;
+#pragma omp simd reduction(+ : sum) reduction(max : largest)
+    for (int i = begin; i < end; ++i) {
+      x[i] += alpha * p[i];
+      const double next = r[i] - alpha * q[i];
+      r[i] = next;
+      sum += next * next * d[i];
+      largest = std::max(largest, std::abs(next) * s[i]);
+    }
+    block_sum_[block] = sum;
+    block_largest_[block] = std::isfinite(sum) ? largest : sum;  // max() loses NaN
+  });
+  Sums sums = sum_blocks(true);
+  if (multigrid) {
+    multigrid->precondition(r, z_.data());
+    sums.rz = dot(r, z_.data(), n);
+  }
+  return sums;
+}
+
+void Pcg::turn(double beta, const double* r, const Multigrid* multigrid) {
+  const int n = static_cast<int>(p_.size());
+  double* p = p_.data();
+  const double* z = z_.data();
+  const double* d = inverse_diagonal_.data();
+  for_blocks(n, [&](int, int begin, int end) {
+    if (multigrid) {
+#pragma omp simd
+      for (int i = begin; i < end; ++i) p[i] = z[i] + beta * p[i];
+    } else {
+#pragma omp simd
+      for (int i = begin; i < end; ++i) p[i] = d[i] * r[i] + beta * p[i];
+    }
+  });
+}
+
+PcgOutcome Pcg::improve(double* r, double* x, double tolerance, int max_iterations, const Multigrid* multigrid) {
+  project_constant(r, x);
   PcgOutcome outcome;
-  z_ = inverse_diagonal_.cwiseProduct(r_);
-  p_ = z_;
-  double rz = dot(r_.data(), z_.data(), n);
+  Sums sums = start(r, multigrid);
   while (true) {
-    outcome.residual = z_.cwiseAbs().maxCoeff();
+    outcome.residual = sums.largest;
     if (outcome.residual <= tolerance) outcome.converged = true;
     if (!(outcome.residual > tolerance) || outcome.iterations >= max_iterations) break;  // NaN ends it too
     ++outcome.iterations;
-    multiply(a_, p_.data(), q_.data());
-    const double alpha = rz / dot(p_.data(), q_.data(), n);
-    double* const r = r_.data();
-    double* const z = z_.data();
-    const double* const p = p_.data();
-    const double* const q = q_.data();
-    const double* const d = inverse_diagonal_.data();
-#pragma omp parallel for simd schedule(static) if (n > kWorthThreads)
-    for (int i = 0; i < n; ++i) {
-      x[i] += alpha * p[i];
-      r[i] -= alpha * q[i];
-      z[i] = d[i] * r[i];
-    }
-    const double rz_next = dot(r, z, n);
-    const double beta = rz_next / rz;
-    rz = rz_next;
-    double* const p_next = p_.data();
-#pragma omp parallel for simd schedule(static) if (n > kWorthThreads)
-    for (int i = 0; i < n; ++i) p_next[i] = z[i] + beta * p_next[i];
+    const double alpha = sums.rz / multiply_p();
+    const double rz = sums.rz;
+    sums = advance(alpha, r, x, multigrid);
+    if (!(sums.largest <= tolerance)) turn(sums.rz / rz, r, multigrid);
   }
-  project_constant(x);
+  project_constant(r, x);
   return outcome;
+}
+
+PcgOutcome Pcg::solve(const double* b, double* x, double tolerance, int max_iterations) {
+  multiply(a_, x, q_.data());
+  r_ = Eigen::Map<const Eigen::VectorXd>(b, r_.size()) - q_;
+  return improve(r_.data(), x, tolerance, max_iterations);
 }
 
 }  // namespace driftwright::solver

@@ -1,6 +1,6 @@
 #pragma once
-// Conjugate gradients for M + gamma K, preconditioned by the diagonal, with the constant vector projected out of the
-// residual, so that each solve conserves heat to rounding however loosely it is solved.
+// Conjugate gradients for M + gamma K, preconditioned by the diagonal or by multigrid, with the constant vector projected out of
+// the residual, so that each solve conserves heat to rounding however loosely it is solved.
 
 #include <Eigen/Core>
 
@@ -8,9 +8,11 @@
 
 namespace driftwright::solver {
 
+class Multigrid;
+
 struct PcgOutcome {
   int iterations = 0;
-  double residual = 0.0;  ///< largest |r_i / A_ii|, in the unit of x
+  double residual = 0.0;  ///< largest |r_i / scale_i|, in the unit of x
   bool converged = false;
 };
 
@@ -20,19 +22,36 @@ class Pcg {
   explicit Pcg(const SparseRow& a) : a_(a) {}
 
   /// Call when the values of the matrix have changed.
-  /// @param ones  1 where heat is conserved, 0 at unknowns of prescribed temperature
-  void refresh(const Eigen::VectorXd& ones);
+  /// @param ones   1 where heat is conserved, 0 at unknowns of prescribed temperature
+  /// @param scale  what residuals are measured by [J/K, the unit of A]; empty: the diagonal of A
+  void refresh(const Eigen::VectorXd& ones, const Eigen::VectorXd& scale = {});
 
-  /// Solves A x = b from the x given. Stops when |r_i| <= tolerance A_ii for every row.
+  /// Solves A x = b from the x given. Stops when |r_i| <= tolerance scale_i for every row.
   [[nodiscard]] PcgOutcome solve(const double* b, double* x, double tolerance, int max_iterations);
+  /// The same where b - A x is known.
+  /// @param r  in: b - A x at the x given; out: at the solution
+  /// @param multigrid  of a matrix near A, or nullptr for the diagonal
+  [[nodiscard]] PcgOutcome improve(double* r, double* x, double tolerance, int max_iterations,
+                                   const Multigrid* multigrid = nullptr);
+  /// Adds a constant to x until A x sums to what b does, whatever rounding has gathered in residuals that were carried along.
+  void conserve(const double* b, double* x) const;
 
  private:
-  void project_constant(double* x);
+  struct Sums {
+    double rz = 0.0, largest = 0.0;
+  };
+  void project_constant(double* r, double* x) const;
+  [[nodiscard]] double multiply_p();
+  [[nodiscard]] Sums start(const double* r, const Multigrid* multigrid);
+  [[nodiscard]] Sums advance(double alpha, double* r, double* x, const Multigrid* multigrid);
+  void turn(double beta, const double* r, const Multigrid* multigrid);
+  [[nodiscard]] Sums sum_blocks(bool with_rz) const;
 
   const SparseRow& a_;
-  Eigen::VectorXd inverse_diagonal_, ones_, a_ones_;
+  Eigen::VectorXd inverse_diagonal_, inverse_scale_, ones_, a_ones_;
   double ones_a_ones_ = 0.0;
   Eigen::VectorXd r_, z_, p_, q_;
+  std::vector<double> block_sum_, block_largest_;  ///< partial results of fixed blocks of rows
 };
 
 }  // namespace driftwright::solver

@@ -112,22 +112,18 @@ void multiply(const SparseRow& a, const double* x, double* y) {
 }
 
 double dot(const double* x, const double* y, int n) {
-  constexpr int kBlock = 4096;
-  const int n_blocks = (n + kBlock - 1) / kBlock;
   std::array<double, 256> small{};
   std::vector<double> large;
-  if (n_blocks > static_cast<int>(small.size())) large.resize(n_blocks);
+  if (n_blocks(n) > static_cast<int>(small.size())) large.resize(n_blocks(n));
   double* partial = large.empty() ? small.data() : large.data();
-#pragma omp parallel for schedule(static) if (n_blocks > 4)
-  for (int b = 0; b < n_blocks; ++b) {
+  for_blocks(n, [&](int block, int begin, int end) {
     double sum = 0.0;
-    const int end = std::min(n, (b + 1) * kBlock);
 #pragma omp simd reduction(+ : sum)
-    for (int i = b * kBlock; i < end; ++i) sum += x[i] * y[i];
-    partial[b] = sum;
-  }
+    for (int i = begin; i < end; ++i) sum += x[i] * y[i];
+    partial[block] = sum;
+  });
   double total = 0.0;
-  for (int b = 0; b < n_blocks; ++b) total += partial[b];
+  for (int b = 0; b < n_blocks(n); ++b) total += partial[b];
   return total;
 }
 

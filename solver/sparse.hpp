@@ -3,6 +3,7 @@
 // result does not depend on the number of threads.
 
 #include <Eigen/Sparse>
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -35,9 +36,25 @@ void scatter_add(SparseRow& a, std::span<const int> dofs, const Eigen::Ref<const
 /// Loops of fewer entries run on one core: they last some 0.2 ms, and on a busy machine waiting for the others costs more.
 inline constexpr int kWorthThreads = 400000;
 
+/// Rows of a block: sums are made block by block, so that any number of threads gives the same bits.
+inline constexpr int kBlockRows = 4096;
+[[nodiscard]] inline int n_blocks(int n) {
+  return (n + kBlockRows - 1) / kBlockRows;
+}
+/// Vectors that are worth several cores.
+inline constexpr int kWorthThreadsRows = 40000;
+
+/// Calls work(block, begin, end) for each block of rows of 0..n, on all cores where that pays.
+template <class Work>
+void for_blocks(int n, Work work) {
+  const int n_all = n_blocks(n);
+#pragma omp parallel for schedule(static) if (n > kWorthThreadsRows)
+  for (int block = 0; block < n_all; ++block) work(block, block * kBlockRows, std::min(n, (block + 1) * kBlockRows));
+}
+
 /// y = A x on all cores.
 void multiply(const SparseRow& a, const double* x, double* y);
-/// x . y, summed in fixed blocks, so that any number of threads gives the same bits.
+/// x . y, summed block by block.
 [[nodiscard]] double dot(const double* x, const double* y, int n);
 
 }  // namespace driftwright::solver

@@ -3,6 +3,7 @@
 #include <arkode/arkode_arkstep.h>
 #include <fmt/format.h>
 #include <nvector/nvector_serial.h>
+#include <sundials/sundials_nonlinearsolver.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,22 +23,22 @@ struct FreeContext {
 struct FreeVector {
   void operator()(N_Vector v) const { N_VDestroy(v); }
 };
-struct FreeLinearSolver {
-  void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
+struct FreeStageSolver {
+  void operator()(SUNNonlinearSolver s) const { SUNNonlinSolFree(s); }
 };
 struct FreeArkode {
   void operator()(void* mem) const { ARKStepFree(&mem); }
 };
 using ContextPtr = std::unique_ptr<std::remove_pointer_t<SUNContext>, FreeContext>;
 using VectorPtr = std::unique_ptr<std::remove_pointer_t<N_Vector>, FreeVector>;
-using LinearSolverPtr = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, FreeLinearSolver>;
+using StageSolverPtr = std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, FreeStageSolver>;
 using ArkodePtr = std::unique_ptr<void, FreeArkode>;
 
 /// What the callbacks are handed.
 struct Callee {
   HeatOde& ode;
   int n_thermostats = 0;
-  void* arkode = nullptr;  ///< for the current gamma
+  void* arkode = nullptr;  ///< for what a stage is made of
   std::exception_ptr failure;
   std::string out_of_range;  ///< what the law said that refused a trial state last
 };
@@ -66,41 +67,38 @@ double* out(N_Vector v) {
 }
 
 int rhs_callback(realtype t, N_Vector y, N_Vector ydot, void* user) noexcept {
-  return guarded(user, [&](Callee& c) { c.ode.rhs(t, in(y), out(ydot)); });
-}
-int mass_times_callback(N_Vector v, N_Vector mv, realtype, void* user) noexcept {
-  return guarded(user, [&](Callee& c) { c.ode.multiply_mass(in(v), out(mv)); });
+  return guarded(user, [&](Callee& c) { c.ode.slopes(t, in(y), out(ydot)); });
 }
 int switch_callback(realtype t, N_Vector y, realtype* distance, void* user) noexcept {
   return guarded(user, [&](Callee& c) {
     for (int i = 0; i < c.n_thermostats; ++i) distance[i] = c.ode.distance_to_switch_K(i, t, in(y));
   });
 }
-int shifted_solve_callback(SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) noexcept {
-  return guarded(s->content, [&](Callee& c) {
-    realtype gamma = 0.0;
-    ARKStepGetCurrentGamma(c.arkode, &gamma);
-    c.ode.solve_shifted(gamma, in(b), out(x));
+int stage_callback(SUNNonlinearSolver s, N_Vector, N_Vector correction, N_Vector weight, realtype, booleantype,
+                   void*) noexcept {
+  bool converged = false;
+  const int flag = guarded(s->content, [&](Callee& c) {
+    realtype t = 0.0, gamma = 0.0;
+    N_Vector predicted = nullptr, z = nullptr, slope = nullptr, gathered = nullptr;
+    void* user = nullptr;
+    ARKStepGetNonlinearSystemData(c.arkode, &t, &predicted, &z, &slope, &gamma, &gathered, &user);
+    converged = c.ode.solve_stage(t, gamma, in(predicted), in(gathered), in(weight), out(correction));
   });
-}
-int mass_solve_callback(SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) noexcept {
-  return guarded(s->content, [&](Callee& c) { c.ode.solve_mass(in(b), out(x)); });
-}
-SUNLinearSolver_Type embedded_type(SUNLinearSolver) noexcept {
-  return SUNLINEARSOLVER_MATRIX_EMBEDDED;
+  if (flag < 0) return flag;
+  return flag == 0 && converged ? SUN_NLS_SUCCESS : SUN_NLS_CONV_RECVR;  // ARKODE tries a smaller step
 }
 
-LinearSolverPtr make_linear_solver(Callee& callee, SUNContext context,
-                                   int (*solve)(SUNLinearSolver, SUNMatrix, N_Vector, N_Vector, realtype) noexcept) {
-  LinearSolverPtr s(SUNLinSolNewEmpty(context));
+/// To ARKODE this is a nonlinear solver that keeps everything to itself, as fixed-point ones do.
+StageSolverPtr make_stage_solver(Callee& callee, SUNContext context) {
+  StageSolverPtr s(SUNNonlinSolNewEmpty(context));
   s->content = &callee;
-  s->ops->gettype = embedded_type;
-  s->ops->solve = solve;
-  s->ops->setatimes = [](SUNLinearSolver, void*, SUNATimesFn) -> int { return 0; };  // it knows its matrix
-  s->ops->free = [](SUNLinearSolver self) -> int {
+  s->ops->gettype = [](SUNNonlinearSolver) { return SUNNONLINEARSOLVER_FIXEDPOINT; };
+  s->ops->solve = stage_callback;
+  s->ops->setsysfn = [](SUNNonlinearSolver, SUNNonlinSolSysFn) -> int { return SUN_NLS_SUCCESS; };
+  s->ops->free = [](SUNNonlinearSolver self) -> int {
     self->content = nullptr;  // borrowed
-    SUNLinSolFreeEmpty(self);
-    return 0;
+    SUNNonlinSolFreeEmpty(self);
+    return SUN_NLS_SUCCESS;
   };
   return s;
 }
@@ -146,6 +144,50 @@ std::pair<double, double> surroundings_K(const FullSystem& system, const TimeSer
   return {low, high};
 }
 
+/// y = the cubic through two states and their slopes; without the slope at the start, which is rough after a jump, the parabola.
+void interpolate(double share, double step_s, const double* from, const double* slope_from, const double* to,
+                 const double* slope_to, int size, double* y) {
+  const double s = share, r = 1.0 - share;
+  const double of_to = slope_from ? s * s * (3.0 - 2.0 * s) : s * (2.0 - s);
+  const double of_slope_to = slope_from ? -s * s * r * step_s : -s * r * step_s;
+  const double of_slope_from = s * r * r * step_s;
+  for_blocks(size, [&](int, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const double at = from[i] + of_to * (to[i] - from[i]) + of_slope_to * slope_to[i];
+      y[i] = slope_from ? at + of_slope_from * slope_from[i] : at;
+    }
+  });
+}
+
+/// What is read off a state, by columns of few or many entries.
+class Readings {
+ public:
+  explicit Readings(const Outputs& outputs) : outputs_(outputs), entries_(outputs.state.cols()) {
+    for (Eigen::Index j = 0; j < outputs.state.cols(); ++j) {
+      for (Eigen::Index i = 0; i < outputs.state.rows(); ++i) {
+        if (outputs.state(i, j) != 0.0) entries_[j].push_back(static_cast<int>(i));
+      }
+    }
+  }
+  [[nodiscard]] Eigen::VectorXd of(const double* theta, double hall_K) const {
+    Eigen::VectorXd y = hall_K * outputs_.hall;
+    const auto n = static_cast<int>(outputs_.state.rows());
+    for (Eigen::Index j = 0; j < y.size(); ++j) {
+      const double* column = outputs_.state.col(j).data();
+      if (4 * entries_[j].size() > static_cast<std::size_t>(n)) {
+        y[j] += dot(column, theta, n);
+        continue;
+      }
+      for (int i : entries_[j]) y[j] += column[i] * theta[i];
+    }
+    return y;
+  }
+
+ private:
+  const Outputs& outputs_;
+  std::vector<std::vector<int>> entries_;
+};
+
 }  // namespace
 
 double Trajectory::energy_gap() const {
@@ -163,7 +205,8 @@ double Trajectory::energy_gap() const {
 Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
                     const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
                     const OutputCallback& callback) {
-  HeatOde ode(system, hall, 2e-3 * options.absolute_tolerance_K);
+  constexpr double kShareOfTolerance = 0.02;  // errors of linear solves do not steer the steps
+  HeatOde ode(system, hall, kShareOfTolerance * options.absolute_tolerance_K);
   const int n = system.size(), n_flows = ode.n_flows();
 
   SUNContext raw_context = nullptr;
@@ -183,8 +226,7 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   ode.set_thermostats(0.0, in(y.get()));
   (void)ode.begin_stretch(stretches.front());
   // Made before ARKODE and freed after it, which still looks at them when it goes.
-  const LinearSolverPtr shifted = make_linear_solver(callee, context.get(), shifted_solve_callback);
-  const LinearSolverPtr mass = make_linear_solver(callee, context.get(), mass_solve_callback);
+  const StageSolverPtr stage = make_stage_solver(callee, context.get());
   const ArkodePtr arkode(ARKStepCreate(nullptr, rhs_callback, 0.0, y.get(), context.get()));
   void* mem = arkode.get();
   callee.arkode = mem;
@@ -196,16 +238,8 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   must(ARKStepSetUserData(mem, &callee), "ARKStepSetUserData");
   must(ARKStepSVtolerances(mem, options.relative_tolerance, tolerance.get()), "ARKStepSVtolerances");
   must(ARKStepSetTableNum(mem, ARKODE_ESDIRK324L2SA_4_2_3, ARKODE_ERK_NONE), "ARKStepSetTableNum");
-  must(ARKStepSetLinearSolver(mem, shifted.get(), nullptr), "ARKStepSetLinearSolver");
-  // Linear in the state but for laws that look at it; those take Newton iterations with a tangent that leaves their slope out.
-  const bool is_affine = system.nonlinear.empty() && !system.capacity && !system.looks_at_state();
-  if (is_affine) {
-    must(ARKStepSetLinear(mem, 0), "ARKStepSetLinear");
-  } else {
-    must(ARKStepSetMaxNonlinIters(mem, 10), "ARKStepSetMaxNonlinIters");
-  }
-  must(ARKStepSetMassLinearSolver(mem, mass.get(), nullptr, SUNFALSE), "ARKStepSetMassLinearSolver");
-  must(ARKStepSetMassTimes(mem, nullptr, mass_times_callback, &callee), "ARKStepSetMassTimes");
+  must(ARKStepSetNonlinearSolver(mem, stage.get()), "ARKStepSetNonlinearSolver");
+  must(ARKStepSetDeduceImplicitRhs(mem, SUNTRUE), "ARKStepSetDeduceImplicitRhs");
   must(ARKStepSetMaxErrTestFails(mem, 40),
        "ARKStepSetMaxErrTestFails");  // a shock may need steps far below the first
   must(ARKStepSetMaxNumSteps(mem, 1000000), "ARKStepSetMaxNumSteps");
@@ -220,11 +254,12 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   run.heat_J.resize(n_flows, n_times);
   run.stored_J.resize(n_times);
 
+  const Readings readings(system.outputs);
   const VectorPtr at_output(N_VNew_Serial(ode.size(), context.get()));
+  const VectorPtr before(N_VNew_Serial(ode.size(), context.get()));  // the state at which the last step began
   Eigen::Index next = 0;
   const auto take_output = [&](double t_s, N_Vector state_vector) {
-    const Eigen::VectorXd state = Eigen::Map<const Eigen::VectorXd>(in(state_vector), n);
-    run.outputs.col(next) = system.observe(state, hall.at(t_s));
+    run.outputs.col(next) = readings.of(in(state_vector), hall.at(t_s));
     run.heat_J.col(next).setZero();
     run.stored_J[next] = 0.0;
     if (t_s > 0.0) {
@@ -232,13 +267,14 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
       run.stored_J[next] = jump_J.sum() + ode.stored_J(in(state_vector), began.data());
     }
     ++next;
-    if (callback) callback(t_s, state);
+    if (callback) callback(t_s, Eigen::Map<const Eigen::VectorXd>(in(state_vector), n));
   };
   OvershootWatch watch(options.absolute_tolerance_K);
   const bool bounds_hold = !system.is_stratified();  // else the air itself has a range
   double t_s = 0.0;
   if (next < n_times && output_s[next] <= 0.0) take_output(0.0, y.get());
   const auto restart = [&](double end_s) {
+    ode.forget_slopes();
     check(ARKStepReset(mem, t_s, y.get()), "ARKStepReset", t_s, callee);
     check(ARKStepSetInitStep(mem, std::min(5.0, 0.1 * (end_s - t_s))), "ARKStepSetInitStep", t_s, callee);
     watch.begin(t_s, in(y.get()), n);
@@ -250,7 +286,10 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
     if (jumps || first) restart(stretch.end_s);
     first = false;
     check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);
+    bool is_rough = jumps;
     while (t_s < stretch.end_s) {
+      const double began_s = t_s;
+      std::copy(in(y.get()), in(y.get()) + ode.size(), out(before.get()));
       const int flag = ARKStepEvolve(mem, stretch.end_s, y.get(), &t_s, ARK_ONE_STEP);
       check(flag, "ARKStepEvolve", t_s, callee);
       callee.out_of_range.clear();
@@ -265,10 +304,17 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
         if (output_s[next] == t_s) {
           take_output(t_s, y.get());
         } else {
-          check(ARKStepGetDky(mem, output_s[next], 0, at_output.get()), "ARKStepGetDky", t_s, callee);
+          if (flag == ARK_ROOT_RETURN) {  // the step goes on beyond t
+            check(ARKStepGetDky(mem, output_s[next], 0, at_output.get()), "ARKStepGetDky", t_s, callee);
+          } else {
+            interpolate((output_s[next] - began_s) / (t_s - began_s), t_s - began_s, in(before.get()),
+                        is_rough ? nullptr : ode.slope_at_start(), in(y.get()), ode.slope_at_end(), ode.size(),
+                        out(at_output.get()));
+          }
           take_output(output_s[next], at_output.get());
         }
       }
+      is_rough = false;
       if (flag == ARK_ROOT_RETURN && t_s < stretch.end_s) {
         std::vector<int> reached(callee.n_thermostats);
         check(ARKStepGetRootInfo(mem, reached.data()), "ARKStepGetRootInfo", t_s, callee);
@@ -283,6 +329,7 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
         }
         (void)ode.begin_stretch(stretch);
         restart(stretch.end_s);
+        is_rough = true;
         check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);
       }
     }

@@ -1,8 +1,9 @@
 #pragma once
-// The full model in time: SUNDIALS ARKODE with the consistent mass matrix.
+// The full model in time: SUNDIALS ARKODE on dθ/dt = M⁻¹ heat with the consistent mass matrix, whose stages HeatOde solves.
 //
 // Stiffly accurate, L-stable ESDIRK of order 3 with error control (ARKODE_ESDIRK324L2SA_4_2_3, Kennedy & Carpenter 2019). The
-// integrator stops exactly where the speed changes or the hall's curve bends and restarts where the speed jumps. The heat of
+// integrator stops exactly where the speed changes or the hall's curve bends and restarts where the speed jumps. Between steps
+// outputs lie on the cubic through both ends and their slopes. The heat of
 // each source and each exchange with the hall is integrated beside the temperatures with the same stage weights, so that the
 // energy balance closes to rounding: Runge-Kutta methods keep linear invariants.
 

@@ -78,6 +78,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "name: tilt_x, about: x",
                 "name: tilt_x, about: y",
                 {"a line does not tilt about itself"}},
+        Mistake{"positions_without_a_table",
+                "1320 mm]}, table: {region: table, at: [120 mm, 320 mm, 840 mm]}}",
+                "1320 mm]}, positions: {axis: x, at: [0 mm]}}",
+                {"positions of the table", "displacements[0].positions"}},
+        Mistake{"fields_of_no_format", "fields_format: vtu", "fields_format: none, stresses: true", {"without fields"}},
         Mistake{"target_as_candidate",
                 "  judge: chaotic",
                 "  candidates: [t01, t02, t03, drift_y]\n  judge: chaotic",
@@ -127,7 +132,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "\nsupports:",
                 "\njoints: [{name: knee/table, normal_stiffness: -1e9 N/m, tangential_stiffness: nan N/m}]\nsupports:",
                 {"-1e+09 N/m lies outside", "joints[0].normal_stiffness"}},
-        Mistake{"fields_format_is_a_choice", "fields_format: vtu", "fields_format: vtk", {"one of vtu, xdmf is wanted"}},
+        Mistake{
+            "fields_format_is_a_choice", "fields_format: vtu", "fields_format: vtk", {"one of vtu, xdmf, none is wanted"}},
         Mistake{"stresses_is_a_choice", "output_interval: 1 min", "stresses: on", {"one of true, false is wanted"}},
         Mistake{"empty_study", "name: fp3_spindle", "name:", {"| name:", "the value is empty"}},
         // These show only once the mesh is there.
