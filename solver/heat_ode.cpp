@@ -11,6 +11,7 @@ namespace driftwright::solver {
 namespace {
 
 constexpr int kMostIterations = 2000;
+constexpr double kShareOfTolerance = 0.02;  // errors of linear solves do not steer the steps
 
 bool same_time(double a_s, double b_s) {
   return std::abs(a_s - b_s) <= 1e-12 * std::max(std::abs(a_s), std::abs(b_s));
@@ -34,12 +35,35 @@ Eigen::VectorXd times(const SparseRow& a, const Eigen::VectorXd& x) {
   return y;
 }
 
+/// Coldest and warmest of what surrounds the machine at a time.
+std::pair<double, double> surroundings_K(const FullSystem& system, const TimeSeries& hall, double t_s) {
+  double low = hall.at(t_s), high = low;
+  for (const FixedUnknowns& f : system.fixed) {
+    if (f.follows_hall) continue;
+    low = std::min(low, f.theta.at(t_s));
+    high = std::max(high, f.theta.at(t_s));
+  }
+  return {low, high};
+}
+
 }  // namespace
 
-HeatOde::HeatOde(const FullSystem& system, const TimeSeries& hall, double tolerance_K)
+void require_sane(const double* theta, int n, double reference_K, double t_s) {
+  constexpr double kMost_K = 5000.0;
+  for (int i = 0; i < n; ++i) {
+    const double t_K = reference_K + theta[i];
+    if (t_K >= 0.0 && t_K <= kMost_K) continue;
+    throw SolveError(
+        fmt::format("a temperature of {:.3g} K at t = {:.1f} s: a source cools or heats more than films, links "
+                    "and joints can make up for",
+                    t_K, t_s));
+  }
+}
+
+HeatOde::HeatOde(const FullSystem& system, const TimeSeries& hall, double absolute_K)
     : system_(system),
       hall_(hall),
-      tolerance_K_(tolerance_K),
+      tolerance_K_(kShareOfTolerance * absolute_K),
       n_(system.size()),
       is_affine_(is_affine(system)),
       rate_(system),
@@ -58,7 +82,9 @@ HeatOde::HeatOde(const FullSystem& system, const TimeSeries& hall, double tolera
       work_(n_),
       space_(n_),
       shifted_solver_(shifted_),
-      mass_solver_(mass_) {
+      mass_solver_(mass_),
+      output_entries_(system.outputs.state.cols()),
+      watch_(absolute_K) {
   for (const FixedUnknowns& f : system.fixed) {
     flows_.push_back({f.name, FlowKind::kPrescribed});
     is_fixed_.resize(n_, 0);
@@ -69,6 +95,11 @@ HeatOde::HeatOde(const FullSystem& system, const TimeSeries& hall, double tolera
       fixed_unknowns_.push_back(i);
     }
     mass_fixed_ones_.push_back(times(system.mass, members));
+  }
+  for (Eigen::Index j = 0; j < system.outputs.state.cols(); ++j) {
+    for (int i = 0; i < n_; ++i) {
+      if (system.outputs.state(i, j) != 0.0) output_entries_[static_cast<std::size_t>(j)].push_back(i);
+    }
   }
   flow_W_.resize(n_flows());
   at_start_.value.resize(size());
@@ -94,19 +125,30 @@ void HeatOde::zero_fixed(double* x) const {
   for (int i : fixed_unknowns_) x[i] = 0.0;
 }
 
-Eigen::VectorXd HeatOde::prescribe(double t_s, double* y) const {
-  Eigen::VectorXd heat_J = Eigen::VectorXd::Zero(n_flows());
+void HeatOde::begin(const Eigen::VectorXd& start, double* y) {
+  std::copy(start.data(), start.data() + n_, y);
+  std::fill(y + n_, y + size(), 0.0);
+  jump_J_ = Eigen::VectorXd::Zero(n_flows());
   auto flow = static_cast<Eigen::Index>(rate_.flows().size());
   for (const FixedUnknowns& f : system_.fixed) {
     const std::vector<double> before(y, y + n_);
-    const double theta_K = (f.follows_hall ? hall_ : f.theta).at(t_s);
+    const double theta_K = (f.follows_hall ? hall_ : f.theta).at(0.0);
     for (int i : f.unknowns) y[i] = theta_K;
-    heat_J[flow++] = stored_J(y, before.data());
+    jump_J_[flow++] = stored_J(y, before.data());
   }
-  return heat_J;
+  began_ = Eigen::Map<const Eigen::VectorXd>(y, n_);
+  for (std::size_t i = 0; i < system_.thermostats.size(); ++i) {
+    const double probe_K = rate_.thermostat_probe_K(static_cast<int>(i), y, hall_.at(0.0));
+    rate_.set_thermostat(static_cast<int>(i), probe_K > system_.thermostats[i].on_above_K);
+  }
 }
 
-bool HeatOde::begin_stretch(const LinearStretch& stretch) {
+void HeatOde::tolerances(double absolute_K, double* tolerance) const {
+  std::fill(tolerance, tolerance + n_, absolute_K);
+  std::fill(tolerance + n_, tolerance + size(), 1e30);
+}
+
+bool HeatOde::begin_stretch(const LinearStretch& stretch, double*) {
   const double length_s = stretch.end_s - stretch.start_s;
   for (std::size_t f = 0; f < system_.fixed.size(); ++f) {
     const TimeSeries& series = system_.fixed[f].follows_hall ? hall_ : system_.fixed[f].theta;
@@ -127,11 +169,31 @@ void HeatOde::forget_slopes() {
   at_start_.is_known = latest_.is_known = false;
 }
 
-void HeatOde::set_thermostats(double t_s, const double* y) {
-  for (std::size_t i = 0; i < system_.thermostats.size(); ++i) {
-    const double probe_K = rate_.thermostat_probe_K(static_cast<int>(i), y, hall_.at(t_s));
-    rate_.set_thermostat(static_cast<int>(i), probe_K > system_.thermostats[i].on_above_K);
+void HeatOde::restart(double t_s, const double* y) {
+  forget_slopes();
+  watch_.begin(t_s, y, n_);
+}
+
+void HeatOde::look(double t_s, const double* y) {
+  require_sane(y, n_, system_.reference_K, t_s);
+  if (system_.is_stratified()) return;  // the air itself has a range
+  const auto [low_K, high_K] = surroundings_K(system_, hall_, t_s);
+  const auto [least_W, most_W] = rate_.power_range_W();
+  watch_.step(t_s, y, n_, low_K, high_K, most_W > 0.0, least_W < 0.0);
+}
+
+Eigen::VectorXd HeatOde::observe(const double* y, double hall_K) const {  // outputs have few entries or many
+  Eigen::VectorXd outputs = hall_K * system_.outputs.hall;
+  for (Eigen::Index j = 0; j < outputs.size(); ++j) {
+    const double* column = system_.outputs.state.col(j).data();
+    const std::vector<int>& entries = output_entries_[static_cast<std::size_t>(j)];
+    if (4 * entries.size() > static_cast<std::size_t>(n_)) {
+      outputs[j] += dot(column, y, n_);
+      continue;
+    }
+    for (int i : entries) outputs[j] += column[i] * y[i];
   }
+  return outputs;
 }
 
 double HeatOde::distance_to_switch_K(int i, double t_s, const double* y) const {
@@ -336,8 +398,9 @@ void HeatOde::count(const PcgOutcome& outcome) {
                   outcome.iterations, outcome.residual, tolerance_K_));
 }
 
-Eigen::VectorXd HeatOde::heats_J(const double* y, const double* start) const {
-  Eigen::VectorXd heats = Eigen::Map<const Eigen::VectorXd>(y + n_, n_flows());
+Eigen::VectorXd HeatOde::heats_J(const double* y) const {
+  const double* start = began_.data();
+  Eigen::VectorXd heats = jump_J_ + Eigen::Map<const Eigen::VectorXd>(y + n_, n_flows());
   if (is_fixed_.empty()) return heats;
   const Eigen::VectorXd rise = Eigen::Map<const Eigen::VectorXd>(y, n_) - Eigen::Map<const Eigen::VectorXd>(start, n_);
   Eigen::VectorXd beyond_J = Eigen::VectorXd::Zero(system_.capacity ? n_ : 0);
@@ -349,6 +412,10 @@ Eigen::VectorXd HeatOde::heats_J(const double* y, const double* start) const {
     for (int i : system_.fixed[f].unknowns) heats[j] += beyond_J[i];
   }
   return heats;
+}
+
+double HeatOde::stored_J(const double* y) const {
+  return jump_J_.sum() + stored_J(y, began_.data());
 }
 
 double HeatOde::stored_J(const double* y, const double* start) const {

@@ -10,58 +10,45 @@
 // Unknowns of prescribed temperature g(t) are rows dθ/dt = dg/dt; the heat that holds them there is
 // ∫ -1'heat dt + 1'M (θ - θ_0) over those rows. Where heat capacity varies, M is M(θ).
 
-#include "base/cyclogram.hpp"
 #include "solver/heat_rate.hpp"
 #include "solver/multigrid.hpp"
+#include "solver/overshoot.hpp"
 #include "solver/pcg.hpp"
 #include "solver/slope_space.hpp"
+#include "solver/stage_ode.hpp"
 
 namespace driftwright::solver {
 
-class HeatOde {
+class HeatOde : public StageOde {
  public:
   /// @param system, hall  borrowed
-  /// @param tolerance_K   about the largest error of a linear solve
-  HeatOde(const FullSystem& system, const TimeSeries& hall, double tolerance_K);
+  /// @param absolute_K    error allowed of a step; linear solves take a small share of it
+  HeatOde(const FullSystem& system, const TimeSeries& hall, double absolute_K);
 
-  /// Unknowns and flows.
-  [[nodiscard]] int size() const { return n_ + n_flows(); }
-  [[nodiscard]] int n_flows() const { return static_cast<int>(flows_.size()); }
-  [[nodiscard]] const std::vector<HeatFlow>& flows() const { return flows_; }
-
-  /// Sets prescribed unknowns of a state to their temperature at t. @return the heat that takes, per flow [J]
-  Eigen::VectorXd prescribe(double t_s, double* y) const;
-  /// Begins a stretch of constant drive and linear hall. @return true when some power or coefficient jumps
-  bool begin_stretch(const LinearStretch& stretch);
-  /// Call when the next state is not the end of the last step.
-  void forget_slopes();
-  /// Thermostats at the start: on where the probe is above on_above_K. Call begin_stretch() afterwards.
-  void set_thermostats(double t_s, const double* y);
-  /// Zero where thermostat i switches next [K].
-  [[nodiscard]] double distance_to_switch_K(int i, double t_s, const double* y) const;
-  /// Smallest and largest power of any source at the last evaluation [W].
-  [[nodiscard]] std::pair<double, double> power_range_W() const { return rate_.power_range_W(); }
-  void toggle(int i) { rate_.set_thermostat(i, !rate_.thermostat_is_on(i)); }
-
-  /// dy/dt at the start of a step: that of the stage which ended the last one, else by a solve with M.
-  void slopes(double t_s, const double* y, double* ydot);
-  /// Solves a stage for c = s + γ dy/dt(predicted + c).
-  /// @param weight  1 over the error allowed of each unknown, for Newton's iterations
-  /// @return false where these do not converge
+  [[nodiscard]] int size() const override { return n_ + n_flows(); }
+  [[nodiscard]] const std::vector<HeatFlow>& flows() const override { return flows_; }
+  [[nodiscard]] const std::vector<Thermostat>& thermostats() const override { return system_.thermostats; }
+  /// What is held at another temperature than it starts with jumps at once; the heat of that jump belongs to the balance.
+  void begin(const Eigen::VectorXd& start, double* y) override;
+  void tolerances(double absolute_K, double* tolerance) const override;
+  bool begin_stretch(const LinearStretch& stretch, double* y) override;
+  void restart(double t_s, const double* y) override;
+  [[nodiscard]] double distance_to_switch_K(int i, double t_s, const double* y) const override;
+  void toggle(int i) override { rate_.set_thermostat(i, !rate_.thermostat_is_on(i)); }
+  /// That of the stage which ended the last step, else by a solve with M.
+  void slopes(double t_s, const double* y, double* ydot) override;
   [[nodiscard]] bool solve_stage(double t_s, double gamma, const double* predicted, const double* s, const double* weight,
-                                 double* c);
-
-  /// dy/dt where the last step began and where it ended, by what has been computed for it.
-  [[nodiscard]] const double* slope_at_start() const { return at_start_.value.data(); }
-  [[nodiscard]] const double* slope_at_end() const { return latest_.value.data(); }
-
-  /// Heats of all flows since the start [J].
-  [[nodiscard]] Eigen::VectorXd heats_J(const double* y, const double* start) const;
-  /// Change of the stored heat since the start [J].
-  [[nodiscard]] double stored_J(const double* y, const double* start) const;
-
-  [[nodiscard]] int n_solves() const { return n_solves_; }
-  [[nodiscard]] int n_iterations() const { return n_iterations_; }
+                                 double* c) override;
+  [[nodiscard]] const double* slope_at_start() const override { return at_start_.value.data(); }
+  [[nodiscard]] const double* slope_at_end() const override { return latest_.value.data(); }
+  void look(double t_s, const double* y) override;
+  [[nodiscard]] std::vector<Overshoot> overshoots() const override { return watch_.result(); }
+  [[nodiscard]] Eigen::VectorXd observe(const double* y, double hall_K) const override;
+  [[nodiscard]] Eigen::VectorXd state(const double* y) const override { return Eigen::Map<const Eigen::VectorXd>(y, n_); }
+  [[nodiscard]] Eigen::VectorXd heats_J(const double* y) const override;
+  [[nodiscard]] double stored_J(const double* y) const override;
+  [[nodiscard]] int n_solves() const override { return n_solves_; }
+  [[nodiscard]] int n_iterations() const override { return n_iterations_; }
 
  private:
   struct Slope {
@@ -70,6 +57,9 @@ class HeatOde {
     Eigen::VectorXd value;  ///< of unknowns and flows
   };
 
+  [[nodiscard]] int n_flows() const { return static_cast<int>(flows_.size()); }
+  void forget_slopes();
+  [[nodiscard]] double stored_J(const double* y, const double* start) const;
   void count(const PcgOutcome& outcome);
   /// Rows and columns of prescribed unknowns become those of the identity.
   void decouple(SparseRow& a) const;
@@ -106,6 +96,9 @@ class HeatOde {
   Slope at_start_, latest_;
   SlopeSpace space_;
   Pcg shifted_solver_, mass_solver_;
+  Eigen::VectorXd began_, jump_J_;                ///< the state at t = 0, and the heat of each flow that made it so
+  std::vector<std::vector<int>> output_entries_;  ///< not zero, per output
+  OvershootWatch watch_;
   int n_solves_ = 0, n_iterations_ = 0;
 };
 

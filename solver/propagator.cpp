@@ -1,14 +1,11 @@
 #include "solver/propagator.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 namespace driftwright::solver {
 namespace {
 
-constexpr std::size_t kMostKept = 16;  // sections of a usual cyclogram
 /// Modes that decay less than this in a stretch: there a and b are differences of large numbers, and series take over.
 constexpr double kSlow = 1e-3;
 
@@ -62,54 +59,8 @@ struct Propagator::Solution {
   }
 };
 
-Propagator::Propagator(const ReducedSystem& system) : system_(system) {
+Propagator::Propagator(const ReducedSystem& system) : system_(system), decompositions_(system) {
   if (!system.is_linear()) throw std::logic_error("only linear systems evolve as exponentials");
-  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("a reduced system has a unit mass matrix");
-  kept_.reserve(kMostKept);
-}
-
-const Propagator::Decomposition& Propagator::decompose(const Eigen::VectorXd& coefficient) {
-  for (const Decomposition& d : kept_) {
-    if (d.coefficient == coefficient) return d;
-  }
-  if (kept_.size() < kMostKept) {
-    kept_.emplace_back();
-    oldest_ = kept_.size() - 1;
-  } else {
-    oldest_ = (oldest_ + 1) % kMostKept;
-  }
-  Decomposition& d = kept_[oldest_];
-  ++n_decompositions_;
-  d.coefficient = coefficient;
-  const auto n = static_cast<Eigen::Index>(system_.size()), n_exchanges = coefficient.size();
-  Eigen::MatrixXd k = system_.conduction;
-  Eigen::VectorXd to_hall = Eigen::VectorXd::Zero(n), offset = to_hall;
-  d.flows.resize(n_exchanges, n);
-  d.hall_W_K.resize(n_exchanges);
-  d.offset_W.resize(n_exchanges);
-  for (Eigen::Index i = 0; i < n_exchanges; ++i) {
-    const Exchange<Eigen::MatrixXd>& e = system_.exchanges[static_cast<std::size_t>(i)];
-    const double c = coefficient[i];
-    k += c * e.matrix;
-    to_hall += c * e.to_hall;
-    if (e.offset.size() > 0) offset += c * e.offset;
-    d.flows.row(i) = c * e.flow.transpose();
-    d.hall_W_K[i] = c * e.hall_sum;
-    d.offset_W[i] = c * e.offset_sum;
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
-  d.lambda_1_s = eigen.eigenvalues();
-  d.vectors = eigen.eigenvectors();
-  d.outputs.noalias() = system_.outputs.state.transpose() * d.vectors;
-  d.loads.resize(n, static_cast<Eigen::Index>(system_.sources.size()));
-  for (std::size_t s = 0; s < system_.sources.size(); ++s) {
-    d.loads.col(static_cast<Eigen::Index>(s)).noalias() = d.vectors.transpose() * system_.sources[s].load;
-  }
-  d.to_hall.noalias() = d.vectors.transpose() * to_hall;
-  d.offset.noalias() = d.vectors.transpose() * offset;
-  d.flows = d.flows * d.vectors;
-  d.stored_J_K.noalias() = system_.ones.transpose() * d.vectors;
-  return d;
 }
 
 Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
@@ -124,12 +75,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
   Eigen::VectorXd heat_J;  // of every flow up to the stretch's start
   double initial_J = 0.0;
   if (with_heat) {
-    for (const HeatSource& s : system_.sources) run.flows.push_back({s.name, FlowKind::kSource});
-    for (const auto& e : system_.exchanges) {
-      run.flows.push_back({e.name, e.prescribes      ? FlowKind::kPrescribed
-                                   : e.reaches_hall() ? FlowKind::kSurrounding
-                                                      : FlowKind::kInternal});
-    }
+    run.flows = flows_of(system_);
     heat_J = Eigen::VectorXd::Zero(n_sources + n_exchanges);
     run.heat_J.resize(n_sources + n_exchanges, n_times);
     run.stored_J.resize(n_times);
@@ -150,7 +96,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
       coefficient[i] = system_.exchanges[static_cast<std::size_t>(i)].coefficient(at);
     }
     for (Eigen::Index s = 0; s < n_sources; ++s) power_W[s] = system_.sources[static_cast<std::size_t>(s)].power_W(at);
-    const Decomposition& d = decompose(coefficient);
+    const Decomposition& d = decompositions_.at(coefficient);
     const Solution solution(d.lambda_1_s, d.vectors.transpose() * state, d.loads * power_W + hall_K * d.to_hall + d.offset,
                             hall_slope * d.to_hall, length_s);
 

@@ -2,10 +2,8 @@
 // Linear reduced systems in time, exactly: in each stretch of constant drive and linear hall temperature the solution is a
 // sum of exponentials, so nothing is stepped and nothing but rounding is lost.
 
-#include <optional>
-
 #include "base/cyclogram.hpp"
-#include "solver/thermal_system.hpp"
+#include "solver/decomposition.hpp"
 
 namespace driftwright::solver {
 
@@ -30,29 +28,13 @@ class Propagator {
   [[nodiscard]] Trajectory run(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
                                const Eigen::VectorXd& start, bool with_heat = false, Eigen::MatrixXd* states = nullptr);
 
-  [[nodiscard]] int n_decompositions() const { return n_decompositions_; }
+  [[nodiscard]] int n_decompositions() const { return decompositions_.n_made(); }
 
  private:
-  /// The system in the eigenvectors of K at one set of coefficients.
-  struct Decomposition {
-    Eigen::VectorXd coefficient;  ///< of each exchange: the key
-    Eigen::VectorXd lambda_1_s;
-    Eigen::MatrixXd vectors;             ///< V
-    Eigen::MatrixXd outputs;             ///< n_outputs x size
-    Eigen::MatrixXd loads;               ///< size x n_sources
-    Eigen::VectorXd to_hall, offset;     ///< Σ c_e g_e, Σ c_e o_e
-    Eigen::MatrixXd flows;               ///< c_e flow_e', n_exchanges x size
-    Eigen::VectorXd hall_W_K, offset_W;  ///< c_e hall_sum_e, c_e offset_sum_e
-    Eigen::RowVectorXd stored_J_K;       ///< 1'M V
-  };
-  /// z over one stretch, in the eigenvectors.
-  struct Solution;
-  const Decomposition& decompose(const Eigen::VectorXd& coefficient);
+  struct Solution;  // z over one stretch, in the eigenvectors
 
   const ReducedSystem& system_;
-  std::vector<Decomposition> kept_;  ///< the last met; the oldest is replaced
-  std::size_t oldest_ = 0;
-  int n_decompositions_ = 0;
+  Decompositions decompositions_;
 };
 
 }  // namespace driftwright::solver

@@ -1,14 +1,20 @@
 #include "solver/reduced_transient.hpp"
 
-#include "base/errors.hpp"
+#include "solver/integrate.hpp"
 #include "solver/propagator.hpp"
+#include "solver/reduced_ode.hpp"
 
 namespace driftwright::solver {
 
 Trajectory simulate(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
-                    const std::vector<double>& output_s, const TransientOptions&, const Eigen::VectorXd& start,
+                    const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
                     const OutputCallback& callback) {
-  if (!system.is_linear()) throw InputError("a reduced model with laws of temperature cannot run yet");
+  if (!system.is_linear()) {
+    std::vector<double> knots_s = hall.time_s;
+    knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
+    ReducedOde ode(system, hall);
+    return integrate(ode, linear_stretches(cyclogram, knots_s), hall, output_s, options, start, callback);
+  }
   Eigen::MatrixXd states;
   Trajectory run = Propagator(system).run(cyclogram, hall, output_s, start, true, &states);
   for (std::size_t k = 0; callback && k < output_s.size(); ++k) {

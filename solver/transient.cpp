@@ -12,7 +12,7 @@
 
 #include "base/errors.hpp"
 #include "solver/heat_ode.hpp"
-#include "solver/overshoot.hpp"
+#include "solver/integrate.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -36,7 +36,7 @@ using ArkodePtr = std::unique_ptr<void, FreeArkode>;
 
 /// What the callbacks are handed.
 struct Callee {
-  HeatOde& ode;
+  StageOde& ode;
   int n_thermostats = 0;
   void* arkode = nullptr;  ///< for what a stage is made of
   std::exception_ptr failure;
@@ -120,30 +120,6 @@ std::vector<double> knots_s(const FullSystem& system, const TimeSeries& hall) {
   return knots;
 }
 
-/// @throws SolveError  at temperatures that no machine has: below absolute zero, or above what melts any part of it
-void require_sane(const double* theta, int n, double reference_K, double t_s) {
-  constexpr double kMost_K = 5000.0;
-  for (int i = 0; i < n; ++i) {
-    const double t_K = reference_K + theta[i];
-    if (t_K >= 0.0 && t_K <= kMost_K) continue;
-    throw SolveError(
-        fmt::format("a temperature of {:.3g} K at t = {:.1f} s: a source cools or heats more than films, links "
-                    "and joints can make up for",
-                    t_K, t_s));
-  }
-}
-
-/// Coldest and warmest of what surrounds the machine at a time.
-std::pair<double, double> surroundings_K(const FullSystem& system, const TimeSeries& hall, double t_s) {
-  double low = hall.at(t_s), high = low;
-  for (const FixedUnknowns& f : system.fixed) {
-    if (f.follows_hall) continue;
-    low = std::min(low, f.theta.at(t_s));
-    high = std::max(high, f.theta.at(t_s));
-  }
-  return {low, high};
-}
-
 /// y = the cubic through two states and their slopes; without the slope at the start, which is rough after a jump, the parabola.
 void interpolate(double share, double step_s, const double* from, const double* slope_from, const double* to,
                  const double* slope_to, int size, double* y) {
@@ -159,35 +135,6 @@ void interpolate(double share, double step_s, const double* from, const double* 
   });
 }
 
-/// What is read off a state, by columns of few or many entries.
-class Readings {
- public:
-  explicit Readings(const Outputs& outputs) : outputs_(outputs), entries_(outputs.state.cols()) {
-    for (Eigen::Index j = 0; j < outputs.state.cols(); ++j) {
-      for (Eigen::Index i = 0; i < outputs.state.rows(); ++i) {
-        if (outputs.state(i, j) != 0.0) entries_[j].push_back(static_cast<int>(i));
-      }
-    }
-  }
-  [[nodiscard]] Eigen::VectorXd of(const double* theta, double hall_K) const {
-    Eigen::VectorXd y = hall_K * outputs_.hall;
-    const auto n = static_cast<int>(outputs_.state.rows());
-    for (Eigen::Index j = 0; j < y.size(); ++j) {
-      const double* column = outputs_.state.col(j).data();
-      if (4 * entries_[j].size() > static_cast<std::size_t>(n)) {
-        y[j] += dot(column, theta, n);
-        continue;
-      }
-      for (int i : entries_[j]) y[j] += column[i] * theta[i];
-    }
-    return y;
-  }
-
- private:
-  const Outputs& outputs_;
-  std::vector<std::vector<int>> entries_;
-};
-
 }  // namespace
 
 double Trajectory::energy_gap() const {
@@ -202,29 +149,17 @@ double Trajectory::energy_gap() const {
   return magnitude_J == 0.0 ? 0.0 : std::abs(in_J - stored_J[stored_J.size() - 1]) / (0.5 * magnitude_J);
 }
 
-Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
-                    const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
-                    const OutputCallback& callback) {
-  constexpr double kShareOfTolerance = 0.02;  // errors of linear solves do not steer the steps
-  HeatOde ode(system, hall, kShareOfTolerance * options.absolute_tolerance_K);
-  const int n = system.size(), n_flows = ode.n_flows();
-
+Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches, const TimeSeries& hall,
+                     const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
+                     const OutputCallback& callback) {
   SUNContext raw_context = nullptr;
   SUNContext_Create(nullptr, &raw_context);
   const ContextPtr context(raw_context);
   const VectorPtr y(N_VNew_Serial(ode.size(), context.get())), tolerance(N_VNew_Serial(ode.size(), context.get()));
-  std::fill(out(y.get()), out(y.get()) + ode.size(), 0.0);
-  std::copy(start.data(), start.data() + n, out(y.get()));
-  // What is held at another temperature than it starts with jumps at once; the heat of that jump belongs to the balance.
-  const Eigen::VectorXd jump_J = ode.prescribe(0.0, out(y.get()));
-  const std::vector<double> began(in(y.get()), in(y.get()) + n);
-  std::fill(out(tolerance.get()), out(tolerance.get()) + n, options.absolute_tolerance_K);
-  std::fill(out(tolerance.get()) + n, out(tolerance.get()) + ode.size(), 1e30);  // heats follow, they do not steer
-
-  const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, knots_s(system, hall));
-  Callee callee{ode, static_cast<int>(system.thermostats.size()), nullptr, nullptr, {}};
-  ode.set_thermostats(0.0, in(y.get()));
-  (void)ode.begin_stretch(stretches.front());
+  ode.begin(start, out(y.get()));
+  ode.tolerances(options.absolute_tolerance_K, out(tolerance.get()));
+  Callee callee{ode, static_cast<int>(ode.thermostats().size()), nullptr, nullptr, {}};
+  (void)ode.begin_stretch(stretches.front(), out(y.get()));
   // Made before ARKODE and freed after it, which still looks at them when it goes.
   const StageSolverPtr stage = make_stage_solver(callee, context.get());
   const ArkodePtr arkode(ARKStepCreate(nullptr, rhs_callback, 0.0, y.get(), context.get()));
@@ -250,39 +185,36 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
   run.flows = ode.flows();
   run.time_s = output_s;
   const auto n_times = static_cast<Eigen::Index>(output_s.size());
-  run.outputs.resize(system.outputs.state.cols(), n_times);
-  run.heat_J.resize(n_flows, n_times);
+  run.heat_J.resize(static_cast<Eigen::Index>(run.flows.size()), n_times);
   run.stored_J.resize(n_times);
 
-  const Readings readings(system.outputs);
   const VectorPtr at_output(N_VNew_Serial(ode.size(), context.get()));
   const VectorPtr before(N_VNew_Serial(ode.size(), context.get()));  // the state at which the last step began
   Eigen::Index next = 0;
   const auto take_output = [&](double t_s, N_Vector state_vector) {
-    run.outputs.col(next) = readings.of(in(state_vector), hall.at(t_s));
+    const Eigen::VectorXd outputs = ode.observe(in(state_vector), hall.at(t_s));
+    if (next == 0) run.outputs.resize(outputs.size(), n_times);
+    run.outputs.col(next) = outputs;
     run.heat_J.col(next).setZero();
     run.stored_J[next] = 0.0;
     if (t_s > 0.0) {
-      run.heat_J.col(next) = jump_J + ode.heats_J(in(state_vector), began.data());
-      run.stored_J[next] = jump_J.sum() + ode.stored_J(in(state_vector), began.data());
+      run.heat_J.col(next) = ode.heats_J(in(state_vector));
+      run.stored_J[next] = ode.stored_J(in(state_vector));
     }
     ++next;
-    if (callback) callback(t_s, Eigen::Map<const Eigen::VectorXd>(in(state_vector), n));
+    if (callback) callback(t_s, ode.state(in(state_vector)));
   };
-  OvershootWatch watch(options.absolute_tolerance_K);
-  const bool bounds_hold = !system.is_stratified();  // else the air itself has a range
   double t_s = 0.0;
   if (next < n_times && output_s[next] <= 0.0) take_output(0.0, y.get());
   const auto restart = [&](double end_s) {
-    ode.forget_slopes();
+    ode.restart(t_s, in(y.get()));
     check(ARKStepReset(mem, t_s, y.get()), "ARKStepReset", t_s, callee);
     check(ARKStepSetInitStep(mem, std::min(5.0, 0.1 * (end_s - t_s))), "ARKStepSetInitStep", t_s, callee);
-    watch.begin(t_s, in(y.get()), n);
   };
   bool first = true;
   int n_switches = 0;
   for (const LinearStretch& stretch : stretches) {
-    const bool jumps = ode.begin_stretch(stretch);
+    const bool jumps = ode.begin_stretch(stretch, out(y.get()));
     if (jumps || first) restart(stretch.end_s);
     first = false;
     check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);
@@ -293,13 +225,8 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
       const int flag = ARKStepEvolve(mem, stretch.end_s, y.get(), &t_s, ARK_ONE_STEP);
       check(flag, "ARKStepEvolve", t_s, callee);
       callee.out_of_range.clear();
-      require_sane(in(y.get()), n, system.reference_K, t_s);
       if (t_s > stretch.end_s - 1e-9 * stretch.end_s) t_s = stretch.end_s;
-      if (bounds_hold) {
-        const auto [low_K, high_K] = surroundings_K(system, hall, t_s);
-        const auto [least_W, most_W] = ode.power_range_W();
-        watch.step(t_s, in(y.get()), n, low_K, high_K, most_W > 0.0, least_W < 0.0);
-      }
+      ode.look(t_s, in(y.get()));
       while (next < n_times && output_s[next] <= t_s) {
         if (output_s[next] == t_s) {
           take_output(t_s, y.get());
@@ -325,22 +252,29 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
           throw SolveError(
               fmt::format("thermostat '{}' switched for the {}th time at t = {:.1f} s; is its hysteresis too small "
                           "for its volume?",
-                          system.thermostats[i].name, n_switches, t_s));
+                          ode.thermostats()[static_cast<std::size_t>(i)].name, n_switches, t_s));
         }
-        (void)ode.begin_stretch(stretch);
+        (void)ode.begin_stretch(stretch, out(y.get()));
         restart(stretch.end_s);
         is_rough = true;
         check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);
       }
     }
   }
-  run.overshoots = watch.result();
+  run.overshoots = ode.overshoots();
   long n_steps = 0;
   ARKStepGetNumSteps(mem, &n_steps);
   run.n_steps = static_cast<int>(n_steps);
   run.n_solves = ode.n_solves();
   run.n_iterations = ode.n_iterations();
   return run;
+}
+
+Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+                    const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
+                    const OutputCallback& callback) {
+  HeatOde ode(system, hall, options.absolute_tolerance_K);
+  return integrate(ode, linear_stretches(cyclogram, knots_s(system, hall)), hall, output_s, options, start, callback);
 }
 
 }  // namespace driftwright::solver

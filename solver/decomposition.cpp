@@ -1,0 +1,73 @@
+#include "solver/decomposition.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <stdexcept>
+
+namespace driftwright::solver {
+namespace {
+
+constexpr std::size_t kMostKept = 16;  // sections of a usual cyclogram
+
+}  // namespace
+
+Decompositions::Decompositions(const ReducedSystem& system) : system_(system) {
+  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("a reduced system has a unit mass matrix");
+  kept_.reserve(kMostKept);
+}
+
+const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient) {
+  for (const Decomposition& d : kept_) {
+    if (d.coefficient == coefficient) return d;
+  }
+  if (kept_.size() < kMostKept) {
+    kept_.emplace_back();
+    oldest_ = kept_.size() - 1;
+  } else {
+    oldest_ = (oldest_ + 1) % kMostKept;
+  }
+  Decomposition& d = kept_[oldest_];
+  ++n_made_;
+  d.coefficient = coefficient;
+  const auto n = static_cast<Eigen::Index>(system_.size()), n_exchanges = coefficient.size();
+  Eigen::MatrixXd k = system_.conduction;
+  Eigen::VectorXd to_hall = Eigen::VectorXd::Zero(n), offset = to_hall;
+  d.flows.resize(n_exchanges, n);
+  d.hall_W_K.resize(n_exchanges);
+  d.offset_W.resize(n_exchanges);
+  for (Eigen::Index i = 0; i < n_exchanges; ++i) {
+    const Exchange<Eigen::MatrixXd>& e = system_.exchanges[static_cast<std::size_t>(i)];
+    const double c = coefficient[i];
+    k += c * e.matrix;
+    to_hall += c * e.to_hall;
+    if (e.offset.size() > 0) offset += c * e.offset;
+    d.flows.row(i) = c * e.flow.transpose();
+    d.hall_W_K[i] = c * e.hall_sum;
+    d.offset_W[i] = c * e.offset_sum;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+  d.lambda_1_s = eigen.eigenvalues();
+  d.vectors = eigen.eigenvectors();
+  d.outputs.noalias() = system_.outputs.state.transpose() * d.vectors;
+  d.loads.resize(n, static_cast<Eigen::Index>(system_.sources.size()));
+  for (std::size_t s = 0; s < system_.sources.size(); ++s) {
+    d.loads.col(static_cast<Eigen::Index>(s)).noalias() = d.vectors.transpose() * system_.sources[s].load;
+  }
+  d.to_hall.noalias() = d.vectors.transpose() * to_hall;
+  d.offset.noalias() = d.vectors.transpose() * offset;
+  d.flows = d.flows * d.vectors;
+  d.stored_J_K.noalias() = system_.ones.transpose() * d.vectors;
+  return d;
+}
+
+std::vector<HeatFlow> flows_of(const ReducedSystem& system) {
+  std::vector<HeatFlow> flows;
+  for (const HeatSource& s : system.sources) flows.push_back({s.name, FlowKind::kSource});
+  for (const auto& e : system.exchanges) {
+    flows.push_back({e.name, e.prescribes       ? FlowKind::kPrescribed
+                             : e.reaches_hall() ? FlowKind::kSurrounding
+                                                : FlowKind::kInternal});
+  }
+  return flows;
+}
+
+}  // namespace driftwright::solver

@@ -1,0 +1,41 @@
+#pragma once
+// A linear reduced system in the eigenvectors of its K, one decomposition per set of coefficients.
+
+#include "solver/thermal_system.hpp"
+
+namespace driftwright::solver {
+
+/// The system in the eigenvectors V of K = K0 + Σ c_e G_e = V Λ V'.
+struct Decomposition {
+  Eigen::VectorXd coefficient;  ///< of each exchange: the key
+  Eigen::VectorXd lambda_1_s;
+  Eigen::MatrixXd vectors;             ///< V
+  Eigen::MatrixXd outputs;             ///< n_outputs x size
+  Eigen::MatrixXd loads;               ///< size x n_sources
+  Eigen::VectorXd to_hall, offset;     ///< Σ c_e g_e, Σ c_e o_e
+  Eigen::MatrixXd flows;               ///< c_e flow_e', n_exchanges x size
+  Eigen::VectorXd hall_W_K, offset_W;  ///< c_e hall_sum_e, c_e offset_sum_e
+  Eigen::RowVectorXd stored_J_K;       ///< 1'M V
+};
+
+/// Decompositions of the coefficients met last. One thread at a time.
+class Decompositions {
+ public:
+  /// @param system  borrowed. @throws std::logic_error  when its mass is not the unit matrix
+  explicit Decompositions(const ReducedSystem& system);
+
+  /// Valid until the next call.
+  const Decomposition& at(const Eigen::VectorXd& coefficient);
+  [[nodiscard]] int n_made() const { return n_made_; }
+
+ private:
+  const ReducedSystem& system_;
+  std::vector<Decomposition> kept_;  ///< the oldest is replaced
+  std::size_t oldest_ = 0;
+  int n_made_ = 0;
+};
+
+/// What flows there are: sources, then exchanges.
+[[nodiscard]] std::vector<HeatFlow> flows_of(const ReducedSystem& system);
+
+}  // namespace driftwright::solver

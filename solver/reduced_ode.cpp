@@ -1,0 +1,252 @@
+#include "solver/reduced_ode.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace driftwright::solver {
+namespace {
+
+constexpr int kMostIterations = 12;
+constexpr double kShareOfTolerance = 0.02;  // errors of Newton's iterations do not steer the steps
+
+}  // namespace
+
+ReducedOde::ReducedOde(const ReducedSystem& system, const TimeSeries& hall)
+    : system_(system),
+      hall_(hall),
+      n_(system.size()),
+      flows_(flows_of(system)),
+      decompositions_(system),
+      is_on_(system.thermostats.size(), 0),
+      power_W_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.sources.size()))),
+      probes_(n_, static_cast<Eigen::Index>(system.probes.size())),
+      at_start_(size()),
+      latest_(size()),
+      heat_(n_),
+      flow_W_(static_cast<Eigen::Index>(flows_.size())) {
+  for (std::size_t s = 0; s < system.sources.size(); ++s) {
+    if (system.sources[s].power_W.looks_at_state()) live_sources_.push_back({s, 0.0, {}});
+  }
+  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
+    if (system.exchanges[e].coefficient.looks_at_state()) live_exchanges_.push_back({e, 0.0, 0.0, {}, {}, {}, {}});
+  }
+}
+
+void ReducedOde::begin(const Eigen::VectorXd& start, double* y) {
+  std::copy(start.data(), start.data() + n_, y);
+  std::fill(y + n_, y + size(), 0.0);
+  began_J_ = system_.ones.dot(start);
+  for (std::size_t p = 0; p < system_.probes.size(); ++p)
+    probes_.col(static_cast<Eigen::Index>(p)) = system_.probes[p].weights;
+  for (std::size_t i = 0; i < is_on_.size(); ++i) {
+    is_on_[i] = 0;
+    is_on_[i] = distance_to_switch_K(static_cast<int>(i), 0.0, y) > 0.0 ? 1 : 0;
+  }
+}
+
+void ReducedOde::tolerances(double absolute_K, double* tolerance) const {
+  double per_unit_K = 1.0 / system_.ones.norm();
+  for (std::size_t o = 0; o < system_.outputs.unit.size(); ++o) {
+    const double scale_per_K = system_.outputs.unit[o] == "K" ? 1.0 : system_.outputs.unit[o] == "m" ? 2e-6 : 2e-5;
+    per_unit_K = std::max(per_unit_K, system_.outputs.state.col(static_cast<Eigen::Index>(o)).norm() / scale_per_K);
+  }
+  std::fill(tolerance, tolerance + n_, absolute_K / per_unit_K);
+  std::fill(tolerance + n_, tolerance + size(), 1e30);
+}
+
+double ReducedOde::value(const BoundLaw& law, const std::vector<double>& probe_K) const {
+  if (law.thermostat >= 0 && !is_on_[static_cast<std::size_t>(law.thermostat)]) return 0.0;
+  if (!law.looks_at_state()) return law(inputs_);
+  effects::Inputs inputs = inputs_;
+  for (int p : law.probes) inputs.probe_K.push_back(probe_K[static_cast<std::size_t>(p)]);
+  return law.law(inputs);
+}
+
+std::vector<double> ReducedOde::probe_K(const Eigen::VectorXd& w, double hall_K) const {
+  std::vector<double> t_K(system_.probes.size());
+  for (std::size_t p = 0; p < t_K.size(); ++p) {
+    const Probe& probe = system_.probes[p];
+    t_K[p] =
+        system_.reference_K + probes_.col(static_cast<Eigen::Index>(p)).dot(w) + probe.hall_share * hall_K + probe.offset_K;
+  }
+  return t_K;
+}
+
+bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
+  inputs_.drive = stretch.drive;
+  inputs_.time_s = 0.5 * (stretch.start_s + stretch.end_s);
+  inputs_.hall_K = hall_.at(stretch.start_s);
+  Eigen::VectorXd coefficient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system_.exchanges.size())),
+                  power_W = Eigen::VectorXd::Zero(power_W_.size());
+  for (std::size_t s = 0; s < system_.sources.size(); ++s) {
+    const BoundLaw& law = system_.sources[s].power_W;
+    if (!law.looks_at_state()) power_W[static_cast<Eigen::Index>(s)] = value(law, {});
+  }
+  for (std::size_t e = 0; e < system_.exchanges.size(); ++e) {
+    const BoundLaw& law = system_.exchanges[e].coefficient;
+    if (!law.looks_at_state()) coefficient[static_cast<Eigen::Index>(e)] = value(law, {});
+  }
+  bool jumps = is_first_ || power_W != power_W_;
+  for (std::size_t e = 0; e < system_.exchanges.size() && !jumps; ++e) {
+    const auto i = static_cast<Eigen::Index>(e);
+    jumps = !system_.exchanges[e].coefficient.looks_at_state() && coefficient[i] != now_.coefficient[i];
+  }
+  // Laws of temperature may jump with the drive or a switch, too.
+  jumps = jumps || ((stretch.drive_changed || !is_on_.empty()) && !(live_sources_.empty() && live_exchanges_.empty()));
+  if (!jumps) return false;
+  power_W_ = power_W;
+  const Eigen::VectorXd z = state(y);
+  const auto weights_of_probes = [&](const Eigen::MatrixXd& v) {
+    for (std::size_t p = 0; p < system_.probes.size(); ++p) {
+      probes_.col(static_cast<Eigen::Index>(p)).noalias() = v.transpose() * system_.probes[p].weights;
+    }
+  };
+  weights_of_probes(Eigen::MatrixXd::Identity(n_, n_));
+  const std::vector<double> t_K = probe_K(z, inputs_.hall_K);
+  for (LiveExchange& live : live_exchanges_) {
+    live.in_diagonal = std::max(0.0, value(system_.exchanges[live.index].coefficient, t_K));
+    coefficient[static_cast<Eigen::Index>(live.index)] = live.in_diagonal;
+  }
+  now_ = decompositions_.at(coefficient);
+  const Eigen::MatrixXd& v = now_.vectors;
+  weights_of_probes(v);
+  for (LiveExchange& live : live_exchanges_) {
+    const auto& e = system_.exchanges[live.index];
+    live.matrix.noalias() = v.transpose() * (e.matrix * v);
+    live.to_hall.noalias() = v.transpose() * e.to_hall;
+    live.offset = e.offset.size() > 0 ? Eigen::VectorXd(v.transpose() * e.offset) : Eigen::VectorXd::Zero(n_);
+    live.flow.noalias() = v.transpose() * e.flow;
+  }
+  Eigen::Map<Eigen::VectorXd>(y, n_) = v.transpose() * z;
+  is_first_ = false;
+  return true;
+}
+
+void ReducedOde::restart(double, const double*) {}
+
+double ReducedOde::distance_to_switch_K(int i, double t_s, const double* y) const {
+  const Thermostat& thermostat = system_.thermostats[static_cast<std::size_t>(i)];
+  const Probe& probe = system_.probes[static_cast<std::size_t>(thermostat.probe)];
+  const double t_K = system_.reference_K + probes_.col(thermostat.probe).dot(unknowns(y)) +
+                     probe.hall_share * hall_.at(t_s) + probe.offset_K;
+  return t_K - (is_on_[static_cast<std::size_t>(i)] ? thermostat.off_below_K : thermostat.on_above_K);
+}
+
+void ReducedOde::evaluate(double t_s, const Eigen::VectorXd& w, Eigen::VectorXd& heat, Eigen::VectorXd& flow_W) {
+  const double hall_K = hall_.at(t_s);
+  inputs_.hall_K = hall_K;
+  const std::vector<double> t_K = probe_K(w, hall_K);
+  for (LiveSource& live : live_sources_) {
+    power_W_[static_cast<Eigen::Index>(live.index)] = live.power_W = value(system_.sources[live.index].power_W, t_K);
+  }
+  heat = now_.offset + hall_K * now_.to_hall - now_.lambda_1_s.cwiseProduct(w);
+  heat.noalias() += now_.loads * power_W_;
+  for (LiveExchange& live : live_exchanges_) {
+    live.coefficient = value(system_.exchanges[live.index].coefficient, t_K);
+    const double beyond = live.coefficient - live.in_diagonal;
+    heat.noalias() -= beyond * (live.matrix * w);
+    heat += beyond * (hall_K * live.to_hall + live.offset);
+  }
+  const Eigen::Index n_sources = power_W_.size(), n_exchanges = now_.hall_W_K.size();
+  flow_W.head(n_sources) = power_W_;
+  flow_W.tail(n_exchanges).noalias() = now_.flows * w;
+  flow_W.tail(n_exchanges) -= hall_K * now_.hall_W_K + now_.offset_W;
+  for (const LiveExchange& live : live_exchanges_) {
+    const auto& e = system_.exchanges[live.index];
+    flow_W[n_sources + static_cast<Eigen::Index>(live.index)] =
+        live.coefficient * (live.flow.dot(w) - e.hall_sum * hall_K - e.offset_sum);
+  }
+  for (Eigen::Index j = n_sources; j < flow_W.size(); ++j) {
+    if (flows_[static_cast<std::size_t>(j)].kind != FlowKind::kInternal) flow_W[j] = -flow_W[j];
+  }
+}
+
+void ReducedOde::find_slopes(double t_s, const Eigen::VectorXd& w) {
+  constexpr double kHalfStep_K = 0.01;
+  const std::vector<double> t_K = probe_K(w, hall_.at(t_s));
+  for (LiveSource& live : live_sources_) {
+    const BoundLaw& law = system_.sources[live.index].power_W;
+    live.slope = Eigen::VectorXd::Zero(n_);
+    for (int p : law.probes) {
+      std::vector<double> below = t_K, above = t_K;
+      below[static_cast<std::size_t>(p)] -= kHalfStep_K;
+      above[static_cast<std::size_t>(p)] += kHalfStep_K;
+      live.slope += (value(law, above) - value(law, below)) / (2.0 * kHalfStep_K) * probes_.col(p);
+    }
+  }
+}
+
+void ReducedOde::slopes(double t_s, const double* y, double* ydot) {
+  const Eigen::VectorXd w = unknowns(y);
+  evaluate(t_s, w, heat_, flow_W_);
+  find_slopes(t_s, w);
+  at_start_ << heat_, flow_W_;
+  std::copy(at_start_.data(), at_start_.data() + size(), ydot);
+}
+
+bool ReducedOde::solve_stage(double t_s, double gamma, const double* predicted, const double* s, const double* weight,
+                             double* c) {
+  const Map base(predicted, n_), gathered(s, n_), scale(weight, n_);
+  const Eigen::VectorXd damping = (1.0 + gamma * now_.lambda_1_s.array()).inverse();
+  const auto n_live = static_cast<Eigen::Index>(live_sources_.size());
+  Eigen::MatrixXd along(n_, n_live), slopes(n_, n_live);  // D b_s, dP_s/dw
+  for (Eigen::Index k = 0; k < n_live; ++k) {
+    const LiveSource& live = live_sources_[static_cast<std::size_t>(k)];
+    along.col(k) = damping.cwiseProduct(now_.loads.col(static_cast<Eigen::Index>(live.index)));
+    slopes.col(k) = live.slope;
+  }
+  const Eigen::PartialPivLU<Eigen::MatrixXd> coupling(Eigen::MatrixXd::Identity(n_live, n_live) -
+                                                      gamma * slopes.transpose() * along);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n_), w(n_);
+  bool converged = false;
+  for (int i = 0; i < kMostIterations && !converged; ++i) {
+    w = base + x;
+    evaluate(t_s, w, heat_, flow_W_);
+    Eigen::VectorXd step = damping.cwiseProduct(gathered + gamma * heat_ - x);
+    if (n_live > 0) step += gamma * along * coupling.solve(slopes.transpose() * step);
+    x += step;
+    ++n_iterations_;
+    const double size_of_step = std::sqrt(step.cwiseProduct(scale).squaredNorm() / n_);
+    if (!std::isfinite(size_of_step)) return false;
+    converged = size_of_step <= kShareOfTolerance || (live_sources_.empty() && live_exchanges_.empty());
+  }
+  ++n_solves_;
+  if (!converged) return false;
+  // Heats take the flows of the state found: stage values and balance agree to the size of the last step, which is linear in it.
+  w = base + x;
+  Eigen::VectorXd heat(n_);
+  evaluate(t_s, w, heat, flow_W_);
+  std::copy(x.data(), x.data() + n_, c);
+  for (Eigen::Index j = 0; j < flow_W_.size(); ++j) c[n_ + j] = s[n_ + j] + gamma * flow_W_[j];
+  for (int i = 0; i < size(); ++i) latest_[i] = (c[i] - s[i]) / gamma;
+  return true;
+}
+
+void ReducedOde::look(double t_s, const double* y) {
+  const Eigen::VectorXd outputs = now_.outputs * unknowns(y);
+  for (std::size_t o = 0; o < system_.outputs.unit.size(); ++o) {
+    if (system_.outputs.unit[o] == "K") require_sane(&outputs[static_cast<Eigen::Index>(o)], 1, system_.reference_K, t_s);
+  }
+}
+
+Eigen::VectorXd ReducedOde::observe(const double* y, double hall_K) const {
+  return now_.outputs * unknowns(y) + hall_K * system_.outputs.hall;
+}
+
+Eigen::VectorXd ReducedOde::state(const double* y) const {
+  if (is_first_) return unknowns(y);
+  return now_.vectors * unknowns(y);
+}
+
+Eigen::VectorXd ReducedOde::heats_J(const double* y) const {
+  return Map(y + n_, static_cast<Eigen::Index>(flows_.size()));
+}
+
+double ReducedOde::stored_J(const double* y) const {
+  return now_.stored_J_K.dot(unknowns(y)) - began_J_;
+}
+
+}  // namespace driftwright::solver

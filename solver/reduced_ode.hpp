@@ -1,0 +1,87 @@
+#pragma once
+// The reduced model as integrate() sees it, where laws look at temperatures or thermostats switch.
+//
+// In each stretch the unknowns are those of the eigenvectors of K, with exchanges that look at temperatures at their value where the
+// stretch began, so that I + γ K is diagonal. What laws of temperature do to heat is a correction of few terms:
+//
+//     dw/dt = f + θ_hall h - Λ w + Σ_s P_s(w) b_s - Σ_e (c_e(w) - c_e0) (G_e w - θ_hall g_e - o_e)
+//
+// Newton's iterations take the diagonal, the slope of each power along its probes (one dense solve of as many equations as there
+// are such sources), and leave the exchanges' change out.
+
+#include "solver/decomposition.hpp"
+#include "solver/stage_ode.hpp"
+
+namespace driftwright::solver {
+
+class ReducedOde : public StageOde {
+ public:
+  /// @param system, hall  borrowed
+  ReducedOde(const ReducedSystem& system, const TimeSeries& hall);
+
+  [[nodiscard]] int size() const override { return n_ + static_cast<int>(flows_.size()); }
+  [[nodiscard]] const std::vector<HeatFlow>& flows() const override { return flows_; }
+  [[nodiscard]] const std::vector<Thermostat>& thermostats() const override { return system_.thermostats; }
+  void begin(const Eigen::VectorXd& start, double* y) override;
+  /// As much as makes an output of that size, where 2 um and 20 urad count as 1 K.
+  void tolerances(double absolute_K, double* tolerance) const override;
+  bool begin_stretch(const LinearStretch& stretch, double* y) override;
+  void restart(double t_s, const double* y) override;
+  [[nodiscard]] double distance_to_switch_K(int i, double t_s, const double* y) const override;
+  void toggle(int i) override { is_on_[static_cast<std::size_t>(i)] ^= 1; }
+  void slopes(double t_s, const double* y, double* ydot) override;
+  [[nodiscard]] bool solve_stage(double t_s, double gamma, const double* predicted, const double* s, const double* weight,
+                                 double* c) override;
+  [[nodiscard]] const double* slope_at_start() const override { return at_start_.data(); }
+  [[nodiscard]] const double* slope_at_end() const override { return latest_.data(); }
+  void look(double t_s, const double* y) override;
+  [[nodiscard]] Eigen::VectorXd observe(const double* y, double hall_K) const override;
+  [[nodiscard]] Eigen::VectorXd state(const double* y) const override;
+  [[nodiscard]] Eigen::VectorXd heats_J(const double* y) const override;
+  [[nodiscard]] double stored_J(const double* y) const override;
+  [[nodiscard]] int n_solves() const override { return n_solves_; }
+  [[nodiscard]] int n_iterations() const override { return n_iterations_; }
+
+ private:
+  using Map = Eigen::Map<const Eigen::VectorXd>;
+
+  /// A law of temperature in the present eigenvectors.
+  struct LiveSource {
+    std::size_t index;
+    double power_W = 0.0;
+    Eigen::VectorXd slope;  ///< dP/dw
+  };
+  struct LiveExchange {
+    std::size_t index;
+    double coefficient = 0.0, in_diagonal = 0.0;  ///< now, and within Λ
+    Eigen::MatrixXd matrix;                       ///< V'G V
+    Eigen::VectorXd to_hall, offset, flow;
+  };
+  [[nodiscard]] Map unknowns(const double* y) const { return {y, n_}; }
+  /// Value of a law at the probes' temperatures.
+  [[nodiscard]] double value(const BoundLaw& law, const std::vector<double>& probe_K) const;
+  [[nodiscard]] std::vector<double> probe_K(const Eigen::VectorXd& w, double hall_K) const;
+  /// Heat into each unknown and each flow at w.
+  void evaluate(double t_s, const Eigen::VectorXd& w, Eigen::VectorXd& heat, Eigen::VectorXd& flow_W);
+  void find_slopes(double t_s, const Eigen::VectorXd& w);
+
+  const ReducedSystem& system_;
+  const TimeSeries& hall_;
+  int n_;
+  std::vector<HeatFlow> flows_;
+  Decompositions decompositions_;
+  Decomposition now_;
+  std::vector<char> is_on_;
+  effects::Inputs inputs_;
+  Eigen::VectorXd power_W_;  ///< of sources that do not look at temperatures
+  std::vector<LiveSource> live_sources_;
+  std::vector<LiveExchange> live_exchanges_;
+  Eigen::MatrixXd probes_;  ///< size x n_probes, in the present eigenvectors
+  bool is_first_ = true;
+  double began_J_ = 0.0;
+  Eigen::VectorXd at_start_, latest_;  ///< slopes of unknowns and flows
+  Eigen::VectorXd heat_, flow_W_;
+  int n_solves_ = 0, n_iterations_ = 0;
+};
+
+}  // namespace driftwright::solver
