@@ -53,7 +53,7 @@ struct ElasticReport {
   std::string text;           ///< for the user
 };
 
-/// The elastic machine, ready to be solved for any number of loads.
+/// The elastic machine, ready to be solved for any number of loads, by one thread at a time.
 class Elasticity {
  public:
   /// @param joints  those that are not tied

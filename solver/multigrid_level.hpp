@@ -16,7 +16,7 @@ struct Cluster {
   std::vector<int> nodes;
   std::unique_ptr<StiffnessFactor> factor;  ///< of the matrix between these nodes
 
-  /// Sets use(k, D⁻¹ r at nodes[k]) for each.
+  /// Calls use(node, D⁻¹ r there) for each node.
   template <class T, class Use>
   void solve(const std::vector<T>& r, const Use& use) const {
     if (nodes.empty()) return;

@@ -22,8 +22,8 @@ ThermalLoad::ThermalLoad(const mesh::Mesh& mesh, const RegionMaterials& material
   }
 }
 
-/// Adds of_cell(gradients, shape values, weights of a point in one region, values at the nodes of the cell) over all points. Cells in parallel, sums in
-/// the order of the cells.
+/// Sum over the points of each cell of what of_cell(gradients, N, s dV, values at the nodes, out) adds to `out` per node. Cells in
+/// parallel, sums in the order of the cells.
 template <int From, int To, class Cell>
 Eigen::VectorXd ThermalLoad::gather(const Eigen::VectorXd& from, const Cell& of_cell) const {
   constexpr int kCells = 16384;  // at a time
