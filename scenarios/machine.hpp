@@ -28,14 +28,22 @@ struct PlacedMachine {
 /// @throws InputError  for a name or point that is not there, a region without material, a joint without contact
 /// @throws SolveError  when the mesh cannot be made
 [[nodiscard]] PlacedMachine place(const MachineModel& model);
+/// The same in a mesh that build_mesh() has made of model.mesh.
+[[nodiscard]] PlacedMachine place(const MachineModel& model, mesh::Mesh mesh);
 
 /// The full model, ready to run.
 struct Machine {
   PlacedMachine placed;
-  std::optional<solver::Elasticity> elasticity;  ///< none without a mesh
+  std::optional<solver::Elasticity> elasticity;  ///< none without a mesh, or when built with known influences
   solver::FullSystem system;  ///< outputs: sensors [K], displacements [m], tilts [rad], in the scenario's order
 };
 [[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed);
+
+/// Influence vectors of displacements and tilts, n_nodes x n_functionals; columns of displacements by sensitivities are zero.
+/// They follow from mesh, materials, supports, joints and points alone, so models that differ in effects share them.
+[[nodiscard]] Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed);
+/// build() with influences() that are known: no factorisation, and no displacement fields.
+[[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed, const Eigen::MatrixXd& influence);
 
 /// Temperatures minus the reference temperature at t = 0, by the scenario's `start`.
 /// @throws SolveError  when there is no steady state to start from

@@ -1,0 +1,188 @@
+#include "app/sweep_run.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <atomic>
+#include <exception>
+#include <mutex>
+
+#include "app/sweep_member.hpp"
+#include "output/csv_row.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using scenarios::Machine;
+using scenarios::Scenario;
+using scenarios::Shared;
+using scenarios::SweepPlan;
+
+/// Calls `work`; a failure that belongs to the member goes into its outcome, all else goes on.
+template <class Work>
+void catching(MemberOutcome& outcome, const Work& work) {
+  try {
+    work();
+  } catch (const InputError& e) {
+    outcome.failure = e.what();
+    outcome.is_refused = true;
+  } catch (const RangeError& e) {
+    outcome.failure = e.what();
+    outcome.is_refused = true;
+  } catch (const SolveError& e) {
+    outcome.failure = e.what();
+  }
+}
+
+/// What the members of a group have in common.
+struct Structure {
+  mesh::Mesh mesh;
+  Eigen::MatrixXd influence;
+  std::unique_ptr<const Machine> machine;  ///< where they share all of it
+};
+
+/// From the first member that can be read and placed; where none can, each will say why itself.
+Structure build_structure(const SweepPlan& plan, std::span<const std::size_t> members, bool with_machine) {
+  static std::mutex one_at_a_time;  // Gmsh and METIS serve one caller at a time
+  const std::lock_guard lock(one_at_a_time);
+  Structure shared;
+  bool is_meshed = false;
+  for (const std::size_t member : members) {
+    std::optional<Scenario> scenario;
+    MemberOutcome passed_over;
+    catching(passed_over, [&] { scenario = scenarios::read_scenario(plan.scenario_of(member)); });
+    if (!scenario) continue;
+    const scenarios::MachineModel& model = *scenario->machine;
+    if (!is_meshed) shared.mesh = scenarios::build_mesh(model.mesh);
+    is_meshed = true;
+    std::optional<scenarios::PlacedMachine> placed;
+    catching(passed_over, [&] { placed = scenarios::place(model, shared.mesh); });
+    if (!placed) continue;
+    shared.influence = scenarios::influences(model, *placed);
+    if (with_machine)
+      shared.machine = std::make_unique<const Machine>(scenarios::build(model, std::move(*placed), shared.influence));
+    break;
+  }
+  return shared;
+}
+
+/// The machine that a thread has built last.
+struct LastMachine {
+  std::string key;
+  std::optional<Machine> machine;
+};
+
+std::vector<double> run_member(const SweepPlan& plan, std::size_t member, const Structure& shared, LastMachine& last) {
+  const Scenario scenario = scenarios::read_scenario(plan.scenario_of(member));
+  if (shared.machine) return simulate_member(scenario, *shared.machine, plan.collect);
+  const std::string key = scenarios::sharing_key(plan, member, Shared::kMachine);
+  if (!last.machine || last.key != key) {
+    last.machine.reset();
+    last.machine.emplace(
+        scenarios::build(*scenario.machine, scenarios::place(*scenario.machine, shared.mesh), shared.influence));
+    last.key = key;
+  }
+  return simulate_member(scenario, *last.machine, plan.collect);
+}
+
+/// Reports outcomes one at a time; keeps the first exception that belongs to no member, after which nothing more is begun.
+class Collector {
+ public:
+  explicit Collector(const std::function<void(const MemberOutcome&)>& done) : done_(done) {}
+
+  [[nodiscard]] bool has_stopped() const { return stopped_; }
+  void report(const MemberOutcome& outcome) {
+    const std::lock_guard lock(mutex_);
+    if (!stopped_) done_(outcome);
+  }
+  void stop(std::exception_ptr why) {
+    const std::lock_guard lock(mutex_);
+    if (!stopped_) why_ = std::move(why);
+    stopped_ = true;
+  }
+  void rethrow() const {
+    if (why_) std::rethrow_exception(why_);
+  }
+
+ private:
+  const std::function<void(const MemberOutcome&)>& done_;
+  std::mutex mutex_;
+  std::atomic<bool> stopped_ = false;
+  std::exception_ptr why_;
+};
+
+/// Members of one structure, side by side unless this is one of several groups that already are.
+void run_group(const SweepPlan& plan, std::span<const std::size_t> members, Collector& collector) {
+  const std::string first_key = scenarios::sharing_key(plan, members.front(), Shared::kMachine);
+  const bool one_machine = std::all_of(members.begin(), members.end(), [&](std::size_t m) {
+    return scenarios::sharing_key(plan, m, Shared::kMachine) == first_key;
+  });
+  Structure shared;
+  MemberOutcome of_all;
+  catching(of_all, [&] { shared = build_structure(plan, members, one_machine); });
+#pragma omp parallel if (members.size() > 1)
+  {
+    LastMachine last;
+#pragma omp for schedule(dynamic, 1)
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      if (collector.has_stopped()) continue;
+      try {
+        MemberOutcome outcome = of_all;
+        outcome.member = members[i];
+        if (outcome.failure.empty())
+          catching(outcome, [&] { outcome.results = run_member(plan, members[i], shared, last); });
+        collector.report(outcome);
+      } catch (...) {
+        collector.stop(std::current_exception());  // none may leave the parallel loop
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string table_row(const SweepPlan& plan, const MemberOutcome& outcome) {
+  std::string row = std::to_string(outcome.member + 1);
+  for (std::size_t i = 0; i < plan.variations.size(); ++i)
+    row += fmt::format(",{}", output::csv_cell(plan.value(outcome.member, i).label));
+  for (std::size_t i = 0; i < plan.collect.size(); ++i)
+    row += outcome.failure.empty() ? fmt::format(",{:.7g}", outcome.results[i]) : ",";
+  if (outcome.failure.empty()) return row + ",done";
+  const std::string message = outcome.failure.substr(0, outcome.failure.find('\n'));  // without the line it points at
+  return fmt::format("{},{}", row, output::csv_cell((outcome.is_refused ? "refused: " : "gave up: ") + message));
+}
+
+bool is_done(const std::string& row) {
+  return row.ends_with(",done");
+}
+
+void run_members(const SweepPlan& plan, const std::vector<std::size_t>& members,
+                 const std::function<void(const MemberOutcome&)>& done) {
+  std::vector<std::span<const std::size_t>> groups;
+  std::string last_key;
+  for (std::size_t i = 0, begin = 0; i < members.size(); ++i) {
+    std::string key = scenarios::sharing_key(plan, members[i], Shared::kStructure);
+    if (i > 0 && key == last_key) {
+      groups.back() = std::span(members).subspan(begin, i + 1 - begin);
+    } else {
+      begin = i;
+      groups.push_back(std::span(members).subspan(i, 1));
+    }
+    last_key = std::move(key);
+  }
+  Collector collector(done);
+  // Either groups run side by side or the members of one; within a member all loops then stay on its core, since OpenMP opens
+  // no team inside a team.
+#pragma omp parallel for schedule(dynamic, 1) if (groups.size() >= static_cast <std::size_t>(omp_get_max_threads()))
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (collector.has_stopped()) continue;
+    try {
+      run_group(plan, groups[g], collector);
+    } catch (...) {
+      collector.stop(std::current_exception());
+    }
+  }
+  collector.rethrow();
+}
+
+}  // namespace driftwright::app
