@@ -18,21 +18,27 @@ namespace {
 
 constexpr std::size_t kMostMembers = 1000000;
 
+/// Where a value below a key of `in` stands.
+Where where_of(const ConfigMap& in, const std::string& key, const ConfigNode& node) {
+  return node.where(in.where(key).key);
+}
+
 Quantity read_number(const ConfigMap& in, const std::string& key, const ConfigNode& node) {
-  if (!node.is_scalar()) throw InputError(node.where(key), "a number with its unit is wanted, such as 300 N");
+  if (!node.is_scalar()) throw InputError(where_of(in, key, node), "a number with its unit is wanted, such as 300 N");
   try {
     return split_quantity(node.text);
   } catch (const RangeError& e) {
-    throw InputError(node.where(key), fmt::format("{} [{}]", e.what(), in.where(key).key));
+    throw InputError(where_of(in, key, node), e.what());
   }
 }
 
-/// The number of a quantity in the variation's unit.
-double in_unit_of(const Variation& v, const Quantity& quantity, const ConfigNode& node, const std::string& key) {
+/// The same in the variation's unit.
+double read_number_in_unit(const ConfigMap& in, const std::string& key, const ConfigNode& node, const Variation& v) {
+  const Quantity quantity = read_number(in, key, node);
   try {
     return convert(quantity.number, quantity.unit, v.unit);
   } catch (const RangeError& e) {
-    throw InputError(node.where(key), e.what());
+    throw InputError(where_of(in, key, node), e.what());
   }
 }
 
@@ -69,7 +75,7 @@ void read_steps(const ConfigMap& in, Variation& v) {
   const Quantity first = read_number(in, "from", from);
   v.unit = first.unit;
   v.is_number = true;
-  const double last = in_unit_of(v, read_number(in, "to", to), to, "to");
+  const double last = read_number_in_unit(in, "to", to, v);
   const int n = in.integer("steps", 2, static_cast<int>(kMostMembers));
   const bool is_log = in.choice("spacing", {"linear", "log"}, "linear") == "log";
   if (is_log && (has_offset(v.unit) || !(first.number > 0.0 && last > 0.0)))
@@ -84,7 +90,7 @@ void read_range(const ConfigMap& in, const std::string& key, Variation& v) {
   if (!range.is_list() || range.items.size() != 2) in.fail(key, "two numbers with units are wanted, such as [200 N, 400 N]");
   const Quantity low = read_number(in, key, *range.items[0]);
   v.unit = low.unit;
-  const double high = in_unit_of(v, read_number(in, key, *range.items[1]), *range.items[1], key);
+  const double high = read_number_in_unit(in, key, *range.items[1], v);
   if (!(low.number < high)) in.fail(key, "the first number must be below the second");
   const bool is_log = key == "log_uniform";
   if (is_log && (has_offset(v.unit) || !(low.number > 0.0))) in.fail(key, "log_uniform wants numbers above 0, and no degC");
@@ -102,7 +108,7 @@ void read_normal(const ConfigMap& in, Variation& v) {
     const double factor = unit_factor(sd.unit.empty() ? "1" : sd.unit, v.unit.empty() ? "1" : v.unit);
     v.spread = {Spread::Kind::kNormal, mean.number, sd.number * factor};
   } catch (const RangeError& e) {
-    throw InputError(node.where("sd"), e.what());
+    normal.fail("sd", e.what());
   }
   if (has_offset(sd.unit)) normal.fail("sd", "a temperature difference in K is wanted");
   if (!(sd.number > 0.0)) normal.fail("sd", "the standard deviation must be above 0");
