@@ -1,4 +1,4 @@
-// Reading of a study.
+// Reads the file of a study into a SweepPlan.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
