@@ -147,10 +147,8 @@ void HeatOde::refresh_shifted(double gamma) {
   const double* m = (system_.capacity ? mass_now_ : mass_).valuePtr();
   double* a = shifted_.valuePtr();
   const auto n_entries = shifted_.nonZeros();
-  over_ranges(n_entries > kWorthThreads, n_entries, [=](std::int64_t begin, std::int64_t end) {
-#pragma omp simd
-    for (std::int64_t i = begin; i < end; ++i) a[i] = m[i] + gamma * k[i];
-  });
+#pragma omp parallel for simd schedule(static) if (n_entries > kWorthThreads)
+  for (Eigen::Index i = 0; i < n_entries; ++i) a[i] = m[i] + gamma * k[i];
   decouple(shifted_);
   shifted_stiffness_ = &stiffness;
   shifted_solver_.refresh(free_ones_);

@@ -45,22 +45,18 @@ PcgOutcome Pcg::solve(const double* b, double* x, double tolerance, int max_iter
     const double* const p = p_.data();
     const double* const q = q_.data();
     const double* const d = inverse_diagonal_.data();
-    over_ranges(n > kWorthThreads, n, [=](std::int64_t begin, std::int64_t end) {
-#pragma omp simd
-      for (std::int64_t i = begin; i < end; ++i) {
-        x[i] += alpha * p[i];
-        r[i] -= alpha * q[i];
-        z[i] = d[i] * r[i];
-      }
-    });
+#pragma omp parallel for simd schedule(static) if (n > kWorthThreads)
+    for (int i = 0; i < n; ++i) {
+      x[i] += alpha * p[i];
+      r[i] -= alpha * q[i];
+      z[i] = d[i] * r[i];
+    }
     const double rz_next = dot(r, z, n);
     const double beta = rz_next / rz;
     rz = rz_next;
     double* const p_next = p_.data();
-    over_ranges(n > kWorthThreads, n, [=](std::int64_t begin, std::int64_t end) {
-#pragma omp simd
-      for (std::int64_t i = begin; i < end; ++i) p_next[i] = z[i] + beta * p_next[i];
-    });
+#pragma omp parallel for simd schedule(static) if (n > kWorthThreads)
+    for (int i = 0; i < n; ++i) p_next[i] = z[i] + beta * p_next[i];
   }
   project_constant(x);
   return outcome;

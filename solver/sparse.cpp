@@ -103,13 +103,12 @@ void multiply(const SparseRow& a, const double* x, double* y) {
   const int* column = a.innerIndexPtr();
   const double* value = a.valuePtr();
   const int n = static_cast<int>(a.rows());
-  over_ranges(a.nonZeros() > kWorthThreads, n, [=](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t row = begin; row < end; ++row) {
-      double sum = 0.0;
-      for (int k = start[row]; k < start[row + 1]; ++k) sum += value[k] * x[column[k]];
-      y[row] = sum;
-    }
-  });
+#pragma omp parallel for schedule(static) if (a.nonZeros() > kWorthThreads)
+  for (int row = 0; row < n; ++row) {
+    double sum = 0.0;
+    for (int k = start[row]; k < start[row + 1]; ++k) sum += value[k] * x[column[k]];
+    y[row] = sum;
+  }
 }
 
 double dot(const double* x, const double* y, int n) {
@@ -119,15 +118,14 @@ double dot(const double* x, const double* y, int n) {
   std::vector<double> large;
   if (n_blocks > static_cast<int>(small.size())) large.resize(n_blocks);
   double* partial = large.empty() ? small.data() : large.data();
-  over_ranges(n_blocks > 4, n_blocks, [=](std::int64_t first, std::int64_t last) {
-    for (auto b = static_cast<int>(first); b < last; ++b) {
-      double sum = 0.0;
-      const int end = std::min(n, (b + 1) * kBlock);
+#pragma omp parallel for schedule(static) if (n_blocks > 4)
+  for (int b = 0; b < n_blocks; ++b) {
+    double sum = 0.0;
+    const int end = std::min(n, (b + 1) * kBlock);
 #pragma omp simd reduction(+ : sum)
-      for (int i = b * kBlock; i < end; ++i) sum += x[i] * y[i];
-      partial[b] = sum;
-    }
-  });
+    for (int i = b * kBlock; i < end; ++i) sum += x[i] * y[i];
+    partial[b] = sum;
+  }
   double total = 0.0;
   for (int b = 0; b < n_blocks; ++b) total += partial[b];
   return total;

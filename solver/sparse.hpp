@@ -2,10 +2,7 @@
 // Sparse matrices for finite elements: the pattern first, then values scattered into it, and products on all cores whose
 // result does not depend on the number of threads.
 
-#include <omp.h>
-
 #include <Eigen/Sparse>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -37,21 +34,6 @@ void scatter_add(SparseRow& a, std::span<const int> dofs, const Eigen::Ref<const
 
 /// Loops of fewer entries run on one core: they last some 0.2 ms, and on a busy machine waiting for the others costs more.
 inline constexpr int kWorthThreads = 400000;
-
-/// Calls body(begin, end) on ranges that make up 0 ... n: one per core where that is worth it, else one for all. The `if` clause of
-/// OpenMP would make a team of one, whose barriers cost system calls: on lumped machines half of all time.
-template <class Body>
-void over_ranges(bool is_worth_threads, std::int64_t n, const Body& body) {
-  if (!is_worth_threads) {
-    body(std::int64_t{0}, n);
-    return;
-  }
-#pragma omp parallel
-  {
-    const std::int64_t thread = omp_get_thread_num(), n_threads = omp_get_num_threads();
-    body(thread * n / n_threads, (thread + 1) * n / n_threads);
-  }
-}
 
 /// y = A x on all cores.
 void multiply(const SparseRow& a, const double* x, double* y);
