@@ -18,12 +18,12 @@ using namespace driftwright;
 
 enum ExitCode { kDone = 0, kOurBug = 1, kWrongInput = 2, kNumericsGaveUp = 3 };
 
-/// Adds a verb with the options that all have; `example` ends its help.
+/// Adds a verb with the options that all have; `example` ends its help, `input` is what its file describes.
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example,
-                   app::CommonOptions& options) {
+                   app::CommonOptions& options, const std::string& input = "scenario") {
   CLI::App* verb = app.add_subcommand(name, what);
-  verb->add_option("scenario", options.scenario, "scenario YAML")->required();
-  verb->add_option("-o,--out", options.out, "folder of results [results/<name of the scenario>]");
+  verb->add_option(input, options.scenario, input + " YAML")->required();
+  verb->add_option("-o,--out", options.out, "folder of results [results/<name of the " + input + ">]");
   verb->add_flag("--force", options.force, "replace the folder of results even if it holds other files");
   verb->footer("Example:\n  driftwright " + example);
   return verb;
@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
   app::SimulateOptions simulate;
   app::PredictOptions predict;
   app::RecordOptions select, validate;
+  app::SweepOptions sweep;
   add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
@@ -87,6 +88,13 @@ int main(int argc, char** argv) {
                   "validate scenarios/spindle_22.yaml --train run1.csv --train run2.csv --test run3.csv", validate);
   add_records(verb, validate, true);
   verb->callback([&] { app::validate(validate); });
+  verb = add_verb(cli, "sweep", "many variants of one scenario, one table (docs/sweep.md)",
+                  "sweep scenarios/lumped_sweep.yaml\n  driftwright sweep scenarios/lumped_sweep.yaml --shard 3/8\n  "
+                  "driftwright sweep scenarios/lumped_sweep.yaml --merge",
+                  sweep, "study");
+  verb->add_option("--shard", sweep.shard, "i/n: simulate the i-th of n parts alone, as a task of a job array does");
+  verb->add_flag("--merge", sweep.merge, "put together what all shards have simulated");
+  verb->callback([&] { app::sweep(sweep); });
 
   try {
     reject_unknown_verb(cli, argc > 1 ? argv[1] : "");

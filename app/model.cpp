@@ -2,11 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/version.hpp"
 #include "scenarios/machine_store.hpp"
 #include "scenarios/ways_out.hpp"
 
 namespace driftwright::app {
+
+namespace {
+
+constexpr int kStates = 50;  // that a reduced model will about have: as many displacement fields
+
+/// How many fields are written of the longest cyclogram.
+int n_fields(const scenarios::Scenario& scenario) {
+  if (!scenario.solver.fields_at_s.empty()) return static_cast<int>(scenario.solver.fields_at_s.size()) + 2;
+  double longest_s = 0.0;
+  for (const Cyclogram& c : scenario.cyclograms) longest_s = std::max(longest_s, c.duration_s());
+  return static_cast<int>(std::min(1e6, longest_s / scenario.solver.fields_every_s)) + 2;
+}
+
+}  // namespace
 
 std::string Model::words() const {
   if (full()) return fmt::format("full model of {} temperature unknowns", n_unknowns());
@@ -31,28 +47,22 @@ compensation::ModalPredictor modal_predictor(const scenarios::Scenario& scenario
                                             machine.hall.at(0.0), typical, with_steady_responses);
 }
 
-scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, bool with_fields) {
+scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, int n_fields) {
   progress.begin("meshing");
   scenarios::PlacedMachine placed = scenarios::place(model);
-  const bool is_elastic = scenarios::needs_elasticity(placed, with_fields);
-  progress.begin(is_elastic ? fmt::format("factorising {} elastic unknowns", 3 * placed.mesh.n_nodes()) : "assembling");
-  return scenarios::build(model, std::move(placed), is_elastic);
+  const bool is_elastic = scenarios::needs_elasticity(placed, n_fields > 0);
+  progress.begin(is_elastic ? fmt::format("solving {} elastic unknowns", 3 * placed.mesh.n_nodes()) : "assembling");
+  return scenarios::build(model, std::move(placed), is_elastic, n_fields);
 }
 
-Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms, Progress& progress,
-                 bool with_fields) {
-  const scenarios::MachineModel& model = *scenario.machine;
-  effects::HeatBalance balance = effects::heat_balance(model.effects);
-  if (scenario.solver.model == scenarios::ModelKind::kFull) {
-    return {build_machine(model, progress, with_fields), std::move(balance), false};
-  }
-  std::vector<const Cyclogram*> asked = cyclograms;
-  for (const Cyclogram& c : scenario.cyclograms) asked.push_back(&c);
-  const scenarios::ReductionPlan plan = scenarios::reduction_plan(scenario, asked);
+scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, const scenarios::ReductionPlan& plan,
+                                       Progress& progress, bool* was_known) {
   const std::string key = scenarios::machine_key(model, plan, kVersion);
   const std::filesystem::path store = scenarios::machine_store();
-  if (auto known = scenarios::load_machine(store, key, balance)) return {std::move(*known), std::move(balance), true};
-  const scenarios::Machine machine = build_machine(model, progress, plan.with_fields);
+  auto known = scenarios::load_machine(store, key, effects::heat_balance(model.effects));
+  if (was_known) *was_known = known.has_value();
+  if (known) return std::move(*known);
+  const scenarios::Machine machine = build_machine(model, progress, plan.with_fields ? kStates : 0);
   scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
   progress.begin(fmt::format("reducing {} temperature unknowns", machine.system.size()));
   scenarios::ReducedMachine reduced = scenarios::reduce(model, machine, plan);
@@ -61,7 +71,21 @@ Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cy
   } catch (const InputError& e) {  // the run is none the worse for it
     fmt::print(stderr, "note: the reduced model is not kept: {}\n", e.what());
   }
-  return {std::move(reduced), std::move(balance), false};
+  return reduced;
+}
+
+Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms, Progress& progress,
+                 bool with_fields) {
+  const scenarios::MachineModel& model = *scenario.machine;
+  effects::HeatBalance balance = effects::heat_balance(model.effects);
+  if (scenario.solver.model == scenarios::ModelKind::kFull) {
+    return {build_machine(model, progress, with_fields ? n_fields(scenario) : 0), std::move(balance), false};
+  }
+  std::vector<const Cyclogram*> asked = cyclograms;
+  for (const Cyclogram& c : scenario.cyclograms) asked.push_back(&c);
+  bool was_known = false;
+  scenarios::ReducedMachine reduced = open_reduced(model, scenarios::reduction_plan(scenario, asked), progress, &was_known);
+  return {std::move(reduced), std::move(balance), was_known};
 }
 
 }  // namespace driftwright::app

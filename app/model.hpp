@@ -33,8 +33,13 @@ struct Model {
                                                            int n_modes, const Drive& typical, bool with_steady_responses);
 
 /// Meshes, places and factorises, saying so.
-/// @param with_fields  whether whole fields are to be written, which takes displacements everywhere
-[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, bool with_fields);
+/// @param n_fields  about how many whole fields are to be written, which takes displacements everywhere
+[[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, int n_fields);
+
+/// The reduced machine of a plan, from disk where it is known, else made and kept. @param was_known  unless null, which it was
+[[nodiscard]] scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model,
+                                                     const scenarios::ReductionPlan& plan, Progress& progress,
+                                                     bool* was_known = nullptr);
 
 /// The model that the scenario asks for. A reduced one comes from disk where the machine is known for such cyclograms, else it is
 /// made and kept.

@@ -35,4 +35,10 @@ struct RecordOptions : CommonOptions {
 void select(const RecordOptions& options);
 void validate(const RecordOptions& options);
 
+struct SweepOptions : CommonOptions {  ///< `scenario` is the study
+  std::string shard;                   ///< "i/n", or empty for all members
+  bool merge = false;                  ///< only put together what shards have simulated
+};
+void sweep(const SweepOptions& options);
+
 }  // namespace driftwright::app

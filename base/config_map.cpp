@@ -2,36 +2,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "base/quantity.hpp"
 
 namespace driftwright {
-
-struct ConfigMap::Source {
-  std::string path;
-  std::vector<std::string> lines;
-};
-
-namespace {
-
-/// yaml-cpp lets duplicate keys pass silently, and takes lists and maps for keys.
-void reject_bad_keys(const YAML::Node& map, const std::string& file, const std::vector<std::string>& lines) {
-  std::set<std::string> seen;
-  for (const auto& entry : map) {
-    const YAML::Mark mark = entry.first.Mark();
-    const auto line = static_cast<std::size_t>(std::max(0, mark.line));
-    Where where{file, mark.line + 1, mark.column + 1, "", line < lines.size() ? lines[line] : ""};
-    if (!entry.first.IsScalar()) throw InputError(where, "a key must be a word, not a list, a map or nothing");
-    where.key = entry.first.Scalar();
-    if (!seen.insert(where.key).second) throw InputError(where, fmt::format("key '{}' appears twice", where.key));
-  }
-}
-
-}  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
   std::string best;
@@ -57,32 +33,19 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
 }
 
 ConfigMap ConfigMap::read_file(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: the file cannot be opened; is the path right?", path));
-  auto source = std::make_shared<Source>();
-  source->path = path;
-  std::string text, line;
-  while (std::getline(file, line)) {
-    text += line + "\n";
-    source->lines.push_back(line);
-  }
-  YAML::Node node;
-  try {
-    node = YAML::Load(text);
-  } catch (const YAML::ParserException& e) {
-    const int line_number = e.mark.line + 1;
-    const bool inside = line_number >= 1 && line_number <= static_cast<int>(source->lines.size());
-    throw InputError(Where{path, line_number, e.mark.column + 1, "", inside ? source->lines[e.mark.line] : ""},
-                     "this is not valid YAML: " + e.msg);
-  }
-  if (!node.IsMap()) throw InputError(fmt::format("{}: the file holds no map of keys; a scenario is wanted", path));
-  return {source, node, ""};
+  return of_tree(read_config_tree(path));
 }
 
-ConfigMap::ConfigMap(std::shared_ptr<const Source> source, const YAML::Node& node, std::string path)
-    : source_(std::move(source)), node_(std::make_shared<const YAML::Node>(node)), path_(std::move(path)) {
-  reject_bad_keys(*node_, source_->path, source_->lines);
+ConfigMap ConfigMap::of_tree(ConfigNodePtr root) {
+  if (!root->is_map()) {
+    throw InputError(fmt::format("{}: the file holds no map of keys; a scenario is wanted", root->source->path));
+  }
+  std::shared_ptr<const ConfigSource> source = root->source;
+  return {std::move(source), std::move(root), ""};
 }
+
+ConfigMap::ConfigMap(std::shared_ptr<const ConfigSource> source, ConfigNodePtr node, std::string path)
+    : source_(std::move(source)), node_(std::move(node)), path_(std::move(path)) {}
 
 const std::string& ConfigMap::file() const {
   return source_->path;
@@ -90,30 +53,26 @@ const std::string& ConfigMap::file() const {
 
 bool ConfigMap::has(const std::string& key) const {
   asked_.insert(key);
-  return (*node_)[key].IsDefined();
+  return node_->find(key) != nullptr;
 }
 
 bool ConfigMap::is_map(const std::string& key) const {
-  return has(key) && (*node_)[key].IsMap();
+  return has(key) && node_->find(key)->is_map();
 }
 
 bool ConfigMap::is_list(const std::string& key) const {
-  return has(key) && (*node_)[key].IsSequence();
+  return has(key) && node_->find(key)->is_list();
 }
 
 std::vector<std::string> ConfigMap::keys() const {
   std::vector<std::string> keys;
-  for (const auto& entry : *node_) keys.push_back(entry.first.as<std::string>());
+  for (const ConfigNode::Key& key : node_->keys) keys.push_back(key.text);
   return keys;
 }
 
 std::string ConfigMap::written(const std::string& key) const {
   if (!has(key)) return "";
-  YAML::Emitter out;
-  out.SetSeqFormat(YAML::Flow);
-  out.SetMapFormat(YAML::Flow);
-  out << (*node_)[key];
-  return out.c_str();
+  return driftwright::written(*node_->find(key));
 }
 
 std::string ConfigMap::path_of(const std::string& key) const {
@@ -121,50 +80,49 @@ std::string ConfigMap::path_of(const std::string& key) const {
   return path_.empty() ? key : path_ + "." + key;
 }
 
-Where ConfigMap::where_of(const YAML::Node& node, const std::string& key) const {
-  const YAML::Mark mark = node.Mark();
-  const auto line = static_cast<std::size_t>(std::max(0, mark.line));
-  return {source_->path, mark.line + 1, mark.column + 1, path_of(key),
-          line < source_->lines.size() ? source_->lines[line] : ""};
-}
-
 Where ConfigMap::where(const std::string& key) const {
-  const YAML::Node node = (*node_)[key];
-  if (!node.IsDefined()) return where_of(*node_, key);
-  if (!node.IsNull()) return where_of(node, key);
-  for (const auto& entry : *node_) {  // an empty value has the mark of whatever follows: take the key's
-    if (entry.first.as<std::string>() == key) return where_of(entry.first, key);
-  }
-  return where_of(node, key);
+  const auto index = node_->index_of(key);
+  if (!index) return node_->where(path_of(key));
+  const ConfigNode& node = *node_->items[*index];
+  if (node.kind != ConfigNode::Kind::kNull) return node.where(path_of(key));
+  ConfigNode at_key = node;  // an empty value has the mark of whatever follows: take the key's
+  at_key.line = node_->keys[*index].line;
+  at_key.column = node_->keys[*index].column;
+  return at_key.where(path_of(key));
 }
 
 Where ConfigMap::where() const {
-  return where_of(*node_, "");
+  return node_->where(path_);
 }
 
 void ConfigMap::fail(const std::string& key, const std::string& message) const {
   throw InputError(where(key), message);
 }
 
-YAML::Node ConfigMap::child(const std::string& key) const {
+const ConfigNodePtr& ConfigMap::value(const std::string& key) const {
   asked_.insert(key);
-  YAML::Node node = (*node_)[key];
-  if (!node.IsDefined()) {
+  const auto index = node_->index_of(key);
+  if (!index) {
     const std::string near = nearest_word(key, keys());
-    throw InputError(where_of(*node_, key), fmt::format("key '{}' is missing{}", key,
-                                                        near.empty() ? "" : fmt::format("; is '{}' meant for it?", near)));
+    throw InputError(
+        node_->where(path_of(key)),
+        fmt::format("key '{}' is missing{}", key, near.empty() ? "" : fmt::format("; is '{}' meant for it?", near)));
   }
-  return node;
+  return node_->items[*index];
 }
 
-std::string ConfigMap::scalar(const YAML::Node& node, const std::string& key) const {
-  if (!node.IsScalar()) throw InputError(where_of(node, key), "a single value is wanted here, not a list or a map");
-  return node.Scalar();
+const ConfigNode& ConfigMap::child(const std::string& key) const {
+  return *value(key);
+}
+
+std::string ConfigMap::scalar(const ConfigNode& node, const std::string& key) const {
+  if (!node.is_scalar()) throw InputError(node.where(path_of(key)), "a single value is wanted here, not a list or a map");
+  return node.text;
 }
 
 std::string ConfigMap::text(const std::string& key) const {
-  const YAML::Node node = child(key);
-  if (node.IsNull()) fail(key, "the value is empty");
+  const ConfigNode& node = child(key);
+  if (node.kind == ConfigNode::Kind::kNull) fail(key, "the value is empty");
   std::string value = scalar(node, key);
   if (value.empty()) fail(key, "the value is empty");
   return value;
@@ -199,10 +157,10 @@ std::string ConfigMap::choice(const std::string& key, const std::vector<std::str
 }
 
 std::vector<std::string> ConfigMap::texts(const std::string& key) const {
-  const YAML::Node node = child(key);
-  if (!node.IsSequence()) fail(key, "a list [a, b, ...] is wanted");
+  const ConfigNode& node = child(key);
+  if (!node.is_list()) fail(key, "a list [a, b, ...] is wanted");
   std::vector<std::string> values;
-  for (const YAML::Node& item : node) values.push_back(scalar(item, key));
+  for (const ConfigNodePtr& item : node.items) values.push_back(scalar(*item, key));
   return values;
 }
 
@@ -225,12 +183,12 @@ int ConfigMap::integer(const std::string& key, int low, int high, int fallback) 
   return has(key) ? integer(key, low, high) : fallback;
 }
 
-double ConfigMap::read_quantity(const YAML::Node& node, const std::string& key, const std::string& unit) const {
+double ConfigMap::read_quantity(const ConfigNode& node, const std::string& key, const std::string& unit) const {
   try {
     const std::string value = scalar(node, key);
     return unit == "degC" ? parse_temperature_K(value) : parse_quantity(value, unit);
   } catch (const RangeError& e) {
-    throw InputError(where_of(node, key), e.what());
+    throw InputError(node.where(path_of(key)), e.what());
   }
 }
 
@@ -253,41 +211,41 @@ double ConfigMap::temperature_K(const std::string& key) const {
 }
 
 Eigen::Vector3d ConfigMap::vector3(const std::string& key, const std::string& unit) const {
-  const YAML::Node node = child(key);
-  if (!node.IsSequence() || node.size() != 3) {
+  const ConfigNode& node = child(key);
+  if (!node.is_list() || node.items.size() != 3) {
     fail(key, fmt::format("three quantities in {} are wanted, such as [10 {}, 0 {}, 0 {}]", unit, unit, unit, unit));
   }
   Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = read_quantity(node[i], key, unit);
+  for (int i = 0; i < 3; ++i) v[i] = read_quantity(*node.items[static_cast<std::size_t>(i)], key, unit);
   return v;
 }
 
 std::vector<double> ConfigMap::quantities(const std::string& key, const std::string& unit) const {
-  const YAML::Node node = child(key);
-  if (!node.IsSequence() || node.size() == 0)
+  const ConfigNode& node = child(key);
+  if (!node.is_list() || node.items.size() == 0)
     fail(key, fmt::format("a list of quantities in {} is wanted, at least one", unit));
   std::vector<double> values;
-  for (const YAML::Node& item : node) values.push_back(read_quantity(item, key, unit));
+  for (const ConfigNodePtr& item : node.items) values.push_back(read_quantity(*item, key, unit));
   return values;
 }
 
 std::vector<std::vector<double>> ConfigMap::rows(const std::string& key, const std::vector<std::string>& units) const {
-  const YAML::Node node = child(key);
+  const ConfigNode& node = child(key);
   const std::string wanted = fmt::format("rows of [{}] are wanted", fmt::join(units, ", "));
-  if (!node.IsSequence() || node.size() == 0) fail(key, wanted + ", at least one");
+  if (!node.is_list() || node.items.size() == 0) fail(key, wanted + ", at least one");
   std::vector<std::vector<double>> rows;
-  for (const YAML::Node& row : node) {
-    if (!row.IsSequence() || row.size() != units.size()) throw InputError(where_of(row, key), wanted);
+  for (const ConfigNodePtr& row : node.items) {
+    if (!row->is_list() || row->items.size() != units.size()) throw InputError(row->where(path_of(key)), wanted);
     rows.emplace_back();
-    for (std::size_t j = 0; j < units.size(); ++j) rows.back().push_back(read_quantity(row[j], key, units[j]));
+    for (std::size_t j = 0; j < units.size(); ++j) rows.back().push_back(read_quantity(*row->items[j], key, units[j]));
   }
   return rows;
 }
 
 ConfigMap ConfigMap::map(const std::string& key) const {
-  const YAML::Node node = child(key);
-  if (!node.IsMap()) fail(key, "a map of keys is wanted");
-  return {source_, node, path_of(key)};
+  const ConfigNode& node = child(key);
+  if (!node.is_map()) fail(key, "a map of keys is wanted");
+  return {source_, value(key), path_of(key)};
 }
 
 std::optional<ConfigMap> ConfigMap::optional_map(const std::string& key) const {
@@ -298,22 +256,26 @@ std::optional<ConfigMap> ConfigMap::optional_map(const std::string& key) const {
 std::vector<ConfigMap> ConfigMap::maps(const std::string& key) const {
   std::vector<ConfigMap> maps;
   if (!has(key)) return maps;
-  const YAML::Node node = child(key);
-  if (!node.IsSequence()) fail(key, "a list of maps is wanted");
-  for (std::size_t i = 0; i < node.size(); ++i) {
-    if (!node[i].IsMap()) throw InputError(where_of(node[i], key), "a map of keys is wanted");
-    maps.push_back({source_, node[i], fmt::format("{}[{}]", path_of(key), i)});
+  const ConfigNode& node = child(key);
+  if (!node.is_list()) fail(key, "a list of maps is wanted");
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    if (!node.items[i]->is_map()) throw InputError(node.items[i]->where(path_of(key)), "a map of keys is wanted");
+    maps.push_back({source_, node.items[i], fmt::format("{}[{}]", path_of(key), i)});
   }
   return maps;
 }
 
 void ConfigMap::reject_unknown_keys() const {
-  for (const auto& entry : *node_) {
-    const auto key = entry.first.as<std::string>();
+  for (const ConfigNode::Key& entry : node_->keys) {
+    const std::string& key = entry.text;
     if (asked_.count(key)) continue;
     const std::vector<std::string> known(asked_.begin(), asked_.end());
     const std::string near = nearest_word(key, known);
-    throw InputError(where_of(entry.first, key),
+    ConfigNode at_key;
+    at_key.source = node_->source;
+    at_key.line = entry.line;
+    at_key.column = entry.column;
+    throw InputError(at_key.where(path_of(key)),
                      fmt::format("unknown key '{}'; known keys: {}.{}", key, fmt::join(known, ", "),
                                  near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
   }

@@ -1,20 +1,16 @@
 #pragma once
 // A YAML map as a scenario reader wants it: typed, with units, ranges and errors that name file, line and key.
-// All of yaml-cpp's pitfalls are dealt with here and nowhere else; no YAML::Node leaves this file.
+// Together with config_tree it is the only place that knows yaml-cpp's pitfalls.
 
 #include <Eigen/Core>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "base/config_tree.hpp"
 #include "base/errors.hpp"
-
-namespace YAML {
-class Node;
-}
 
 namespace driftwright {
 
@@ -26,6 +22,8 @@ class ConfigMap {
  public:
   /// Reads a whole file. @throws InputError  when it is missing, is no YAML, or its top is no map
   static ConfigMap read_file(const std::string& path);
+  /// The map at the top of a tree, such as one that has been edited. @throws InputError  when its top is no map
+  static ConfigMap of_tree(ConfigNodePtr root);
 
   [[nodiscard]] bool has(const std::string& key) const;
   [[nodiscard]] bool is_map(const std::string& key) const;
@@ -34,7 +32,10 @@ class ConfigMap {
   /// Where a key's value stands; where the map itself stands if the key is missing.
   [[nodiscard]] Where where(const std::string& key) const;
   [[nodiscard]] Where where() const;
+  /// The file of the whole tree, which paths in it are relative to; values put in from elsewhere tell their own in where().
   [[nodiscard]] const std::string& file() const;
+  /// The value of a key as it stands. @throws InputError  when the key is missing
+  [[nodiscard]] const ConfigNodePtr& value(const std::string& key) const;
 
   [[nodiscard]] std::string text(const std::string& key) const;
   [[nodiscard]] std::string text(const std::string& key, const std::string& fallback) const;
@@ -74,16 +75,14 @@ class ConfigMap {
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;
 
  private:
-  struct Source;  // path and lines of the file
-  ConfigMap(std::shared_ptr<const Source> source, const YAML::Node& node, std::string path);
-  [[nodiscard]] YAML::Node child(const std::string& key) const;  // throws when missing
-  [[nodiscard]] std::string scalar(const YAML::Node& node, const std::string& key) const;
+  ConfigMap(std::shared_ptr<const ConfigSource> source, ConfigNodePtr node, std::string path);
+  [[nodiscard]] const ConfigNode& child(const std::string& key) const;  // throws when missing
+  [[nodiscard]] std::string scalar(const ConfigNode& node, const std::string& key) const;
   [[nodiscard]] std::string path_of(const std::string& key) const;
-  [[nodiscard]] Where where_of(const YAML::Node& node, const std::string& key) const;
-  [[nodiscard]] double read_quantity(const YAML::Node& node, const std::string& key, const std::string& unit) const;
+  [[nodiscard]] double read_quantity(const ConfigNode& node, const std::string& key, const std::string& unit) const;
 
-  std::shared_ptr<const Source> source_;    // shared: every map of a file points at the same lines
-  std::shared_ptr<const YAML::Node> node_;  // shared: maps are copied freely
+  std::shared_ptr<const ConfigSource> source_;  // of the whole tree; shared by all its maps
+  ConfigNodePtr node_;
   std::string path_;
   mutable std::set<std::string> asked_;
 };

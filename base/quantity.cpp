@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "base/errors.hpp"
 
@@ -55,12 +57,18 @@ ConverterPtr make_converter(const std::string& from, const std::string& to) {
   return ConverterPtr(ut_get_converter(a.get(), b.get()));
 }
 
-struct NumberAndUnit {
-  double number;
-  std::string unit;
-};
+/// Each thread keeps the converters it has used: making one takes longer than all else that reading a value takes, and
+/// UDUNITS' parser serves one thread at a time.
+const cv_converter* converter(const std::string& from, const std::string& to) {
+  thread_local std::map<std::pair<std::string, std::string>, ConverterPtr> known;
+  const auto found = known.find({from, to});
+  if (found != known.end()) return found->second.get();
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  return known.emplace(std::pair(from, to), make_converter(from, to)).first->second.get();
+}
 
-NumberAndUnit split(const std::string& text, const std::string& wanted) {
+Quantity split(const std::string& text, const std::string& wanted) {
   const char* begin = text.c_str();
   char* end = nullptr;
   const double number = std::strtod(begin, &end);
@@ -71,11 +79,6 @@ NumberAndUnit split(const std::string& text, const std::string& wanted) {
   return {number, unit};
 }
 
-bool has_offset(const std::string& unit) {  // degC, degF: zero of the unit is not zero of the kelvin scale
-  const ConverterPtr c = make_converter(unit, "K");
-  return cv_convert_double(c.get(), 0.0) != 0.0;
-}
-
 }  // namespace
 
 double parse_quantity(const std::string& text, const std::string& unit) {
@@ -83,22 +86,59 @@ double parse_quantity(const std::string& text, const std::string& unit) {
   if (given.empty() && unit != "1") {
     throw RangeError(fmt::format("'{}' has no unit: a quantity in {} is wanted, such as '{} {}'", text, unit, text, unit));
   }
-  const ConverterPtr c = make_converter(given.empty() ? "1" : given, unit);
+  const cv_converter* c = converter(given.empty() ? "1" : given, unit);
   if (unit == "K" && has_offset(given)) {
     throw RangeError(fmt::format("'{}' is a temperature; a temperature difference in K is wanted", text));
   }
-  return cv_convert_double(c.get(), number);
+  return cv_convert_double(c, number);
 }
 
 double parse_temperature_K(const std::string& text) {
   const auto [number, given] = split(text, "degC");
   if (given.empty()) throw RangeError(fmt::format("'{}' has no unit: a temperature such as '20 degC' is wanted", text));
-  return cv_convert_double(make_converter(given, "K").get(), number);
+  return cv_convert_double(converter(given, "K"), number);
 }
 
 double unit_factor(const std::string& from, const std::string& to) {
-  const ConverterPtr c = make_converter(from, to);
-  return cv_convert_double(c.get(), 1.0) - cv_convert_double(c.get(), 0.0);
+  const cv_converter* c = converter(from, to);
+  return cv_convert_double(c, 1.0) - cv_convert_double(c, 0.0);
+}
+
+Quantity split_quantity(const std::string& text) {
+  Quantity quantity = split(text, "m");
+  if (!quantity.unit.empty()) (void)converter(quantity.unit, quantity.unit);
+  return quantity;
+}
+
+double convert(double number, const std::string& from, const std::string& to) {
+  if (from == to) return number;
+  return cv_convert_double(converter(from.empty() ? "1" : from, to.empty() ? "1" : to), number);
+}
+
+bool has_offset(const std::string& unit) {
+  try {
+    return cv_convert_double(converter(unit, "K"), 0.0) != 0.0;
+  } catch (const RangeError&) {  // no temperature
+    return false;
+  }
+}
+
+std::string unit_in_name(const std::string& unit) {
+  std::string name;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const auto c = static_cast<unsigned char>(unit[i]);
+    if (unit.compare(i, 2, "µ") == 0) {
+      name += 'u';
+      ++i;
+    } else if (std::isalnum(c) || c == '_' || c == '-') {
+      name += unit[i];
+    } else if (c == '/') {
+      name += '_';
+    } else if (c == '%') {
+      name += "percent";
+    }
+  }
+  return name.empty() ? "1" : name;
 }
 
 }  // namespace driftwright

@@ -1,6 +1,7 @@
 #pragma once
 // Quantities with units, as they stand in files: "24 degC", "10 W/(m^2 K)", "80 mm".
-// Units are parsed and converted by UDUNITS-2; this is one of the two places where conversion happens.
+// Units are parsed and converted by UDUNITS-2; this is one of the two places where conversion happens. Threads may call
+// everything here at once.
 
 #include <string>
 
@@ -22,6 +23,25 @@ namespace driftwright {
 /// Factor that turns a value in `from` into a value in `to` (no offsets: for degC use parse_temperature_K).
 /// @throws RangeError  when the dimensions differ
 [[nodiscard]] double unit_factor(const std::string& from, const std::string& to);
+
+/// A quantity as it is written.
+struct Quantity {
+  double number = 0.0;
+  std::string unit;  ///< as it is written; empty where none is
+};
+
+/// The parts of "80 mm". @throws RangeError  when it begins with no finite number, or its unit is unknown
+[[nodiscard]] Quantity split_quantity(const std::string& text);
+
+/// A number in `from` as a number in `to`; temperatures are taken as absolute ones, "" is "1".
+/// @throws RangeError  when the dimensions differ
+[[nodiscard]] double convert(double number, const std::string& from, const std::string& to);
+
+/// True for units of temperature whose zero is not that of the kelvin scale.
+[[nodiscard]] bool has_offset(const std::string& unit);
+
+/// A unit as names carry it: "W/(m^2 K)" gives "W_m2K", "" gives "1".
+[[nodiscard]] std::string unit_in_name(const std::string& unit);
 
 inline constexpr double kZeroCelsius_K = 273.15;
 

@@ -26,6 +26,17 @@ InputError cannot(const std::string& what, const fs::path& path, int error) {
   return InputError(fmt::format("cannot {} '{}': {}", what, path.string(), std::strerror(error)));
 }
 
+InputError cannot_use(const fs::path& target, const fs::filesystem_error& e) {
+  return InputError(fmt::format("-o '{}' cannot be used: {} '{}'; give a folder that can be written to", target.string(),
+                                e.code().message(), e.path1().string()));
+}
+
+/// Absolute, links resolved, without a slash at its end.
+fs::path plain_path(const fs::path& target) {
+  const fs::path path = fs::weakly_canonical(fs::absolute(target));
+  return path.filename().empty() ? path.parent_path() : path;
+}
+
 /// The files that a folder's manifest lists, the manifest among them; none when it has no manifest of ours.
 std::set<std::string> listed_files(const fs::path& folder) {
   std::ifstream in(folder / kManifestName);
@@ -128,6 +139,22 @@ fs::path swap_in(const fs::path& work, const fs::path& target) {
 
 }  // namespace
 
+fs::path check_results_folder(const fs::path& target, bool force) {
+  if (target.empty()) throw InputError("-o names no folder");
+  try {
+    const fs::path folder = plain_path(target);
+    if (!fs::exists(fs::symlink_status(folder))) return folder;
+    if (!fs::is_directory(folder)) {
+      throw InputError(fmt::format("-o '{}' exists and is no folder; give another one with -o", folder.string()));
+    }
+    refuse_dangerous_target(folder);
+    if (!force) refuse_foreign_files(folder);
+    return folder;
+  } catch (const fs::filesystem_error& e) {
+    throw cannot_use(target, e);
+  }
+}
+
 void write_file(const fs::path& file, std::string_view text) {
   std::unique_ptr<FILE, int (*)(FILE*)> out(fopen(file.c_str(), "wb"), &fclose);
   if (!out) throw cannot("write", file, errno);
@@ -137,17 +164,8 @@ void write_file(const fs::path& file, std::string_view text) {
 
 ResultsFolder::ResultsFolder(const fs::path& target, bool force, Provenance made_by)
     : made_by_(std::move(made_by)), force_(force) {
-  if (target.empty()) throw InputError("-o names no folder");
+  target_ = check_results_folder(target, force);
   try {
-    target_ = fs::weakly_canonical(fs::absolute(target));
-    if (target_.filename().empty()) target_ = target_.parent_path();  // "out/"
-    if (fs::exists(fs::symlink_status(target_))) {
-      if (!fs::is_directory(target_)) {
-        throw InputError(fmt::format("-o '{}' exists and is no folder; give another one with -o", target_.string()));
-      }
-      refuse_dangerous_target(target_);
-      if (!force) refuse_foreign_files(target_);
-    }
     created_parents_ = create_parents(target_.parent_path());
     remove_stale(target_);
     work_ = fmt::format("{}.partial-{}", target_.string(), getpid());
@@ -155,8 +173,7 @@ ResultsFolder::ResultsFolder(const fs::path& target, bool force, Provenance made
       throw fs::filesystem_error("", work_, std::make_error_code(std::errc::file_exists));
     }
   } catch (const fs::filesystem_error& e) {
-    throw InputError(fmt::format("-o '{}' cannot be used: {} '{}'; give a folder that can be written to", target.string(),
-                                 e.code().message(), e.path1().string()));
+    throw cannot_use(target, e);
   }
 }
 

@@ -25,6 +25,11 @@ inline constexpr const char* kManifestName = "driftwright-manifest.json";
 /// @throws InputError  naming the file and the system's reason
 void write_file(const std::filesystem::path& file, std::string_view text);
 
+/// Looks whether results may take the place of `target`, as the constructor below does, and changes nothing.
+/// @returns the target: absolute, links resolved
+/// @throws InputError  as the constructor, except for a parent that cannot be written to
+std::filesystem::path check_results_folder(const std::filesystem::path& target, bool force);
+
 /// A folder of results under way. Make it before anything is computed, since it refuses in its constructor;
 /// write through path() or write_text(); commit() last. Destroyed without commit, it leaves no trace.
 ///

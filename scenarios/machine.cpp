@@ -202,6 +202,38 @@ DisplacementFunctional tilt_against_table(const Mesh& mesh, const TiltOutput& ou
   return d;
 }
 
+std::optional<solver::Elasticity> factorise(const MachineModel& model, const PlacedMachine& placed, int n_solves) {
+  if (placed.mesh.n_nodes() == 0) return std::nullopt;
+  try {
+    return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints,
+                              solver::ElasticMethod::kAutomatic, n_solves);
+  } catch (const InputError& e) {  // it knows what is wrong, not where that stands
+    const bool about_supports = std::string_view(e.what()).starts_with("supports");
+    throw InputError(about_supports ? model.supports.front().where : model.where, e.what());
+  }
+}
+
+int n_functionals(const PlacedMachine& placed) {
+  return static_cast<int>(placed.functionals.size());
+}
+
+bool is_by_sensitivity(const MachineModel& model, std::size_t functional) {
+  return functional < model.displacements.size() &&
+         std::holds_alternative<BySensitivity>(model.displacements[functional].how);
+}
+
+Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed,
+                           const std::optional<solver::Elasticity>& elasticity) {
+  Eigen::MatrixXd influence =
+      Eigen::MatrixXd::Zero(placed.mesh.n_nodes(), static_cast<Eigen::Index>(placed.functionals.size()));
+  for (std::size_t i = 0; i < placed.functionals.size(); ++i) {
+    if (is_by_sensitivity(model, i)) continue;
+    if (!elasticity) throw std::logic_error("influences: a displacement without elasticity");
+    influence.col(static_cast<Eigen::Index>(i)) = elasticity->influence(placed.functionals[i]);
+  }
+  return influence;
+}
+
 }  // namespace
 
 solver::RegionMaterials region_materials(const MachineModel& model, const Mesh& mesh) {
@@ -220,8 +252,12 @@ solver::RegionMaterials region_materials(const MachineModel& model, const Mesh& 
 }
 
 PlacedMachine place(const MachineModel& model) {
+  return place(model, build_mesh(model.mesh));
+}
+
+PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
   PlacedMachine placed;
-  placed.mesh = build_mesh(model.mesh);
+  placed.mesh = std::move(meshed);
   const Mesh& mesh = placed.mesh;
   placed.materials = region_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);
@@ -270,17 +306,22 @@ bool needs_elasticity(const PlacedMachine& placed, bool with_fields) {
   return placed.mesh.n_nodes() > 0 && (with_fields || has_output);
 }
 
-Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity) {
-  std::optional<solver::Elasticity> elasticity = [&]() -> std::optional<solver::Elasticity> {
-    if (placed.mesh.n_nodes() == 0 || !with_elasticity) return std::nullopt;
-    try {
-      return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints);
-    } catch (const InputError& e) {  // it knows what is wrong, not where that stands
-      const bool about_supports = std::string_view(e.what()).starts_with("supports");
-      throw InputError(about_supports ? model.supports.front().where : model.where, e.what());
-    }
-  }();
-  Machine machine{std::move(placed), std::move(elasticity), {}};
+Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed) {
+  const bool is_elastic = needs_elasticity(placed, false);
+  return influences(model, placed, is_elastic ? factorise(model, placed, n_functionals(placed)) : std::nullopt);
+}
+
+Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity, int n_fields) {
+  std::optional<solver::Elasticity> elasticity =
+      with_elasticity ? factorise(model, placed, n_functionals(placed) + n_fields) : std::nullopt;
+  const Eigen::MatrixXd influence = influences(model, placed, elasticity);
+  Machine machine = build_with_influences(model, std::move(placed), influence);
+  if (elasticity) machine.elasticity.emplace(std::move(*elasticity));
+  return machine;
+}
+
+Machine build_with_influences(const MachineModel& model, PlacedMachine placed, const Eigen::MatrixXd& influence) {
+  Machine machine{std::move(placed), std::nullopt, {}};
   machine.system =
       solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance, model.reference_K);
   solver::Outputs& out = machine.system.outputs;
@@ -305,15 +346,13 @@ Machine build(const MachineModel& model, PlacedMachine placed, bool with_elastic
   }
   for (std::size_t i = 0; i < machine.placed.functionals.size(); ++i) {
     auto output = out.state.col(static_cast<Eigen::Index>(n_sensors + i));
-    if (i < model.displacements.size()) {
-      if (const auto* by = std::get_if<BySensitivity>(&model.displacements[i].how)) {
-        for (const auto& [body, sensitivity_m_K] : by->terms) {
-          output += sensitivity_m_K * solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
-        }
-        continue;
+    if (is_by_sensitivity(model, i)) {
+      for (const auto& [body, sensitivity_m_K] : std::get<BySensitivity>(model.displacements[i].how).terms) {
+        output += sensitivity_m_K * solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
       }
+    } else {
+      output.head(machine.placed.mesh.n_nodes()) = influence.col(static_cast<Eigen::Index>(i));
     }
-    output.head(machine.placed.mesh.n_nodes()) = machine.elasticity->influence(machine.placed.functionals[i]);
   }
   return machine;
 }

@@ -28,6 +28,8 @@ struct PlacedMachine {
 /// @throws InputError  for a name or point that is not there, a region without material, a joint without contact
 /// @throws SolveError  when the mesh cannot be made
 [[nodiscard]] PlacedMachine place(const MachineModel& model);
+/// The same in a mesh that build_mesh() has made of model.mesh.
+[[nodiscard]] PlacedMachine place(const MachineModel& model, mesh::Mesh mesh);
 
 /// Materials by region of the mesh. @throws InputError  for a region without material, or a material without region
 [[nodiscard]] solver::RegionMaterials region_materials(const MachineModel& model, const mesh::Mesh& mesh);
@@ -35,13 +37,22 @@ struct PlacedMachine {
 /// The full model, ready to run.
 struct Machine {
   PlacedMachine placed;
-  std::optional<solver::Elasticity> elasticity;  ///< none without a mesh, or where nothing needs it
+  /// None without a mesh, where nothing needs it, or when built with known influences.
+  std::optional<solver::Elasticity> elasticity;
   solver::FullSystem system;  ///< outputs: sensors [K], displacements [m], tilts [rad], in the scenario's order
 };
 /// @param with_elasticity  as needs_elasticity() says, or true
-[[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity = true);
+/// @param n_fields         about how many displacement fields will be solved for
+[[nodiscard]] Machine build(const MachineModel& model, PlacedMachine placed, bool with_elasticity = true, int n_fields = 10);
 /// True where displacements or tilts of a mesh are asked for, or whole fields of it.
 [[nodiscard]] bool needs_elasticity(const PlacedMachine& placed, bool with_fields);
+
+/// Influence vectors of displacements and tilts, n_nodes x n_functionals; columns of displacements by sensitivities are zero.
+/// They follow from mesh, materials, supports, joints and points alone, so models that differ in effects share them.
+[[nodiscard]] Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed);
+/// build() with influences() that are known: no factorisation, and no displacement fields.
+[[nodiscard]] Machine build_with_influences(const MachineModel& model, PlacedMachine placed,
+                                            const Eigen::MatrixXd& influence);
 
 /// Temperatures minus the reference temperature at t = 0, by the scenario's `start`.
 /// @throws SolveError  when there is no steady state to start from

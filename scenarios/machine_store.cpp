@@ -80,6 +80,19 @@ bool looks_at_temperatures(const effects::HeatBalance& balance) {
          any(balance.links, &effects::Link::conductance_W_K) || any(balance.contacts, &effects::Contact::conductance_W_m2K);
 }
 
+std::string numbers_of_laws(const MachineModel& model) {
+  std::string text;
+  for (const effects::Effect& e : model.effects) {
+    text += fmt::format("{}: {}", e.name(), fmt::join(e.values, " "));
+    for (const auto& [name, word] : e.words) text += fmt::format(" {} {}", name, word);
+    for (const auto& [name, table] : e.tables) {
+      text += fmt::format(" {} {} {}", name, fmt::join(table.time_s, " "), fmt::join(table.value, " "));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 /// Vectors side by side; empty ones as zeros.
 Eigen::MatrixXd side_by_side(Eigen::Index rows, const std::vector<Eigen::VectorXd>& columns) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(columns.size()));
@@ -176,10 +189,8 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
     system.probes.push_back({probes.col(i++), p.at("hall_share"), p.at("offset_K")});
   }
   for (const Json& probe : json.value("thermostat_probes", none)) {
-    const effects::Thermostat& t = balance.thermostats.at(system.thermostats.size());
-    system.thermostats.push_back({t.name, probe, t.on_above_K, t.off_below_K});
+    system.thermostats.push_back({.name = {}, .probe = probe});
   }
-  system.change_times_s = balance.change_times_s;
   system.outputs = {json.at("outputs").at("name"), json.at("outputs").at("unit"), array("outputs.npy"),
                     array("outputs_hall.npy")};
   system.ones = array("ones.npy");
@@ -244,32 +255,31 @@ def ABC(drive):  # u = [P of each source, T_hall, 1]
 
 }  // namespace
 
-std::string machine_key(const MachineModel& model, const ReductionPlan& plan, const std::string& version) {
+std::string machine_text(const MachineModel& model) {
   const effects::HeatBalance balance = effects::heat_balance(model.effects);
-  std::string key = fmt::format("driftwright {} store {}\n{}\n{}", version, kFormat, model.written, structure(balance));
+  std::string text = model.written + structure(balance);
   if (const auto* imported = std::get_if<mesh::ImportedMesh>(&model.mesh)) {
     const std::string bytes = bytes_of(imported->path);
-    key += fmt::format("mesh file of {} bytes, {:016x}\n", bytes.size(), hash(bytes));
+    text += fmt::format("mesh file of {} bytes, {:016x}\n", bytes.size(), hash(bytes));
+  }
+  if (model.start == Start::kHall || model.start == Start::kSteady || !balance.fixed.empty()) {
+    text += fmt::format("hall at the start {} K\n", model.hall.at(0.0));
+  }
+  if (model.start == Start::kSteady) text += numbers_of_laws(model);
+  return text;
+}
+
+std::string machine_key(const MachineModel& model, const ReductionPlan& plan, const std::string& version) {
+  const effects::HeatBalance balance = reducible(effects::heat_balance(model.effects));
+  std::string key = fmt::format("driftwright {} store {}\n{}\n", version, kFormat, machine_text(model));
+  if (looks_at_temperatures(balance) && plan.n_modes > 0) {  // modal predictors are frozen at the typical drive
+    const Drive& t = plan.typical;
+    key += fmt::format("typical {} {} {}\n", t.speed_rpm, fmt::join(t.feed_m_s, " "), t.cutting_power_W);
+    key += numbers_of_laws(model);
   }
   const auto numbers = [](const Eigen::VectorXd& v) {
     return fmt::format("{}", fmt::join(v.data(), v.data() + v.size(), " "));
   };
-  if (model.start == Start::kHall || model.start == Start::kSteady || !balance.fixed.empty()) {
-    key += fmt::format("hall at the start {} K\n", model.hall.at(0.0));
-  }
-  if (looks_at_temperatures(reducible(balance)) || model.start == Start::kSteady) {
-    // Modal predictors are frozen, and a steady start is solved, with the numbers that the laws have.
-    const Drive& t = plan.typical;
-    key += fmt::format("typical {} {} {}\n", t.speed_rpm, fmt::join(t.feed_m_s, " "), t.cutting_power_W);
-    for (const effects::Effect& e : model.effects) {
-      key += fmt::format("{}: {}", e.name(), fmt::join(e.values, " "));
-      for (const auto& [name, word] : e.words) key += fmt::format(" {} {}", name, word);
-      for (const auto& [name, table] : e.tables) {
-        key += fmt::format(" {} {} {}", name, fmt::join(table.time_s, " "), fmt::join(table.value, " "));
-      }
-      key += "\n";
-    }
-  }
   const solver::ReductionDemand& d = plan.demand;
   key +=
       fmt::format("power {}\nlow {}\nhigh {}\nhall {} K, {} s, tolerance {} K, {} modes, fields {}\n", numbers(d.power_W),

@@ -102,7 +102,7 @@ solver::FullSystem reducible_system(const MachineModel& model, const Machine& ma
 
 std::vector<compensation::ModalPredictor> modal_predictors(const solver::FullSystem& system, const Eigen::VectorXd& start,
                                                            double hall_K, const ReductionPlan& plan) {
-  if (!system.thermostats.empty()) return {};
+  if (!system.thermostats.empty() || plan.n_modes == 0) return {};
   solver::FullSystem frozen = system;
   if (system.looks_at_state()) {
     const effects::Inputs at{.drive = plan.typical, .hall_K = hall_K};
@@ -164,7 +164,8 @@ void bind_laws(solver::ReducedSystem& system, const effects::HeatBalance& balanc
   for (const effects::Film& f : balance.films) exchanges.push_back(&f.htc_W_m2K);
   for (const effects::Link& l : balance.links) exchanges.push_back(&l.conductance_W_K);
   for (const effects::Contact& c : balance.contacts) exchanges.push_back(&c.conductance_W_m2K);
-  if (system.sources.size() != balance.heats.size() || system.exchanges.size() < exchanges.size()) {
+  if (system.sources.size() != balance.heats.size() || system.exchanges.size() < exchanges.size() ||
+      system.thermostats.size() != balance.thermostats.size()) {
     throw std::logic_error("bind_laws: a reduced system of another balance");
   }
   for (std::size_t s = 0; s < system.sources.size(); ++s) system.sources[s].power_W.law = balance.heats[s].power_W;
@@ -172,6 +173,11 @@ void bind_laws(solver::ReducedSystem& system, const effects::HeatBalance& balanc
   for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
     system.exchanges[e].coefficient.law = e < exchanges.size() ? *exchanges[e] : one;
   }
+  for (std::size_t t = 0; t < system.thermostats.size(); ++t) {
+    const effects::Thermostat& law = balance.thermostats[t];
+    system.thermostats[t] = {law.name, system.thermostats[t].probe, law.on_above_K, law.off_below_K};
+  }
+  system.change_times_s = balance.change_times_s;
 }
 
 ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan) {

@@ -13,7 +13,7 @@ struct ReductionPlan {
   solver::ReductionDemand demand;
   double tolerance_K = 8e-3;
   Drive typical;            ///< mean drive, which the modal predictors freeze laws of temperature at
-  int n_modes = 20;         ///< of the modal predictors
+  int n_modes = 20;         ///< of the modal predictors; 0: none of them
   bool with_fields = true;  ///< whether displacements everywhere may be asked for
 };
 [[nodiscard]] ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms);
@@ -44,7 +44,7 @@ struct ReducedMachine {
 /// @throws SolveError  as solver::reduce()
 [[nodiscard]] ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan);
 
-/// Gives a reduced system, whose laws may be missing or another scenario's, the laws of this balance.
+/// Gives a reduced system, whose laws may be missing or another scenario's, the laws, switches and times of this balance.
 /// @param balance  as reducible() made it
 void bind_laws(solver::ReducedSystem& system, const effects::HeatBalance& balance);
 

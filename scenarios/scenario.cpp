@@ -218,9 +218,12 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
 }
 
 Scenario read_scenario(const std::string& path) {
-  const ConfigMap in = ConfigMap::read_file(path);
+  return read_scenario(ConfigMap::read_file(path));
+}
+
+Scenario read_scenario(const ConfigMap& in) {
   Scenario scenario;
-  scenario.path = path;
+  scenario.path = in.file();
   scenario.name = in.name("name");
   const bool has_machine = in.has("machine");
   if (has_machine) scenario.machine = read_machine(in);

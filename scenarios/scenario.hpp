@@ -106,5 +106,7 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram);
 
 /// @throws InputError  with file, line and key
 [[nodiscard]] Scenario read_scenario(const std::string& path);
+/// The same from the map at the top of a scenario, which may have been edited.
+[[nodiscard]] Scenario read_scenario(const ConfigMap& in);
 
 }  // namespace driftwright::scenarios

@@ -1,6 +1,7 @@
 #include "solver/elasticity.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +56,15 @@ std::vector<int> held_stiffly(const NodeMatrix& k, const std::vector<SpringLayer
   return nodes;
 }
 
+double memory_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
 }  // namespace
+
+bool factor_pays(int n_unknowns, int n_solves) {
+  return n_unknowns <= kMostUnknownsToFactorise || n_solves >= 10.0 * std::pow(n_unknowns / 57e3, 0.44);
+}
 
 struct Elasticity::Parts {
   Parts(const Mesh& mesh, const RegionMaterials& materials) : thermal_load(mesh, materials) {}
@@ -92,7 +101,7 @@ Elasticity::~Elasticity() = default;
 Elasticity::Elasticity(Elasticity&&) noexcept = default;
 
 Elasticity::Elasticity(const Mesh& mesh, const RegionMaterials& materials, const std::vector<Support>& supports,
-                       const std::vector<JointMechanics>& joints, ElasticMethod method) {
+                       const std::vector<JointMechanics>& joints, ElasticMethod method, int n_solves) {
   check_materials(mesh, materials);
   parts_ = std::make_unique<Parts>(mesh, materials);
   Parts& p = *parts_;
@@ -118,18 +127,26 @@ Elasticity::Elasticity(const Mesh& mesh, const RegionMaterials& materials, const
   report.n_unknowns = static_cast<int>(std::count(p.held.begin(), p.held.end(), 0));
   report.method = method;
   if (method == ElasticMethod::kAutomatic) {
-    report.method = report.n_unknowns <= kMostUnknownsToFactorise ? ElasticMethod::kFactor : ElasticMethod::kMultigrid;
+    report.method = factor_pays(report.n_unknowns, n_solves) ? ElasticMethod::kFactor : ElasticMethod::kMultigrid;
   }
+  std::string instead;
   if (report.method == ElasticMethod::kFactor) {
     p.factor = std::make_unique<StiffnessFactor>(p.k);
-    p.k = {};
     report.factor_bytes = p.factor->predicted_bytes();
+    if (method == ElasticMethod::kAutomatic && report.factor_bytes > 0.5 * memory_bytes()) {
+      instead = fmt::format("; a factor would take {:.1f} of {:.1f} GB", 1e-9 * report.factor_bytes, 1e-9 * memory_bytes());
+      report.method = ElasticMethod::kMultigrid;
+      p.factor.reset();
+    }
+  }
+  if (report.method == ElasticMethod::kFactor) {
+    p.k = {};
     p.factor->factorise();
     report.text = fmt::format("elastic displacements by a factor: {} unknowns, {:.1f} GB", report.n_unknowns,
                               1e-9 * report.factor_bytes);
   } else {
     p.multigrid = std::make_unique<Multigrid>(p.k, mesh.coords, held_stiffly(p.k, layers));
-    report.text = fmt::format("elastic displacements by multigrid: {} unknowns", report.n_unknowns);
+    report.text = fmt::format("elastic displacements by multigrid: {} unknowns{}", report.n_unknowns, instead);
   }
 }
 

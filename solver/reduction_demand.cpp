@@ -44,6 +44,17 @@ void look(const effects::Law& law, effects::Inputs at, double reference_K, Range
 
 }  // namespace
 
+void ReductionDemand::include(const ReductionDemand& other) {
+  power_W = power_W.cwiseMax(other.power_W);
+  hall_K = std::max(hall_K, other.hall_K);
+  duration_s = std::max(duration_s, other.duration_s);
+  for (Eigen::Index e = 0; e < low.size(); ++e) {
+    const double l = std::min(low[e], other.low[e]), h = std::max(high[e], other.high[e]);
+    low[e] = l < h ? down(l) : l;
+    high[e] = l < h ? up(h) : h;
+  }
+}
+
 std::vector<Eigen::VectorXd> ReductionDemand::points() const {
   std::vector<Eigen::VectorXd> sets = {0.5 * (low + high)};
   if (low != high) sets.insert(sets.end(), {low, high});

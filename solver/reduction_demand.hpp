@@ -16,6 +16,8 @@ struct ReductionDemand {
   double hall_K = 1.0;        ///< largest magnitude of the hall temperature over the reference
   double duration_s = 0.0;    ///< of the longest cyclogram
 
+  /// Widens this demand to meet another one of the same balance, too.
+  void include(const ReductionDemand& other);
   /// Sets of coefficients to hold at: the middle, and where some coefficient moves also all low and all high.
   [[nodiscard]] std::vector<Eigen::VectorXd> points() const;
 };

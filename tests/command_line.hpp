@@ -5,9 +5,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 
 #include "tests/temporary_file.hpp"
@@ -28,20 +25,6 @@ inline CommandOutcome run_program(const std::string& arguments) {
   const int status = pclose(pipe);
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return outcome;
-}
-
-inline std::string read_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-/// An empty folder of this test's own.
-inline std::filesystem::path fresh_folder(const std::string& name) {
-  const std::filesystem::path folder = temporary_folder() / name;
-  std::filesystem::create_directories(folder);
-  return folder;
 }
 
 }  // namespace driftwright

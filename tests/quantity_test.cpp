@@ -34,6 +34,44 @@ INSTANTIATE_TEST_SUITE_P(Each, QuantityIs,
                                            Good{"3 K", "K", 3}, Good{"2000 rpm", "rpm", 2000}, Good{"0.3", "1", 0.3},
                                            Good{"30 percent", "1", 0.3}, Good{"010 mm", "mm", 10}));
 
+TEST(Quantity, SplitsIntoNumberAndKnownUnit) {
+  EXPECT_EQ(split_quantity("2.5e1 L/min").number, 25.0);
+  EXPECT_EQ(split_quantity("2.5e1 L/min").unit, "L/min");
+  EXPECT_EQ(split_quantity("0.4").unit, "");
+  EXPECT_THROW((void)split_quantity("3 furlongz"), RangeError);
+  EXPECT_THROW((void)split_quantity("steel"), RangeError);
+  EXPECT_THROW((void)split_quantity("inf N"), RangeError);
+}
+
+TEST(Quantity, ConvertsAbsoluteTemperatures) {
+  EXPECT_DOUBLE_EQ(convert(20.0, "degC", "K"), 293.15);
+  EXPECT_DOUBLE_EQ(convert(0.5, "kN", "N"), 500.0);
+  EXPECT_DOUBLE_EQ(convert(30.0, "percent", ""), 0.3);
+  EXPECT_THROW((void)convert(1.0, "N", "W"), RangeError);
+  EXPECT_TRUE(has_offset("degC"));
+  EXPECT_FALSE(has_offset("K"));
+  EXPECT_FALSE(has_offset("N"));
+}
+
+TEST(Quantity, UnitsInNames) {
+  EXPECT_EQ(unit_in_name("W/(m^2 K)"), "W_m2K");
+  EXPECT_EQ(unit_in_name("L/min"), "L_min");
+  EXPECT_EQ(unit_in_name("mm^2/s"), "mm2_s");
+  EXPECT_EQ(unit_in_name("µm"), "um");
+  EXPECT_EQ(unit_in_name("%"), "percent");
+  EXPECT_EQ(unit_in_name(""), "1");
+}
+
+TEST(Quantity, ThreadsReadAtOnce) {
+  double sum = 0.0;
+#pragma omp parallel for num_threads(4) reduction(+ : sum)
+  for (int i = 0; i < 4000; ++i) {
+    const char* const units[] = {"mm", "um", "m", "cm", "km", "inch", "nm"};
+    sum += parse_quantity("1 " + std::string(units[i % 7]), "m") > 0.0 ? 1.0 : 0.0;
+  }
+  EXPECT_EQ(sum, 4000.0);
+}
+
 TEST(Quantity, TemperaturesHaveTheirOffset) {
   EXPECT_DOUBLE_EQ(parse_temperature_K("20 degC"), 293.15);
   EXPECT_DOUBLE_EQ(parse_temperature_K("-40 degC"), 233.15);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 
 namespace driftwright {
@@ -28,6 +29,20 @@ inline std::string write_file(const std::string& name, const std::string& text) 
   const std::filesystem::path path = temporary_folder() / name;
   std::ofstream(path) << text;
   return path.string();
+}
+
+inline std::string read_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// An empty folder of this test's own.
+inline std::filesystem::path fresh_folder(const std::string& name) {
+  const std::filesystem::path folder = temporary_folder() / name;
+  std::filesystem::create_directories(folder);
+  return folder;
 }
 
 }  // namespace driftwright

@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/results.hpp"
+#include "app/sweep_report.hpp"
+#include "app/sweep_run.hpp"
+#include "app/verbs.hpp"
+#include "app/version.hpp"
+#include "output/rows_under_way.hpp"
+
+namespace driftwright::app {
+namespace {
+
+namespace fs = std::filesystem;
+using output::NumberedRows;
+using scenarios::SweepPlan;
+
+struct Part {
+  std::size_t number = 1, of = 1;  ///< from 1
+
+  [[nodiscard]] std::string file() const { return of == 1 ? "sweep.csv" : fmt::format("sweep.{}of{}.csv", number, of); }
+};
+
+/// "3/8". @throws InputError
+Part read_part(const std::string& text) {
+  if (text.empty()) return {};
+  const std::size_t slash = text.find('/');
+  const std::string first = text.substr(0, slash), second = slash == std::string::npos ? "" : text.substr(slash + 1);
+  const auto is_count = [](const std::string& word) {
+    return !word.empty() && word.size() <= 7 && word.find_first_not_of("0123456789") == std::string::npos;
+  };
+  if (is_count(first) && is_count(second)) {
+    const Part part{std::stoul(first), std::stoul(second)};
+    if (part.number >= 1 && part.number <= part.of) return part;
+  }
+  throw InputError(fmt::format("--shard '{}': i/n with 1 <= i <= n is wanted, such as 3/8", text));
+}
+
+/// Simulates what is missing of `members` and adds it to `rows`.
+void simulate_missing(const SweepPlan& plan, const std::vector<std::size_t>& members, output::RowsUnderWay& file,
+                      NumberedRows& rows, Progress& progress) {
+  constexpr std::size_t kMostTold = 10;
+  std::vector<std::size_t> missing;
+  std::copy_if(members.begin(), members.end(), std::back_inserter(missing),
+               [&](std::size_t m) { return !rows.contains(m + 1); });
+  const std::string work = fmt::format(
+      "simulating {} members{}", missing.size(),
+      missing.size() == members.size() ? "" : fmt::format(", {} are there already", members.size() - missing.size()));
+  progress.begin(work);
+  std::size_t n_done = 0, n_failed = 0;
+  run_members(plan, missing, [&](const MemberOutcome& outcome) {
+    const std::string row = table_row(plan, outcome);
+    file.append(row);
+    rows.emplace(outcome.member + 1, row);
+    if (!outcome.failure.empty() && n_failed++ < kMostTold) {
+      progress.end();
+      fmt::print(stderr, "member {} failed: {}\n{}", outcome.member + 1, outcome.failure,
+                 n_failed == kMostTold ? "further failures: see the column `status`\n" : "");
+      progress.begin(work);
+    }
+    progress.update(static_cast<double>(++n_done) / static_cast<double>(missing.size()));
+  });
+  progress.end();
+}
+
+NumberedRows rows_of(const std::vector<std::size_t>& members, const NumberedRows& all) {
+  NumberedRows rows;
+  for (const std::size_t m : members) {
+    if (const auto found = all.find(m + 1); found != all.end()) rows.insert(*found);
+  }
+  return rows;
+}
+
+/// Writes the folder of results from all rows.
+void write_table(const SweepOptions& options, const SweepPlan& plan, const NumberedRows& rows) {
+  output::ResultsFolder folder = open_results(options, plan.name);
+  std::string csv;
+  for (const std::string& line : provenance_lines(folder.made_by(), "sweep " + plan.name)) csv += "# " + line + "\n";
+  csv += plan.table_header() + "\n";
+  for (const auto& [number, row] : rows) csv += row + "\n";
+  folder.write_text("sweep.csv", csv);
+  const SweepColumns columns = sweep_columns(plan, rows);
+  folder.write_text("report.html", output::render_html(sweep_report(plan, rows, columns, folder.made_by())));
+  folder.commit();
+  fmt::print("{}: {} members, {} failed\n{}results in {}: sweep.csv, report.html\n", plan.name, rows.size(),
+             columns.n_failed, sweep_summary(plan, columns), shown_path(folder.target()));
+}
+
+/// @throws SolveError  so that a script sees it
+void fail_where_members_failed(const NumberedRows& rows, const fs::path& table) {
+  const auto n_failed = std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !is_done(row.second); });
+  if (n_failed == 0) return;
+  throw SolveError(
+      fmt::format("{} of {} members failed; the column `status` of {} says why", n_failed, rows.size(), shown_path(table)));
+}
+
+[[noreturn]] void refuse_to_merge(const SweepPlan& plan, const NumberedRows& rows, const fs::path& parts) {
+  std::size_t first = 1;
+  while (rows.contains(first)) ++first;
+  throw InputError(
+      fmt::format("{}: {} of {} members have no row in {} yet (the first is {}); let every shard end, run those that were "
+                  "cut short again, or "
+                  "leave out --merge to simulate what is missing here",
+                  plan.path, plan.n_members - rows.size(), plan.n_members, shown_path(parts), first));
+}
+
+}  // namespace
+
+void sweep(const SweepOptions& options) {
+  const Part part = read_part(options.shard);
+  if (options.merge && !options.shard.empty())
+    throw InputError("--merge joins what all shards have written; leave out --shard");
+  const SweepPlan plan = scenarios::read_sweep_plan(options.scenario);
+  const fs::path target =
+      output::check_results_folder(options.out.empty() ? "results/" + plan.name : options.out, options.force);
+  const fs::path parts = target.string() + ".parts";
+  const output::RowsIdentity identity{scenarios::content_key(plan, kVersion), plan.table_header()};
+  if (options.merge) {
+    const NumberedRows rows = output::find_rows(parts, identity);
+    if (rows.size() < plan.n_members) refuse_to_merge(plan, rows, parts);
+    write_table(options, plan, rows);
+    output::remove_rows(parts);
+    fail_where_members_failed(rows, target / "sweep.csv");
+    return;
+  }
+  Progress progress;
+  const std::vector<std::size_t> members = scenarios::members_of_part(plan, part.number - 1, part.of);
+  std::optional<output::RowsUnderWay> file(std::in_place, parts, part.file(), identity);
+  if (file->dropped_stale())
+    fmt::print(stderr, "note: rows of an earlier version of this study or its scenario are dropped\n");
+  NumberedRows rows = rows_of(members, output::find_rows(parts, identity));
+  simulate_missing(plan, members, *file, rows, progress);
+  if (part.of > 1) {
+    file->finish(rows);
+    fmt::print("{}: shard {} of {}, {} members in {}; when all shards are done: driftwright sweep {} --merge\n", plan.name,
+               part.number, part.of, rows.size(), shown_path(parts / part.file()), options.scenario);
+    fail_where_members_failed(rows, parts / part.file());
+    return;
+  }
+  write_table(options, plan, rows);
+  file.reset();
+  output::remove_rows(parts);
+  fail_where_members_failed(rows, target / "sweep.csv");
+}
+
+}  // namespace driftwright::app

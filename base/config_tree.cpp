@@ -1,0 +1,175 @@
+#include "base/config_tree.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace driftwright {
+namespace {
+
+Where where_in(const ConfigSource& source, int line, int column, const std::string& key) {
+  const bool inside = line >= 1 && line <= static_cast<int>(source.lines.size());
+  return {source.path, line, column, key, inside ? source.lines[static_cast<std::size_t>(line) - 1] : ""};
+}
+
+/// Builds the tree from the parser's events. yaml-cpp's own nodes would let duplicate keys pass, take lists and maps for keys,
+/// and lose their lines when copied.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(std::shared_ptr<const ConfigSource> source) : source_(std::move(source)) {}
+
+  [[nodiscard]] const ConfigNodePtr& root() const { return root_; }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    add(std::make_shared<ConfigNode>(make(ConfigNode::Kind::kNull, mark)), anchor);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto known = anchors_.find(anchor);
+    if (known == anchors_.end())
+      throw InputError(where_in(*source_, mark.line + 1, mark.column + 1, ""), "an alias stands inside its own anchor");
+    add(known->second, 0);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, const std::string& value) override {
+    ConfigNode node = make(ConfigNode::Kind::kScalar, mark);
+    node.text = value;
+    add(std::make_shared<ConfigNode>(std::move(node)), anchor);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open_.push_back({make(ConfigNode::Kind::kList, mark), anchor, false});
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    open_.push_back({make(ConfigNode::Kind::kMap, mark), anchor, true});
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    ConfigNode node;
+    YAML::anchor_t anchor;
+    bool wants_key;
+  };
+
+  [[nodiscard]] ConfigNode make(ConfigNode::Kind kind, const YAML::Mark& mark) const {
+    ConfigNode node;
+    node.kind = kind;
+    node.source = source_;
+    node.line = mark.line + 1;
+    node.column = mark.column + 1;
+    return node;
+  }
+
+  void close() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    add(std::make_shared<ConfigNode>(std::move(done.node)), done.anchor);
+  }
+
+  void add(ConfigNodePtr node, YAML::anchor_t anchor) {
+    if (anchor != 0) anchors_[anchor] = node;
+    if (open_.empty()) {
+      root_ = std::move(node);
+      return;
+    }
+    Open& parent = open_.back();
+    if (parent.node.is_map() && parent.wants_key) {
+      add_key(parent.node, *node);
+    } else {
+      parent.node.items.push_back(std::move(node));
+    }
+    parent.wants_key = !parent.wants_key;
+  }
+
+  void add_key(ConfigNode& map, const ConfigNode& key) const {
+    if (!key.is_scalar())
+      throw InputError(where_in(*source_, key.line, key.column, ""), "a key must be a word, not a list, a map or nothing");
+    if (map.index_of(key.text))
+      throw InputError(where_in(*source_, key.line, key.column, key.text), fmt::format("key '{}' appears twice", key.text));
+    map.keys.push_back({key.text, key.line, key.column});
+  }
+
+  std::shared_ptr<const ConfigSource> source_;
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, ConfigNodePtr> anchors_;
+  ConfigNodePtr root_;
+};
+
+}  // namespace
+
+std::optional<std::size_t> ConfigNode::index_of(const std::string& key) const {
+  const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.text == key; });
+  if (found == keys.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - keys.begin());
+}
+
+const ConfigNode* ConfigNode::find(const std::string& key) const {
+  const auto index = index_of(key);
+  return index ? items[*index].get() : nullptr;
+}
+
+Where ConfigNode::where(const std::string& key) const {
+  return where_in(*source, line, column, key);
+}
+
+ConfigNodePtr read_config_tree(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: the file cannot be opened; is the path right?", path));
+  auto source = std::make_shared<ConfigSource>();
+  source->path = path;
+  std::string text, line;
+  while (std::getline(file, line)) {
+    text += line + "\n";
+    source->lines.push_back(line);
+  }
+  TreeBuilder builder(source);
+  try {
+    std::istringstream in(text);
+    YAML::Parser(in).HandleNextDocument(builder);
+  } catch (const YAML::ParserException& e) {
+    throw InputError(where_in(*source, e.mark.line + 1, e.mark.column + 1, ""), "this is not valid YAML: " + e.msg);
+  }
+  if (builder.root()) return builder.root();
+  ConfigNode empty;
+  empty.source = source;
+  return std::make_shared<ConfigNode>(std::move(empty));
+}
+
+ConfigNodePtr replaced(const ConfigNodePtr& root, std::span<const std::size_t> steps, ConfigNodePtr value) {
+  if (steps.empty()) return value;
+  auto copy = std::make_shared<ConfigNode>(*root);
+  ConfigNodePtr& child = copy->items.at(steps[0]);
+  child = replaced(child, steps.subspan(1), std::move(value));
+  return copy;
+}
+
+std::string written(const ConfigNode& node) {
+  if (node.is_scalar()) return fmt::format("{:?}", node.text);
+  if (!node.is_list() && !node.is_map()) return "~";
+  std::string text = node.is_list() ? "[" : "{";
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    if (i > 0) text += ", ";
+    if (node.is_map()) text += node.keys[i].text + ": ";
+    text += written(*node.items[i]);
+  }
+  return text + (node.is_list() ? "]" : "}");
+}
+
+ConfigNodePtr scalar_at(const ConfigNode& place, std::string text) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::kScalar;
+  node.text = std::move(text);
+  node.source = place.source;
+  node.line = place.line;
+  node.column = place.column;
+  return std::make_shared<ConfigNode>(std::move(node));
+}
+
+}  // namespace driftwright
