@@ -292,6 +292,9 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
       std::copy(in(y.get()), in(y.get()) + ode.size(), out(before.get()));
       const int flag = ARKStepEvolve(mem, stretch.end_s, y.get(), &t_s, ARK_ONE_STEP);
       check(flag, "ARKStepEvolve", t_s, callee);
+      // Steps that shrink towards a time no law lets them pass would go on for ever.
+      constexpr double kLeastStep = 1e-12;
+      if (t_s - began_s <= kLeastStep * t_s) check(ARK_CONV_FAILURE, "ARKStepEvolve", t_s, callee);
       callee.out_of_range.clear();
       require_sane(in(y.get()), n, system.reference_K, t_s);
       if (t_s > stretch.end_s - 1e-9 * stretch.end_s) t_s = stretch.end_s;
