@@ -19,7 +19,7 @@ struct BlockPattern {
 template <class T, int R, int C>
 struct BlockRows : BlockPattern {
   using Block = Eigen::Matrix<T, R, C, Eigen::ColMajor | Eigen::DontAlign>;
-  std::vector<T> value;  ///< R C per entry, and kPad unused at the end, which wide loads may touch
+  std::vector<T> value;  ///< R C per entry, and kPad unused at the end, which wide loads may read
   static constexpr int kPad = 4;
 
   void take(BlockPattern pattern) {
@@ -89,19 +89,19 @@ void multiply_into(const BlockRows<TA, R, M>& a, const BlockRows<TB, M, C>& b, B
   }
 }
 
-/// Row i of A x for K vectors at once, x[(column C + c) K + k]; into y[r K + k].
-template <int K, class T, int R, int C>
+/// Row i of A x into y[0] ... y[R - 1].
+template <class T, int R, int C>
 inline void multiply_row(const BlockRows<T, R, C>& a, int i, const T* x, T* y) {
-  if constexpr (K == 1 && R == 1 && C == 1) {
+  if constexpr (R == 1 && C == 1) {
     T sum{};
     for (int k = a.start[i]; k < a.start[i + 1]; ++k) sum += a.value[k] * x[a.column[k]];
     y[0] = sum;
-  } else if constexpr (K == 1 && R == 3 && C == 3 && sizeof(T) == 4) {
+  } else if constexpr (R == 3 && C == 3 && sizeof(T) == 4) {
     // Columns of three as four lanes; the fourth is the next number in memory and is thrown away.
     using Lanes [[gnu::vector_size(16)]] = T;
     using Unaligned [[gnu::vector_size(16), gnu::aligned(4)]] = T;
     Lanes sum{};
-    const T* v = &a.value[static_cast<std::size_t>(a.start[i]) * 9];
+    const T* v = a.value.data() + static_cast<std::ptrdiff_t>(a.start[i]) * 9;
     for (int k = a.start[i]; k < a.start[i + 1]; ++k, v += 9) {
       const T* const xk = x + static_cast<std::ptrdiff_t>(a.column[k]) * 3;
       const Lanes v0 = *reinterpret_cast<const Unaligned*>(v), v1 = *reinterpret_cast<const Unaligned*>(v + 3),
@@ -110,25 +110,23 @@ inline void multiply_row(const BlockRows<T, R, C>& a, int i, const T* x, T* y) {
     }
     for (int r = 0; r < 3; ++r) y[r] = sum[r];
   } else {
-    constexpr int kOrder = (K == 1 ? Eigen::ColMajor : Eigen::RowMajor) | Eigen::DontAlign;
-    using In = Eigen::Map<const Eigen::Matrix<T, C, K, kOrder>>;
-    Eigen::Matrix<T, R, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor> sum;
-    sum.setZero();
+    Eigen::Matrix<T, R, 1> sum = Eigen::Matrix<T, R, 1>::Zero();
     for (int k = a.start[i]; k < a.start[i + 1]; ++k) {
-      sum += a.block(k).lazyProduct(In(x + static_cast<std::ptrdiff_t>(a.column[k]) * C * K));
+      sum +=
+          a.block(k).lazyProduct(Eigen::Map<const Eigen::Matrix<T, C, 1>>(x + static_cast<std::ptrdiff_t>(a.column[k]) * C));
     }
-    Eigen::Map<Eigen::Matrix<T, R, K, kOrder>>(y, R, K) = sum;
+    Eigen::Map<Eigen::Matrix<T, R, 1>>(y, R) = sum;
   }
 }
 
 /// Loops over fewer numbers than this stay on one core: waiting for the others costs more.
-inline constexpr std::size_t kWorthThreadsNumbers = 100000;
+inline constexpr std::size_t kWorthThreadsNumbers = 400000;
 
-/// y = A x for K vectors at once, laid out as for multiply_row().
-template <int K, class T, int R, int C>
+/// y = A x.
+template <class T, int R, int C>
 void multiply(const BlockRows<T, R, C>& a, const T* x, T* y) {
 #pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
-  for (int i = 0; i < a.n_rows; ++i) multiply_row<K>(a, i, x, y + static_cast<std::ptrdiff_t>(i) * R * K);
+  for (int i = 0; i < a.n_rows; ++i) multiply_row(a, i, x, y + static_cast<std::ptrdiff_t>(i) * R);
 }
 
 }  // namespace driftwright::solver

@@ -8,6 +8,7 @@
 // Source of the formulas: Zienkiewicz, Taylor & Zhu, The Finite Element Method, vol. 1, ch. 2 and 6.
 
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,17 +33,39 @@ struct StressFunctional {
   std::vector<std::pair<int, double>> temperature;  ///< node, Pa/K
 };
 
-/// The factorised elastic machine.
+/// How K u = f is solved.
+enum class ElasticMethod { kAutomatic, kFactor, kMultigrid };
+
+/// Up to here a Cholesky factor takes a second and a few hundred megabytes, and each solve after it is cheap; above, multigrid
+/// needs less time in all for some ten solves and far less memory (docs/performance.md).
+inline constexpr int kMostUnknownsToFactorise = 60000;
+
+/// Of multigrid's solutions, in the norm of K. A displacement d = l'K⁻¹f is then wrong by less than this times
+/// sqrt(l'K⁻¹l f'K⁻¹f): for a machine of 1e8 N/m that is strained by 10 K, 1e-10 x 1e-4 x 20 = 2e-13 m. What is left over of the
+/// 1e-10 m that is wanted is for parts on springs a million times softer than themselves.
+inline constexpr double kElasticTolerance = 1e-10;
+
+struct ElasticReport {
+  ElasticMethod method = ElasticMethod::kAutomatic;  ///< that was taken
+  int n_unknowns = 0;
+  double factor_bytes = 0.0;  ///< of the factor, where there is one
+  int most_iterations = 0;    ///< of multigrid, in the solves so far
+  std::string text;           ///< for the user
+};
+
+/// The elastic machine, ready to be solved for any number of loads, by one thread at a time.
 class Elasticity {
  public:
   /// @param joints  those that are not tied
-  /// @throws SolveError  when the factorisation fails for want of memory
+  /// @throws SolveError  when the factorisation fails for want of memory; later, when multigrid does not converge
   /// @throws InputError  when supports and joints leave a part free to move (it names part and motion), for unknown joints
   ///                     and such as do not touch, and for a material without sense: E > 0, -1 < nu < 0.5, finite expansion
   Elasticity(const mesh::Mesh& mesh, const RegionMaterials& materials, const std::vector<Support>& supports,
-             const std::vector<JointMechanics>& joints = {});
+             const std::vector<JointMechanics>& joints = {}, ElasticMethod method = ElasticMethod::kAutomatic);
   ~Elasticity();
   Elasticity(Elasticity&&) noexcept;
+
+  [[nodiscard]] const ElasticReport& report() const;
 
   /// Influence vector over the mesh's nodes [unit of the functional per K].
   [[nodiscard]] Eigen::VectorXd influence(const DisplacementFunctional& functional) const;

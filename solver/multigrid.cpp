@@ -29,7 +29,7 @@ DoubleBlocks<B> set_smoother(Level<T, B, N>& level, BlockRows<double, B, B>& a) 
   DoubleBlocks<B> inverse = invert_diagonal(a);
   level.inverse_diagonal.resize(inverse.size());
   for (std::size_t i = 0; i < inverse.size(); ++i) level.inverse_diagonal[i] = inverse[i].template cast<T>();
-  level.largest_eigenvalue = largest_eigenvalue(a, inverse);
+  level.largest_eigenvalue = largest_eigenvalue(a, inverse, level.cluster);
   return inverse;
 }
 
@@ -75,7 +75,8 @@ bool set_transfer(Level<T, B, N>& level, const BlockRows<double, B, B>& a, const
 template <int B, int N>
 class Hierarchy {
  public:
-  Hierarchy(BlockRows<double, B, B> a, const NearNull<B, N>& near_null) {
+  Hierarchy(BlockRows<double, B, B> a, const NearNull<B, N>& near_null, Cluster cluster) {
+    fine_.cluster = std::move(cluster);
     DoubleBlocks<B> inverse = set_smoother(fine_, a);
     NearNull<N, N> coarse_near_null;
     if (!fits(a) && set_transfer(fine_, a, inverse, near_null, kStrong, coarse_near_null)) {
@@ -106,19 +107,18 @@ class Hierarchy {
     }
   }
 
-  template <int K>
   void cycle(const double* r, double* z) const {
-    const std::ptrdiff_t n = static_cast<std::ptrdiff_t>(fine_.a.n_rows) * B * K;
-    fine_.resize_vectors(K);
-    for (const auto& level : coarse_) level.resize_vectors(K);
+    const std::ptrdiff_t n = static_cast<std::ptrdiff_t>(fine_.a.n_rows) * B;
+    fine_.resize_vectors();
+    for (const auto& level : coarse_) level.resize_vectors();
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t i = 0; i < n; ++i) fine_.b[i] = static_cast<float>(r[i]);
     if (coarse_.empty()) {
-      solve_coarsest<K>(fine_);
+      solve_coarsest(fine_);
     } else {
-      descend<K>(fine_, coarse_.front());
-      coarse_cycle<K>(0);
-      ascend<K>(fine_, coarse_.front());
+      descend(fine_, coarse_.front());
+      coarse_cycle(0);
+      ascend(fine_, coarse_.front());
     }
 #pragma omp parallel for schedule(static)
     for (std::ptrdiff_t i = 0; i < n; ++i) z[i] = fine_.x[i];
@@ -172,38 +172,37 @@ class Hierarchy {
     if (factor_.info() != Eigen::Success) throw SolveError("multigrid: the coarsest matrix is not positive definite");
   }
 
-  template <int K, class T, int B1, int N1>
+  template <class T, int B1, int N1>
   void solve_coarsest(const Level<T, B1, N1>& level) const {
-    using Map = Eigen::Map<Eigen::Matrix<T, Eigen::Dynamic, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor>>;
-    const Eigen::Index n = static_cast<Eigen::Index>(level.a.n_rows) * B1;
-    const Eigen::Matrix<double, Eigen::Dynamic, K> right = Map(level.b.data(), n, K).template cast<double>();
-    const Eigen::Matrix<double, Eigen::Dynamic, K> solution = factor_.solve(right);
-    Map(level.x.data(), n, K) = solution.template cast<T>();
+    using Vector = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+    const Eigen::VectorXd b =
+        Eigen::Map<const Vector>(level.b.data(), static_cast<Eigen::Index>(level.b.size())).template cast<double>();
+    const Eigen::VectorXd x = factor_.solve(b);
+    Eigen::Map<Vector>(level.x.data(), x.size()) = x.template cast<T>();
   }
 
-  template <int K, class T, int B1>
+  template <class T, int B1>
   void descend(const Level<T, B1, N>& level, const Level<double, N, N>& next) const {
     level.r = level.b;
     std::fill(level.x.begin(), level.x.end(), T{});
-    smooth<K>(level);
-    set_residual<K>(level);
-    transfer<K, T>(level.restrictor, level.r.data(), next.b.data());
+    smooth(level);
+    set_residual(level);
+    transfer<T>(level.restrictor, level.r.data(), next.b.data());
   }
 
-  template <int K, class T, int B1>
+  template <class T, int B1>
   void ascend(const Level<T, B1, N>& level, const Level<double, N, N>& next) const {
-    transfer<K, T>(level.prolongator, next.x.data(), level.d.data());
+    transfer<T>(level.prolongator, next.x.data(), level.d.data());
     for (std::size_t i = 0; i < level.x.size(); ++i) level.x[i] += level.d[i];
-    set_residual<K>(level);
-    smooth<K>(level);
+    set_residual(level);
+    smooth(level);
   }
 
-  template <int K>
   void coarse_cycle(std::size_t l) const {
-    if (l + 1 == coarse_.size()) return solve_coarsest<K>(coarse_[l]);
-    descend<K>(coarse_[l], coarse_[l + 1]);
-    coarse_cycle<K>(l + 1);
-    ascend<K>(coarse_[l], coarse_[l + 1]);
+    if (l + 1 == coarse_.size()) return solve_coarsest(coarse_[l]);
+    descend(coarse_[l], coarse_[l + 1]);
+    coarse_cycle(l + 1);
+    ascend(coarse_[l], coarse_[l + 1]);
   }
 
   Level<float, B, N> fine_;
@@ -240,6 +239,29 @@ NearNull<3, 6> rigid_motions(const NodeMatrix& a, const Eigen::Matrix3Xd& coords
   return motions;
 }
 
+Cluster cluster_of(const NodeMatrix& a, const std::vector<int>& nodes) {
+  if (nodes.empty()) return {};
+  std::vector<int> position(a.n_rows, -1);
+  for (std::size_t k = 0; k < nodes.size(); ++k) position[nodes[k]] = static_cast<int>(k);
+  const auto n = static_cast<int>(nodes.size());
+  BlockPattern pattern{n, n, {0}, {}};
+  std::vector<int> source;
+  for (int node : nodes) {
+    for (int k = a.start[node]; k < a.start[node + 1]; ++k) {
+      if (position[a.column[k]] < 0) continue;
+      pattern.column.push_back(position[a.column[k]]);
+      source.push_back(k);
+    }
+    pattern.start.push_back(static_cast<int>(source.size()));
+  }
+  NodeMatrix between;
+  between.take(std::move(pattern));
+  for (int k = 0; k < static_cast<int>(source.size()); ++k) between.block(k) = a.block(source[k]);
+  Cluster cluster{nodes, std::make_unique<StiffnessFactor>(between)};
+  cluster.factor->factorise();
+  return cluster;
+}
+
 }  // namespace
 
 struct Multigrid::Parts {
@@ -249,10 +271,11 @@ struct Multigrid::Parts {
 
 Multigrid::Multigrid(const SparseRow& a) : parts_(std::make_unique<Parts>()) {
   const NearNull<1, 1> constant(a.rows(), Eigen::Matrix<double, 1, 1>::Ones());
-  parts_->heat = std::make_unique<Hierarchy<1, 1>>(nodes_of(a), constant);
+  parts_->heat = std::make_unique<Hierarchy<1, 1>>(nodes_of(a), constant, Cluster{});
 }
-Multigrid::Multigrid(const NodeMatrix& a, const Eigen::Matrix3Xd& coords) : parts_(std::make_unique<Parts>()) {
-  parts_->elastic = std::make_unique<Hierarchy<3, 6>>(a, rigid_motions(a, coords));
+Multigrid::Multigrid(const NodeMatrix& a, const Eigen::Matrix3Xd& coords, const std::vector<int>& stiff)
+    : parts_(std::make_unique<Parts>()) {
+  parts_->elastic = std::make_unique<Hierarchy<3, 6>>(a, rigid_motions(a, coords), cluster_of(a, stiff));
 }
 Multigrid::~Multigrid() = default;
 Multigrid::Multigrid(Multigrid&&) noexcept = default;
@@ -264,17 +287,9 @@ void Multigrid::refresh(const SparseRow& a) {
 
 void Multigrid::precondition(const double* r, double* z) const {
   if (parts_->heat) {
-    parts_->heat->cycle<1>(r, z);
+    parts_->heat->cycle(r, z);
   } else {
-    parts_->elastic->cycle<1>(r, z);
-  }
-}
-
-void Multigrid::precondition_four(const double* r, double* z) const {
-  if (parts_->heat) {
-    parts_->heat->cycle<4>(r, z);
-  } else {
-    parts_->elastic->cycle<4>(r, z);
+    parts_->elastic->cycle(r, z);
   }
 }
 

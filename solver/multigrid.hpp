@@ -10,13 +10,10 @@
 #include <span>
 #include <string>
 
-#include "solver/block_rows.hpp"
+#include "solver/node_matrix.hpp"
 #include "solver/sparse.hpp"
 
 namespace driftwright::solver {
-
-/// A matrix with three unknowns at each node. Those that are fixed have a row and a column of zeros, and one on the diagonal.
-using NodeMatrix = BlockRows<double, 3, 3>;
 
 class Multigrid {
  public:
@@ -25,7 +22,8 @@ class Multigrid {
   explicit Multigrid(const SparseRow& a);
   /// For elasticity: rigid motions cost nothing inside.
   /// @param coords  3 x n_nodes [m]
-  Multigrid(const NodeMatrix& a, const Eigen::Matrix3Xd& coords);
+  /// @param stiff   nodes that springs hold more stiffly than the cells around them do, ascending
+  Multigrid(const NodeMatrix& a, const Eigen::Matrix3Xd& coords, const std::vector<int>& stiff = {});
   ~Multigrid();
   Multigrid(Multigrid&&) noexcept;
   Multigrid& operator=(Multigrid&&) noexcept;
@@ -36,10 +34,8 @@ class Multigrid {
 
   /// z = B r, B close to A⁻¹. May be called by one thread at a time.
   void precondition(const double* r, double* z) const;
-  /// Four at once, interleaved: r[4 i + k] is unknown i of vector k. Takes little more time than two.
-  void precondition_four(const double* r, double* z) const;
 
-  /// Nodes and stored numbers of each level in a line, for the user and for tests: "97329 / 5210 / 240".
+  /// Nodes of each level: "97329 / 5210 / 240".
   [[nodiscard]] std::string levels() const;
   /// Stored numbers of all levels over those of the first.
   [[nodiscard]] double operator_complexity() const;

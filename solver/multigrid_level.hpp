@@ -3,11 +3,29 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <memory>
 
 #include "solver/prolongator.hpp"
 #include "solver/sparse.hpp"
+#include "solver/stiffness_factor.hpp"
 
 namespace driftwright::solver {
+
+/// Nodes that stiff springs hold together. Point by point a smoother hardly moves them, so it takes them as one block of D.
+struct Cluster {
+  std::vector<int> nodes;
+  std::unique_ptr<StiffnessFactor> factor;  ///< of the matrix between these nodes
+
+  /// Calls use(node, D⁻¹ r there) for each node.
+  template <class T, class Use>
+  void solve(const std::vector<T>& r, const Use& use) const {
+    if (nodes.empty()) return;
+    Eigen::VectorXd b(3 * static_cast<Eigen::Index>(nodes.size()));
+    for (Eigen::Index k = 0; k < b.size(); ++k) b[k] = r[3 * static_cast<std::size_t>(nodes[k / 3]) + k % 3];
+    const Eigen::VectorXd z = factor->solve(b);
+    for (std::size_t k = 0; k < nodes.size(); ++k) use(nodes[k], z.segment<3>(3 * static_cast<Eigen::Index>(k)).eval());
+  }
+};
 
 /// @tparam T  numbers of matrix and vectors;  @tparam B  unknowns a node;  @tparam N  unknowns a node of the next level
 template <class T, int B, int N>
@@ -15,15 +33,22 @@ struct Level {
   using InverseBlock = Eigen::Matrix<T, B, B, Eigen::DontAlign>;
   BlockRows<T, B, B> a;
   std::vector<InverseBlock> inverse_diagonal;
+  Cluster cluster;
   double largest_eigenvalue = 0.0;  ///< of D⁻¹ A, or a little above
   BlockRows<float, B, N> prolongator;
   BlockRows<float, N, B> restrictor;     ///< its transpose
   mutable std::vector<T> x, b, r, d, e;  ///< vectors of a cycle
 
-  void resize_vectors(int n_vectors) const {
-    for (auto* v : {&x, &b, &r, &d, &e}) v->resize(static_cast<std::size_t>(a.n_rows) * B * n_vectors + 4);
+  void resize_vectors() const {
+    for (auto* v : {&x, &b, &r, &d, &e}) v->resize(static_cast<std::size_t>(a.n_rows) * B);
   }
 };
+
+/// The unknowns of node i.
+template <int B, class T>
+auto at_node(std::vector<T>& v, int i) {
+  return Eigen::Map<Eigen::Matrix<T, B, 1>>(v.data() + static_cast<std::ptrdiff_t>(i) * B);
+}
 
 template <int B>
 using DoubleBlocks = std::vector<Eigen::Matrix<double, B, B, Eigen::DontAlign>>;
@@ -46,7 +71,8 @@ DoubleBlocks<B> invert_diagonal(BlockRows<double, B, B>& a) {
 
 /// Largest eigenvalue of D⁻¹ A by power iteration, with a margin for what that misses.
 template <int B>
-double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B>& inverse_diagonal) {
+double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B>& inverse_diagonal,
+                          const Cluster& cluster) {
   const int n = a.n_rows * B;
   std::vector<double> x(n), y(n);
   unsigned state = 12345;  // any start will do, the same each time
@@ -54,14 +80,12 @@ double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B
   double value = 0.0;
   for (int iteration = 0; iteration < 12; ++iteration) {
     const double scale = 1.0 / std::sqrt(dot(x.data(), x.data(), n));
+    multiply(a, x.data(), y.data());
 #pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
-    for (int i = 0; i < a.n_rows; ++i) {
-      Eigen::Matrix<double, B, 1> row;
-      multiply_row<1>(a, i, x.data(), row.data());
-      Eigen::Map<Eigen::Matrix<double, B, 1>>(y.data() + static_cast<std::ptrdiff_t>(i) * B) =
-          scale * (inverse_diagonal[i] * row);
+    for (int i = 0; i < a.n_rows; ++i) at_node<B>(x, i) = scale * inverse_diagonal[i].lazyProduct(at_node<B>(y, i));
+    if constexpr (B == 3) {
+      cluster.solve(y, [&](int node, const Eigen::Vector3d& z) { at_node<B>(x, node) = scale * z; });
     }
-    x.swap(y);
     value = std::sqrt(dot(x.data(), x.data(), n));
   }
   return 1.15 * value;
@@ -71,52 +95,44 @@ double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B
 inline constexpr int kSmoothingSteps = 2;
 inline constexpr std::array<double, kSmoothingSteps> kSmoothingWeights = {1.02387287570313, 1.26408905371085};
 
-/// y = A x for K vectors, computed in T whatever x and y are held in.
-template <int K, class T, class TA, int R, int C, class TX, class TY>
+/// y = A x, computed in T whatever A, x and y are held in.
+template <class T, class TA, int R, int C, class TX, class TY>
 void transfer(const BlockRows<TA, R, C>& a, const TX* x, TY* y) {
-  constexpr int kOrder = (K == 1 ? Eigen::ColMajor : Eigen::RowMajor) | Eigen::DontAlign;
 #pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
   for (int i = 0; i < a.n_rows; ++i) {
-    Eigen::Matrix<T, R, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor> sum;
-    sum.setZero();
+    Eigen::Matrix<T, R, 1> sum = Eigen::Matrix<T, R, 1>::Zero();
     for (int k = a.start[i]; k < a.start[i + 1]; ++k) {
-      const Eigen::Map<const Eigen::Matrix<TX, C, K, kOrder>> in(x + static_cast<std::ptrdiff_t>(a.column[k]) * C * K);
+      const Eigen::Map<const Eigen::Matrix<TX, C, 1>> in(x + static_cast<std::ptrdiff_t>(a.column[k]) * C);
       sum += a.block(k).template cast<T>().lazyProduct(in.template cast<T>());
     }
-    Eigen::Map<Eigen::Matrix<TY, R, K, kOrder>>(y + static_cast<std::ptrdiff_t>(i) * R * K) = sum.template cast<TY>();
+    Eigen::Map<Eigen::Matrix<TY, R, 1>>(y + static_cast<std::ptrdiff_t>(i) * R, R) = sum.template cast<TY>();
   }
 }
 
-template <int K, class T, int B>
-using NodeVector = Eigen::Matrix<T, B, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-
-/// K vectors at node i.
-template <int K, int B, class T>
-auto at_node(std::vector<T>& v, int i) {
-  constexpr int kOrder = (K == 1 ? Eigen::ColMajor : Eigen::RowMajor) | Eigen::DontAlign;
-  return Eigen::Map<Eigen::Matrix<T, B, K, kOrder>>(&v[static_cast<std::size_t>(i) * B * K]);
-}
-
-/// r = b - A x for K vectors.
-template <int K, class T, int B, int N>
+/// r = b - A x.
+template <class T, int B, int N>
 void set_residual(const Level<T, B, N>& level) {
 #pragma omp parallel for schedule(static) if (level.a.value.size() > kWorthThreadsNumbers)
   for (int i = 0; i < level.a.n_rows; ++i) {
-    NodeVector<K, T, B> ax;
-    multiply_row<K>(level.a, i, level.x.data(), ax.data());
-    at_node<K, B>(level.r, i) = at_node<K, B>(level.b, i) - ax;
+    Eigen::Matrix<T, B, 1> ax;
+    multiply_row(level.a, i, level.x.data(), ax.data());
+    at_node<B>(level.r, i) = at_node<B>(level.b, i) - ax;
   }
 }
 
-/// x += p(D⁻¹A) D⁻¹ r for K vectors, where r is the residual b - A x; it is used up.
-template <int K, class T, int B, int N>
+/// x += p(D⁻¹A) D⁻¹ r, where r is the residual b - A x; it is used up.
+template <class T, int B, int N>
 void smooth(const Level<T, B, N>& level) {
   const int n = level.a.n_rows;
   const bool parallel = level.a.value.size() > kWorthThreadsNumbers;
   const T first = static_cast<T>(4.0 / 3.0 / level.largest_eigenvalue);
 #pragma omp parallel for schedule(static) if (parallel)
   for (int i = 0; i < n; ++i) {
-    at_node<K, B>(level.d, i) = first * level.inverse_diagonal[i].lazyProduct(at_node<K, B>(level.r, i));
+    at_node<B>(level.d, i) = first * level.inverse_diagonal[i].lazyProduct(at_node<B>(level.r, i));
+  }
+  if constexpr (B == 3) {
+    level.cluster.solve(level.r,
+                        [&](int node, const Eigen::Vector3d& z) { at_node<B>(level.d, node) = first * z.cast<T>(); });
   }
   for (int step = 1; step <= kSmoothingSteps; ++step) {
     const bool last = step == kSmoothingSteps;
@@ -126,13 +142,20 @@ void smooth(const Level<T, B, N>& level) {
     // Row by row: x += weight d, r -= A d, and the next direction beside the old one, which other rows still read.
 #pragma omp parallel for schedule(static) if (parallel)
     for (int i = 0; i < n; ++i) {
-      at_node<K, B>(level.x, i) += weight * at_node<K, B>(level.d, i);
+      at_node<B>(level.x, i) += weight * at_node<B>(level.d, i);
       if (last) continue;
-      NodeVector<K, T, B> ad;
-      multiply_row<K>(level.a, i, level.d.data(), ad.data());
-      auto r = at_node<K, B>(level.r, i);
+      Eigen::Matrix<T, B, 1> ad;
+      multiply_row(level.a, i, level.d.data(), ad.data());
+      auto r = at_node<B>(level.r, i);
       r -= ad;
-      at_node<K, B>(level.e, i) = keep * at_node<K, B>(level.d, i) + add * level.inverse_diagonal[i].lazyProduct(r);
+      at_node<B>(level.e, i) = keep * at_node<B>(level.d, i) + add * level.inverse_diagonal[i].lazyProduct(r);
+    }
+    if constexpr (B == 3) {
+      if (!last) {
+        level.cluster.solve(level.r, [&](int node, const Eigen::Vector3d& z) {
+          at_node<B>(level.e, node) = keep * at_node<B>(level.d, node) + add * z.cast<T>();
+        });
+      }
     }
     level.d.swap(level.e);
   }

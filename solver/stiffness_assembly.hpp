@@ -1,0 +1,17 @@
+#pragma once
+// The elastic stiffness K = ∫ B'D B dV + springs, as blocks of three unknowns a node.
+// Source of the formulas: Zienkiewicz, Taylor & Zhu, The Finite Element Method, vol. 1, ch. 2 and 6.
+
+#include "mesh/mesh.hpp"
+#include "solver/heat_assembly.hpp"
+#include "solver/node_matrix.hpp"
+#include "solver/springs.hpp"
+
+namespace driftwright::solver {
+
+/// K over all nodes. Unknowns that are held have a row and a column of zeros, and one on the diagonal.
+/// @param held  not 0 for dof 3 node + direction that is fixed, and for the nodes of no cell
+[[nodiscard]] NodeMatrix assemble_stiffness(const mesh::Mesh& mesh, const RegionMaterials& materials,
+                                            const std::vector<SpringLayer>& layers, const std::vector<char>& held);
+
+}  // namespace driftwright::solver
