@@ -10,6 +10,10 @@
 // Unknowns of prescribed temperature g(t) are rows dθ/dt = dg/dt; the heat that holds them there is
 // ∫ -1'heat dt + 1'M (θ - θ_0) over those rows. Where heat capacity varies, M is M(θ).
 
+#include <limits>
+#include <utility>
+#include <vector>
+
 #include "base/cyclogram.hpp"
 #include "solver/heat_rate.hpp"
 #include "solver/multigrid.hpp"
@@ -77,6 +81,8 @@ class HeatOde {
   void evaluate(double t_s, const double* theta);
   void refresh_shifted(double gamma);
   void solve_linear_stage(double gamma);
+  /// What conditions M + γ K; nullptr where its diagonal does.
+  [[nodiscard]] const Multigrid* multigrid_for(double gamma);
   [[nodiscard]] bool solve_nonlinear_stage(double t_s, double gamma, const double* weight);
   void close_balance(double t_s, double gamma);
   /// Heat into the prescribed unknowns of set f at the state evaluated last plus x [W].
@@ -105,7 +111,9 @@ class HeatOde {
   double hall_K_ = 0.0;                                                    ///< of the last evaluation
   Slope at_start_, latest_;
   SlopeSpace space_;
-  Pcg shifted_solver_, mass_solver_;
+  Pcg shifted_solver_;
+  std::vector<std::pair<double, Multigrid>> multigrids_;  ///< γ, and the one made for it
+  double least_multigrid_gamma_ = std::numeric_limits<double>::infinity();
   int n_solves_ = 0, n_iterations_ = 0;
 };
 
