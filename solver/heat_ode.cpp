@@ -194,7 +194,7 @@ void HeatOde::slopes(double t_s, const double* y, double* ydot) {
   for (std::size_t f = 0; f < system_.fixed.size(); ++f) *of_flow++ = -heat_into_fixed_W(f, nullptr);
   std::copy(ydot, ydot + size(), at_start_.value.data());
   at_start_.t_s = t_s;
-  at_start_.is_known = true;
+  at_start_.is_known = at_start_.is_rough = true;
   if (is_affine_) space_.add(mass_, rate_.tangent(y, hall_K_), x_.data());
 }
 
@@ -252,6 +252,7 @@ bool HeatOde::solve_stage(double t_s, double gamma, const double* predicted, con
   for (int i = 0; i < size(); ++i) latest[i] = (c[i] - s[i]) / gamma;
   latest_.t_s = t_s;
   latest_.is_known = true;
+  latest_.is_rough = false;
   if (is_affine_) {
     std::copy(latest, latest + n_, work_.data());
     zero_fixed(work_.data());

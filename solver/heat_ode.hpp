@@ -57,6 +57,7 @@ class HeatOde {
 
   /// dy/dt where the last step began and where it ended, by what has been computed for it.
   [[nodiscard]] const double* slope_at_start() const { return at_start_.value.data(); }
+  [[nodiscard]] bool starts_rough() const { return at_start_.is_rough; }
   [[nodiscard]] const double* slope_at_end() const { return latest_.value.data(); }
 
   /// Heats of all flows since the start [J].
@@ -71,6 +72,7 @@ class HeatOde {
   struct Slope {
     double t_s = 0.0;
     bool is_known = false;
+    bool is_rough = false;  ///< by a solve with M: whatever has just jumped or bent is still sharp in it
     Eigen::VectorXd value;  ///< of unknowns and flows
   };
 

@@ -286,7 +286,6 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
     if (jumps || first) restart(stretch.end_s);
     first = false;
     check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);
-    bool is_rough = jumps;
     while (t_s < stretch.end_s) {
       const double began_s = t_s;
       std::copy(in(y.get()), in(y.get()) + ode.size(), out(before.get()));
@@ -311,13 +310,12 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
             check(ARKStepGetDky(mem, output_s[next], 0, at_output.get()), "ARKStepGetDky", t_s, callee);
           } else {
             interpolate((output_s[next] - began_s) / (t_s - began_s), t_s - began_s, in(before.get()),
-                        is_rough ? nullptr : ode.slope_at_start(), in(y.get()), ode.slope_at_end(), ode.size(),
+                        ode.starts_rough() ? nullptr : ode.slope_at_start(), in(y.get()), ode.slope_at_end(), ode.size(),
                         out(at_output.get()));
           }
           take_output(output_s[next], at_output.get());
         }
       }
-      is_rough = false;
       if (flag == ARK_ROOT_RETURN && t_s < stretch.end_s) {
         std::vector<int> reached(callee.n_thermostats);
         check(ARKStepGetRootInfo(mem, reached.data()), "ARKStepGetRootInfo", t_s, callee);
@@ -332,7 +330,6 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
         }
         (void)ode.begin_stretch(stretch);
         restart(stretch.end_s);
-        is_rough = true;
         check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);
       }
     }
