@@ -2,8 +2,7 @@
 // The faces of cells: which lie outside, and which facet of a surface belongs to which.
 
 #include <array>
-#include <map>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "mesh/topology.hpp"
@@ -25,6 +24,29 @@ struct CellFace {
 [[nodiscard]] CellShape shape_of(const Cells& cells, CellFace face);
 
 /// Every face with the cells at it, one outside and two inside a body. A third would be an overlap: it is kept, too.
-[[nodiscard]] std::map<FaceKey, std::vector<CellFace>> all_faces(const Cells& cells);
+/// In the order of key[1], then of the keys; the cells of a face by their numbers.
+class FaceTable {
+ public:
+  struct Entry {
+    FaceKey key;
+    CellFace at;
+  };
+  explicit FaceTable(const Cells& cells);
+  /// Calls visit(key, cells' faces) for each face.
+  template <class Visit>
+  void for_each(Visit visit) const {
+    for (std::size_t i = 0; i < entries_.size();) {
+      const std::size_t begin = i;
+      while (i < entries_.size() && entries_[i].key == entries_[begin].key) ++i;
+      visit(entries_[begin].key, std::span<const Entry>(&entries_[begin], i - begin));
+    }
+  }
+  /// The first cell's face of a key; nullptr where there is none.
+  [[nodiscard]] const CellFace* find(const FaceKey& key) const;
+
+ private:
+  std::vector<Entry> entries_;
+  std::vector<std::size_t> start_;  ///< of the entries whose key[1] is a node
+};
 
 }  // namespace driftwright::mesh

@@ -78,9 +78,9 @@ std::string extent(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
 void pick_surfaces(Mesh& mesh, const std::vector<SurfacePick>& picks) {
   if (picks.empty()) return;
   std::vector<OuterFacet> outer;
-  for (const auto& [key, at] : all_faces(mesh.cells)) {
-    if (at.size() == 1) outer.push_back(describe(mesh, at.front()));
-  }
+  FaceTable(mesh.cells).for_each([&](const FaceKey&, std::span<const FaceTable::Entry> at) {
+    if (at.size() == 1) outer.push_back(describe(mesh, at.front().at));
+  });
   std::set<FaceKey> named;
   for (int f = 0; f < mesh.facets.size(); ++f) {
     named.insert(face_key(mesh.facets.nodes(f).first(n_corners_of(mesh.facets.shape[f]))));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -32,16 +33,21 @@ void check_size(const RawMesh& raw, const Eigen::Matrix3Xd& coords, double unit_
 }
 
 void check_cells(const RawMesh& raw, const Mesh& mesh) {
-  std::map<std::vector<int>, int> seen;
+  std::vector<std::vector<std::pair<std::array<int, 8>, int>>> seen(
+      mesh.n_nodes());  // corners and cell, by the lowest corner
   for (int c = 0; c < mesh.cells.size(); ++c) {
     const auto nodes = mesh.cells.nodes(c).first(n_corners_of(mesh.cells.shape[c]));
-    std::vector<int> sorted(nodes.begin(), nodes.end());
+    std::array<int, 8> sorted;
+    sorted.fill(std::numeric_limits<int>::max());
+    std::copy(nodes.begin(), nodes.end(), sorted.begin());
     std::sort(sorted.begin(), sorted.end());
-    const auto [other, is_new] = seen.try_emplace(sorted, c);
-    if (!is_new) {
-      fail(raw, fmt::format("elements {} and {} have the same nodes; a cell may stand there once",
-                            raw.cell_number[other->second], raw.cell_number[c]));
+    auto& neighbours = seen[sorted[0]];
+    for (const auto& [corners, other] : neighbours) {
+      if (corners != sorted) continue;
+      fail(raw, fmt::format("elements {} and {} have the same nodes; a cell may stand there once", raw.cell_number[other],
+                            raw.cell_number[c]));
     }
+    neighbours.emplace_back(sorted, c);
   }
   int n_inverted = 0, first = -1;
   const std::vector<double> scaled = scaled_jacobians(mesh);
@@ -64,33 +70,41 @@ void check_cells(const RawMesh& raw, const Mesh& mesh) {
 }
 
 /// Neighbours must see the same nodes on what they share, or the field tears there.
-void check_conformity(const RawMesh& raw, const Mesh& mesh, const std::map<FaceKey, std::vector<CellFace>>& faces) {
-  std::map<std::pair<int, int>, std::pair<int, int>> edges;  // corners -> mid-side node or -1, and a cell that says so
+void check_conformity(const RawMesh& raw, const Mesh& mesh, const FaceTable& faces) {
+  struct Edge {
+    int other, middle, cell;  // other corner, mid-side node or -1, and a cell that says so
+  };
+  std::vector<std::vector<Edge>> edges(mesh.n_nodes());  // by the lower corner
   for (int c = 0; c < mesh.cells.size(); ++c) {
     const CellShape shape = mesh.cells.shape[c];
     const auto nodes = mesh.cells.nodes(c);
     int e = n_corners_of(shape);
     for (const auto& [a, b] : edges_of(shape)) {
       const int middle = is_quadratic(shape) ? nodes[e++] : -1;
-      const auto [known, is_new] = edges.try_emplace(std::minmax({nodes[a], nodes[b]}), middle, c);
-      if (!is_new && known->second.first != middle) {
+      const auto [low, high] = std::minmax({nodes[a], nodes[b]});
+      auto& of_low = edges[low];
+      const auto known =
+          std::find_if(of_low.begin(), of_low.end(), [&, h = high](const Edge& edge) { return edge.other == h; });
+      if (known == of_low.end()) {
+        of_low.push_back({high, middle, c});
+      } else if (known->middle != middle) {
         fail(raw,
              fmt::format("elements {} and {} share an edge but not the node in its middle; take one order for all cells "
                          "of a body",
-                         raw.cell_number[known->second.second], raw.cell_number[c]));
+                         raw.cell_number[known->cell], raw.cell_number[c]));
       }
     }
   }
   std::map<std::array<int, 3>, int> triangles;  // of outer faces
-  for (const auto& [key, at] : faces) {
+  faces.for_each([&](const FaceKey& key, std::span<const FaceTable::Entry> at) {
     if (at.size() > 2) {
-      fail(raw, fmt::format("elements {}, {} and {} have one face in common; cells overlap", raw.cell_number[at[0].cell],
-                            raw.cell_number[at[1].cell], raw.cell_number[at[2].cell]));
+      fail(raw, fmt::format("elements {}, {} and {} have one face in common; cells overlap", raw.cell_number[at[0].at.cell],
+                            raw.cell_number[at[1].at.cell], raw.cell_number[at[2].at.cell]));
     }
-    if (at.size() == 1 && key[0] < 0) triangles[{key[1], key[2], key[3]}] = at[0].cell;
-  }
-  for (const auto& [key, at] : faces) {
-    if (at.size() != 1 || key[0] < 0) continue;
+    if (at.size() == 1 && key[0] < 0) triangles[{key[1], key[2], key[3]}] = at[0].at.cell;
+  });
+  faces.for_each([&](const FaceKey& key, std::span<const FaceTable::Entry> at) {
+    if (at.size() != 1 || key[0] < 0) return;
     for (int left_out = 0; left_out < 4; ++left_out) {
       std::array<int, 3> corners{};
       for (int i = 0, j = 0; i < 4; ++i) {
@@ -100,10 +114,10 @@ void check_conformity(const RawMesh& raw, const Mesh& mesh, const std::map<FaceK
         fail(raw,
              fmt::format("element {} meets a four-sided face of element {} with a triangle; the field would tear there. "
                          "Wedges can go between, or separate parts with a joint",
-                         raw.cell_number[hit->second], raw.cell_number[at[0].cell]));
+                         raw.cell_number[hit->second], raw.cell_number[at[0].at.cell]));
       }
     }
-  }
+  });
 }
 
 /// Collects facets by surface, each face once.
@@ -123,19 +137,18 @@ class SurfaceTable {
   std::set<std::pair<int, FaceKey>> seen_;
 };
 
-void add_surfaces(const RawMesh& raw, const std::vector<int>& new_number, Mesh& mesh,
-                  const std::map<FaceKey, std::vector<CellFace>>& faces) {
+void add_surfaces(const RawMesh& raw, const std::vector<int>& new_number, Mesh& mesh, const FaceTable& faces) {
   SurfaceTable table(mesh);
   for (const auto& surface : raw.facet_surfaces) {
     for (std::size_t i = 0; i < surface.corners.size(); ++i) {
       std::vector<int> corners;
       for (int n : surface.corners[i]) corners.push_back(new_number[n]);
-      const auto hit =
-          std::find(corners.begin(), corners.end(), -1) == corners.end() ? faces.find(face_key(corners)) : faces.end();
-      if (hit == faces.end()) {
+      const bool is_used = std::find(corners.begin(), corners.end(), -1) == corners.end();
+      const CellFace* hit = is_used ? faces.find(face_key(corners)) : nullptr;
+      if (!hit) {
         fail(raw, fmt::format("element {} of surface '{}' is no face of a cell", surface.number[i], surface.name));
       }
-      table.add(surface.name, hit->second.front());
+      table.add(surface.name, *hit);
     }
   }
   for (const auto& surface : raw.face_surfaces) {
@@ -148,10 +161,10 @@ void add_surfaces(const RawMesh& raw, const std::vector<int>& new_number, Mesh& 
       if (new_number[n] >= 0) in_set[new_number[n]] = true;
     }
     bool any = false;
-    for (const auto& [key, at] : faces) {
+    faces.for_each([&](const FaceKey& key, std::span<const FaceTable::Entry> at) {
       const bool covered = std::all_of(key.begin(), key.end(), [&](int n) { return n < 0 || in_set[n]; });
-      if (at.size() == 1 && covered) any |= table.add(surface.name, at.front());
-    }
+      if (at.size() == 1 && covered) any |= table.add(surface.name, at.front().at);
+    });
     if (!any && !surface.may_be_empty) {
       fail(raw, fmt::format("the nodes of surface '{}' cover no outer face of a cell wholly", surface.name));
     }
@@ -194,7 +207,7 @@ Mesh check_and_build(const RawMesh& raw, double unit_m) {
   }
   check_size(raw, mesh.coords, unit_m);
   check_cells(raw, mesh);
-  const auto faces = all_faces(mesh.cells);
+  const FaceTable faces(mesh.cells);
   check_conformity(raw, mesh, faces);
   add_surfaces(raw, new_number, mesh, faces);
   return mesh;

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <gmsh.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <map>
-#include <unordered_map>
 
 #include "base/errors.hpp"
 #include "mesh/gmsh_parts.hpp"
@@ -43,6 +43,10 @@ class Reader {
     std::vector<double> coord, parametric;
     gmsh::model::mesh::getNodes(tags, coord, parametric, -1, -1, false, false);
     raw_.coords.resize(3, static_cast<Eigen::Index>(tags.size()));
+    std::size_t highest = 0;
+    for (std::size_t tag : tags) highest = std::max(highest, tag);
+    if (highest > kSparsest * (tags.size() + 1000)) fail("its node numbers are too far apart; let Gmsh renumber them");
+    node_.assign(highest + 1, -1);
     for (std::size_t i = 0; i < tags.size(); ++i) {
       node_[tags[i]] = static_cast<int>(i);
       raw_.node_number.push_back(static_cast<long>(tags[i]));
@@ -138,8 +142,9 @@ class Reader {
 
   void add_cells(int entity, int region) {
     each_element(3, entity, [&](const GmshElement& element, std::size_t tag, const std::size_t* nodes) {
-      std::vector<int> numbered;
-      for (int i : element.order) numbered.push_back(node_.at(nodes[i]));
+      std::array<int, kMaxNodesPerCell> all{};
+      for (std::size_t i = 0; i < element.order.size(); ++i) all[i] = node_.at(nodes[element.order[i]]);
+      const std::span<const int> numbered(all.data(), element.order.size());
       raw_.cells.add(element.shape, numbered, region);
       raw_.cell_number.push_back(static_cast<long>(tag));
     });
@@ -155,7 +160,8 @@ class Reader {
   }
 
   RawMesh raw_;
-  std::unordered_map<std::size_t, int> node_;
+  static constexpr std::size_t kSparsest = 1000;
+  std::vector<int> node_;  ///< by Gmsh's tag
 };
 
 }  // namespace

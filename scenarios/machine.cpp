@@ -64,11 +64,16 @@ std::vector<std::string> node_names(const MachineModel& model) {
 
 /// Films and supports belong outside: a surface may hold no facet that lies between two cells.
 void require_outside(const Mesh& mesh, const std::string& surface, const Where& where) {
+  const std::vector<int> facets = mesh.facets_on(mesh.surface(surface));
+  std::vector<char> is_first(mesh.n_nodes(), 0);  // of some facet
+  for (int facet : facets) is_first[mesh.facets.nodes(facet)[0]] = 1;
   std::vector<std::vector<int>> cells_at(mesh.n_nodes());
   for (int c = 0; c < mesh.cells.size(); ++c) {
-    for (int node : mesh.cells.nodes(c)) cells_at[node].push_back(c);
+    for (int node : mesh.cells.nodes(c)) {
+      if (is_first[node]) cells_at[node].push_back(c);
+    }
   }
-  for (int facet : mesh.facets_on(mesh.surface(surface))) {
+  for (int facet : facets) {
     const auto nodes = mesh.facets.nodes(facet);
     const auto n_behind = std::count_if(cells_at[nodes[0]].begin(), cells_at[nodes[0]].end(), [&](int c) {
       const auto of_cell = mesh.cells.nodes(c);

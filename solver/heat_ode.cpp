@@ -12,6 +12,9 @@ namespace {
 
 constexpr int kMostIterations = 2000;
 constexpr double kShareOfTolerance = 0.02;  // errors of linear solves do not steer the steps
+// With the diagonal alone iterations grow with the root of γ over the square of the cells' size; a cycle of multigrid costs some
+// four of them and keeps to under ten. The first γ that took many turns it on for itself and all above.
+constexpr int kManyIterations = 24, kWorthMultigrid = 5000;
 
 bool same_time(double a_s, double b_s) {
   return std::abs(a_s - b_s) <= 1e-12 * std::max(std::abs(a_s), std::abs(b_s));
@@ -82,7 +85,6 @@ HeatOde::HeatOde(const FullSystem& system, const TimeSeries& hall, double absolu
       work_(n_),
       space_(n_),
       shifted_solver_(shifted_),
-      mass_solver_(mass_),
       output_entries_(system.outputs.state.cols()),
       watch_(absolute_K) {
   for (const FixedUnknowns& f : system.fixed) {
@@ -105,7 +107,6 @@ HeatOde::HeatOde(const FullSystem& system, const TimeSeries& hall, double absolu
   at_start_.value.resize(size());
   latest_.value.resize(size());
   decouple(mass_);
-  mass_solver_.refresh(free_ones_);
 }
 
 void HeatOde::decouple(SparseRow& a) const {
@@ -255,7 +256,7 @@ void HeatOde::slopes(double t_s, const double* y, double* ydot) {
   for (std::size_t f = 0; f < system_.fixed.size(); ++f) *of_flow++ = -heat_into_fixed_W(f, nullptr);
   std::copy(ydot, ydot + size(), at_start_.value.data());
   at_start_.t_s = t_s;
-  at_start_.is_known = true;
+  at_start_.is_known = at_start_.is_rough = true;
   if (is_affine_) space_.add(mass_, rate_.tangent(y, hall_K_), x_.data());
 }
 
@@ -313,6 +314,7 @@ bool HeatOde::solve_stage(double t_s, double gamma, const double* predicted, con
   for (int i = 0; i < size(); ++i) latest[i] = (c[i] - s[i]) / gamma;
   latest_.t_s = t_s;
   latest_.is_known = true;
+  latest_.is_rough = false;
   if (is_affine_) {
     std::copy(latest, latest + n_, work_.data());
     zero_fixed(work_.data());
@@ -334,8 +336,27 @@ void HeatOde::solve_linear_stage(double gamma) {
     space_.guess(gamma, work_.data(), x_.data(), residual_.data());
     zero_fixed(residual_.data());
   }
-  count(shifted_solver_.improve(residual_.data(), x_.data(), tolerance_K_, kMostIterations));
+  const Multigrid* multigrid = multigrid_for(gamma);
+  const PcgOutcome outcome = shifted_solver_.improve(residual_.data(), x_.data(), tolerance_K_, kMostIterations, multigrid);
+  count(outcome);
+  if (!multigrid && outcome.iterations > kManyIterations && n_ > kWorthMultigrid) {
+    least_multigrid_gamma_ = std::min(least_multigrid_gamma_, gamma);
+  }
+  if (multigrid && outcome.iterations > kManyIterations) multigrids_.clear();  // K is no longer what they were made of
   shifted_solver_.conserve(work_.data(), x_.data());
+}
+
+const Multigrid* HeatOde::multigrid_for(double gamma) {
+  if (gamma < least_multigrid_gamma_) return nullptr;
+  constexpr double kBand =
+      2.0;  // that of a γ within this factor serves nearly as well, and a new one costs some ten iterations
+  constexpr std::size_t kMost = 4;  // kept: after each jump γ grows again through the same values
+  for (const auto& [of_gamma, multigrid] : multigrids_) {
+    if (gamma <= kBand * of_gamma && of_gamma <= kBand * gamma) return &multigrid;
+  }
+  if (multigrids_.size() == kMost) multigrids_.erase(multigrids_.begin());
+  multigrids_.emplace_back(gamma, Multigrid(shifted_));
+  return &multigrids_.back().second;
 }
 
 bool HeatOde::solve_nonlinear_stage(double t_s, double gamma, const double* weight) {

@@ -10,6 +10,10 @@
 // Unknowns of prescribed temperature g(t) are rows dθ/dt = dg/dt; the heat that holds them there is
 // ∫ -1'heat dt + 1'M (θ - θ_0) over those rows. Where heat capacity varies, M is M(θ).
 
+#include <limits>
+#include <utility>
+#include <vector>
+
 #include "solver/heat_rate.hpp"
 #include "solver/multigrid.hpp"
 #include "solver/overshoot.hpp"
@@ -40,6 +44,7 @@ class HeatOde : public StageOde {
   [[nodiscard]] bool solve_stage(double t_s, double gamma, const double* predicted, const double* s, const double* weight,
                                  double* c) override;
   [[nodiscard]] const double* slope_at_start() const override { return at_start_.value.data(); }
+  [[nodiscard]] bool starts_rough() const override { return at_start_.is_rough; }
   [[nodiscard]] const double* slope_at_end() const override { return latest_.value.data(); }
   void look(double t_s, const double* y) override;
   [[nodiscard]] std::vector<Overshoot> overshoots() const override { return watch_.result(); }
@@ -54,6 +59,7 @@ class HeatOde : public StageOde {
   struct Slope {
     double t_s = 0.0;
     bool is_known = false;
+    bool is_rough = false;  ///< by a solve with M: whatever has just jumped or bent is still sharp in it
     Eigen::VectorXd value;  ///< of unknowns and flows
   };
 
@@ -67,6 +73,8 @@ class HeatOde : public StageOde {
   void evaluate(double t_s, const double* theta);
   void refresh_shifted(double gamma);
   void solve_linear_stage(double gamma);
+  /// What conditions M + γ K; nullptr where its diagonal does.
+  [[nodiscard]] const Multigrid* multigrid_for(double gamma);
   [[nodiscard]] bool solve_nonlinear_stage(double t_s, double gamma, const double* weight);
   void close_balance(double t_s, double gamma);
   /// Heat into the prescribed unknowns of set f at the state evaluated last plus x [W].
@@ -95,7 +103,9 @@ class HeatOde : public StageOde {
   double hall_K_ = 0.0;                                                    ///< of the last evaluation
   Slope at_start_, latest_;
   SlopeSpace space_;
-  Pcg shifted_solver_, mass_solver_;
+  Pcg shifted_solver_;
+  std::vector<std::pair<double, Multigrid>> multigrids_;  ///< γ, and the one made for it
+  double least_multigrid_gamma_ = std::numeric_limits<double>::infinity();
   Eigen::VectorXd began_, jump_J_;                ///< the state at t = 0, and the heat of each flow that made it so
   std::vector<std::vector<int>> output_entries_;  ///< not zero, per output
   OvershootWatch watch_;

@@ -125,7 +125,9 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
   return true;
 }
 
-void ReducedOde::restart(double, const double*) {}
+void ReducedOde::restart(double, const double*) {
+  has_jumped_ = true;
+}
 
 double ReducedOde::distance_to_switch_K(int i, double t_s, const double* y) const {
   const Thermostat& thermostat = system_.thermostats[static_cast<std::size_t>(i)];
@@ -180,6 +182,8 @@ void ReducedOde::find_slopes(double t_s, const Eigen::VectorXd& w) {
 }
 
 void ReducedOde::slopes(double t_s, const double* y, double* ydot) {
+  is_rough_ = has_jumped_;
+  has_jumped_ = false;
   const Eigen::VectorXd w = unknowns(y);
   evaluate(t_s, w, heat_, flow_W_);
   find_slopes(t_s, w);

@@ -34,6 +34,7 @@ class ReducedOde : public StageOde {
                                  double* c) override;
   [[nodiscard]] const double* slope_at_start() const override { return at_start_.data(); }
   [[nodiscard]] const double* slope_at_end() const override { return latest_.data(); }
+  [[nodiscard]] bool starts_rough() const override { return is_rough_; }
   void look(double t_s, const double* y) override;
   [[nodiscard]] Eigen::VectorXd observe(const double* y, double hall_K) const override;
   [[nodiscard]] Eigen::VectorXd state(const double* y) const override;
@@ -78,6 +79,7 @@ class ReducedOde : public StageOde {
   std::vector<LiveExchange> live_exchanges_;
   Eigen::MatrixXd probes_;  ///< size x n_probes, in the present eigenvectors
   bool is_first_ = true;
+  bool has_jumped_ = false, is_rough_ = false;  ///< since the last step; before the present one
   double began_J_ = 0.0;
   Eigen::VectorXd at_start_, latest_;  ///< slopes of unknowns and flows
   Eigen::VectorXd heat_, flow_W_;

@@ -45,6 +45,8 @@ class StageOde {
   /// dy/dt where the last step began and where it ended, by what has been computed for it.
   [[nodiscard]] virtual const double* slope_at_start() const = 0;
   [[nodiscard]] virtual const double* slope_at_end() const = 0;
+  /// Whether slope_at_start() is that of a jump, by no more than its solve's tolerance.
+  [[nodiscard]] virtual bool starts_rough() const { return false; }
 
   /// Looks at the state after a step. @throws SolveError  at temperatures that no machine has
   virtual void look(double t_s, const double* y) = 0;

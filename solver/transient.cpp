@@ -218,12 +218,14 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
     if (jumps || first) restart(stretch.end_s);
     first = false;
     check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);
-    bool is_rough = jumps;
     while (t_s < stretch.end_s) {
       const double began_s = t_s;
       std::copy(in(y.get()), in(y.get()) + ode.size(), out(before.get()));
       const int flag = ARKStepEvolve(mem, stretch.end_s, y.get(), &t_s, ARK_ONE_STEP);
       check(flag, "ARKStepEvolve", t_s, callee);
+      // Steps that shrink towards a time no law lets them pass would go on for ever.
+      constexpr double kLeastStep = 1e-12;
+      if (t_s - began_s <= kLeastStep * t_s) check(ARK_CONV_FAILURE, "ARKStepEvolve", t_s, callee);
       callee.out_of_range.clear();
       if (t_s > stretch.end_s - 1e-9 * stretch.end_s) t_s = stretch.end_s;
       ode.look(t_s, in(y.get()));
@@ -235,13 +237,12 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
             check(ARKStepGetDky(mem, output_s[next], 0, at_output.get()), "ARKStepGetDky", t_s, callee);
           } else {
             interpolate((output_s[next] - began_s) / (t_s - began_s), t_s - began_s, in(before.get()),
-                        is_rough ? nullptr : ode.slope_at_start(), in(y.get()), ode.slope_at_end(), ode.size(),
+                        ode.starts_rough() ? nullptr : ode.slope_at_start(), in(y.get()), ode.slope_at_end(), ode.size(),
                         out(at_output.get()));
           }
           take_output(output_s[next], at_output.get());
         }
       }
-      is_rough = false;
       if (flag == ARK_ROOT_RETURN && t_s < stretch.end_s) {
         std::vector<int> reached(callee.n_thermostats);
         check(ARKStepGetRootInfo(mem, reached.data()), "ARKStepGetRootInfo", t_s, callee);
@@ -256,7 +257,6 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
         }
         (void)ode.begin_stretch(stretch, out(y.get()));
         restart(stretch.end_s);
-        is_rough = true;
         check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);
       }
     }

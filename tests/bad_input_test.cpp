@@ -82,7 +82,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "1320 mm]}, table: {region: table, at: [120 mm, 320 mm, 840 mm]}}",
                 "1320 mm]}, positions: {axis: x, at: [0 mm]}}",
                 {"positions of the table", "displacements[0].positions"}},
-        Mistake{"fields_of_no_format", "fields_format: vtu", "fields_format: none, stresses: true", {"without fields"}},
+        Mistake{
+            "fields_of_no_format", "  fields_format: vtu", "  stresses: true\n  fields_format: none", {"without fields"}},
         Mistake{"target_as_candidate",
                 "  judge: chaotic",
                 "  candidates: [t01, t02, t03, drift_y]\n  judge: chaotic",

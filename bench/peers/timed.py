@@ -1,0 +1,41 @@
+"""Runs a program as a whole process and says what it took."""
+import json
+import os
+import resource
+import signal
+import subprocess
+import time
+
+
+def run(command, log, cap_s, environment=None, folder=None):
+    """Wall and user CPU seconds, peak MB (of it or its largest child) and exit code; killed after cap_s (exit code -9)."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    start = time.time()
+    with open(log, "w") as file:
+        # GNU time tells the peak of this process alone, getrusage that of the largest child ever.
+        process = subprocess.Popen(["/usr/bin/time", "-f", "%M", "-o", log + ".peak"] + command, stdout=file, stderr=file,
+                                   env={**os.environ, **(environment or {})}, cwd=folder, start_new_session=True)
+        try:
+            process.wait(timeout=cap_s)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+    wall_s = time.time() - start
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    try:
+        with open(log + ".peak") as file:
+            peak_MB = float(file.read().split()[-1]) / 1024.0
+        os.remove(log + ".peak")
+    except (OSError, ValueError, IndexError):
+        peak_MB = float("nan")
+    return {"exit_code": process.returncode, "wall_s": wall_s, "user_s": after.ru_utime - before.ru_utime,
+            "system_s": after.ru_stime - before.ru_stime, "peak_MB": peak_MB}
+
+
+def report(folder, name, outcome, n_rows, note=""):
+    """Leaves FOLDER/<name>.run.json for table.py."""
+    outcome = {**outcome, "name": name, "rows": n_rows, "note": note}
+    with open("%s/%s.run.json" % (folder, name), "w") as file:
+        json.dump(outcome, file, indent=1)
+    print("%-34s exit %d  wall %8.2f s  user %8.2f s  peak %6.0f MB  rows %d %s"
+          % (name, outcome["exit_code"], outcome["wall_s"], outcome["user_s"], outcome["peak_MB"], n_rows, note), flush=True)
