@@ -65,8 +65,9 @@ void fit_modal(MachineStudy& study, const Scenario& scenario, const Model& model
   std::vector<const Cyclogram*> training;
   for (const SimulatedRun& run : study.train) training.push_back(&scenario.cyclogram(run.record.source));
   const Drive typical = mean_drive(training);
+  const ModalPredictors predictors = modal_predictors(scenario, model, n_modes, typical);
   for (bool with_steady_responses : {false, true}) {
-    const ModalPredictor predictor = modal_predictor(scenario, model, n_modes, typical, with_steady_responses);
+    const ModalPredictor& predictor = with_steady_responses ? predictors.completed : predictors.bare;
     Record predicted = predict_record(predictor, scenario, model, judged, study.judged.record.time_s);
     study.modal_errors.push_back(
         modal_error(predicted, study.judged.record, study.displacements, n_modes, with_steady_responses));

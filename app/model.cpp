@@ -34,17 +34,17 @@ std::string Model::words() const {
       reduced()->system.size(), n_unknowns(), e.temperature_K, 1e6 * e.displacement_m, 1e6 * e.angle_rad);
 }
 
-compensation::ModalPredictor modal_predictor(const scenarios::Scenario& scenario, const Model& model, int n_modes,
-                                             const Drive& typical, bool with_steady_responses) {
+compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenario, const Model& model, int n_modes,
+                                               const Drive& typical) {
   const scenarios::MachineModel& machine = *scenario.machine;
   if (const scenarios::ReducedMachine* reduced = model.reduced()) {
-    if (!reduced->modal.empty()) return reduced->modal[with_steady_responses ? 1 : 0];
+    if (reduced->modal) return *reduced->modal;
     throw InputError(machine.where, fmt::format("thermostat '{}' switches; a linear model (thermal modes) cannot follow it. "
                                                 "`simulate` can",
                                                 reduced->system.thermostats.front().name));
   }
-  return compensation::make_modal_predictor(model.full()->system, n_modes, scenarios::start_state(machine, *model.full()),
-                                            machine.hall.at(0.0), typical, with_steady_responses);
+  return compensation::make_modal_predictors(model.full()->system, n_modes, scenarios::start_state(machine, *model.full()),
+                                             machine.hall.at(0.0), typical);
 }
 
 scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, int n_fields) {

@@ -29,8 +29,8 @@ struct Model {
 
 /// Drift from the thermal modes of a model.
 /// @throws InputError  when thermostats leave it without a linear model
-[[nodiscard]] compensation::ModalPredictor modal_predictor(const scenarios::Scenario& scenario, const Model& model,
-                                                           int n_modes, const Drive& typical, bool with_steady_responses);
+[[nodiscard]] compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenario, const Model& model,
+                                                             int n_modes, const Drive& typical);
 
 /// Meshes, places and factorises, saying so.
 /// @param n_fields  about how many whole fields are to be written, which takes displacements everywhere

@@ -33,7 +33,7 @@ void predict(const PredictOptions& options) {
   progress.begin("computing thermal modes");
   const int most_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
   const compensation::ModalPredictor predictor =
-      modal_predictor(scenario, machine, most_modes, mean_drive({&cyclogram}), true);
+      modal_predictors(scenario, machine, most_modes, mean_drive({&cyclogram})).completed;
   const std::size_t n_modes = predictor.time_constant_s.size();  // a machine of few nodes has fewer
   const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);
   const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.outputs(), cyclogram,

@@ -14,8 +14,8 @@ solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const Tim
   return solver::Propagator(system).run(cyclogram, hall, output_s, start);
 }
 
-ModalPredictor make_modal_predictor(const solver::FullSystem& full, int most_modes, const Eigen::VectorXd& from,
-                                    double hall_K, const Drive& typical, bool with_steady_responses) {
+ModalPredictors make_modal_predictors(const solver::FullSystem& full, int most_modes, const Eigen::VectorXd& from,
+                                      double hall_K, const Drive& typical) {
   const effects::Inputs standstill{.drive = {}, .hall_K = hall_K};
   Eigen::VectorXd start = from;  // what is held jumps at once, as in simulate()
   for (const solver::FixedUnknowns& f : full.fixed) {
@@ -29,16 +29,16 @@ ModalPredictor make_modal_predictor(const solver::FullSystem& full, int most_mod
   };
   const solver::FullSystem system = full.is_linear() ? full : frozen();
   const solver::ThermalModes modes = solver::thermal_modes(system, standstill, n_modes);
-  Eigen::MatrixXd columns = modes.shapes;
-  if (with_steady_responses) {
-    const Eigen::MatrixXd steady = solver::steady_responses(system, standstill);
-    columns.conservativeResize(Eigen::NoChange, n_modes + steady.cols());
-    columns.rightCols(steady.cols()) = steady;
-  }
-  columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
-  columns.rightCols(1) = start;  // dropped again where it adds nothing
-  const Eigen::MatrixXd basis = solver::orthonormalise(system.mass, columns);
-  return {modes.time_constant_s, solver::project(system, basis), basis.transpose() * (system.mass * start)};
+  const auto in_basis = [&](const Eigen::MatrixXd& columns) -> ModalPredictor {
+    Eigen::MatrixXd with_start(columns.rows(), columns.cols() + 1);  // dropped again where it adds nothing
+    with_start << columns, start;
+    const Eigen::MatrixXd basis = solver::orthonormalise(system.mass, with_start);
+    return {modes.time_constant_s, solver::project(system, basis), basis.transpose() * (system.mass * start)};
+  };
+  const Eigen::MatrixXd steady = solver::steady_responses(system, standstill);
+  Eigen::MatrixXd completed(system.size(), modes.shapes.cols() + steady.cols());
+  completed << modes.shapes, steady;
+  return {in_basis(modes.shapes), in_basis(completed)};
 }
 
 }  // namespace driftwright::compensation

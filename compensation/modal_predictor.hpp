@@ -19,15 +19,18 @@ struct ModalPredictor {
                                            const std::vector<double>& output_s) const;
 };
 
+struct ModalPredictors {
+  ModalPredictor bare;       ///< thermal modes alone, for comparison
+  ModalPredictor completed;  ///< with the steady responses
+};
+
 /// @param n_modes  >= 1; a machine of fewer lumped nodes has all of its own
 /// @param start    temperatures at t = 0 minus the reference temperature
 /// @param hall_K   hall temperature at t = 0 minus the reference temperature
 /// @param typical  drive whose steady state in that hall laws of temperature are frozen at: the mean of the cyclograms to come.
 ///                 A film that grows with the temperature difference, frozen at the start, would be none at all
-/// @param with_steady_responses  false leaves the bare modes, for comparison
 /// @throws InputError, SolveError  as thermal_modes()
-[[nodiscard]] ModalPredictor make_modal_predictor(const solver::FullSystem& system, int n_modes,
-                                                  const Eigen::VectorXd& start, double hall_K, const Drive& typical,
-                                                  bool with_steady_responses = true);
+[[nodiscard]] ModalPredictors make_modal_predictors(const solver::FullSystem& system, int n_modes,
+                                                    const Eigen::VectorXd& start, double hall_K, const Drive& typical);
 
 }  // namespace driftwright::compensation

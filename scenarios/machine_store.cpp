@@ -309,13 +309,15 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
     machine.mesh = read_mesh(json.at("regions"), in_folder(folder));
     machine.system = read_system(json.at("system"), balance, in_folder(folder), machine.start);
     machine.error = {json.at("error_K"), json.at("error_m"), json.at("error_rad")};
-    const Json none = Json::array();
-    for (const Json& m : json.value("modal", none)) {
-      compensation::ModalPredictor p;
-      p.time_constant_s = m.at("time_constant_s").get<std::vector<double>>();
-      p.system =
-          read_system(m.at("system"), balance, in_folder(folder, fmt::format("modal{}_", machine.modal.size())), p.start);
-      machine.modal.push_back(std::move(p));
+    if (json.contains("modal")) {
+      const auto read = [&](const char* name) {
+        const Json& m = json.at("modal").at(name);
+        compensation::ModalPredictor p;
+        p.time_constant_s = m.at("time_constant_s").get<std::vector<double>>();
+        p.system = read_system(m.at("system"), balance, in_folder(folder, fmt::format("modal_{}_", name)), p.start);
+        return p;
+      };
+      machine.modal = {read("bare"), read("completed")};
     }
     machine.temperature = read_npy<float>(folder / "temperature.npy");
     machine.displacement_m = read_npy<float>(folder / "displacement_m.npy");
@@ -337,10 +339,13 @@ void save_machine(const std::filesystem::path& store, const std::string& key, co
       {"n_unknowns", machine.n_unknowns},       {"regions", machine.mesh.regions},
       {"error_K", machine.error.temperature_K}, {"error_m", machine.error.displacement_m},
       {"error_rad", machine.error.angle_rad},   {"system", write_system(machine.system, machine.start, in_folder(work))}};
-  for (std::size_t i = 0; i < machine.modal.size(); ++i) {
-    const compensation::ModalPredictor& p = machine.modal[i];
-    json["modal"].push_back({{"time_constant_s", p.time_constant_s},
-                             {"system", write_system(p.system, p.start, in_folder(work, fmt::format("modal{}_", i)))}});
+  if (machine.modal) {
+    const auto write = [&](const char* name, const compensation::ModalPredictor& p) {
+      json["modal"][name] = {{"time_constant_s", p.time_constant_s},
+                             {"system", write_system(p.system, p.start, in_folder(work, fmt::format("modal_{}_", name)))}};
+    };
+    write("bare", machine.modal->bare);
+    write("completed", machine.modal->completed);
   }
   write_mesh(machine.mesh, in_folder(work));
   write_npy(work / "temperature.npy", machine.temperature);

@@ -100,20 +100,15 @@ solver::FullSystem reducible_system(const MachineModel& model, const Machine& ma
   return system;
 }
 
-std::vector<compensation::ModalPredictor> modal_predictors(const solver::FullSystem& system, const Eigen::VectorXd& start,
-                                                           double hall_K, const ReductionPlan& plan) {
-  if (!system.thermostats.empty() || plan.n_modes == 0) return {};
+std::optional<compensation::ModalPredictors> modal_predictors(const solver::FullSystem& system, const Eigen::VectorXd& start,
+                                                              double hall_K, const ReductionPlan& plan) {
+  if (!system.thermostats.empty() || plan.n_modes == 0) return std::nullopt;
   solver::FullSystem frozen = system;
   if (system.looks_at_state()) {
     const effects::Inputs at{.drive = plan.typical, .hall_K = hall_K};
     solver::freeze_laws(frozen, at, solver::steady_state(system, at, start));
   }
-  std::vector<compensation::ModalPredictor> predictors;
-  for (bool with_steady_responses : {false, true}) {
-    predictors.push_back(
-        compensation::make_modal_predictor(frozen, plan.n_modes, start, hall_K, plan.typical, with_steady_responses));
-  }
-  return predictors;
+  return compensation::make_modal_predictors(frozen, plan.n_modes, start, hall_K, plan.typical);
 }
 
 }  // namespace

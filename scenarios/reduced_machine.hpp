@@ -24,8 +24,8 @@ struct ReducedMachine {
   solver::ReducedSystem system;
   Eigen::VectorXd start;         ///< reduced state at t = 0
   solver::ReductionError error;  ///< against the full model, estimated
-  /// Thermal modes alone, and with the steady responses; empty where a thermostat keeps the machine from having a linear model.
-  std::vector<compensation::ModalPredictor> modal;
+  /// None where a thermostat keeps the machine from having a linear model, or the plan wants none.
+  std::optional<compensation::ModalPredictors> modal;
   Eigen::MatrixXf temperature;     ///< of the nodes [K], n_nodes x size
   Eigen::MatrixXf displacement_m;  ///< 3 n_nodes x size; empty without fields
 

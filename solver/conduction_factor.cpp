@@ -11,6 +11,15 @@ namespace driftwright::solver {
 
 using ColumnMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
 
+namespace {
+
+/// The transpose of a symmetric matrix in rows is itself in columns.
+ColumnMatrix in_columns(const SparseRow& k) {
+  return ColumnMatrix(Eigen::SparseMatrix<double, Eigen::ColMajor, int>(k.transpose()));
+}
+
+}  // namespace
+
 void require_way_out(const SparseRow& k, const std::vector<char>& held) {
   // A factorisation alone does not tell: rounding makes the pivot of a set without a way out positive as often as not.
   const int n = static_cast<int>(k.rows());
@@ -42,8 +51,16 @@ struct ConductionFactor::Parts {
 };
 
 ConductionFactor::ConductionFactor(const SparseRow& k) : parts_(std::make_unique<Parts>()) {
-  parts_->llt.cholmod().print = 0;
-  parts_->llt.compute(ColumnMatrix(Eigen::SparseMatrix<double, Eigen::ColMajor, int>(k.transpose())));
+  cholmod_common& settings = parts_->llt.cholmod();
+  settings.print = 0;
+  settings.nmethods = 1;
+  settings.method[0].ordering = CHOLMOD_METIS;
+  parts_->llt.analyzePattern(in_columns(k));
+  refactor(k);
+}
+
+void ConductionFactor::refactor(const SparseRow& k) {
+  parts_->llt.factorize(in_columns(k));
   if (parts_->llt.info() != Eigen::Success) {
     throw SolveError(
         "the heat conduction matrix cannot be factorised: some part has no film, joint or link through which heat leaves, "
@@ -52,7 +69,7 @@ ConductionFactor::ConductionFactor(const SparseRow& k) : parts_(std::make_unique
 }
 ConductionFactor::~ConductionFactor() = default;
 
-Eigen::VectorXd ConductionFactor::solve(const Eigen::VectorXd& b) const {
+Eigen::MatrixXd ConductionFactor::solve(const Eigen::MatrixXd& b) const {
   return parts_->llt.solve(b);
 }
 

@@ -19,7 +19,10 @@ class ConductionFactor {
   /// @throws SolveError  when K is singular or memory runs out
   explicit ConductionFactor(const SparseRow& k);
   ~ConductionFactor();
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  /// Factorises another matrix of the same pattern.
+  void refactor(const SparseRow& k);
+  /// K⁻¹ of each column.
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
  private:
   struct Parts;

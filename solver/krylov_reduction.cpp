@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/errors.hpp"
 #include "solver/conduction_factor.hpp"
@@ -22,29 +23,39 @@ std::vector<double> log_spaced(double from, double to, int n) {
   return values;
 }
 
-/// The system's matrices applied to a growing basis, and that basis projected.
+/// A growing basis, M-orthonormal, and what the system is in it.
 class Basis {
  public:
   Basis(const FullSystem& system, const std::vector<Eigen::VectorXd>& points)
-      : system_(system), vectors_(system.size(), 0), m_vectors_(system.size(), 0) {
+      : system_(system), vectors_(system.size(), 0), m_vectors_(system.size(), 0), outputs_(system.outputs.state.cols(), 0) {
+    const int every = std::max(1, system.size() / kRowsLookedAt);
+    for (int i = 0; i < system.size(); ++i) {
+      if (i % every == 0 || i >= system.size() - 50) rows_.push_back(i);  // the last ones are lumped nodes: each counts
+    }
+    m_rows_.resize(n_rows(), 0);
     for (const Eigen::VectorXd& c : points) {
       SparseRow k = system.conduction;
       for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
         if (c[static_cast<Eigen::Index>(e)] != 0.0) k += c[static_cast<Eigen::Index>(e)] * system.exchanges[e].matrix;
       }
-      stiffness_.push_back(std::move(k));
+      at_.push_back({std::move(k), Eigen::MatrixXd(0, 0), Eigen::MatrixXd(n_rows(), 0)});
     }
-    k_vectors_.resize(stiffness_.size(), Eigen::MatrixXd(system.size(), 0));
   }
 
-  [[nodiscard]] const SparseRow& stiffness(std::size_t point) const { return stiffness_[point]; }
+  [[nodiscard]] const SparseRow& stiffness(std::size_t point) const { return at_[point].stiffness; }
   [[nodiscard]] Eigen::Index size() const { return vectors_.cols(); }
   [[nodiscard]] const Eigen::MatrixXd& vectors() const { return vectors_; }
   [[nodiscard]] const Eigen::MatrixXd& m_vectors() const { return m_vectors_; }
-  [[nodiscard]] const Eigen::MatrixXd& k_vectors(std::size_t point) const { return k_vectors_[point]; }
+  [[nodiscard]] const Eigen::MatrixXd& reduced_stiffness(std::size_t point) const { return at_[point].reduced; }
+  /// n_outputs x size.
+  [[nodiscard]] const Eigen::MatrixXd& outputs() const { return outputs_; }
 
-  /// @return the number of columns that were new
-  int add(const Eigen::MatrixXd& columns) {
+  /// Rows that residuals are looked at in; K V and M V there.
+  [[nodiscard]] const std::vector<int>& rows() const { return rows_; }
+  [[nodiscard]] const Eigen::MatrixXd& k_rows(std::size_t point) const { return at_[point].rows; }
+  [[nodiscard]] const Eigen::MatrixXd& m_rows() const { return m_rows_; }
+
+  void add(const Eigen::MatrixXd& columns) {
     const Eigen::Index before = size();
     for (Eigen::Index c = 0; c < columns.cols(); ++c) {
       Eigen::VectorXd v = columns.col(c), mv = system_.mass * v;
@@ -57,21 +68,35 @@ class Basis {
       append(m_vectors_, mv / rest);
     }
     const Eigen::Index fresh = size() - before;
-    for (std::size_t p = 0; p < stiffness_.size() && fresh > 0; ++p) {
-      append(k_vectors_[p], stiffness_[p] * vectors_.rightCols(fresh));
+    if (fresh == 0) return;
+    append(m_rows_, m_vectors_.rightCols(fresh)(rows_, Eigen::all));
+    append(outputs_, system_.outputs.state.transpose() * vectors_.rightCols(fresh));
+    for (AtPoint& at : at_) {
+      const Eigen::MatrixXd kv = at.stiffness * vectors_.rightCols(fresh);
+      append(at.rows, kv(rows_, Eigen::all));
+      const Eigen::MatrixXd border = vectors_.transpose() * kv;  // size x fresh
+      at.reduced.conservativeResize(size(), size());
+      at.reduced.rightCols(fresh) = border;
+      at.reduced.bottomRows(fresh) = border.transpose();
+      at.reduced.bottomRightCorner(fresh, fresh) = 0.5 * (border.bottomRows(fresh) + border.bottomRows(fresh).transpose());
     }
-    return static_cast<int>(fresh);
   }
 
  private:
+  static constexpr int kRowsLookedAt = 6000;
+  struct AtPoint {
+    SparseRow stiffness;
+    Eigen::MatrixXd reduced, rows;
+  };
+  [[nodiscard]] Eigen::Index n_rows() const { return static_cast<Eigen::Index>(rows_.size()); }
   static void append(Eigen::MatrixXd& to, const Eigen::MatrixXd& columns) {
     to.conservativeResize(columns.rows(), to.cols() + columns.cols());
     to.rightCols(columns.cols()) = columns;
   }
   const FullSystem& system_;
-  std::vector<SparseRow> stiffness_;
-  Eigen::MatrixXd vectors_, m_vectors_;
-  std::vector<Eigen::MatrixXd> k_vectors_;
+  std::vector<int> rows_;
+  Eigen::MatrixXd vectors_, m_vectors_, outputs_, m_rows_;
+  std::vector<AtPoint> at_;  ///< per set of coefficients
 };
 
 /// What drives the system, each of its largest magnitude, at one set of coefficients. The start drives as an impulse.
@@ -208,20 +233,15 @@ class Reducer {
   };
 
   /// (s M + K)⁻¹ of the chosen inputs.
-  Eigen::MatrixXd respond(const Choice& at) const {
+  Eigen::MatrixXd respond(const Choice& at) {
     const SparseRow a = basis_.stiffness(at.point) + shifts_1_s_[at.shift] * system_.mass;
     if (at.shift == 0) require_way_out(a);
-    const ConductionFactor factor(a);
-    Eigen::MatrixXd x(system_.size(), static_cast<Eigen::Index>(at.inputs.size()));
-    for (std::size_t i = 0; i < at.inputs.size(); ++i) {
-      x.col(static_cast<Eigen::Index>(i)) = factor.solve(inputs_[at.point].loads.col(at.inputs[i]));
+    if (factor_) {
+      factor_->refactor(a);  // in the same pattern
+    } else {
+      factor_.emplace(a);
     }
-    return x;
-  }
-
-  [[nodiscard]] Eigen::MatrixXd stiffness(std::size_t point) const {
-    const Eigen::MatrixXd k = basis_.vectors().transpose() * basis_.k_vectors(point);
-    return 0.5 * (k + k.transpose());
+    return factor_->solve(Eigen::MatrixXd(inputs_[at.point].loads(Eigen::all, at.inputs)));
   }
 
   /// A coefficient that changes is one more input: what was steady with c' drives the system with c by (K(c') - K(c)) θ'.
@@ -229,7 +249,7 @@ class Reducer {
     std::vector<Eigen::VectorXd> steady;
     for (std::size_t p = 0; p < inputs_.size(); ++p) {
       const Eigen::VectorXd load = inputs_[p].loads.leftCols(inputs_[p].n_steps()).rowwise().sum();
-      steady.push_back(basis_.vectors() * stiffness(p).llt().solve(basis_.vectors().transpose() * load));
+      steady.push_back(basis_.vectors() * basis_.reduced_stiffness(p).llt().solve(basis_.vectors().transpose() * load));
     }
     for (std::size_t p = 0; p < inputs_.size(); ++p) {
       Eigen::MatrixXd& loads = inputs_[p].loads;
@@ -247,9 +267,9 @@ class Reducer {
   std::vector<Eigen::MatrixXd> step_test() const {
     std::vector<Eigen::MatrixXd> found;
     for (std::size_t p = 0; p < inputs_.size(); ++p) {
-      found.push_back(
-          system_.outputs.state.transpose() * basis_.vectors() *
-          step_states(stiffness(p), basis_.vectors().transpose() * inputs_[p].loads, inputs_[p].start, times_s_));
+      found.push_back(basis_.outputs() * step_states(basis_.reduced_stiffness(p),
+                                                     basis_.vectors().transpose() * inputs_[p].loads, inputs_[p].start,
+                                                     times_s_));
     }
     return found;
   }
@@ -259,12 +279,15 @@ class Reducer {
     Choice worst;
     double largest = -1.0;
     Eigen::VectorXd of_inputs;
-    const Eigen::MatrixXd k = stiffness(p), f = basis_.vectors().transpose() * inputs_[p].loads;
-    const Eigen::VectorXd k_diagonal = basis_.stiffness(p).diagonal(), m_diagonal = system_.mass.diagonal();
+    const Eigen::MatrixXd& k = basis_.reduced_stiffness(p);
+    const Eigen::MatrixXd f = basis_.vectors().transpose() * inputs_[p].loads,
+                          loads = inputs_[p].loads(basis_.rows(), Eigen::all);
+    const Eigen::VectorXd k_diagonal = Eigen::VectorXd(basis_.stiffness(p).diagonal())(basis_.rows()),
+                          m_diagonal = Eigen::VectorXd(system_.mass.diagonal())(basis_.rows());
     for (std::size_t j = 0; j < shifts_1_s_.size(); ++j) {
       const double s = shifts_1_s_[j];
       const Eigen::MatrixXd z = (k + s * Eigen::MatrixXd::Identity(k.rows(), k.cols())).llt().solve(f);
-      const Eigen::MatrixXd residual = inputs_[p].loads - basis_.k_vectors(p) * z - s * (basis_.m_vectors() * z);
+      const Eigen::MatrixXd residual = loads - basis_.k_rows(p) * z - s * (basis_.m_rows() * z);
       const Eigen::VectorXd weight = (k_diagonal + s * m_diagonal).cwiseInverse();
       const Eigen::VectorXd energy = (residual.cwiseAbs2().transpose() * weight);
       if (energy.maxCoeff() <= largest) continue;
@@ -290,7 +313,7 @@ class Reducer {
     std::vector<Eigen::MatrixXd> k, f, states;
     Eigen::Index n_states = 0;
     for (std::size_t p = 0; p < inputs_.size(); ++p) {
-      k.push_back(stiffness(p));
+      k.push_back(basis_.reduced_stiffness(p));
       f.push_back(basis_.vectors().transpose() * inputs_[p].loads);
       states.push_back(step_states(k[p], f[p], inputs_[p].start, times_s_));
       n_states += states[p].cols();
@@ -301,13 +324,13 @@ class Reducer {
       all.middleCols(at, states[static_cast<std::size_t>(p)].cols()) = states[static_cast<std::size_t>(p)];
     }
     all -= held * (held.transpose() * all);
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(all, Eigen::ComputeThinU);
+    const Eigen::BDCSVD<Eigen::MatrixXd> svd(all, Eigen::ComputeFullU);
     Eigen::MatrixXd directions(n, n);
     directions << held, svd.matrixU().leftCols(n - held.cols());
     directions =
         Eigen::HouseholderQR<Eigen::MatrixXd>(directions).householderQ();  // clean where singular values are rounding
     const auto truncation = [&](Eigen::Index size) {
-      const Eigen::MatrixXd u = directions.leftCols(size), c = system_.outputs.state.transpose() * (basis_.vectors() * u);
+      const Eigen::MatrixXd u = directions.leftCols(size), c = basis_.outputs() * u;
       std::vector<Eigen::MatrixXd> found;
       for (std::size_t p = 0; p < inputs_.size(); ++p) {
         found.push_back(c * step_states(u.transpose() * k[p] * u, u.transpose() * f[p], inputs_[p].start, times_s_));
@@ -335,6 +358,7 @@ class Reducer {
   const ReductionOptions& options_;
   std::vector<Eigen::VectorXd> points_;  ///< sets of coefficients
   Basis basis_;
+  std::optional<ConductionFactor> factor_;
   std::vector<Inputs> inputs_;  ///< per set of coefficients
   std::vector<double> shifts_1_s_, times_s_;
 };

@@ -23,7 +23,7 @@ TEST(ModalPredictor, FreezesFilmsInTheSteadyStateOfTheTypicalDrive) {
   const TimeSeries hall{{0.0}, {20.0}};
   const Cyclogram work{.name = "work", .sections = {{1e6, {.speed_rpm = 1000.0}}}};
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(system.size(), 20.0);
-  const ModalPredictor predictor = make_modal_predictor(system, 10, start, hall.at(0.0), mean_drive({&work}));
+  const ModalPredictor predictor = make_modal_predictors(system, 10, start, hall.at(0.0), mean_drive({&work})).completed;
   const double full_K = solver::simulate(system, work, hall, {1e6}, {}, start).outputs(0, 0) - 20.0;
   EXPECT_GT(full_K, 20.0);
   EXPECT_NEAR(predictor.predict(work, hall, {1e6}).outputs(0, 0) - 20.0, full_K, 1e-3 * full_K);  // of the tolerance 1e-4
@@ -41,7 +41,8 @@ TEST(ModalPredictor, FollowsADraughtByTheClock) {
   const TimeSeries hall{{0.0}, {0.0}};
   const Cyclogram rest{.name = "rest", .sections = {{3600, {}}}};
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
-  const ModalPredictor predictor = make_modal_predictor(system, system.size(), start, 0.0, Drive{});  // a complete basis
+  const ModalPredictor predictor =
+      make_modal_predictors(system, system.size(), start, 0.0, Drive{}).completed;  // a complete basis
   const solver::TransientOptions fine{.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8};
   const std::vector<double> times_s = {600, 900, 1200, 3600};
   const solver::Trajectory full = solver::simulate(system, rest, hall, times_s, fine, start);
@@ -60,7 +61,7 @@ TEST(ModalPredictor, StartsWithWhatIsHeldAtItsTemperature) {
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
   const solver::TransientOptions fine{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
   const solver::Trajectory full = solver::simulate(system, rest, hall, {0, 60, 600, 3600}, fine, start);
-  const ModalPredictor predictor = make_modal_predictor(system, system.size(), start, 0.0, Drive{});
+  const ModalPredictor predictor = make_modal_predictors(system, system.size(), start, 0.0, Drive{}).completed;
   // Prescribed temperatures are rows a million times stiffer than the others: 1e-6 of 40 K.
   EXPECT_LT((predictor.predict(rest, hall, {0, 60, 600, 3600}).outputs - full.outputs).cwiseAbs().maxCoeff(), 1e-4);
 }
