@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "solver/one_thread.hpp"
 
 namespace driftwright::solver {
 
@@ -43,6 +44,7 @@ struct ConductionFactor::Parts {
 
 ConductionFactor::ConductionFactor(const SparseRow& k) : parts_(std::make_unique<Parts>()) {
   parts_->llt.cholmod().print = 0;
+  const OneThread serial;
   parts_->llt.compute(ColumnMatrix(Eigen::SparseMatrix<double, Eigen::ColMajor, int>(k.transpose())));
   if (parts_->llt.info() != Eigen::Success) {
     throw SolveError(
