@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "solver/sparse.hpp"
+
 namespace driftwright::solver {
 
 /// Which block columns each block row has, ascending.
@@ -93,9 +95,7 @@ void multiply_into(const BlockRows<TA, R, M>& a, const BlockRows<TB, M, C>& b, B
 template <class T, int R, int C>
 inline void multiply_row(const BlockRows<T, R, C>& a, int i, const T* x, T* y) {
   if constexpr (R == 1 && C == 1) {
-    T sum{};
-    for (int k = a.start[i]; k < a.start[i + 1]; ++k) sum += a.value[k] * x[a.column[k]];
-    y[0] = sum;
+    y[0] = times_row(a.value.data(), a.column.data(), a.start[i], a.start[i + 1], x);
   } else if constexpr (R == 3 && C == 3 && sizeof(T) == 4) {
     // Columns of three as four lanes; the fourth is the next number in memory and is thrown away.
     using Lanes [[gnu::vector_size(16)]] = T;
@@ -125,8 +125,8 @@ inline constexpr std::size_t kWorthThreadsNumbers = 400000;
 /// y = A x.
 template <class T, int R, int C>
 void multiply(const BlockRows<T, R, C>& a, const T* x, T* y) {
-#pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
-  for (int i = 0; i < a.n_rows; ++i) multiply_row(a, i, x, y + static_cast<std::ptrdiff_t>(i) * R);
+  for_each_index(a.n_rows, a.value.size() > kWorthThreadsNumbers,
+                 [&](int i) { multiply_row(a, i, x, y + static_cast<std::ptrdiff_t>(i) * R); });
 }
 
 }  // namespace driftwright::solver

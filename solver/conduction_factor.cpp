@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "solver/one_thread.hpp"
 
 namespace driftwright::solver {
 
@@ -60,6 +61,7 @@ ConductionFactor::ConductionFactor(const SparseRow& k) : parts_(std::make_unique
 }
 
 void ConductionFactor::refactor(const SparseRow& k) {
+  const OneThread serial;
   parts_->llt.factorize(in_columns(k));
   if (parts_->llt.info() != Eigen::Success) {
     throw SolveError(

@@ -25,16 +25,14 @@ CgOutcome conjugate_gradients(int n, const Operator& a, const Operator& precondi
     ++outcome.iterations;
     a(p.data(), q.data());
     const double alpha = rz / dot(p.data(), q.data(), n);
-#pragma omp parallel for schedule(static) if (n > kWorthThreads)
-    for (int i = 0; i < n; ++i) {
+    for_each_index(n, n > kWorthThreads, [&, alpha](int i) {
       x[i] += alpha * p[i];
       r[i] -= alpha * q[i];
-    }
+    });
     precondition(r.data(), z.data());
     const double beta = -alpha * dot(q.data(), z.data(), n) / rz;  // r has changed by -alpha q
     rz = dot(r.data(), z.data(), n);
-#pragma omp parallel for schedule(static) if (n > kWorthThreads)
-    for (int i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
+    for_each_index(n, n > kWorthThreads, [&, beta](int i) { p[i] = z[i] + beta * p[i]; });
   }
 }
 

@@ -1,9 +1,10 @@
 #include "solver/heat_assembly.hpp"
 
-#include <Eigen/LU>
+#include <array>
 #include <stdexcept>
 
 #include "mesh/shape.hpp"
+#include "solver/cell_heat.hpp"
 #include "solver/joint.hpp"
 #include "solver/radiation.hpp"
 
@@ -12,34 +13,7 @@ namespace {
 
 using effects::Body;
 using effects::BodyKind;
-using mesh::CellShape;
 using mesh::Mesh;
-using Local = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, mesh::kMaxNodesPerCell, mesh::kMaxNodesPerCell>;
-
-Local cell_mass(const Mesh& mesh, int cell, double capacity_J_m3K) {
-  const CellShape shape = mesh.cells.shape[cell];
-  const auto x = mesh::cell_coords(mesh, mesh.cells.nodes(cell));
-  Local m = Local::Zero(x.cols(), x.cols());
-  for (const auto& q : mesh::mass_rule(shape)) {
-    const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
-    m += capacity_J_m3K * q.weight * mesh::jacobian(s, x, shape).det * s.N.head(s.n).transpose() * s.N.head(s.n);
-  }
-  return m;
-}
-
-Local cell_conduction(const Mesh& mesh, int cell, double conductivity_W_mK) {
-  const CellShape shape = mesh.cells.shape[cell];
-  const auto x = mesh::cell_coords(mesh, mesh.cells.nodes(cell));
-  Local k = Local::Zero(x.cols(), x.cols());
-  for (const auto& q : mesh::stiffness_rule(shape)) {
-    const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
-    const mesh::Jacobian j = mesh::jacobian(s, x, shape);
-    const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, mesh::kMaxNodesPerCell> gradient =
-        j.dx_dxi.inverse().transpose() * s.dN.leftCols(s.n);
-    k += conductivity_W_mK * q.weight * j.det * gradient.transpose() * gradient;
-  }
-  return k;
-}
 
 int must_exist(int index, const std::string& name) {
   if (index < 0) throw std::logic_error("assemble_heat: the mesh has no '" + name + "'");
@@ -335,20 +309,20 @@ FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, con
   for (const auto& e : system.exchanges) {
     for (int row = 0; row < n; ++row) {
       for (SparseRow::InnerIterator entry(e.matrix, row); entry; ++entry) {
-        if (entry.col() > row) cliques.add(std::vector<int>{row, static_cast<int>(entry.col())});
+        if (entry.col() > row) cliques.add(std::array{row, static_cast<int>(entry.col())});
       }
     }
   }
   for (const auto& term : system.nonlinear) term->add_cliques(cliques);
   system.mass = pattern(n, cliques);
   system.conduction = system.mass;
-  for (int cell = 0; cell < mesh.cells.size(); ++cell) {
-    const Material& m = materials[mesh.cells.group[cell]];
+  std::vector<HeatProperties> of_region;
+  for (const Material& m : materials) {
     const double c_J_kgK = at_reference(m.heat_capacity_J_kgK, m.heat_capacity_curve, reference_K);
-    const double k_W_mK = at_reference(m.conductivity_W_mK, m.conductivity_curve, reference_K);
-    scatter_add(system.mass, mesh.cells.nodes(cell), cell_mass(mesh, cell, m.density_kg_m3 * c_J_kgK));
-    scatter_add(system.conduction, mesh.cells.nodes(cell), cell_conduction(mesh, cell, k_W_mK));
+    of_region.push_back({.capacity_J_m3K = m.density_kg_m3 * c_J_kgK,
+                         .conductivity_W_mK = at_reference(m.conductivity_W_mK, m.conductivity_curve, reference_K)});
   }
+  add_cells(mesh, of_region, system.mass, system.conduction);
   for (std::size_t i = 0; i < balance.nodes.size(); ++i) {
     const int unknown = mesh.n_nodes() + static_cast<int>(i);
     system.mass.coeffRef(unknown, unknown) = balance.nodes[i].capacity_J_K;

@@ -14,7 +14,7 @@ constexpr int kMostIterations = 2000;
 constexpr double kShareOfTolerance = 0.02;  // errors of linear solves do not steer the steps
 // With the diagonal alone iterations grow with the root of γ over the square of the cells' size; a cycle of multigrid costs some
 // four of them and keeps to under ten. The first γ that took many turns it on for itself and all above.
-constexpr int kManyIterations = 24, kWorthMultigrid = 5000;
+constexpr int kManyIterations = 24;
 
 bool same_time(double a_s, double b_s) {
   return std::abs(a_s - b_s) <= 1e-12 * std::max(std::abs(a_s), std::abs(b_s));
@@ -63,11 +63,12 @@ void require_sane(const double* theta, int n, double reference_K, double t_s) {
   }
 }
 
-HeatOde::HeatOde(const FullSystem& system, const TimeSeries& hall, double absolute_K)
+HeatOde::HeatOde(const FullSystem& system, const TimeSeries& hall, double absolute_K, int worth_multigrid)
     : system_(system),
       hall_(hall),
       tolerance_K_(kShareOfTolerance * absolute_K),
       n_(system.size()),
+      worth_multigrid_(worth_multigrid),
       is_affine_(is_affine(system)),
       rate_(system),
       flows_(rate_.flows()),
@@ -265,9 +266,8 @@ void HeatOde::refresh_shifted(double gamma) {
   const double* k = stiffness_->valuePtr();
   const double* m = mass_here().valuePtr();
   double* a = shifted_.valuePtr();
-  const auto n_entries = shifted_.nonZeros();
-#pragma omp parallel for simd schedule(static) if (n_entries > kWorthThreads)
-  for (Eigen::Index i = 0; i < n_entries; ++i) a[i] = m[i] + gamma * k[i];
+  const int n_entries = static_cast<int>(shifted_.nonZeros());
+  for_each_index(n_entries, n_entries > kWorthThreads, [=](int i) { a[i] = m[i] + gamma * k[i]; });
   // Residuals are measured by what they would heat: A's own diagonal hides errors of smooth fields where γ K rules. A tenth of
   // a per cent of it is for bodies of next to no capacity.
   constexpr double kLeastShare = 1e-3;
@@ -339,7 +339,7 @@ void HeatOde::solve_linear_stage(double gamma) {
   const Multigrid* multigrid = multigrid_for(gamma);
   const PcgOutcome outcome = shifted_solver_.improve(residual_.data(), x_.data(), tolerance_K_, kMostIterations, multigrid);
   count(outcome);
-  if (!multigrid && outcome.iterations > kManyIterations && n_ > kWorthMultigrid) {
+  if (!multigrid && outcome.iterations > kManyIterations && n_ > worth_multigrid_) {
     least_multigrid_gamma_ = std::min(least_multigrid_gamma_, gamma);
   }
   if (multigrid && outcome.iterations > kManyIterations) multigrids_.clear();  // K is no longer what they were made of

@@ -27,7 +27,9 @@ class HeatOde : public StageOde {
  public:
   /// @param system, hall  borrowed
   /// @param absolute_K    error allowed of a step; linear solves take a small share of it
-  HeatOde(const FullSystem& system, const TimeSeries& hall, double absolute_K);
+  /// @param worth_multigrid  more unknowns than these are conditioned by multigrid where their diagonal takes many iterations
+  HeatOde(const FullSystem& system, const TimeSeries& hall, double absolute_K, int worth_multigrid = kWorthMultigrid);
+  static constexpr int kWorthMultigrid = 5000;
 
   [[nodiscard]] int size() const override { return n_ + n_flows(); }
   [[nodiscard]] const std::vector<HeatFlow>& flows() const override { return flows_; }
@@ -85,6 +87,7 @@ class HeatOde : public StageOde {
   const TimeSeries& hall_;
   double tolerance_K_;
   int n_;
+  int worth_multigrid_ = kWorthMultigrid;
   bool is_affine_;
   HeatRate rate_;
   std::vector<HeatFlow> flows_;      ///< of the rate, then of prescribed unknowns

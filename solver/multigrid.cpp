@@ -108,11 +108,10 @@ class Hierarchy {
   }
 
   void cycle(const double* r, double* z) const {
-    const std::ptrdiff_t n = static_cast<std::ptrdiff_t>(fine_.a.n_rows) * B;
+    const int n = fine_.a.n_rows * B;
     fine_.resize_vectors();
     for (const auto& level : coarse_) level.resize_vectors();
-#pragma omp parallel for schedule(static)
-    for (std::ptrdiff_t i = 0; i < n; ++i) fine_.b[i] = static_cast<float>(r[i]);
+    for_each_index(n, n > kWorthThreadsRows, [&](int i) { fine_.b[i] = static_cast<float>(r[i]); });
     if (coarse_.empty()) {
       solve_coarsest(fine_);
     } else {
@@ -120,8 +119,7 @@ class Hierarchy {
       coarse_cycle(0);
       ascend(fine_, coarse_.front());
     }
-#pragma omp parallel for schedule(static)
-    for (std::ptrdiff_t i = 0; i < n; ++i) z[i] = fine_.x[i];
+    for_each_index(n, n > kWorthThreadsRows, [&](int i) { z[i] = fine_.x[i]; });
   }
 
   [[nodiscard]] std::string levels() const {
@@ -193,7 +191,8 @@ class Hierarchy {
   template <class T, int B1>
   void ascend(const Level<T, B1, N>& level, const Level<double, N, N>& next) const {
     transfer<T>(level.prolongator, next.x.data(), level.d.data());
-    for (std::size_t i = 0; i < level.x.size(); ++i) level.x[i] += level.d[i];
+    const int n = static_cast<int>(level.x.size());
+    for_each_index(n, n > kWorthThreadsRows, [&](int i) { level.x[i] += level.d[i]; });
     set_residual(level);
     smooth(level);
   }

@@ -81,8 +81,8 @@ double largest_eigenvalue(const BlockRows<double, B, B>& a, const DoubleBlocks<B
   for (int iteration = 0; iteration < 12; ++iteration) {
     const double scale = 1.0 / std::sqrt(dot(x.data(), x.data(), n));
     multiply(a, x.data(), y.data());
-#pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
-    for (int i = 0; i < a.n_rows; ++i) at_node<B>(x, i) = scale * inverse_diagonal[i].lazyProduct(at_node<B>(y, i));
+    for_each_index(a.n_rows, a.value.size() > kWorthThreadsNumbers,
+                   [&](int i) { at_node<B>(x, i) = scale * inverse_diagonal[i].lazyProduct(at_node<B>(y, i)); });
     if constexpr (B == 3) {
       cluster.solve(y, [&](int node, const Eigen::Vector3d& z) { at_node<B>(x, node) = scale * z; });
     }
@@ -98,26 +98,24 @@ inline constexpr std::array<double, kSmoothingSteps> kSmoothingWeights = {1.0238
 /// y = A x, computed in T whatever A, x and y are held in.
 template <class T, class TA, int R, int C, class TX, class TY>
 void transfer(const BlockRows<TA, R, C>& a, const TX* x, TY* y) {
-#pragma omp parallel for schedule(static) if (a.value.size() > kWorthThreadsNumbers)
-  for (int i = 0; i < a.n_rows; ++i) {
+  for_each_index(a.n_rows, a.value.size() > kWorthThreadsNumbers, [&](int i) {
     Eigen::Matrix<T, R, 1> sum = Eigen::Matrix<T, R, 1>::Zero();
     for (int k = a.start[i]; k < a.start[i + 1]; ++k) {
       const Eigen::Map<const Eigen::Matrix<TX, C, 1>> in(x + static_cast<std::ptrdiff_t>(a.column[k]) * C);
       sum += a.block(k).template cast<T>().lazyProduct(in.template cast<T>());
     }
     Eigen::Map<Eigen::Matrix<TY, R, 1>>(y + static_cast<std::ptrdiff_t>(i) * R, R) = sum.template cast<TY>();
-  }
+  });
 }
 
 /// r = b - A x.
 template <class T, int B, int N>
 void set_residual(const Level<T, B, N>& level) {
-#pragma omp parallel for schedule(static) if (level.a.value.size() > kWorthThreadsNumbers)
-  for (int i = 0; i < level.a.n_rows; ++i) {
+  for_each_index(level.a.n_rows, level.a.value.size() > kWorthThreadsNumbers, [&](int i) {
     Eigen::Matrix<T, B, 1> ax;
     multiply_row(level.a, i, level.x.data(), ax.data());
     at_node<B>(level.r, i) = at_node<B>(level.b, i) - ax;
-  }
+  });
 }
 
 /// x += p(D⁻¹A) D⁻¹ r, where r is the residual b - A x; it is used up.
@@ -126,10 +124,9 @@ void smooth(const Level<T, B, N>& level) {
   const int n = level.a.n_rows;
   const bool parallel = level.a.value.size() > kWorthThreadsNumbers;
   const T first = static_cast<T>(4.0 / 3.0 / level.largest_eigenvalue);
-#pragma omp parallel for schedule(static) if (parallel)
-  for (int i = 0; i < n; ++i) {
+  for_each_index(n, parallel, [&](int i) {
     at_node<B>(level.d, i) = first * level.inverse_diagonal[i].lazyProduct(at_node<B>(level.r, i));
-  }
+  });
   if constexpr (B == 3) {
     level.cluster.solve(level.r,
                         [&](int node, const Eigen::Vector3d& z) { at_node<B>(level.d, node) = first * z.cast<T>(); });
@@ -140,16 +137,15 @@ void smooth(const Level<T, B, N>& level) {
     const T keep = static_cast<T>((2.0 * step - 1.0) / (2.0 * step + 3.0));
     const T add = static_cast<T>((8.0 * step + 4.0) / (2.0 * step + 3.0) / level.largest_eigenvalue);
     // Row by row: x += weight d, r -= A d, and the next direction beside the old one, which other rows still read.
-#pragma omp parallel for schedule(static) if (parallel)
-    for (int i = 0; i < n; ++i) {
+    for_each_index(n, parallel, [&](int i) {
       at_node<B>(level.x, i) += weight * at_node<B>(level.d, i);
-      if (last) continue;
+      if (last) return;
       Eigen::Matrix<T, B, 1> ad;
       multiply_row(level.a, i, level.d.data(), ad.data());
       auto r = at_node<B>(level.r, i);
       r -= ad;
       at_node<B>(level.e, i) = keep * at_node<B>(level.d, i) + add * level.inverse_diagonal[i].lazyProduct(r);
-    }
+    });
     if constexpr (B == 3) {
       if (!last) {
         level.cluster.solve(level.r, [&](int node, const Eigen::Vector3d& z) {

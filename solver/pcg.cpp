@@ -61,8 +61,7 @@ double Pcg::multiply_p() {  // q = A p, and p . q
   for_blocks(n, [&](int block, int begin, int end) {
     double sum = 0.0;
     for (int row = begin; row < end; ++row) {
-      double product = 0.0;
-      for (int k = start[row]; k < start[row + 1]; ++k) product += value[k] * p[column[k]];
+      const double product = times_row(value, column, start[row], start[row + 1], p);
       q[row] = product;
       sum += p[row] * product;
     }

@@ -52,32 +52,46 @@ SparseRow pattern(int n, const Cliques& cliques) {
   for (int c = 0; c < cliques.size(); ++c) {
     for (int k = cliques.offset[c]; k < cliques.offset[c + 1]; ++k) clique_of[fill[cliques.member[k]]++] = c;
   }
-  std::vector<std::vector<int>> columns(n);
-#pragma omp parallel for schedule(dynamic, 512)
-  for (int row = 0; row < n; ++row) {
-    std::vector<int>& list = columns[row];
-    list.push_back(row);
-    for (int k = start[row]; k < start[row + 1]; ++k) {
-      const int c = clique_of[k];
-      list.insert(list.end(), cliques.member.begin() + cliques.offset[c], cliques.member.begin() + cliques.offset[c + 1]);
-    }
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    list.shrink_to_fit();
-  }
+  // Twice over the rows: to count their columns, and to write them. `seen` tells which row met a column last.
   SparseRow a(n, n);
-  std::size_t n_entries = 0;
-  for (const auto& list : columns) n_entries += list.size();
-  a.resizeNonZeros(static_cast<Eigen::Index>(n_entries));
-  int position = 0;
-  for (int row = 0; row < n; ++row) {
-    a.outerIndexPtr()[row] = position;
-    for (int column : columns[row]) {
-      a.innerIndexPtr()[position] = column;
-      a.valuePtr()[position++] = 0.0;
+  int* const row_start = a.outerIndexPtr();
+  const auto columns_of = [&](int row, std::vector<int>& seen, auto take) {
+    seen[row] = row;
+    take(row);
+    for (int k = start[row]; k < start[row + 1]; ++k) {
+      for (int m = cliques.offset[clique_of[k]]; m < cliques.offset[clique_of[k] + 1]; ++m) {
+        const int column = cliques.member[m];
+        if (seen[column] == row) continue;
+        seen[column] = row;
+        take(column);
+      }
+    }
+  };
+  row_start[0] = 0;
+#pragma omp parallel
+  {
+    std::vector<int> seen(n, -1);
+#pragma omp for schedule(static)
+    for (int row = 0; row < n; ++row) {
+      int n_columns = 0;
+      columns_of(row, seen, [&](int) { ++n_columns; });
+      row_start[row + 1] = n_columns;
     }
   }
-  a.outerIndexPtr()[n] = position;
+  for (int row = 0; row < n; ++row) row_start[row + 1] += row_start[row];
+  a.resizeNonZeros(row_start[n]);
+  std::fill(a.valuePtr(), a.valuePtr() + a.nonZeros(), 0.0);
+#pragma omp parallel
+  {
+    std::vector<int> seen(n, -1);
+#pragma omp for schedule(static)
+    for (int row = 0; row < n; ++row) {
+      int* const first = a.innerIndexPtr() + row_start[row];
+      int* next = first;
+      columns_of(row, seen, [&](int column) { *next++ = column; });
+      std::sort(first, next);
+    }
+  }
   return a;
 }
 
@@ -103,12 +117,8 @@ void multiply(const SparseRow& a, const double* x, double* y) {
   const int* column = a.innerIndexPtr();
   const double* value = a.valuePtr();
   const int n = static_cast<int>(a.rows());
-#pragma omp parallel for schedule(static) if (a.nonZeros() > kWorthThreads)
-  for (int row = 0; row < n; ++row) {
-    double sum = 0.0;
-    for (int k = start[row]; k < start[row + 1]; ++k) sum += value[k] * x[column[k]];
-    y[row] = sum;
-  }
+  for_each_index(n, a.nonZeros() > kWorthThreads,
+                 [=](int row) { y[row] = times_row(value, column, start[row], start[row + 1], x); });
 }
 
 double dot(const double* x, const double* y, int n) {

@@ -44,12 +44,38 @@ inline constexpr int kBlockRows = 4096;
 /// Vectors that are worth several cores.
 inline constexpr int kWorthThreadsRows = 40000;
 
+/// Calls work(i) for i of 0..n, on all cores where `pays` says so, else in a plain loop: OpenMP's if() makes a team of one,
+/// which waits at barriers that cost more than a small loop.
+template <class Work>
+void for_each_index(int n, bool pays, Work work) {
+  if (!pays) {
+    for (int i = 0; i < n; ++i) work(i);
+    return;
+  }
+#pragma omp parallel for schedule(static)
+  for (int i = 0; i < n; ++i) work(i);
+}
+
 /// Calls work(block, begin, end) for each block of rows of 0..n, on all cores where that pays.
 template <class Work>
 void for_blocks(int n, Work work) {
-  const int n_all = n_blocks(n);
-#pragma omp parallel for schedule(static) if (n > kWorthThreadsRows)
-  for (int block = 0; block < n_all; ++block) work(block, block * kBlockRows, std::min(n, (block + 1) * kBlockRows));
+  for_each_index(n_blocks(n), n > kWorthThreadsRows,
+                 [&](int block) { work(block, block * kBlockRows, std::min(n, (block + 1) * kBlockRows)); });
+}
+
+/// Σ value[k] x[column[k]] over begin <= k < end. Four sums under way: with one, each addition waits for the one before.
+template <class T>
+T times_row(const T* value, const int* column, int begin, int end, const T* x) {
+  T sum0{}, sum1{}, sum2{}, sum3{};
+  int k = begin;
+  for (; k + 4 <= end; k += 4) {
+    sum0 += value[k] * x[column[k]];
+    sum1 += value[k + 1] * x[column[k + 1]];
+    sum2 += value[k + 2] * x[column[k + 2]];
+    sum3 += value[k + 3] * x[column[k + 3]];
+  }
+  for (; k < end; ++k) sum0 += value[k] * x[column[k]];
+  return (sum0 + sum1) + (sum2 + sum3);
 }
 
 /// y = A x on all cores.

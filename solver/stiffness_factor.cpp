@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/errors.hpp"
+#include "solver/one_thread.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -100,6 +101,7 @@ double StiffnessFactor::predicted_bytes() const {
 
 void StiffnessFactor::factorise() {
   Parts& p = *parts_;
+  const OneThread serial;
   const bool done = cholmod_l_factorize(p.k, p.factor, &p.common) != 0;
   if (p.common.status == CHOLMOD_OUT_OF_MEMORY || p.common.status == CHOLMOD_TOO_LARGE) {
     throw SolveError(fmt::format("not enough memory to factorise {} elastic unknowns; take a coarser mesh", p.k->nrow));

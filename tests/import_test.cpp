@@ -197,6 +197,21 @@ TEST(MshErrors, VolumesWithoutNamesAreRefusedWithWhatToWrite) {
               ThrowsMessage<InputError>(HasSubstr("Physical Volume(\"column\")")));
 }
 
+TEST(MshErrors, NodeNumbersFarApartAreRefusedAndGapsAreNot) {
+  std::string text = kTwoTets22;
+  text.replace(text.find("7 4 2 0 1"), 9, "7 4 2 5 1");
+  text.replace(text.find("9 4 2 0 2"), 9, "9 4 2 5 2");
+  const auto renumber = [&](const std::string& number) {  // node 5
+    std::string renumbered = text;
+    renumbered.replace(renumbered.find("5 0 0 -1"), 1, number);
+    renumbered.replace(renumbered.find("3 2 5"), 5, "3 2 " + number);
+    return renumbered;
+  };
+  EXPECT_EQ(import_mesh(recipe(write_file("gaps.msh", renumber("900000")), 1.0)).n_nodes(), 5);
+  EXPECT_THAT([&] { (void)import_mesh(recipe(write_file("far.msh", renumber("1100000")), 1.0)); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("too far apart"), HasSubstr("renumber"))));
+}
+
 TEST(MshErrors, VolumesMustLieInOneRegionEach) {
   std::string text = kTwoTets22;
   text.replace(text.find("7 4 2 0 1"), 9, "7 4 2 5 1");  // the first volume alone in a physical one

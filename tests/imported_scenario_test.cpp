@@ -136,6 +136,16 @@ TEST(ImportedScenario, FieldsFormatChoosesTheFilesAndTheTerminalNamesTheOneToOpe
   EXPECT_THAT(read_text(folder / "xdmf/fields.xdmf"), HasSubstr("fields.h5:/times/0112/temperature_degC"));
   EXPECT_TRUE(std::filesystem::exists(folder / "xdmf/fields.h5"));
   EXPECT_FALSE(std::filesystem::exists(folder / "xdmf/fields.pvd"));
+  const std::string none = run("none", "output_interval: 9 h, fields_every: 9 h, fields_format: none");
+  EXPECT_THAT(none, AllOf(Not(HasSubstr("fields in")), Not(HasSubstr("name one cyclogram")), Not(HasSubstr("note:"))));
+  for (const char* left : {"fields", "fields.pvd", "fields.xdmf", "fields.h5"}) {
+    EXPECT_FALSE(std::filesystem::exists(folder / "none" / left)) << left;
+  }
+  // Fields are written of the run, they are no part of it.
+  const Record with = read_record_csv((folder / "vtu/record.csv").string());
+  const Record without = read_record_csv((folder / "none/record.csv").string());
+  ASSERT_EQ(with.n_samples(), without.n_samples());
+  for (const char* channel : {"t1", "z"}) EXPECT_EQ(with.at(channel).values, without.at(channel).values);
 }
 
 TEST(ImportedScenario, AFilmInsideABodyIsRefused) {

@@ -21,6 +21,8 @@ using mesh::CellShape;
 
 /// Relative to the largest temperature or displacement.
 constexpr double kRounding = 1e-9;
+// In time linear solves stop at 0.02 of 1e-7 K each, and there are some hundred of them in a run of some 10 K.
+constexpr double kSolves = 2e-8;
 
 class EachCell : public ::testing::TestWithParam<CellShape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, EachCell, ::testing::ValuesIn(fixtures::kAllShapes),
@@ -92,7 +94,7 @@ void expect_unchanged(CellShape shape, const Eigen::Matrix3d& turn, const Eigen:
     EXPECT_GT(before.steady.maxCoeff(), 10.0);
     EXPECT_GT(before.displacement.cwiseAbs().maxCoeff(), 1e-5);
     EXPECT_LT(steady, kRounding);
-    EXPECT_LT(transient, kRounding);
+    EXPECT_LT(transient, kSolves);
     EXPECT_LT(displacement, kRounding);
   }
 }
@@ -137,7 +139,7 @@ TEST_P(EachCell, MirrorImageHasMirroredDisplacementsAndTheSameTemperatures) {
   mesh.facets = turned_inside_out(mesh.facets);
   const Answer after = answer_of(mesh, true);
   EXPECT_LT(relative(after.steady - before.steady, before.steady), kRounding);
-  EXPECT_LT(relative(after.transient - before.transient, before.transient), kRounding);
+  EXPECT_LT(relative(after.transient - before.transient, before.transient), kSolves);
   EXPECT_LT(relative(after.displacement - kMirror * before.displacement, before.displacement), kRounding);
 }
 
@@ -188,7 +190,7 @@ TEST_P(EachCell, SymmetricBodyUnderSymmetricLoadHasMirroredTemperaturesAndDispla
   RecordProperty("displacement", text(displacement_m / u.cwiseAbs().maxCoeff()));
   EXPECT_GT(steady.maxCoeff() - steady.minCoeff(), 1.0);
   EXPECT_LT(steady_K, kRounding * steady.maxCoeff());
-  EXPECT_LT(transient_K, kRounding * transient.maxCoeff());
+  EXPECT_LT(transient_K, kSolves * transient.maxCoeff());
   EXPECT_LT(displacement_m, kRounding * u.cwiseAbs().maxCoeff());
 }
 

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "solver/heat_assembly.hpp"
+#include "solver/multigrid.hpp"
 #include "tests/fixtures.hpp"
 
 namespace driftwright::solver {
@@ -99,6 +100,60 @@ TEST(Pcg, StartsFromWhatItIsGiven) {
   Pcg pcg(a);
   pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
   EXPECT_EQ(pcg.solve(b.data(), x.data(), 1e-9, 100).iterations, 0);
+}
+
+TEST(Pcg, ConserveTakesHeatBackThatACarriedResidualHasLost) {
+  const SparseRow a = shifted();
+  Pcg pcg(a);
+  pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
+  const Eigen::VectorXd b = random_vector(a.rows(), 9), before = random_vector(a.rows(), 10);
+  ASSERT_GT(std::abs((b - a * before).sum()), 1e-3 * b.cwiseAbs().sum());
+  Eigen::VectorXd x = before;
+  pcg.conserve(b.data(), x.data());
+  const Eigen::VectorXd change = x - before;
+  EXPECT_LT(std::abs((b - a * x).sum()), 1e-13 * b.cwiseAbs().sum());                     // rounding of a sum of 125 terms
+  EXPECT_LT((change.array() - change[0]).abs().maxCoeff(), 1e-13 * std::abs(change[0]));  // by a constant
+}
+
+TEST(Pcg, ConserveLeavesPrescribedUnknownsAlone) {
+  SparseRow a = shifted();
+  Eigen::VectorXd ones = Eigen::VectorXd::Ones(a.rows());
+  ones[3] = 0.0;
+  Pcg pcg(a);
+  pcg.refresh(ones);
+  const Eigen::VectorXd b = random_vector(a.rows(), 11), before = random_vector(a.rows(), 12);
+  Eigen::VectorXd x = before;
+  pcg.conserve(b.data(), x.data());
+  EXPECT_EQ(x[3], before[3]);
+  EXPECT_NE(x[4], before[4]);
+  EXPECT_LT(std::abs(ones.dot(b - a * x)), 1e-13 * b.cwiseAbs().sum());
+  pcg.refresh(Eigen::VectorXd::Zero(a.rows()));  // nothing is free
+  x = before;
+  pcg.conserve(b.data(), x.data());
+  EXPECT_EQ(x, before);
+}
+
+TEST(Pcg, WithMultigridFindsTheSameInFewerIterationsAndConservesHeat) {
+  const mesh::Mesh mesh =
+      fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {14, 14, 14}, .shape = mesh::CellShape::kTet4});
+  effects::HeatBalance balance;
+  balance.films.push_back({"film", "x1", fixtures::constant(20.0), "hall"});
+  const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
+  const SparseRow a = system.mass + 600.0 * fixtures::stiffness(system);
+  const Eigen::VectorXd exact = random_vector(a.rows(), 13), b = a * exact;
+  const Multigrid multigrid(a);
+  Pcg pcg(a);
+  pcg.refresh(Eigen::VectorXd::Ones(a.rows()));
+  const auto solve = [&](const Multigrid* by) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(a.rows()), r = b;
+    const PcgOutcome outcome = pcg.improve(r.data(), x.data(), 1e-9, 1000, by);
+    EXPECT_TRUE(outcome.converged);
+    EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-6);  // the condition of the scaled matrix, 1e3, times the tolerance
+    EXPECT_LT((b - a * x - r).cwiseAbs().maxCoeff(), 1e-12 * b.cwiseAbs().maxCoeff()) << "r is the residual of x";
+    EXPECT_LT(std::abs(r.sum()), 1e-12 * b.cwiseAbs().sum());
+    return outcome.iterations;
+  };
+  EXPECT_LT(2 * solve(&multigrid), solve(nullptr));
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 
 #include "base/errors.hpp"
 #include "solver/heat_assembly.hpp"
+#include "solver/heat_ode.hpp"
+#include "solver/integrate.hpp"
 #include "tests/fixtures.hpp"
 
 namespace driftwright::solver {
@@ -79,6 +81,33 @@ TEST(EnergyBalance, GapIsThatOfItsThreeTerms) {
   run.stored_J.resize(1);
   run.stored_J << 69.0;
   EXPECT_DOUBLE_EQ(run.energy_gap(), 1.0 / (0.5 * 199.0));
+}
+
+/// Heat for an hour and rest, on a mesh fine enough that long steps take many iterations with the diagonal.
+TEST(Multigrid, OfTheLongStepsGivesWhatTheDiagonalGivesInFewerIterations) {
+  const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {18, 18, 18}, .shape = CellShape::kTet4});
+  effects::HeatBalance balance;
+  balance.heats.push_back({"motor", effects::surface("x0"), [](const effects::Inputs& u) { return u.drive.speed_rpm; }});
+  balance.films.push_back({"film", "x1", fixtures::constant(20.0), "hall"});
+  balance.fixed.push_back({"bed", effects::surface("z0"), {{0.0}, {0.0}}, true});
+  FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
+  fixtures::observe_unknowns(system, {0, mesh.n_nodes() / 2, mesh.n_nodes() - 1});
+  const std::vector<double> minutes = {60, 600, 3600, 5400, 7200};
+  constexpr double kTolerance = 2e-3;
+  const TransientOptions options{.relative_tolerance = kTolerance, .absolute_tolerance_K = kTolerance};
+  const auto run = [&](int worth_multigrid) {
+    HeatOde ode(system, kStillHall, kTolerance, worth_multigrid);
+    const Cyclogram cycle{.name = "cycle", .sections = {{3600, 100}, {3600, 0}}};
+    return integrate(ode, linear_stretches(cycle, std::vector<double>{}), kStillHall, minutes, options,
+                     Eigen::VectorXd::Zero(system.size()), {});
+  };
+  const Trajectory diagonal = run(mesh.n_nodes()), multigrid = run(1000);
+  EXPECT_LT(multigrid.n_iterations, 0.9 * diagonal.n_iterations);  // the last of them are those of short steps
+  // Linear solves may err by a fiftieth of the tolerance each, which steps of other lengths take further.
+  EXPECT_LT((diagonal.outputs - multigrid.outputs).cwiseAbs().maxCoeff(), kTolerance);
+  EXPECT_GT(diagonal.outputs.maxCoeff(), 1.0);
+  EXPECT_LT(multigrid.energy_gap(), 1e-9);  // rounding, as with the diagonal
+  EXPECT_LT(diagonal.energy_gap(), 1e-9);
 }
 
 // --- changes ----------------------------------------------------------------------------------------------------

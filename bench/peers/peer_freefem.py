@@ -5,6 +5,7 @@ FreeFEM, P1 or P2 as the mesh is: heat with one factor (CHOLMOD) for all steps; 
 the factor kept (each_minute), or by three adjoint solves before the run and dot products (influence), as Driftwright does it.
 """
 import argparse
+import os
 import shutil
 
 import case
@@ -139,11 +140,15 @@ def main():
     arguments.add_argument("--cap", type=float, default=3600.0)
     options = arguments.parse_args()
     base = options.folder + "/" + options.name
+    if os.path.exists(base + ".csv"):  # or a run that fails would show what an earlier one left
+        os.remove(base + ".csv")
     with open(base + ".edp", "w") as file:
         file.write(program(case.info(options.folder), options, base + ".csv"))
     outcome = timed.run([shutil.which("FreeFem++"), "-nw", "-v", "0", base + ".edp"], base + ".log", options.cap,
                         {"FF_LOADPATH": "/usr/lib/freefem++"})
-    timed.report(options.folder, options.name, outcome, sum(1 for _ in open(base + ".csv")))
+    n = sum(1 for _ in open(base + ".csv")) if os.path.exists(base + ".csv") else 0
+    n_all = sum(minutes for minutes, _ in case.CYCLOGRAM)
+    timed.report(options.folder, options.name, outcome, n, "" if n == n_all else "ended after %d of %d minutes; see its log" % (n, n_all))
 
 
 main()
