@@ -93,6 +93,22 @@ std::string numbers_of_laws(const MachineModel& model) {
   return text;
 }
 
+/// Of a balance whose laws do not look at temperatures.
+std::vector<double> coefficients_at_standstill(const effects::HeatBalance& balance, double hall_K) {
+  const effects::Inputs standstill{.drive = {}, .hall_K = hall_K};
+  std::vector<double> values;
+  for (const auto& f : balance.films) values.push_back(f.htc_W_m2K(standstill));
+  for (const auto& l : balance.links) values.push_back(l.conductance_W_K(standstill));
+  for (const auto& c : balance.contacts) values.push_back(c.conductance_W_m2K(standstill));
+  return values;
+}
+
+bool has_curves(const MachineModel& model) {
+  return std::any_of(model.materials.begin(), model.materials.end(), [](const MaterialEntry& entry) {
+    return !entry.material.conductivity_curve.empty() || !entry.material.heat_capacity_curve.empty();
+  });
+}
+
 /// Vectors side by side; empty ones as zeros.
 Eigen::MatrixXd side_by_side(Eigen::Index rows, const std::vector<Eigen::VectorXd>& columns) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(columns.size()));
@@ -236,6 +252,29 @@ FileOf in_folder(const std::filesystem::path& folder, const std::string& prefix 
   return [folder, prefix](const std::string& name) { return folder / (prefix + name); };
 }
 
+void write_machine(const std::filesystem::path& work, const std::string& key, const ReducedMachine& machine) {
+  Json json = {
+      {"n_unknowns", machine.n_unknowns},       {"regions", machine.mesh.regions},
+      {"error_K", machine.error.temperature_K}, {"error_m", machine.error.displacement_m},
+      {"error_rad", machine.error.angle_rad},   {"system", write_system(machine.system, machine.start, in_folder(work))}};
+  for (std::size_t i = 0; i < machine.modal.size(); ++i) {
+    const compensation::ModalPredictor& p = machine.modal[i];
+    json["modal"].push_back({{"time_constant_s", p.time_constant_s},
+                             {"system", write_system(p.system, p.start, in_folder(work, fmt::format("modal{}_", i)))}});
+  }
+  write_mesh(machine.mesh, in_folder(work));
+  write_npy(work / "temperature.npy", machine.temperature);
+  write_npy(work / "displacement_m.npy", machine.displacement_m);
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream file(work / name, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw InputError(fmt::format("{}: cannot be written; is the disk full?", (work / name).string()));
+  };
+  write("model.json", json.dump());
+  write("key.txt", key);
+}
+
 constexpr const char* kReader =
     R"(# Reads the reduced model beside this file: dz/dt = -K(c) z + loads P + to_hall c T_hall + offset c,  y = outputs' z + outputs_hall T_hall.
 # z(0) = start; temperatures in K over reference_K, displacements in m, tilts in rad. c and P at some drives: model.json, "drives".
@@ -272,11 +311,16 @@ std::string machine_text(const MachineModel& model) {
 std::string machine_key(const MachineModel& model, const ReductionPlan& plan, const std::string& version) {
   const effects::HeatBalance balance = reducible(effects::heat_balance(model.effects));
   std::string key = fmt::format("driftwright {} store {}\n{}\n", version, kFormat, machine_text(model));
-  if (looks_at_temperatures(balance) && plan.n_modes > 0) {  // modal predictors are frozen at the typical drive
+  const bool makes_modes = plan.n_modes > 0 && balance.thermostats.empty();
+  const bool freezes_laws = makes_modes && looks_at_temperatures(balance);
+  if (freezes_laws) {  // modal predictors are frozen at the typical drive
     const Drive& t = plan.typical;
     key += fmt::format("typical {} {} {}\n", t.speed_rpm, fmt::join(t.feed_m_s, " "), t.cutting_power_W);
     key += numbers_of_laws(model);
+  } else if (makes_modes) {  // or taken at standstill
+    key += fmt::format("at standstill {}\n", fmt::join(coefficients_at_standstill(balance, model.hall.at(0.0)), " "));
   }
+  if (freezes_laws || has_curves(model)) key += fmt::format("frozen in a hall of {} K\n", model.hall.at(0.0));
   const auto numbers = [](const Eigen::VectorXd& v) {
     return fmt::format("{}", fmt::join(v.data(), v.data() + v.size(), " "));
   };
@@ -301,8 +345,9 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
   if (store.empty()) return std::nullopt;
   const std::filesystem::path folder = folder_of(store, key);
   std::error_code missing;
-  if (!std::filesystem::exists(folder / "key.txt", missing) || bytes_of(folder / "key.txt") != key) return std::nullopt;
+  if (!std::filesystem::exists(folder / "key.txt", missing)) return std::nullopt;
   try {
+    if (bytes_of(folder / "key.txt") != key) return std::nullopt;
     const Json json = Json::parse(bytes_of(folder / "model.json"));
     ReducedMachine machine;
     machine.n_unknowns = json.at("n_unknowns");
@@ -333,26 +378,12 @@ void save_machine(const std::filesystem::path& store, const std::string& key, co
   std::error_code failed;
   std::filesystem::create_directories(work, failed);
   if (failed) throw InputError(fmt::format("{}: {}", work.string(), failed.message()));
-  Json json = {
-      {"n_unknowns", machine.n_unknowns},       {"regions", machine.mesh.regions},
-      {"error_K", machine.error.temperature_K}, {"error_m", machine.error.displacement_m},
-      {"error_rad", machine.error.angle_rad},   {"system", write_system(machine.system, machine.start, in_folder(work))}};
-  for (std::size_t i = 0; i < machine.modal.size(); ++i) {
-    const compensation::ModalPredictor& p = machine.modal[i];
-    json["modal"].push_back({{"time_constant_s", p.time_constant_s},
-                             {"system", write_system(p.system, p.start, in_folder(work, fmt::format("modal{}_", i)))}});
+  try {
+    write_machine(work, key, machine);
+  } catch (...) {  // a full disk is not filled further
+    std::filesystem::remove_all(work, failed);
+    throw;
   }
-  write_mesh(machine.mesh, in_folder(work));
-  write_npy(work / "temperature.npy", machine.temperature);
-  write_npy(work / "displacement_m.npy", machine.displacement_m);
-  const auto write = [&](const char* name, const std::string& text) {
-    std::ofstream file(work / name, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) throw InputError(fmt::format("{}: cannot be written; is the disk full?", (work / name).string()));
-  };
-  write("model.json", json.dump());
-  write("key.txt", key);
   std::filesystem::remove_all(folder, failed);
   std::filesystem::rename(work, folder, failed);
   if (failed) std::filesystem::remove_all(work, failed);  // another process was first
