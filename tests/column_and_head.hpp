@@ -48,7 +48,7 @@ struct ColumnAndHead {
   std::string sensor_y = "150 mm";
   std::string cyclograms = "{cycle: [[40 min, 1000 rpm], [20 min, 0 rpm], [30 min, 600 rpm]]}";
   std::string solver = "{output_interval: 5 min, fields_format: none, model: reduced}";
-  std::string more;  ///< further keys
+  std::string more = {};  ///< further keys
 
   static constexpr const char* kHeat = "{type: heat_source, region: head, power: 60 W, at_speed: 1000 rpm, exponent: 1}";
   static constexpr const char* kFilm = "{type: convection, surface: outside, film: 10 W/(m^2 K)}";

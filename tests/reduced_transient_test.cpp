@@ -88,8 +88,8 @@ TEST_P(InACompleteBasis, TheSmallSystemIsTheFullOne) {
   EXPECT_GT(full.outputs.maxCoeff(), 10.0);
   const double difference_K = (small.outputs - full.outputs).cwiseAbs().maxCoeff();
   RecordProperty("difference_K", fixtures::text(difference_K));
-  EXPECT_LT(difference_K, 1e-4);
-  EXPECT_LT(worst_K, 1e-4) << "states that callbacks are given";
+  EXPECT_LT(difference_K, 4e-5);
+  EXPECT_LT(worst_K, 4e-5) << "states that callbacks are given";
   ASSERT_EQ(small.flows.size(), full.flows.size());
   const double most_J = full.heat_J.cwiseAbs().maxCoeff();
   for (std::size_t j = 0; j < full.flows.size(); ++j) {
@@ -100,7 +100,7 @@ TEST_P(InACompleteBasis, TheSmallSystemIsTheFullOne) {
   }
   EXPECT_LT((small.stored_J - full.stored_J).cwiseAbs().maxCoeff(), 1e-5 * most_J);
   RecordProperty("energy_gap", fixtures::text(small.energy_gap()));
-  EXPECT_LT(small.energy_gap(), 1e-9);  // rounding, and the share of the tolerance that Newton's iterations leave
+  EXPECT_LT(small.energy_gap(), 1e-11);  // rounding: Newton's last step is taken in all flows alike
 }
 
 INSTANTIATE_TEST_SUITE_P(
