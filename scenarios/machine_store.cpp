@@ -130,6 +130,18 @@ BoundLaw law_from(const Json& json) {
   return law;
 }
 
+/// An array of known size. @throws InputError  as read_npy(), and for another size
+template <class Scalar>
+Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> array_of(const std::filesystem::path& path, Eigen::Index rows,
+                                                               Eigen::Index columns) {
+  auto values = read_npy<Scalar>(path);
+  if (values.rows() != rows || values.cols() != columns) {
+    throw InputError(
+        fmt::format("{}: {} x {} values, not {} x {}", path.string(), values.rows(), values.cols(), rows, columns));
+  }
+  return values;
+}
+
 /// Arrays of a reduced system as .npy files; returns the names and numbers beside them.
 Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, const FileOf& file) {
   const auto r = static_cast<Eigen::Index>(system.size());
@@ -175,15 +187,19 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
 
 ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance, const FileOf& file,
                           Eigen::VectorXd& start) {
-  const auto array = [&](const char* name) { return read_npy<double>(file(name)); };
   ReducedSystem system;
   const Eigen::Index r = json.at("size");
+  const Json none = Json::array();
+  const auto n_of = [&](const char* key) { return static_cast<Eigen::Index>(json.value(key, none).size()); };
+  const auto array = [&](const char* name, Eigen::Index columns) { return array_of<double>(file(name), r, columns); };
   system.reference_K = json.at("reference_K");
   system.mass = Eigen::MatrixXd::Identity(r, r);
-  system.conduction = array("conduction.npy");
-  const Eigen::MatrixXd matrices = array("exchanges.npy"), to_hall = array("to_hall.npy"), flow = array("flow.npy"),
-                        offset = array("offset.npy"), loads = array("loads.npy"), probes = array("probes.npy");
-  const Json none = Json::array();
+  system.conduction = array("conduction.npy", r);
+  const Eigen::Index n_exchanges = n_of("exchanges");
+  const Eigen::MatrixXd matrices = array_of<double>(file("exchanges.npy"), r * n_exchanges, r),
+                        to_hall = array("to_hall.npy", n_exchanges), flow = array("flow.npy", n_exchanges),
+                        offset = array("offset.npy", n_exchanges), loads = array("loads.npy", n_of("sources")),
+                        probes = array("probes.npy", n_of("probes"));
   Eigen::Index i = 0;
   for (const Json& s : json.value("sources", none)) system.sources.push_back({s.at("name"), loads.col(i++), law_from(s)});
   i = 0;
@@ -207,10 +223,13 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   for (const Json& probe : json.value("thermostat_probes", none)) {
     system.thermostats.push_back({.name = {}, .probe = probe});
   }
-  system.outputs = {json.at("outputs").at("name"), json.at("outputs").at("unit"), array("outputs.npy"),
-                    array("outputs_hall.npy")};
-  system.ones = array("ones.npy");
-  start = array("start.npy");
+  system.outputs.name = json.at("outputs").at("name").get<std::vector<std::string>>();
+  system.outputs.unit = json.at("outputs").at("unit").get<std::vector<std::string>>();
+  const auto n_outputs = static_cast<Eigen::Index>(system.outputs.name.size());
+  system.outputs.state = array("outputs.npy", n_outputs);
+  system.outputs.hall = array_of<double>(file("outputs_hall.npy"), n_outputs, 1);
+  system.ones = array("ones.npy", 1);
+  start = array("start.npy", 1);
   bind_laws(system, reducible(balance));
   return system;
 }
@@ -239,11 +258,18 @@ void write_mesh(const mesh::Mesh& mesh, const FileOf& file) {
 mesh::Mesh read_mesh(const std::vector<std::string>& regions, const FileOf& file) {
   mesh::Mesh mesh;
   mesh.regions = regions;
-  mesh.coords = read_npy<double>(file("mesh_coords.npy"));
+  const Eigen::MatrixXd coords = read_npy<double>(file("mesh_coords.npy"));
+  if (coords.rows() != 3) throw InputError(fmt::format("{}: no points", file("mesh_coords.npy").string()));
+  mesh.coords = coords;
   for (int s : as_vector(read_npy<int>(file("mesh_shape.npy")))) mesh.cells.shape.push_back(static_cast<mesh::CellShape>(s));
   mesh.cells.offset = as_vector(read_npy<int>(file("mesh_offset.npy")));
   mesh.cells.node = as_vector(read_npy<int>(file("mesh_node.npy")));
   mesh.cells.group = as_vector(read_npy<int>(file("mesh_group.npy")));
+  const std::size_t n_cells = mesh.cells.shape.size();
+  if (mesh.cells.offset.size() != n_cells + 1 || mesh.cells.group.size() != n_cells ||
+      mesh.cells.offset.back() != static_cast<int>(mesh.cells.node.size())) {
+    throw InputError(fmt::format("{}: cells of another mesh", file("mesh_offset.npy").string()));
+  }
   return mesh;
 }
 
@@ -253,10 +279,13 @@ FileOf in_folder(const std::filesystem::path& folder, const std::string& prefix 
 }
 
 void write_machine(const std::filesystem::path& work, const std::string& key, const ReducedMachine& machine) {
-  Json json = {
-      {"n_unknowns", machine.n_unknowns},       {"regions", machine.mesh.regions},
-      {"error_K", machine.error.temperature_K}, {"error_m", machine.error.displacement_m},
-      {"error_rad", machine.error.angle_rad},   {"system", write_system(machine.system, machine.start, in_folder(work))}};
+  Json json = {{"n_unknowns", machine.n_unknowns},
+               {"has_fields", machine.displacement_m.size() > 0},
+               {"regions", machine.mesh.regions},
+               {"error_K", machine.error.temperature_K},
+               {"error_m", machine.error.displacement_m},
+               {"error_rad", machine.error.angle_rad},
+               {"system", write_system(machine.system, machine.start, in_folder(work))}};
   for (std::size_t i = 0; i < machine.modal.size(); ++i) {
     const compensation::ModalPredictor& p = machine.modal[i];
     json["modal"].push_back({{"time_constant_s", p.time_constant_s},
@@ -362,8 +391,10 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
           read_system(m.at("system"), balance, in_folder(folder, fmt::format("modal{}_", machine.modal.size())), p.start);
       machine.modal.push_back(std::move(p));
     }
-    machine.temperature = read_npy<float>(folder / "temperature.npy");
-    machine.displacement_m = read_npy<float>(folder / "displacement_m.npy");
+    const bool has_fields = json.at("has_fields");
+    const Eigen::Index size = has_fields ? machine.system.size() : 0, n_nodes = has_fields ? machine.mesh.n_nodes() : 0;
+    machine.temperature = array_of<float>(folder / "temperature.npy", n_nodes, size);
+    machine.displacement_m = array_of<float>(folder / "displacement_m.npy", 3 * n_nodes, size);
     return machine;
   } catch (const InputError&) {
   } catch (const nlohmann::json::exception&) {
@@ -384,9 +415,12 @@ void save_machine(const std::filesystem::path& store, const std::string& key, co
     std::filesystem::remove_all(work, failed);
     throw;
   }
-  std::filesystem::remove_all(folder, failed);
+  const std::filesystem::path old = folder.string() + fmt::format(".old-{}", ::getpid());
+  std::error_code none, ignored;
+  std::filesystem::rename(folder, old, none);  // a damaged one
   std::filesystem::rename(work, folder, failed);
-  if (failed) std::filesystem::remove_all(work, failed);  // another process was first
+  if (failed) std::filesystem::remove_all(work, ignored);  // another process was first
+  if (!none) std::filesystem::remove_all(old, ignored);
 }
 
 void export_reduced(const ReducedSystem& system, const Eigen::VectorXd& start, const solver::ReductionError& error,
