@@ -266,7 +266,11 @@ mesh::Mesh read_mesh(const std::vector<std::string>& regions, const FileOf& file
   mesh.cells.node = as_vector(read_npy<int>(file("mesh_node.npy")));
   mesh.cells.group = as_vector(read_npy<int>(file("mesh_group.npy")));
   const std::size_t n_cells = mesh.cells.shape.size();
-  if (mesh.cells.offset.size() != n_cells + 1 || mesh.cells.group.size() != n_cells ||
+  const auto beyond = [](const std::vector<int>& indices, int n) {
+    return std::any_of(indices.begin(), indices.end(), [n](int i) { return i < 0 || i >= n; });
+  };
+  if (beyond(mesh.cells.node, mesh.n_nodes()) || beyond(mesh.cells.group, static_cast<int>(regions.size())) ||
+      mesh.cells.offset.size() != n_cells + 1 || mesh.cells.group.size() != n_cells ||
       mesh.cells.offset.back() != static_cast<int>(mesh.cells.node.size())) {
     throw InputError(fmt::format("{}: cells of another mesh", file("mesh_offset.npy").string()));
   }

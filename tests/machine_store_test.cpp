@@ -364,18 +364,19 @@ TEST(MachineStore, ServesProcessesThatSaveAtOnce) {
     }
   }
   int n_found = 0;
-  for (int k = 0; k < 200; ++k) {
+  while (!children.empty()) {
+    int status = 0;
+    if (waitpid(children.back(), &status, WNOHANG) != 0) {
+      EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+      children.pop_back();
+    }
     const auto found = load_machine(store, key, balance_of(s));
     if (!found) continue;
     ++n_found;
     ASSERT_EQ(run(s, *found).outputs, right.outputs);
   }
-  for (pid_t child : children) {
-    int status = 0;
-    waitpid(child, &status, 0);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-  }
   RecordProperty("n_found", n_found);
+  EXPECT_GT(n_found, 3);
   EXPECT_TRUE(load_machine(store, key, balance_of(s)));
   (void)only_folder(store);  // nothing half-written is left
 }
