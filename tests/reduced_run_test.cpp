@@ -234,7 +234,7 @@ collect: [t_head.end, z.end]
 )";
   const CommandOutcome outcome =
       run_program("sweep " + (folder / "study.yaml").string() + " -o " + (folder / "out").string());
-  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
   const Table table = read_table(folder / "out" / "sweep.csv");
   ASSERT_EQ(table.size(), 6u);
   for (const auto& [full, small] : {std::pair{1u, 2u}, std::pair{4u, 3u}}) {
