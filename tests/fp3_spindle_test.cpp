@@ -110,7 +110,10 @@ TEST_F(Fp3Spindle, WritesFieldsReportAndSchedule) {
 
 TEST_F(Fp3Spindle, TheSameScenarioGivesTheSameBytes) {
   const auto again = fresh_folder("fp3_again") / "out";
-  ASSERT_EQ(run_program("run scenarios/fp3_spindle.yaml -o " + again.string()).exit_code, 0);
+  const CommandOutcome second = run_program("run scenarios/fp3_spindle.yaml -o " + again.string());
+  ASSERT_EQ(second.exit_code, 0) << second.output;
+  EXPECT_THAT(outcome_.output, ::testing::Not(HasSubstr("known from disk")));
+  EXPECT_THAT(second.output, HasSubstr("known from disk"));  // the first had to make the model
   int n_files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
     if (!entry.is_regular_file()) continue;
@@ -146,22 +149,6 @@ TEST(Fp3Verbs, CheckMeshSimulateAndPredictWork) {
     EXPECT_NEAR(full.at("drift_y").values[i], modal.at("drift_y").values[i], 1.0)
         << "at " << full.time_s[i] << " s";  // truncation, see docs
   }
-}
-
-TEST_F(Fp3Spindle, ASecondRunTakesTheModelFromDiskAndGivesTheSameFiles) {
-  const std::filesystem::path again = fresh_folder("fp3_again") / "out";
-  const CommandOutcome outcome = run_program("run scenarios/fp3_spindle.yaml -o " + again.string());
-  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome_.output, ::testing::Not(HasSubstr("known from disk")));
-  EXPECT_THAT(outcome.output, HasSubstr("known from disk"));
-  std::size_t n_files = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
-    if (!entry.is_regular_file()) continue;
-    const auto name = std::filesystem::relative(entry.path(), folder_);
-    EXPECT_EQ(read_text(entry.path()), read_text(again / name)) << name;
-    ++n_files;
-  }
-  EXPECT_GT(n_files, 10u);
 }
 
 TEST_F(Fp3Spindle, EveryReadingIsThatOfTheFullModelWithinFiveMillikelvin) {
