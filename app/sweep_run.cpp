@@ -44,6 +44,12 @@ struct Structure {
   std::unique_ptr<const Machine> machine;  ///< where they share all of it
 };
 
+/// Gmsh and METIS serve one caller at a time.
+std::mutex& meshing() {
+  static std::mutex one_at_a_time;
+  return one_at_a_time;
+}
+
 /// Reduced machines, made when the first member wants one. Each spans the laws of all members of the plan, whichever of them are run
 /// here, so that shards and resumed sweeps give the same numbers.
 class ReducedMachines {
@@ -61,6 +67,7 @@ class ReducedMachines {
     const std::lock_guard lock(mutex_);
     Asked& asked = by_machine_.at(scenarios::machine_text(model));
     if (!asked.machine) {
+      const std::lock_guard alone(meshing());
       Progress quiet;
       asked.machine.emplace(open_reduced(asked.model, asked.plan, quiet));
     }
@@ -98,8 +105,7 @@ class ReducedMachines {
 /// From the first member that can be read and placed; where none can, each will say why itself.
 Structure build_structure(const SweepPlan& plan, ReducedMachines& reduced, std::span<const std::size_t> members,
                           bool with_machine) {
-  static std::mutex one_at_a_time;  // Gmsh and METIS serve one caller at a time
-  const std::lock_guard lock(one_at_a_time);
+  const std::lock_guard lock(meshing());
   Structure shared;
   if (!reduced.some_are_full()) return shared;
   bool is_meshed = false;

@@ -156,7 +156,7 @@ std::string written(const ConfigNode& node) {
   std::string text = node.is_list() ? "[" : "{";
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     if (i > 0) text += ", ";
-    if (node.is_map()) text += node.keys[i].text + ": ";
+    if (node.is_map()) text += fmt::format("{:?}: ", node.keys[i].text);
     text += written(*node.items[i]);
   }
   return text + (node.is_list() ? "]" : "}");

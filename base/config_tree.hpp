@@ -55,7 +55,7 @@ struct ConfigNode {
 /// The tree with `value` in place of what stands at `steps`, an index into `items` for each level.
 [[nodiscard]] ConfigNodePtr replaced(const ConfigNodePtr& root, std::span<const std::size_t> steps, ConfigNodePtr value);
 
-/// The tree on one line, each scalar in quotes; two trees that say the same in the same order are written alike.
+/// The tree on one line, each key and scalar in quotes; two trees that say the same in the same order are written alike.
 [[nodiscard]] std::string written(const ConfigNode& node);
 
 /// A scalar that stands where `place` stands but reads `text`.

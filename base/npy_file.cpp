@@ -72,8 +72,11 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> read_npy(const std::filesy
   if (std::sscanf(text.c_str() + shape_at, "'shape': (%lld, %lld", &rows, &columns) < 1 || rows < 0 || columns < 0) {
     fail("an array of unreadable shape");
   }
-  if (static_cast<double>(rows) * static_cast<double>(columns) * sizeof(Scalar) >
-      static_cast<double>(std::filesystem::file_size(path))) {
+  const auto values_at = file.tellg();
+  file.seekg(0, std::ios::end);  // of the open file: its name may be gone by now
+  const auto n_bytes = static_cast<double>(file.tellg() - values_at);
+  file.seekg(values_at);
+  if (static_cast<double>(rows) * static_cast<double>(columns) * sizeof(Scalar) > n_bytes) {
     fail("cut short");
   }
   Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> values(rows, columns);

@@ -93,6 +93,22 @@ std::string numbers_of_laws(const MachineModel& model) {
   return text;
 }
 
+/// Of a balance whose laws do not look at temperatures.
+std::vector<double> coefficients_at_standstill(const effects::HeatBalance& balance, double hall_K) {
+  const effects::Inputs standstill{.drive = {}, .hall_K = hall_K};
+  std::vector<double> values;
+  for (const auto& f : balance.films) values.push_back(f.htc_W_m2K(standstill));
+  for (const auto& l : balance.links) values.push_back(l.conductance_W_K(standstill));
+  for (const auto& c : balance.contacts) values.push_back(c.conductance_W_m2K(standstill));
+  return values;
+}
+
+bool has_curves(const MachineModel& model) {
+  return std::any_of(model.materials.begin(), model.materials.end(), [](const MaterialEntry& entry) {
+    return !entry.material.conductivity_curve.empty() || !entry.material.heat_capacity_curve.empty();
+  });
+}
+
 /// Vectors side by side; empty ones as zeros.
 Eigen::MatrixXd side_by_side(Eigen::Index rows, const std::vector<Eigen::VectorXd>& columns) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(columns.size()));
@@ -112,6 +128,18 @@ BoundLaw law_from(const Json& json) {
   law.thermostat = json.at("thermostat");
   law.frozen_K = json.at("frozen_K").get<std::vector<double>>();
   return law;
+}
+
+/// An array of known size. @throws InputError  as read_npy(), and for another size
+template <class Scalar>
+Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> array_of(const std::filesystem::path& path, Eigen::Index rows,
+                                                               Eigen::Index columns) {
+  auto values = read_npy<Scalar>(path);
+  if (values.rows() != rows || values.cols() != columns) {
+    throw InputError(
+        fmt::format("{}: {} x {} values, not {} x {}", path.string(), values.rows(), values.cols(), rows, columns));
+  }
+  return values;
 }
 
 /// Arrays of a reduced system as .npy files; returns the names and numbers beside them.
@@ -159,15 +187,19 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
 
 ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance, const FileOf& file,
                           Eigen::VectorXd& start) {
-  const auto array = [&](const char* name) { return read_npy<double>(file(name)); };
   ReducedSystem system;
   const Eigen::Index r = json.at("size");
+  const Json none = Json::array();
+  const auto n_of = [&](const char* key) { return static_cast<Eigen::Index>(json.value(key, none).size()); };
+  const auto array = [&](const char* name, Eigen::Index columns) { return array_of<double>(file(name), r, columns); };
   system.reference_K = json.at("reference_K");
   system.mass = Eigen::MatrixXd::Identity(r, r);
-  system.conduction = array("conduction.npy");
-  const Eigen::MatrixXd matrices = array("exchanges.npy"), to_hall = array("to_hall.npy"), flow = array("flow.npy"),
-                        offset = array("offset.npy"), loads = array("loads.npy"), probes = array("probes.npy");
-  const Json none = Json::array();
+  system.conduction = array("conduction.npy", r);
+  const Eigen::Index n_exchanges = n_of("exchanges");
+  const Eigen::MatrixXd matrices = array_of<double>(file("exchanges.npy"), r * n_exchanges, r),
+                        to_hall = array("to_hall.npy", n_exchanges), flow = array("flow.npy", n_exchanges),
+                        offset = array("offset.npy", n_exchanges), loads = array("loads.npy", n_of("sources")),
+                        probes = array("probes.npy", n_of("probes"));
   Eigen::Index i = 0;
   for (const Json& s : json.value("sources", none)) system.sources.push_back({s.at("name"), loads.col(i++), law_from(s)});
   i = 0;
@@ -191,10 +223,13 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   for (const Json& probe : json.value("thermostat_probes", none)) {
     system.thermostats.push_back({.name = {}, .probe = probe});
   }
-  system.outputs = {json.at("outputs").at("name"), json.at("outputs").at("unit"), array("outputs.npy"),
-                    array("outputs_hall.npy")};
-  system.ones = array("ones.npy");
-  start = array("start.npy");
+  system.outputs.name = json.at("outputs").at("name").get<std::vector<std::string>>();
+  system.outputs.unit = json.at("outputs").at("unit").get<std::vector<std::string>>();
+  const auto n_outputs = static_cast<Eigen::Index>(system.outputs.name.size());
+  system.outputs.state = array("outputs.npy", n_outputs);
+  system.outputs.hall = array_of<double>(file("outputs_hall.npy"), n_outputs, 1);
+  system.ones = array("ones.npy", 1);
+  start = array("start.npy", 1);
   bind_laws(system, reducible(balance));
   return system;
 }
@@ -223,17 +258,57 @@ void write_mesh(const mesh::Mesh& mesh, const FileOf& file) {
 mesh::Mesh read_mesh(const std::vector<std::string>& regions, const FileOf& file) {
   mesh::Mesh mesh;
   mesh.regions = regions;
-  mesh.coords = read_npy<double>(file("mesh_coords.npy"));
+  const Eigen::MatrixXd coords = read_npy<double>(file("mesh_coords.npy"));
+  if (coords.rows() != 3) throw InputError(fmt::format("{}: no points", file("mesh_coords.npy").string()));
+  mesh.coords = coords;
   for (int s : as_vector(read_npy<int>(file("mesh_shape.npy")))) mesh.cells.shape.push_back(static_cast<mesh::CellShape>(s));
   mesh.cells.offset = as_vector(read_npy<int>(file("mesh_offset.npy")));
   mesh.cells.node = as_vector(read_npy<int>(file("mesh_node.npy")));
   mesh.cells.group = as_vector(read_npy<int>(file("mesh_group.npy")));
+  const std::size_t n_cells = mesh.cells.shape.size();
+  const auto beyond = [](const std::vector<int>& indices, int n) {
+    return std::any_of(indices.begin(), indices.end(), [n](int i) { return i < 0 || i >= n; });
+  };
+  if (beyond(mesh.cells.node, mesh.n_nodes()) || beyond(mesh.cells.group, static_cast<int>(regions.size())) ||
+      mesh.cells.offset.size() != n_cells + 1 || mesh.cells.group.size() != n_cells ||
+      mesh.cells.offset.back() != static_cast<int>(mesh.cells.node.size())) {
+    throw InputError(fmt::format("{}: cells of another mesh", file("mesh_offset.npy").string()));
+  }
   return mesh;
 }
 
 /// Files in a folder, their names beginning with a prefix.
 FileOf in_folder(const std::filesystem::path& folder, const std::string& prefix = "") {
   return [folder, prefix](const std::string& name) { return folder / (prefix + name); };
+}
+
+void write_machine(const std::filesystem::path& work, const std::string& key, const ReducedMachine& machine) {
+  Json json = {{"n_unknowns", machine.n_unknowns},
+               {"has_fields", machine.displacement_m.size() > 0},
+               {"regions", machine.mesh.regions},
+               {"error_K", machine.error.temperature_K},
+               {"error_m", machine.error.displacement_m},
+               {"error_rad", machine.error.angle_rad},
+               {"system", write_system(machine.system, machine.start, in_folder(work))}};
+  if (machine.modal) {
+    const auto write = [&](const char* name, const compensation::ModalPredictor& p) {
+      json["modal"][name] = {{"time_constant_s", p.time_constant_s},
+                             {"system", write_system(p.system, p.start, in_folder(work, fmt::format("modal_{}_", name)))}};
+    };
+    write("bare", machine.modal->bare);
+    write("completed", machine.modal->completed);
+  }
+  write_mesh(machine.mesh, in_folder(work));
+  write_npy(work / "temperature.npy", machine.temperature);
+  write_npy(work / "displacement_m.npy", machine.displacement_m);
+  const auto write_text = [&](const char* name, const std::string& text) {
+    std::ofstream file(work / name, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw InputError(fmt::format("{}: cannot be written; is the disk full?", (work / name).string()));
+  };
+  write_text("model.json", json.dump());
+  write_text("key.txt", key);
 }
 
 constexpr const char* kReader =
@@ -272,11 +347,16 @@ std::string machine_text(const MachineModel& model) {
 std::string machine_key(const MachineModel& model, const ReductionPlan& plan, const std::string& version) {
   const effects::HeatBalance balance = reducible(effects::heat_balance(model.effects));
   std::string key = fmt::format("driftwright {} store {}\n{}\n", version, kFormat, machine_text(model));
-  if (looks_at_temperatures(balance) && plan.n_modes > 0) {  // modal predictors are frozen at the typical drive
+  const bool makes_modes = plan.n_modes > 0 && balance.thermostats.empty();
+  const bool freezes_laws = makes_modes && looks_at_temperatures(balance);
+  if (freezes_laws) {  // modal predictors are frozen at the typical drive
     const Drive& t = plan.typical;
     key += fmt::format("typical {} {} {}\n", t.speed_rpm, fmt::join(t.feed_m_s, " "), t.cutting_power_W);
     key += numbers_of_laws(model);
+  } else if (makes_modes) {  // or taken at standstill
+    key += fmt::format("at standstill {}\n", fmt::join(coefficients_at_standstill(balance, model.hall.at(0.0)), " "));
   }
+  if (freezes_laws || has_curves(model)) key += fmt::format("frozen in a hall of {} K\n", model.hall.at(0.0));
   const auto numbers = [](const Eigen::VectorXd& v) {
     return fmt::format("{}", fmt::join(v.data(), v.data() + v.size(), " "));
   };
@@ -301,8 +381,9 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
   if (store.empty()) return std::nullopt;
   const std::filesystem::path folder = folder_of(store, key);
   std::error_code missing;
-  if (!std::filesystem::exists(folder / "key.txt", missing) || bytes_of(folder / "key.txt") != key) return std::nullopt;
+  if (!std::filesystem::exists(folder / "key.txt", missing)) return std::nullopt;
   try {
+    if (bytes_of(folder / "key.txt") != key) return std::nullopt;
     const Json json = Json::parse(bytes_of(folder / "model.json"));
     ReducedMachine machine;
     machine.n_unknowns = json.at("n_unknowns");
@@ -319,8 +400,10 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
       };
       machine.modal = {read("bare"), read("completed")};
     }
-    machine.temperature = read_npy<float>(folder / "temperature.npy");
-    machine.displacement_m = read_npy<float>(folder / "displacement_m.npy");
+    const bool has_fields = json.at("has_fields");
+    const Eigen::Index size = has_fields ? machine.system.size() : 0, n_nodes = has_fields ? machine.mesh.n_nodes() : 0;
+    machine.temperature = array_of<float>(folder / "temperature.npy", n_nodes, size);
+    machine.displacement_m = array_of<float>(folder / "displacement_m.npy", 3 * n_nodes, size);
     return machine;
   } catch (const InputError&) {
   } catch (const nlohmann::json::exception&) {
@@ -335,32 +418,18 @@ void save_machine(const std::filesystem::path& store, const std::string& key, co
   std::error_code failed;
   std::filesystem::create_directories(work, failed);
   if (failed) throw InputError(fmt::format("{}: {}", work.string(), failed.message()));
-  Json json = {
-      {"n_unknowns", machine.n_unknowns},       {"regions", machine.mesh.regions},
-      {"error_K", machine.error.temperature_K}, {"error_m", machine.error.displacement_m},
-      {"error_rad", machine.error.angle_rad},   {"system", write_system(machine.system, machine.start, in_folder(work))}};
-  if (machine.modal) {
-    const auto write = [&](const char* name, const compensation::ModalPredictor& p) {
-      json["modal"][name] = {{"time_constant_s", p.time_constant_s},
-                             {"system", write_system(p.system, p.start, in_folder(work, fmt::format("modal_{}_", name)))}};
-    };
-    write("bare", machine.modal->bare);
-    write("completed", machine.modal->completed);
+  try {
+    write_machine(work, key, machine);
+  } catch (...) {  // a full disk is not filled further
+    std::filesystem::remove_all(work, failed);
+    throw;
   }
-  write_mesh(machine.mesh, in_folder(work));
-  write_npy(work / "temperature.npy", machine.temperature);
-  write_npy(work / "displacement_m.npy", machine.displacement_m);
-  const auto write = [&](const char* name, const std::string& text) {
-    std::ofstream file(work / name, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) throw InputError(fmt::format("{}: cannot be written; is the disk full?", (work / name).string()));
-  };
-  write("model.json", json.dump());
-  write("key.txt", key);
-  std::filesystem::remove_all(folder, failed);
+  const std::filesystem::path old = folder.string() + fmt::format(".old-{}", ::getpid());
+  std::error_code none, ignored;
+  std::filesystem::rename(folder, old, none);  // a damaged one
   std::filesystem::rename(work, folder, failed);
-  if (failed) std::filesystem::remove_all(work, failed);  // another process was first
+  if (failed) std::filesystem::remove_all(work, ignored);  // another process was first
+  if (!none) std::filesystem::remove_all(old, ignored);
 }
 
 void export_reduced(const ReducedSystem& system, const Eigen::VectorXd& start, const solver::ReductionError& error,

@@ -159,7 +159,9 @@ void bind_laws(solver::ReducedSystem& system, const effects::HeatBalance& balanc
   for (const effects::Film& f : balance.films) exchanges.push_back(&f.htc_W_m2K);
   for (const effects::Link& l : balance.links) exchanges.push_back(&l.conductance_W_K);
   for (const effects::Contact& c : balance.contacts) exchanges.push_back(&c.conductance_W_m2K);
-  if (system.sources.size() != balance.heats.size() || system.exchanges.size() < exchanges.size() ||
+  const auto n_of_laws = std::count_if(system.exchanges.begin(), system.exchanges.end(),
+                                       [](const auto& e) { return !e.prescribes; });  // the others come last
+  if (system.sources.size() != balance.heats.size() || static_cast<std::size_t>(n_of_laws) != exchanges.size() ||
       system.thermostats.size() != balance.thermostats.size()) {
     throw std::logic_error("bind_laws: a reduced system of another balance");
   }

@@ -46,6 +46,7 @@ struct ReducedMachine {
 
 /// Gives a reduced system, whose laws may be missing or another scenario's, the laws, switches and times of this balance.
 /// @param balance  as reducible() made it
+/// @throws std::logic_error  for a system of a balance of another structure
 void bind_laws(solver::ReducedSystem& system, const effects::HeatBalance& balance);
 
 }  // namespace driftwright::scenarios

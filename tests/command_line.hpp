@@ -11,6 +11,10 @@
 
 namespace driftwright {
 
+/// Programs that tests start keep reduced models in the test's own folder: neither does an older model help a test to pass, nor is
+/// the user's cache touched.
+inline const bool kHasOwnCache = setenv("XDG_CACHE_HOME", (temporary_folder() / "cache").c_str(), 1) == 0;
+
 struct CommandOutcome {
   int exit_code = -1;
   std::string output;  ///< standard output and standard error

@@ -5,43 +5,17 @@
 #include <gtest/gtest.h>
 
 #include "base/record.hpp"
-#include "mesh/topology.hpp"
+#include "tests/column_and_head.hpp"
 #include "tests/command_line.hpp"
-#include "tests/fixtures.hpp"
 
 namespace driftwright {
 namespace {
 
+using fixtures::column_and_head;
+using fixtures::inp_text;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-/// Abaqus text of a mesh in mm: element 100 + c, node 10 + n, one ELSET a region.
-std::string inp_text(const mesh::Mesh& m) {
-  std::string text = "*NODE\n";
-  for (int n = 0; n < m.n_nodes(); ++n) {
-    text += fmt::format("{}, {:.12g}, {:.12g}, {:.12g}\n", 10 + n, 1e3 * m.coords(0, n), 1e3 * m.coords(1, n),
-                        1e3 * m.coords(2, n));
-  }
-  for (std::size_t r = 0; r < m.regions.size(); ++r) {
-    text += fmt::format("*ELEMENT, TYPE=C3D20, ELSET={}\n", m.regions[r]);
-    for (int c : m.cells_in(static_cast<int>(r))) {
-      text += fmt::format("{}", 100 + c);
-      int i = 0;
-      for (int n : m.cells.nodes(c)) text += fmt::format(",{}{}", ++i == 16 ? "\n" : " ", 10 + n);
-      text += "\n";
-    }
-  }
-  return text;
-}
-
-/// A column of 100 x 100 x 300 mm with a head of 100 x 200 x 100 mm on it, that share no nodes.
-mesh::Mesh machine_mesh() {
-  mesh::Mesh m;
-  fixtures::add_box(m, {{0, 0, 0}, {0.1, 0.1, 0.3}, {2, 2, 4}, mesh::CellShape::kHex20}, "column", "c.");
-  fixtures::add_box(m, {{0, 0, 0.3}, {0.1, 0.2, 0.1}, {2, 3, 2}, mesh::CellShape::kHex20}, "head", "h.");
-  return m;
-}
 
 const char* const kScenario = R"(name: imported
 reference_temperature: 20 degC
@@ -81,7 +55,7 @@ std::filesystem::path write_scenario(const std::string& name, std::string scenar
 }
 
 TEST(ImportedScenario, IsCheckedMeshedAndSimulated) {
-  const auto folder = write_scenario("imported", kScenario, inp_text(machine_mesh()));
+  const auto folder = write_scenario("imported", kScenario, inp_text(column_and_head()));
   const std::string scenario = (folder / "scenario.yaml").string();
   const CommandOutcome check = run_program("check " + scenario);
   EXPECT_EQ(check.exit_code, 0) << check.output;
@@ -101,7 +75,7 @@ TEST(ImportedScenario, IsCheckedMeshedAndSimulated) {
 }
 
 TEST(ImportedScenario, ReadsTheMeshThatTheProgramWrote) {
-  const auto folder = write_scenario("rewritten", kScenario, inp_text(machine_mesh()));
+  const auto folder = write_scenario("rewritten", kScenario, inp_text(column_and_head()));
   const std::string out = (folder / "out").string();
   const CommandOutcome first = run_program("mesh " + (folder / "scenario.yaml").string() + " -o " + out);
   ASSERT_EQ(first.exit_code, 0) << first.output;
@@ -116,7 +90,7 @@ TEST(ImportedScenario, ReadsTheMeshThatTheProgramWrote) {
 }
 
 TEST(ImportedScenario, FieldsFormatChoosesTheFilesAndTheTerminalNamesTheOneToOpen) {
-  const auto folder = write_scenario("fields_format", kScenario, inp_text(machine_mesh()));
+  const auto folder = write_scenario("fields_format", kScenario, inp_text(column_and_head()));
   const std::string solver = "solver: {output_interval: 100 h}";
   const auto run = [&](const std::string& name, const std::string& settings) {
     std::string text = kScenario;
@@ -149,7 +123,7 @@ TEST(ImportedScenario, FieldsFormatChoosesTheFilesAndTheTerminalNamesTheOneToOpe
 }
 
 TEST(ImportedScenario, AFilmInsideABodyIsRefused) {
-  std::string inp = inp_text(machine_mesh());
+  std::string inp = inp_text(column_and_head());
   inp += "*SURFACE, NAME=inner\n100, S2\n";  // upper face of the lowest element of the column, under another one
   std::string text = kScenario;
   text.replace(text.find("surface: outside, film"), 22, "surface: inner, film");
@@ -168,7 +142,7 @@ struct Mistake {
 class BadImport : public ::testing::TestWithParam<Mistake> {};
 
 TEST_P(BadImport, EndsWithTwoAndSaysWhy) {
-  std::string files[] = {kScenario, inp_text(machine_mesh())};
+  std::string files[] = {kScenario, inp_text(column_and_head())};
   bool found = false;
   for (std::string& text : files) {
     const auto at = text.find(GetParam().right);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
@@ -131,6 +132,45 @@ TEST(ReductionDemand, LooksAtBothSidesOfEachChangeAndOfEachThermostat) {
   EXPECT_DOUBLE_EQ(demand.high[0], 16.0);
   EXPECT_DOUBLE_EQ(demand.low[1], 0.0);
   EXPECT_DOUBLE_EQ(demand.high[1], 32.0);
+}
+
+TEST(ReductionDemand, IncludesOthersInAnyOrderAndWidensOnlyWhatDiffers) {
+  const auto of = [](double power_W, double low, double high, double hall_K, double duration_s) {
+    ReductionDemand d;
+    d.power_W = Eigen::VectorXd::Constant(1, power_W);
+    d.low = Eigen::Vector2d(low, 30.0);  // the second never moves
+    d.high = Eigen::Vector2d(high, 30.0);
+    d.hall_K = hall_K;
+    d.duration_s = duration_s;
+    return d;
+  };
+  const std::vector<ReductionDemand> demands = {of(64, 9, 9, 1, 4096), of(32, 9, 9, 4, 3600), of(128, 13, 13, 2, 8192),
+                                                of(16, 0, 2, 1, 3600)};
+  ReductionDemand same = demands[0];
+  same.include(demands[1]);
+  EXPECT_EQ(same.low, demands[0].low);  // constants that agree are kept as they are
+  EXPECT_EQ(same.high, demands[0].high);
+  EXPECT_EQ(same.points().size(), 1u);
+  EXPECT_DOUBLE_EQ(same.power_W[0], 64.0);
+  EXPECT_DOUBLE_EQ(same.hall_K, 4.0);
+  EXPECT_DOUBLE_EQ(same.duration_s, 4096.0);
+  same.include(demands[2]);
+  EXPECT_DOUBLE_EQ(same.low[0], 8.0);  // 9 and 13, outwards to powers of two
+  EXPECT_DOUBLE_EQ(same.high[0], 16.0);
+  EXPECT_DOUBLE_EQ(same.low[1], 30.0);
+  EXPECT_DOUBLE_EQ(same.high[1], 30.0);
+  EXPECT_EQ(same.points().size(), 3u);
+  std::vector<std::size_t> order = {0, 1, 2, 3};
+  do {
+    ReductionDemand all = demands[order[0]];
+    for (std::size_t i : {1u, 2u, 3u}) all.include(demands[order[i]]);
+    all.include(all);
+    EXPECT_EQ(all.low, Eigen::Vector2d(0.0, 30.0));
+    EXPECT_EQ(all.high, Eigen::Vector2d(16.0, 30.0));
+    EXPECT_DOUBLE_EQ(all.power_W[0], 128.0);
+    EXPECT_DOUBLE_EQ(all.hall_K, 4.0);
+    EXPECT_DOUBLE_EQ(all.duration_s, 8192.0);
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 
 TEST(KrylovReduction, SaysWhenHeatHasNoWayOutOrTheToleranceIsOutOfReach) {

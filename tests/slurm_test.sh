@@ -13,6 +13,7 @@ for needed in munged slurmctld slurmd sbatch; do
 done
 
 work=$(mktemp -d)
+export XDG_CACHE_HOME=$work/cache
 started=()
 clean_up() {
   for pid in "${started[@]}"; do kill "$pid" 2> /dev/null || true; done

@@ -1,0 +1,77 @@
+#include "base/config_tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/temporary_file.hpp"
+
+namespace driftwright {
+namespace {
+
+std::string line_of(const std::string& yaml) {
+  return written(*read_config_tree(write_file("tree.yaml", yaml)));
+}
+
+TEST(WrittenTree, IsTheSameHoweverTheFileIsLaidOut) {
+  const std::string flow = "{name: a b, list: [1, 2 mm, {deep: x}], none: ~}";
+  const std::string block = "# a comment\nname: 'a b'   # and one more\nlist:\n  - 1\n\n  - \"2 mm\"\n  - deep: x\nnone:\n";
+  EXPECT_EQ(line_of(flow), line_of(block));
+  EXPECT_EQ(line_of(flow), line_of(flow));
+  EXPECT_NE(line_of(flow), "");
+}
+
+TEST(WrittenTree, AnAliasIsWrittenAsWhatItStandsFor) {
+  EXPECT_EQ(line_of("{a: &x [1, 2], b: *x}"), line_of("{a: [1, 2], b: [1, 2]}"));
+}
+
+TEST(WrittenTree, DiffersWhereTreesDiffer) {
+  // Among them texts that look like the tree they are not.
+  const std::vector<std::string> trees = {"{a: 1, b: 2}",
+                                          "{b: 2, a: 1}",
+                                          "{a: 1, b: 3}",
+                                          "{a: 1}",
+                                          "[a, 1]",
+                                          "[[a], 1]",
+                                          "[[a, 1]]",
+                                          "['a, 1']",
+                                          R"(['a", "1'])",
+                                          R"(['a\', '1'])",
+                                          R"(['a\\', '1'])",
+                                          "{a: ''}",
+                                          "{a: ~}",
+                                          "{a: '~'}",
+                                          "{a: []}",
+                                          "{a: {}}",
+                                          "{a: '[]'}",
+                                          R"({a: "x\ny"})",
+                                          R"({a: 'x\ny'})",
+                                          R"({a: "x y"})",
+                                          R"({'a: "1", b': 2})",
+                                          R"({'a: {"b"': 2})",
+                                          "{a: {b: 2}}",
+                                          R"({a: "ä"})",
+                                          R"({a: "a"})",
+                                          "a",
+                                          "~",
+                                          "''",
+                                          R"({'a, b': 1})"};
+  std::set<std::string> lines;
+  for (const std::string& tree : trees) EXPECT_TRUE(lines.insert(line_of(tree)).second) << tree << " -> " << line_of(tree);
+}
+
+TEST(WrittenTree, IsOneLine) {
+  EXPECT_EQ(line_of("{a: \"x\\ny\", b: [\"\\r\", 1]}").find('\n'), std::string::npos);
+}
+
+TEST(WrittenTree, AnEditShowsAndItsUndoIsTheSameAgain) {
+  const ConfigNodePtr tree = read_config_tree(write_file("edited.yaml", "{a: [1, 2], b: 3}"));
+  const std::vector<std::size_t> steps = {0, 1};
+  const ConfigNodePtr edited = replaced(tree, steps, scalar_at(*tree, "5")),
+                      undone = replaced(edited, steps, scalar_at(*tree, "2"));
+  EXPECT_NE(written(*edited), written(*tree));
+  EXPECT_EQ(written(*undone), written(*tree));
+}
+
+}  // namespace
+}  // namespace driftwright
