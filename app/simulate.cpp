@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/results.hpp"
 #include "app/run_report.hpp"
 #include "app/verbs.hpp"
+#include "scenarios/machine_store.hpp"
 
 namespace driftwright::app {
 
@@ -41,6 +44,16 @@ void simulate(const SimulateOptions& options) {
     summary += fmt::format("; energy balance {:.0e}; {}\n", std::max(1e-16, run.trajectory.energy_gap()), file);
     const std::string overshoot = overshoot_text(run.trajectory, machine);
     if (!overshoot.empty()) summary += "    " + overshoot + "\n";
+  }
+  if (const scenarios::ReducedMachine* reduced = machine.reduced(); reduced && machine.is_linear()) {
+    std::vector<Drive> drives = {Drive{}};
+    for (const Cyclogram* c : cyclograms) {
+      for (const auto& section : c->sections) {
+        if (std::find(drives.begin(), drives.end(), section.drive) == drives.end()) drives.push_back(section.drive);
+      }
+    }
+    scenarios::export_reduced(reduced->system, reduced->start, reduced->error, drives,
+                              [&](const std::string& file) { return folder.path("reduced_model/" + file); });
   }
   folder.write_text("report.html",
                     output::render_html(simulation_report(scenario, machine, cyclograms, runs, folder.made_by())));
