@@ -83,7 +83,8 @@ def write_calculix(path, x, cells, region, exterior, bottom_nodes, sensors, tip)
     assert outside.sum() == len(exterior)
     with open(path, "w") as file:
         file.write("*NODE, NSET=NALL\n")
-        np.savetxt(file, np.column_stack([np.arange(1, len(x) + 1), x]), fmt="%d, %.16g, %.16g, %.16g")
+        # CalculiX cuts numbers after 20 characters, and stops at what is left.
+        np.savetxt(file, np.column_stack([np.arange(1, len(x) + 1), x]), fmt="%d, %.12g, %.12g, %.12g")
         quadratic = cells.shape[1] == 10
         file.write("*ELEMENT, TYPE=%s, ELSET=EALL\n" % ("C3D10" if quadratic else "C3D4"))
         e = cells[:, [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]] if quadratic else cells  # Gmsh lists the last two edges the other way

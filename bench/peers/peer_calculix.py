@@ -74,7 +74,13 @@ def main():
             file.write(",".join("%.9g" % x for x in [t_s / 60.0] + values) + "\n")
             n += 1
     n_all = sum(minutes for minutes, _ in case.CYCLOGRAM)
-    note = "" if n >= n_all else "cut short; projected %.0f s" % (outcome["wall_s"] * n_all / n) if n else "cut short in the first minute"
+    note = ""
+    if outcome["exit_code"] > 0:
+        note = "failed; see its log"
+    elif n == 0:
+        note = "cut short in the first minute"
+    elif n < n_all:
+        note = "cut short; projected %.0f s" % (outcome["wall_s"] * n_all / n)
     timed.report(options.folder, options.name, outcome, n, note)
 
 

@@ -21,8 +21,8 @@ done
 shift $((OPTIND - 1))
 [ $# -gt 0 ] || { echo "how many nodes? run.sh 20000 97000" >&2; exit 2; }
 python=/usr/bin/python3   # Debian's, which has gmsh
-"$top/driftwright" --version   # builds it where needed
-program=$top/driftwright
+program=${PROGRAM:-$top/driftwright}   # a built one, or the script that builds it first
+"$program" --version
 openblas=${OPENBLAS_FOLDER:-/usr/lib/x86_64-linux-gnu/openblas-pthread}
 freefem() { env LD_LIBRARY_PATH="$openblas" OPENBLAS_NUM_THREADS=1 "$python" "$here/peer_freefem.py" "$@"; }
 # Peers that would take much longer than this are cut short; CalculiX is projected.

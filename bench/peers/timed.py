@@ -2,7 +2,6 @@
 import json
 import os
 import resource
-import signal
 import subprocess
 import time
 
@@ -13,13 +12,9 @@ def run(command, log, cap_s, environment=None, folder=None):
     start = time.time()
     with open(log, "w") as file:
         # GNU time tells the peak of this process alone, getrusage that of the largest child ever.
-        process = subprocess.Popen(["/usr/bin/time", "-f", "%M", "-o", log + ".peak"] + command, stdout=file, stderr=file,
-                                   env={**os.environ, **(environment or {})}, cwd=folder, start_new_session=True)
-        try:
-            process.wait(timeout=cap_s)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
+        # In the foreground timeout(1) waits for what it kills, so that its CPU time counts.
+        process = subprocess.run(["/usr/bin/time", "-f", "%M", "-o", log + ".peak", "timeout", "--foreground", "-s", "KILL", str(cap_s)] + command,
+                                 stdout=file, stderr=file, env={**os.environ, **(environment or {})}, cwd=folder)
     wall_s = time.time() - start
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
@@ -28,7 +23,7 @@ def run(command, log, cap_s, environment=None, folder=None):
         os.remove(log + ".peak")
     except (OSError, ValueError, IndexError):
         peak_MB = float("nan")
-    return {"exit_code": process.returncode, "wall_s": wall_s, "user_s": after.ru_utime - before.ru_utime,
+    return {"exit_code": -9 if process.returncode == 137 else process.returncode, "wall_s": wall_s, "user_s": after.ru_utime - before.ru_utime,
             "system_s": after.ru_stime - before.ru_stime, "peak_MB": peak_MB}
 
 
