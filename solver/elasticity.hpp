@@ -36,10 +36,10 @@ struct StressFunctional {
 /// How K u = f is solved.
 enum class ElasticMethod { kAutomatic, kFactor, kMultigrid };
 
-/// Up to here a Cholesky factor takes a second and a few hundred megabytes, and each solve after it is cheap. Above, multigrid needs
+/// Up to here a Cholesky factor takes a fraction of a second, and each solve after it is cheap. Above, multigrid needs
 /// less time in all for a few solves, and far less memory; a factor pays from 10 solves at 57 000 unknowns and from 20 at 279 000
 /// (docs/performance.md), as long as it fits into half of the memory.
-inline constexpr int kMostUnknownsToFactorise = 60000;
+inline constexpr int kMostUnknownsToFactorise = 20000;
 [[nodiscard]] bool factor_pays(int n_unknowns, int n_solves);
 
 /// Of multigrid's solutions, in the norm of K. A displacement d = l'K⁻¹f is then wrong by less than this times

@@ -248,10 +248,12 @@ TEST(ElasticityByMultigrid, GivesTheSameBytesOnOneThreadAndTwo) {
 }
 
 TEST(ElasticMethod, AFactorPaysForSmallMachinesAndForManySolves) {
-  // 10 solves at 57 000 unknowns and about 20 at 279 000, as measured; all up to 60 000.
+  // 10 solves at 57 000 unknowns and about 20 at 279 000, as measured; all up to 20 000.
   EXPECT_TRUE(factor_pays(kMostUnknownsToFactorise, 1));
-  EXPECT_FALSE(factor_pays(kMostUnknownsToFactorise + 1, 10));
-  EXPECT_TRUE(factor_pays(kMostUnknownsToFactorise + 1, 11));
+  EXPECT_FALSE(factor_pays(kMostUnknownsToFactorise + 1, 6));
+  EXPECT_TRUE(factor_pays(kMostUnknownsToFactorise + 1, 7));
+  EXPECT_FALSE(factor_pays(57000, 9));
+  EXPECT_TRUE(factor_pays(57000, 11));
   EXPECT_FALSE(factor_pays(279000, 18));
   EXPECT_TRUE(factor_pays(279000, 22));
   EXPECT_FALSE(factor_pays(2000000, 40));
