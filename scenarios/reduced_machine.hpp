@@ -11,7 +11,7 @@ namespace driftwright::scenarios {
 /// What a reduced model is made for.
 struct ReductionPlan {
   solver::ReductionDemand demand;
-  double tolerance_K = 20e-3;
+  double tolerance_K = 8e-3;
   Drive typical;            ///< mean drive, which the modal predictors freeze laws of temperature at
   int n_modes = 20;         ///< of the modal predictors; 0: none of them
   bool with_fields = true;  ///< whether displacements everywhere may be asked for

@@ -63,7 +63,7 @@ enum class ModelKind {
 struct SolverSettings {
   ModelKind model = ModelKind::kFull;
   double reduction_tolerance_K =
-      20e-3;  ///< error of the reduced model against the full one, estimated; with 2 um/K and 20 urad/K
+      8e-3;  ///< error of the reduced model against the full one, estimated; with 2 um/K and 20 urad/K
   solver::TransientOptions transient;
   double output_interval_s = 60.0;
   double fields_every_s = 1800.0;
