@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/version.hpp"
+#include "scenarios/machine_key.hpp"
 #include "scenarios/machine_store.hpp"
 #include "scenarios/ways_out.hpp"
 

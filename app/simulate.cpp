@@ -5,7 +5,7 @@
 #include "app/results.hpp"
 #include "app/run_report.hpp"
 #include "app/verbs.hpp"
-#include "scenarios/machine_store.hpp"
+#include "scenarios/reduced_files.hpp"
 
 namespace driftwright::app {
 

@@ -1,6 +1,8 @@
 // Reduced machines on disk: what is found is what was kept, and nothing else is ever found.
 
+#include "scenarios/machine_key.hpp"
 #include "scenarios/machine_store.hpp"
+#include "scenarios/reduced_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

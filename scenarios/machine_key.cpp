@@ -1,0 +1,124 @@
+#include "scenarios/machine_key.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/file_bytes.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+constexpr int kFormat = 1;  // of the folders; a new one makes all others unknown
+
+std::string words(const effects::Body& body) {
+  const char* kinds[] = {"region", "surface", "node"};
+  return fmt::format("{} {}", kinds[static_cast<int>(body.kind)], body.name);
+}
+
+std::string words(const effects::Law& law) {
+  std::vector<std::string> probes;
+  for (const effects::Body& b : law.probes) probes.push_back(words(b));
+  return fmt::format("looks at [{}] switched by '{}'", fmt::join(probes, ", "), law.thermostat);
+}
+
+/// Everything of a balance but its laws' numbers.
+std::string structure(const effects::HeatBalance& balance) {
+  std::string text;
+  const auto add = [&](const char* what, const auto&... parts) {
+    text += what;
+    ((text += fmt::format(" | {}", parts)), ...);
+    text += "\n";
+  };
+  for (const auto& h : balance.heats) add("heat", h.name, words(h.body), words(h.power_W));
+  for (const auto& f : balance.films) add("film", f.name, f.surface, f.surrounding, words(f.htc_W_m2K));
+  for (const auto& l : balance.links) add("link", l.name, words(l.body), l.surrounding, words(l.conductance_W_K));
+  for (const auto& c : balance.contacts) add("contact", c.name, c.joint, words(c.conductance_W_m2K));
+  for (const auto& r : balance.radiations) add("radiation", r.name, r.surface, r.surrounding);
+  for (const auto& n : balance.nodes) add("node", n.name, n.capacity_J_K);
+  for (const auto& f : balance.fixed) {
+    add("fixed", f.name, words(f.body), f.follows_hall, fmt::format("{}", fmt::join(f.temperature_K.value, ", ")));
+  }
+  for (const auto& s : balance.stratifications) add("stratification", s.gradient_K_m, s.level_m);
+  for (const auto& t : balance.thermostats) add("thermostat", t.name, words(t.probe));
+  return text;
+}
+
+bool looks_at_temperatures(const effects::HeatBalance& balance) {
+  const auto any = [](const auto& entries, auto law) {
+    return std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return !(e.*law).probes.empty(); });
+  };
+  return any(balance.heats, &effects::HeatInput::power_W) || any(balance.films, &effects::Film::htc_W_m2K) ||
+         any(balance.links, &effects::Link::conductance_W_K) || any(balance.contacts, &effects::Contact::conductance_W_m2K);
+}
+
+std::string numbers_of_laws(const MachineModel& model) {
+  std::string text;
+  for (const effects::Effect& e : model.effects) {
+    text += fmt::format("{}: {}", e.name(), fmt::join(e.values, " "));
+    for (const auto& [name, word] : e.words) text += fmt::format(" {} {}", name, word);
+    for (const auto& [name, table] : e.tables) {
+      text += fmt::format(" {} {} {}", name, fmt::join(table.time_s, " "), fmt::join(table.value, " "));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// Of a balance whose laws do not look at temperatures.
+std::vector<double> coefficients_at_standstill(const effects::HeatBalance& balance, double hall_K) {
+  const effects::Inputs standstill{.drive = {}, .hall_K = hall_K};
+  std::vector<double> values;
+  for (const auto& f : balance.films) values.push_back(f.htc_W_m2K(standstill));
+  for (const auto& l : balance.links) values.push_back(l.conductance_W_K(standstill));
+  for (const auto& c : balance.contacts) values.push_back(c.conductance_W_m2K(standstill));
+  return values;
+}
+
+bool has_curves(const MachineModel& model) {
+  return std::any_of(model.materials.begin(), model.materials.end(), [](const MaterialEntry& entry) {
+    return !entry.material.conductivity_curve.empty() || !entry.material.heat_capacity_curve.empty();
+  });
+}
+
+}  // namespace
+
+std::string machine_text(const MachineModel& model) {
+  const effects::HeatBalance balance = effects::heat_balance(model.effects);
+  std::string text = model.written + structure(balance);
+  if (const auto* imported = std::get_if<mesh::ImportedMesh>(&model.mesh)) {
+    const std::string bytes = read_bytes(imported->path);
+    text += fmt::format("mesh file of {} bytes, {:016x}\n", bytes.size(), fnv1a(bytes));
+  }
+  if (model.start == Start::kHall || model.start == Start::kSteady || !balance.fixed.empty()) {
+    text += fmt::format("hall at the start {} K\n", model.hall.at(0.0));
+  }
+  if (model.start == Start::kSteady) text += numbers_of_laws(model);
+  return text;
+}
+
+std::string machine_key(const MachineModel& model, const ReductionPlan& plan, const std::string& version) {
+  const effects::HeatBalance balance = reducible(effects::heat_balance(model.effects));
+  std::string key = fmt::format("driftwright {} store {}\n{}\n", version, kFormat, machine_text(model));
+  const bool makes_modes = plan.n_modes > 0 && balance.thermostats.empty();
+  const bool freezes_laws = makes_modes && looks_at_temperatures(balance);
+  if (freezes_laws) {  // modal predictors are frozen at the typical drive
+    const Drive& t = plan.typical;
+    key += fmt::format("typical {} {} {}\n", t.speed_rpm, fmt::join(t.feed_m_s, " "), t.cutting_power_W);
+    key += numbers_of_laws(model);
+  } else if (makes_modes) {  // or taken at standstill
+    key += fmt::format("at standstill {}\n", fmt::join(coefficients_at_standstill(balance, model.hall.at(0.0)), " "));
+  }
+  if (freezes_laws || has_curves(model)) key += fmt::format("frozen in a hall of {} K\n", model.hall.at(0.0));
+  const auto numbers = [](const Eigen::VectorXd& v) {
+    return fmt::format("{}", fmt::join(v.data(), v.data() + v.size(), " "));
+  };
+  const solver::ReductionDemand& d = plan.demand;
+  key +=
+      fmt::format("power {}\nlow {}\nhigh {}\nhall {} K, {} s, tolerance {} K, {} modes, fields {}\n", numbers(d.power_W),
+                  numbers(d.low), numbers(d.high), d.hall_K, d.duration_s, plan.tolerance_K, plan.n_modes, plan.with_fields);
+  return key;
+}
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,183 @@
+#include "scenarios/reduced_files.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/file_bytes.hpp"
+#include "base/npy_file.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+using solver::BoundLaw;
+using solver::ReducedSystem;
+using Json = nlohmann::ordered_json;
+
+/// Vectors side by side; empty ones as zeros.
+Eigen::MatrixXd side_by_side(Eigen::Index rows, const std::vector<Eigen::VectorXd>& columns) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].size() > 0) matrix.col(static_cast<Eigen::Index>(i)) = columns[i];
+  }
+  return matrix;
+}
+
+Json law_json(const std::string& name, const BoundLaw& law) {
+  return {{"name", name}, {"probes", law.probes}, {"thermostat", law.thermostat}, {"frozen_K", law.frozen_K}};
+}
+
+BoundLaw law_from(const Json& json) {
+  BoundLaw law;
+  law.probes = json.at("probes").get<std::vector<int>>();
+  law.thermostat = json.at("thermostat");
+  law.frozen_K = json.at("frozen_K").get<std::vector<double>>();
+  return law;
+}
+
+constexpr const char* kReader =
+    R"(# Reads the reduced model beside this file: dz/dt = -K(c) z + loads P + to_hall c T_hall + offset c,  y = outputs' z + outputs_hall T_hall.
+# z(0) = start; temperatures in K over reference_K, displacements in m, tilts in rad. c and P at some drives: model.json, "drives".
+import json, os, numpy as np
+here = os.path.dirname(os.path.abspath(__file__))
+model = json.load(open(os.path.join(here, "model.json")))
+a = {n: np.load(os.path.join(here, n + ".npy")) for n in
+     "conduction exchanges to_hall offset loads outputs outputs_hall start".split()}
+r = model["size"]
+G = a["exchanges"].reshape(-1, r, r)  # one symmetric matrix per exchange
+def K(c): return a["conduction"] + np.tensordot(c, G, 1)
+def ABC(drive):  # u = [P of each source, T_hall, 1]
+    c, col = np.array(drive["coefficients"]), lambda x: x.reshape(r, -1)
+    B = np.column_stack([col(a["loads"]), col(a["to_hall"]) @ c, col(a["offset"]) @ c])
+    return -K(c), B, a["outputs"].reshape(r, -1).T
+)";
+
+}  // namespace
+
+template <class Scalar>
+Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> array_of(const std::filesystem::path& path, Eigen::Index rows,
+                                                               Eigen::Index columns) {
+  auto values = read_npy<Scalar>(path);
+  if (values.rows() != rows || values.cols() != columns) {
+    throw InputError(
+        fmt::format("{}: {} x {} values, not {} x {}", path.string(), values.rows(), values.cols(), rows, columns));
+  }
+  return values;
+}
+
+template Eigen::MatrixXd array_of<double>(const std::filesystem::path&, Eigen::Index, Eigen::Index);
+template Eigen::MatrixXf array_of<float>(const std::filesystem::path&, Eigen::Index, Eigen::Index);
+
+/// Arrays of a reduced system as .npy files; returns the names and numbers beside them.
+Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, const FileOf& file) {
+  const auto r = static_cast<Eigen::Index>(system.size());
+  Json json = {{"size", system.size()}, {"reference_K", system.reference_K}};
+  std::vector<Eigen::VectorXd> loads, to_hall, flow, offset, probes;
+  Eigen::MatrixXd matrices(r * static_cast<Eigen::Index>(system.exchanges.size()), r);
+  for (const auto& s : system.sources) {
+    loads.push_back(s.load);
+    json["sources"].push_back(law_json(s.name, s.power_W));
+  }
+  for (std::size_t i = 0; i < system.exchanges.size(); ++i) {
+    const auto& e = system.exchanges[i];
+    matrices.middleRows(r * static_cast<Eigen::Index>(i), r) = e.matrix;
+    to_hall.push_back(e.to_hall);
+    flow.push_back(e.flow);
+    offset.push_back(e.offset);
+    Json entry = law_json(e.name, e.coefficient);
+    entry["hall_sum"] = e.hall_sum;
+    entry["offset_sum"] = e.offset_sum;
+    entry["has_offset"] = e.offset.size() > 0;
+    entry["prescribes"] = e.prescribes;
+    json["exchanges"].push_back(std::move(entry));
+  }
+  for (const auto& p : system.probes) {
+    probes.push_back(p.weights);
+    json["probes"].push_back({{"hall_share", p.hall_share}, {"offset_K", p.offset_K}});
+  }
+  for (const auto& t : system.thermostats) json["thermostat_probes"].push_back(t.probe);
+  json["outputs"] = {{"name", system.outputs.name}, {"unit", system.outputs.unit}};
+  write_npy(file("conduction.npy"), system.conduction);
+  write_npy(file("exchanges.npy"), matrices);
+  write_npy(file("to_hall.npy"), side_by_side(r, to_hall));
+  write_npy(file("flow.npy"), side_by_side(r, flow));
+  write_npy(file("offset.npy"), side_by_side(r, offset));
+  write_npy(file("loads.npy"), side_by_side(r, loads));
+  write_npy(file("probes.npy"), side_by_side(r, probes));
+  write_npy(file("outputs.npy"), system.outputs.state);
+  write_npy(file("outputs_hall.npy"), system.outputs.hall);
+  write_npy(file("ones.npy"), system.ones);
+  write_npy(file("start.npy"), start);
+  return json;
+}
+
+ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance, const FileOf& file,
+                          Eigen::VectorXd& start) {
+  ReducedSystem system;
+  const Eigen::Index r = json.at("size");
+  const Json none = Json::array();
+  const auto n_of = [&](const char* key) { return static_cast<Eigen::Index>(json.value(key, none).size()); };
+  const auto array = [&](const char* name, Eigen::Index columns) { return array_of<double>(file(name), r, columns); };
+  system.reference_K = json.at("reference_K");
+  system.mass = Eigen::MatrixXd::Identity(r, r);
+  system.conduction = array("conduction.npy", r);
+  const Eigen::Index n_exchanges = n_of("exchanges");
+  const Eigen::MatrixXd matrices = array_of<double>(file("exchanges.npy"), r * n_exchanges, r),
+                        to_hall = array("to_hall.npy", n_exchanges), flow = array("flow.npy", n_exchanges),
+                        offset = array("offset.npy", n_exchanges), loads = array("loads.npy", n_of("sources")),
+                        probes = array("probes.npy", n_of("probes"));
+  Eigen::Index i = 0;
+  for (const Json& s : json.value("sources", none)) system.sources.push_back({s.at("name"), loads.col(i++), law_from(s)});
+  i = 0;
+  for (const Json& e : json.value("exchanges", none)) {
+    system.exchanges.push_back(
+        {.name = e.at("name"),
+         .matrix = matrices.middleRows(r * i, r),
+         .to_hall = to_hall.col(i),
+         .hall_sum = e.at("hall_sum"),
+         .coefficient = law_from(e),
+         .flow = flow.col(i),
+         .offset = e.at("has_offset").get<bool>() ? Eigen::VectorXd(offset.col(i)) : Eigen::VectorXd(),
+         .offset_sum = e.at("offset_sum"),
+         .prescribes = e.at("prescribes")});
+    ++i;
+  }
+  i = 0;
+  for (const Json& p : json.value("probes", none)) {
+    system.probes.push_back({probes.col(i++), p.at("hall_share"), p.at("offset_K")});
+  }
+  for (const Json& probe : json.value("thermostat_probes", none)) {
+    system.thermostats.push_back({.name = {}, .probe = probe});
+  }
+  system.outputs.name = json.at("outputs").at("name").get<std::vector<std::string>>();
+  system.outputs.unit = json.at("outputs").at("unit").get<std::vector<std::string>>();
+  const auto n_outputs = static_cast<Eigen::Index>(system.outputs.name.size());
+  system.outputs.state = array("outputs.npy", n_outputs);
+  system.outputs.hall = array_of<double>(file("outputs_hall.npy"), n_outputs, 1);
+  system.ones = array("ones.npy", 1);
+  start = array("start.npy", 1);
+  bind_laws(system, reducible(balance));
+  return system;
+}
+
+void export_reduced(const ReducedSystem& system, const Eigen::VectorXd& start, const solver::ReductionError& error,
+                    const std::vector<Drive>& drives, const FileOf& file) {
+  Json json = write_system(system, start, file);
+  json["error"] = {
+      {"temperature_K", error.temperature_K}, {"displacement_m", error.displacement_m}, {"angle_rad", error.angle_rad}};
+  for (const Drive& drive : drives) {
+    const effects::Inputs at{.drive = drive};
+    std::vector<double> coefficients, powers_W;
+    for (const auto& e : system.exchanges) coefficients.push_back(e.coefficient(at));
+    for (const auto& s : system.sources) powers_W.push_back(s.power_W(at));
+    json["drives"].push_back({{"speed_rpm", drive.speed_rpm},
+                              {"feed_m_s", drive.feed_m_s},
+                              {"cutting_power_W", drive.cutting_power_W},
+                              {"coefficients", coefficients},
+                              {"powers_W", powers_W}});
+  }
+  write_bytes(file("model.json"), json.dump(1) + "\n");
+  write_bytes(file("reduced_model.py"), kReader);
+}
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,37 @@
+#pragma once
+// A reduced system as files: arrays in .npy, names and numbers in JSON. For the store and for other programs.
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+
+#include "scenarios/reduced_machine.hpp"
+
+namespace driftwright::scenarios {
+
+/// Where the file of a name goes or lies.
+using FileOf = std::function<std::filesystem::path(const std::string&)>;
+
+/// Writes the arrays. @return the names and numbers beside them. @throws InputError  when a file cannot be written
+[[nodiscard]] nlohmann::ordered_json write_system(const solver::ReducedSystem& system, const Eigen::VectorXd& start,
+                                                  const FileOf& file);
+/// What write_system() has written, with the laws of a balance, as effects::heat_balance() gives it.
+/// @throws InputError  for a file that is missing, cut short or of another size
+/// @throws nlohmann::json::exception  for a name or number that is missing
+[[nodiscard]] solver::ReducedSystem read_system(const nlohmann::ordered_json& json, const effects::HeatBalance& balance,
+                                                const FileOf& file, Eigen::VectorXd& start);
+
+/// An array of known size. @throws InputError  as read_npy(), and for another size
+template <class Scalar>
+[[nodiscard]] Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> array_of(const std::filesystem::path& path,
+                                                                             Eigen::Index rows, Eigen::Index columns);
+
+/// Writes the small system for others: its matrices as .npy, names and numbers in model.json, and reduced_model.py, which reads them
+/// and makes A, B, C of dz/dt = A z + B u, y = C z (docs/reduced_model.md).
+///
+/// @param drives  at which coefficients and powers are written out; laws that look at temperatures must not stand in the system
+/// @param file    where the file of a name goes
+void export_reduced(const solver::ReducedSystem& system, const Eigen::VectorXd& start, const solver::ReductionError& error,
+                    const std::vector<Drive>& drives, const FileOf& file);
+
+}  // namespace driftwright::scenarios
