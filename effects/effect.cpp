@@ -121,6 +121,14 @@ const char* place_key(Place place) {
       return body_key(BodyKind::kNode);
     case Place::kHall:
       return "hall";
+    case Place::kSensor:
+      return "sensor";
+    case Place::kDisplacement:
+      return "displacement";
+    case Place::kClock:
+      return "clock";
+    case Place::kSpindle:
+      return "spindle";
   }
   return "";
 }
@@ -149,10 +157,10 @@ Body Effect::body() const {
     case Place::kNode:
     case Place::kHall:
       return node(place);
-    case Place::kJoint:
+    default:
       break;
   }
-  throw std::logic_error("a joint is no body");
+  throw std::logic_error(std::string("a ") + place_key(place_kind) + " is no body");
 }
 
 Effect read_effect(const ConfigMap& in) {
@@ -177,8 +185,36 @@ Effect read_effect(const ConfigMap& in) {
 
 HeatBalance heat_balance(const std::vector<Effect>& effects) {
   HeatBalance balance;
-  for (const Effect& effect : effects) effect.kind->contribute(effect, balance);
+  for (const Effect& effect : effects) {
+    if (effect.kind->contribute) effect.kind->contribute(effect, balance);
+  }
   return balance;
+}
+
+DriveChange drive_change(const std::vector<Effect>& effects) {
+  DriveChange change;
+  for (const Effect& effect : effects) {
+    if (effect.kind->change_drive) effect.kind->change_drive(effect, change);
+  }
+  return change;
+}
+
+ReadingChain reading_chain(const std::vector<Effect>& effects) {
+  ReadingChain chain;
+  for (const Effect& effect : effects) {
+    if (effect.kind->change_readings) effect.kind->change_readings(effect, chain);
+  }
+  return chain;
+}
+
+std::vector<MaterialFactor> material_factors(const std::vector<Effect>& effects) {
+  std::vector<MaterialFactor> factors;
+  for (const Effect& effect : effects) {
+    if (!effect.kind->change_material) continue;
+    factors.push_back({effect.place});
+    effect.kind->change_material(effect, factors.back());
+  }
+  return factors;
 }
 
 }  // namespace driftwright::effects

@@ -8,12 +8,15 @@
 #include <vector>
 
 #include "base/config_map.hpp"
+#include "effects/drive_change.hpp"
 #include "effects/heat_balance.hpp"
+#include "effects/material_factor.hpp"
+#include "effects/reading_chain.hpp"
 
 namespace driftwright::effects {
 
-/// What an effect's place is the name of; its YAML key is place_key(). The hall has no name and no key.
-enum class Place { kRegion, kSurface, kJoint, kNode, kHall };
+/// What an effect's place is the name of; its YAML key is place_key(). The hall, the clock and the spindle have no name and no key.
+enum class Place { kRegion, kSurface, kJoint, kNode, kHall, kSensor, kDisplacement, kClock, kSpindle };
 [[nodiscard]] const char* place_key(Place place);
 
 /// A number of an effect: how it is written, what is allowed, what it means.
@@ -24,6 +27,9 @@ struct Parameter {
   double high = 0.0;
   std::optional<double> fallback;  ///< value when the key is missing; compulsory without one; kNotGiven: may be left out
   std::string meaning;
+  /// How well a user knows it: standard deviation of its logarithm. 0: a condition or a dimension, taken as it stands.
+  double scatter = 0.0;
+  std::string finding = {};  ///< key of the effect that a value far outside its scatter is called
 };
 /// Value of a parameter that was left out; Effect::has() asks for it.
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
@@ -63,6 +69,10 @@ struct EffectKind {
   std::vector<Parameter> parameters;
   /// Adds what the effect does to heat. The Effect outlives no call: copy what a Law needs.
   void (*contribute)(const Effect&, HeatBalance&) = nullptr;
+  // Or to the drive and the hall that are recorded, to what instruments say, to a material. Null: nothing.
+  void (*change_drive)(const Effect&, DriveChange&) = nullptr;
+  void (*change_readings)(const Effect&, ReadingChain&) = nullptr;
+  void (*change_material)(const Effect&, MaterialFactor&) = nullptr;
   std::vector<Reference> references = {};
   std::vector<Choice> choices = {};
   std::vector<Table> tables = {};
@@ -89,7 +99,7 @@ struct Effect {
   [[nodiscard]] double operator[](const std::string& parameter) const;
   [[nodiscard]] bool has(const std::string& parameter) const;
   [[nodiscard]] std::string name() const { return kind->key + " " + place; }
-  /// Its place as a body. @throws std::logic_error  for a joint
+  /// Its place as a body. @throws std::logic_error  for a place that is none, such as a joint
   [[nodiscard]] Body body() const;
 };
 
@@ -102,5 +112,9 @@ struct Effect {
 
 /// What a list of effects does to heat, in their order.
 [[nodiscard]] HeatBalance heat_balance(const std::vector<Effect>& effects);
+/// What it does to the recorded drive and hall, to readings, and to materials (one entry an effect).
+[[nodiscard]] DriveChange drive_change(const std::vector<Effect>& effects);
+[[nodiscard]] ReadingChain reading_chain(const std::vector<Effect>& effects);
+[[nodiscard]] std::vector<MaterialFactor> material_factors(const std::vector<Effect>& effects);
 
 }  // namespace driftwright::effects
