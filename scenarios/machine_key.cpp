@@ -10,7 +10,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr int kFormat = 1;  // of the folders; a new one makes all others unknown
+constexpr int kFormat = 2;  // of the folders; a new one makes all others unknown
 
 std::string words(const effects::Body& body) {
   const char* kinds[] = {"region", "surface", "node"};
@@ -115,9 +115,9 @@ std::string machine_key(const MachineModel& model, const ReductionPlan& plan, co
     return fmt::format("{}", fmt::join(v.data(), v.data() + v.size(), " "));
   };
   const solver::ReductionDemand& d = plan.demand;
-  key +=
-      fmt::format("power {}\nlow {}\nhigh {}\nhall {} K, {} s, tolerance {} K, {} modes, fields {}\n", numbers(d.power_W),
-                  numbers(d.low), numbers(d.high), d.hall_K, d.duration_s, plan.tolerance_K, plan.n_modes, plan.with_fields);
+  key += fmt::format("power {}\nlow {}\nhigh {}\nhall {} K, {} s, tolerance {} K, {} modes, fields {}, parts {}\n",
+                     numbers(d.power_W), numbers(d.low), numbers(d.high), d.hall_K, d.duration_s, plan.tolerance_K,
+                     plan.n_modes, plan.with_fields, plan.with_parts);
   return key;
 }
 

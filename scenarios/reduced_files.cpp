@@ -96,6 +96,20 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
     json["probes"].push_back({{"hall_share", p.hall_share}, {"offset_K", p.offset_K}});
   }
   for (const auto& t : system.thermostats) json["thermostat_probes"].push_back(t.probe);
+  if (!system.parts.empty()) {
+    const auto n_parts = static_cast<Eigen::Index>(system.parts.size()), n_outputs = system.outputs.state.cols();
+    Eigen::MatrixXd conduction(r * n_parts, r), mass(r * n_parts, r), outputs(r * n_parts, n_outputs);
+    for (Eigen::Index i = 0; i < n_parts; ++i) {
+      const auto& part = system.parts[static_cast<std::size_t>(i)];
+      conduction.middleRows(r * i, r) = part.conduction;
+      mass.middleRows(r * i, r) = part.mass;
+      outputs.middleRows(r * i, r) = part.outputs;
+      json["parts"].push_back(part.body);
+    }
+    write_npy(file("parts_conduction.npy"), conduction);
+    write_npy(file("parts_mass.npy"), mass);
+    write_npy(file("parts_outputs.npy"), outputs);
+  }
   json["outputs"] = {{"name", system.outputs.name}, {"unit", system.outputs.unit}};
   write_npy(file("conduction.npy"), system.conduction);
   write_npy(file("exchanges.npy"), matrices);
@@ -154,6 +168,17 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   const auto n_outputs = static_cast<Eigen::Index>(system.outputs.name.size());
   system.outputs.state = array("outputs.npy", n_outputs);
   system.outputs.hall = array_of<double>(file("outputs_hall.npy"), n_outputs, 1);
+  if (const Eigen::Index n_parts = n_of("parts"); n_parts > 0) {
+    const auto parts_of = [&](const char* name, Eigen::Index columns) {
+      return array_of<double>(file(name), r * n_parts, columns);
+    };
+    const Eigen::MatrixXd conduction = parts_of("parts_conduction.npy", r), mass = parts_of("parts_mass.npy", r),
+                          outputs = parts_of("parts_outputs.npy", n_outputs);
+    for (Eigen::Index p = 0; p < n_parts; ++p) {
+      system.parts.push_back({json.at("parts")[static_cast<std::size_t>(p)], conduction.middleRows(r * p, r),
+                              mass.middleRows(r * p, r), outputs.middleRows(r * p, r)});
+    }
+  }
   system.ones = array("ones.npy", 1);
   start = array("start.npy", 1);
   bind_laws(system, reducible(balance));

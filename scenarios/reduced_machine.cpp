@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scenarios/body_parts.hpp"
 #include "solver/conduction_factor.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/steady_state.hpp"
@@ -64,8 +65,9 @@ solver::RegionMaterials at_work(const Machine& machine, const effects::HeatBalan
 }
 
 /// The full system without what has no projection.
+/// @param materials  as they are frozen
 solver::FullSystem reducible_system(const MachineModel& model, const Machine& machine, const effects::HeatBalance& balance,
-                                    const solver::ReductionDemand& demand) {
+                                    const solver::ReductionDemand& demand, solver::RegionMaterials& materials) {
   for (const solver::FixedUnknowns& f : machine.system.fixed) {
     if (!f.follows_hall && f.theta.value.size() > 1) {
       throw InputError(model.where, fmt::format("{} is prescribed over time; no reduced model follows it. Take `solver: "
@@ -76,7 +78,6 @@ solver::FullSystem reducible_system(const MachineModel& model, const Machine& ma
   const mesh::Mesh& mesh = machine.placed.mesh;
   solver::FullSystem system = machine.system;
   if (!system.nonlinear.empty() || system.capacity) {
-    solver::RegionMaterials materials = machine.placed.materials;
     for (solver::Material& m : materials) {  // at the reference temperature first
       if (!m.conductivity_curve.empty()) m.conductivity_W_mK = m.conductivity_curve.at(model.reference_K);
       if (!m.heat_capacity_curve.empty()) m.heat_capacity_J_kgK = m.heat_capacity_curve.at(model.reference_K);
@@ -179,7 +180,9 @@ void bind_laws(solver::ReducedSystem& system, const effects::HeatBalance& balanc
 
 ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan) {
   const effects::HeatBalance balance = reducible(machine.placed.balance);
-  const solver::FullSystem system = reducible_system(model, machine, balance, plan.demand);
+  solver::RegionMaterials materials = machine.placed.materials;
+  solver::FullSystem system = reducible_system(model, machine, balance, plan.demand, materials);
+  if (plan.with_parts) system.parts = body_parts(model, machine, materials, balance);
   const double hall_K = model.hall.at(0.0);
   Eigen::VectorXd start = start_state(model, machine);
   for (const solver::FixedUnknowns& f : machine.system.fixed) {  // what is held jumps at once, as in simulate()

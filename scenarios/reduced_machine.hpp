@@ -15,6 +15,7 @@ struct ReductionPlan {
   Drive typical;            ///< mean drive, which the modal predictors freeze laws of temperature at
   int n_modes = 20;         ///< of the modal predictors; 0: none of them
   bool with_fields = true;  ///< whether displacements everywhere may be asked for
+  bool with_parts = false;  ///< whether another material of a region may be asked for
 };
 [[nodiscard]] ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms);
 

@@ -1,7 +1,6 @@
 #include "solver/decomposition.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <stdexcept>
 
 namespace driftwright::solver {
 namespace {
@@ -10,8 +9,7 @@ constexpr std::size_t kMostKept = 16;  // sections of a usual cyclogram
 
 }  // namespace
 
-Decompositions::Decompositions(const ReducedSystem& system) : system_(system) {
-  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("a reduced system has a unit mass matrix");
+Decompositions::Decompositions(const ReducedSystem& system) : system_(system), unit_mass_(system.mass.isIdentity(1e-8)) {
   kept_.reserve(kMostKept);
 }
 
@@ -44,9 +42,17 @@ const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient) {
     d.hall_W_K[i] = c * e.hall_sum;
     d.offset_W[i] = c * e.offset_sum;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
-  d.lambda_1_s = eigen.eigenvalues();
-  d.vectors = eigen.eigenvectors();
+  if (unit_mass_) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+    d.lambda_1_s = eigen.eigenvalues();
+    d.vectors = eigen.eigenvectors();
+    d.to_modes = d.vectors.transpose();
+  } else {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k, system_.mass);
+    d.lambda_1_s = eigen.eigenvalues();
+    d.vectors = eigen.eigenvectors();
+    d.to_modes.noalias() = d.vectors.transpose() * system_.mass;
+  }
   d.outputs.noalias() = system_.outputs.state.transpose() * d.vectors;
   d.loads.resize(n, static_cast<Eigen::Index>(system_.sources.size()));
   for (std::size_t s = 0; s < system_.sources.size(); ++s) {

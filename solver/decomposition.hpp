@@ -5,11 +5,12 @@
 
 namespace driftwright::solver {
 
-/// The system in the eigenvectors V of K = K0 + Σ c_e G_e = V Λ V'.
+/// The system in the eigenvectors V of K = K0 + Σ c_e G_e: K V = M V Λ, V'M V = 1.
 struct Decomposition {
   Eigen::VectorXd coefficient;  ///< of each exchange: the key
   Eigen::VectorXd lambda_1_s;
   Eigen::MatrixXd vectors;             ///< V
+  Eigen::MatrixXd to_modes;            ///< V'M
   Eigen::MatrixXd outputs;             ///< n_outputs x size
   Eigen::MatrixXd loads;               ///< size x n_sources
   Eigen::VectorXd to_hall, offset;     ///< Σ c_e g_e, Σ c_e o_e
@@ -21,7 +22,7 @@ struct Decomposition {
 /// Decompositions of the coefficients met last. One thread at a time.
 class Decompositions {
  public:
-  /// @param system  borrowed. @throws std::logic_error  when its mass is not the unit matrix
+  /// @param system  borrowed
   explicit Decompositions(const ReducedSystem& system);
 
   /// Valid until the next call.
@@ -30,6 +31,7 @@ class Decompositions {
 
  private:
   const ReducedSystem& system_;
+  bool unit_mass_;
   std::vector<Decomposition> kept_;  ///< the oldest is replaced
   std::size_t oldest_ = 0;
   int n_made_ = 0;

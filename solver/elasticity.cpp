@@ -154,10 +154,13 @@ const ElasticReport& Elasticity::report() const {
   return parts_->report;
 }
 
-Eigen::VectorXd Elasticity::influence(const DisplacementFunctional& functional) const {
+Eigen::VectorXd Elasticity::response(const DisplacementFunctional& functional) const {
   Eigen::VectorXd l = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parts_->held.size()));
   for (const auto& [node, weight] : functional.terms) l.segment<3>(3 * static_cast<Eigen::Index>(node)) += weight;
-  return parts_->thermal_load.transposed(parts_->solve(std::move(l)));
+  return parts_->solve(std::move(l));
+}
+Eigen::VectorXd Elasticity::influence(const DisplacementFunctional& functional) const {
+  return parts_->thermal_load.transposed(response(functional));
 }
 
 Eigen::VectorXd Elasticity::influence(const StressFunctional& functional) const {

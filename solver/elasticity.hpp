@@ -71,6 +71,8 @@ class Elasticity {
 
   [[nodiscard]] const ElasticReport& report() const;
 
+  /// K⁻¹l, 3 n_nodes, from which ThermalLoad::transposed() makes influences.
+  [[nodiscard]] Eigen::VectorXd response(const DisplacementFunctional& functional) const;
   /// Influence vector over the mesh's nodes [unit of the functional per K].
   [[nodiscard]] Eigen::VectorXd influence(const DisplacementFunctional& functional) const;
   /// [Pa/K]

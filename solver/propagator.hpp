@@ -7,16 +7,16 @@
 
 namespace driftwright::solver {
 
-/// Runs cyclograms on one linear reduced system with M = 1. In each stretch z' = -K z + f0 + t f1, and with K = V Λ V'
+/// Runs cyclograms on one linear reduced system. In each stretch M z' = -K z + f0 + t f1, and with K V = M V Λ, V'M V = 1
 ///
-///     z(t) = V [a + b t + e^{-Λt} (V'z0 - a)],   b = Λ⁻¹ V'f1,   a = Λ⁻¹ (V'f0 - b)
+///     z(t) = V [a + b t + e^{-Λt} (V'M z0 - a)],   b = Λ⁻¹ V'f1,   a = Λ⁻¹ (V'f0 - b)
 ///
 /// Decompositions of K are kept for the coefficients met last: where films do not change with speed there is one for all
 /// sections of all cyclograms. One thread at a time.
 class Propagator {
  public:
   /// @param system  borrowed
-  /// @throws std::logic_error  for a system that is not linear or whose mass is not the unit matrix
+  /// @throws std::logic_error  for a system that is not linear
   explicit Propagator(const ReducedSystem& system);
 
   /// Runs a cyclogram from `start` (reduced state at t = 0).

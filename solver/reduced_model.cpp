@@ -1,5 +1,6 @@
 #include "solver/reduced_model.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <stdexcept>
 
@@ -52,12 +53,48 @@ ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis) {
          .offset_sum = e.offset_sum,
          .prescribes = e.prescribes});
   }
+  for (const auto& p : system.parts) {
+    reduced.parts.push_back({p.body, reduce(p.conduction), reduce(p.mass), basis.transpose() * p.outputs});
+  }
   reduced.outputs = {system.outputs.name, system.outputs.unit, basis.transpose() * system.outputs.state,
                      system.outputs.hall};
   Eigen::VectorXd m_ones(system.size());
   multiply(system.mass, system.ones.data(), m_ones.data());
   reduced.ones = basis.transpose() * m_ones;
   return reduced;
+}
+
+ReducedSystem with_unit_mass(const ReducedSystem& system, Eigen::VectorXd& start) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(system.mass);
+  const auto c = factor.matrixL();
+  ReducedSystem unit = system;
+  const auto matrix = [&](Eigen::MatrixXd& a) {
+    c.solveInPlace(a);
+    a.transposeInPlace();
+    c.solveInPlace(a);
+  };
+  const auto vector = [&](Eigen::VectorXd& v) {
+    if (v.size() > 0) c.solveInPlace(v);
+  };
+  matrix(unit.conduction);
+  for (auto& e : unit.exchanges) {
+    matrix(e.matrix);
+    vector(e.to_hall);
+    vector(e.flow);
+    vector(e.offset);
+  }
+  for (auto& s : unit.sources) vector(s.load);
+  for (auto& p : unit.probes) vector(p.weights);
+  for (auto& p : unit.parts) {
+    matrix(p.conduction);
+    matrix(p.mass);
+    c.solveInPlace(p.outputs);
+  }
+  c.solveInPlace(unit.outputs.state);
+  vector(unit.ones);
+  unit.mass.setIdentity();
+  start = (factor.matrixU() * start).eval();
+  return unit;
 }
 
 }  // namespace driftwright::solver

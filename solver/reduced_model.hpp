@@ -13,4 +13,7 @@ namespace driftwright::solver {
 ///                           makes one without them)
 [[nodiscard]] ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis);
 
+/// The same system in unknowns w = C'z with M = C C', in which M = 1. @param start  z at t = 0, which becomes w
+[[nodiscard]] ReducedSystem with_unit_mass(const ReducedSystem& system, Eigen::VectorXd& start);
+
 }  // namespace driftwright::solver

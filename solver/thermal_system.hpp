@@ -86,6 +86,15 @@ struct FixedUnknowns {
   bool follows_hall = false;
 };
 
+/// What one region, or one lumped node, is of the system: M and K0 are sums over them. For those who ask what another material would
+/// do: factors f on conductivity and g on heat capacity make K0 + (f - 1) conduction and M + (g - 1) mass.
+template <class Matrix>
+struct BodyPart {
+  std::string body;
+  Matrix conduction, mass;
+  Eigen::MatrixXd outputs;  ///< what its expansion has of the outputs, n_unknowns x n_outputs
+};
+
 /// What is read off the state: sensor temperatures, displacements, tilts. Column j of `state` is output j.
 struct Outputs {
   std::vector<std::string> name;
@@ -110,6 +119,7 @@ struct ThermalSystem {
   std::shared_ptr<const VariableCapacity> capacity;  ///< what M gains where heat capacity varies; may be null
   std::vector<FixedUnknowns> fixed;
   Outputs outputs;
+  std::vector<BodyPart<Matrix>> parts;  ///< empty unless asked for
   Eigen::VectorXd ones;  ///< the state "1 K everywhere" (projected in a reduced system), for the energy balance
 
   [[nodiscard]] int size() const { return static_cast<int>(mass.rows()); }

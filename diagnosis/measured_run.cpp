@@ -1,0 +1,256 @@
+#include "diagnosis/measured_run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "base/quantity.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kHallKnots_s = 300.0;  // films pass on nothing faster
+constexpr int kStuckRows = 30;          // equal readings in a row while the model's channel moves
+
+/// Piecewise linear least squares on knots; keeps a recorded hall's slow course and drops its noise.
+TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
+  std::vector<double> t, v;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!std::isnan(value[i])) {
+      t.push_back(time_s[i]);
+      v.push_back(value[i]);
+    }
+  }
+  const double length_s = t.back() - t.front();
+  const int n_pieces = std::max(1, std::min(static_cast<int>(length_s / kHallKnots_s), static_cast<int>(t.size()) / 3));
+  const double width_s = length_s / n_pieces;
+  Eigen::MatrixXd hats = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(t.size()) + n_pieces - 1, n_pieces + 1);
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(hats.rows());
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double x = width_s > 0.0 ? (t[i] - t.front()) / width_s : 0.0;
+    const int k = std::clamp(static_cast<int>(x), 0, n_pieces - 1);
+    hats(static_cast<Eigen::Index>(i), k) = 1.0 - (x - k);
+    hats(static_cast<Eigen::Index>(i), k + 1) = x - k;
+    rhs[static_cast<Eigen::Index>(i)] = v[i];
+  }
+  for (int k = 1; k < n_pieces; ++k) {  // a light hand on curvature bridges gaps
+    const auto row = static_cast<Eigen::Index>(t.size()) + k - 1;
+    hats(row, k - 1) = hats(row, k + 1) = 0.05;
+    hats(row, k) = -0.1;
+  }
+  const Eigen::VectorXd knots = hats.colPivHouseholderQr().solve(rhs);
+  TimeSeries series;
+  for (int k = 0; k <= n_pieces; ++k) {
+    series.time_s.push_back(t.front() + k * width_s);
+    series.value.push_back(knots[k]);
+  }
+  if (series.time_s.size() > 1 && !(series.time_s[1] > series.time_s[0])) return {{t.front()}, {knots[0]}};
+  return series;
+}
+
+/// Sections of constant drive, each row's from its time on.
+Cyclogram cyclogram_of(const Record& record, const std::vector<double>& time_s, const std::string& path) {
+  const Channel* speed = record.find("speed");
+  if (!speed) {
+    throw InputError(
+        fmt::format("{}: no channel speed_rpm; a diagnosis wants to know what drove the machine. Channels: {}", path, [&] {
+          std::vector<std::string> names;
+          for (const Channel& c : record.channels) names.push_back(c.header());
+          return fmt::format("{}", fmt::join(names, ", "));
+        }()));
+  }
+  if (speed->unit != "rpm") throw InputError(fmt::format("{}: channel speed is in {}; rpm is wanted", path, speed->unit));
+  const Channel* feeds[] = {record.find("feed_x"), record.find("feed_y"), record.find("feed_z")};
+  const Channel* cutting = record.find("cutting_power");
+  Cyclogram cyclogram;
+  double last_rpm = 0.0;
+  for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
+    Drive drive;
+    if (!std::isnan(speed->values[i])) last_rpm = speed->values[i];
+    if (!(last_rpm >= 0.0)) {
+      throw InputError(fmt::format("{}: speed {:g} rpm at {:g} s; speeds are positive, whatever the direction", path,
+                                   last_rpm, time_s[i]));
+    }
+    drive.speed_rpm = last_rpm;
+    for (int a = 0; a < 3; ++a) {
+      if (feeds[a] && !std::isnan(feeds[a]->values[i]))
+        drive.feed_m_s[static_cast<std::size_t>(a)] = feeds[a]->values[i] / 60e3;
+    }
+    if (cutting && !std::isnan(cutting->values[i])) drive.cutting_power_W = cutting->values[i];
+    const double length_s = time_s[i + 1] - time_s[i];
+    if (!cyclogram.sections.empty() && cyclogram.sections.back().drive == drive) {
+      cyclogram.sections.back().duration_s += length_s;
+    } else {
+      cyclogram.sections.push_back({length_s, drive});
+    }
+  }
+  return cyclogram;
+}
+
+/// The step that all values are multiples of, among those instruments have; 0 for none.
+double quantum_of(const std::vector<double>& values) {
+  std::map<double, int> distinct;
+  int n = 0;
+  for (double v : values) {
+    if (std::isnan(v)) continue;
+    ++distinct[v];
+    ++n;
+  }
+  if (n < 10 || static_cast<int>(distinct.size()) > n / 2) return 0.0;
+  for (double step : {10.0, 5.0, 2.0, 1.0, 0.5, 0.25, 0.2, 0.1, 0.0625, 0.05, 0.02, 0.01}) {
+    const bool fits = std::all_of(distinct.begin(), distinct.end(), [&](const auto& d) {
+      return std::abs(d.first / step - std::round(d.first / step)) < 1e-4;
+    });
+    if (fits) return step;
+  }
+  return 0.0;
+}
+
+int longest_equal_run(const std::vector<double>& values) {
+  int longest = 0, run = 0;
+  double last = std::nan("");
+  for (double v : values) {
+    if (std::isnan(v)) continue;
+    run = v == last ? run + 1 : 1;
+    last = v;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
+
+bool same_kind(const std::string& record_unit, const std::string& output_unit) {
+  if (output_unit == "K") return record_unit == "degC" || record_unit == "K";
+  if (output_unit == "m") return record_unit == "um" || record_unit == "mm";
+  return record_unit == "urad";
+}
+
+/// Looks at a channel for what no model is to blame for.
+void inspect(const Channel& channel, const std::vector<double>& all, std::vector<DataFinding>& findings) {
+  std::vector<double> values;
+  for (double v : all) {
+    if (!std::isnan(v)) values.push_back(v);
+  }
+  if (values.size() < 3) {
+    findings.push_back({channel.name, fmt::format("{} has {} readings; it is left out", channel.name, values.size()), true});
+    return;
+  }
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const int equal = longest_equal_run(all);
+  if (*low == *high) {
+    findings.push_back({channel.name,
+                        fmt::format("{} is stuck: all {} readings are {:g} {}; it is left out", channel.name, values.size(),
+                                    *low, channel.unit),
+                        true});
+    return;
+  }
+  const auto at_limit = [&](double limit) { return std::count(values.begin(), values.end(), limit); };
+  const double quantum = quantum_of(all);
+  if (equal >= kStuckRows && quantum == 0.0) {
+    findings.push_back(
+        {channel.name,
+         fmt::format("{} repeats one reading {} times in a row, though its readings have no coarse step: stuck or "
+                     "saturated; it is left out",
+                     channel.name, equal),
+         true});
+  } else if (quantum == 0.0 && std::max(at_limit(*high), at_limit(*low)) > 5) {
+    findings.push_back({channel.name,
+                        fmt::format("{} stops {} times at {:g} {}: saturated; it is left out", channel.name,
+                                    std::max(at_limit(*high), at_limit(*low)),
+                                    at_limit(*high) >= at_limit(*low) ? *high : *low, channel.unit),
+                        true});
+  }
+  const auto n_missing = static_cast<int>(all.size() - values.size());
+  if (n_missing > 0)
+    findings.push_back(
+        {channel.name, fmt::format("{} misses {} of {} readings", channel.name, n_missing, all.size()), false});
+}
+
+}  // namespace
+
+const MeasuredChannel* MeasuredRun::find(const std::string& channel) const {
+  for (const MeasuredChannel& c : channels) {
+    if (c.name == channel) return &c;
+  }
+  return nullptr;
+}
+
+MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model, const solver::Outputs& outputs) {
+  const Record record = read_record_csv(path);
+  if (record.n_samples() < 3) {
+    throw InputError(
+        fmt::format("{}: {} rows; a diagnosis wants at least three, and rather a hundred", path, record.n_samples()));
+  }
+  MeasuredRun run;
+  run.path = path;
+  run.name = std::filesystem::path(path).stem().string();
+  for (double t_s : record.time_s) run.time_s.push_back(t_s - record.time_s.front());
+  run.cyclogram = cyclogram_of(record, run.time_s, path);
+  run.cyclogram.name = run.name;
+  run.hall = model.hall;
+  const double reference_C = model.reference_K - kZeroCelsius_K;
+  if (const Channel* ambient = record.find("ambient")) {
+    const auto n_readings =
+        std::count_if(ambient->values.begin(), ambient->values.end(), [](double v) { return !std::isnan(v); });
+    if (ambient->unit != "degC")
+      throw InputError(fmt::format("{}: channel ambient is in {}; degC is wanted", path, ambient->unit));
+    if (n_readings > 0) {
+      std::vector<double> hall_K;
+      for (double v : ambient->values) hall_K.push_back(v - reference_C);
+      run.hall = smoothed(run.time_s, hall_K);
+      run.has_ambient = true;
+    }
+  }
+  if (!run.has_ambient) {
+    run.findings.push_back({"ambient", "the record has no hall temperature (ambient_degC); the scenario's is taken", false});
+  }
+  for (std::size_t o = 0; o < outputs.name.size(); ++o) {
+    const Channel* channel = record.find(outputs.name[o]);
+    if (!channel) continue;
+    if (run.has_ambient && outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) continue;
+    if (!same_kind(channel->unit, outputs.unit[o])) {
+      throw InputError(fmt::format("{}: channel {} is in {}, but the scenario's {} is a {}", path, channel->name,
+                                   channel->unit, channel->name,
+                                   outputs.unit[o] == "K"   ? "temperature (degC)"
+                                   : outputs.unit[o] == "m" ? "displacement (um)"
+                                                            : "tilt (urad)"));
+    }
+    const std::size_t n_before = run.findings.size();
+    inspect(*channel, channel->values, run.findings);
+    const bool left_out = std::any_of(run.findings.begin() + static_cast<std::ptrdiff_t>(n_before), run.findings.end(),
+                                      [](const DataFinding& f) { return f.leaves_out; });
+    if (left_out) continue;
+    MeasuredChannel measured{channel->name, static_cast<int>(o), outputs.unit[o], {}, 0.0};
+    const double scale = outputs.unit[o] == "K" ? 1.0 : channel->unit == "mm" ? 1e-3 : 1e-6;
+    const double offset = channel->unit == "degC" ? reference_C : 0.0;
+    measured.value.resize(static_cast<Eigen::Index>(run.time_s.size()));
+    for (std::size_t i = 0; i < run.time_s.size(); ++i) {
+      measured.value[static_cast<Eigen::Index>(i)] = scale * (channel->values[i] - offset);
+    }
+    measured.quantum = scale * quantum_of(channel->values);
+    run.channels.push_back(std::move(measured));
+  }
+  std::vector<std::string> unknown;
+  for (const Channel& c : record.channels) {
+    const bool is_input =
+        c.name == "speed" || c.name == "ambient" || c.name.starts_with("feed_") || c.name == "cutting_power";
+    if (!is_input && std::find(outputs.name.begin(), outputs.name.end(), c.name) == outputs.name.end())
+      unknown.push_back(c.header());
+  }
+  if (!unknown.empty()) {
+    run.findings.push_back(
+        {"", fmt::format("the scenario knows no sensor or displacement called {}; not compared", fmt::join(unknown, ", ")),
+         false});
+  }
+  if (run.channels.empty()) {
+    throw InputError(
+        fmt::format("{}: no channel to compare; the scenario's are called {}", path, fmt::join(outputs.name, ", ")));
+  }
+  return run;
+}
+
+}  // namespace driftwright::diagnosis

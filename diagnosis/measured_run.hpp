@@ -1,0 +1,50 @@
+#pragma once
+// A measured record as the diagnosis wants it: what drove the machine, and readings beside the model's outputs.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "base/record.hpp"
+#include "scenarios/scenario.hpp"
+#include "solver/thermal_system.hpp"
+
+namespace driftwright::diagnosis {
+
+/// One reading that is compared with the model.
+struct MeasuredChannel {
+  std::string name;
+  int output = -1;        ///< of the model
+  std::string unit;       ///< "K", "m" or "rad"
+  Eigen::VectorXd value;  ///< per time; temperatures minus the reference; NaN where missing
+  double quantum = 0.0;   ///< step that all readings are multiples of; 0: none found
+};
+
+/// Something wrong with the data themselves.
+struct DataFinding {
+  std::string channel;
+  std::string what;         ///< a sentence
+  bool leaves_out = false;  ///< the channel is not compared
+};
+
+struct MeasuredRun {
+  std::string name;  ///< of the file, without folder and ending
+  std::string path;
+  std::vector<double> time_s;  ///< from 0
+  Cyclogram cyclogram;         ///< recorded
+  TimeSeries hall;             ///< recorded, smoothed to knots; minus the reference [K]
+  bool has_ambient = false;    ///< else the hall is the scenario's
+  std::vector<MeasuredChannel> channels;
+  std::vector<DataFinding> findings;
+
+  [[nodiscard]] const MeasuredChannel* find(const std::string& channel) const;
+};
+
+/// Reads a record and finds its channels among the model's outputs. Readings of sensors that the model says read the hall itself are left
+/// out where the record has an ambient temperature.
+/// @throws InputError  for a record without speed, with fewer than three rows, with a channel that is called as an output but has a
+///                     unit of another kind, or with nothing to compare
+[[nodiscard]] MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model,
+                                        const solver::Outputs& outputs);
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,50 @@
+#pragma once
+// The noise of a channel: white, and what follows itself for some minutes, AR(1). Estimated below everything that a machine could do.
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace driftwright::diagnosis {
+
+struct NoiseModel {
+  double white = 1.0;       ///< standard deviation, quantisation included
+  double correlated = 0.0;  ///< standard deviation of the AR(1) part
+  double time_s = 0.0;      ///< its time constant
+  [[nodiscard]] double total() const;
+};
+
+/// The linear map that turns this noise, sampled at these times, into independent noise of variance 1: innovations of a Kalman filter.
+/// Source: Durbin & Koopman, Time Series Analysis by State Space Methods, 2nd ed. (2012), ch. 4.
+class Whitener {
+ public:
+  /// @param is_there  which of the times have a reading
+  Whitener(const NoiseModel& noise, const std::vector<double>& time_s, const std::vector<char>& is_there);
+  [[nodiscard]] Eigen::Index n() const { return static_cast<Eigen::Index>(rows_.size()); }
+  /// @param series  one value a time; those without reading are not looked at. @param out  n() values
+  void apply(const Eigen::Ref<const Eigen::VectorXd>& series, Eigen::Ref<Eigen::VectorXd> out) const;
+  [[nodiscard]] double log_determinant() const { return log_determinant_; }  ///< of the covariance
+
+ private:
+  std::vector<Eigen::Index> rows_;
+  std::vector<double> carry_, gain_, scale_;
+  double log_determinant_ = 0.0;
+};
+
+/// One series of a channel in one record, and smooth curves that are not noise.
+struct NoiseSeries {
+  std::vector<double> time_s;
+  Eigen::VectorXd residual;  ///< measured - model; NaN where missing
+  Eigen::MatrixXd smooth;    ///< one column a curve
+};
+
+/// Restricted maximum likelihood of one noise for several series, whose smooth curves are free.
+/// @param floor  least standard deviation of the white part
+/// Source: Patterson & Thompson, Biometrika 58 (1971) 545-554.
+[[nodiscard]] NoiseModel estimate_noise(const std::vector<NoiseSeries>& series, double floor);
+
+/// Curves that a machine can follow and noise hardly does: cosines down to a period of 40 min, and the drive's values passed through
+/// lags of 0, 3 and 12 min, each times 1 and squared.
+/// @param drive  per time, 0 to about 1
+[[nodiscard]] Eigen::MatrixXd smooth_curves(const std::vector<double>& time_s, const Eigen::VectorXd& drive);
+
+}  // namespace driftwright::diagnosis
