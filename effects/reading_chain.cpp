@@ -79,6 +79,11 @@ Eigen::MatrixXd readings(const ReadingChain& chain, const std::vector<std::strin
   const auto happens = [&](const std::string& in) { return in.empty() || in == cyclogram.name; };
 
   for (const auto& g : chain.growths) outputs.row(row(g.displacement, false)) += growth(g, time_s, cyclogram);
+  for (const auto& s : chain.scales) {
+    Eigen::RowVectorXd signal = s.factor * outputs.row(row(s.displacement, false));
+    lag_behind(signal, time_s, s.lag_s);
+    outputs.row(row(s.displacement, false)) = signal;
+  }
   for (const auto& s : chain.shifts) {
     const Eigen::Index shifted_row = row(s.displacement, false);
     for (std::size_t i = 0; i < time_s.size(); ++i) {
