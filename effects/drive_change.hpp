@@ -10,7 +10,7 @@ namespace driftwright::effects {
 
 struct DriveChange {
   double speed_factor = 1.0;  ///< true speed over the recorded one
-  /// The spindle stood, and the record does not say so.
+  /// The spindle stood, and the record does not say so. Feeds and cutting power are as recorded.
   struct Stop {
     double start_s = 0.0, length_s = 0.0;
     std::string in = {};  ///< name of the cyclogram it happened in; "": in each
@@ -24,7 +24,7 @@ struct DriveChange {
   std::vector<HallError> hall;
 };
 
-/// The drive that the machine felt. Section boundaries may become more.
+/// The drive that the machine felt: another spindle speed; sections that a stop begins or ends in are split.
 [[nodiscard]] Cyclogram true_cyclogram(const DriveChange& change, const Cyclogram& recorded);
 
 /// The hall that the machine felt; a step takes a millisecond.

@@ -22,12 +22,17 @@ const char* body_key(BodyKind kind) {
   return "";
 }
 
+/// There is one of them in a shop or a machine.
+bool has_no_name(Place place) {
+  return place == Place::kHall || place == Place::kClock || place == Place::kSpindle;
+}
+
 /// Exactly one of the kind's places must be named.
 void read_place(const ConfigMap& in, Effect& effect) {
   const std::vector<Place>& places = effect.kind->places;
-  if (places == std::vector<Place>{Place::kHall}) {
-    effect.place_kind = Place::kHall;
-    effect.place = kHallName;
+  if (places.size() == 1 && has_no_name(places.front())) {
+    effect.place_kind = places.front();
+    effect.place = place_key(places.front());
     effect.where = in.where();
     return;
   }
@@ -81,6 +86,11 @@ void read_reference(const ConfigMap& in, const Reference& r, Effect& effect) {
     in.fail(r.name, fmt::format("a map with one of {} is wanted", fmt::join(keys, ", ")));
   }
   body.reject_unknown_keys();
+}
+
+void read_mention(const ConfigMap& in, const Mention& m, Effect& effect) {
+  effect.words[m.name] = m.compulsory ? in.text(m.name) : in.text(m.name, "");
+  if (in.has(m.name)) effect.reference_where[m.name] = in.where(m.name);
 }
 
 void read_table(const ConfigMap& in, const Table& t, Effect& effect) {
@@ -178,6 +188,7 @@ Effect read_effect(const ConfigMap& in) {
     effect.words[c.name] = c.fallback ? in.choice(c.name, c.options, *c.fallback) : in.choice(c.name, c.options);
   }
   for (const Table& t : kind.tables) read_table(in, t, effect);
+  for (const Mention& m : kind.mentions) read_mention(in, m, effect);
   in.reject_unknown_keys();
   if (kind.check) kind.check(effect, in);
   return effect;
@@ -187,6 +198,11 @@ HeatBalance heat_balance(const std::vector<Effect>& effects) {
   HeatBalance balance;
   for (const Effect& effect : effects) {
     if (effect.kind->contribute) effect.kind->contribute(effect, balance);
+  }
+  for (const MaterialFactor& factor : material_factors(effects)) {
+    for (LumpedNode& n : balance.nodes) {
+      if (factor.is_node && factor.region == n.name) n.capacity_J_K *= factor.heat_capacity;
+    }
   }
   return balance;
 }
@@ -211,7 +227,7 @@ std::vector<MaterialFactor> material_factors(const std::vector<Effect>& effects)
   std::vector<MaterialFactor> factors;
   for (const Effect& effect : effects) {
     if (!effect.kind->change_material) continue;
-    factors.push_back({effect.place});
+    factors.push_back({.region = effect.place, .is_node = effect.place_kind == Place::kNode});
     effect.kind->change_material(effect, factors.back());
   }
   return factors;

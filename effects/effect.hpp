@@ -59,6 +59,19 @@ struct Table {
   std::string meaning;
 };
 
+/// A cyclogram or another sensor that an effect names; `Effect::words` holds it, "" where it is left out.
+struct Mention {
+  enum class Of { kCyclogram, kSensor };
+  std::string name;
+  Of of = Of::kCyclogram;
+  bool compulsory = false;
+  std::string meaning;
+};
+/// `in`, for what happened during one cyclogram alone.
+[[nodiscard]] inline Mention in_cyclogram() {
+  return {"in", Mention::Of::kCyclogram, false, "cyclogram during which; left out: in each"};
+}
+
 struct Effect;
 
 struct EffectKind {
@@ -78,6 +91,7 @@ struct EffectKind {
   std::vector<Table> tables = {};
   /// What no single range says (this or that, not both). Called when all is read; fails at the key with ConfigMap::fail().
   void (*check)(const Effect&, const ConfigMap&) = nullptr;
+  std::vector<Mention> mentions = {};
 };
 
 /// The reference `surrounding` that films share: a lumped node, "hall" by default.
@@ -87,10 +101,10 @@ struct EffectKind {
 struct Effect {
   const EffectKind* kind = nullptr;  ///< points into catalogue(), which lives as long as the program
   Place place_kind = Place::kRegion;
-  std::string place = {};                             ///< region, surface, joint or node; "hall" for the hall
+  std::string place = {};                             ///< its name; place_key() for the hall, the clock and the spindle
   std::vector<double> values = {};                    ///< as kind->parameters
   std::map<std::string, Body> references = {};        ///< those given or with a fallback
-  std::map<std::string, Where> reference_where = {};  ///< of those that are written
+  std::map<std::string, Where> reference_where = {};  ///< of those that are written, and of mentions
   std::map<std::string, std::string> words = {};
   std::map<std::string, TimeSeries> tables = {};  ///< argument in `time_s` whatever its unit; those given
   Where where = {};                               ///< in the scenario, for errors that show only once the mesh is there
@@ -110,7 +124,7 @@ struct Effect {
 /// @throws InputError  for an unknown type or key, a wrong unit, a value out of range
 [[nodiscard]] Effect read_effect(const ConfigMap& in);
 
-/// What a list of effects does to heat, in their order.
+/// What a list of effects does to heat, in their order; capacities of lumped nodes with their factors.
 [[nodiscard]] HeatBalance heat_balance(const std::vector<Effect>& effects);
 /// What it does to the recorded drive and hall, to readings, and to materials (one entry an effect).
 [[nodiscard]] DriveChange drive_change(const std::vector<Effect>& effects);

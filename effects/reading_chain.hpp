@@ -11,13 +11,19 @@ namespace driftwright::effects {
 
 /// Steps in the order in which they act.
 struct ReadingChain {
-  /// amount (n / at_speed)^exponent, reached with one lag; the lag starts settled at the first speed's zero (t = 0: nothing yet).
+  /// amount (n / at_speed)^exponent, reached with one lag, of which nothing has grown at t = 0; without lag at once.
   struct Growth {
     std::string displacement;  ///< or tilt
     double amount = 0.0;       ///< [m] or [rad]
     double at_speed_rpm = 1000.0, exponent = 1.0, lag_s = 0.0;
   };
   std::vector<Growth> growths;
+  /// factor x displacement, behind one lag that is settled at the first reading.
+  struct Scale {
+    std::string displacement;  ///< or tilt
+    double factor = 1.0, lag_s = 0.0;
+  };
+  std::vector<Scale> scales;
   struct Shift {
     std::string displacement;
     double amount = 0.0;  ///< [m] or [rad]
@@ -49,8 +55,8 @@ struct ReadingChain {
   double clock_offset_s = 0.0;  ///< > 0: a reading carries a later time than it was taken at
 
   [[nodiscard]] bool empty() const {
-    return growths.empty() && shifts.empty() && detachments.empty() && lags.empty() && errors.empty() && swaps.empty() &&
-           clock_offset_s == 0.0;
+    return growths.empty() && scales.empty() && shifts.empty() && detachments.empty() && lags.empty() && errors.empty() &&
+           swaps.empty() && clock_offset_s == 0.0;
   }
 };
 

@@ -1,0 +1,21 @@
+#include "effects/effect.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void change_material(const Effect& e, MaterialFactor& factor) {
+  factor.heat_capacity *= e["factor"];
+}
+
+}  // namespace
+
+EffectKind heat_capacity() {
+  return {.key = "heat_capacity",
+          .title = "a material or a lumped node that stores more or less heat than written",
+          .law = "c = factor c_material, at every temperature; C = factor C_node",
+          .places = {Place::kRegion, Place::kNode},
+          .parameters = {{"factor", "1", 1e-3, 1e3, {}, "on the heat capacity of the region or node"}},
+          .change_material = change_material};
+}
+
+}  // namespace driftwright::effects
