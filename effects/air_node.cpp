@@ -17,7 +17,7 @@ EffectKind air_node() {
           .law = "C dT/dt = sum of films that name it as surrounding - exchange (T - T_hall)",
           .places = {Place::kNode},
           .parameters = {{"capacity", "J/K", 1e-3, 1e9, {}, "heat capacity of the pocket of air, 1.2 kJ/K for 1 m^3"},
-                         {"exchange", "W/K", 1e-6, 1e6, {}, "conductance to the hall"}},
+                         {"exchange", "W/K", 1e-6, 1e6, {}, "conductance to the hall", 0.1, "contact"}},
           .contribute = contribute};
 }
 

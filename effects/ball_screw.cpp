@@ -27,7 +27,7 @@ EffectKind ball_screw() {
           "angular velocity, and what the drive loses on a thrust (drag torque and efficiency as in THK's or NSK's "
           "catalogue of ball screws)",
       .places = {Place::kRegion, Place::kSurface, Place::kNode},
-      .parameters = {{"torque", "N m", 0.0, 1e4, {}, "drag torque of the preloaded nut"},
+      .parameters = {{"torque", "N m", 0.0, 1e4, {}, "drag torque of the preloaded nut", 0.1, "heat_source"},
                      {"lead", "mm", 0.1, 1000.0, {}, "travel per turn"},
                      {"thrust", "N", 0.0, 1e7, 0.0, "mean axial load"},
                      {"efficiency", "1", 0.1, 1.0, 0.9, "from torque to thrust"},

@@ -20,7 +20,7 @@ EffectKind body_link() {
           .title = "conductance between a body and a lumped node or the hall",
           .law = "Q = conductance (T - T_to), spread evenly over the region or surface",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
-          .parameters = {{"conductance", "W/K", 0.0, 1e9, {}, "total conductance"}},
+          .parameters = {{"conductance", "W/K", 0.0, 1e9, {}, "total conductance", 0.1, "contact"}},
           .contribute = contribute,
           .references = {{"to", {BodyKind::kNode}, {}, "lumped node at the other end, or hall"}},
           .check = check};

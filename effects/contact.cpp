@@ -34,7 +34,7 @@ EffectKind contact() {
           .law = "q = conductance (T_a - T_b); from a table: linear between its rows",
           .places = {Place::kJoint},
           .parameters = {{"conductance", "W/(m^2 K)", 0.0, 1e7, kNotGiven,
-                          "bolted and scraped: 2000 to 10000; a guideway: 500 to 3000"},
+                          "bolted and scraped: 2000 to 10000; a guideway: 500 to 3000", 0.1, "contact"},
                          {"pressure", "Pa", 0.0, 1e10, kNotGiven, "mean pressure in the joint, where there is a table"}},
           .contribute = contribute,
           .tables = {{kTable, "Pa", "W/(m^2 K)", 0.0, 1e7, false, "rows of [pressure, conductance]"}},

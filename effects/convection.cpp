@@ -17,8 +17,14 @@ EffectKind convection() {
           .title = "film on a surface, constant or for a time (a draught)",
           .law = "q = film (T - T_surrounding)",
           .places = {Place::kSurface},
-          .parameters = with_window(
-              {{"film", "W/(m^2 K)", 0.0, 1e6, {}, "film coefficient; free convection with radiation: 5 to 12"}}),
+          .parameters = with_window({{"film",
+                                      "W/(m^2 K)",
+                                      0.0,
+                                      1e6,
+                                      {},
+                                      "film coefficient; free convection with radiation: 5 to 12",
+                                      0.1,
+                                      "convection"}}),
           .contribute = contribute,
           .references = {surrounding_reference()},
           .check = check_window};

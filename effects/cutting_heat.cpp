@@ -18,7 +18,14 @@ EffectKind cutting_heat() {
           "P = share P_cutting: nearly all of the cutting power becomes heat in chips, tool, workpiece and coolant (Shaw, "
           "Metal Cutting Principles, ch. on temperatures)",
       .places = {Place::kRegion, Place::kSurface, Place::kNode},
-      .parameters = {{"share", "1", 0.0, 1.0, {}, "part of the heat that enters this body; chips keep most of it"}},
+      .parameters = {{"share",
+                      "1",
+                      0.0,
+                      1.0,
+                      {},
+                      "part of the heat that enters this body; chips keep most of it",
+                      0.1,
+                      "heat_source"}},
       .contribute = contribute};
 }
 

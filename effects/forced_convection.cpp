@@ -18,9 +18,9 @@ EffectKind forced_convection() {
           .title = "film that grows with speed, beside the film at standstill",
           .law = "q = growth (n / at_speed)^exponent (T - T_surrounding)",
           .places = {Place::kSurface},
-          .parameters = {{"growth", "W/(m^2 K)", 0.0, 1e6, {}, "film added at the stated speed"},
+          .parameters = {{"growth", "W/(m^2 K)", 0.0, 1e6, {}, "film added at the stated speed", 0.1, "forced_convection"},
                          {"at_speed", "rpm", 1.0, 1e6, {}, "the stated speed"},
-                         {"exponent", "1", 0.1, 2.0, 2.0 / 3.0, "growth with speed"}},
+                         {"exponent", "1", 0.1, 2.0, 2.0 / 3.0, "growth with speed", 0.03, "forced_convection"}},
           .contribute = contribute,
           .references = {surrounding_reference()}};
 }

@@ -21,9 +21,10 @@ EffectKind heat_source() {
           .title = "heat by a power law of speed, or constant",
           .law = "P = power (n / at_speed)^exponent; exponent 0: constant, also at standstill",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
-          .parameters = with_window({{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools"},
-                                     {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
-                                     {"exponent", "1", 0.0, 4.0, 0.0, "growth with speed"}}),
+          .parameters =
+              with_window({{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools", 0.1, "heat_source"},
+                           {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
+                           {"exponent", "1", 0.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"}}),
           .contribute = contribute,
           .check = check_window};
 }

@@ -22,10 +22,10 @@ EffectKind servo_loss() {
           .title = "loss of an axis' servo motor",
           .law = "P = idle + power (v / at_feed)^exponent; v: mean absolute feed. A power law fitted to measured heat",
           .places = {Place::kRegion, Place::kNode},
-          .parameters = {{"power", "W", 0.0, 1e6, {}, "part that grows with feed, at the stated feed"},
+          .parameters = {{"power", "W", 0.0, 1e6, {}, "part that grows with feed, at the stated feed", 0.1, "heat_source"},
                          {"at_feed", "m/s", 1e-6, 100.0, {}, "the stated feed"},
-                         {"exponent", "1", 0.0, 4.0, 1.0, "growth with feed; friction alone: 1"},
-                         {"idle", "W", 0.0, 1e6, 0.0, "holding current, also at standstill"}},
+                         {"exponent", "1", 0.0, 4.0, 1.0, "growth with feed; friction alone: 1", 0.03, "friction_law"},
+                         {"idle", "W", 0.0, 1e6, 0.0, "holding current, also at standstill", 0.1, "heat_source"}},
           .contribute = contribute,
           .choices = {axis_choice()}};
 }

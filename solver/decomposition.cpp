@@ -5,7 +5,7 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr std::size_t kMostKept = 16;  // sections of a usual cyclogram
+constexpr std::size_t kMostKept = 64;  // sections of a few usual cyclograms
 
 }  // namespace
 

@@ -1,0 +1,30 @@
+#pragma once
+// What could be wrong: every effect of the catalogue at every place where it can be, as knobs of the twin.
+
+#include <set>
+
+#include "diagnosis/knob.hpp"
+#include "diagnosis/twin.hpp"
+
+namespace driftwright::diagnosis {
+
+/// One law of an effect: its size first, then what shapes it.
+struct Variant {
+  std::string law;                               ///< in words
+  std::vector<Knob> knobs;                       ///< knobs[0] is the size
+  double trial_x = 0.1;                          ///< size at which its signature is taken
+  std::vector<std::vector<double>> grid = {{}};  ///< x of knobs 1.. to try first
+  bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is trial_x
+};
+
+/// An effect at a place. One candidate among many, whatever laws it may follow.
+struct Candidate {
+  std::string effect, where;
+  std::vector<Variant> variants;
+};
+
+/// @param without  keys of effects that are not looked for
+[[nodiscard]] std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRun>& runs,
+                                                const std::set<std::string>& without);
+
+}  // namespace driftwright::diagnosis

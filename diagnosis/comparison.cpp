@@ -1,0 +1,66 @@
+#include "diagnosis/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftwright::diagnosis {
+namespace {
+
+std::vector<char> present(const Eigen::VectorXd& series) {
+  std::vector<char> there(static_cast<std::size_t>(series.size()));
+  for (Eigen::Index i = 0; i < series.size(); ++i) there[static_cast<std::size_t>(i)] = !std::isnan(series[i]);
+  return there;
+}
+
+}  // namespace
+
+Comparison::Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise) {
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (const MeasuredChannel& c : runs[r].channels) {
+      whiteners_.emplace_back(noise.at(c.name), runs[r].time_s, present(c.value));
+      blocks_.push_back({r, c.name, c.output, n_, whiteners_.back().n()});
+      n_ += whiteners_.back().n();
+    }
+  }
+  measured_.resize(n_);
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    whiteners_[b].apply(runs[blocks_[b].run].find(blocks_[b].channel)->value,
+                        measured_.segment(blocks_[b].first, blocks_[b].n));
+  }
+}
+
+Eigen::VectorXd Comparison::whitened(const Prediction& prediction) const {
+  Eigen::VectorXd w(n_);
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const Eigen::VectorXd series = prediction[blocks_[b].run].row(blocks_[b].output).transpose();
+    whiteners_[b].apply(series, w.segment(blocks_[b].first, blocks_[b].n));
+  }
+  return w;
+}
+
+Eigen::VectorXd relative_speed(const MeasuredRun& run) {
+  Eigen::VectorXd speed(static_cast<Eigen::Index>(run.time_s.size()));
+  for (std::size_t i = 0; i < run.time_s.size(); ++i)
+    speed[static_cast<Eigen::Index>(i)] = run.cyclogram.speed_rpm(run.time_s[i]);
+  const double top = speed.maxCoeff();
+  return top > 0.0 ? Eigen::VectorXd(speed / top) : speed;
+}
+
+std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>& runs, const Prediction& prediction,
+                                                 double floor_K, double floor_m, double floor_rad) {
+  std::map<std::string, std::vector<NoiseSeries>> series;
+  std::map<std::string, double> floors;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const Eigen::MatrixXd curves = smooth_curves(runs[r].time_s, relative_speed(runs[r]));
+    for (const MeasuredChannel& c : runs[r].channels) {
+      series[c.name].push_back({runs[r].time_s, c.value - prediction[r].row(c.output).transpose(), curves});
+      const double floor = c.unit == "K" ? floor_K : c.unit == "m" ? floor_m : floor_rad;
+      floors[c.name] = std::max({floors[c.name], floor, c.quantum / std::sqrt(12.0)});
+    }
+  }
+  std::map<std::string, NoiseModel> noise;
+  for (const auto& [name, list] : series) noise[name] = estimate_noise(list, floors[name]);
+  return noise;
+}
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,50 @@
+#pragma once
+// Model against measurement in units of noise: every channel of every run whitened, one after the other.
+
+#include <map>
+
+#include "diagnosis/measured_run.hpp"
+#include "diagnosis/noise_model.hpp"
+
+namespace driftwright::diagnosis {
+
+/// Outputs of all runs, each n_outputs x n_times.
+using Prediction = std::vector<Eigen::MatrixXd>;
+
+class Comparison {
+ public:
+  /// @param noise  by channel; one for each that is measured
+  Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise);
+
+  [[nodiscard]] Eigen::Index n() const { return n_; }
+  /// W y of a prediction, or of a difference of two.
+  [[nodiscard]] Eigen::VectorXd whitened(const Prediction& prediction) const;
+  /// W of what was measured.
+  [[nodiscard]] const Eigen::VectorXd& measured() const { return measured_; }
+
+  struct Block {
+    std::size_t run;
+    std::string channel;
+    int output;
+    Eigen::Index first, n;  ///< of the whitened vector
+  };
+  [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  [[nodiscard]] const Whitener& whitener(std::size_t block) const { return whiteners_[block]; }
+
+ private:
+  std::vector<Block> blocks_;
+  std::vector<Whitener> whiteners_;
+  Eigen::VectorXd measured_;
+  Eigen::Index n_ = 0;
+};
+
+/// Noise of each channel, from what measured runs and a prediction differ by.
+/// @param floor_K, floor_m, floor_rad  errors that the model has anyway: no noise is taken for less
+[[nodiscard]] std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>& runs,
+                                                               const Prediction& prediction, double floor_K, double floor_m,
+                                                               double floor_rad);
+
+/// Values of a run's drive between 0 and 1 per time, for smooth_curves().
+[[nodiscard]] Eigen::VectorXd relative_speed(const MeasuredRun& run);
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,251 @@
+#include "diagnosis/diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/gain.hpp"
+#include "diagnosis/latent_heat.hpp"
+#include "diagnosis/leftover.hpp"
+#include "diagnosis/scatter.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr int kFewestReadings = 150;  // of all channels together: below, a verdict would be guessing
+constexpr double kStandsOut = 7.0;    // sigmas of one channel's leftover
+constexpr double kStandsOutTogether = 6.0;
+constexpr double kWorthNaming = 0.35;  // of the noise: less is no use to anybody
+
+Cause cause_of(const std::vector<Candidate>& list, const Claim& claim, const Fit& fit, Eigen::Index first, double gain) {
+  Cause c{list[claim.candidate].effect,
+          list[claim.candidate].where,
+          list[claim.candidate].variants[claim.variant].law,
+          {},
+          gain,
+          {}};
+  for (std::size_t k = 0; k < claim.knobs.size(); ++k) {
+    const Knob& knob = claim.knobs[k];
+    const Eigen::Index i = first + static_cast<Eigen::Index>(k);
+    double sd = std::sqrt(std::max(0.0, fit.covariance(i, i)));
+    if (knob.is_time) sd = 60.0;
+    if (claim.all_or_nothing) continue;
+    c.parameters.push_back(
+        {knob.name, knob.unit, knob.value(fit.x[i]), knob.value(fit.x[i] - 1.96 * sd), knob.value(fit.x[i] + 1.96 * sd)});
+  }
+  return c;
+}
+
+/// Index of a claim's first knob in x.
+Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
+  for (std::size_t c = 0; c < claim; ++c) n_nuisance += static_cast<Eigen::Index>(hypothesis[c].knobs.size());
+  return n_nuisance;
+}
+
+/// What another mesh changes, one column a channel: the amplitude of each is unknown.
+std::vector<Prediction> mesh_columns(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs) {
+  std::vector<Prediction> columns;
+  if (!coarse) return columns;
+  Twin::Workspace fine_space(twin), coarse_space(*coarse);
+  Prediction difference;
+  for (const MeasuredRun& run : runs) {
+    const Eigen::MatrixXd fine = twin.respond(twin.as_written(), run, fine_space);
+    difference.push_back(coarse->respond(coarse->as_written(), run, coarse_space) - fine);
+  }
+  std::vector<int> outputs;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) {
+      if (std::find(outputs.begin(), outputs.end(), c.output) == outputs.end()) outputs.push_back(c.output);
+    }
+  }
+  for (int o : outputs) {
+    Prediction column;
+    for (const Eigen::MatrixXd& d : difference) {
+      column.push_back(Eigen::MatrixXd::Zero(d.rows(), d.cols()));
+      column.back().row(o) = d.row(o);
+    }
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+std::string words(const Cause& c) {
+  std::vector<std::string> numbers;
+  for (const Estimate& p : c.parameters) {
+    numbers.push_back(p.unit == "s" ? fmt::format("{} {:.0f} min", p.name, p.value / 60.0)
+                                    : fmt::format("{} {:.3g}{} ({:.3g} to {:.3g})", p.name, p.value,
+                                                  p.unit == "1" ? "" : " " + p.unit, p.low, p.high));
+  }
+  return fmt::format("{} at {} ({}){}{}", c.effect, c.where, c.law, numbers.empty() ? "" : ": ", fmt::join(numbers, ", "));
+}
+
+std::string reason_of(const Diagnosis& d) {
+  std::vector<std::string> parts;
+  for (const Cause& c : d.causes) {
+    std::string text = words(c);
+    if (!c.alternatives.empty()) {
+      std::vector<std::string> others;
+      for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, a.where));
+      text += fmt::format("; the data cannot tell it from {}", fmt::join(others, " or "));
+    }
+    parts.push_back(text);
+  }
+  std::string text = fmt::format("{}", fmt::join(parts, "; and "));
+  switch (d.verdict) {
+    case Verdict::kConsistent:
+      return fmt::format(
+          "The scenario's numbers, within what is known of them, explain the measurement; none of {} candidates is wanted.",
+          d.n_candidates);
+    case Verdict::kUnexplained:
+      if (d.causes.empty()) {
+        return fmt::format(
+            "The measurement holds more than scatter and noise, and none of {} candidates explains it{}.", d.n_candidates,
+            d.unexplained && !d.unexplained->channels.empty() ? ", most of all in " + d.unexplained->channels.front().name
+                                                              : "");
+      }
+      return "Something is left that no candidate explains; the best so far: " + text + ".";
+    default:
+      return text + ".";
+  }
+}
+
+std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResult& result,
+                                          const std::map<std::string, NoiseModel>& noise) {
+  const std::vector<Leftover> list = leftovers(fitter, result.fit);
+  const double together = sigmas(list);
+  Unexplained u;
+  for (const Leftover& l : list) {
+    const bool stands_out = l.sigmas() > kStandsOut || (together > kStandsOutTogether && l.sigmas() > 3.0);
+    if (!stands_out || l.rms < kWorthNaming * noise.at(l.channel).total()) continue;
+    u.channels.push_back({l.channel,
+                          l.unit == "K"   ? "K"
+                          : l.unit == "m" ? "um"
+                                          : "urad",
+                          (l.unit == "K" ? 1.0 : 1e6) * l.rms, l.sigmas()});
+  }
+  if (u.channels.empty()) return std::nullopt;
+  const bool only_displacements =
+      std::none_of(u.channels.begin(), u.channels.end(), [](const auto& c) { return c.unit == "K"; });
+  if (!only_displacements) {
+    if (const auto latent = latent_heat(fitter, result.hypothesis, result.fit); latent && latent->explained > 0.3) {
+      u.heat_would_sit_in = latent->body;
+      u.time_s = latent->time_s;
+      u.heat_W = latent->heat_W;
+      u.correlates_with = latent->correlates_with;
+      u.correlation = latent->correlation;
+      return u;
+    }
+  }
+  const MeasuredRun& run = fitter.runs().front();
+  if (const MeasuredChannel* c = run.find(u.channels.front().name)) {
+    Eigen::VectorXd r = c->value - result.fit.prediction[0].row(c->output).transpose();
+    for (Eigen::Index i = 0; i < r.size(); ++i) {
+      if (std::isnan(r[i])) r[i] = 0.0;
+    }
+    std::tie(u.correlates_with, u.correlation) = resembles(run, r);
+  }
+  return u;
+}
+
+}  // namespace
+
+const char* word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kConsistent:
+      return "consistent";
+    case Verdict::kNamed:
+      return "named";
+    case Verdict::kAmbiguous:
+      return "ambiguous";
+    case Verdict::kUnexplained:
+      return "unexplained";
+    case Verdict::kInsufficientData:
+      return "insufficient_data";
+  }
+  return "";
+}
+
+Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
+                   const DiagnosisOptions& options, const std::function<void(const std::string&)>& say) {
+  Diagnosis d;
+  for (const MeasuredRun& run : runs) {
+    for (const DataFinding& f : run.findings)
+      d.data.push_back({f.channel, runs.size() > 1 ? run.name + ": " + f.what : f.what, f.leaves_out});
+  }
+  Eigen::Index n_readings = 0;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) n_readings += (c.value.array() == c.value.array()).count();
+  }
+  const std::vector<Candidate> list = candidates(twin, runs, options.without);
+  d.n_candidates = static_cast<int>(list.size());
+
+  say(fmt::format("slopes of {} uncertain numbers", scatter(twin).size()));
+  Fitter fitter(twin, runs, scatter(twin), mesh_columns(twin, coarse, runs));
+  Twin::Workspace workspace(twin);
+  d.as_written = fitter.predict({}, Eigen::VectorXd::Zero(fitter.n_nuisance()), workspace);
+  d.noise = estimate_noise(runs, d.as_written, options.floor_K, options.floor_m, options.floor_rad);
+  for (int pass = 0; pass < 2; ++pass) {
+    fitter.set_noise(d.noise);
+    d.search = search(fitter, list, {}, say);
+    const auto sharper = estimate_noise(runs, d.search.fit.prediction, options.floor_K, options.floor_m, options.floor_rad);
+    const bool is_sharper = std::any_of(sharper.begin(), sharper.end(),
+                                        [&](const auto& s) { return s.second.total() < 0.9 * d.noise.at(s.first).total(); });
+    if (!is_sharper || pass == 1) break;
+    for (const auto& [name, noise] : sharper) {
+      if (noise.total() < d.noise.at(name).total()) d.noise[name] = noise;
+    }
+  }
+  d.scatter_alone = d.search.without.prediction;
+  d.extended = d.search.fit.prediction;
+
+  for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
+    const Finding& f = d.search.findings[c];
+    Cause cause =
+        cause_of(list, f.claim, d.search.fit, first_of(d.search.hypothesis, c, fitter.n_nuisance()), f.log_evidence_gain);
+    for (const Finding::Alternative& a : f.alternatives) {
+      const auto n_knobs = static_cast<Eigen::Index>(a.claim.knobs.size());
+      cause.alternatives.push_back(cause_of(list, a.claim, a.fit, a.fit.x.size() - n_knobs, a.log_evidence_gain));
+    }
+    d.causes.push_back(std::move(cause));
+  }
+  for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
+    const Knob& k = fitter.scatter()[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    const double x = d.search.fit.x[at], sd = std::sqrt(d.search.fit.covariance(at, at));
+    d.calibrated.push_back({fmt::format("{} {} {}", k.effect, k.where, k.name), k.unit, k.value(x), k.value(x - 1.96 * sd),
+                            k.value(x + 1.96 * sd)});
+  }
+  say("looking at what is left");
+  d.unexplained = unexplained_of(fitter, d.search, d.noise);
+  if (n_readings < kFewestReadings && (d.causes.empty() || d.unexplained)) {
+    d.verdict = Verdict::kInsufficientData;
+  } else if (d.unexplained) {
+    d.verdict = Verdict::kUnexplained;
+  } else if (d.causes.empty()) {
+    d.verdict = Verdict::kConsistent;
+  } else {
+    const bool is_ambiguous =
+        std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
+    d.verdict = is_ambiguous ? Verdict::kAmbiguous : Verdict::kNamed;
+  }
+  if (n_readings < kFewestReadings && d.verdict == Verdict::kConsistent) d.verdict = Verdict::kInsufficientData;
+  for (const Finding& f : d.search.findings) {
+    if (d.experiment || f.alternatives.empty()) continue;
+    say("choosing an experiment");
+    d.experiment = propose_experiment(fitter, d.search, f);
+  }
+  say("measuring the gain");
+  HeldOut held = held_out_gain(fitter, d.search, d.noise);
+  d.holdout = std::move(held.how);
+  d.gain = std::move(held.channels);
+  d.reason = d.verdict == Verdict::kInsufficientData ? fmt::format(
+                                                           "{} readings of {} channels are too few to tell an effect from "
+                                                           "scatter; at least {} are wanted, with the speed changing.",
+                                                           n_readings, d.gain.size(), kFewestReadings)
+                                                     : reason_of(d);
+  return d;
+}
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,255 @@
+#include "diagnosis/fit.hpp"
+
+#include <omp.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr int kMostIterations = 10;
+constexpr double kConverged = 0.02;  // in Φ
+
+Eigen::Index n_knobs(const Hypothesis& hypothesis) {
+  Eigen::Index n = 0;
+  for (const Claim& c : hypothesis) n += static_cast<Eigen::Index>(c.knobs.size());
+  return n;
+}
+
+std::vector<const Knob*> knobs_of(const Hypothesis& hypothesis) {
+  std::vector<const Knob*> knobs;
+  for (const Claim& c : hypothesis) {
+    for (const Knob& k : c.knobs) knobs.push_back(&k);
+  }
+  return knobs;
+}
+
+/// Whether a knob is turned by slopes.
+std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
+  std::vector<char> smooth;
+  for (const Claim& c : hypothesis) {
+    for (const Knob& k : c.knobs) smooth.push_back(!k.is_time && !c.all_or_nothing);
+  }
+  return smooth;
+}
+
+}  // namespace
+
+Fitter::Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter,
+               std::vector<Prediction> linear)
+    : twin_(twin), runs_(runs), scatter_(std::move(scatter)), linear_(std::move(linear)) {
+  nuisance_ = Eigen::VectorXd::Zero(n_nuisance());
+  Eigen::VectorXd x = nuisance_;
+  take_slopes({}, x);
+}
+
+Eigen::VectorXd Fitter::nuisance_sd() const {
+  Eigen::VectorXd sd = Eigen::VectorXd::Ones(n_nuisance());
+  for (std::size_t i = 0; i < scatter_.size(); ++i) sd[static_cast<Eigen::Index>(i)] = scatter_[i].prior_sd;
+  return sd;
+}
+
+TwinState Fitter::state(const Hypothesis& hypothesis, const Eigen::VectorXd& x) const {
+  TwinState state = twin_.as_written();
+  for (std::size_t i = 0; i < scatter_.size(); ++i) {
+    const double xi = x[static_cast<Eigen::Index>(i)];
+    if (xi != 0.0) scatter_[i].set(state, scatter_[i].value(xi));
+  }
+  Eigen::Index next = n_nuisance();
+  for (const Claim& c : hypothesis) {
+    for (const Knob& k : c.knobs) k.set(state, k.value(x[next++]));
+  }
+  return state;
+}
+
+Prediction Fitter::predict(const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace,
+                           Prediction* responses, bool reuse) const {
+  const TwinState s = state(hypothesis, x);
+  Prediction prediction;
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    Eigen::MatrixXd response = reuse ? (*responses)[r] : twin_.respond(s, runs_[r], workspace);
+    if (responses && !reuse) {
+      if (responses->size() <= r) responses->resize(r + 1);
+      (*responses)[r] = response;
+    }
+    prediction.push_back(twin_.read(s, runs_[r], std::move(response)));
+    for (std::size_t l = 0; l < linear_.size(); ++l) {
+      const double amplitude = x[static_cast<Eigen::Index>(scatter_.size() + l)];
+      if (amplitude != 0.0) prediction.back() += amplitude * linear_[l][r];
+    }
+  }
+  return prediction;
+}
+
+void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x) {
+  std::vector<Prediction> differences(scatter_.size());
+  Prediction base;
+  {
+    Twin::Workspace workspace(twin_);
+    base = predict(hypothesis, x, workspace);
+  }
+  std::string failure;
+#pragma omp parallel
+  {
+    Twin::Workspace workspace(twin_);
+#pragma omp for schedule(dynamic)
+    for (std::size_t i = 0; i < scatter_.size(); ++i) {
+      try {
+        Eigen::VectorXd turned = x;
+        turned[static_cast<Eigen::Index>(i)] += scatter_[i].step;
+        differences[i] = predict(hypothesis, turned, workspace);
+        for (std::size_t r = 0; r < runs_.size(); ++r) {
+          differences[i][r] = (differences[i][r] - base[r]) / scatter_[i].step;
+        }
+      } catch (const std::exception& e) {
+#pragma omp critical
+        failure = e.what();
+      }
+    }
+  }
+  if (!failure.empty()) throw SolveError(failure);
+  differences_ = std::move(differences);
+}
+
+void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise) {
+  comparison_.emplace(runs_, noise);
+  slopes_.resize(comparison_->n(), n_nuisance());
+  for (std::size_t i = 0; i < scatter_.size(); ++i)
+    slopes_.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(differences_[i]);
+  for (std::size_t l = 0; l < linear_.size(); ++l) {
+    slopes_.col(static_cast<Eigen::Index>(scatter_.size() + l)) = comparison_->whitened(linear_[l]);
+  }
+  squares_.noalias() = slopes_.transpose() * slopes_;
+}
+
+void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
+  take_slopes(hypothesis, at.x);
+  nuisance_ = at.x.head(n_nuisance());
+  slopes_.resize(comparison_->n(), n_nuisance());
+  for (std::size_t i = 0; i < scatter_.size(); ++i)
+    slopes_.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(differences_[i]);
+  for (std::size_t l = 0; l < linear_.size(); ++l) {
+    slopes_.col(static_cast<Eigen::Index>(scatter_.size() + l)) = comparison_->whitened(linear_[l]);
+  }
+  squares_.noalias() = slopes_.transpose() * slopes_;
+}
+
+Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const {
+  const Eigen::Index n_n = n_nuisance(), n_k = n_knobs(hypothesis), n = n_n + n_k;
+  const std::vector<const Knob*> knobs = knobs_of(hypothesis);
+  const std::vector<char> smooth = smooth_knobs(hypothesis);
+  Eigen::VectorXd sd(n);
+  sd.head(n_n) = nuisance_sd();
+  for (Eigen::Index k = 0; k < n_k; ++k) sd[n_n + k] = knobs[static_cast<std::size_t>(k)]->prior_sd;
+  const auto into_range = [&](Eigen::VectorXd& x) {
+    for (Eigen::Index k = 0; k < n_k; ++k) {
+      const Knob& knob = *knobs[static_cast<std::size_t>(k)];
+      if (knob.scale == Knob::Scale::kLinear) x[n_n + k] = knob.x(knob.value(x[n_n + k]));
+      x[n_n + k] = std::clamp(x[n_n + k], -8.0 * knob.prior_sd, 8.0 * knob.prior_sd);
+    }
+  };
+  const auto prior = [&](const Eigen::VectorXd& x) { return 0.5 * x.cwiseQuotient(sd).squaredNorm(); };
+
+  Fit f;
+  f.x.resize(n);
+  f.x.head(n_n) = nuisance_;
+  f.x.tail(n_k) = start;
+  into_range(f.x);
+  Prediction responses;
+  const auto look = [&](Fit& at, Prediction& kept, bool reuse) {
+    at.prediction = predict(hypothesis, at.x, workspace, &kept, reuse);
+    at.residual = comparison_->measured() - comparison_->whitened(at.prediction);
+    at.misfit = 0.5 * at.residual.squaredNorm() + prior(at.x);
+    if (!std::isfinite(at.misfit)) at.misfit = 1e300;
+  };
+  look(f, responses, false);
+
+  Eigen::MatrixXd square(n, n);
+  f.slopes.resize(f.residual.size(), n_k);
+  const auto differentiate = [&] {
+    const Eigen::VectorXd base = comparison_->measured() - f.residual;
+    for (Eigen::Index k = 0; k < n_k; ++k) {
+      f.slopes.col(k).setZero();
+      if (!smooth[static_cast<std::size_t>(k)]) continue;
+      const Knob& knob = *knobs[static_cast<std::size_t>(k)];
+      Eigen::VectorXd x = f.x;
+      double step = knob.step;
+      if (knob.value(x[n_n + k] + step) == knob.value(x[n_n + k])) step = -step;  // at its bound
+      x[n_n + k] += step;
+      Prediction kept = knob.reading_only ? responses : Prediction{};
+      f.slopes.col(k) = (comparison_->whitened(predict(hypothesis, x, workspace, &kept, knob.reading_only)) - base) / step;
+    }
+    square.topLeftCorner(n_n, n_n) = squares_;
+    square.topRightCorner(n_n, n_k).noalias() = slopes_.transpose() * f.slopes;
+    square.bottomLeftCorner(n_k, n_n) = square.topRightCorner(n_n, n_k).transpose();
+    square.bottomRightCorner(n_k, n_k).noalias() = f.slopes.transpose() * f.slopes;
+  };
+
+  bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
+  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    differentiate();
+    Eigen::MatrixXd hessian = square;
+    hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
+    Eigen::VectorXd gradient(n);
+    gradient.head(n_n) = slopes_.transpose() * f.residual;
+    gradient.tail(n_k) = f.slopes.transpose() * f.residual;
+    gradient -= f.x.cwiseQuotient(sd.cwiseProduct(sd));
+    for (Eigen::Index k = 0; k < n_k; ++k) {
+      if (!smooth[static_cast<std::size_t>(k)]) gradient[n_n + k] = 0.0;  // no slope: stays where the search has put it
+    }
+    const Eigen::VectorXd step = hessian.llt().solve(gradient);
+    const double before = f.misfit;
+    for (double share : {1.0, 0.4, 0.1}) {
+      Fit tried;
+      tried.x = f.x + share * step;
+      into_range(tried.x);
+      Prediction kept;
+      look(tried, kept, false);
+      if (!(tried.misfit < f.misfit)) continue;
+      tried.slopes = std::move(f.slopes);
+      f = std::move(tried);
+      responses = std::move(kept);
+      break;
+    }
+    if (search_times) {
+      for (Eigen::Index k = 0; k < n_k; ++k) {
+        const Knob& knob = *knobs[static_cast<std::size_t>(k)];
+        if (!knob.is_time) continue;
+        for (double jump_s : {-960.0, 960.0, -480.0, 480.0, -240.0, 240.0, -120.0, 120.0, -60.0, 60.0}) {
+          Fit tried;
+          tried.x = f.x;
+          tried.x[n_n + k] += jump_s;
+          into_range(tried.x);
+          Prediction kept = knob.reading_only ? responses : Prediction{};
+          look(tried, kept, knob.reading_only);
+          if (!(tried.misfit < f.misfit)) continue;
+          tried.slopes = std::move(f.slopes);
+          f = std::move(tried);
+          responses = std::move(kept);
+        }
+      }
+    }
+    if (before - f.misfit < kConverged) break;
+  }
+  differentiate();
+  Eigen::MatrixXd hessian = square;
+  hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(hessian);
+  f.covariance = factor.solve(Eigen::MatrixXd::Identity(n, n));
+  // log det(1 + S J'J S) = log det(H) + 2 Σ log sd
+  double log_det = 2.0 * factor.matrixLLT().diagonal().array().log().sum() + 2.0 * sd.array().log().sum();
+  f.log_evidence = -f.misfit - 0.5 * log_det;
+  for (Eigen::Index k = 0; k < n_k; ++k) {  // a time was one of many samples
+    const Knob& knob = *knobs[static_cast<std::size_t>(k)];
+    if (knob.is_time) f.log_evidence -= std::log(std::max(2.0, knob.prior_sd * std::sqrt(12.0) / 120.0));
+    // the prior of a time or of swapped cables is flat
+    if (!smooth[static_cast<std::size_t>(k)]) f.log_evidence += 0.5 * std::pow(f.x[n_n + k] / sd[n_n + k], 2);
+  }
+  return f;
+}
+
+}  // namespace driftwright::diagnosis

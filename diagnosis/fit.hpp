@@ -1,0 +1,78 @@
+#pragma once
+// The most probable numbers of a hypothesis, and its evidence.
+//
+//     Φ(x) = 1/2 |W (y - f(x))|² + 1/2 Σ (x_i / sd_i)²,    log Z ≈ -Φ(x̂) - 1/2 log det(1 + S J'J S),   S = diag(sd)
+//
+// x: every uncertain number of the scenario (scatter) and those of the hypothesis. W: whitening. J: slopes of W f at x̂.
+// The second term is what more freedom costs (Laplace's approximation of the marginal likelihood).
+// Source: MacKay, Neural Computation 4 (1992) 415-447; Gauss-Newton with step control.
+
+#include <optional>
+
+#include "diagnosis/candidates.hpp"
+#include "diagnosis/comparison.hpp"
+
+namespace driftwright::diagnosis {
+
+/// What is claimed: some effects with their knobs.
+struct Claim {
+  std::size_t candidate = 0;  ///< which of the list
+  std::size_t variant = 0;
+  std::vector<Knob> knobs;
+  bool all_or_nothing = false;
+};
+using Hypothesis = std::vector<Claim>;
+
+struct Fit {
+  Eigen::VectorXd x;         ///< scatter, then linear columns, then the knobs of each claim
+  Eigen::VectorXd residual;  ///< W (y - f)
+  Prediction prediction;
+  double log_evidence = -1e300;
+  double misfit = 0.0;         ///< Φ
+  Eigen::MatrixXd covariance;  ///< of x, by Laplace; times and cables that are no slopes have none
+  Eigen::MatrixXd slopes;      ///< of W f by x, columns of claims; those of scatter are the fitter's
+  [[nodiscard]] Eigen::VectorXd claim_x(Eigen::Index n_nuisance) const { return x.tail(x.size() - n_nuisance); }
+};
+
+/// Fits hypotheses to runs. Scatter's slopes are taken once at the scenario's numbers and once again by settle().
+class Fitter {
+ public:
+  /// @param linear  further columns [per run: n_outputs x n_times] with an unknown amplitude of standard deviation 1
+  Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter, std::vector<Prediction> linear);
+
+  /// Whitens anew. @param noise  by channel
+  void set_noise(const std::map<std::string, NoiseModel>& noise);
+  /// Takes scatter's slopes at a fit of a hypothesis: later fits of others start there.
+  void settle(const Hypothesis& hypothesis, const Fit& at);
+
+  /// @param start  x of the claims, in order; scatter starts where it was last settled
+  [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const;
+
+  [[nodiscard]] Eigen::Index n_nuisance() const { return static_cast<Eigen::Index>(scatter_.size() + linear_.size()); }
+  [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }
+  [[nodiscard]] const Comparison& comparison() const { return *comparison_; }
+  [[nodiscard]] const std::vector<MeasuredRun>& runs() const { return runs_; }
+  [[nodiscard]] const Twin& twin() const { return twin_; }
+  /// W f's slopes by scatter and linear columns.
+  [[nodiscard]] const Eigen::MatrixXd& nuisance_slopes() const { return slopes_; }
+  [[nodiscard]] Eigen::VectorXd nuisance_sd() const;
+
+  [[nodiscard]] TwinState state(const Hypothesis& hypothesis, const Eigen::VectorXd& x) const;
+  /// Readings of all runs; `responses`, unless null, keeps the machine's outputs or, where `reuse`, brings them.
+  [[nodiscard]] Prediction predict(const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace,
+                                   Prediction* responses = nullptr, bool reuse = false) const;
+
+ private:
+  void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x);
+
+  const Twin& twin_;
+  const std::vector<MeasuredRun>& runs_;
+  std::vector<Knob> scatter_;
+  std::vector<Prediction> linear_;
+  std::optional<Comparison> comparison_;
+  Eigen::VectorXd nuisance_;             ///< where it was settled
+  std::vector<Prediction> differences_;  ///< of readings by scatter, not whitened
+  Eigen::MatrixXd slopes_, squares_;     ///< whitened; slopes' slopes
+};
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,290 @@
+#include "diagnosis/search.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
+  const Variant& v = candidates[score.candidate].variants[score.variant];
+  return {score.candidate, score.variant, v.knobs, v.all_or_nothing};
+}
+
+/// Evidence of noise-free algebra: residual, slopes of everything that is free.
+struct Projection {
+  Eigen::MatrixXd slopes;  // all free knobs
+  Eigen::LLT<Eigen::MatrixXd> factor;
+  Eigen::VectorXd rest;  // residual minus what free knobs would take of it
+
+  Projection(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit) {
+    const Eigen::Index n_n = fitter.n_nuisance(), n_k = fit.slopes.cols();
+    slopes.resize(fit.residual.size(), n_n + n_k);
+    slopes << fitter.nuisance_slopes(), fit.slopes;
+    Eigen::VectorXd sd(n_n + n_k);
+    sd.head(n_n) = fitter.nuisance_sd();
+    Eigen::Index k = n_n;
+    for (const Claim& c : hypothesis) {
+      for (const Knob& knob : c.knobs) sd[k++] = knob.prior_sd;
+    }
+    Eigen::MatrixXd hessian = slopes.transpose() * slopes;
+    hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
+    factor.compute(hessian);
+    // at the optimum J'r = S⁻²x: the data's residual about x = 0 of the linearised problem is r + J x
+    const Eigen::VectorXd about_zero = fit.residual + slopes * fit.x;
+    rest = about_zero - slopes * factor.solve(slopes.transpose() * about_zero);
+  }
+  [[nodiscard]] double square(const Eigen::VectorXd& s) const {
+    const Eigen::VectorXd js = slopes.transpose() * s;
+    return s.squaredNorm() - js.dot(factor.solve(js));
+  }
+};
+
+/// Fits some hypotheses side by side.
+std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses) {
+  std::vector<Fit> fits(hypotheses.size());
+#pragma omp parallel
+  {
+    Twin::Workspace workspace(fitter.twin());
+#pragma omp for schedule(dynamic)
+    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+      try {
+        fits[i] = fitter.fit(hypotheses[i].first, hypotheses[i].second, workspace);
+      } catch (const std::exception&) {  // a state without solution is no explanation
+        fits[i] = Fit{};
+      }
+    }
+  }
+  return fits;
+}
+
+bool overlaps(const Hypothesis& hypothesis, std::size_t candidate) {
+  return std::any_of(hypothesis.begin(), hypothesis.end(), [&](const Claim& c) { return c.candidate == candidate; });
+}
+
+Hypothesis with(Hypothesis hypothesis, Claim claim) {
+  hypothesis.push_back(std::move(claim));
+  return hypothesis;
+}
+
+Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  Eigen::VectorXd both(a.size() + b.size());
+  both << a, b;
+  return both;
+}
+
+struct Fitted {
+  Claim claim;
+  Fit fit;
+};
+
+/// The best candidates on top of a hypothesis, fitted in full, best first.
+std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates, const Hypothesis& base,
+                                   const Fit& base_fit, int n) {
+  std::vector<Score> list = scores(fitter, candidates, base, base_fit);
+  std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
+  std::vector<Score> chosen;
+  for (const Score& s : list) {  // a second law of a good candidate counts as well, but only a few
+    const auto n_same =
+        std::count_if(chosen.begin(), chosen.end(), [&](const Score& c) { return c.candidate == s.candidate; });
+    if (n_same < 2) chosen.push_back(s);
+    if (static_cast<int>(chosen.size()) >= n) break;
+  }
+  std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
+  const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
+  for (const Score& s : chosen) jobs.emplace_back(with(base, claim_of(candidates, s)), joined(base_x, s.start));
+  std::vector<Fit> fits = fit_all(fitter, jobs);
+  std::vector<Fitted> fitted;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const double n_laws = static_cast<double>(candidates[chosen[i].candidate].variants.size());
+    fits[i].log_evidence -= std::log(n_laws);
+    fitted.push_back({jobs[i].first.back(), std::move(fits[i])});
+  }
+  std::sort(fitted.begin(), fitted.end(),
+            [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
+  // one law a candidate
+  std::vector<Fitted> unique;
+  for (Fitted& f : fitted) {
+    const bool seen =
+        std::any_of(unique.begin(), unique.end(), [&](const Fitted& u) { return u.claim.candidate == f.claim.candidate; });
+    if (!seen) unique.push_back(std::move(f));
+  }
+  return unique;
+}
+
+double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
+  double price = 0.0;
+  for (const Claim& c : hypothesis) price += std::log(static_cast<double>(candidates[c.candidate].variants.size()));
+  return price;
+}
+
+}  // namespace
+
+std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates, const Hypothesis& hypothesis,
+                          const Fit& fit) {
+  const Projection projection(fitter, hypothesis, fit);
+  const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
+  struct Job {
+    std::size_t candidate, variant;
+  };
+  std::vector<Job> jobs;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    for (std::size_t v = 0; v < candidates[c].variants.size(); ++v) jobs.push_back({c, v});
+  }
+  std::vector<Score> list(jobs.size());
+  Prediction responses;
+  {
+    Twin::Workspace workspace(fitter.twin());
+    (void)fitter.predict(hypothesis, fit.x, workspace, &responses);
+  }
+#pragma omp parallel
+  {
+    Twin::Workspace workspace(fitter.twin());
+    Prediction kept = responses;
+#pragma omp for schedule(dynamic)
+    for (std::size_t j = 0; j < jobs.size(); ++j) {
+      const Variant& v = candidates[jobs[j].candidate].variants[jobs[j].variant];
+      Score& best = list[j];
+      best.candidate = jobs[j].candidate;
+      best.variant = jobs[j].variant;
+      const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
+      const Hypothesis tried = with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing});
+      for (const std::vector<double>& shape : v.grid) {
+        Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
+        claim[0] = v.trial_x;
+        for (std::size_t k = 0; k < shape.size(); ++k) claim[static_cast<Eigen::Index>(k + 1)] = shape[k];
+        try {
+          const Prediction p =
+              fitter.predict(tried, joined(fit.x, claim), workspace, reading_only ? &kept : nullptr, reading_only);
+          const Eigen::VectorXd s = (fitter.comparison().whitened(p) - base) / v.trial_x;
+          const double ss = projection.square(s), sr = s.dot(projection.rest), sd = v.knobs[0].prior_sd;
+          if (!std::isfinite(ss) || !(ss > 1e-12)) continue;
+          double x = v.all_or_nothing ? v.trial_x : sr / (ss + 1.0 / (sd * sd));
+          double gain = v.all_or_nothing ? sr * x - 0.5 * ss * x * x
+                                         : 0.5 * sr * sr / (ss + 1.0 / (sd * sd)) - 0.5 * std::log1p(sd * sd * ss);
+          const Knob& size = v.knobs[0];
+          if (size.scale == Knob::Scale::kLinear && size.x(size.value(x)) != x) {  // out of range: at the bound
+            x = size.x(size.value(x));
+            gain = sr * x - 0.5 * ss * x * x - 0.5 * std::log1p(sd * sd * ss);
+          }
+          if (size.scale == Knob::Scale::kLog) x = std::clamp(x, -2.0, 2.0);
+          gain -= std::log(static_cast<double>(v.grid.size()));
+          if (!(gain > best.gain)) continue;
+          best.gain = gain;
+          claim[0] = x;
+          best.start = claim;
+        } catch (const std::exception&) {  // no solution at this size
+        }
+      }
+    }
+  }
+  std::stable_sort(list.begin(), list.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
+  return list;
+}
+
+SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, const SearchOptions& options,
+                    const std::function<void(const std::string&)>& say) {
+  SearchResult result;
+  result.n_candidates = static_cast<int>(candidates.size());
+  const double price = std::log(std::max(1.0, static_cast<double>(candidates.size())));
+  const auto evidence = [&](const Fit& f, const Hypothesis& h) {
+    return f.log_evidence - price * static_cast<double>(h.size());
+  };
+
+  Hypothesis best;
+  say("fitting the scenario's own numbers");
+  Fit best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
+  fitter.settle({}, best_fit);
+  best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
+  result.without = best_fit;
+  result.scores = scores(fitter, candidates, {}, best_fit);
+  double best_value = best_fit.log_evidence;
+
+  for (int round = 0; round < options.most_effects; ++round) {
+    say(fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
+    const std::vector<Fitted> additions = best_additions(fitter, candidates, best, best_fit, options.refits);
+    if (additions.empty()) break;
+    const Hypothesis tried = with(best, additions.front().claim);
+    const double value = evidence(additions.front().fit, tried) - laws_price(candidates, best);
+    if (!(value > best_value + options.must_gain)) break;
+    best = tried;
+    best_fit = additions.front().fit;
+    best_value = value;
+
+    for (int turn = 0; turn < 2 && best.size() > 1; ++turn) {  // exchange each for a better one
+      bool changed = false;
+      for (std::size_t i = 0; i < best.size(); ++i) {
+        Hypothesis others = best;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+        Eigen::VectorXd x;
+        Eigen::Index at = fitter.n_nuisance();
+        for (std::size_t c = 0; c < best.size(); ++c) {
+          const auto n = static_cast<Eigen::Index>(best[c].knobs.size());
+          if (c != i) x = joined(x, best_fit.x.segment(at, n));
+          at += n;
+        }
+        const Fit fit = fit_all(fitter, {{others, x}}).front();
+        const std::vector<Fitted> replacements = best_additions(fitter, candidates, others, fit, options.refits);
+        if (replacements.empty()) continue;
+        const Hypothesis exchanged = with(others, replacements.front().claim);
+        const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
+        if (v > best_value + 0.5) {
+          best = exchanged;
+          best_fit = replacements.front().fit;
+          best_value = v;
+          changed = true;
+        }
+      }
+      if (!changed) break;
+    }
+  }
+  if (!best.empty()) {
+    say("settling the numbers");
+    fitter.settle(best, best_fit);
+    best_fit = fit_all(fitter, {{best, best_fit.x.tail(best_fit.x.size() - fitter.n_nuisance())}}).front();
+    best_value = evidence(best_fit, best) - laws_price(candidates, best);
+  }
+
+  // Prune, and look for others in each one's place.
+  say(best.empty() ? "nothing to add" : "looking for other explanations");
+  for (std::size_t i = 0; i < best.size();) {
+    Hypothesis others = best;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    Eigen::VectorXd x;
+    Eigen::Index at = fitter.n_nuisance();
+    for (std::size_t c = 0; c < best.size(); ++c) {
+      const auto n = static_cast<Eigen::Index>(best[c].knobs.size());
+      if (c != i) x = joined(x, best_fit.x.segment(at, n));
+      at += n;
+    }
+    const Fit fit = fit_all(fitter, {{others, x}}).front();
+    const double without_value = evidence(fit, others) - laws_price(candidates, others);
+    if (!(best_value > without_value + options.must_gain)) {
+      best = others;
+      best_fit = fit;
+      best_value = without_value;
+      i = 0;
+      result.findings.clear();
+      continue;
+    }
+    Finding finding{best[i], best_value - without_value, {}};
+    for (Fitted& f : best_additions(fitter, candidates, others, fit, options.refits)) {
+      const double value = evidence(f.fit, with(others, f.claim)) - laws_price(candidates, others);
+      if (f.claim.candidate == best[i].candidate || value < best_value - options.cannot_tell) continue;
+      finding.alternatives.push_back({std::move(f.claim), std::move(f.fit), value - without_value});
+    }
+    result.findings.push_back(std::move(finding));
+    ++i;
+  }
+  result.hypothesis = std::move(best);
+  result.fit = std::move(best_fit);
+  return result;
+}
+
+}  // namespace driftwright::diagnosis

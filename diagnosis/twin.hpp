@@ -1,0 +1,67 @@
+#pragma once
+// A reduced machine that answers for any state of doubt: one basis for all of them.
+
+#include <memory>
+
+#include "diagnosis/measured_run.hpp"
+#include "diagnosis/twin_state.hpp"
+#include "scenarios/reduced_machine.hpp"
+#include "solver/propagator.hpp"
+
+namespace driftwright::diagnosis {
+
+/// The scenario's machine with what a diagnosis may add, dormant: heat in each region, node and surface, films where there are none, friction
+/// that looks at its body, stratified air. Its reduced model holds for all of them.
+struct AugmentedModel {
+  scenarios::MachineModel model;
+  scenarios::ReductionPlan plan;
+  std::size_t n_own_effects = 0;  ///< the scenario's, first in the list
+  bool has_own_gradient = false;
+};
+/// @param mesh  the machine's, for the names of its regions and surfaces
+[[nodiscard]] AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& mesh,
+                                     const std::vector<MeasuredRun>& runs);
+
+/// Predicts readings. Const and shared by threads; each brings a Workspace.
+class Twin {
+ public:
+  Twin(const AugmentedModel& augmented, const scenarios::ReducedMachine& machine, solver::TransientOptions tolerances);
+
+  /// Systems and decompositions that one thread changes and keeps.
+  class Workspace {
+   public:
+    explicit Workspace(const Twin& twin);
+
+   private:
+    friend class Twin;
+    solver::ReducedSystem system_;
+    std::vector<double> factors_;  ///< of conductivities and capacities that system_ has
+    double gradient_K_m_ = 0.0;    ///< of the air
+    std::unique_ptr<solver::Propagator> propagator_;
+  };
+
+  /// The scenario as it stands.
+  [[nodiscard]] const TwinState& as_written() const { return as_written_; }
+  /// Outputs of the machine at a run's times, n_outputs x n_times [K over the reference, m, rad]: the model's own, then the mean temperatures
+  /// of its regions and nodes.
+  /// @throws SolveError  where a state has no solution
+  [[nodiscard]] Eigen::MatrixXd respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
+  /// What its instruments say of them.
+  [[nodiscard]] Eigen::MatrixXd read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const;
+
+  [[nodiscard]] const solver::Outputs& outputs() const { return outputs_; }
+  [[nodiscard]] double reference_K() const { return machine_.system.reference_K; }
+  [[nodiscard]] const scenarios::ReducedMachine& machine() const { return machine_; }
+  [[nodiscard]] const AugmentedModel& augmented() const { return augmented_; }
+  /// The scenario's own heat balance in a state, as the reduced model has it.
+  [[nodiscard]] effects::HeatBalance balance(const TwinState& state) const;
+
+ private:
+  const AugmentedModel& augmented_;
+  const scenarios::ReducedMachine& machine_;
+  solver::TransientOptions tolerances_;
+  TwinState as_written_;
+  solver::Outputs outputs_;  ///< the model's own, then the mean temperature of each part with mass
+};
+
+}  // namespace driftwright::diagnosis
