@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "scenarios/as_recorded.hpp"
 #include "scenarios/read_cyclogram.hpp"
 #include "scenarios/read_hall.hpp"
 
@@ -36,10 +37,17 @@ void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
   const auto add = [&](const std::string& name, const char* list) {
     if (!names.insert(name).second)
       in.fail(list,
-              fmt::format("the name '{}' is used twice, or is a column of every record (time, speed, feeds, cutting power)",
-                          name));
+              fmt::format(
+                  "the name '{}' is used twice, or is a column of every record (time, speed, feeds, cutting power, ambient)",
+                  name));
   };
   for (const Sensor& s : m.sensors) add(s.name, "sensors");
+  const auto is_ambient = [](const auto& output) { return output.name == kAmbient; };
+  const auto sensor = std::find_if(m.sensors.begin(), m.sensors.end(), is_ambient);
+  const auto* node = sensor == m.sensors.end() ? nullptr : std::get_if<std::string>(&sensor->place);
+  const bool is_on_hall = node && *node == effects::kHallName;
+  if (sensor != m.sensors.end() && !is_on_hall) in.fail("sensors", "the name 'ambient' is that of the hall's temperature");
+  if (!is_on_hall) names.insert(kAmbient);
   for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
   for (const TiltOutput& t : m.tilts) add(t.name, "tilts");
 }
@@ -197,9 +205,10 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
         fmt::format("{}: cyclogram '{}' would give {:.1e} rows of output, more than {:.0e}; take a longer output_interval",
                     scenario.path, cyclogram.name, n_outputs, kMostOutputs));
   }
+  const Cyclogram felt = felt_run(*scenario.machine, cyclogram).cyclogram;
   for (const effects::Effect& effect : scenario.machine->effects) {
     const effects::HeatBalance balance = effects::heat_balance({effect});
-    for (const Cyclogram::Section& section : cyclogram.sections) {
+    for (const Cyclogram::Section& section : felt.sections) {
       const effects::Inputs at{.drive = section.drive};
       try {
         const auto try_law = [&](const effects::Law& law) {  // those that look at temperatures are tried as the run goes
@@ -232,6 +241,7 @@ Scenario read_scenario(const ConfigMap& in) {
     for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
     if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);
+    check_instruments(*scenario.machine, scenario.cyclograms);
     for (const Cyclogram& c : scenario.cyclograms) check_cyclogram(scenario, c);
     const bool has_fields = scenario.solver.stresses || !scenario.solver.fields_at_s.empty();
     if (has_fields && std::holds_alternative<LumpedMachine>(scenario.machine->mesh)) {
