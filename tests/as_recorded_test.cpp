@@ -80,7 +80,8 @@ TEST(AsRecorded, AMissingStopCoolsTheMachineAndLeavesNoTraceInTheSpeed) {
 TEST(AsRecorded, TheMachineStartsInTheHallThatItFeels) {
   const std::string warmer = "  - {type: ambient, offset: 2 K}\n";
   for (const char* start : {"start: hall\n", "start: steady\n"}) {
-    for (double t_degC : record_of(two_bodies(warmer, start), "rest").at("t_cold").values) EXPECT_NEAR(t_degC, 27.0, 1e-6);
+    const Record record = record_of(two_bodies(warmer, start), "rest");
+    for (double t_degC : record.at("t_cold").values) EXPECT_NEAR(t_degC, 27.0, 1e-6) << start;
   }
 }
 
