@@ -11,11 +11,6 @@
 namespace driftwright::scenarios {
 namespace {
 
-bool is_on_hall(const Sensor& sensor) {
-  const auto* node = std::get_if<std::string>(&sensor.place);
-  return node && *node == effects::kHallName;
-}
-
 void must_be_one_of(const Where& where, const char* what, const std::string& name, const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
   if (known.empty()) throw InputError(where, fmt::format("there is no {} '{}', nor any other", what, name));
@@ -43,6 +38,15 @@ void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
 
 }  // namespace
 
+bool is_on_hall(const Sensor& sensor) {
+  const auto* node = std::get_if<std::string>(&sensor.place);
+  return node && *node == effects::kHallName;
+}
+
+bool has_ambient_channel(const MachineModel& model) {
+  return std::none_of(model.sensors.begin(), model.sensors.end(), is_on_hall);
+}
+
 FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
   const effects::DriveChange change = effects::drive_change(model.effects);
   return {effects::true_cyclogram(change, recorded), effects::true_hall(change, model.hall, recorded)};
@@ -54,7 +58,6 @@ double felt_hall_at_start_K(const MachineModel& model) {
 
 Record as_recorded(const MachineModel& model, const solver::Trajectory& run, const solver::Outputs& outputs,
                    const Cyclogram& recorded) {
-  const bool has_hall = std::any_of(model.sensors.begin(), model.sensors.end(), is_on_hall);
   solver::Trajectory told;
   told.time_s = run.time_s;
   told.outputs = run.outputs;
@@ -69,7 +72,7 @@ Record as_recorded(const MachineModel& model, const solver::Trajectory& run, con
         effects::readings(chain, outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.hall, std::move(told.outputs));
   }
   Record record = to_record(told, outputs, recorded, model.reference_K);
-  if (has_hall) return record;
+  if (!has_ambient_channel(model)) return record;
   Channel ambient{kAmbient, "degC", {}};
   for (double hall_K : hall) ambient.values.push_back(hall_K + (model.reference_K - kZeroCelsius_K));
   record.channels.insert(record.channels.end() - static_cast<std::ptrdiff_t>(outputs.name.size()), std::move(ambient));

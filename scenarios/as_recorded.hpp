@@ -27,6 +27,10 @@ struct FeltRun {
 [[nodiscard]] Record as_recorded(const MachineModel& model, const solver::Trajectory& run, const solver::Outputs& outputs,
                                  const Cyclogram& recorded);
 
+[[nodiscard]] bool is_on_hall(const Sensor& sensor);
+/// Whether the machine's records have the channel `ambient`.
+[[nodiscard]] bool has_ambient_channel(const MachineModel& model);
+
 /// Temperature channels of a record to choose sensors from: all but `ambient`.
 [[nodiscard]] std::vector<std::string> sensor_channels(const Record& record);
 

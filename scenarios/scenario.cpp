@@ -42,12 +42,10 @@ void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
                   name));
   };
   for (const Sensor& s : m.sensors) add(s.name, "sensors");
-  const auto is_ambient = [](const auto& output) { return output.name == kAmbient; };
-  const auto sensor = std::find_if(m.sensors.begin(), m.sensors.end(), is_ambient);
-  const auto* node = sensor == m.sensors.end() ? nullptr : std::get_if<std::string>(&sensor->place);
-  const bool is_on_hall = node && *node == effects::kHallName;
-  if (sensor != m.sensors.end() && !is_on_hall) in.fail("sensors", "the name 'ambient' is that of the hall's temperature");
-  if (!is_on_hall) names.insert(kAmbient);
+  for (const Sensor& s : m.sensors) {
+    if (s.name == kAmbient && !is_on_hall(s)) in.fail("sensors", "the name 'ambient' is that of the hall's temperature");
+  }
+  names.insert(kAmbient);
   for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
   for (const TiltOutput& t : m.tilts) add(t.name, "tilts");
 }
@@ -127,7 +125,8 @@ void check_candidates(const ConfigMap& in, const Study& study, const MachineMode
   std::vector<std::string> sensors;
   for (const Sensor& sensor : machine.sensors) sensors.push_back(sensor.name);
   for (const std::string& name : study.candidates) {
-    if (std::find(sensors.begin(), sensors.end(), name) == sensors.end()) {
+    const bool is_ambient = name == kAmbient && has_ambient_channel(machine);
+    if (!is_ambient && std::find(sensors.begin(), sensors.end(), name) == sensors.end()) {
       in.fail("candidates", fmt::format("no sensor '{}'; there are {}", name, fmt::join(sensors, ", ")));
     }
   }

@@ -141,6 +141,18 @@ TEST(Names, AmbientIsThatOfTheHall) {
   EXPECT_NO_THROW(with("{name: ambient, node: hall}"));
 }
 
+TEST(Study, ChoosesTheHallOnlyWhereItIsNamed) {
+  const std::string study =
+      "study: {target: growth, train: [long], judge: rest, sensors_to_choose: 2, candidates: [t_hot, ambient]}\n";
+  EXPECT_EQ(read(two_bodies("") + study).study->candidates.size(), 2u);
+  const std::string with_hall = "{name: t_hot, node: hot}, {name: air, node: hall}";
+  EXPECT_THAT([&] { (void)read(two_bodies("", "", with_hall) + study); },
+              ThrowsMessage<InputError>(HasSubstr("no sensor 'ambient'")));
+  const std::string too_many = "study: {target: growth, train: [long], judge: rest, sensors_to_choose: 3}\n";
+  EXPECT_THAT([&] { (void)read(two_bodies("") + too_many); },
+              ThrowsMessage<InputError>(HasSubstr("3 of 2 sensors cannot be chosen")));
+}
+
 TEST(CheckCyclogram, TriesLawsAtTheSpeedThatTheMachineTurnsAt) {
   // A stop or an override cannot be seen in the record; a law that ends at 13 057 rpm must not be left by it.
   ColumnAndHead machine;
