@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/as_recorded.hpp"
+
 namespace driftwright::app {
 namespace {
 
@@ -10,7 +12,7 @@ using namespace compensation;
 using scenarios::Scenario;
 
 std::vector<std::string> candidates(const scenarios::Study& study, const Record& record) {
-  return study.candidates.empty() ? record.names_with_unit("degC") : study.candidates;
+  return study.candidates.empty() ? scenarios::sensor_channels(record) : study.candidates;
 }
 
 std::vector<Record> training_records(const MachineStudy& study) {
@@ -38,15 +40,16 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 /// The modal model's record of a cyclogram, at the times of the full model's.
 Record predict_record(const ModalPredictor& predictor, const Scenario& scenario, const Model& model,
                       const Cyclogram& cyclogram, const std::vector<double>& time_s) {
-  return scenarios::to_record(predictor.predict(cyclogram, scenario.machine->hall, time_s), model.outputs(), cyclogram,
-                              scenario.machine->reference_K);
+  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
+  return scenarios::as_recorded(*scenario.machine, predictor.predict(felt.cyclogram, felt.hall, time_s), model.outputs(),
+                                cyclogram);
 }
 
 ModalError modal_error(const Record& predicted, const Record& full, const std::vector<std::string>& displacements,
                        int n_modes, bool with_steady_responses) {
   ModalError error{
       .n_modes = n_modes, .with_steady_responses = with_steady_responses, .worst_sensor = {}, .worst_displacement_um = {}};
-  for (const std::string& sensor : full.names_with_unit("degC")) {
+  for (const std::string& sensor : scenarios::sensor_channels(full)) {
     const double difference_K = largest_difference(predicted.at(sensor).values, full.at(sensor).values);
     if (difference_K >= error.worst_temperature_K) {
       error.worst_temperature_K = difference_K;
@@ -62,8 +65,12 @@ ModalError modal_error(const Record& predicted, const Record& full, const std::v
 void fit_modal(MachineStudy& study, const Scenario& scenario, const Model& model) {
   const Cyclogram& judged = scenario.cyclogram(scenario.study->judge);
   const int n_modes = scenario.study->thermal_modes;
+  std::vector<Cyclogram> felt;
+  for (const SimulatedRun& run : study.train) {
+    felt.push_back(scenarios::felt_run(*scenario.machine, scenario.cyclogram(run.record.source)).cyclogram);
+  }
   std::vector<const Cyclogram*> training;
-  for (const SimulatedRun& run : study.train) training.push_back(&scenario.cyclogram(run.record.source));
+  for (const Cyclogram& cyclogram : felt) training.push_back(&cyclogram);
   const Drive typical = mean_drive(training);
   const ModalPredictors predictors = modal_predictors(scenario, model, n_modes, typical);
   for (bool with_steady_responses : {false, true}) {

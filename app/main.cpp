@@ -60,6 +60,7 @@ int main(int argc, char** argv) {
   app::PredictOptions predict;
   app::RecordOptions select, validate;
   app::SweepOptions sweep;
+  app::DiagnoseOptions diagnose;
   add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
@@ -88,6 +89,15 @@ int main(int argc, char** argv) {
                   "validate scenarios/spindle_22.yaml --train run1.csv --train run2.csv --test run3.csv", validate);
   add_records(verb, validate, true);
   verb->callback([&] { app::validate(validate); });
+  verb = add_verb(cli, "diagnose", "what a simulation gets wrong against measured records, why, and what mending it gains",
+                  "diagnose scenarios/fp3_spindle.yaml --measured monday.csv --measured tuesday.csv -o results/diagnosis",
+                  diagnose);
+  verb->add_option("--measured", diagnose.measured, "record CSV (docs/record.md); may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  verb->add_option("--without", diagnose.without, "key of an effect that is not looked for; may be repeated")
+      ->allow_extra_args(false);
+  verb->callback([&] { app::diagnose(diagnose); });
   verb = add_verb(cli, "sweep", "many variants of one scenario, one table (docs/sweep.md)",
                   "sweep scenarios/lumped_sweep.yaml\n  driftwright sweep scenarios/lumped_sweep.yaml --shard 3/8\n  "
                   "driftwright sweep scenarios/lumped_sweep.yaml --merge",

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/version.hpp"
+#include "scenarios/as_recorded.hpp"
 #include "scenarios/machine_key.hpp"
 #include "scenarios/machine_store.hpp"
 #include "scenarios/ways_out.hpp"
@@ -45,7 +46,7 @@ compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenar
                                                 reduced->system.thermostats.front().name));
   }
   return compensation::make_modal_predictors(model.full()->system, n_modes, scenarios::start_state(machine, *model.full()),
-                                             machine.hall.at(0.0), typical);
+                                             scenarios::felt_hall_at_start_K(machine), typical);
 }
 
 scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress& progress, int n_fields) {

@@ -6,6 +6,7 @@
 #include "app/results.hpp"
 #include "app/verbs.hpp"
 #include "compensation/modal_predictor.hpp"
+#include "scenarios/as_recorded.hpp"
 #include "scenarios/read_cyclogram.hpp"
 #include "scenarios/ways_out.hpp"
 
@@ -31,13 +32,14 @@ void predict(const PredictOptions& options) {
     scenarios::require_ways_out(full->placed.mesh, full->placed.balance, model.where);
   }
   progress.begin("computing thermal modes");
+  const scenarios::FeltRun felt = scenarios::felt_run(model, cyclogram);
   const int most_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
   const compensation::ModalPredictor predictor =
-      modal_predictors(scenario, machine, most_modes, mean_drive({&cyclogram})).completed;
+      modal_predictors(scenario, machine, most_modes, mean_drive({&felt.cyclogram})).completed;
   const std::size_t n_modes = predictor.time_constant_s.size();  // a machine of few nodes has fewer
   const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);
-  const Record record = scenarios::to_record(predictor.predict(cyclogram, model.hall, times_s), machine.outputs(), cyclogram,
-                                             model.reference_K);
+  const Record record =
+      scenarios::as_recorded(model, predictor.predict(felt.cyclogram, felt.hall, times_s), machine.outputs(), cyclogram);
   folder.write_text("record.csv",
                     record_csv(record, provenance_lines(folder.made_by(), fmt::format("predicted by {} thermal modes for {}",
                                                                                       n_modes, options.cyclogram))));

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "scenarios/as_recorded.hpp"
+
 namespace driftwright::app {
 namespace {
 
@@ -15,7 +17,8 @@ std::vector<std::string> candidates(const scenarios::Study& settings, const Reco
   if (!settings.candidates.empty()) return settings.candidates;
   std::vector<std::string> names;
   for (const Channel& c : record.channels) {
-    if ((c.unit == "degC" || c.unit == "K") && &c != record.find(settings.target)) names.push_back(c.name);
+    const bool is_temperature = (c.unit == "degC" || c.unit == "K") && c.name != scenarios::kAmbient;
+    if (is_temperature && &c != record.find(settings.target)) names.push_back(c.name);
   }
   if (names.empty()) throw InputError(fmt::format("{}: no temperature channel (degC or K) to choose from", record.source));
   return names;

@@ -29,7 +29,7 @@ struct RecordStudy {
 /// @throws InputError  for a missing file or channel, and when a file is both trained on and judged by
 [[nodiscard]] RecordStudy read_records(const scenarios::Study& study, const RecordOptions& options);
 
-/// Ranks the candidates on the training records: `study.candidates`, or every temperature channel but the target.
+/// Ranks the candidates on the training records: `study.candidates`, or every temperature channel but the target and `ambient`.
 void rank(RecordStudy& study, const scenarios::Study& settings);
 
 /// Fits on the training records, judges on each test record.

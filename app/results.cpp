@@ -8,6 +8,7 @@
 
 #include "app/version.hpp"
 #include "base/quantity.hpp"
+#include "scenarios/as_recorded.hpp"
 #include "scenarios/heat_flow_record.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/stress.hpp"
@@ -141,11 +142,12 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
     const std::vector<double> times_s =
         scenarios::output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
     try {
-      runs[i].trajectory =
-          reduced ? solver::simulate(reduced->system, cyclogram, machine.hall, times_s, settings.transient, start, at_output)
-                  : solver::simulate(model.full()->system, cyclogram, machine.hall, times_s, settings.transient, start,
-                                     at_output);
-      runs[i].record = scenarios::to_record(runs[i].trajectory, model.outputs(), cyclogram, machine.reference_K);
+      const scenarios::FeltRun felt = scenarios::felt_run(machine, cyclogram);
+      runs[i].trajectory = reduced ? solver::simulate(reduced->system, felt.cyclogram, felt.hall, times_s,
+                                                      settings.transient, start, at_output)
+                                   : solver::simulate(model.full()->system, felt.cyclogram, felt.hall, times_s,
+                                                      settings.transient, start, at_output);
+      runs[i].record = scenarios::as_recorded(machine, runs[i].trajectory, model.outputs(), cyclogram);
     } catch (...) {
       failures[i] = std::current_exception();  // none may leave the parallel loop
     }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/quantity.hpp"
+#include "scenarios/as_recorded.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_transient.hpp"
 
@@ -32,7 +33,7 @@ double scalar_of(const Record& record, const Channel& channel, scenarios::Scalar
 
 namespace {
 
-/// The scalars of the cyclograms that they name, each run once by `run(cyclogram, output times)`.
+/// The scalars of the cyclograms that they name, each run once by `run(felt run, output times)`.
 template <class Run>
 std::vector<double> collected(const scenarios::Scenario& scenario, const solver::Outputs& outputs,
                               const std::vector<scenarios::CollectedScalar>& collect, const Run& run) {
@@ -43,9 +44,9 @@ std::vector<double> collected(const scenarios::Scenario& scenario, const solver:
     auto found = records.find(c.cyclogram);
     if (found == records.end()) {
       const Cyclogram& cyclogram = scenario.cyclogram(c.cyclogram);
-      const solver::Trajectory trajectory =
-          run(cyclogram, scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s));
-      found = records.emplace(c.cyclogram, scenarios::to_record(trajectory, outputs, cyclogram, model.reference_K)).first;
+      const solver::Trajectory trajectory = run(scenarios::felt_run(model, cyclogram),
+                                                scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s));
+      found = records.emplace(c.cyclogram, scenarios::as_recorded(model, trajectory, outputs, cyclogram)).first;
     }
     const double neutral = c.unit == "degC" ? model.reference_K - kZeroCelsius_K : 0.0;
     results.push_back(scalar_of(found->second, found->second.at(c.channel), c.scalar, neutral));
@@ -58,9 +59,10 @@ std::vector<double> collected(const scenarios::Scenario& scenario, const solver:
 std::vector<double> simulate_member(const scenarios::Scenario& scenario, const scenarios::Machine& machine,
                                     const std::vector<scenarios::CollectedScalar>& collect) {
   const Eigen::VectorXd start = scenarios::start_state(*scenario.machine, machine);
-  return collected(scenario, machine.system.outputs, collect, [&](const Cyclogram& c, const std::vector<double>& times_s) {
-    return solver::simulate(machine.system, c, scenario.machine->hall, times_s, scenario.solver.transient, start);
-  });
+  return collected(
+      scenario, machine.system.outputs, collect, [&](const scenarios::FeltRun& felt, const std::vector<double>& times_s) {
+        return solver::simulate(machine.system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, start);
+      });
 }
 
 std::vector<double> simulate_member(const scenarios::Scenario& scenario, const scenarios::ReducedMachine& machine,
@@ -69,10 +71,11 @@ std::vector<double> simulate_member(const scenarios::Scenario& scenario, const s
   scenarios::bind_laws(system, scenarios::reducible(effects::heat_balance(scenario.machine->effects)));
   std::optional<solver::Propagator> propagator;  // keeps decompositions from one cyclogram to the next
   if (system.is_linear()) propagator.emplace(system);
-  return collected(scenario, system.outputs, collect, [&](const Cyclogram& c, const std::vector<double>& times_s) {
-    if (propagator) return propagator->run(c, scenario.machine->hall, times_s, machine.start);
-    return solver::simulate(system, c, scenario.machine->hall, times_s, scenario.solver.transient, machine.start);
-  });
+  return collected(
+      scenario, system.outputs, collect, [&](const scenarios::FeltRun& felt, const std::vector<double>& times_s) {
+        if (propagator) return propagator->run(felt.cyclogram, felt.hall, times_s, machine.start);
+        return solver::simulate(system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, machine.start);
+      });
 }
 
 }  // namespace driftwright::app

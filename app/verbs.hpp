@@ -35,6 +35,12 @@ struct RecordOptions : CommonOptions {
 void select(const RecordOptions& options);
 void validate(const RecordOptions& options);
 
+struct DiagnoseOptions : CommonOptions {
+  std::vector<std::string> measured;  ///< record CSVs
+  std::vector<std::string> without;   ///< catalogue keys that are not looked for
+};
+void diagnose(const DiagnoseOptions& options);
+
 struct SweepOptions : CommonOptions {  ///< `scenario` is the study
   std::string shard;                   ///< "i/n", or empty for all members
   bool merge = false;                  ///< only put together what shards have simulated

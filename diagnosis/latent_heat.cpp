@@ -129,7 +129,9 @@ std::optional<LatentHeat> latent_heat(const Fitter& fitter, const Hypothesis& hy
   }
   const auto best = static_cast<std::size_t>(std::max_element(explained.begin(), explained.end()) - explained.begin());
   if (bodies.empty() || heat[best].size() == 0) return std::nullopt;
-  LatentHeat latent{.body = bodies[best].name, .explained = std::min(1.0, explained[best])};
+  LatentHeat latent;
+  latent.body = bodies[best].name;
+  latent.explained = std::min(1.0, explained[best]);
   latent.time_s = fitter.runs()[0].time_s;
   Eigen::VectorXd series(static_cast<Eigen::Index>(latent.time_s.size()));
   for (std::size_t i = 0; i < latent.time_s.size(); ++i) {

@@ -176,6 +176,29 @@ effects::HeatBalance Twin::balance(const TwinState& state) const {
   return scenarios::reducible(effects::heat_balance(own));
 }
 
+effects::DriveChange Twin::drive(const TwinState& state) const {
+  effects::DriveChange both = effects::drive_change(state.effects);
+  both.speed_factor *= state.drive.speed_factor;
+  both.stops.insert(both.stops.end(), state.drive.stops.begin(), state.drive.stops.end());
+  both.hall.insert(both.hall.end(), state.drive.hall.begin(), state.drive.hall.end());
+  return both;
+}
+
+effects::ReadingChain Twin::chain(const TwinState& state) const {
+  effects::ReadingChain both = effects::reading_chain(state.effects);
+  const effects::ReadingChain& more = state.readings;
+  const auto append = [](auto& list, const auto& further) { list.insert(list.end(), further.begin(), further.end()); };
+  append(both.growths, more.growths);
+  append(both.scales, more.scales);
+  append(both.shifts, more.shifts);
+  append(both.detachments, more.detachments);
+  append(both.lags, more.lags);
+  append(both.errors, more.errors);
+  append(both.swaps, more.swaps);
+  both.clock_offset_s += more.clock_offset_s;
+  return both;
+}
+
 Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
   // --- matrices
   solver::ReducedSystem& system = workspace.system_;
@@ -294,8 +317,8 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
   }
 
   // --- run
-  const Cyclogram felt = effects::true_cyclogram(state.drive, run.cyclogram);
-  const TimeSeries hall = effects::true_hall(state.drive, run.hall, run.cyclogram);
+  const Cyclogram felt = effects::true_cyclogram(drive(state), run.cyclogram);
+  const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
   Eigen::MatrixXd states;
   if (system.is_linear()) {
     if (!workspace.propagator_ || workspace.gradient_K_m_ != state.gradient_K_m) {
@@ -332,11 +355,12 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
 }
 
 Eigen::MatrixXd Twin::read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const {
-  if (state.readings.empty()) return outputs;
-  Cyclogram felt = effects::true_cyclogram(state.drive, run.cyclogram);
+  const effects::ReadingChain readings = chain(state);
+  if (readings.empty()) return outputs;
+  Cyclogram felt = effects::true_cyclogram(drive(state), run.cyclogram);
   felt.name = run.name;
-  const TimeSeries hall = effects::true_hall(state.drive, run.hall, run.cyclogram);
-  return effects::readings(state.readings, outputs_.name, outputs_.unit, run.time_s, felt, hall, std::move(outputs));
+  const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
+  return effects::readings(readings, outputs_.name, outputs_.unit, run.time_s, felt, hall, std::move(outputs));
 }
 
 }  // namespace driftwright::diagnosis

@@ -57,6 +57,10 @@ class Twin {
   [[nodiscard]] effects::HeatBalance balance(const TwinState& state) const;
 
  private:
+  /// The scenario's own changes and the state's.
+  [[nodiscard]] effects::DriveChange drive(const TwinState& state) const;
+  [[nodiscard]] effects::ReadingChain chain(const TwinState& state) const;
+
   const AugmentedModel& augmented_;
   const scenarios::ReducedMachine& machine_;
   solver::TransientOptions tolerances_;

@@ -1,6 +1,7 @@
 #include "effects/drive_change.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace driftwright::effects {
 namespace {
@@ -36,6 +37,14 @@ TimeSeries with_error(const TimeSeries& hall, const DriveChange::HallError& erro
   return changed;
 }
 
+/// The duration that takes a sum of durations from `start_s` to `end_s` exactly, so that both cyclograms end at the same time.
+double duration_between_s(double start_s, double end_s) {
+  double duration_s = end_s - start_s;
+  while (start_s + duration_s < end_s) duration_s = std::nextafter(duration_s, end_s);
+  while (start_s + duration_s > end_s) duration_s = std::nextafter(duration_s, 0.0);
+  return duration_s;
+}
+
 }  // namespace
 
 Cyclogram true_cyclogram(const DriveChange& change, const Cyclogram& recorded) {
@@ -62,7 +71,7 @@ Cyclogram true_cyclogram(const DriveChange& change, const Cyclogram& recorded) {
         return middle_s >= stop.start_s && middle_s < stop.start_s + stop.length_s;
       });
       Cyclogram::Section piece = section;
-      if (cuts.size() > 2) piece.duration_s = cuts[i + 1] - cuts[i];
+      if (cuts.size() > 2) piece.duration_s = duration_between_s(cuts[i], cuts[i + 1]);
       piece.drive.speed_rpm = stands ? 0.0 : change.speed_factor * section.drive.speed_rpm;
       if (piece.duration_s > 0.0) felt.sections.push_back(piece);
     }

@@ -10,6 +10,7 @@
 #include "base/quantity.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/shape.hpp"
+#include "scenarios/as_recorded.hpp"
 #include "scenarios/ways_out.hpp"
 #include "solver/steady_state.hpp"
 
@@ -101,6 +102,10 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
     }
   };
   for (const effects::Effect& e : model.effects) {
+    if (e.place_kind == effects::Place::kSensor || e.place_kind == effects::Place::kDisplacement ||
+        e.place_kind == effects::Place::kClock || e.place_kind == effects::Place::kSpindle) {
+      continue;  // no part of the machine: check_instruments()
+    }
     if (e.place_kind == effects::Place::kJoint) {
       must_be_one_of(e.where, "joint", e.place, joint_names(mesh));
     } else if (e.place_kind == effects::Place::kNode && e.place == effects::kHallName) {
@@ -207,6 +212,15 @@ DisplacementFunctional tilt_against_table(const Mesh& mesh, const TiltOutput& ou
   return d;
 }
 
+void multiply(solver::Material& material, const effects::MaterialFactor& factor) {
+  material.conductivity_W_mK *= factor.conductivity;
+  for (double& value : material.conductivity_curve.value) value *= factor.conductivity;
+  material.heat_capacity_J_kgK *= factor.heat_capacity;
+  for (double& value : material.heat_capacity_curve.value) value *= factor.heat_capacity;
+  const solver::Expansion& e = material.expansion_1_K;
+  material.expansion_1_K = {factor.expansion * e.x, factor.expansion * e.y, factor.expansion * e.z};
+}
+
 std::optional<solver::Elasticity> factorise(const MachineModel& model, const PlacedMachine& placed, int n_solves) {
   if (placed.mesh.n_nodes() == 0) return std::nullopt;
   try {
@@ -252,6 +266,11 @@ solver::RegionMaterials region_materials(const MachineModel& model, const Mesh& 
   for (std::size_t r = 0; r < given.size(); ++r) {
     if (!given[r])
       throw InputError(model.where, fmt::format("region '{}' has no material; add it under `materials`", mesh.regions[r]));
+  }
+  for (const effects::MaterialFactor& factor : effects::material_factors(model.effects)) {
+    const auto region = std::find(mesh.regions.begin(), mesh.regions.end(), factor.region);
+    if (factor.is_node || region == mesh.regions.end()) continue;  // place() says so at the effect
+    multiply(materials[static_cast<std::size_t>(region - mesh.regions.begin())], factor);
   }
   return materials;
 }
@@ -364,7 +383,7 @@ Machine build_with_influences(const MachineModel& model, PlacedMachine placed, c
 
 Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine) {
   const int n = machine.system.size();
-  const double hall_K = model.hall.at(0.0);
+  const double hall_K = felt_hall_at_start_K(model);
   switch (model.start) {
     case Start::kReference:
       return Eigen::VectorXd::Zero(n);

@@ -31,7 +31,7 @@ struct PlacedMachine {
 /// The same in a mesh that build_mesh() has made of model.mesh.
 [[nodiscard]] PlacedMachine place(const MachineModel& model, mesh::Mesh mesh);
 
-/// Materials by region of the mesh. @throws InputError  for a region without material, or a material without region
+/// Materials by region of the mesh, with the factors of effects. @throws InputError  for a region without material, or a material without region
 [[nodiscard]] solver::RegionMaterials region_materials(const MachineModel& model, const mesh::Mesh& mesh);
 
 /// The full model, ready to run.

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/file_bytes.hpp"
+#include "scenarios/as_recorded.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -56,6 +57,7 @@ bool looks_at_temperatures(const effects::HeatBalance& balance) {
 std::string numbers_of_laws(const MachineModel& model) {
   std::string text;
   for (const effects::Effect& e : model.effects) {
+    if (!e.kind->contribute) continue;
     text += fmt::format("{}: {}", e.name(), fmt::join(e.values, " "));
     for (const auto& [name, word] : e.words) text += fmt::format(" {} {}", name, word);
     for (const auto& [name, table] : e.tables) {
@@ -87,12 +89,16 @@ bool has_curves(const MachineModel& model) {
 std::string machine_text(const MachineModel& model) {
   const effects::HeatBalance balance = effects::heat_balance(model.effects);
   std::string text = model.written + structure(balance);
+  for (const effects::MaterialFactor& f : effects::material_factors(model.effects)) {
+    if (f.is_node) continue;  // its capacity says so
+    text += fmt::format("factors of {}: {} {} {}\n", f.region, f.conductivity, f.heat_capacity, f.expansion);
+  }
   if (const auto* imported = std::get_if<mesh::ImportedMesh>(&model.mesh)) {
     const std::string bytes = read_bytes(imported->path);
     text += fmt::format("mesh file of {} bytes, {:016x}\n", bytes.size(), fnv1a(bytes));
   }
   if (model.start == Start::kHall || model.start == Start::kSteady || !balance.fixed.empty()) {
-    text += fmt::format("hall at the start {} K\n", model.hall.at(0.0));
+    text += fmt::format("hall at the start {} K\n", felt_hall_at_start_K(model));
   }
   if (model.start == Start::kSteady) text += numbers_of_laws(model);
   return text;
@@ -108,9 +114,10 @@ std::string machine_key(const MachineModel& model, const ReductionPlan& plan, co
     key += fmt::format("typical {} {} {}\n", t.speed_rpm, fmt::join(t.feed_m_s, " "), t.cutting_power_W);
     key += numbers_of_laws(model);
   } else if (makes_modes) {  // or taken at standstill
-    key += fmt::format("at standstill {}\n", fmt::join(coefficients_at_standstill(balance, model.hall.at(0.0)), " "));
+    key +=
+        fmt::format("at standstill {}\n", fmt::join(coefficients_at_standstill(balance, felt_hall_at_start_K(model)), " "));
   }
-  if (freezes_laws || has_curves(model)) key += fmt::format("frozen in a hall of {} K\n", model.hall.at(0.0));
+  if (freezes_laws || has_curves(model)) key += fmt::format("frozen in a hall of {} K\n", felt_hall_at_start_K(model));
   const auto numbers = [](const Eigen::VectorXd& v) {
     return fmt::format("{}", fmt::join(v.data(), v.data() + v.size(), " "));
   };

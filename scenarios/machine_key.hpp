@@ -6,7 +6,8 @@
 namespace driftwright::scenarios {
 
 /// What decides mesh, matrices and start: the scenario's keys about them, the bytes of its mesh file, the structure of its heat
-/// balance. Laws and their numbers do not count: machines that differ in them alone share one reduced model, whose plan spans them.
+/// balance, factors on materials. Laws and their numbers do not count, nor do errors of drive and instruments: machines that differ in
+/// them alone share one reduced model, whose plan spans them.
 /// @throws InputError  when the mesh file cannot be read
 [[nodiscard]] std::string machine_text(const MachineModel& model);
 

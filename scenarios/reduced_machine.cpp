@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "scenarios/as_recorded.hpp"
 #include "scenarios/body_parts.hpp"
 #include "solver/conduction_factor.hpp"
 #include "solver/reduced_model.hpp"
@@ -91,7 +92,8 @@ solver::FullSystem reducible_system(const MachineModel& model, const Machine& ma
     };
     system = assemble();
     if (has_curves(machine.placed.materials)) {
-      materials = at_work(machine, balance, system, with_prescriptions(demand, system.exchanges.size()), model.hall.at(0.0));
+      materials = at_work(machine, balance, system, with_prescriptions(demand, system.exchanges.size()),
+                          felt_hall_at_start_K(model));
       system = assemble();
     }
     system.outputs = machine.system.outputs;
@@ -116,18 +118,29 @@ std::optional<compensation::ModalPredictors> modal_predictors(const solver::Full
 
 ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms) {
   const MachineModel& model = *scenario.machine;
+  const effects::HeatBalance balance = reducible(effects::heat_balance(model.effects));
+  std::vector<FeltRun> felt;
+  for (const Cyclogram* cyclogram : cyclograms) felt.push_back(felt_run(model, *cyclogram));
+  std::vector<const Cyclogram*> driven;
+  for (const FeltRun& run : felt) driven.push_back(&run.cyclogram);
   ReductionPlan plan;
-  plan.demand =
-      solver::reduction_demand(reducible(effects::heat_balance(model.effects)), cyclograms, model.hall, model.reference_K);
+  plan.demand = solver::reduction_demand(balance, driven, model.hall, model.reference_K);
+  if (!effects::drive_change(model.effects).hall.empty()) {  // each run may have a hall of its own
+    for (const FeltRun& run : felt) {
+      plan.demand.include(solver::reduction_demand(balance, {&run.cyclogram}, run.hall, model.reference_K));
+    }
+  }
   plan.tolerance_K = scenario.solver.reduction_tolerance_K;
   plan.with_fields = scenario.solver.fields_format != FieldsFormat::kNone;
-  std::vector<const Cyclogram*> typical;
+  std::vector<Cyclogram> typical;
   for (const Cyclogram& c : scenario.cyclograms) {
     const bool trains = !scenario.study || std::find(scenario.study->train.begin(), scenario.study->train.end(), c.name) !=
                                                scenario.study->train.end();
-    if (trains) typical.push_back(&c);
+    if (trains) typical.push_back(felt_run(model, c).cyclogram);
   }
-  plan.typical = mean_drive(typical);
+  std::vector<const Cyclogram*> pointers;
+  for (const Cyclogram& c : typical) pointers.push_back(&c);
+  plan.typical = mean_drive(pointers);
   if (scenario.study) plan.n_modes = scenario.study->thermal_modes;
   return plan;
 }
@@ -183,7 +196,7 @@ ReducedMachine reduce(const MachineModel& model, const Machine& machine, const R
   solver::RegionMaterials materials = machine.placed.materials;
   solver::FullSystem system = reducible_system(model, machine, balance, plan.demand, materials);
   if (plan.with_parts) system.parts = body_parts(model, machine, materials, balance);
-  const double hall_K = model.hall.at(0.0);
+  const double hall_K = felt_hall_at_start_K(model);
   Eigen::VectorXd start = start_state(model, machine);
   for (const solver::FixedUnknowns& f : machine.system.fixed) {  // what is held jumps at once, as in simulate()
     for (int i : f.unknowns) start[i] = f.follows_hall ? hall_K : f.theta.at(0.0);

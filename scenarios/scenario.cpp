@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "scenarios/as_recorded.hpp"
 #include "scenarios/read_cyclogram.hpp"
 #include "scenarios/read_hall.hpp"
 
@@ -36,10 +37,15 @@ void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
   const auto add = [&](const std::string& name, const char* list) {
     if (!names.insert(name).second)
       in.fail(list,
-              fmt::format("the name '{}' is used twice, or is a column of every record (time, speed, feeds, cutting power)",
-                          name));
+              fmt::format(
+                  "the name '{}' is used twice, or is a column of every record (time, speed, feeds, cutting power, ambient)",
+                  name));
   };
   for (const Sensor& s : m.sensors) add(s.name, "sensors");
+  for (const Sensor& s : m.sensors) {
+    if (s.name == kAmbient && !is_on_hall(s)) in.fail("sensors", "the name 'ambient' is that of the hall's temperature");
+  }
+  names.insert(kAmbient);
   for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
   for (const TiltOutput& t : m.tilts) add(t.name, "tilts");
 }
@@ -119,7 +125,8 @@ void check_candidates(const ConfigMap& in, const Study& study, const MachineMode
   std::vector<std::string> sensors;
   for (const Sensor& sensor : machine.sensors) sensors.push_back(sensor.name);
   for (const std::string& name : study.candidates) {
-    if (std::find(sensors.begin(), sensors.end(), name) == sensors.end()) {
+    const bool is_ambient = name == kAmbient && has_ambient_channel(machine);
+    if (!is_ambient && std::find(sensors.begin(), sensors.end(), name) == sensors.end()) {
       in.fail("candidates", fmt::format("no sensor '{}'; there are {}", name, fmt::join(sensors, ", ")));
     }
   }
@@ -197,9 +204,10 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
         fmt::format("{}: cyclogram '{}' would give {:.1e} rows of output, more than {:.0e}; take a longer output_interval",
                     scenario.path, cyclogram.name, n_outputs, kMostOutputs));
   }
+  const Cyclogram felt = felt_run(*scenario.machine, cyclogram).cyclogram;
   for (const effects::Effect& effect : scenario.machine->effects) {
     const effects::HeatBalance balance = effects::heat_balance({effect});
-    for (const Cyclogram::Section& section : cyclogram.sections) {
+    for (const Cyclogram::Section& section : felt.sections) {
       const effects::Inputs at{.drive = section.drive};
       try {
         const auto try_law = [&](const effects::Law& law) {  // those that look at temperatures are tried as the run goes
@@ -232,6 +240,7 @@ Scenario read_scenario(const ConfigMap& in) {
     for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
     if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);
+    check_instruments(*scenario.machine, scenario.cyclograms);
     for (const Cyclogram& c : scenario.cyclograms) check_cyclogram(scenario, c);
     const bool has_fields = scenario.solver.stresses || !scenario.solver.fields_at_s.empty();
     if (has_fields && std::holds_alternative<LumpedMachine>(scenario.machine->mesh)) {

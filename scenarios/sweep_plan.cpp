@@ -68,13 +68,21 @@ SweepValue SweepPlan::value(std::size_t member, std::size_t variation) const {
   return v.values[static_cast<std::size_t>(u * static_cast<double>(v.values.size()))];
 }
 
-ConfigMap SweepPlan::scenario_of(std::size_t member) const {
-  ConfigNodePtr tree = scenario;
-  for (std::size_t i = 0; i < variations.size(); ++i) {
-    const SweepValue chosen = value(member, i);
-    for (const ConfigSteps& place : variations[i].places) tree = replaced(tree, place, chosen.node);
+namespace {
+
+ConfigNodePtr tree_of(const SweepPlan& plan, std::size_t member) {
+  ConfigNodePtr tree = plan.scenario;
+  for (std::size_t i = 0; i < plan.variations.size(); ++i) {
+    const SweepValue chosen = plan.value(member, i);
+    for (const ConfigSteps& place : plan.variations[i].places) tree = replaced(tree, place, chosen.node);
   }
-  return ConfigMap::of_tree(std::move(tree));
+  return tree;
+}
+
+}  // namespace
+
+ConfigMap SweepPlan::scenario_of(std::size_t member) const {
+  return ConfigMap::of_tree(tree_of(*this, member));
 }
 
 std::string SweepPlan::table_header() const {
@@ -83,6 +91,23 @@ std::string SweepPlan::table_header() const {
   for (const CollectedScalar& c : collect) header += fmt::format(",{}", c.header());
   return header + ",status";
 }
+
+namespace {
+
+/// The effects of a member that change thermal expansion, which influence vectors follow from, as they are written.
+std::string expansion_factors(const SweepPlan& plan, std::size_t member) {
+  const ConfigNodePtr tree = tree_of(plan, member);
+  const ConfigNode* effects = tree->find("effects");
+  std::string text;
+  if (!effects || !effects->is_list()) return text;
+  for (const ConfigNodePtr& effect : effects->items) {
+    const ConfigNode* type = effect->is_map() ? effect->find("type") : nullptr;
+    if (type && type->text == "expansion") text += written(*effect) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
 
 std::string sharing_key(const SweepPlan& plan, std::size_t member, Shared what) {
   static const std::set<std::string> of_run = {"cyclograms", "hall", "solver", "start"};
@@ -95,6 +120,7 @@ std::string sharing_key(const SweepPlan& plan, std::size_t member, Shared what) 
     });
     if (decides) key += plan.value(member, i).label + "\n";
   }
+  if (what == Shared::kStructure) key += expansion_factors(plan, member);
   return key;
 }
 

@@ -57,6 +57,22 @@ const std::string kOiled =
     "{type: bearing_friction, region: front, f0: 2, viscosity_40: 32 mm^2/s, viscosity_100: 5.4 mm^2/s, mean_diameter: 90 "
     "mm";
 
+TEST(FrictionLaw, GrowsWithSpeedAndFallsWithItsOwnTemperature) {
+  const std::string law = "{type: friction_law, region: front, power: 80 W, at_speed: 2000 rpm, exponent: 1.5";
+  const Law power_W = balance_of(law + ", decay: 0.02 1/K, at_temperature: 30 degC}").heats.at(0).power_W;
+  ASSERT_EQ(power_W.probes, std::vector<Body>{region("front")});
+  const auto at = [&](double speed_rpm, double t_K) {
+    return power_W({.drive = {.speed_rpm = speed_rpm}, .probe_K = {t_K}});
+  };
+  EXPECT_DOUBLE_EQ(at(2000.0, 303.15), 80.0);
+  EXPECT_NEAR(at(8000.0, 303.15), 8 * 80.0, 1e-10);               // 4^1.5 = 8
+  EXPECT_NEAR(at(2000.0, 353.15), 80.0 * std::exp(-1.0), 1e-10);  // 50 K warmer
+  EXPECT_EQ(at(0.0, 303.15), 0.0);
+  const Law plain_W = balance_of(law + "}").heats.at(0).power_W;
+  EXPECT_TRUE(plain_W.probes.empty()) << "a law without decay leaves the machine linear";
+  EXPECT_NEAR(plain_W({.drive = {.speed_rpm = 500.0}}), 10.0, 1e-12);  // (1/4)^1.5 = 1/8
+}
+
 TEST(BearingFriction, LooksAtItsOwnTemperatureForTheViscosity) {
   const Law power_W = balance_of(kOiled + "}").heats.at(0).power_W;
   ASSERT_EQ(power_W.probes, std::vector<Body>{region("front")});

@@ -100,6 +100,7 @@ TEST(Catalogue, KeysAndParameterNamesAreUnique) {
     for (const Reference& r : kind.references) EXPECT_TRUE(names.insert(r.name).second) << kind.key << " " << r.name;
     for (const Choice& c : kind.choices) EXPECT_TRUE(names.insert(c.name).second) << kind.key << " " << c.name;
     for (const Table& t : kind.tables) EXPECT_TRUE(names.insert(t.name).second) << kind.key << " " << t.name;
+    for (const Mention& m : kind.mentions) EXPECT_TRUE(names.insert(m.name).second) << kind.key << " " << m.name;
     for (const Parameter& p : kind.parameters) EXPECT_TRUE(names.insert(p.name).second) << kind.key << " " << p.name;
   }
   EXPECT_GE(keys.size(), 8u);
@@ -130,6 +131,7 @@ Effect sample(const EffectKind& kind, Place place) {
   for (const Table& t : kind.tables) {
     if (t.compulsory) effect.tables[t.name] = {{0.0}, {std::max(t.low, std::min(t.high, 300.0))}};
   }
+  for (const Mention& m : kind.mentions) effect.words[m.name] = m.compulsory ? "other" : "";
   return effect;
 }
 
@@ -150,7 +152,15 @@ TEST(Catalogue, EveryEffectDoesSomethingAtEachPlaceItAllows) {
   for (const EffectKind& kind : catalogue()) {
     ASSERT_FALSE(kind.places.empty()) << kind.key;
     for (Place place : kind.places) {
-      const HeatBalance b = heat_balance({sample(kind, place)});
+      const Effect effect = sample(kind, place);
+      if (!kind.contribute) {
+        const DriveChange drive = drive_change({effect});
+        EXPECT_TRUE(!drive.hall.empty() || !drive.stops.empty() || drive.speed_factor != 1.0 ||
+                    !reading_chain({effect}).empty() || material_factors({effect}).size() == 1u)
+            << kind.key << " at a " << place_key(place);
+        continue;
+      }
+      const HeatBalance b = heat_balance({effect});
       if (place == Place::kHall) {
         EXPECT_EQ(b.stratifications.size(), 1u) << kind.key;
       } else {

@@ -1,8 +1,6 @@
 // Reduced machines on disk: what is found is what was kept, and nothing else is ever found.
 
-#include "scenarios/machine_key.hpp"
 #include "scenarios/machine_store.hpp"
-#include "scenarios/reduced_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,6 +11,8 @@
 #include <functional>
 
 #include "base/npy_file.hpp"
+#include "scenarios/machine_key.hpp"
+#include "scenarios/reduced_files.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/column_and_head.hpp"
 #include "tests/numpy.hpp"
@@ -125,6 +125,13 @@ INSTANTIATE_TEST_SUITE_P(
                   m.start = "steady";
                   m.effects[0] = "{type: heat_source, region: head, power: 61 W, at_speed: 1000 rpm, exponent: 1}";
                 }},
+        KeyCase{"FactorOnAMaterial", effect("{type: conductivity, region: head, factor: 1.2}"),
+                effect("{type: conductivity, region: head, factor: 1.21}")},
+        KeyCase{"FactorOnAnotherProperty", effect("{type: conductivity, region: head, factor: 1.2}"),
+                effect("{type: expansion, region: head, factor: 1.2}")},
+        KeyCase{"FeltHallToStartFrom", hall_with("[[0 h, 20.2 degC]]", {"{type: ambient, offset: 0.1 K}"}, "hall"),
+                hall_with("[[0 h, 20.2 degC]]", {"{type: ambient, offset: 0.2 K}"}, "hall")},
+        KeyCase{"FourTimesTheSpeed", kAsItIs, effect("{type: speed_override, factor: 4}")},
         KeyCase{"NodeCapacity", node("900 J/K"), node("901 J/K")},
         KeyCase{"Tolerance", kAsItIs,
                 [](ColumnAndHead& m) { m.solver = "{fields_format: none, model: reduced, reduction_tolerance: 4e-3 K}"; }},
@@ -162,6 +169,10 @@ Change fan(const char* growth) {
 INSTANTIATE_TEST_SUITE_P(
     Of, SameKeys,
     ::testing::Values(KeyCase{"AFanOfTheSameOctave", fan("12"), fan("13")},
+                      KeyCase{"ErrorsOfInstruments", kAsItIs, effect("{type: sensor_bias, sensor: t_head, bias: 1 K}")},
+                      KeyCase{"ErrorsOfInstrumentsOfASteadyStart", hall_with("[[0 h, 20.2 degC]]", {}, "steady"),
+                              hall_with("[[0 h, 20.2 degC]]", {"{type: clock_offset, offset: 1 min}"}, "steady")},
+                      KeyCase{"SpeedOfTheSameOctave", kAsItIs, effect("{type: speed_override, factor: 0.9}")},
                       KeyCase{"PowerOfTheSameOctave", kAsItIs,
                               [](ColumnAndHead& m) {
                                 m.effects[0] =

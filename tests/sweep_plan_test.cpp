@@ -136,6 +136,25 @@ vary:
   EXPECT_NE(key(0, Shared::kStructure), key(1, Shared::kStructure)) << "displacements";
 }
 
+TEST(Sharing, AFactorOnExpansionDecidesTheStructure) {
+  std::ifstream file("scenarios/lumped_spindle.yaml");
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  text.insert(text.find("effects:\n") + 9,
+              "  - {type: expansion, region: body, factor: 1}\n"
+              "  - {type: conductivity, region: body, factor: 1}\n");
+  (void)write_file("expanding.yaml", text);
+  const SweepPlan plan = read_sweep_plan(write_file("study.yaml", R"(name: study
+scenario: expanding.yaml
+design: grid
+vary:
+  - {key: "effects[expansion].factor", values: [1, 2]}
+  - {key: "effects[conductivity].factor", values: [1, 2]}
+)"));
+  EXPECT_EQ(sharing_key(plan, 0, Shared::kStructure), sharing_key(plan, 1, Shared::kStructure)) << "conductivity";
+  EXPECT_NE(sharing_key(plan, 0, Shared::kStructure), sharing_key(plan, 2, Shared::kStructure)) << "expansion";
+  EXPECT_NE(sharing_key(plan, 0, Shared::kMachine), sharing_key(plan, 1, Shared::kMachine)) << "conductivity";
+}
+
 TEST(Parts, AreDisjointCompleteBalancedAndKeepMachinesTogether) {
   const SweepPlan plan = read(R"(design: grid
 vary:

@@ -323,6 +323,41 @@ vary:
   }
 }
 
+TEST(Sweep, MembersThatDifferInInstrumentsDriveAndMaterialsAreWhatSimulateGives) {
+  const fs::path folder = fresh_folder("instruments");
+  const std::string scenario = replaced(kColumn, "effects:\n",
+                                        "effects:\n"
+                                        "  - {type: expansion, region: column, factor: 1.00}\n"
+                                        "  - {type: speed_override, factor: 1.000}\n"
+                                        "  - {type: mount_shift, displacement: z, shift: 1.0 um, time: 30 min}\n");
+  std::ofstream(folder / "column.inp") << column_inp();
+  std::ofstream(folder / "column.yaml") << scenario;
+  const std::string study = write_study(folder, "column.yaml", R"(design: grid
+vary:
+  - {name: expansion, key: "effects[expansion].factor", values: ["1.00", "2.00"]}
+  - {name: override, key: "effects[speed_override].factor", values: ["1.000", "1.200"]}
+  - {name: shift, key: "effects[mount_shift].shift", values: [1.0 um, -3.0 um]}
+)");
+  const CommandOutcome outcome = run_program("sweep " + study + " -o " + (folder / "out").string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  const Table table = read_table(folder / "out" / "sweep.csv");
+  ASSERT_EQ(table.size(), 9u);
+  std::size_t member = 0;
+  for (const char* expansion : {"1.00}", "2.00}"}) {
+    for (const char* factor : {"1.000}", "1.200}"}) {
+      for (const char* shift : {"1.0 um", "-3.0 um"}) {
+        const std::string one =
+            replaced(replaced(replaced(scenario, "1.00}", expansion), "1.000}", factor), "1.0 um", shift);
+        EXPECT_EQ(cell(table, ++member, "warm_up_z_end_um"), end_by_simulate(folder, one, "warm_up", "z")) << member;
+      }
+    }
+  }
+  const auto z_um = [&](std::size_t m) { return std::stod(cell(table, m, "warm_up_z_end_um")); };
+  EXPECT_NEAR(z_um(1) - z_um(2), 4.0, 1e-4);                // seven digits of some 10 um
+  EXPECT_NEAR(z_um(5) - 1.0, 2.0 * (z_um(1) - 1.0), 1e-4);  // one region: all of it expands twice
+  EXPECT_GT(std::abs(z_um(3) - 1.0), 1.05 * std::abs(z_um(1) - 1.0));
+}
+
 TEST(Sweep, AMeshThatCannotBeMadeFailsItsMembersAlone) {
   const fs::path folder = fresh_folder("no_mesh");
   std::ofstream(folder / "column.inp") << column_inp();

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/diagnosis_json.hpp"
+#include "app/results.hpp"
+#include "app/verbs.hpp"
+#include "output/json_text.hpp"
+
+namespace driftwright::app {
+namespace {
+
+constexpr double kCoarser = 1.4;  // of the mesh that tells what the mesh itself does
+
+/// The machine on a coarser mesh, or none where there is no mesh of ours to coarsen.
+std::optional<scenarios::Scenario> coarsened(const scenarios::Scenario& scenario) {
+  const auto* mill = std::get_if<mesh::KneeMill>(&scenario.machine->mesh);
+  if (!mill) return std::nullopt;
+  scenarios::Scenario coarse = scenario;
+  auto& own = std::get<mesh::KneeMill>(coarse.machine->mesh);
+  own.coarse_m *= kCoarser;
+  own.fine_m *= kCoarser;
+  coarse.machine->written += fmt::format("\nmesh coarser by {}\n", kCoarser);
+  return coarse;
+}
+
+struct TwinParts {
+  diagnosis::AugmentedModel augmented;
+  scenarios::ReducedMachine machine;
+};
+
+}  // namespace
+
+void diagnose(const DiagnoseOptions& options) {
+  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::MachineModel& model = require_machine(scenario, "diagnose");
+  std::set<std::string> keys;
+  for (const std::string& key : options.without) keys.insert(key);
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress;
+  progress.begin("meshing");
+  const scenarios::PlacedMachine placed = scenarios::place(model);
+  solver::Outputs names;
+  for (const auto& s : model.sensors) {
+    names.name.push_back(s.name);
+    names.unit.emplace_back("K");
+  }
+  for (const auto& d : model.displacements) {
+    names.name.push_back(d.name);
+    names.unit.emplace_back("m");
+  }
+  for (const auto& t : model.tilts) {
+    names.name.push_back(t.name);
+    names.unit.emplace_back("rad");
+  }
+  names.hall = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.name.size()));
+  for (std::size_t i = 0; i < placed.sensor_weights.size(); ++i) {
+    if (placed.sensor_weights[i].empty()) names.hall[static_cast<Eigen::Index>(i)] = 1.0;
+  }
+  std::vector<diagnosis::MeasuredRun> runs;
+  for (const std::string& path : options.measured) runs.push_back(diagnosis::read_measured(path, model, names));
+
+  const auto open = [&](const scenarios::Scenario& of, const mesh::Mesh& mesh) {
+    TwinParts parts{diagnosis::augment(of, mesh, runs), {}};
+    parts.machine = open_reduced(parts.augmented.model, parts.augmented.plan, progress);
+    return parts;
+  };
+  const TwinParts fine = open(scenario, placed.mesh);
+  solver::TransientOptions tolerances = scenario.solver.transient;
+  const diagnosis::Twin twin(fine.augmented, fine.machine, tolerances);
+  std::optional<TwinParts> coarse_parts;
+  std::optional<diagnosis::Twin> coarse;
+  if (const auto coarser = coarsened(scenario)) {
+    coarse_parts = open(*coarser, placed.mesh);
+    coarse.emplace(coarse_parts->augmented, coarse_parts->machine, tolerances);
+  }
+  diagnosis::DiagnosisOptions how;
+  how.without = keys;
+  how.floor_K = std::max(how.floor_K, 0.3 * fine.machine.error.temperature_K);
+  how.floor_m = std::max(how.floor_m, 0.3 * fine.machine.error.displacement_m);
+  how.floor_rad = std::max(how.floor_rad, 0.3 * fine.machine.error.angle_rad);
+  const diagnosis::Diagnosis d = diagnosis::diagnose(twin, coarse ? &*coarse : nullptr, runs, how,
+                                                     [&](const std::string& work) { progress.begin(work); });
+  folder.write_text("diagnosis.json", output::json_text(diagnosis_json(d)));
+  folder.commit();
+  progress.end();
+  fmt::print("{}: {}\n", diagnosis::word(d.verdict), d.reason);
+  for (const auto& g : d.gain) {
+    fmt::print("{:<16} rmse {:.3g} -> {:.3g} {} (scatter alone {:.3g}, noise {:.3g})\n", g.name, g.rmse_before, g.rmse_after,
+               g.unit, g.rmse_calibrated, g.noise_floor);
+  }
+  fmt::print("results in {}\n", shown_path(folder.target()));
+}
+
+}  // namespace driftwright::app

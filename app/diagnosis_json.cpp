@@ -1,0 +1,71 @@
+#include "app/diagnosis_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace driftwright::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const diagnosis::Estimate& e) {
+  return {{"name", e.name}, {"value", e.value}, {"unit", e.unit}, {"ci95", {e.low, e.high}}};
+}
+
+Json json_of(const diagnosis::Cause& c) {
+  Json json = {{"effect", c.effect}, {"where", c.where}, {"law", c.law}, {"parameters", Json::array()}};
+  for (const auto& p : c.parameters) json["parameters"].push_back(json_of(p));
+  json["log_evidence_gain"] = c.log_evidence_gain;
+  json["alternatives"] = Json::array();
+  for (const auto& a : c.alternatives) json["alternatives"].push_back(json_of(a));
+  return json;
+}
+
+Json json_of(const diagnosis::Experiment& e) {
+  Json sections = Json::array();
+  for (const auto& s : e.cyclogram.sections)
+    sections.push_back({{"duration_min", s.duration_s / 60.0}, {"speed_rpm", s.drive.speed_rpm}});
+  Json json = {{"why", e.why},
+               {"cyclogram", {{"name", e.cyclogram.name}, {"sections", sections}}},
+               {"discrimination", e.discrimination}};
+  if (e.extra_sensor)
+    json["extra_sensor"] = {{"region", e.extra_sensor->region}, {"difference_K", e.extra_sensor->difference_K}};
+  return json;
+}
+
+Json json_of(const diagnosis::Unexplained& u) {
+  Json json = {{"rms", u.channels.front().rms},    {"unit", u.channels.front().unit},
+               {"where", u.channels.front().name}, {"waveform_correlates_with", u.correlates_with},
+               {"correlation", u.correlation},     {"channels", Json::array()}};
+  for (const auto& c : u.channels)
+    json["channels"].push_back({{"name", c.name}, {"unit", c.unit}, {"rms", c.rms}, {"sigmas", c.times_noise}});
+  if (!u.heat_would_sit_in.empty()) json["heat_would_sit_in"] = u.heat_would_sit_in;
+  return json;
+}
+
+}  // namespace
+
+Json diagnosis_json(const diagnosis::Diagnosis& d) {
+  Json json = {{"verdict", diagnosis::word(d.verdict)}, {"reason", d.reason}, {"causes", Json::array()}};
+  for (const auto& c : d.causes) json["causes"].push_back(json_of(c));
+  json["discriminating_experiment"] = d.experiment ? json_of(*d.experiment) : Json();
+  json["unexplained"] = d.unexplained ? json_of(*d.unexplained) : Json();
+  Json channels = Json::array();
+  for (const auto& g : d.gain) {
+    channels.push_back({{"name", g.name},
+                        {"unit", g.unit},
+                        {"rmse_before", g.rmse_before},
+                        {"rmse_calibrated", g.rmse_calibrated},
+                        {"rmse_after", g.rmse_after},
+                        {"peak_before", g.peak_before},
+                        {"peak_after", g.peak_after},
+                        {"noise_floor", g.noise_floor}});
+  }
+  json["gain"] = {{"holdout", d.holdout}, {"channels", channels}};
+  json["data"] = Json::array();
+  for (const auto& f : d.data)
+    json["data"].push_back({{"channel", f.channel}, {"what", f.what}, {"left_out", f.leaves_out}});
+  json["n_candidates"] = d.n_candidates;
+  return json;
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,109 @@
+#include "scenarios/as_recorded.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/quantity.hpp"
+#include "scenarios/machine.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+void must_be_one_of(const Where& where, const char* what, const std::string& name, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  if (known.empty()) throw InputError(where, fmt::format("there is no {} '{}', nor any other", what, name));
+  const std::string near = nearest_word(name, known);
+  throw InputError(where, fmt::format("there is no {} '{}'; there are {}.{}", what, name, fmt::join(known, ", "),
+                                      near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+}
+
+template <class Entries>
+std::vector<std::string> names_of(const Entries& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+/// `tilt` goes with tilts, any other amount with displacements.
+void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
+  const std::vector<effects::Parameter>& parameters = effect.kind->parameters;
+  const bool knows_tilt = std::any_of(parameters.begin(), parameters.end(), [](const auto& p) { return p.name == "tilt"; });
+  if (!knows_tilt || effect.has("tilt") == is_tilt) return;
+  throw InputError(effect.where,
+                   is_tilt ? fmt::format("'{}' is a tilt; {} wants `tilt` in urad there", effect.place, effect.kind->key)
+                           : fmt::format("'{}' is a displacement, no tilt; `tilt` does not fit", effect.place));
+}
+
+}  // namespace
+
+bool is_on_hall(const Sensor& sensor) {
+  const auto* node = std::get_if<std::string>(&sensor.place);
+  return node && *node == effects::kHallName;
+}
+
+bool has_ambient_channel(const MachineModel& model) {
+  return std::none_of(model.sensors.begin(), model.sensors.end(), is_on_hall);
+}
+
+FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
+  const effects::DriveChange change = effects::drive_change(model.effects);
+  return {effects::true_cyclogram(change, recorded), effects::true_hall(change, model.hall, recorded)};
+}
+
+double felt_hall_at_start_K(const MachineModel& model) {
+  return effects::true_hall(effects::drive_change(model.effects), model.hall, {}).at(0.0);
+}
+
+Record as_recorded(const MachineModel& model, const solver::Trajectory& run, const solver::Outputs& outputs,
+                   const Cyclogram& recorded) {
+  solver::Trajectory told;
+  told.time_s = run.time_s;
+  told.outputs = run.outputs;
+  Eigen::RowVectorXd hall(static_cast<Eigen::Index>(run.time_s.size()));
+  for (Eigen::Index i = 0; i < hall.size(); ++i) hall[i] = model.hall.at(run.time_s[static_cast<std::size_t>(i)]);
+  for (std::size_t i = 0; i < model.sensors.size(); ++i) {  // outputs begin with the sensors
+    if (is_on_hall(model.sensors[i])) told.outputs.row(static_cast<Eigen::Index>(i)) = hall;
+  }
+  if (const effects::ReadingChain chain = effects::reading_chain(model.effects); !chain.empty()) {
+    const FeltRun felt = felt_run(model, recorded);
+    told.outputs =
+        effects::readings(chain, outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.hall, std::move(told.outputs));
+  }
+  Record record = to_record(told, outputs, recorded, model.reference_K);
+  if (!has_ambient_channel(model)) return record;
+  Channel ambient{kAmbient, "degC", {}};
+  for (double hall_K : hall) ambient.values.push_back(hall_K + (model.reference_K - kZeroCelsius_K));
+  record.channels.insert(record.channels.end() - static_cast<std::ptrdiff_t>(outputs.name.size()), std::move(ambient));
+  return record;
+}
+
+std::vector<std::string> sensor_channels(const Record& record) {
+  std::vector<std::string> names = record.names_with_unit("degC");
+  std::erase(names, kAmbient);
+  return names;
+}
+
+void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& cyclograms) {
+  const std::vector<std::string> sensors = names_of(model.sensors), runs = names_of(cyclograms),
+                                 tilts = names_of(model.tilts);
+  std::vector<std::string> displacements = names_of(model.displacements);
+  displacements.insert(displacements.end(), tilts.begin(), tilts.end());
+  for (const effects::Effect& e : model.effects) {
+    if (e.place_kind == effects::Place::kSensor) must_be_one_of(e.where, "sensor", e.place, sensors);
+    if (e.place_kind == effects::Place::kDisplacement) {
+      must_be_one_of(e.where, "displacement", e.place, displacements);
+      require_fitting_amount(e, std::find(tilts.begin(), tilts.end(), e.place) != tilts.end());
+    }
+    for (const effects::Mention& mention : e.kind->mentions) {
+      const std::string& name = e.words.at(mention.name);
+      if (name.empty()) continue;  // left out
+      const bool is_sensor = mention.of == effects::Mention::Of::kSensor;
+      must_be_one_of(e.reference_where.at(mention.name), is_sensor ? "sensor" : "cyclogram", name,
+                     is_sensor ? sensors : runs);
+    }
+  }
+}
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,41 @@
+#pragma once
+// Between the machine and its record: what it felt while a record says something else, and what instruments make of it.
+
+#include "base/record.hpp"
+#include "scenarios/scenario.hpp"
+#include "solver/thermal_system.hpp"
+
+namespace driftwright::scenarios {
+
+/// Channel of the recorded hall temperature.
+inline constexpr const char* kAmbient = "ambient";
+
+/// Drive and hall as the machine feels them.
+struct FeltRun {
+  Cyclogram cyclogram;
+  TimeSeries hall;  ///< minus the reference temperature [K]
+};
+/// What is felt while the record says `recorded` and the scenario's hall; its effects tell them apart.
+[[nodiscard]] FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded);
+/// The hall that the machine starts in, minus the reference temperature [K]: with errors that every cyclogram has, so that all
+/// of them start alike.
+[[nodiscard]] double felt_hall_at_start_K(const MachineModel& model);
+
+/// The record of a run: drive as recorded; sensors, displacements and tilts as instruments tell them. A sensor on the hall reads
+/// the recorded hall; where there is none, the channel `ambient` does.
+/// @param run  of felt_run(model, recorded)
+[[nodiscard]] Record as_recorded(const MachineModel& model, const solver::Trajectory& run, const solver::Outputs& outputs,
+                                 const Cyclogram& recorded);
+
+[[nodiscard]] bool is_on_hall(const Sensor& sensor);
+/// Whether the machine's records have the channel `ambient`.
+[[nodiscard]] bool has_ambient_channel(const MachineModel& model);
+
+/// Temperature channels of a record to choose sensors from: all but `ambient`.
+[[nodiscard]] std::vector<std::string> sensor_channels(const Record& record);
+
+/// Looks up the sensors, displacements, tilts and cyclograms that effects name.
+/// @throws InputError  for one that is not there, and for an amount that fits no such channel
+void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& cyclograms);
+
+}  // namespace driftwright::scenarios

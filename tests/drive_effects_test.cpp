@@ -1,0 +1,146 @@
+// What the record of drive and hall gets wrong, as the user writes it, by value; and what it refuses.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+#include "effects/effect.hpp"
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+Effect read(const std::string& text) {
+  return read_effect(ConfigMap::read_file(write_file("drive_effects_test.yaml", text)));
+}
+DriveChange change_of(const std::string& text) {
+  return drive_change({read(text)});
+}
+
+Cyclogram::Section turning(double duration_s, double speed_rpm) {
+  return {duration_s, {.speed_rpm = speed_rpm, .feed_m_s = {0.1, 0.0, 0.0}, .cutting_power_W = 50.0}};
+}
+const Cyclogram kRecorded{.name = "shift", .sections = {turning(600, 1000), turning(600, 3000), turning(300, 0)}};
+
+std::vector<double> durations_s(const Cyclogram& c) {
+  std::vector<double> found;
+  for (const auto& section : c.sections) found.push_back(section.duration_s);
+  return found;
+}
+std::vector<double> speeds_rpm(const Cyclogram& c) {
+  std::vector<double> found;
+  for (const auto& section : c.sections) found.push_back(section.drive.speed_rpm);
+  return found;
+}
+
+TEST(TrueCyclogram, IsTheRecordedOneWithoutChange) {
+  EXPECT_EQ(true_cyclogram({}, kRecorded).sections, kRecorded.sections);
+}
+
+TEST(TrueCyclogram, OverrideScalesTheSpindleAlone) {
+  Cyclogram expected = kRecorded;
+  expected.sections[0].drive.speed_rpm = 1250.0;
+  expected.sections[1].drive.speed_rpm = 3750.0;
+  EXPECT_EQ(true_cyclogram(change_of("{type: speed_override, factor: 1.25}"), kRecorded).sections, expected.sections);
+}
+
+TEST(TrueCyclogram, OverridesMultiply) {
+  const DriveChange twice =
+      drive_change({read("{type: speed_override, factor: 1.25}"), read("{type: speed_override, factor: 2}")});
+  EXPECT_THAT(speeds_rpm(true_cyclogram(twice, kRecorded)), ElementsAre(2500, 7500, 0));
+}
+
+TEST(TrueCyclogram, AStopSplitsTheSectionsItCrosses) {
+  const Cyclogram felt = true_cyclogram(change_of("{type: missing_stop, start: 8 min, length: 5 min}"), kRecorded);
+  EXPECT_THAT(durations_s(felt), ElementsAre(480, 120, 180, 420, 300));
+  EXPECT_THAT(speeds_rpm(felt), ElementsAre(1000, 0, 0, 3000, 0));
+  for (const auto& section : felt.sections) {
+    EXPECT_EQ(section.drive.feed_m_s[0], 0.1);
+    EXPECT_EQ(section.drive.cutting_power_W, 50.0);
+  }
+}
+
+TEST(TrueCyclogram, AStopAtTheEndsCutsNothingEmptyOff) {
+  const Cyclogram felt = true_cyclogram(change_of("{type: missing_stop, start: 10 min, length: 10 min}"), kRecorded);
+  EXPECT_THAT(durations_s(felt), ElementsAre(600, 600, 300));
+  EXPECT_THAT(speeds_rpm(felt), ElementsAre(1000, 0, 0));
+  const Cyclogram beyond = true_cyclogram(change_of("{type: missing_stop, start: 15 min, length: 10 h}"), kRecorded);
+  EXPECT_THAT(durations_s(beyond), ElementsAre(600, 300, 300, 300));
+  EXPECT_THAT(speeds_rpm(beyond), ElementsAre(1000, 3000, 0, 0));
+}
+
+TEST(TrueCyclogram, EndsWhenTheRecordedOneDoesToTheLastBit) {
+  const DriveChange change = drive_change({read("{type: missing_stop, start: 0.1 min, length: 0.37 min}"),
+                                           read("{type: missing_stop, start: 3.3 min, length: 0.7 min}"),
+                                           read("{type: missing_stop, start: 17.7 min, length: 0.1 min}")});
+  Cyclogram uneven{.name = "uneven", .sections = {}};
+  for (int i = 1; i < 30; ++i) uneven.sections.push_back(turning(1000.0 / (7.0 + i), 1000.0));
+  const Cyclogram felt = true_cyclogram(change, uneven);
+  EXPECT_GT(felt.sections.size(), uneven.sections.size() + 3);
+  EXPECT_EQ(felt.duration_s(), uneven.duration_s());
+}
+
+TEST(TrueCyclogram, AStopOfOneCyclogramSparesTheOthers) {
+  const DriveChange change = change_of("{type: missing_stop, start: 8 min, length: 1 min, in: other}");
+  EXPECT_EQ(true_cyclogram(change, kRecorded).sections, kRecorded.sections);
+  Cyclogram other = kRecorded;
+  other.name = "other";
+  EXPECT_THAT(speeds_rpm(true_cyclogram(change, other)), ElementsAre(1000, 0, 1000, 3000, 0));
+}
+
+// A hall that warms by 3 K in 20 min, during a cyclogram of 25 min.
+const TimeSeries kHall{{0, 1200}, {1.0, 4.0}};
+
+TEST(TrueHall, OffsetFromTheStartOnHoldsEverywhere) {
+  const TimeSeries hall = true_hall(change_of("{type: ambient, offset: -2 K}"), kHall, kRecorded);
+  EXPECT_DOUBLE_EQ(hall.at(0), -1.0);
+  EXPECT_DOUBLE_EQ(hall.at(600), 0.5);
+  EXPECT_DOUBLE_EQ(hall.at(1500), 2.0);
+}
+
+TEST(TrueHall, StepTakesAMillisecondAndRampGoesOnToTheEnd) {
+  const TimeSeries hall = true_hall(change_of("{type: ambient, offset: 2 K, ramp: 6 K/h, from: 5 min}"), kHall, kRecorded);
+  EXPECT_DOUBLE_EQ(hall.at(150), 1.375);              // untouched
+  EXPECT_DOUBLE_EQ(hall.at(300), 1.75);               // the last value before
+  EXPECT_NEAR(hall.at(300.001), 1.75 + 2.0, 1e-5);    // a millisecond of both slopes is 4 uK
+  EXPECT_NEAR(hall.at(900), 3.25 + 2.0 + 1.0, 1e-9);  // 10 min of 6 K/h: rounding of interpolation alone
+  EXPECT_NEAR(hall.at(1500), 4.0 + 2.0 + 2.0, 1e-9);  // beyond the hall's own knots
+}
+
+TEST(TrueHall, ErrorsAddUp) {
+  const DriveChange both = drive_change({read("{type: ambient, offset: 1 K}"), read("{type: ambient, offset: 2 K}")});
+  EXPECT_DOUBLE_EQ(true_hall(both, kHall, kRecorded).at(600), 5.5);
+}
+
+TEST(TrueHall, AnErrorOfOneCyclogramSparesTheOthers) {
+  DriveChange change;
+  change.hall.push_back({1.0, 0.0, 0.0, "other"});
+  EXPECT_EQ(true_hall(change, kHall, kRecorded).value, kHall.value);
+}
+
+struct Bad {
+  const char* text;
+  const char* message;
+};
+class BadDriveEffect : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(BadDriveEffect, IsAnInputError) {
+  EXPECT_THAT([] { (void)read(GetParam().text); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, BadDriveEffect,
+                         ::testing::Values(Bad{"{type: ambient}", "`offset`, `ramp` or both"},
+                                           Bad{"{type: ambient, hall: hall, offset: 1 K}", "unknown key 'hall'"},
+                                           Bad{"{type: ambient, offset: 1 K/h}", "wrong unit"},
+                                           Bad{"{type: speed_override}", "key 'factor' is missing"},
+                                           Bad{"{type: speed_override, factor: -1}", "outside what is allowed"},
+                                           Bad{"{type: missing_stop, start: 1 min}", "key 'length' is missing"},
+                                           Bad{"{type: missing_stop, start: 1 min, length: 0 min}",
+                                               "outside what is allowed"}));
+
+}  // namespace
+}  // namespace driftwright::effects

@@ -1,0 +1,189 @@
+// Displacements that no temperature makes and errors of instruments, as the user writes them, by value; and what they refuse.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "effects/effect.hpp"
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+Effect read(const std::string& text) {
+  return read_effect(ConfigMap::read_file(write_file("reading_effects_test.yaml", text)));
+}
+
+const std::vector<double> kTime_s = {0, 60, 150, 300, 600, 900};
+const Cyclogram kCyclogram{.name = "shift",
+                           .sections = {{150, {.speed_rpm = 2000}}, {450, {.speed_rpm = 1000}}, {300, {.speed_rpm = 0}}}};
+const TimeSeries kHall{{0, 900}, {0.0, 9.0}};
+
+/// Rows a [K], b [K], z [m], tilt [rad].
+Eigen::MatrixXd truth() {
+  Eigen::MatrixXd outputs(4, 6);
+  outputs << 5, 5, 8, 2, 3, 7,  //
+      1, 2, 3, 4, 5, 6,         //
+      0, 0, 0, 0, 0, 0,         //
+      1e-6, 2e-6, 3e-6, 4e-6, 5e-6, 6e-6;
+  return outputs;
+}
+Eigen::MatrixXd told(const ReadingChain& chain, const Cyclogram& cyclogram = kCyclogram) {
+  return readings(chain, {"a", "b", "z", "tilt"}, {"K", "K", "m", "rad"}, kTime_s, cyclogram, kHall, truth());
+}
+Eigen::MatrixXd told(const std::vector<std::string>& entries, const Cyclogram& cyclogram = kCyclogram) {
+  std::vector<Effect> effects;
+  for (const std::string& text : entries) effects.push_back(read(text));
+  return told(reading_chain(effects), cyclogram);
+}
+constexpr int kA = 0, kB = 1, kZ = 2, kTilt = 3;
+
+void expect_row(const Eigen::MatrixXd& m, int row, const std::vector<double>& expected, double tolerance) {
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(m(row, static_cast<Eigen::Index>(i)), expected[i], tolerance) << "at " << kTime_s[i] << " s";
+  }
+}
+
+TEST(Readings, AreTheTruthWithoutEffects) {
+  EXPECT_EQ(told(ReadingChain{}), truth());
+}
+
+TEST(SpindleGrowth, FollowsSpeedBehindOneLagExactly) {
+  // 10 um at 1000 rpm, exponent 1, 5 min: towards 20 um for 150 s, 10 um for 450 s, back to nothing.
+  const double at150 = 20 * (1 - std::exp(-0.5)), at600 = 10 + (at150 - 10) * std::exp(-1.5);
+  const std::vector<double> expected_um = {0,     20 * (1 - std::exp(-0.2)), at150, 10 + (at150 - 10) * std::exp(-0.5),
+                                           at600, at600 * std::exp(-1.0)};
+  const Eigen::MatrixXd m = told(
+      std::vector<std::string>{"{type: spindle_growth, displacement: z, growth: 10 um, at_speed: 1000 rpm, lag: 5 min}"});
+  expect_row(1e6 * m, kZ, expected_um, 1e-12);  // rounding
+  EXPECT_EQ(m.row(kA), truth().row(kA));
+}
+
+TEST(SpindleGrowth, OfATiltIsInMicroradians) {
+  const Eigen::MatrixXd m = told(std::vector<std::string>{
+      "{type: spindle_growth, displacement: tilt, tilt: 8 urad, at_speed: 2000 rpm, exponent: 3, lag: 1 min}"});
+  EXPECT_NEAR(m(kTilt, 1), 2e-6 + 8e-6 * (1 - std::exp(-1.0)), 1e-18);
+  EXPECT_NEAR(m(kTilt, 4), 5e-6 + 1e-6 + (8e-6 * (1 - std::exp(-2.5)) - 1e-6) * std::exp(-7.5), 1e-18);  // (1/2)^3 = 1/8
+}
+
+TEST(Centrifugal, FollowsTheSquareOfSpeedAtOnce) {
+  const Eigen::MatrixXd m =
+      told(std::vector<std::string>{"{type: centrifugal, displacement: z, growth: -3 um, at_speed: 1000 rpm}"});
+  expect_row(1e6 * m, kZ, {-12, -12, -3, -3, 0, 0}, 1e-12);  // a section holds from its start on
+}
+
+TEST(MountShift, IsAStepFromItsTimeOn) {
+  const std::vector<std::string> shift = {"{type: mount_shift, displacement: z, shift: 4 um, time: 5 min, in: shift}"};
+  expect_row(1e6 * told(shift), kZ, {0, 0, 0, 4, 4, 4}, 1e-12);
+  Cyclogram other = kCyclogram;
+  other.name = "other";
+  expect_row(1e6 * told(shift, other), kZ, {0, 0, 0, 0, 0, 0}, 0.0);
+}
+
+TEST(ScaleExpansion, ScalesGrowthButNoShiftOfTheMount) {
+  expect_row(1e6 * told(std::vector<std::string>{"{type: mount_shift, displacement: z, shift: 4 um, time: 0 min}",
+                                                 "{type: scale_expansion, displacement: z, factor: 0.5}",
+                                                 "{type: centrifugal, displacement: z, growth: 2 um}"}),
+             kZ, {8, 8, 5, 5, 4, 4}, 1e-12);
+}
+
+TEST(ScaleExpansion, LagsBehindALinearSignal) {
+  // 1 urad a sample: 1 to 2 urad in 60 s behind 60 s: y = x - slope lag (1 - exp(-t / lag)).
+  const Eigen::MatrixXd m = told(std::vector<std::string>{"{type: scale_expansion, displacement: tilt, lag: 1 min}"});
+  EXPECT_NEAR(1e6 * m(kTilt, 0), 1.0, 1e-12);
+  EXPECT_NEAR(1e6 * m(kTilt, 1), 2.0 - (1.0 - std::exp(-1.0)), 1e-12);
+}
+
+TEST(SensorBias, IsAdded) {
+  expect_row(told(std::vector<std::string>{"{type: sensor_bias, sensor: a, bias: -0.5 K}"}), kA,
+             {4.5, 4.5, 7.5, 1.5, 2.5, 6.5}, 1e-14);
+}
+
+TEST(SensorDrift, GrowsFromTheStart) {
+  expect_row(told(std::vector<std::string>{"{type: sensor_drift, sensor: b, drift: 12 K/h}"}), kB, {1, 2.2, 3.5, 5, 7, 9},
+             1e-13);
+}
+
+TEST(SensorLag, IsExactForALinearSignalAndSettledAtTheStart) {
+  // Lag 150 s. To 60 s constant; then a rise of 3 K in 90 s; then a fall of 6 K in 150 s.
+  const double tau = 150, rise = 3.0 / 90, fall = -6.0 / 150;
+  const double at150 = 8 - rise * tau * (1 - std::exp(-0.6));
+  const double at300 = 2 - fall * tau + (at150 - 8 + fall * tau) * std::exp(-1.0);
+  expect_row(told(std::vector<std::string>{"{type: sensor_lag, sensor: a, lag: 2.5 min}"}), kA, {5, 5, at150, at300}, 1e-12);
+}
+
+TEST(SensorLag, OfNothingIsNone) {
+  EXPECT_EQ(told(std::vector<std::string>{"{type: sensor_lag, sensor: a, lag: 0 min}"}), truth());
+}
+
+TEST(SensorDetached, ReadsAShareOfAir) {
+  // Hall 0.01 K/s: 3 K at 300 s, 6 K at 600 s, 9 K at 900 s.
+  expect_row(told(std::vector<std::string>{"{type: sensor_detached, sensor: b, share: 0.75, time: 5 min}"}), kB,
+             {1, 2, 3, 0.25 * 4 + 0.75 * 3, 0.25 * 5 + 0.75 * 6, 0.25 * 6 + 0.75 * 9}, 1e-14);
+}
+
+TEST(SensorSwap, ExchangesChannels) {
+  const Eigen::MatrixXd m = told(std::vector<std::string>{"{type: sensor_swap, sensor: a, with: b}"});
+  EXPECT_EQ(m.row(kA), truth().row(kB));
+  EXPECT_EQ(m.row(kB), truth().row(kA));
+}
+
+TEST(ClockOffset, LateReadingsWereTakenBefore) {
+  // 90 s late: at 150 s what was at 60 s, at 300 s the middle of 150 s and ... 210 s = 0.4 of the way from 150 s to 300 s.
+  const Eigen::MatrixXd m = told(std::vector<std::string>{"{type: clock_offset, offset: 1.5 min}"});
+  expect_row(m, kB, {1, 1, 2, 3.4, 4.7, 5.7}, 1e-12);
+  expect_row(1e6 * m, kTilt, {1, 1, 2, 3.4, 4.7, 5.7}, 1e-12);
+}
+
+TEST(ClockOffset, EarlyReadingsEndWithTheLast) {
+  expect_row(told(std::vector<std::string>{"{type: clock_offset, offset: -150 s}"}), kB, {3, 3.4, 4, 4.5, 5.5, 6}, 1e-12);
+}
+
+TEST(Readings, ActInTheirOrder) {
+  // Detached at 0 from the body (share 1: hall 0 0.6 1.5 ...), biased by 1 K, then wired to b's channel.
+  const Eigen::MatrixXd m =
+      told(std::vector<std::string>{"{type: sensor_swap, sensor: a, with: b}", "{type: sensor_bias, sensor: a, bias: 1 K}",
+                                    "{type: sensor_detached, sensor: a, share: 1, time: 0 min}"});
+  expect_row(m, kB, {1, 1.6, 2.5, 4, 7, 10}, 1e-13);
+  EXPECT_EQ(m.row(kA), truth().row(kB));
+}
+
+TEST(Readings, KnowNoOtherNames) {
+  EXPECT_THROW((void)told(std::vector<std::string>{"{type: sensor_bias, sensor: c, bias: 1 K}"}), std::logic_error);
+  EXPECT_THROW((void)told(std::vector<std::string>{"{type: sensor_bias, sensor: z, bias: 1 K}"}), std::logic_error);
+  EXPECT_THROW((void)told(std::vector<std::string>{"{type: centrifugal, displacement: a, growth: 1 um}"}), std::logic_error);
+}
+
+struct Bad {
+  const char* text;
+  const char* message;
+};
+class BadReadingEffect : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(BadReadingEffect, IsAnInputError) {
+  EXPECT_THAT([] { (void)read(GetParam().text); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, BadReadingEffect,
+    ::testing::Values(Bad{"{type: sensor_bias, bias: 1 K}", "key 'sensor' is missing"},
+                      Bad{"{type: sensor_bias, sensor: a}", "key 'bias' is missing"},
+                      Bad{"{type: sensor_bias, sensor: a, bias: 20 degC}", "a temperature difference in K is wanted"},
+                      Bad{"{type: sensor_swap, sensor: a}", "key 'with' is missing"},
+                      Bad{"{type: sensor_swap, sensor: a, with: a}", "another sensor is wanted"},
+                      Bad{"{type: sensor_detached, sensor: a, share: 1.5, time: 1 min}", "outside what is allowed"},
+                      Bad{"{type: clock_offset, clock: x, offset: 1 min}", "unknown key 'clock'"},
+                      Bad{"{type: spindle_growth, displacement: z, growth: 1 um}", "key 'lag' is missing"},
+                      Bad{"{type: spindle_growth, displacement: z, lag: 1 min}", "one of two is wanted: `growth`"},
+                      Bad{"{type: centrifugal, displacement: z, growth: 1 um, tilt: 1 urad}",
+                          "one of two is wanted: `growth`"},
+                      Bad{"{type: mount_shift, displacement: z, time: 1 min}", "one of two is wanted: `shift`"},
+                      Bad{"{type: scale_expansion, displacement: z}", "`factor`, `lag` or both"}));
+
+}  // namespace
+}  // namespace driftwright::effects
