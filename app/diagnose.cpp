@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/diagnosis_json.hpp"
@@ -10,17 +11,18 @@
 namespace driftwright::app {
 namespace {
 
-constexpr double kCoarser = 1.4;  // of the mesh that tells what the mesh itself does
+/// Sizes, over the machine's own, of the mesh that tells what the mesh itself does. Not every size can be meshed: the first that can.
+constexpr double kOtherSizes[] = {1.4, 1.25, 1.6, 1.15, 0.85};
 
-/// The machine on a coarser mesh, or none where there is no mesh of ours to coarsen.
-std::optional<scenarios::Scenario> coarsened(const scenarios::Scenario& scenario) {
+/// The machine on another mesh, or none where there is no mesh of ours to change.
+std::optional<scenarios::Scenario> remeshed(const scenarios::Scenario& scenario, double size) {
   const auto* mill = std::get_if<mesh::KneeMill>(&scenario.machine->mesh);
   if (!mill) return std::nullopt;
   scenarios::Scenario coarse = scenario;
   auto& own = std::get<mesh::KneeMill>(coarse.machine->mesh);
-  own.coarse_m *= kCoarser;
-  own.fine_m *= kCoarser;
-  coarse.machine->written += fmt::format("\nmesh coarser by {}\n", kCoarser);
+  own.coarse_m *= size;
+  own.fine_m *= size;
+  coarse.machine->written += fmt::format("\nmesh size times {}\n", size);
   return coarse;
 }
 
@@ -70,11 +72,19 @@ void diagnose(const DiagnoseOptions& options) {
   const diagnosis::Twin twin(fine.augmented, fine.machine, tolerances);
   std::optional<TwinParts> coarse_parts;
   std::optional<diagnosis::Twin> coarse;
-  if (const auto coarser = coarsened(scenario)) {
-    coarse_parts = open(*coarser, placed.mesh);
-    coarse.emplace(coarse_parts->augmented, coarse_parts->machine, tolerances);
-  }
   diagnosis::DiagnosisOptions how;
+  for (double size : kOtherSizes) {
+    const auto other = remeshed(scenario, size);
+    if (!other) break;
+    try {
+      coarse_parts = open(*other, placed.mesh);
+    } catch (const SolveError&) {  // no mesh of that size
+      continue;
+    }
+    coarse.emplace(coarse_parts->augmented, coarse_parts->machine, tolerances);
+    how.mesh_error_share = 1.0 / std::abs(size * size - 1.0);
+    break;
+  }
   how.without = keys;
   how.floor_K = std::max(how.floor_K, 0.3 * fine.machine.error.temperature_K);
   how.floor_m = std::max(how.floor_m, 0.3 * fine.machine.error.displacement_m);

@@ -64,6 +64,12 @@ Json diagnosis_json(const diagnosis::Diagnosis& d) {
   json["data"] = Json::array();
   for (const auto& f : d.data)
     json["data"].push_back({{"channel", f.channel}, {"what", f.what}, {"left_out", f.leaves_out}});
+  json["calibrated"] = Json::array();
+  for (const auto& e : d.calibrated) {
+    Json entry = json_of(e);
+    entry["sigmas_of_prior"] = e.deviation;
+    json["calibrated"].push_back(entry);
+  }
   json["n_candidates"] = d.n_candidates;
   return json;
 }

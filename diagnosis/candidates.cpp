@@ -88,7 +88,9 @@ void add_heat(const Scene& s, std::vector<Candidate>& list) {
   };
   for (const effects::Body& body : bodies(s)) {
     Candidate c{"heat_source", body.name, {}};
-    c.variants.push_back({"constant heat", {power(body, AddedHeat::Shape::kConstant)}, trial_W});
+    Knob constant = power(body, AddedHeat::Shape::kConstant);
+    constant.low = 0.0;  // heat that is taken away is a coolant's
+    c.variants.push_back({"constant heat", {constant}, trial_W});
     Knob exponent = knob("exponent", "1", 0.7, 0.05, [](TwinState& t, double value) { t.heats.back().exponent = value; });
     exponent.nominal = 1.5;
     exponent.low = 0.2;
@@ -111,9 +113,10 @@ void add_heat(const Scene& s, std::vector<Candidate>& list) {
     list.push_back(c);
 
     Candidate cooled{"coolant", body.name, {}};
-    Knob removed = power(body, AddedHeat::Shape::kConstant);
-    removed.high = 0.0;
-    cooled.variants.push_back({"heat removed at a constant rate", {removed}, -trial_W});
+    Knob removed = knob("power", "W", sd_W, trial_W,
+                        [body](TwinState& t, double value) { t.heats.push_back({.body = body, .power_W = -value}); });
+    removed.low = 0.0;
+    cooled.variants.push_back({"heat removed at a constant rate", {removed}, trial_W});
     list.push_back(cooled);
   }
   for (const auto& h : effects::heat_balance(s.twin.augmented().model.effects).heats) {

@@ -45,14 +45,15 @@ Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::In
 }
 
 /// What another mesh changes, one column a channel: the amplitude of each is unknown.
-std::vector<Prediction> mesh_columns(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs) {
+std::vector<Prediction> mesh_columns(const Twin& twin, const Twin* coarse, double share,
+                                     const std::vector<MeasuredRun>& runs) {
   std::vector<Prediction> columns;
   if (!coarse) return columns;
   Twin::Workspace fine_space(twin), coarse_space(*coarse);
   Prediction difference;
   for (const MeasuredRun& run : runs) {
     const Eigen::MatrixXd fine = twin.respond(twin.as_written(), run, fine_space);
-    difference.push_back(coarse->respond(coarse->as_written(), run, coarse_space) - fine);
+    difference.push_back(share * (coarse->respond(coarse->as_written(), run, coarse_space) - fine));
   }
   std::vector<int> outputs;
   for (const MeasuredRun& run : runs) {
@@ -182,7 +183,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.n_candidates = static_cast<int>(list.size());
 
   say(fmt::format("slopes of {} uncertain numbers", scatter(twin).size()));
-  Fitter fitter(twin, runs, scatter(twin), mesh_columns(twin, coarse, runs));
+  Fitter fitter(twin, runs, scatter(twin), mesh_columns(twin, coarse, options.mesh_error_share, runs));
   Twin::Workspace workspace(twin);
   d.as_written = fitter.predict({}, Eigen::VectorXd::Zero(fitter.n_nuisance()), workspace);
   d.noise = estimate_noise(runs, d.as_written, options.floor_K, options.floor_m, options.floor_rad);

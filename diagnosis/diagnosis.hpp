@@ -15,6 +15,7 @@ enum class Verdict { kConsistent, kNamed, kAmbiguous, kUnexplained, kInsufficien
 struct Estimate {
   std::string name, unit;
   double value = 0.0, low = 0.0, high = 0.0;
+  double deviation = 0.0;  ///< from what the scenario says, in standard deviations of its prior; of calibrated numbers
 };
 
 struct Cause {
@@ -65,6 +66,8 @@ struct Diagnosis {
 
 struct DiagnosisOptions {
   std::set<std::string> without;
+  /// Error of the twin's mesh over the difference to the other one: 1 / |size ratio² - 1| where errors go with the square of the size.
+  double mesh_error_share = 1.0;
   double floor_K = 2e-3, floor_m = 5e-9, floor_rad = 5e-8;  ///< errors of the reduced model
 };
 

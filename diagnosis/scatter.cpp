@@ -16,8 +16,11 @@ auto& entry(List& list, const Matches& matches, typename List::value_type fresh)
   return list.back();
 }
 
-ChangedBody& body_of(TwinState& state, const std::string& body) {
-  return entry(state.bodies, [&](const ChangedBody& b) { return b.body == body; }, {body});
+ChangedBody& body_of(TwinState& state, const std::string& body, const std::string& displacement) {
+  ChangedBody fresh{body};
+  fresh.displacement = displacement;
+  return entry(
+      state.bodies, [&](const ChangedBody& b) { return b.body == body && b.displacement == displacement; }, fresh);
 }
 
 }  // namespace
@@ -72,21 +75,38 @@ std::vector<Knob> scatter(const Twin& twin) {
     }
   }
   for (const auto& part : twin.machine().system.parts) {
-    const auto add = [&](const char* effect, double ChangedBody::*member) {
-      knobs.push_back(
-          {.effect = effect,
-           .where = part.body,
-           .name = "factor",
-           .unit = "1",
-           .scale = Knob::Scale::kLog,
-           .nominal = 1.0,
-           .prior_sd = kScatter,
-           .step = 0.5 * kScatter,
-           .set = [body = part.body, member](TwinState& s, double value) { body_of(s, body).*member *= value; }});
+    const auto add = [&](const char* effect, double ChangedBody::*member, const std::string& displacement = {}) {
+      knobs.push_back({.effect = effect,
+                       .where = part.body,
+                       .name = "factor",
+                       .unit = "1",
+                       .scale = Knob::Scale::kLog,
+                       .nominal = 1.0,
+                       .prior_sd = kScatter,
+                       .step = 0.5 * kScatter,
+                       .set = [body = part.body, member, displacement](TwinState& s, double value) {
+                         body_of(s, body, displacement).*member *= value;
+                       }});
     };
     if (part.conduction.cwiseAbs().maxCoeff() > 0.0) add("conductivity", &ChangedBody::conductivity);
     if (part.mass.cwiseAbs().maxCoeff() > 0.0) add("heat_capacity", &ChangedBody::heat_capacity);
-    if (part.outputs.size() > 0 && part.outputs.cwiseAbs().maxCoeff() > 0.0) add("expansion", &ChangedBody::expansion);
+    const auto& model = a.model;
+    for (std::size_t d = 0; d < model.displacements.size(); ++d) {  // each sensitivity is a number of its own
+      const auto o = static_cast<Eigen::Index>(model.sensors.size() + d);
+      if (!std::holds_alternative<scenarios::BySensitivity>(model.displacements[d].how)) continue;
+      if (part.outputs.col(o).cwiseAbs().maxCoeff() > 0.0)
+        add("expansion", &ChangedBody::expansion, model.displacements[d].name);
+    }
+    const bool expands = [&] {
+      for (std::size_t o = model.sensors.size(); o < static_cast<std::size_t>(part.outputs.cols()); ++o) {
+        const std::size_t d = o - model.sensors.size();
+        if (d < model.displacements.size() && std::holds_alternative<scenarios::BySensitivity>(model.displacements[d].how))
+          continue;
+        if (part.outputs.col(static_cast<Eigen::Index>(o)).cwiseAbs().maxCoeff() > 0.0) return true;
+      }
+      return false;
+    }();
+    if (expands) add("expansion", &ChangedBody::expansion);
   }
   return knobs;
 }

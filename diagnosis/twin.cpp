@@ -203,13 +203,12 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
   // --- matrices
   solver::ReducedSystem& system = workspace.system_;
   const auto& parts = machine_.system.parts;
-  std::vector<double> factors(2 * parts.size(), 1.0), expansion(parts.size(), 1.0);
+  std::vector<double> factors(2 * parts.size(), 1.0);
   for (const ChangedBody& b : state.bodies) {
     for (std::size_t p = 0; p < parts.size(); ++p) {
       if (parts[p].body != b.body) continue;
       factors[p] *= b.conductivity;
       factors[parts.size() + p] *= b.heat_capacity;
-      expansion[p] *= b.expansion;
     }
   }
   Eigen::VectorXd start = machine_.start;
@@ -344,8 +343,15 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
     }
   }
   Eigen::MatrixXd weights = outputs_.state;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    if (expansion[p] != 1.0) weights.leftCols(parts[p].outputs.cols()) += (expansion[p] - 1.0) * parts[p].outputs;
+  for (const ChangedBody& b : state.bodies) {
+    if (b.expansion == 1.0) continue;
+    for (const auto& part : parts) {
+      if (part.body != b.body) continue;
+      for (Eigen::Index o = 0; o < part.outputs.cols(); ++o) {
+        const bool is_meant = b.displacement.empty() || outputs_.name[static_cast<std::size_t>(o)] == b.displacement;
+        if (is_meant) weights.col(o) += (b.expansion - 1.0) * part.outputs.col(o);
+      }
+    }
   }
   Eigen::MatrixXd outputs = weights.transpose() * states;
   for (std::size_t k = 0; k < run.time_s.size(); ++k) {

@@ -46,6 +46,7 @@ struct ChangedExchange {
 struct ChangedBody {
   std::string body;
   double conductivity = 1.0, heat_capacity = 1.0, expansion = 1.0;
+  std::string displacement = {};  ///< the only output that the expansion is about, where it is a sensitivity; "": all
 };
 
 struct TwinState {
