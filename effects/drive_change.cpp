@@ -37,12 +37,11 @@ TimeSeries with_error(const TimeSeries& hall, const DriveChange::HallError& erro
   return changed;
 }
 
-/// The duration that takes a sum of durations from `start_s` to `end_s` exactly, so that both cyclograms end at the same time.
-double duration_between_s(double start_s, double end_s) {
-  double duration_s = end_s - start_s;
-  while (start_s + duration_s < end_s) duration_s = std::nextafter(duration_s, end_s);
-  while (start_s + duration_s > end_s) duration_s = std::nextafter(duration_s, 0.0);
-  return duration_s;
+/// A cut on a grid of four times the rounding of the section's end: so durations of its pieces add up to that end to the last bit,
+/// and both cyclograms end at the same time.
+double on_grid_s(double cut_s, double end_s) {
+  const double grid_s = 4.0 * (std::nextafter(end_s, 2.0 * end_s) - end_s);
+  return grid_s * std::round(cut_s / grid_s);
 }
 
 }  // namespace
@@ -60,7 +59,7 @@ Cyclogram true_cyclogram(const DriveChange& change, const Cyclogram& recorded) {
     std::vector<double> cuts = {start_s};
     for (const DriveChange::Stop& stop : stops) {
       for (double cut_s : {stop.start_s, stop.start_s + stop.length_s}) {
-        if (cut_s > start_s + rounding_s && cut_s < end_s - rounding_s) cuts.push_back(cut_s);
+        if (cut_s > start_s + rounding_s && cut_s < end_s - rounding_s) cuts.push_back(on_grid_s(cut_s, end_s));
       }
     }
     std::sort(cuts.begin(), cuts.end());
@@ -71,7 +70,7 @@ Cyclogram true_cyclogram(const DriveChange& change, const Cyclogram& recorded) {
         return middle_s >= stop.start_s && middle_s < stop.start_s + stop.length_s;
       });
       Cyclogram::Section piece = section;
-      if (cuts.size() > 2) piece.duration_s = duration_between_s(cuts[i], cuts[i + 1]);
+      if (cuts.size() > 2) piece.duration_s = cuts[i + 1] - cuts[i];
       piece.drive.speed_rpm = stands ? 0.0 : change.speed_factor * section.drive.speed_rpm;
       if (piece.duration_s > 0.0) felt.sections.push_back(piece);
     }
