@@ -48,7 +48,7 @@ enum class Hide {
 
 struct Hidden {
   Hide what = Hide::kHeatConstant;
-  std::string where;
+  std::string where = {};
   double size = 0.0;
   double low = 0.0, high = 0.0;  ///< bounds of |size|
   double at_speed_rpm = 0.0, exponent = 0.0, time_s = 0.0, lag_s = 0.0;

@@ -11,6 +11,8 @@ namespace driftwright::blind {
 namespace {
 
 const double kGamma = 1.0 - std::numbers::sqrt2 / 2.0;
+constexpr double kFine_s = 120.0;
+constexpr int kParts = 4;  // of a step while fine
 
 class SparseFactor {
  public:
@@ -46,6 +48,8 @@ struct FactorOf<solver::SparseRow> {
 
 template <class Matrix>
 class Stepper {
+  using Factor = typename FactorOf<Matrix>::type;
+
  public:
   Stepper(const Network<Matrix>& network, const Laws& laws, const Run& run) : net_(network), laws_(laws), run_(run) {
     if (laws.powers_W.size() != net_.sources.size() || laws.coefficients.size() != net_.exchanges.size()) {
@@ -62,17 +66,27 @@ class Stepper {
     Eigen::MatrixXd out(net_.outputs.cols(), n_steps + 1);
     Eigen::VectorXd theta = Eigen::VectorXd::Zero(net_.size());
     Eigen::VectorXd slope = Eigen::VectorXd::Zero(net_.size());  // of the last stage, as a first guess of the next
+    double fine_until_s = 0.0;
     for (Eigen::Index step = 0; step <= n_steps; ++step) {
       const double t_s = static_cast<double>(step) * run_.step_s;
       out.col(step) = net_.outputs.transpose() * theta + run_.hall_K(t_s) * net_.outputs_hall;
       if (step == n_steps) break;
-      const double h_s = run_.step_s;
-      drive_ = run_.drive.drive(t_s + 0.5 * h_s);
-      set_coefficients(t_s + 0.5 * h_s);
-      const Eigen::VectorXd first = stage(theta, t_s + kGamma * h_s, slope);
-      const Eigen::VectorXd second = stage(theta + (1.0 - kGamma) * h_s * first, t_s + h_s, first);
-      theta += h_s * ((1.0 - kGamma) * first + kGamma * second);
-      slope = second;
+      if (look_around(t_s + 0.5 * run_.step_s)) fine_until_s = t_s + kFine_s;
+      const bool is_fine = t_s < fine_until_s;
+      const int n_parts = is_fine ? kParts : 1;
+      h_s_ = run_.step_s / n_parts;
+      factor_ = is_fine ? &fine_factor_ : &coarse_factor_;
+      if (!*factor_) {
+        const Matrix shifted = net_.mass + kGamma * h_s_ * k_;
+        *factor_ = std::make_unique<Factor>(shifted);
+      }
+      for (int part = 0; part < n_parts; ++part) {
+        const double start_s = t_s + part * h_s_;
+        const Eigen::VectorXd first = stage(theta, start_s + kGamma * h_s_, slope);
+        const Eigen::VectorXd second = stage(theta + (1.0 - kGamma) * h_s_ * first, start_s + h_s_, first);
+        theta += h_s_ * ((1.0 - kGamma) * first + kGamma * second);
+        slope = second;
+      }
     }
     return out;
   }
@@ -82,11 +96,15 @@ class Stepper {
     return {.drive = drive_, .hall_K = run_.hall_K(t_s), .time_s = t_s, .probe_K = {}};
   }
 
-  void set_coefficients(double t_s) {
+  /// Drive and coefficients at a time. @return true where they are others than before
+  bool look_around(double t_s) {
+    const Drive before = drive_;
+    drive_ = run_.drive.drive(t_s);
     std::vector<double> c;
     const effects::Inputs u = inputs(t_s);
     for (const effects::Law& law : laws_.coefficients) c.push_back(law(u));
-    if (factor_ && c == c_) return;
+    const bool is_first = k_.rows() == 0, is_other = is_first || c != c_;
+    if (!is_other) return !(drive_ == before);
     c_ = std::move(c);
     k_ = net_.conduction;
     g_hall_ = g_offset_ = Eigen::VectorXd::Zero(net_.size());
@@ -97,8 +115,9 @@ class Stepper {
       g_hall_ += c_[e] * exchange.hall;
       if (exchange.offset.size() > 0) g_offset_ += c_[e] * laws_.gradient_K_m * exchange.offset;
     }
-    const Matrix shifted = net_.mass + kGamma * run_.step_s * k_;
-    factor_ = std::make_unique<typename FactorOf<Matrix>::type>(shifted);
+    fine_factor_.reset();
+    coarse_factor_.reset();
+    return true;
   }
 
   /// dθ/dt of the stage: (M + γ h K) k = f(t, θ + γ h k) - K θ.
@@ -113,12 +132,12 @@ class Stepper {
         u.probe_K.clear();
         for (const effects::Body& body : law.probes) {
           const Eigen::VectorXd& mean = net_.means.at(body.name);
-          u.probe_K.push_back(net_.reference_K + mean.dot(theta) + kGamma * run_.step_s * mean.dot(k));
+          u.probe_K.push_back(net_.reference_K + mean.dot(theta) + kGamma * h_s_ * mean.dot(k));
         }
         const double power_W = law(u);
         if (power_W != 0.0) f += power_W * net_.sources[s];
       }
-      k = factor_->solve(f);
+      k = (*factor_)->solve(f);
     }
     return k;
   }
@@ -131,7 +150,9 @@ class Stepper {
   std::vector<double> c_;
   Matrix k_;
   Eigen::VectorXd g_hall_, g_offset_;
-  std::unique_ptr<typename FactorOf<Matrix>::type> factor_;
+  double h_s_ = 0.0;
+  std::unique_ptr<Factor> fine_factor_, coarse_factor_;
+  std::unique_ptr<Factor>* factor_ = nullptr;
 };
 
 }  // namespace

@@ -56,7 +56,8 @@ struct Run {
 /// Outputs at 0, step, 2 step, ... (n_outputs x n_times), from the reference temperature.
 ///
 /// SDIRK of order 2 with two stages, γ = 1 - 1/√2, L-stable (Alexander, SIAM J. Numer. Anal. 14 (1977) 1006-1021), with steps of one
-/// length. Powers are taken at the stages; where they look at temperatures, at the stage's own, by two rounds of substitution.
+/// length, in four parts for two minutes after each change of drive or coefficients: a pocket of air answers within seconds. Powers
+/// are taken at the stages; where they look at temperatures, at the stage's own, by two rounds of substitution.
 /// Coefficients are those of the middle of the step and look at no temperature.
 /// @throws std::logic_error  for a coefficient that looks at temperatures
 [[nodiscard]] Eigen::MatrixXd integrate(const FullNetwork& network, const Laws& laws, const Run& run);

@@ -158,7 +158,7 @@ void find_influences(Subject& s) {
   }
 }
 
-/// Answers to every source, film, joint and gradient at five shifts, made M-orthonormal.
+/// Answers to every source, film, joint and gradient at six shifts, made M-orthonormal.
 Eigen::MatrixXd answers(const Subject& s, const FullNetwork& net, const effects::HeatBalance& balance) {
   using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
   const Laws laws = laws_of(balance);
@@ -175,7 +175,7 @@ Eigen::MatrixXd answers(const Subject& s, const FullNetwork& net, const effects:
   for (std::size_t e = balance.films.size() + balance.links.size(); e < system.exchanges.size(); ++e) {
     inputs.push_back(system.exchanges[e].flow);
   }
-  const std::vector<double> shifts_1_s = {1e-5, 1e-4, 4e-4, 1.5e-3, 6e-3};
+  const std::vector<double> shifts_1_s = {1e-5, 1e-4, 4e-4, 1.5e-3, 6e-3, 3e-2};
   Eigen::MatrixXd columns(net.size(), static_cast<Eigen::Index>(inputs.size() * shifts_1_s.size()));
   Eigen::Index column = 0;
   for (const double shift : shifts_1_s) {
@@ -190,7 +190,7 @@ Eigen::MatrixXd answers(const Subject& s, const FullNetwork& net, const effects:
   }
   const Eigen::MatrixXd gram = columns.transpose() * (net.mass * columns);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (gram + gram.transpose()));
-  constexpr Eigen::Index kMostStates = 110;
+  constexpr Eigen::Index kMostStates = 130;
   Eigen::Index n = 0;
   while (n < std::min(kMostStates, gram.rows()) &&
          eigen.eigenvalues()[gram.rows() - 1 - n] > 1e-11 * eigen.eigenvalues()[gram.rows() - 1]) {
