@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/quantity.hpp"
@@ -24,22 +25,26 @@ double wanted_d_prime(Random& random) {
   return random.log_uniform(12.0, 60.0);
 }
 
-bool near(double d, double wanted) {
-  return std::abs(std::log(d / wanted)) < 0.5;
+/// Laws that cannot be made quiet (a factor within the prior is calibration, a swap has no size) may be louder than wanted.
+bool fits(const Hidden& h, double d, double wanted) {
+  constexpr double kLoudest = 200.0;
+  const bool may_be_louder = wanted >= 12.0 && (is_factor(h.what) || !has_size(h.what));
+  return d > wanted / 1.6 && d < (may_be_louder ? kLoudest : 1.6 * wanted);
 }
 
 Hidden draw_tuned(const Subject& s, const CasePlan& plan, const Loudness& loudness, Random& random, double wanted,
                   bool foreign) {
   Hidden best;
-  double best_gap = 1e300;
+  double best_gap = std::numeric_limits<double>::infinity();
   for (int draw = 0; draw < kMostDraws; ++draw) {
     Hidden h = foreign ? draw_foreign(s, random) : draw_hidden(s, plan, random);
-    const double gap = std::abs(std::log(std::max(1e-9, tune(loudness, h, wanted)) / wanted));
+    const double d = tune(loudness, h, wanted);
+    if (fits(h, d, wanted)) return h;
+    const double gap = std::abs(std::log(std::max(1e-9, d) / wanted));
     if (gap < best_gap) {
       best = h;
       best_gap = gap;
     }
-    if (best_gap < 0.5) break;
   }
   return best;
 }
@@ -71,7 +76,7 @@ std::vector<Hidden> draw_effects(const Subject& s, Case& c, const Loudness& loud
     if (key_of(second.what) == key_of(first.what)) continue;
     const Eigen::VectorXd b = loudness.signature({second});
     const double bb = loudness.product(b, b), ab = loudness.product(a, b);
-    if (near(std::sqrt(bb), second_wanted) && ab * ab < 0.5 * aa * bb) break;
+    if (fits(second, std::sqrt(bb), second_wanted) && ab * ab < 0.5 * aa * bb) break;
   }
   return {first, second};
 }
@@ -154,15 +159,21 @@ Case make_case(const Subject& s, std::uint64_t seed) {
   Case c{.plan = draw_plan(s, seed), .values = nominal_values(s), .scatter_z = {}, .hidden = {}, .without = {}};
   Random effects(seed, 3), scatters(seed, 4);
   std::vector<Hidden> hidden;
-  if (c.plan.of == CaseClass::kConfounded)
-    hidden = draw_confounded(s, c.plan, effects);  // changes the records, so before Loudness
-  if (c.plan.of != CaseClass::kNone) {
-    const Loudness loudness(s, c.plan);
-    if (c.plan.of == CaseClass::kConfounded) {
+  if (c.plan.of == CaseClass::kConfounded) {
+    constexpr double kLoudEnough = 8.0;
+    for (int draw = 0; draw < kMostDraws; ++draw) {  // each changes the records, which decide how loud it is
+      c.plan = draw_plan(s, seed);
+      hidden = draw_confounded(s, c.plan, effects);
+      const Loudness loudness(s, c.plan);
       if (hidden.size() == 1) (void)tune(loudness, hidden.front(), effects.log_uniform(12.0, 60.0));
-    } else {
-      hidden = draw_effects(s, c, loudness, effects);
+      c.hidden.clear();
+      add_loudness(loudness, hidden, c.hidden);
+      const Eigen::VectorXd all = loudness.signature(hidden);
+      if (loudness.product(all, all) > kLoudEnough * kLoudEnough) break;
     }
+  } else if (c.plan.of != CaseClass::kNone) {
+    const Loudness loudness(s, c.plan);
+    hidden = draw_effects(s, c, loudness, effects);
     add_loudness(loudness, hidden, c.hidden);
   }
   for (const ScatterParameter& p : s.scatter) {
