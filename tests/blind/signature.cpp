@@ -96,12 +96,16 @@ double Loudness::d_prime(const Hidden& hidden) const {
 double tune(const Loudness& loudness, Hidden& h, double wanted) {
   double d = loudness.d_prime(h);
   if (!has_size(h.what)) return d;
-  for (int round = 0; round < 5 && std::abs(std::log(d / wanted)) > 0.05; ++round) {
-    const double before = h.size;
-    const double size = std::clamp(std::abs(h.size) * std::clamp(wanted / std::max(d, 1e-9), 0.05, 20.0), h.low, h.high);
+  double power = 1.0;  // d' ~ size^power, as the last two say
+  for (int round = 0; round < 6 && std::abs(std::log(d / wanted)) > 0.05; ++round) {
+    const double size_before = h.size, d_before = d;
+    const double change = std::clamp(std::pow(wanted / std::max(d, 1e-9), 1.0 / power), 0.05, 20.0);
+    const double size = std::clamp(std::abs(h.size) * change, h.low, h.high);
     h.size = std::copysign(h.what == Hide::kMissingStop ? 60.0 * std::round(size / 60.0) : size, h.size);
-    if (h.size == before) break;
+    if (h.size == size_before) break;
     d = loudness.d_prime(h);
+    const double seen = std::log(std::max(d, 1e-9) / std::max(d_before, 1e-9)) / std::log(h.size / size_before);
+    power = std::clamp(seen, 0.3, 3.0);
   }
   return d;
 }
