@@ -13,6 +13,7 @@ namespace driftwright::blind {
 namespace {
 
 constexpr const char* kMachines = "tests/blind/machines";
+constexpr double kCoarse = 2.0;  // where the mesh does not matter
 
 /// Speeds that leave nothing settled, with a stop.
 Cyclogram up_and_down(double top_rpm) {
@@ -66,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Machines, BlindIntegration,
 
 TEST(BlindSmallSystem, SaysHowLoudAnEffectIsToATenth) {
   // It only sizes effects: what heat, gradient and another conductivity change, against the large system.
-  const Subject s = make_subject(kMachines, "iron_frame", 1.0);
+  const Subject s = make_subject(kMachines, "iron_frame", kCoarse);
   const Cyclogram drive = up_and_down(s.top_speed_rpm);
   const blind::Run run{drive, [](double t_s) { return 1e-4 * t_s; }, drive.duration_s(), 20.0};
   const Values nominal = nominal_values(s);
@@ -100,7 +101,7 @@ TEST(BlindCases, TheSameSeedMakesTheSameBytes) {
   const std::filesystem::path root = std::filesystem::temp_directory_path() / "driftwright_blind_bytes";
   std::filesystem::remove_all(root);
   for (const std::uint64_t seed : {0, 3}) {  // nodes; a mesh of a drawing
-    for (const char* which : {"a", "b"}) EXPECT_TRUE(CaseMaker(kMachines).make(seed, root / which));
+    for (const char* which : {"a", "b"}) EXPECT_TRUE(CaseMaker(kMachines, kCoarse).make(seed, root / which));
   }
   int n_files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "a")) {
@@ -117,7 +118,7 @@ TEST(BlindCases, TheSameSeedMakesTheSameBytes) {
 TEST(BlindCases, ScenariosReadAndRecordsFitThem) {
   const std::filesystem::path root = std::filesystem::temp_directory_path() / "driftwright_blind_read";
   std::filesystem::remove_all(root);
-  CaseMaker maker(kMachines);
+  CaseMaker maker(kMachines, kCoarse);
   (void)maker.make(3, root);
   const scenarios::Scenario scenario = scenarios::read_scenario((root / "case_0003/scenario.yaml").string());
   const scenarios::MachineModel& model = scenario.machine.value();

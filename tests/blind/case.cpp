@@ -152,7 +152,7 @@ Json truth_json(const Subject& s, const Case& c) {
 }  // namespace
 
 double truth_step_s(const Subject& s) {
-  return s.is_lumped() ? 5.0 : 20.0;
+  return s.is_lumped() ? 5.0 : 30.0;
 }
 
 Case make_case(const Subject& s, std::uint64_t seed) {
@@ -246,7 +246,7 @@ bool CaseMaker::make(std::uint64_t seed, const std::filesystem::path& out) {
   const std::filesystem::path folder = out / fmt::format("case_{:04d}", seed);
   if (std::filesystem::exists(folder / "truth.json")) return false;
   std::unique_ptr<Subject>& subject = subjects_[subject_of(seed)];
-  if (!subject) subject = std::make_unique<Subject>(make_subject(machines_, subject_names()[subject_of(seed)]));
+  if (!subject) subject = std::make_unique<Subject>(make_subject(machines_, subject_names()[subject_of(seed)], mesh_share_));
   write_case(*subject, make_case(*subject, seed), folder);
   return true;
 }

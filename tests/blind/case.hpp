@@ -41,12 +41,15 @@ void write_case(const Subject& subject, const Case& of, const std::filesystem::p
 /// Makes cases of a range of seeds; those whose truth.json is there are kept.
 class CaseMaker {
  public:
-  explicit CaseMaker(std::string machines) : machines_(std::move(machines)) {}
+  /// @param mesh_share  size of the truth's cells over those of the scenario
+  explicit CaseMaker(std::string machines, double mesh_share = 0.7)
+      : machines_(std::move(machines)), mesh_share_(mesh_share) {}
   /// @return false for one that was there
   bool make(std::uint64_t seed, const std::filesystem::path& out);
 
  private:
   std::string machines_;
+  double mesh_share_;
   std::map<std::size_t, std::unique_ptr<Subject>> subjects_;
 };
 
