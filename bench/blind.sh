@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes blind cases (tests/blind), diagnoses each, and scores: bench/blind.sh [-n CASES] [-o DIR] [-j JOBS] [-t SECONDS]
 # 400 cases into /tmp/driftwright_blind, one process a core, at most 300 s a case. What is there is kept: a run that was cut short goes
-# on, and a case with a diagnosis.json is not diagnosed again. A case that fails or takes too long counts in no row; its log is beside it.
+# on, and a case with a diagnosis.json is not diagnosed again. A diagnosis that fails or takes too long is a miss; diagnose.log says why.
 set -eu
 n=400 out=/tmp/driftwright_blind jobs=$(nproc) cap=300
 while getopts n:o:j:t: option; do

@@ -166,9 +166,9 @@ class Table:
             hits, n = self.rows.get(row, (0, 0))
             if n:
                 low, high = wilson(hits, n)
-                print(f"{row:<58} {wanted:>8} {100 * hits / n:6.1f} %  [{100 * low:5.1f}, {100 * high:5.1f}]  {hits}/{n}")
+                print(f"{row:<62} {wanted:>8} {100 * hits / n:6.1f} %  [{100 * low:5.1f}, {100 * high:5.1f}]  {hits}/{n}")
             else:
-                print(f"{row:<58} {wanted:>8}      -                   0/0")
+                print(f"{row:<62} {wanted:>8}      -                   0/0")
 
 
 def in_words(causes):
@@ -182,7 +182,7 @@ def main():
     parser.add_argument("--misses", type=int, default=1000)
     parser.add_argument("--json")
     options = parser.parse_args()
-    table, misses, missing, ratios, per_law = Table(), [], 0, [], {}
+    table, misses, missing, failed, ratios, per_law = Table(), [], 0, 0, [], {}
     for path in sorted(glob.glob(os.path.join(options.cases, "case_*", "truth.json"))):
         folder = os.path.dirname(path)
         with open(path, encoding="utf-8") as file:
@@ -191,8 +191,11 @@ def main():
             with open(os.path.join(folder, options.diagnoses, "diagnosis.json"), encoding="utf-8") as file:
                 diagnosis = json.load(file)
         except (OSError, ValueError):
-            missing += 1
-            continue
+            if not os.path.exists(os.path.join(folder, "diagnose.log")):
+                missing += 1
+                continue
+            diagnosis = {"verdict": "failed", "causes": []}  # begun and not brought to an end: right about nothing
+            failed += 1
         verdict, causes, kind, loud = diagnosis["verdict"], diagnosis.get("causes", []), truth["class"], loudness(truth)
         band = "" if loud >= 10 else ", d' 5 to 10" if loud >= 5 else ", d' < 5"
         right = True
@@ -218,15 +221,15 @@ def main():
             right = verdict == "consistent" and not causes
             table.add("none: consistent", right)
         elif kind == "outside":
-            right = verdict != "named"
+            right = verdict not in ("named", "failed")
             of = "taken out of the catalogue" if truth["without"] else "in no catalogue"
             table.add("outside: not confidently misnamed", right)
             table.add(f"outside, {of}: not confidently misnamed", right)
-            table.add("outside: something is said to be wrong", verdict != "consistent")
+            table.add("outside: something is said to be wrong", verdict not in ("consistent", "failed"))
         else:
             in_set = all(any(same_place(e, m) for c in causes for m in members(c)) for e in truth["effects"])
             wrong = verdict == "named" and not any(same_place(e, m) for e in truth["effects"] for c in causes for m in members(c))
-            right = not wrong
+            right = not wrong and verdict != "failed"
             table.add("confounded: not confidently misnamed", right)
             table.add("confounded: truth among what is said", in_set)
             table.add("confounded: said to be ambiguous, or more is asked for", verdict in ("ambiguous", "insufficient_data"))
@@ -246,7 +249,7 @@ def main():
         if not right:
             hidden = "; ".join(f"{e['law']} at {e['where']} (d' {e['d_prime_beside_others']:.0f})" for e in truth["effects"]) or "none"
             misses.append(f"case_{truth['seed']:04d} {truth['machine']} {kind}: {hidden} -> {verdict}: {in_words(causes)}")
-    print(f"{'figure':<58} {'wanted':>8} {'got':>8}  {'95 % interval':>14}")
+    print(f"{'figure':<62} {'wanted':>8} {'got':>8}  {'95 % interval':>14}")
     order = [("one: cause named or in a set of three", ">= 95 %"), ("one: cause named alone", ">= 80 %"),
              ("one: its place right", ">= 90 %"), ("one: no cause beside it", ""), ("two: both found", ">= 85 %"),
              ("two: one or both found", ""), ("none: consistent", ">= 98 %"),
@@ -267,14 +270,16 @@ def main():
     if per_law:
         print("\none, d' >= 10, found by law: " + ", ".join(f"{law} {h}/{n}" for law, (h, n) in sorted(per_law.items())))
     if missing:
-        print(f"\n{missing} cases without a diagnosis count in no row")
+        print(f"\n{missing} cases that were never diagnosed count in no row")
+    if failed:
+        print(f"\n{failed} diagnoses failed or took too long: misses in every row")
     if misses:
         print(f"\nmissed ({len(misses)}):")
         print("\n".join(misses[: options.misses]))
     if options.json:
         with open(options.json, "w", encoding="utf-8") as file:
             rows = {r: {"hits": h, "n": n, "wilson95": wilson(h, n)} for r, (h, n) in table.rows.items()}
-            json.dump({"rows": rows, "missing": missing, "held_out_over_noise": ratios}, file, indent=2)
+            json.dump({"rows": rows, "missing": missing, "failed": failed, "held_out_over_noise": ratios}, file, indent=2)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The scorer against diagnoses written by hand, one a line of its rules."""
+"""The scorer against diagnoses written by hand."""
 import json
 import os
 import subprocess
@@ -67,11 +67,17 @@ class Rules(unittest.TestCase):
                 gain = {"channels": [{"name": "a", "rmse_after": 0.2}]}
                 with open(os.path.join(at, "diagnosis.json"), "w", encoding="utf-8") as file:
                     json.dump({"verdict": verdict, "causes": causes, "gain": gain}, file)
+            at = os.path.join(folder, "case_0004")
+            os.makedirs(at)
+            with open(os.path.join(at, "truth.json"), "w", encoding="utf-8") as file:
+                json.dump({"seed": 4, "class": "none", "machine": "m", "without": None, "effects": [], "channels": []}, file)
+            with open(os.path.join(at, "diagnose.log"), "w", encoding="utf-8") as file:
+                file.write("gave up")
             script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "score.py")
             said = subprocess.run([sys.executable, script, folder], capture_output=True, text=True, check=True).stdout
         rows = {line.split("  ")[0]: line.split()[-1] for line in said.splitlines() if line[-1:].isdigit()}
         self.assertEqual(rows["one: cause named or in a set of three"], "1/2")
-        self.assertEqual(rows["none: consistent"], "1/1")
+        self.assertEqual(rows["none: consistent"], "1/2")
         self.assertEqual(rows["outside: not confidently misnamed"], "0/1")
         self.assertIn("case_0001 m one:", said)
         self.assertIn("median 2.000", said)
