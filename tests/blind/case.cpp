@@ -25,10 +25,11 @@ double wanted_d_prime(Random& random) {
   return random.log_uniform(12.0, 60.0);
 }
 
-/// Laws that cannot be made quiet (a factor within the prior is calibration, a swap has no size) may be louder than wanted.
+/// Laws that cannot be made quiet (a factor within the prior is calibration, a swap has no size, a stop lasts some minutes) may be
+/// louder than wanted.
 bool fits(const Hidden& h, double d, double wanted) {
   constexpr double kLoudest = 200.0;
-  const bool may_be_louder = wanted >= 12.0 && (is_factor(h.what) || !has_size(h.what));
+  const bool may_be_louder = wanted >= 12.0 && (is_factor(h.what) || !has_size(h.what) || h.what == Hide::kMissingStop);
   return d > wanted / 1.6 && d < (may_be_louder ? kLoudest : 1.6 * wanted);
 }
 

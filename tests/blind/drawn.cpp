@@ -301,13 +301,13 @@ Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
       break;
     }
     case Hide::kClockOffset:
-      sized({"clock"}, 40.0, 590.0, sign);
+      sized({"clock"}, 20.0, 590.0, sign);
       break;
     case Hide::kSpeedOverride:
       sized({"spindle"}, 0.03, 0.35, sign);
       break;
     default:  // a stop while it turns: the longest section that does
-      sized({"spindle"}, 240.0, 2400.0, 1.0);
+      sized({"spindle"}, 120.0, 2400.0, 1.0);
       h.what = Hide::kMissingStop;
       h.record = random.below(static_cast<int>(plan.n_measured()));
       double start_s = 0.0, longest_s = 0.0;
