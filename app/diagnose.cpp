@@ -6,6 +6,8 @@
 #include "app/diagnosis_json.hpp"
 #include "app/results.hpp"
 #include "app/verbs.hpp"
+#include "diagnosis/focus.hpp"
+#include "diagnosis/scatter.hpp"
 #include "output/json_text.hpp"
 
 namespace driftwright::app {
@@ -69,7 +71,11 @@ void diagnose(const DiagnoseOptions& options) {
   };
   const TwinParts fine = open(scenario, placed.mesh);
   solver::TransientOptions tolerances = scenario.solver.transient;
-  const diagnosis::Twin twin(fine.augmented, fine.machine, tolerances);
+  const diagnosis::Twin whole(fine.augmented, fine.machine, tolerances);
+  progress.begin("looking what states the measured runs come to");
+  const diagnosis::Focus focused =
+      diagnosis::focus(whole, runs, diagnosis::scatter(whole), diagnosis::candidates(whole, runs, keys));
+  const diagnosis::Twin twin(fine.augmented, focused.machine, tolerances);
   std::optional<TwinParts> coarse_parts;
   std::optional<diagnosis::Twin> coarse;
   diagnosis::DiagnosisOptions how;
@@ -86,9 +92,8 @@ void diagnose(const DiagnoseOptions& options) {
     break;
   }
   how.without = keys;
-  how.floor_K = std::max(how.floor_K, 0.3 * fine.machine.error.temperature_K);
-  how.floor_m = std::max(how.floor_m, 0.3 * fine.machine.error.displacement_m);
-  how.floor_rad = std::max(how.floor_rad, 0.3 * fine.machine.error.angle_rad);
+  how.floor_K = std::max(how.floor_K, focused.error_K);
+  how.floor_m = std::max(how.floor_m, focused.error_m);
   const diagnosis::Diagnosis d = diagnosis::diagnose(twin, coarse ? &*coarse : nullptr, runs, how,
                                                      [&](const std::string& work) { progress.begin(work); });
   folder.write_text("diagnosis.json", output::json_text(diagnosis_json(d)));

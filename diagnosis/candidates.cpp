@@ -323,11 +323,12 @@ void add_hall(const Scene& s, std::vector<Candidate>& list) {
   const bool has_air = std::any_of(s.twin.machine().system.exchanges.begin(), s.twin.machine().system.exchanges.end(),
                                    [](const auto& e) { return e.offset.size() > 0; });
   if (!s.twin.augmented().has_own_gradient && has_air) {
+    Knob gradient = knob("gradient", "K/m", 1.0, 0.2, [](TwinState& t, double value) { t.gradient_K_m += value; });
+    Knob level = knob("level", "m", 0.6, 0.1, [](TwinState& t, double value) { t.level_m = value; });
+    level.nominal = 1.0;  // about where one hangs a thermometer
     list.push_back({"stratification",
                     "hall",
-                    {{"warmer above",
-                      {knob("gradient", "K/m", 1.0, 0.2, [](TwinState& t, double value) { t.gradient_K_m += value; })},
-                      0.5}}});
+                    {{"warmer above; the hall's thermometer hangs at a level", {gradient, level}, 0.5, {{-0.6}, {0.2}}}}});
   }
 }
 

@@ -56,6 +56,7 @@ struct TwinState {
   std::vector<ChangedExchange> exchanges;
   std::vector<ChangedBody> bodies;
   double gradient_K_m = 0.0;  ///< of the hall's air, where the scenario has none
+  double level_m = 0.0;       ///< where the hall's thermometer hangs in it
   effects::DriveChange drive;
   effects::ReadingChain readings;
 };
