@@ -18,14 +18,19 @@ constexpr double kOtherSizes[] = {1.4, 1.25, 1.6, 1.15, 0.85};
 
 /// The machine on another mesh, or none where there is no mesh of ours to change.
 std::optional<scenarios::Scenario> remeshed(const scenarios::Scenario& scenario, double size) {
-  const auto* mill = std::get_if<mesh::KneeMill>(&scenario.machine->mesh);
-  if (!mill) return std::nullopt;
-  scenarios::Scenario coarse = scenario;
-  auto& own = std::get<mesh::KneeMill>(coarse.machine->mesh);
-  own.coarse_m *= size;
-  own.fine_m *= size;
-  coarse.machine->written += fmt::format("\nmesh size times {}\n", size);
-  return coarse;
+  scenarios::Scenario other = scenario;
+  if (auto* mill = std::get_if<mesh::KneeMill>(&other.machine->mesh)) {
+    mill->coarse_m *= size;
+    mill->fine_m *= size;
+  } else if (auto* imported = std::get_if<mesh::ImportedMesh>(&other.machine->mesh);
+             imported && imported->mesh_size_m > 0.0) {
+    imported->mesh_size_m *= size;  // a drawing
+    for (auto& [region, size_m] : imported->mesh_size_of_region_m) size_m *= size;
+  } else {
+    return std::nullopt;
+  }
+  other.machine->written += fmt::format("\nmesh size times {}\n", size);
+  return other;
 }
 
 struct TwinParts {

@@ -137,9 +137,10 @@ void add_friction(const Scene& s, std::vector<Candidate>& list) {
     if (!rubs) continue;
     double low_W = 0.0, high_W = 0.0;
     for (const auto& h : s.own.heats) {
-      if (!(h.body == body) || !h.power_W.probes.empty()) continue;
-      low_W += h.power_W(effects::Inputs{.drive = {.speed_rpm = 0.97 * s.typical_rpm}});
-      high_W += h.power_W(effects::Inputs{.drive = {.speed_rpm = 1.03 * s.typical_rpm}});
+      if (!(h.body == body)) continue;
+      const std::vector<double> warm_K(h.power_W.probes.size(), s.twin.reference_K() + 10.0);
+      low_W += h.power_W(effects::Inputs{.drive = {.speed_rpm = 0.97 * s.typical_rpm}, .probe_K = warm_K});
+      high_W += h.power_W(effects::Inputs{.drive = {.speed_rpm = 1.03 * s.typical_rpm}, .probe_K = warm_K});
     }
     const double written = low_W > 0.0 && high_W > 0.0 ? std::log(high_W / low_W) / std::log(1.03 / 0.97) : std::nan("");
     Candidate c{"friction_law", body.name, {}};
@@ -502,6 +503,11 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
   add_displacements(s, list);
   add_sensors(s, list);
   add_drive(s, list);
+  for (Candidate& c : list) {
+    for (Variant& v : c.variants) {
+      if (v.law.ends_with(" rpm")) v.at_speed_rpm = s.typical_rpm;
+    }
+  }
   std::erase_if(list, [&](const Candidate& c) { return without.contains(c.effect) || c.variants.empty(); });
   for (Candidate& c : list) {
     for (Variant& v : c.variants) {

@@ -119,6 +119,20 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
   return unique;
 }
 
+/// A hypothesis without one of its claims, and the x of the others.
+std::pair<Hypothesis, Eigen::VectorXd> without_claim(Hypothesis hypothesis, const Fit& fit, std::size_t claim,
+                                                     Eigen::Index n_nuisance) {
+  Eigen::VectorXd x;
+  Eigen::Index at = n_nuisance;
+  for (std::size_t c = 0; c < hypothesis.size(); ++c) {
+    const auto n = static_cast<Eigen::Index>(hypothesis[c].knobs.size());
+    if (c != claim) x = joined(x, fit.x.segment(at, n));
+    at += n;
+  }
+  hypothesis.erase(hypothesis.begin() + static_cast<std::ptrdiff_t>(claim));
+  return {std::move(hypothesis), std::move(x)};
+}
+
 double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
   double price = 0.0;
   for (const Claim& c : hypothesis) price += std::log(static_cast<double>(candidates[c.candidate].variants.size()));
@@ -230,67 +244,57 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   result.scores = scores(fitter, candidates, columns, {}, best_fit);
   double best_value = best_fit.log_evidence;
 
+  const auto exchange = [&] {  // each for a better one, until none is; true where something changed
+    bool any = false;
+    for (int turn = 0; turn < 3; ++turn) {
+      bool changed = false;
+      for (std::size_t i = 0; i < best.size(); ++i) {
+        const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
+        const Fit fit = fit_all(fitter, {{others, x}}).front();
+        const std::vector<Fitted> replacements = best_additions(fitter, candidates, columns, others, fit, options.refits);
+        if (replacements.empty()) continue;
+        const Hypothesis exchanged = with(others, replacements.front().claim);
+        const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
+        if (!(v > best_value + 0.5)) continue;
+        best = exchanged;
+        best_fit = replacements.front().fit;
+        best_value = v;
+        changed = true;
+      }
+      any = any || changed;
+      if (!changed || best.size() < 2) break;
+    }
+    return any;
+  };
   for (int round = 0; round < options.most_effects; ++round) {
     say(fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
     const std::vector<Fitted> additions = best_additions(fitter, candidates, columns, best, best_fit, options.refits);
     if (additions.empty()) break;
     const Hypothesis tried = with(best, additions.front().claim);
     const double value = evidence(additions.front().fit, tried) - laws_price(candidates, best);
-    if (!(value > best_value + options.must_gain)) break;
+    if (!(value > best_value + options.must_gain[best.size()])) break;
     best = tried;
     best_fit = additions.front().fit;
     best_value = value;
 
-    for (int turn = 0; turn < 2 && best.size() > 1; ++turn) {  // exchange each for a better one
-      bool changed = false;
-      for (std::size_t i = 0; i < best.size(); ++i) {
-        Hypothesis others = best;
-        others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-        Eigen::VectorXd x;
-        Eigen::Index at = fitter.n_nuisance();
-        for (std::size_t c = 0; c < best.size(); ++c) {
-          const auto n = static_cast<Eigen::Index>(best[c].knobs.size());
-          if (c != i) x = joined(x, best_fit.x.segment(at, n));
-          at += n;
-        }
-        const Fit fit = fit_all(fitter, {{others, x}}).front();
-        const std::vector<Fitted> replacements = best_additions(fitter, candidates, columns, others, fit, options.refits);
-        if (replacements.empty()) continue;
-        const Hypothesis exchanged = with(others, replacements.front().claim);
-        const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
-        if (v > best_value + 0.5) {
-          best = exchanged;
-          best_fit = replacements.front().fit;
-          best_value = v;
-          changed = true;
-        }
-      }
-      if (!changed) break;
-    }
+    exchange();
   }
-  if (!best.empty()) {
+  for (int turn = 0; turn < 2 && !best.empty(); ++turn) {
     say("settling the numbers");
     fitter.settle(best, best_fit);
     best_fit = fit_all(fitter, {{best, best_fit.x.tail(best_fit.x.size() - fitter.n_nuisance())}}).front();
     best_value = evidence(best_fit, best) - laws_price(candidates, best);
     columns = signatures(fitter, candidates, best, best_fit);
+    if (!exchange()) break;
   }
 
   // Prune, and look for others in each one's place.
   say(best.empty() ? "nothing to add" : "looking for other explanations");
   for (std::size_t i = 0; i < best.size();) {
-    Hypothesis others = best;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    Eigen::VectorXd x;
-    Eigen::Index at = fitter.n_nuisance();
-    for (std::size_t c = 0; c < best.size(); ++c) {
-      const auto n = static_cast<Eigen::Index>(best[c].knobs.size());
-      if (c != i) x = joined(x, best_fit.x.segment(at, n));
-      at += n;
-    }
+    const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
     const Fit fit = fit_all(fitter, {{others, x}}).front();
     const double without_value = evidence(fit, others) - laws_price(candidates, others);
-    if (!(best_value > without_value + options.must_gain)) {
+    if (!(best_value > without_value + options.must_gain[best.size() - 1])) {
       best = others;
       best_fit = fit;
       best_value = without_value;

@@ -8,7 +8,8 @@ namespace driftwright::diagnosis {
 struct SearchOptions {
   int most_effects = 3;
   /// Evidence [nats] a claim must bring beyond the logarithm of how many candidates there are.
-  double must_gain = 3.0;
+  std::vector<double> must_gain = {3.0, 6.0,
+                                   20.0};  ///< the first, the second, the third: few machines are wrong in three ways
   /// Two claims whose evidence differs by less than this cannot be told apart.
   double cannot_tell = 3.0;
   int refits = 10;  ///< candidates of each round that are fitted in full

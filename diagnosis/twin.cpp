@@ -329,7 +329,7 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
       workspace.gradient_K_m_ = state.gradient_K_m;
       workspace.level_m_ = state.level_m;
     }
-    (void)workspace.propagator_->run(felt, hall, run.time_s, start, false, &states);
+    (void)workspace.propagator_->run(felt, hall, run.grid_s, start, false, &states);
   } else {
     const solver::ReducedSystem* small = &system;
     solver::ReducedSystem unit;
@@ -337,10 +337,10 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
       unit = solver::with_unit_mass(system, start);
       small = &unit;
     }
-    const auto n_times = static_cast<Eigen::Index>(run.time_s.size());
+    const auto n_times = static_cast<Eigen::Index>(run.grid_s.size());
     states.resize(system.size(), n_times);
     Eigen::Index k = 0;
-    (void)solver::simulate(*small, felt, hall, run.time_s, tolerances_, start,
+    (void)solver::simulate(*small, felt, hall, run.grid_s, tolerances_, start,
                            [&](double, const Eigen::VectorXd& z) { states.col(k++) = z; });
     if (has_other_mass) {  // back from w = C'z
       const Eigen::LLT<Eigen::MatrixXd> factor(system.mass);
@@ -365,19 +365,23 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
     }
   }
   Eigen::MatrixXd outputs = weights.transpose() * z;
-  for (std::size_t k = 0; k < run.time_s.size(); ++k) {
-    outputs.col(static_cast<Eigen::Index>(k)) += hall.at(run.time_s[k]) * outputs_.hall;
+  for (std::size_t k = 0; k < run.grid_s.size(); ++k) {
+    outputs.col(static_cast<Eigen::Index>(k)) += hall.at(run.grid_s[k]) * outputs_.hall;
   }
   return outputs;
 }
 
 Eigen::MatrixXd Twin::read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const {
   const effects::ReadingChain readings = chain(state);
-  if (readings.empty()) return outputs;
-  Cyclogram felt = effects::true_cyclogram(drive(state), run.cyclogram);
-  felt.name = run.name;
-  const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
-  return effects::readings(readings, outputs_.name, outputs_.unit, run.time_s, felt, hall, std::move(outputs));
+  if (!readings.empty()) {
+    Cyclogram felt = effects::true_cyclogram(drive(state), run.cyclogram);
+    felt.name = run.name;
+    const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
+    outputs = effects::readings(readings, outputs_.name, outputs_.unit, run.grid_s, felt, hall, std::move(outputs));
+  }
+  Eigen::MatrixXd rows(outputs.rows(), static_cast<Eigen::Index>(run.row_in_grid.size()));
+  for (Eigen::Index i = 0; i < rows.cols(); ++i) rows.col(i) = outputs.col(run.row_in_grid[static_cast<std::size_t>(i)]);
+  return rows;
 }
 
 }  // namespace driftwright::diagnosis
