@@ -152,6 +152,21 @@ void add_friction(const Scene& s, std::vector<Candidate>& list) {
       exponent.nominal = written;
       c.variants.push_back({fmt::format("another growth with speed, the same at {:.0f} rpm", rpm), {exponent}, 0.2});
     }
+    if (written > 0.05) {
+      Knob size = factor([body, rpm](TwinState& t, double value) {
+        ChangedFriction f{body};
+        f.factor = value;
+        f.at_speed_rpm = rpm;
+        t.frictions.push_back(f);
+      });
+      Knob other = knob("exponent", "1", 0.5, 0.05,
+                        [written](TwinState& t, double value) { t.frictions.back().change_of_exponent = value - written; });
+      other.nominal = written;
+      c.variants.push_back({fmt::format("another heat and another growth with speed, at {:.0f} rpm", rpm),
+                            {size, other},
+                            0.2,
+                            {{0.0}, {0.4}, {-0.4}}});
+    }
     Knob decay = knob("decay", "1/K", 0.02, 0.002, [body, rpm, reference_K](TwinState& t, double value) {
       t.frictions.push_back({.body = body, .at_speed_rpm = rpm, .decay_1_K = value, .at_K = reference_K});
     });

@@ -17,7 +17,9 @@ namespace {
 constexpr int kFewestReadings = 150;  // of all channels together: below, a verdict would be guessing
 constexpr double kStandsOut = 7.0;    // sigmas of one channel's leftover
 constexpr double kStandsOutTogether = 6.0;
-constexpr double kJump = 36.0;  // squares that one step somewhere may take off by chance: exp(-18) times some hundred rows
+constexpr double kJump =
+    27.0;  // squares that one step somewhere may take off by chance: exp(-13.5) times some thousand rows
+constexpr double kFurther = 4.0;          // nats of one more effect, its price paid
 constexpr double kNoiseCanBeWider = 1.5;  // than high frequencies say
 constexpr double kWorthNaming = 0.35;     // of the noise: less is no use to anybody
 
@@ -131,9 +133,7 @@ std::map<std::string, NoiseModel> widest_noise(const Fitter& fitter, const Fit& 
   std::map<std::string, NoiseModel> widest;
   for (const auto& [name, list] : series) {
     const NoiseModel wide = estimate_noise(list, noise.at(name).white);
-    const bool is_wider =
-        wide.correlated > noise.at(name).correlated && wide.total() < kNoiseCanBeWider * noise.at(name).total();
-    widest[name] = is_wider ? wide : noise.at(name);
+    widest[name] = wide.total() < kNoiseCanBeWider * noise.at(name).total() ? wide : noise.at(name);
   }
   return widest;
 }
@@ -147,7 +147,9 @@ std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResu
   for (const Leftover& l : list) {
     const bool stands_out = l.sigmas() > kStandsOut || (together > kStandsOutTogether && l.sigmas() > 3.0);
     const bool is_large = l.rms >= kWorthNaming * noise.at(l.channel).total();
-    if (!(stands_out && is_large) && l.jump_squares < kJump) continue;
+    const bool is_more =
+        result.further_gain > kFurther && u.channels.empty();  // the worst stands for what one more effect would take
+    if (!(stands_out && is_large) && l.jump_squares < kJump && !is_more) continue;
     u.channels.push_back({l.channel,
                           l.unit == "K"   ? "K"
                           : l.unit == "m" ? "um"

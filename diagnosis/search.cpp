@@ -311,6 +311,13 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
     result.findings.push_back(std::move(finding));
     ++i;
   }
+  if (!best.empty()) {
+    const std::vector<Fitted> further = best_additions(fitter, candidates, columns, best, best_fit, options.refits / 2);
+    if (!further.empty()) {
+      const Hypothesis tried = with(best, further.front().claim);
+      result.further_gain = evidence(further.front().fit, tried) - laws_price(candidates, best) - best_value;
+    }
+  }
   result.hypothesis = std::move(best);
   result.fit = std::move(best_fit);
   return result;

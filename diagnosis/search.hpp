@@ -50,6 +50,8 @@ struct SearchResult {
   Fit without;  ///< scatter alone
   std::vector<Finding> findings;
   int n_candidates = 0;
+  /// Evidence that one more effect would bring; too little to claim it, and yet more than chance has to offer.
+  double further_gain = 0.0;
   std::vector<Score> scores;  ///< of all candidates on top of scatter alone
 };
 

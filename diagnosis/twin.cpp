@@ -274,7 +274,8 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
       if (thins) source_probes[h].insert(source_probes[h].end(), of_body.begin(), of_body.end());
       all.heats[h].power_W.value = [f, thins, inner = all.heats[h].power_W.value](const Inputs& u) {
         const double n = u.drive.speed_rpm / f.at_speed_rpm;
-        const double factor = n > 0.0 && f.change_of_exponent != 0.0 ? std::pow(n, f.change_of_exponent) : 1.0;
+        const double factor =
+            n > 0.0 && f.change_of_exponent != 0.0 ? f.factor * std::pow(n, f.change_of_exponent) : f.factor;
         if (!thins) return factor * inner(u);
         Inputs own_inputs = u;
         const double t_K = own_inputs.probe_K.back();
