@@ -140,13 +140,16 @@ void add_residuals(const MeasuredTwin& m, const diagnosis::Diagnosis& d, const s
     blocks.emplace_back(output::Heading{"Record " + run.name});
     blocks.emplace_back(drive_plot(run));
     blocks.emplace_back(hall_plot(run, m.twin->reference_K()));
-    Table structure{.caption = fmt::format(
-                        "Residuals against noise. Lag 1: correlation of a reading's residual with the next one's, within "
-                        "its bound for white noise. Follows: the recorded quantity that the residual is like behind "
-                        "one lag, with the share of its variance."),
+    Table structure{.caption =
+                        "Residuals against noise. Lag 1: correlation of a reading's residual with the next one's; white "
+                        "noise stays within the bound.",
                     .headers = {"channel", "unit", "noise floor", "rms as written", "rms " + after, "lag 1 as written",
-                                "lag 1 " + after, "white up to", "as written follows", after + " follows"},
+                                "lag 1 " + after, "bound"},
                     .rows = {}};
+    Table lags{
+        .caption = "What recorded quantity the residual is like behind one lag, with the share of its variance; from 30 %.",
+        .headers = {"channel", "as written follows", after + " follows"},
+        .rows = {}};
     const std::vector<std::string> headers = {"channel", "residual against", "0 min", "5 min", "15 min", "60 min before"};
     Table before{
         .caption = "Correlation of the residual as written with what was recorded as long before; those of 0.3 and more.",
@@ -160,12 +163,13 @@ void add_residuals(const MeasuredTwin& m, const diagnosis::Diagnosis& d, const s
       const ResidualStructure w = residual_structure(run, k.written_residual), a = residual_structure(run, k.after_residual);
       structure.rows.push_back({c.name, k.difference_unit, fmt::format("{:.3g}", k.noise), fmt::format("{:.3g}", w.rms),
                                 fmt::format("{:.3g}", a.rms), fmt::format("{:+.2f}", w.lag_1),
-                                fmt::format("{:+.2f}", a.lag_1), fmt::format("±{:.2f}", a.white_up_to), follows(w),
-                                follows(a)});
+                                fmt::format("{:+.2f}", a.lag_1), fmt::format("±{:.2f}", a.white_up_to)});
+      if (w.lag || a.lag) lags.rows.push_back({c.name, follows(w), follows(a)});
       add_likenesses(c.name, w, before);
       add_likenesses(c.name, a, left);
     }
     blocks.emplace_back(structure);
+    if (!lags.rows.empty()) blocks.emplace_back(lags);
     if (!before.rows.empty()) blocks.emplace_back(before);
     if (!left.rows.empty()) blocks.emplace_back(left);
   }
