@@ -154,10 +154,12 @@ TEST_P(AFinding, WrittenIntoTheScenarioRunsAsTheTwinPredicted) {
   const auto apart = [&](const Eigen::MatrixXd& x) {
     return (x - predicted.topRows(simulated.rows())).cwiseAbs().maxCoeff();
   };
-  // Five digits of a change of some 10 K or um make 0.5 mK; the reduced model of the mesh may be off by 8 mK and 16 nm.
-  const double tolerance = GetParam().with_mesh ? 0.02 : 2e-3;
+  const double size = apart(before.topRows(simulated.rows()));
+  // Five digits of a change of some 10 K or um make 0.5 mK. The reduced model of the mesh may be off by 8 mK and 16 nm, and by a
+  // percent of a change of matrices that its basis was not made for.
+  const double tolerance = GetParam().with_mesh ? 0.01 + 0.01 * size : 2e-3;
   EXPECT_LT(apart(simulated), tolerance) << extended.text;
-  EXPECT_GT(apart(before.topRows(simulated.rows())), 5.0 * tolerance) << "the change is too small to be tested by";
+  EXPECT_GT(size, 5.0 * tolerance) << "the change is too small to be tested by";
 }
 
 AddedHeat heat(const effects::Body& body, double power_W, AddedHeat::Shape shape) {
@@ -225,7 +227,7 @@ const std::vector<Case> kCases = {
     {"another_conductivity", true, [](TwinState& t) { t.bodies.push_back({.body = "column", .conductivity = 0.6}); }},
     {"another_heat_capacity", true, [](TwinState& t) { t.bodies.push_back({.body = "head", .heat_capacity = 1.5}); }},
     {"another_expansion", true, [](TwinState& t) { t.bodies.push_back({.body = "head", .expansion = 1.6}); }},
-    {"stratified_air", true, [](TwinState& t) { t.gradient_K_m = 20.0; }},
+    {"stratified_air", true, [](TwinState& t) { t.gradient_K_m = 5.0; }},
     {"hall_offset", false, with_drive([](auto& d) { d.hall.push_back({.offset_K = 1.5}); })},
     {"hall_step_and_ramp", false, with_drive([](auto& d) {
        d.hall.push_back({1.5, 1.0 / 3600.0, 1200.0, "cycle"});
