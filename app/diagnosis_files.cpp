@@ -41,7 +41,8 @@ std::vector<StatedChange> stated_scatter(const diagnosis::Twin& twin, const diag
   const std::vector<diagnosis::Knob> knobs = diagnosis::scatter(twin);
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     const diagnosis::Estimate& e = d.calibrated.at(i);
-    StatedChange change{e.name, fmt::format("95 %: {}", interval_text(e)), twin.as_written()};
+    StatedChange change{e.name, fmt::format("{} {}, 95 %: {}", knobs[i].name, value_text(e), interval_text(e)),
+                        twin.as_written(), "calibration"};
     knobs[i].set(change.state, e.value);
     changes.push_back(std::move(change));
   }

@@ -143,7 +143,7 @@ void add_residuals(const MeasuredTwin& m, const diagnosis::Diagnosis& d, const s
     Table structure{.caption =
                         "Residuals against noise. Lag 1: correlation of a reading's residual with the next one's; white "
                         "noise stays within the bound.",
-                    .headers = {"channel", "unit", "noise floor", "rms as written", "rms " + after, "lag 1 as written",
+                    .headers = {"channel", "unit", "noise", "rms as written", "rms " + after, "lag 1 as written",
                                 "lag 1 " + after, "bound"},
                     .rows = {}};
     Table lags{

@@ -92,7 +92,7 @@ class Writer {
       throw;
     }
     for (const auto& [line, notes] : notes_)
-      yaml_.comment(line, fmt::format("diagnosis: {}; {}", fmt::join(notes, ", "), comment_));
+      yaml_.comment(line, fmt::format("{}: {}; {}", change.by, fmt::join(notes, ", "), comment_));
     return done_;
   }
 

@@ -11,9 +11,10 @@ namespace driftwright::diagnosis {
 
 /// One thing to write: what the twin would have to be told, and why.
 struct StatedChange {
-  std::string name;     ///< of it, for messages: "convection at nose"
-  std::string comment;  ///< stands behind each line that it changes
-  TwinState state;      ///< the twin as written, with this change alone
+  std::string name;              ///< of it, for messages: "convection at nose"
+  std::string comment;           ///< stands behind each line that it changes
+  TwinState state;               ///< the twin as written, with this change alone
+  std::string by = "diagnosis";  ///< whose change it is; stands before what a number was
 };
 
 struct ExtendedScenario {
