@@ -72,14 +72,14 @@ diagnosis::ExtendedScenario write_scenario(const std::string& stem, const Measur
 }
 
 std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d, const std::vector<diagnosis::Candidate>& candidates) {
-  std::vector<MissingHeat> list;
+  std::vector<MissingHeat> list;  // scores come best first, several laws a candidate
   for (const diagnosis::Score& s : d.search.scores) {
     const diagnosis::Candidate& c = candidates.at(s.candidate);
     if (c.effect != "heat_source" || !(s.gain > 0.0) || s.start.size() == 0) continue;
     const diagnosis::Variant& v = c.variants.at(s.variant);
-    list.push_back({c.where, s.gain, v.knobs[0].value(s.start[0]), v.law});
+    const bool has_better = std::any_of(list.begin(), list.end(), [&](const auto& h) { return h.body == c.where; });
+    if (!has_better) list.push_back({c.where, s.gain, v.knobs[0].value(s.start[0]), v.law});
   }
-  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.evidence > b.evidence; });
   return list;
 }
 

@@ -25,7 +25,7 @@ namespace driftwright::app {
 struct MissingHeat {
   std::string body;
   double evidence = 0.0;  ///< nats, by the linear theory
-  double power_W = 0.0;   ///< at the claim's stated speed, or at all times
+  double power_W = 0.0;   ///< at the claim's stated speed, or at all times; < 0: the scenario has too much
   std::string law;
 };
 /// Strongest first; bodies in which no heat brings evidence are left out.

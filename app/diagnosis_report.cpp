@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <map>
+#include <set>
 
 #include "app/diagnosis_summary.hpp"
 #include "app/residual_report.hpp"
@@ -118,8 +119,10 @@ void add_candidates(const DiagnosisPage& page, Blocks& blocks) {
                   "theory); the best of {} candidates. What stands up is fitted in full and pays for being one of many.",
                   d.n_candidates),
       {}};
+  std::set<std::size_t> shown;
   for (const diagnosis::Score& s : d.search.scores) {
     if (bars.bars.size() == kMost || !(s.gain > 0.0)) break;
+    if (!shown.insert(s.candidate).second) continue;  // by a better law
     const diagnosis::Candidate& c = page.candidates.at(s.candidate);
     bars.bars.push_back({fmt::format("{} at {}: {}", c.effect, c.where, c.variants.at(s.variant).law), s.gain,
                          fmt::format("{:.1f}", s.gain)});
@@ -133,7 +136,8 @@ void add_candidates(const DiagnosisPage& page, Blocks& blocks) {
   const std::vector<MissingHeat> heat = missing_heat(d, page.candidates);
   if (heat.empty()) return;
   Bars by_body{
-      "Where missing heat would explain the residual: evidence [nats] of heat in each body, with its power at trial size.",
+      "Where missing heat would explain the residual: evidence [nats] of heat in each body, with its power; negative: the "
+      "scenario has too much.",
       {}};
   for (const MissingHeat& h : heat)
     by_body.bars.push_back({h.body, h.evidence, fmt::format("{:.1f} nats, {:.3g} W ({})", h.evidence, h.power_W, h.law)});
