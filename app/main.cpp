@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
   app::RecordOptions select, validate;
   app::SweepOptions sweep;
   app::DiagnoseOptions diagnose;
+  app::CalibrateOptions calibrate;
   add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
@@ -89,6 +90,12 @@ int main(int argc, char** argv) {
                   "validate scenarios/spindle_22.yaml --train run1.csv --train run2.csv --test run3.csv", validate);
   add_records(verb, validate, true);
   verb->callback([&] { app::validate(validate); });
+  verb = add_verb(cli, "calibrate", "the scenario's uncertain numbers, fitted to measured records, with intervals",
+                  "calibrate scenarios/fp3_spindle.yaml --measured good.csv -o results/calibration", calibrate);
+  verb->add_option("--measured", calibrate.measured, "record CSV (docs/record.md); may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  verb->callback([&] { app::calibrate(calibrate); });
   verb = add_verb(cli, "diagnose", "what a simulation gets wrong against measured records, why, and what mending it gains",
                   "diagnose scenarios/fp3_spindle.yaml --measured monday.csv --measured tuesday.csv -o results/diagnosis",
                   diagnose);

@@ -41,6 +41,11 @@ struct DiagnoseOptions : CommonOptions {
 };
 void diagnose(const DiagnoseOptions& options);
 
+struct CalibrateOptions : CommonOptions {
+  std::vector<std::string> measured;  ///< record CSVs
+};
+void calibrate(const CalibrateOptions& options);
+
 struct SweepOptions : CommonOptions {  ///< `scenario` is the study
   std::string shard;                   ///< "i/n", or empty for all members
   bool merge = false;                  ///< only put together what shards have simulated

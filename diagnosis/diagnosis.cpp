@@ -219,7 +219,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.noise = estimate_noise(runs, d.as_written, options.floor_K, options.floor_m, options.floor_rad);
   for (int pass = 0; pass < 2; ++pass) {
     fitter.set_noise(d.noise);
-    d.search = search(fitter, list, {}, say);
+    d.search = search(fitter, list, {.most_effects = options.most_effects}, say);
     const auto sharper = estimate_noise(runs, d.search.fit.prediction, options.floor_K, options.floor_m, options.floor_rad);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(),
                                         [&](const auto& s) { return s.second.total() < 0.9 * d.noise.at(s.first).total(); });
@@ -245,8 +245,13 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     const Knob& k = fitter.scatter()[i];
     const auto at = static_cast<Eigen::Index>(i);
     const double x = d.search.fit.x[at], sd = std::sqrt(d.search.fit.covariance(at, at));
-    d.calibrated.push_back({fmt::format("{} {} {}", k.effect, k.where, k.name), k.unit, k.value(x), k.value(x - 1.96 * sd),
-                            k.value(x + 1.96 * sd)});
+    TwinState turned = twin.as_written();
+    k.set(turned, k.value(x));
+    const bool of_one =
+        !turned.bodies.empty() && !turned.bodies.back().displacement.empty();  // several sensitivities a body
+    const std::string of = of_one ? " of " + turned.bodies.back().displacement : "";
+    d.calibrated.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x),
+                            k.value(x - 1.96 * sd), k.value(x + 1.96 * sd), x / k.prior_sd});
   }
   say("looking at what is left");
   d.unexplained = unexplained_of(fitter, d.search, d.noise);

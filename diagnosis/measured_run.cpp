@@ -14,7 +14,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHallKnots_s = 300.0;  // films pass on nothing faster
+constexpr double kHallKnots_s = 600.0;  // films pass on nothing faster
 constexpr int kStuckRows = 30;          // equal readings in a row while the model's channel moves
 
 /// Piecewise linear least squares on knots; keeps a recorded hall's slow course and drops its noise.

@@ -46,6 +46,8 @@ figure svg { display: block; width: 100%; height: auto; }
 .legend i.points { width: 8px; height: 8px; border: 0; border-radius: 50%; background: var(--c); margin: 0 8px; }
 .legend i.band { height: 14px; border: 1px solid #c3ccd3; background: var(--c); }
 .legend i.limit { border-top: 2px dashed #777777; }
+.bars td { border: 0; padding: 2px 10px; } .bars td.long { width: 45%; }
+.bars { width: 100%; } .bars i { display: block; height: 14px; margin-top: 5px; background: var(--neutral); border-radius: 2px; }
 pre { background: var(--card); border: 1px solid var(--line); border-radius: 4px; padding: 12px 16px; overflow-x: auto;
   font: 13px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; }
 @media (max-width: 640px) { figure.half { grid-column: 1 / -1; } }
@@ -145,6 +147,19 @@ std::string html(const Table& table) {
     out += "</tr>\n";
   }
   return out + "</tbody></table></div>\n";
+}
+
+std::string html(const Bars& bars) {
+  double longest = 0.0;
+  for (const Bars::Bar& b : bars.bars) longest = std::max(longest, b.value);
+  std::string out = "<div class=\"table\"><table class=\"bars\">\n";
+  if (!bars.caption.empty()) out += fmt::format("<caption>{}</caption>\n", escaped(bars.caption));
+  for (const Bars::Bar& b : bars.bars) {
+    const double percent = longest > 0.0 ? 100.0 * std::max(0.0, b.value) / longest : 0.0;
+    out += fmt::format("<tr><td>{}</td><td class=\"long\"><i style=\"width:{:.1f}%\"></i></td><td>{}</td></tr>\n",
+                       escaped(b.label), percent, escaped(b.text));
+  }
+  return out + "</table></div>\n";
 }
 
 std::string legend(const Plot& plot) {

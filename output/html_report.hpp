@@ -35,7 +35,18 @@ struct Table {
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as headers
 };
 
-using ReportBlock = std::variant<Heading, Paragraph, Verdict, Table, Plot, Preformatted>;
+/// Values of the same kind side by side, one line each; bars begin at zero, those of negative values are not drawn.
+struct Bars {
+  std::string caption = {};
+  struct Bar {
+    std::string label = {};
+    double value = 0.0;
+    std::string text = {};  ///< behind the bar: the value with its unit
+  };
+  std::vector<Bar> bars = {};
+};
+
+using ReportBlock = std::variant<Heading, Paragraph, Verdict, Table, Plot, Preformatted, Bars>;
 
 struct Report {
   std::string title = {};

@@ -177,4 +177,17 @@ void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const s
   write_grid(grid, file);
 }
 
+void write_region_fields(const mesh::Mesh& mesh, std::span<const RegionField> fields, const std::filesystem::path& file) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  build_grid(mesh, false, grid);
+  for (const RegionField& f : fields) {
+    if (f.value.size() != mesh.regions.size())
+      throw std::logic_error(fmt::format("{}: {} values for {} regions", f.name, f.value.size(), mesh.regions.size()));
+    auto* array = add_array<vtkFloatArray>(grid->GetCellData(), f.name.c_str(), 1, grid->GetNumberOfCells());
+    for (int c = 0; c < mesh.cells.size(); ++c)
+      array->SetValue(c, static_cast<float>(f.value[static_cast<std::size_t>(mesh.cells.group[c])]));
+  }
+  write_grid(grid, file);
+}
+
 }  // namespace driftwright::output

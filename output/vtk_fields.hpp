@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "mesh/mesh.hpp"
 #include "output/field_series.hpp"
@@ -22,5 +24,16 @@ namespace driftwright::output {
 /// @throws std::logic_error    when `quality` has another length
 /// @throws InputError  when the file cannot be written
 void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const std::filesystem::path& file);
+
+/// A number per region.
+struct RegionField {
+  std::string name;           ///< of the cell array, with its unit
+  std::vector<double> value;  ///< in the order of Mesh::regions
+};
+/// Writes a mesh with numbers of its regions as cell arrays, beside `region` and the field array `region_names`.
+/// @param file  a path from ResultsFolder::path()
+/// @throws std::logic_error  when a field has another length than there are regions
+/// @throws InputError  when the file cannot be written
+void write_region_fields(const mesh::Mesh& mesh, std::span<const RegionField> fields, const std::filesystem::path& file);
 
 }  // namespace driftwright::output

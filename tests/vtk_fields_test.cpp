@@ -215,6 +215,25 @@ TEST_F(VtkFieldsTest, AFullDiskIsNoticed) {
               ThrowsMessage<std::runtime_error>(HasSubstr("No space left")));
 }
 
+TEST_F(VtkFieldsTest, NumbersOfRegionsStandOnTheirCells) {
+  {
+    ResultsFolder folder(out_, false, {});
+    const std::vector<RegionField> fields = {{"heat_W", {3.0, -7.5}}};
+    write_region_fields(mesh_, fields, folder.path("heat.vtu"));
+    const std::vector<RegionField> wrong = {{"heat_W", {3.0}}};
+    EXPECT_THROW(write_region_fields(mesh_, wrong, folder.path("wrong.vtu")), std::logic_error);
+    folder.commit();
+  }
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName((out_ / "heat.vtu").c_str());
+  reader->Update();
+  vtkDataArray* heat = reader->GetOutput()->GetCellData()->GetArray("heat_W");
+  ASSERT_NE(heat, nullptr);
+  ASSERT_EQ(heat->GetNumberOfTuples(), 2);
+  EXPECT_EQ(heat->GetTuple1(0), -7.5);  // the first cell is of the second region
+  EXPECT_EQ(heat->GetTuple1(1), 3.0);
+}
+
 TEST_F(VtkFieldsTest, MeshCarriesQualityPerCell) {
   ResultsFolder folder(out_, false, {});
   const fs::path file = folder.path("mesh.vtu");

@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/diagnosis_files.hpp"
+#include "app/diagnosis_json.hpp"
+#include "app/diagnosis_report.hpp"
+#include "app/diagnosis_summary.hpp"
+#include "app/results.hpp"
+#include "output/json_text.hpp"
+
+namespace driftwright::app {
+
+void calibrate(const CalibrateOptions& options) {
+  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  (void)require_machine(scenario, "calibrate");
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress;
+  MeasuredTwin m = open_measured_twin(scenario, "calibrate", options.measured, progress);
+  m.how.most_effects = 0;
+  const diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how,
+                                                     [&](const std::string& work) { progress.begin(work); });
+  progress.begin("writing");
+  const std::vector<diagnosis::Candidate> candidates = diagnosis::candidates(*m.twin, m.runs, {});
+  const std::string warning = calibration_warning(d, candidates);
+  std::vector<std::string> head = {
+      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", options.scenario)};
+  for (const std::string& path : options.measured) head.push_back("  measured: " + path);
+  if (!warning.empty()) head.push_back("WARNING: " + warning);
+  head.emplace_back("");
+  std::string difference;
+  const diagnosis::ExtendedScenario calibrated =
+      write_scenario("calibrated", m, stated_scatter(*m.twin, d), head, folder, &difference);
+  nlohmann::ordered_json json = diagnosis_json(d);
+  json["warning"] = warning;
+  folder.write_text("calibration.json", output::json_text(json));
+  const DiagnosisPage page{m, d, candidates, calibrated, difference, "calibrated.yaml"};
+  folder.write_text("report.html", output::render_html(calibration_report(page, folder.made_by())));
+  folder.commit();
+  progress.end();
+  fmt::print("{}\n", numbers_text(d));
+  if (!warning.empty()) fmt::print("warning: {}\n", warning);
+  fmt::print("{}results in {}: report.html, calibration.json, calibrated.yaml, calibrated.diff\n",
+             not_written_text("calibrated.yaml", calibrated), shown_path(folder.target()));
+}
+
+}  // namespace driftwright::app

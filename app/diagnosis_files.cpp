@@ -1,0 +1,101 @@
+#include "app/diagnosis_files.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "app/diagnosis_summary.hpp"
+#include "base/errors.hpp"
+#include "base/file_bytes.hpp"
+#include "base/line_diff.hpp"
+#include "diagnosis/scatter.hpp"
+#include "output/vtk_fields.hpp"
+
+namespace driftwright::app {
+
+using diagnosis::StatedChange;
+
+std::vector<StatedChange> stated_causes(const diagnosis::Twin& twin, const diagnosis::Diagnosis& d) {
+  const diagnosis::Fit& fit = d.search.fit;
+  Eigen::Index first = fit.x.size();
+  for (const diagnosis::Claim& c : d.search.hypothesis) first -= static_cast<Eigen::Index>(c.knobs.size());
+  std::vector<StatedChange> changes;
+  for (std::size_t c = 0; c < d.search.hypothesis.size(); ++c) {
+    const diagnosis::Claim& claim = d.search.hypothesis[c];
+    const auto n = static_cast<Eigen::Index>(claim.knobs.size());
+    const diagnosis::Cause& cause = d.causes.at(c);
+    std::vector<std::string> numbers = {fmt::format("evidence gain {:.1f} nats", cause.log_evidence_gain)};
+    for (const diagnosis::Estimate& p : cause.parameters)
+      numbers.push_back(fmt::format("{} {}, 95 %: {}", p.name, value_text(p), interval_text(p)));
+    changes.push_back({fmt::format("{} at {}", cause.effect, cause.where),
+                       fmt::format("{} at {}: {}", cause.effect, cause.where, fmt::join(numbers, "; ")),
+                       diagnosis::state_of(twin, claim, fit.x.segment(first, n))});
+    first += n;
+  }
+  return changes;
+}
+
+std::vector<StatedChange> stated_scatter(const diagnosis::Twin& twin, const diagnosis::Diagnosis& d) {
+  std::vector<StatedChange> changes;
+  const std::vector<diagnosis::Knob> knobs = diagnosis::scatter(twin);
+  for (std::size_t i = 0; i < knobs.size(); ++i) {
+    const diagnosis::Estimate& e = d.calibrated.at(i);
+    StatedChange change{e.name, fmt::format("{} {}, 95 %: {}", knobs[i].name, value_text(e), interval_text(e)),
+                        twin.as_written(), "calibration"};
+    knobs[i].set(change.state, e.value);
+    changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
+diagnosis::ExtendedScenario write_scenario(const std::string& stem, const MeasuredTwin& m,
+                                           const std::vector<StatedChange>& changes, const std::vector<std::string>& head,
+                                           output::ResultsFolder& folder, std::string* difference) {
+  diagnosis::ExtendedScenario extended = diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, changes, head);
+  folder.write_text(stem + ".yaml", extended.text);
+  try {
+    (void)scenarios::read_scenario(folder.path(stem + ".yaml").string());
+  } catch (const InputError& e) {
+    const std::string failure = fmt::format("{}.yaml as a whole: it cannot be read back: {}", stem, e.what());
+    extended.not_written.push_back(failure);
+    std::string in_comment = "# NOT WRITTEN: " + failure;
+    for (std::size_t at = 0; (at = in_comment.find('\n', at)) != std::string::npos; at += 3)
+      in_comment.replace(at, 1, "\n# ");
+    extended.text = in_comment + "\n" + extended.text;
+    folder.write_text(stem + ".yaml", extended.text);
+  }
+  const std::string diff = unified_diff(read_bytes(m.scenario.path), extended.text, m.scenario.path, stem + ".yaml");
+  folder.write_text(stem + ".diff", diff);
+  if (difference) *difference = diff;
+  return extended;
+}
+
+std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d, const std::vector<diagnosis::Candidate>& candidates) {
+  std::vector<MissingHeat> list;  // scores come best first, several laws a candidate
+  for (const diagnosis::Score& s : d.search.scores) {
+    const diagnosis::Candidate& c = candidates.at(s.candidate);
+    if (c.effect != "heat_source" || !(s.gain > 0.0) || s.start.size() == 0) continue;
+    const diagnosis::Variant& v = c.variants.at(s.variant);
+    const bool has_better = std::any_of(list.begin(), list.end(), [&](const auto& h) { return h.body == c.where; });
+    if (!has_better) list.push_back({c.where, s.gain, v.knobs[0].value(s.start[0]), v.law});
+  }
+  return list;
+}
+
+bool write_missing_heat(const mesh::Mesh& mesh, const std::vector<MissingHeat>& heat, output::ResultsFolder& folder) {
+  if (mesh.n_nodes() == 0) return false;
+  std::vector<output::RegionField> fields = {{"missing_heat_evidence", std::vector<double>(mesh.regions.size(), 0.0)},
+                                             {"missing_heat_W", std::vector<double>(mesh.regions.size(), 0.0)}};
+  for (const MissingHeat& h : heat) {
+    const auto found = std::find(mesh.regions.begin(), mesh.regions.end(), h.body);
+    if (found == mesh.regions.end()) continue;
+    const auto r = static_cast<std::size_t>(found - mesh.regions.begin());
+    fields[0].value[r] = h.evidence;
+    fields[1].value[r] = h.power_W;
+  }
+  output::write_region_fields(mesh, fields, folder.path("residual_source.vtu"));
+  return true;
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,39 @@
+#pragma once
+// What a diagnosis writes beside its report: the extended scenario, its difference to the user's, and where heat would be missing.
+
+#include "app/measured_twin.hpp"
+#include "diagnosis/extended_scenario.hpp"
+#include "output/results_folder.hpp"
+
+namespace driftwright::app {
+
+/// The causes of a diagnosis as changes of the scenario.
+[[nodiscard]] std::vector<diagnosis::StatedChange> stated_causes(const diagnosis::Twin& twin, const diagnosis::Diagnosis& d);
+/// The scenario's own numbers as fitted.
+[[nodiscard]] std::vector<diagnosis::StatedChange> stated_scatter(const diagnosis::Twin& twin,
+                                                                  const diagnosis::Diagnosis& d);
+
+/// Writes <stem>.yaml and <stem>.diff and reads the scenario back; where that fails, `not_written` says so, too.
+/// @param head  comment lines for the top of the scenario
+/// @param difference  unless null, the text of the .diff
+[[nodiscard]] diagnosis::ExtendedScenario write_scenario(const std::string& stem, const MeasuredTwin& m,
+                                                         const std::vector<diagnosis::StatedChange>& changes,
+                                                         const std::vector<std::string>& head, output::ResultsFolder& folder,
+                                                         std::string* difference);
+
+/// Best claim of missing heat in a region or lumped node, on top of scatter alone.
+struct MissingHeat {
+  std::string body;
+  double evidence = 0.0;  ///< nats, by the linear theory
+  double power_W = 0.0;   ///< at the claim's stated speed, or at all times; < 0: the scenario has too much
+  std::string law;
+};
+/// Strongest first; bodies in which no heat brings evidence are left out.
+[[nodiscard]] std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d,
+                                                    const std::vector<diagnosis::Candidate>& candidates);
+
+/// residual_source.vtu: missing_heat_evidence [nats] and missing_heat_W of each region. Nothing for a machine without mesh.
+/// @returns whether it was written
+bool write_missing_heat(const mesh::Mesh& mesh, const std::vector<MissingHeat>& heat, output::ResultsFolder& folder);
+
+}  // namespace driftwright::app

@@ -1,0 +1,217 @@
+#include "app/diagnosis_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <set>
+
+#include "app/diagnosis_summary.hpp"
+#include "app/residual_report.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using output::Bars;
+using output::Heading;
+using output::Paragraph;
+using output::Plot;
+using output::Preformatted;
+using output::Table;
+
+using Blocks = std::vector<output::ReportBlock>;
+
+output::Verdict verdict_box(const diagnosis::Diagnosis& d) {
+  using diagnosis::Verdict;
+  const auto kind = d.verdict == Verdict::kConsistent    ? output::Verdict::Kind::kGood
+                    : d.verdict == Verdict::kUnexplained ? output::Verdict::Kind::kBad
+                                                         : output::Verdict::Kind::kNeutral;
+  static const std::map<Verdict, const char*> titles = {{Verdict::kConsistent, "Consistent with the scenario"},
+                                                        {Verdict::kNamed, "Causes named"},
+                                                        {Verdict::kAmbiguous, "Ambiguous: several causes would do"},
+                                                        {Verdict::kUnexplained, "Something is left unexplained"},
+                                                        {Verdict::kInsufficientData, "Too few data for a verdict"}};
+  return {kind, titles.at(d.verdict), d.reason};
+}
+
+void add_causes(const diagnosis::Diagnosis& d, Blocks& blocks) {
+  for (std::size_t i = 0; i < d.causes.size(); ++i) {
+    const diagnosis::Cause& c = d.causes[i];
+    blocks.emplace_back(Heading{fmt::format("Cause {}: {} at {}", i + 1, c.effect, c.where)});
+    Table table{
+        .caption = c.alternatives.empty()
+                       ? "Gain: logarithm of how much more probable the data are with it than without, after the "
+                         "price of having looked for it among all candidates. No other claim comes within 3 nats."
+                       : "The first line is the best; the data cannot tell it from the others (less than 3 nats apart).",
+        .headers = {"effect", "where", "law", "numbers (95 % interval)", "gain [nats]"},
+        .rows = {}};
+    const auto add = [&](const diagnosis::Cause& x) {
+      table.rows.push_back({x.effect, x.where, x.law, parameters_text(x), fmt::format("{:.1f}", x.log_evidence_gain)});
+    };
+    add(c);
+    for (const diagnosis::Cause& a : c.alternatives) add(a);
+    blocks.emplace_back(table);
+  }
+}
+
+void add_experiment(const diagnosis::Experiment& e, Blocks& blocks) {
+  blocks.emplace_back(Heading{"Experiment that would tell them apart"});
+  blocks.emplace_back(Paragraph{e.why});
+  blocks.emplace_back(
+      Paragraph{fmt::format("Cyclogram {}: {}. The two best explanations would then differ by {:.1f} sigmas.",
+                            e.cyclogram.name, sections_text(e.cyclogram), e.discrimination)});
+  if (e.extra_sensor) {
+    blocks.emplace_back(Paragraph{
+        fmt::format("Or a further thermometer on {}: in the cyclograms measured so far they differ there by {:.2g} K.",
+                    e.extra_sensor->region, e.extra_sensor->difference_K)});
+  }
+}
+
+void add_unexplained(const diagnosis::Unexplained& u, Blocks& blocks) {
+  blocks.emplace_back(Heading{"What no candidate explains"});
+  Table table{
+      .caption = fmt::format("The smooth part of what is left, in standard deviations of what noise would have of it. "
+                             "Its waveform follows {} (correlation {:.2f}).",
+                             u.correlates_with, u.correlation),
+      .headers = {"channel", "rms", "unit", "beyond noise [sigmas]"},
+      .rows = {}};
+  for (const auto& c : u.channels)
+    table.rows.push_back({c.name, fmt::format("{:.3g}", c.rms), c.unit, fmt::format("{:.1f}", c.times_noise)});
+  blocks.emplace_back(table);
+  if (u.heat_would_sit_in.empty() || u.time_s.empty()) return;
+  Plot plot{.title = fmt::format("Heat in {} that would explain most of it, in the first record", u.heat_would_sit_in),
+            .x_label = "time [min]",
+            .y_label = "heat [W]",
+            .series = {{.label = "heat", .x = {}, .y = u.heat_W, .style = output::Series::Style::kSteps}}};
+  for (double t_s : u.time_s) plot.series[0].x.push_back(t_s / 60.0);
+  blocks.emplace_back(plot);
+}
+
+void add_gain(const diagnosis::Diagnosis& d, Blocks& blocks) {
+  blocks.emplace_back(Heading{"What mending it gains"});
+  Table table{
+      .caption = fmt::format("Root mean square and peak of measured minus simulated. Held out: {}. Noise floor: what the "
+                             "readings scatter by themselves.",
+                             d.holdout),
+      .headers = {"channel", "unit", "as written", "scatter alone", "extended", "noise floor", "peak before", "peak after"},
+      .rows = {}};
+  for (const auto& g : d.gain) {
+    table.rows.push_back({g.name, g.unit, fmt::format("{:.3g}", g.rmse_before), fmt::format("{:.3g}", g.rmse_calibrated),
+                          fmt::format("{:.3g}", g.rmse_after), fmt::format("{:.3g}", g.noise_floor),
+                          fmt::format("{:.3g}", g.peak_before), fmt::format("{:.3g}", g.peak_after)});
+  }
+  blocks.emplace_back(table);
+}
+
+void add_data(const diagnosis::Diagnosis& d, Blocks& blocks) {
+  if (d.data.empty()) return;
+  blocks.emplace_back(Heading{"The data themselves"});
+  Table table{.caption = "", .headers = {"channel", "finding", "compared"}, .rows = {}};
+  for (const auto& f : d.data) table.rows.push_back({f.channel, f.what, f.leaves_out ? "left out" : "yes"});
+  blocks.emplace_back(table);
+}
+
+void add_candidates(const DiagnosisPage& page, Blocks& blocks) {
+  constexpr std::size_t kMost = 15;
+  const diagnosis::Diagnosis& d = page.diagnosis;
+  Bars bars{
+      fmt::format("Evidence [nats] that each would bring alone beside scatter, its signature taken at trial size (linear "
+                  "theory); the best of {} candidates. What stands up is fitted in full and pays for being one of many.",
+                  d.n_candidates),
+      {}};
+  std::set<std::size_t> shown;
+  for (const diagnosis::Score& s : d.search.scores) {
+    if (bars.bars.size() == kMost || !(s.gain > 0.0)) break;
+    if (!shown.insert(s.candidate).second) continue;  // by a better law
+    const diagnosis::Candidate& c = page.candidates.at(s.candidate);
+    bars.bars.push_back({fmt::format("{} at {}: {}", c.effect, c.where, c.variants.at(s.variant).law), s.gain,
+                         fmt::format("{:.1f}", s.gain)});
+  }
+  blocks.emplace_back(Heading{"Best single candidates"});
+  if (bars.bars.empty()) {
+    blocks.emplace_back(Paragraph{"None would bring evidence."});
+    return;
+  }
+  blocks.emplace_back(bars);
+  const std::vector<MissingHeat> heat = missing_heat(d, page.candidates);
+  if (heat.empty()) return;
+  Bars by_body{
+      "Where missing heat would explain the residual: evidence [nats] of heat in each body, with its power; negative: the "
+      "scenario has too much.",
+      {}};
+  for (const MissingHeat& h : heat)
+    by_body.bars.push_back({h.body, h.evidence, fmt::format("{:.1f} nats, {:.3g} W ({})", h.evidence, h.power_W, h.law)});
+  blocks.emplace_back(by_body);
+}
+
+Table numbers_table(const diagnosis::Diagnosis& d) {
+  Table table{
+      .caption =
+          "The scenario's uncertain numbers as fitted. Moved: from what the scenario says, in standard deviations of "
+          "what is known of it (10 %, exponents 3 %).",
+      .headers = {"number", "fitted", "95 % interval", "unit", "moved [sigmas]"},
+      .rows = {}};
+  for (const diagnosis::Estimate& e : d.calibrated) {
+    table.rows.push_back(
+        {e.name, fmt::format("{:.4g}", e.value), interval_text(e), e.unit, fmt::format("{:+.2f}", e.deviation)});
+  }
+  return table;
+}
+
+void add_written(const DiagnosisPage& page, Blocks& blocks) {
+  blocks.emplace_back(Heading{"What was written: " + page.file});
+  for (const std::string& failure : page.extended.not_written)
+    blocks.emplace_back(output::Verdict{output::Verdict::Kind::kBad, "Not written", failure});
+  blocks.emplace_back(page.difference.empty() ? Preformatted{"No difference to the scenario."}
+                                              : Preformatted{page.difference});
+}
+
+output::Report begin(const std::string& what, const DiagnosisPage& page, const output::Provenance& made_by) {
+  std::vector<std::string> names;
+  for (const auto& run : page.measured.runs) names.push_back(run.path);
+  return {.title = page.measured.scenario.name + ": " + what,
+          .subtitle = fmt::format("Driftwright {}, scenario {}; measured: {}", made_by.version, made_by.scenario,
+                                  fmt::join(names, ", ")),
+          .blocks = {}};
+}
+
+}  // namespace
+
+output::Report diagnosis_report(const DiagnosisPage& page, const output::Provenance& made_by) {
+  const diagnosis::Diagnosis& d = page.diagnosis;
+  output::Report report = begin("diagnosis", page, made_by);
+  report.blocks.emplace_back(verdict_box(d));
+  add_causes(d, report.blocks);
+  if (d.experiment) add_experiment(*d.experiment, report.blocks);
+  if (d.unexplained) add_unexplained(*d.unexplained, report.blocks);
+  add_data(d, report.blocks);
+  add_gain(d, report.blocks);
+  add_residuals(page.measured, d, "extended", report.blocks);
+  add_candidates(page, report.blocks);
+  report.blocks.emplace_back(Heading{"The scenario's own numbers"});
+  report.blocks.emplace_back(numbers_table(d));
+  add_written(page, report.blocks);
+  return report;
+}
+
+output::Report calibration_report(const DiagnosisPage& page, const output::Provenance& made_by) {
+  const diagnosis::Diagnosis& d = page.diagnosis;
+  output::Report report = begin("calibration", page, made_by);
+  const std::string warning = calibration_warning(d, page.candidates);
+  const bool fits = warning.empty();
+  report.blocks.emplace_back(output::Verdict{
+      fits ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
+      fits ? "The scenario's numbers explain the measurement" : "The numbers alone do not explain the measurement",
+      warning});
+  report.blocks.emplace_back(Heading{"Numbers"});
+  report.blocks.emplace_back(numbers_table(d));
+  if (d.unexplained) add_unexplained(*d.unexplained, report.blocks);
+  add_data(d, report.blocks);
+  add_gain(d, report.blocks);
+  add_residuals(page.measured, d, "calibrated", report.blocks);
+  if (!fits) add_candidates(page, report.blocks);
+  add_written(page, report.blocks);
+  return report;
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,142 @@
+#include "app/diagnosis_summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftwright::app {
+namespace {
+
+using diagnosis::Estimate;
+
+constexpr double kTooFar = 3.5;  // sigmas: beyond, a number is an effect
+
+double scale_of(const Estimate& e) {
+  return e.unit == "s" ? 1.0 / 60.0 : 1.0;
+}
+std::string unit_of(const Estimate& e) {
+  return e.unit == "1" ? "" : e.unit == "s" ? " min" : " " + e.unit;
+}
+
+/// Lines of equally wide columns; the first is aligned left, the others right, but for a last one of words.
+std::string columns(const std::vector<std::vector<std::string>>& rows, bool ends_in_words = false) {
+  std::vector<std::size_t> width(rows.front().size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line = "  " + fmt::format("{:<{}}", row[0], width[0]);
+    for (std::size_t c = 1; c < row.size(); ++c) {
+      const bool left = ends_in_words && c + 1 == row.size();
+      line += left ? "  " + row[c] : fmt::format("  {:>{}}", row[c], width[c]);
+    }
+    text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string value_text(const Estimate& e) {
+  return fmt::format("{:.4g}{}", scale_of(e) * e.value, unit_of(e));
+}
+std::string interval_text(const Estimate& e) {
+  const double a = scale_of(e) * e.low, b = scale_of(e) * e.high;
+  return fmt::format("{:.3g} to {:.3g}", std::min(a, b), std::max(a, b));
+}
+
+std::string parameters_text(const diagnosis::Cause& cause) {
+  std::vector<std::string> numbers;
+  for (const Estimate& p : cause.parameters)
+    numbers.push_back(fmt::format("{} {} ({})", p.name, value_text(p), interval_text(p)));
+  return fmt::format("{}", fmt::join(numbers, ", "));
+}
+
+std::string sections_text(const Cyclogram& cyclogram) {
+  std::vector<std::string> parts;
+  for (const auto& s : cyclogram.sections)
+    parts.push_back(fmt::format("{:.0f} min at {:.0f} rpm", s.duration_s / 60.0, s.drive.speed_rpm));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string summary_text(const diagnosis::Diagnosis& d) {
+  std::string text = fmt::format("{}: {}\n", diagnosis::word(d.verdict), d.reason);
+  for (const diagnosis::DataFinding& f : d.data)
+    text += fmt::format("data: {}: {}{}\n", f.channel, f.what, f.leaves_out ? " (left out)" : "");
+  if (!d.causes.empty()) {
+    text += "\ncauses, 95 % intervals in brackets, gain of evidence in nats\n";
+    std::vector<std::vector<std::string>> rows = {{"effect", "gain", "numbers"}};
+    for (const diagnosis::Cause& c : d.causes) {
+      rows.push_back(
+          {fmt::format("{} at {}", c.effect, c.where), fmt::format("{:.1f}", c.log_evidence_gain), parameters_text(c)});
+      for (const diagnosis::Cause& a : c.alternatives)
+        rows.push_back({fmt::format("  or {} at {}", a.effect, a.where), fmt::format("{:.1f}", a.log_evidence_gain),
+                        parameters_text(a)});
+    }
+    text += columns(rows, true);
+  }
+  if (d.experiment) {
+    text += fmt::format("\nto tell them apart: {}\n  {}\n", d.experiment->why, sections_text(d.experiment->cyclogram));
+    if (d.experiment->extra_sensor)
+      text += fmt::format("  or a thermometer on {}: they differ there by {:.2g} K\n", d.experiment->extra_sensor->region,
+                          d.experiment->extra_sensor->difference_K);
+  }
+  if (d.unexplained) {
+    text += "\nunexplained, more than noise\n";
+    std::vector<std::vector<std::string>> rows = {{"channel", "rms", "unit", "sigmas"}};
+    for (const auto& c : d.unexplained->channels)
+      rows.push_back({c.name, fmt::format("{:.3g}", c.rms), c.unit, fmt::format("{:.0f}", c.times_noise)});
+    text += columns(rows);
+    text += fmt::format(
+        "  its waveform follows {} (correlation {:.2f}){}\n", d.unexplained->correlates_with, d.unexplained->correlation,
+        d.unexplained->heat_would_sit_in.empty() ? "" : "; heat would sit in " + d.unexplained->heat_would_sit_in);
+  }
+  text += fmt::format("\nrms of measured minus simulated; {}\n", d.holdout);
+  std::vector<std::vector<std::string>> rows = {
+      {"channel", "unit", "as written", "scatter alone", "extended", "noise", "peak before", "after"}};
+  for (const auto& g : d.gain) {
+    rows.push_back({g.name, g.unit, fmt::format("{:.3g}", g.rmse_before), fmt::format("{:.3g}", g.rmse_calibrated),
+                    fmt::format("{:.3g}", g.rmse_after), fmt::format("{:.3g}", g.noise_floor),
+                    fmt::format("{:.3g}", g.peak_before), fmt::format("{:.3g}", g.peak_after)});
+  }
+  return text + columns(rows) + "\n";
+}
+
+std::string numbers_text(const diagnosis::Diagnosis& d) {
+  std::vector<std::vector<std::string>> rows = {{"number", "fitted", "95 % interval", "unit", "moved [sigmas]"}};
+  for (const Estimate& e : d.calibrated)
+    rows.push_back({e.name, fmt::format("{:.4g}", e.value), interval_text(e), e.unit, fmt::format("{:+.2f}", e.deviation)});
+  return columns(rows);
+}
+
+std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector<diagnosis::Candidate>& candidates) {
+  std::vector<std::string> reasons;
+  if (d.verdict == diagnosis::Verdict::kInsufficientData) reasons.push_back(d.reason);
+  if (d.unexplained) {
+    const auto& worst = d.unexplained->channels.front();
+    reasons.push_back(fmt::format("{} is left with {:.2g} {} that is not noise", worst.name, worst.rms, worst.unit));
+  }
+  const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
+  if (!d.search.scores.empty() && d.search.scores.front().gain > price + diagnosis::SearchOptions{}.must_gain.front()) {
+    const diagnosis::Score& s = d.search.scores.front();
+    reasons.push_back(fmt::format("{} at {} would bring {:.0f} nats of evidence", candidates.at(s.candidate).effect,
+                                  candidates.at(s.candidate).where, s.gain));
+  }
+  for (const Estimate& e : d.calibrated) {
+    if (std::abs(e.deviation) > kTooFar) reasons.push_back(fmt::format("{} moved by {:+.1f} sigmas", e.name, e.deviation));
+  }
+  if (reasons.empty()) return "";
+  return fmt::format("{}. Numbers that were fitted to it have taken up what is wrong elsewhere: `diagnose` names it.",
+                     fmt::join(reasons, "; "));
+}
+
+std::string not_written_text(const std::string& file, const diagnosis::ExtendedScenario& extended) {
+  std::string text;
+  for (const std::string& failure : extended.not_written) text += fmt::format("NOT WRITTEN to {}: {}\n", file, failure);
+  return text;
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,100 @@
+#include "app/measured_twin.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/results.hpp"
+#include "base/errors.hpp"
+#include "diagnosis/scatter.hpp"
+
+namespace driftwright::app {
+namespace {
+
+/// Sizes, over the machine's own, of the mesh that tells what the mesh itself does. Not every size can be meshed: the first that can.
+constexpr double kOtherSizes[] = {1.4, 1.25, 1.6, 1.15, 0.85};
+
+/// The machine on another mesh, or none where there is no mesh of ours to change.
+std::optional<scenarios::Scenario> remeshed(const scenarios::Scenario& scenario, double size) {
+  scenarios::Scenario other = scenario;
+  if (auto* mill = std::get_if<mesh::KneeMill>(&other.machine->mesh)) {
+    mill->coarse_m *= size;
+    mill->fine_m *= size;
+  } else if (auto* imported = std::get_if<mesh::ImportedMesh>(&other.machine->mesh);
+             imported && imported->mesh_size_m > 0.0) {
+    imported->mesh_size_m *= size;  // a drawing
+    for (auto& [region, size_m] : imported->mesh_size_of_region_m) size_m *= size;
+  } else {
+    return std::nullopt;
+  }
+  other.machine->written += fmt::format("\nmesh size times {}\n", size);
+  return other;
+}
+
+/// Names of what the scenario's instruments tell, before there is a model.
+solver::Outputs output_names(const scenarios::MachineModel& model, const scenarios::PlacedMachine& placed) {
+  solver::Outputs names;
+  for (const auto& s : model.sensors) {
+    names.name.push_back(s.name);
+    names.unit.emplace_back("K");
+  }
+  for (const auto& d : model.displacements) {
+    names.name.push_back(d.name);
+    names.unit.emplace_back("m");
+  }
+  for (const auto& t : model.tilts) {
+    names.name.push_back(t.name);
+    names.unit.emplace_back("rad");
+  }
+  names.hall = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.name.size()));
+  for (std::size_t i = 0; i < placed.sensor_weights.size(); ++i) {
+    if (placed.sensor_weights[i].empty()) names.hall[static_cast<Eigen::Index>(i)] = 1.0;
+  }
+  return names;
+}
+
+}  // namespace
+
+MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
+                                const std::vector<std::string>& measured, Progress& progress) {
+  const scenarios::MachineModel& model = require_machine(scenario, verb);
+  MeasuredTwin m;
+  m.scenario = scenario;
+  progress.begin("meshing");
+  const scenarios::PlacedMachine placed = scenarios::place(model);
+  m.mesh = placed.mesh;
+  const solver::Outputs names = output_names(model, placed);
+  for (const std::string& path : measured) m.runs.push_back(diagnosis::read_measured(path, model, names));
+
+  const auto open = [&](const scenarios::Scenario& of) {
+    auto parts = std::make_unique<TwinParts>(TwinParts{diagnosis::augment(of, m.mesh, m.runs), {}});
+    parts->machine = open_reduced(parts->augmented.model, parts->augmented.plan, progress);
+    return parts;
+  };
+  m.fine = open(scenario);
+  solver::TransientOptions tolerances = scenario.solver.transient;  // a fraction of the noise is fine enough
+  tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
+  tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
+  const diagnosis::Twin whole(m.fine->augmented, m.fine->machine, tolerances);
+  progress.begin("looking what states the measured runs come to");
+  m.focus = std::make_unique<diagnosis::Focus>(
+      diagnosis::focus(whole, m.runs, diagnosis::scatter(whole), diagnosis::candidates(whole, m.runs, {})));
+  m.twin.emplace(m.fine->augmented, m.focus->machine, tolerances);
+  for (double size : kOtherSizes) {
+    const auto other = remeshed(scenario, size);
+    if (!other) break;
+    try {
+      m.other = open(*other);
+    } catch (const SolveError&) {  // no mesh of that size
+      continue;
+    }
+    m.on_other_mesh.emplace(m.other->augmented, m.other->machine, tolerances);
+    m.how.mesh_error_share = 1.0 / std::abs(size * size - 1.0);
+    break;
+  }
+  m.how.floor_K = std::max(m.how.floor_K, m.focus->error_K);
+  m.how.floor_m = std::max(m.how.floor_m, m.focus->error_m);
+  return m;
+}
+
+}  // namespace driftwright::app

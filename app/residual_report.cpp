@@ -1,0 +1,178 @@
+#include "app/residual_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/run_report.hpp"
+#include "base/quantity.hpp"
+#include "diagnosis/residual_structure.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using diagnosis::MeasuredChannel;
+using diagnosis::MeasuredRun;
+using diagnosis::ResidualStructure;
+using output::Plot;
+using output::Series;
+using output::Table;
+
+constexpr double kTells = 0.3;  // correlations from here on are shown
+
+/// A channel of a run as the page has it: degC, um or urad.
+struct Curves {
+  std::string name, unit;       ///< of readings
+  std::string difference_unit;  ///< of residuals
+  std::vector<double> time_min, measured, written, after;
+  Eigen::VectorXd written_residual, after_residual;
+  double noise = 0.0;
+};
+
+Curves curves_of(const MeasuredTwin& m, const diagnosis::Diagnosis& d, std::size_t r, const MeasuredChannel& c) {
+  const bool is_temperature = c.unit == "K";
+  const double scale = is_temperature ? 1.0 : 1e6;
+  const double zero = is_temperature ? m.twin->reference_K() - kZeroCelsius_K : 0.0;
+  Curves k{.name = c.name,
+           .unit = is_temperature  ? "degC"
+                   : c.unit == "m" ? "um"
+                                   : "urad",
+           .difference_unit = is_temperature  ? "K"
+                              : c.unit == "m" ? "um"
+                                              : "urad",
+           .time_min = {},
+           .measured = {},
+           .written = {},
+           .after = {},
+           .written_residual = {},
+           .after_residual = {},
+           .noise = scale * d.noise.at(c.name).total()};
+  const Eigen::VectorXd written = d.as_written[r].row(c.output), after = d.extended[r].row(c.output);
+  k.written_residual = scale * (c.value - written);
+  k.after_residual = scale * (c.value - after);
+  for (std::size_t i = 0; i < m.runs[r].time_s.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    k.time_min.push_back(m.runs[r].time_s[i] / 60.0);
+    k.measured.push_back(zero + scale * c.value[at]);
+    k.written.push_back(zero + scale * written[at]);
+    k.after.push_back(zero + scale * after[at]);
+  }
+  return k;
+}
+
+Plot drive_plot(const MeasuredRun& run) {
+  Plot plot{.title = "Drive", .x_label = "time [min]", .y_label = "speed [rpm]", .series = {}, .bands = {}, .marks = {}};
+  Series speed{.label = "speed", .x = {}, .y = {}, .style = Series::Style::kSteps};
+  for (double t_s : run.time_s) {
+    speed.x.push_back(t_s / 60.0);
+    speed.y.push_back(run.cyclogram.drive(t_s).speed_rpm);
+  }
+  plot.series.push_back(speed);
+  plot.half_width = true;
+  return plot;
+}
+
+Plot hall_plot(const MeasuredRun& run, double reference_K) {
+  Plot plot{.title = run.has_ambient ? "Hall as recorded, smoothed" : "Hall of the scenario",
+            .x_label = "time [min]",
+            .y_label = "hall [degC]",
+            .series = {{.label = "hall", .x = {}, .y = {}}}};
+  for (double t_s : run.time_s) {
+    plot.series[0].x.push_back(t_s / 60.0);
+    plot.series[0].y.push_back(run.hall.at(t_s) + reference_K - kZeroCelsius_K);
+  }
+  plot.half_width = true;
+  return plot;
+}
+
+std::vector<double> list_of(const Eigen::VectorXd& v) {
+  return {v.data(), v.data() + v.size()};
+}
+
+void add_plots(const Curves& c, const std::string& after, const std::vector<output::SectionMark>& marks,
+               std::vector<output::ReportBlock>& blocks) {
+  Plot readings{
+      .title = c.name,
+      .x_label = "time [min]",
+      .y_label = fmt::format("{} [{}]", c.name, c.unit),
+      .series = {{.label = "measured", .x = c.time_min, .y = c.measured, .style = Series::Style::kPoints, .width = 1.2},
+                 {.label = "as written", .x = c.time_min, .y = c.written},
+                 {.label = after, .x = c.time_min, .y = c.after}},
+      .bands = {},
+      .marks = marks,
+      .half_width = true};
+  Plot residuals{
+      .title = c.name + ": residual",
+      .x_label = "time [min]",
+      .y_label = fmt::format("measured - simulated [{}]", c.difference_unit),
+      .series = {{.label = "as written", .x = c.time_min, .y = list_of(c.written_residual), .width = 1.5, .color = 1},
+                 {.label = after, .x = c.time_min, .y = list_of(c.after_residual), .width = 1.5, .color = 2}},
+      .bands = {{"noise ±2 sigma", -2.0 * c.noise, 2.0 * c.noise}},
+      .marks = marks,
+      .half_width = true};
+  blocks.emplace_back(readings);
+  blocks.emplace_back(residuals);
+}
+
+std::string follows(const ResidualStructure& s) {
+  return s.lag ? fmt::format("{} behind {:.0f} min ({:.0f} %)", s.lag->quantity, s.lag->time_s / 60.0, 100.0 * s.lag->share)
+               : "-";
+}
+
+void add_likenesses(const std::string& channel, const ResidualStructure& s, Table& table) {
+  for (const auto& l : s.likenesses) {
+    double largest = 0.0;
+    std::vector<std::string> row = {channel, l.quantity};
+    for (double c : l.correlation) {
+      row.push_back(std::isnan(c) ? "-" : fmt::format("{:+.2f}", c));
+      if (!std::isnan(c)) largest = std::max(largest, std::abs(c));
+    }
+    if (largest >= kTells) table.rows.push_back(row);
+  }
+}
+
+}  // namespace
+
+void add_residuals(const MeasuredTwin& m, const diagnosis::Diagnosis& d, const std::string& after,
+                   std::vector<output::ReportBlock>& blocks) {
+  for (std::size_t r = 0; r < m.runs.size(); ++r) {
+    const MeasuredRun& run = m.runs[r];
+    blocks.emplace_back(output::Heading{"Record " + run.name});
+    blocks.emplace_back(drive_plot(run));
+    blocks.emplace_back(hall_plot(run, m.twin->reference_K()));
+    Table structure{.caption =
+                        "Residuals against noise. Lag 1: correlation of a reading's residual with the next one's; white "
+                        "noise stays within the bound.",
+                    .headers = {"channel", "unit", "noise", "rms as written", "rms " + after, "lag 1 as written",
+                                "lag 1 " + after, "bound"},
+                    .rows = {}};
+    Table lags{
+        .caption = "What recorded quantity the residual is like behind one lag, with the share of its variance; from 30 %.",
+        .headers = {"channel", "as written follows", after + " follows"},
+        .rows = {}};
+    const std::vector<std::string> headers = {"channel", "residual against", "0 min", "5 min", "15 min", "60 min before"};
+    Table before{
+        .caption = "Correlation of the residual as written with what was recorded as long before; those of 0.3 and more.",
+        .headers = headers,
+        .rows = {}};
+    Table left{.caption = fmt::format("The same of the residual that is left ({}).", after), .headers = headers, .rows = {}};
+    for (const MeasuredChannel& c : run.channels) {
+      const Curves k = curves_of(m, d, r, c);
+      add_plots(k, after, section_marks(run.cyclogram), blocks);
+      if (c.value.size() < 3) continue;
+      const ResidualStructure w = residual_structure(run, k.written_residual), a = residual_structure(run, k.after_residual);
+      structure.rows.push_back({c.name, k.difference_unit, fmt::format("{:.3g}", k.noise), fmt::format("{:.3g}", w.rms),
+                                fmt::format("{:.3g}", a.rms), fmt::format("{:+.2f}", w.lag_1),
+                                fmt::format("{:+.2f}", a.lag_1), fmt::format("±{:.2f}", a.white_up_to)});
+      if (w.lag || a.lag) lags.rows.push_back({c.name, follows(w), follows(a)});
+      add_likenesses(c.name, w, before);
+      add_likenesses(c.name, a, left);
+    }
+    blocks.emplace_back(structure);
+    if (!lags.rows.empty()) blocks.emplace_back(lags);
+    if (!before.rows.empty()) blocks.emplace_back(before);
+    if (!left.rows.empty()) blocks.emplace_back(left);
+  }
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,66 @@
+#pragma once
+// Edits of a YAML file as text: whatever is not edited, comments above all, stays as it was.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/config_tree.hpp"
+
+namespace driftwright {
+
+/// Nodes handed to it are those of root(); each is edited where it stands in the file. Edits do not see each other but for the same
+/// scalar, where the last one counts.
+class YamlText {
+ public:
+  /// @throws InputError  as read_config_tree()
+  explicit YamlText(const std::string& path);
+
+  [[nodiscard]] const ConfigNode& root() const { return *root_; }
+  /// What stands at a scalar now, edits included.
+  [[nodiscard]] std::string current(const ConfigNode& scalar) const;
+
+  // Each of these returns false, and changes nothing, where the text cannot be edited safely: what stands there by an alias or in
+  // quotes, an entry that shares its line with another, a bracket that does not close.
+
+  bool replace(const ConfigNode& scalar, const std::string& text);
+  /// Adds `key: value` to a map.
+  bool add_pair(const ConfigNode& map, const std::string& key, const std::string& value);
+  /// Adds an entry, written on one line, to the end of a list.
+  bool append(const ConfigNode& list, const std::string& entry, const std::string& comment);
+  /// Turns an entry of a block list into comment lines.
+  bool comment_out(const ConfigNode& list, std::size_t entry);
+  /// At the end of a line, counted from one.
+  void comment(int line, const std::string& text);
+
+  /// @param head  comment lines for the top, without their `#`
+  [[nodiscard]] std::string text(const std::vector<std::string>& head) const;
+
+ private:
+  struct Spot {
+    int line, column;  ///< from one
+    auto operator<=>(const Spot&) const = default;
+  };
+  struct Replacement {
+    std::size_t length;
+    std::string text;
+  };
+  [[nodiscard]] bool stands_here(const ConfigNode& node) const;
+  [[nodiscard]] char at(Spot spot) const;
+  /// The bracket that closes the one at `open`, or line 0.
+  [[nodiscard]] Spot closing(Spot open) const;
+  /// Last line of a block node with something other than comments, whose parent's next key or entry begins at `end_line`.
+  [[nodiscard]] int last_line(int end_line) const;
+  /// Line at which what follows a node begins; one behind the file where nothing does.
+  [[nodiscard]] int next_line(const ConfigNode& parent, int line) const;
+  [[nodiscard]] int end_line(const ConfigNode& node) const;
+
+  ConfigNodePtr root_;
+  std::vector<std::string> lines_;
+  std::map<Spot, Replacement> replacements_;
+  std::map<int, std::vector<std::string>> behind_;  ///< lines to insert behind a line
+  std::map<int, std::string> comments_;
+  std::vector<int> dead_;  ///< lines that become comments
+};
+
+}  // namespace driftwright

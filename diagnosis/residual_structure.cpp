@@ -1,0 +1,114 @@
+#include "diagnosis/residual_structure.hpp"
+
+#include <cmath>
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kShortest_s = 60.0, kLongest_s = 36000.0;  // time constants of machines
+constexpr int kPerDecade = 20;
+constexpr double kWorthTelling = 0.3;
+
+double nan() {
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Over times at which both have a value.
+double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  double n = 0.0, mean_a = 0.0, mean_b = 0.0;
+  const auto both = [&](Eigen::Index i) { return !std::isnan(a[i]) && !std::isnan(b[i]); };
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    if (!both(i)) continue;
+    n += 1.0;
+    mean_a += a[i];
+    mean_b += b[i];
+  }
+  if (n < 3.0) return nan();
+  mean_a /= n;
+  mean_b /= n;
+  double aa = 0.0, bb = 0.0, ab = 0.0;
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    if (!both(i)) continue;
+    const double da = a[i] - mean_a, db = b[i] - mean_b;
+    aa += da * da;
+    bb += db * db;
+    ab += da * db;
+  }
+  // a record of rounded readings that do not change leaves rounding errors of its mean
+  const double rounding = 1e-24 * n;
+  if (!(aa > rounding * (1.0 + mean_a * mean_a)) || !(bb > rounding * (1.0 + mean_b * mean_b))) return nan();
+  return ab / std::sqrt(aa * bb);
+}
+
+struct Quantity {
+  const char* name;
+  Eigen::VectorXd value;  ///< per time; NaN where not known
+};
+
+std::vector<Quantity> recorded(const MeasuredRun& run, double earlier_s) {
+  const auto n = static_cast<Eigen::Index>(run.time_s.size());
+  Eigen::VectorXd speed(n), square(n), change(n), hall(n), rate(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double t_s = run.time_s[static_cast<std::size_t>(i)] - earlier_s;
+    const double step_s =
+        i > 0 ? run.time_s[static_cast<std::size_t>(i)] - run.time_s[static_cast<std::size_t>(i) - 1] : 0.0;
+    const bool known = t_s >= 0.0, before_known = known && t_s - step_s >= 0.0 && step_s > 0.0;
+    speed[i] = known ? run.cyclogram.drive(t_s).speed_rpm : nan();
+    square[i] = speed[i] * speed[i];
+    hall[i] = known ? run.hall.at(t_s) : nan();
+    change[i] = before_known ? std::abs(speed[i] - run.cyclogram.drive(t_s - step_s).speed_rpm) : nan();
+    rate[i] = before_known ? (hall[i] - run.hall.at(t_s - step_s)) / step_s : nan();
+  }
+  return {{"speed", speed}, {"speed^2", square}, {"|change of speed|", change}, {"hall", hall}, {"hall rate", rate}};
+}
+
+/// Behind a first-order lag, settled at the first value, which holds until the next.
+Eigen::VectorXd lagged(const std::vector<double>& time_s, const Eigen::VectorXd& q, double lag_s, bool from_zero) {
+  Eigen::VectorXd y(q.size());
+  y[0] = from_zero ? 0.0 : q[0];
+  for (Eigen::Index i = 1; i < q.size(); ++i) {
+    const double step_s = time_s[static_cast<std::size_t>(i)] - time_s[static_cast<std::size_t>(i) - 1];
+    y[i] = q[i - 1] + (y[i - 1] - q[i - 1]) * std::exp(-step_s / lag_s);
+  }
+  return y;
+}
+
+}  // namespace
+
+ResidualStructure residual_structure(const MeasuredRun& run, const Eigen::VectorXd& residual) {
+  ResidualStructure s;
+  double n = 0.0, squares = 0.0;
+  for (double r : residual) {
+    if (std::isnan(r)) continue;
+    n += 1.0;
+    squares += r * r;
+  }
+  s.rms = std::sqrt(squares / std::max(1.0, n));
+  s.white_up_to = 1.96 / std::sqrt(std::max(1.0, n));
+  const Eigen::Index rows = residual.size();
+  s.lag_1 = correlation(residual.head(rows - 1), residual.tail(rows - 1));
+
+  for (std::size_t l = 0; l < kLags_s.size(); ++l) {
+    const std::vector<Quantity> quantities = recorded(run, kLags_s[l]);
+    if (l == 0) {
+      for (const Quantity& q : quantities) s.likenesses.push_back({q.name, {}});
+    }
+    for (std::size_t q = 0; q < quantities.size(); ++q)
+      s.likenesses[q].correlation[l] = correlation(quantities[q].value, residual);
+  }
+
+  for (const Quantity& q : recorded(run, 0.0)) {
+    if (q.value.hasNaN()) continue;                        // changes and rates: what follows them is no step response
+    const bool from_zero = q.name != std::string("hall");  // the machine has not turned before, but it has stood in its hall
+    for (int k = 0;; ++k) {
+      const double lag_s = kShortest_s * std::pow(10.0, static_cast<double>(k) / kPerDecade);
+      if (lag_s > kLongest_s) break;
+      const double c = correlation(lagged(run.time_s, q.value, lag_s, from_zero), residual);
+      const double share = std::isnan(c) ? 0.0 : c * c;
+      if (share >= kWorthTelling && (!s.lag || share > s.lag->share)) s.lag = {q.name, lag_s, share};
+    }
+  }
+  return s;
+}
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,35 @@
+#pragma once
+// What a residual looks like: is it noise, what does it follow, and how fast?
+
+#include <array>
+#include <optional>
+
+#include "diagnosis/measured_run.hpp"
+
+namespace driftwright::diagnosis {
+
+inline constexpr std::array<double, 4> kLags_s = {0.0, 300.0, 900.0, 3600.0};
+
+struct ResidualStructure {
+  double rms = 0.0;          ///< in the residual's unit
+  double lag_1 = 0.0;        ///< correlation of each reading with the next one: 0 for white noise
+  double white_up_to = 0.0;  ///< 95 % of white residuals of this length have less, in either direction
+  /// Correlation with something recorded as it was `kLags_s` before; NaN for what does not change.
+  struct Likeness {
+    std::string quantity;
+    std::array<double, kLags_s.size()> correlation{};
+  };
+  std::vector<Likeness> likenesses;  ///< speed, speed^2, |change of speed|, hall, hall rate
+  /// The residual as something recorded behind a first-order lag: a + b q', time_s dq'/dt = q - q'.
+  struct Lag {
+    std::string quantity;
+    double time_s = 0.0;
+    double share = 0.0;  ///< of the residual's variance that it explains
+  };
+  std::optional<Lag> lag;  ///< the best, where it explains 30 % or more
+};
+
+/// @param residual  one value a time of the run, NaN where missing; at least three values
+[[nodiscard]] ResidualStructure residual_structure(const MeasuredRun& run, const Eigen::VectorXd& residual);
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,87 @@
+// What is made of a diagnosis for files and terminal, from diagnoses by hand.
+
+#include "app/diagnosis_files.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/diagnosis_summary.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using diagnosis::Estimate;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::Field;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+diagnosis::Candidate candidate(const std::string& effect, const std::string& where) {
+  diagnosis::Candidate c{effect, where, {}};
+  for (const char* law : {"constant", "by speed"}) {
+    diagnosis::Knob power;
+    power.name = "power";
+    power.unit = "W";
+    c.variants.push_back({law, {power}, 1.0});
+  }
+  return c;
+}
+diagnosis::Score score(std::size_t of, std::size_t variant, double gain, double power_W) {
+  return {of, variant, gain, Eigen::VectorXd::Constant(1, power_W)};
+}
+
+TEST(MissingHeat, IsTheBestLawOfEachBodyThatBringsEvidence) {
+  const std::vector<diagnosis::Candidate> list = {candidate("heat_source", "head"), candidate("coolant", "head"),
+                                                  candidate("heat_source", "column"), candidate("heat_source", "base")};
+  diagnosis::Diagnosis d;
+  d.search.scores = {score(1, 0, 90.0, 5.0), score(2, 1, 40.0, 12.0), score(0, 0, 30.0, 7.0), score(2, 0, 20.0, 9.0),
+                     score(3, 0, -1.0, 1.0)};
+  const std::vector<MissingHeat> heat = missing_heat(d, list);
+  EXPECT_THAT(heat, ElementsAre(Field(&MissingHeat::body, "column"), Field(&MissingHeat::body, "head")));
+  EXPECT_EQ(heat[0].power_W, 12.0);
+  EXPECT_EQ(heat[0].law, "by speed");
+  EXPECT_EQ(heat[1].evidence, 30.0);
+}
+
+TEST(DiagnosisSummary, TimesAreInMinutesAndIntervalsInOrder) {
+  EXPECT_EQ(value_text({"at", "s", 7200.0, 7080.0, 7320.0}), "120 min");
+  EXPECT_EQ(interval_text({"at", "s", 7200.0, 7080.0, 7320.0}), "118 to 122");
+  EXPECT_EQ(interval_text({"factor", "1", 0.8, 0.9, 0.7}), "0.7 to 0.9");
+  EXPECT_EQ(value_text({"factor", "1", 0.8, 0.7, 0.9}), "0.8");
+}
+
+TEST(DiagnosisSummary, ShowsCausesAlternativesAndWhatWasNotWritten) {
+  diagnosis::Diagnosis d;
+  d.verdict = diagnosis::Verdict::kAmbiguous;
+  d.reason = "a reason";
+  d.causes.push_back({"convection", "nose", "another film", {{"factor", "1", 1.5, 1.4, 1.6}}, 41.25, {}});
+  d.causes[0].alternatives.push_back({"radiation", "nose", "sun", {{"power", "W", 12.0, 9.0, 15.0}}, 39.0, {}});
+  d.gain.push_back({"tip_z", "um", 0.3, 5.0, 4.0, 0.4, 9.0, 1.0});
+  EXPECT_THAT(summary_text(d), AllOf(HasSubstr("ambiguous: a reason"), HasSubstr("convection at nose"), HasSubstr("41.2"),
+                                     HasSubstr("factor 1.5 (1.4 to 1.6)"), HasSubstr("or radiation at nose"),
+                                     HasSubstr("power 12 W (9 to 15)"), HasSubstr("tip_z")));
+  EXPECT_EQ(not_written_text("extended.yaml", {"", {}, {"a: why"}}), "NOT WRITTEN to extended.yaml: a: why\n");
+}
+
+TEST(CalibrationWarning, ComesFromLeftoversFromEvidenceAndFromNumbersThatMovedFar) {
+  const std::vector<diagnosis::Candidate> list = {candidate("heat_source", "head")};
+  diagnosis::Diagnosis d;
+  d.n_candidates = 20;  // ln 20 + 3 = 6.0
+  d.search.scores = {score(0, 0, 5.9, 5.0)};
+  d.calibrated.push_back({"convection nose film", "W/(m^2 K)", 9.0, 8.0, 10.0, 3.4});
+  EXPECT_THAT(calibration_warning(d, list), IsEmpty());
+  d.search.scores = {score(0, 0, 6.1, 5.0)};
+  EXPECT_THAT(calibration_warning(d, list), AllOf(HasSubstr("heat_source at head"), Not(HasSubstr("film"))));
+  d.search.scores.clear();
+  d.calibrated[0].deviation = -3.6;
+  EXPECT_THAT(calibration_warning(d, list), HasSubstr("convection nose film moved by -3.6 sigmas"));
+  d.calibrated.clear();
+  d.unexplained.emplace();
+  d.unexplained->channels.push_back({"t_head", "K", 0.25, 9.0});
+  EXPECT_THAT(calibration_warning(d, list), HasSubstr("t_head is left with 0.25 K"));
+}
+
+}  // namespace
+}  // namespace driftwright::app
