@@ -120,7 +120,7 @@ std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector
     reasons.push_back(fmt::format("{} is left with {:.2g} {} that is not noise", worst.name, worst.rms, worst.unit));
   }
   const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
-  if (!d.search.scores.empty() && d.search.scores.front().gain > price + diagnosis::SearchOptions{}.must_gain) {
+  if (!d.search.scores.empty() && d.search.scores.front().gain > price + diagnosis::SearchOptions{}.must_gain.front()) {
     const diagnosis::Score& s = d.search.scores.front();
     reasons.push_back(fmt::format("{} at {} would bring {:.0f} nats of evidence", candidates.at(s.candidate).effect,
                                   candidates.at(s.candidate).where, s.gain));

@@ -6,6 +6,7 @@
 
 #include "app/results.hpp"
 #include "base/errors.hpp"
+#include "diagnosis/scatter.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -15,14 +16,19 @@ constexpr double kOtherSizes[] = {1.4, 1.25, 1.6, 1.15, 0.85};
 
 /// The machine on another mesh, or none where there is no mesh of ours to change.
 std::optional<scenarios::Scenario> remeshed(const scenarios::Scenario& scenario, double size) {
-  const auto* mill = std::get_if<mesh::KneeMill>(&scenario.machine->mesh);
-  if (!mill) return std::nullopt;
-  scenarios::Scenario coarse = scenario;
-  auto& own = std::get<mesh::KneeMill>(coarse.machine->mesh);
-  own.coarse_m *= size;
-  own.fine_m *= size;
-  coarse.machine->written += fmt::format("\nmesh size times {}\n", size);
-  return coarse;
+  scenarios::Scenario other = scenario;
+  if (auto* mill = std::get_if<mesh::KneeMill>(&other.machine->mesh)) {
+    mill->coarse_m *= size;
+    mill->fine_m *= size;
+  } else if (auto* imported = std::get_if<mesh::ImportedMesh>(&other.machine->mesh);
+             imported && imported->mesh_size_m > 0.0) {
+    imported->mesh_size_m *= size;  // a drawing
+    for (auto& [region, size_m] : imported->mesh_size_of_region_m) size_m *= size;
+  } else {
+    return std::nullopt;
+  }
+  other.machine->written += fmt::format("\nmesh size times {}\n", size);
+  return other;
 }
 
 /// Names of what the scenario's instruments tell, before there is a model.
@@ -66,8 +72,14 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
     return parts;
   };
   m.fine = open(scenario);
-  const solver::TransientOptions tolerances = scenario.solver.transient;
-  m.twin.emplace(m.fine->augmented, m.fine->machine, tolerances);
+  solver::TransientOptions tolerances = scenario.solver.transient;  // a fraction of the noise is fine enough
+  tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
+  tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
+  const diagnosis::Twin whole(m.fine->augmented, m.fine->machine, tolerances);
+  progress.begin("looking what states the measured runs come to");
+  m.focus = std::make_unique<diagnosis::Focus>(
+      diagnosis::focus(whole, m.runs, diagnosis::scatter(whole), diagnosis::candidates(whole, m.runs, {})));
+  m.twin.emplace(m.fine->augmented, m.focus->machine, tolerances);
   for (double size : kOtherSizes) {
     const auto other = remeshed(scenario, size);
     if (!other) break;
@@ -80,10 +92,8 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
     m.how.mesh_error_share = 1.0 / std::abs(size * size - 1.0);
     break;
   }
-  const auto& error = m.fine->machine.error;
-  m.how.floor_K = std::max(m.how.floor_K, 0.3 * error.temperature_K);
-  m.how.floor_m = std::max(m.how.floor_m, 0.3 * error.displacement_m);
-  m.how.floor_rad = std::max(m.how.floor_rad, 0.3 * error.angle_rad);
+  m.how.floor_K = std::max(m.how.floor_K, m.focus->error_K);
+  m.how.floor_m = std::max(m.how.floor_m, m.focus->error_m);
   return m;
 }
 

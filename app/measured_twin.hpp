@@ -6,6 +6,7 @@
 
 #include "app/model.hpp"
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis/focus.hpp"
 
 namespace driftwright::app {
 
@@ -20,6 +21,7 @@ struct MeasuredTwin {
   mesh::Mesh mesh;
   std::vector<diagnosis::MeasuredRun> runs;
   std::unique_ptr<TwinParts> fine, other;
+  std::unique_ptr<diagnosis::Focus> focus;  ///< what the twin runs on
   std::optional<diagnosis::Twin> twin, on_other_mesh;
   diagnosis::DiagnosisOptions how;  ///< with the errors of the mesh and of the reduced model
 };

@@ -137,9 +137,10 @@ void add_friction(const Scene& s, std::vector<Candidate>& list) {
     if (!rubs) continue;
     double low_W = 0.0, high_W = 0.0;
     for (const auto& h : s.own.heats) {
-      if (!(h.body == body) || !h.power_W.probes.empty()) continue;
-      low_W += h.power_W(effects::Inputs{.drive = {.speed_rpm = 0.97 * s.typical_rpm}});
-      high_W += h.power_W(effects::Inputs{.drive = {.speed_rpm = 1.03 * s.typical_rpm}});
+      if (!(h.body == body)) continue;
+      const std::vector<double> warm_K(h.power_W.probes.size(), s.twin.reference_K() + 10.0);
+      low_W += h.power_W(effects::Inputs{.drive = {.speed_rpm = 0.97 * s.typical_rpm}, .probe_K = warm_K});
+      high_W += h.power_W(effects::Inputs{.drive = {.speed_rpm = 1.03 * s.typical_rpm}, .probe_K = warm_K});
     }
     const double written = low_W > 0.0 && high_W > 0.0 ? std::log(high_W / low_W) / std::log(1.03 / 0.97) : std::nan("");
     Candidate c{"friction_law", body.name, {}};
@@ -150,6 +151,21 @@ void add_friction(const Scene& s, std::vector<Candidate>& list) {
       });
       exponent.nominal = written;
       c.variants.push_back({fmt::format("another growth with speed, the same at {:.0f} rpm", rpm), {exponent}, 0.2});
+    }
+    if (written > 0.05) {
+      Knob size = factor([body, rpm](TwinState& t, double value) {
+        ChangedFriction f{body};
+        f.factor = value;
+        f.at_speed_rpm = rpm;
+        t.frictions.push_back(f);
+      });
+      Knob other = knob("exponent", "1", 0.5, 0.05,
+                        [written](TwinState& t, double value) { t.frictions.back().change_of_exponent = value - written; });
+      other.nominal = written;
+      c.variants.push_back({fmt::format("another heat and another growth with speed, at {:.0f} rpm", rpm),
+                            {size, other},
+                            0.2,
+                            {{0.0}, {0.4}, {-0.4}}});
     }
     Knob decay = knob("decay", "1/K", 0.02, 0.002, [body, rpm, reference_K](TwinState& t, double value) {
       t.frictions.push_back({.body = body, .at_speed_rpm = rpm, .decay_1_K = value, .at_K = reference_K});
@@ -323,11 +339,12 @@ void add_hall(const Scene& s, std::vector<Candidate>& list) {
   const bool has_air = std::any_of(s.twin.machine().system.exchanges.begin(), s.twin.machine().system.exchanges.end(),
                                    [](const auto& e) { return e.offset.size() > 0; });
   if (!s.twin.augmented().has_own_gradient && has_air) {
+    Knob gradient = knob("gradient", "K/m", 1.0, 0.2, [](TwinState& t, double value) { t.gradient_K_m += value; });
+    Knob level = knob("level", "m", 0.6, 0.1, [](TwinState& t, double value) { t.level_m = value; });
+    level.nominal = 1.0;  // about where one hangs a thermometer
     list.push_back({"stratification",
                     "hall",
-                    {{"warmer above",
-                      {knob("gradient", "K/m", 1.0, 0.2, [](TwinState& t, double value) { t.gradient_K_m += value; })},
-                      0.5}}});
+                    {{"warmer above; the hall's thermometer hangs at a level", {gradient, level}, 0.5, {{-0.6}, {0.2}}}}});
   }
 }
 
@@ -501,6 +518,11 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
   add_displacements(s, list);
   add_sensors(s, list);
   add_drive(s, list);
+  for (Candidate& c : list) {
+    for (Variant& v : c.variants) {
+      if (v.law.ends_with(" rpm")) v.at_speed_rpm = s.typical_rpm;
+    }
+  }
   std::erase_if(list, [&](const Candidate& c) { return without.contains(c.effect) || c.variants.empty(); });
   for (Candidate& c : list) {
     for (Variant& v : c.variants) {

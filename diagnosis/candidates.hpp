@@ -14,6 +14,7 @@ struct Variant {
   std::vector<Knob> knobs;                       ///< knobs[0] is the size
   double trial_x = 0.1;                          ///< size at which its signature is taken
   std::vector<std::vector<double>> grid = {{}};  ///< x of knobs 1.. to try first
+  double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is trial_x
 };
 

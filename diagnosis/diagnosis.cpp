@@ -17,7 +17,11 @@ namespace {
 constexpr int kFewestReadings = 150;  // of all channels together: below, a verdict would be guessing
 constexpr double kStandsOut = 7.0;    // sigmas of one channel's leftover
 constexpr double kStandsOutTogether = 6.0;
-constexpr double kWorthNaming = 0.35;  // of the noise: less is no use to anybody
+constexpr double kJump =
+    27.0;  // squares that one step somewhere may take off by chance: exp(-13.5) times some thousand rows
+constexpr double kFurther = 4.0;          // nats of one more effect, its price paid
+constexpr double kNoiseCanBeWider = 1.5;  // than high frequencies say
+constexpr double kWorthNaming = 0.35;     // of the noise: less is no use to anybody
 
 Cause cause_of(const std::vector<Candidate>& list, const Claim& claim, const Fit& fit, Eigen::Index first, double gain) {
   Cause c{list[claim.candidate].effect,
@@ -35,6 +39,8 @@ Cause cause_of(const std::vector<Candidate>& list, const Claim& claim, const Fit
     c.parameters.push_back(
         {knob.name, knob.unit, knob.value(fit.x[i]), knob.value(fit.x[i] - 1.96 * sd), knob.value(fit.x[i] + 1.96 * sd)});
   }
+  const double rpm = list[claim.candidate].variants[claim.variant].at_speed_rpm;
+  if (rpm > 0.0) c.parameters.push_back({"at_speed", "rpm", rpm, rpm, rpm});
   return c;
 }
 
@@ -46,14 +52,14 @@ Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::In
 
 /// What another mesh changes, one column a channel: the amplitude of each is unknown.
 std::vector<Prediction> mesh_columns(const Twin& twin, const Twin* coarse, double share,
-                                     const std::vector<MeasuredRun>& runs) {
+                                     const std::vector<MeasuredRun>& runs, const TwinState& state) {
   std::vector<Prediction> columns;
   if (!coarse) return columns;
   Twin::Workspace fine_space(twin), coarse_space(*coarse);
   Prediction difference;
   for (const MeasuredRun& run : runs) {
-    const Eigen::MatrixXd fine = twin.respond(twin.as_written(), run, fine_space);
-    difference.push_back(share * (coarse->respond(coarse->as_written(), run, coarse_space) - fine));
+    difference.push_back(share * (coarse->read(state, run, coarse->respond(state, run, coarse_space)) -
+                                  twin.read(state, run, twin.respond(state, run, fine_space))));
   }
   std::vector<int> outputs;
   for (const MeasuredRun& run : runs) {
@@ -112,14 +118,38 @@ std::string reason_of(const Diagnosis& d) {
   }
 }
 
+/// Noise without the benefit of smooth curves: what an AR(1) of some minutes could explain is not called unexplained.
+std::map<std::string, NoiseModel> widest_noise(const Fitter& fitter, const Fit& fit,
+                                               const std::map<std::string, NoiseModel>& noise) {
+  std::map<std::string, std::vector<NoiseSeries>> series;
+  for (std::size_t r = 0; r < fitter.runs().size(); ++r) {
+    const MeasuredRun& run = fitter.runs()[r];
+    for (const MeasuredChannel& c : run.channels) {
+      const auto n = static_cast<Eigen::Index>(run.time_s.size());
+      series[c.name].push_back(
+          {run.time_s, c.value - fit.prediction[r].row(c.output).transpose(), Eigen::MatrixXd::Ones(n, 1)});
+    }
+  }
+  std::map<std::string, NoiseModel> widest;
+  for (const auto& [name, list] : series) {
+    const NoiseModel wide = estimate_noise(list, noise.at(name).white);
+    widest[name] = wide.total() < kNoiseCanBeWider * noise.at(name).total() ? wide : noise.at(name);
+  }
+  return widest;
+}
+
 std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResult& result,
                                           const std::map<std::string, NoiseModel>& noise) {
-  const std::vector<Leftover> list = leftovers(fitter, result.fit);
+  const std::vector<Leftover> list =
+      leftovers(fitter.runs(), result.fit.prediction, widest_noise(fitter, result.fit, noise));
   const double together = sigmas(list);
   Unexplained u;
   for (const Leftover& l : list) {
     const bool stands_out = l.sigmas() > kStandsOut || (together > kStandsOutTogether && l.sigmas() > 3.0);
-    if (!stands_out || l.rms < kWorthNaming * noise.at(l.channel).total()) continue;
+    const bool is_large = l.rms >= kWorthNaming * noise.at(l.channel).total();
+    const bool is_more =
+        result.further_gain > kFurther && u.channels.empty();  // the worst stands for what one more effect would take
+    if (!(stands_out && is_large) && l.jump_squares < kJump && !is_more) continue;
     u.channels.push_back({l.channel,
                           l.unit == "K"   ? "K"
                           : l.unit == "m" ? "um"
@@ -183,7 +213,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.n_candidates = static_cast<int>(list.size());
 
   say(fmt::format("slopes of {} uncertain numbers", scatter(twin).size()));
-  Fitter fitter(twin, runs, scatter(twin), mesh_columns(twin, coarse, options.mesh_error_share, runs));
+  Fitter fitter(twin, runs, scatter(twin), mesh_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()));
   Twin::Workspace workspace(twin);
   d.as_written = fitter.predict({}, Eigen::VectorXd::Zero(fitter.n_nuisance()), workspace);
   d.noise = estimate_noise(runs, d.as_written, options.floor_K, options.floor_m, options.floor_rad);
@@ -225,6 +255,17 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   }
   say("looking at what is left");
   d.unexplained = unexplained_of(fitter, d.search, d.noise);
+  if (d.unexplained && coarse &&
+      !d.search.hypothesis.empty()) {  // the mesh's error is another one where the machine is another one
+    Fitter again(
+        twin, runs, scatter(twin),
+        mesh_columns(twin, coarse, options.mesh_error_share, runs, fitter.state(d.search.hypothesis, d.search.fit.x)));
+    again.set_noise(d.noise);
+    again.settle(d.search.hypothesis, d.search.fit);
+    SearchResult same = d.search;
+    same.fit = again.fit(d.search.hypothesis, d.search.fit.x.tail(d.search.fit.x.size() - fitter.n_nuisance()), workspace);
+    d.unexplained = unexplained_of(again, same, d.noise);
+  }
   if (n_readings < kFewestReadings && (d.causes.empty() || d.unexplained)) {
     d.verdict = Verdict::kInsufficientData;
   } else if (d.unexplained) {

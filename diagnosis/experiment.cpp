@@ -67,6 +67,7 @@ std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchR
     run.hall = {{0.0}, {pattern.hall.at(0.0)}};
     run.time_s.clear();
     for (double t_s = 0.0; t_s <= cyclogram.duration_s() + 1e-6; t_s += kRows_s) run.time_s.push_back(t_s);
+    set_grid(run);
     for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(run.time_s.size()));
     const std::vector<MeasuredRun> runs = {run};
     Fitter ahead(fitter.twin(), runs, fitter.scatter(), {});

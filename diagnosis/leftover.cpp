@@ -10,29 +10,39 @@ double Leftover::sigmas() const {
   return (squares - n_curves) / std::sqrt(2.0 * std::max(1.0, n_curves));
 }
 
-std::vector<Leftover> leftovers(const Fitter& fitter, const Fit& fit) {
+std::vector<Leftover> leftovers(const std::vector<MeasuredRun>& runs, const Prediction& prediction,
+                                const std::map<std::string, NoiseModel>& noise) {
   std::vector<Leftover> list;
-  const Comparison& comparison = fitter.comparison();
+  const Comparison comparison(runs, noise);
+  const Eigen::VectorXd residual = comparison.measured() - comparison.whitened(prediction);
   std::vector<double> n_rows;
   for (std::size_t b = 0; b < comparison.blocks().size(); ++b) {
     const Comparison::Block& block = comparison.blocks()[b];
-    const MeasuredRun& run = fitter.runs()[block.run];
+    const MeasuredRun& run = runs[block.run];
     const Eigen::MatrixXd curves = smooth_curves(run.time_s, relative_speed(run));
     Eigen::MatrixXd x(block.n, curves.cols());
     for (Eigen::Index c = 0; c < curves.cols(); ++c) comparison.whitener(b).apply(curves.col(c), x.col(c));
     Eigen::MatrixXd normal = x.transpose() * x;
     normal.diagonal().array() += 1e-9 * normal.trace() / static_cast<double>(normal.rows());
-    const Eigen::VectorXd r = fit.residual.segment(block.first, block.n);
+    const Eigen::VectorXd r = residual.segment(block.first, block.n);
     const Eigen::VectorXd xr = x.transpose() * r, amplitude = normal.llt().solve(xr);
     auto found = std::find_if(list.begin(), list.end(), [&](const Leftover& l) { return l.channel == block.channel; });
     if (found == list.end()) {
-      list.push_back({block.channel, run.find(block.channel)->unit, 0.0, 0.0, 0.0});
+      list.push_back({block.channel, run.find(block.channel)->unit, 0.0, 0.0, 0.0, 0.0});
       n_rows.push_back(0.0);
       found = list.end() - 1;
     }
     found->squares += xr.dot(amplitude);
     found->n_curves += static_cast<double>(curves.cols());
     found->rms += (curves * amplitude).squaredNorm();
+    Eigen::VectorXd step(curves.rows()), whitened(block.n);
+    for (Eigen::Index from = 2; from + 2 < curves.rows(); ++from) {
+      step.setZero();
+      step.tail(curves.rows() - from).setOnes();
+      comparison.whitener(b).apply(step, whitened);
+      const double square = whitened.squaredNorm();
+      if (square > 1e-12) found->jump_squares = std::max(found->jump_squares, std::pow(whitened.dot(r), 2) / square);
+    }
     n_rows[static_cast<std::size_t>(found - list.begin())] += static_cast<double>(curves.rows());
   }
   for (std::size_t i = 0; i < list.size(); ++i) list[i].rms = std::sqrt(list[i].rms / n_rows[i]);

@@ -14,7 +14,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHallKnots_s = 300.0;  // films pass on nothing faster
+constexpr double kHallKnots_s = 600.0;  // films pass on nothing faster
 constexpr int kStuckRows = 30;          // equal readings in a row while the model's channel moves
 
 /// Piecewise linear least squares on knots; keeps a recorded hall's slow course and drops its noise.
@@ -179,6 +179,22 @@ const MeasuredChannel* MeasuredRun::find(const std::string& channel) const {
   return nullptr;
 }
 
+void set_grid(MeasuredRun& run) {
+  constexpr int kFiner = 4, kIntervals = 6;  // of so many intervals after a change
+  run.grid_s.clear();
+  run.row_in_grid.clear();
+  int since = 0;  // intervals since the last change
+  for (std::size_t i = 0; i < run.time_s.size(); ++i) {
+    run.row_in_grid.push_back(static_cast<Eigen::Index>(run.grid_s.size()));
+    run.grid_s.push_back(run.time_s[i]);
+    if (i + 1 == run.time_s.size()) break;
+    const bool changes = i == 0 || !(run.cyclogram.drive(run.time_s[i]) == run.cyclogram.drive(run.time_s[i - 1]));
+    since = changes ? 0 : since + 1;
+    if (since >= kIntervals) continue;
+    for (int k = 1; k < kFiner; ++k) run.grid_s.push_back(run.time_s[i] + k * (run.time_s[i + 1] - run.time_s[i]) / kFiner);
+  }
+}
+
 MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model, const solver::Outputs& outputs) {
   const Record record = read_record_csv(path);
   if (record.n_samples() < 3) {
@@ -191,6 +207,7 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
   for (double t_s : record.time_s) run.time_s.push_back(t_s - record.time_s.front());
   run.cyclogram = cyclogram_of(record, run.time_s, path);
   run.cyclogram.name = run.name;
+  set_grid(run);
   run.hall = model.hall;
   const double reference_C = model.reference_K - kZeroCelsius_K;
   if (const Channel* ambient = record.find("ambient")) {
@@ -230,6 +247,11 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
     measured.value.resize(static_cast<Eigen::Index>(run.time_s.size()));
     for (std::size_t i = 0; i < run.time_s.size(); ++i) {
       measured.value[static_cast<Eigen::Index>(i)] = scale * (channel->values[i] - offset);
+    }
+    for (std::size_t i = 1; outputs.unit[o] != "K" && i < run.time_s.size(); ++i) {
+      // at the very moment of a change it is open whether what follows speed at once has jumped
+      if (run.cyclogram.speed_rpm(run.time_s[i]) == run.cyclogram.speed_rpm(run.time_s[i - 1])) continue;
+      measured.value[static_cast<Eigen::Index>(i)] = std::nan("");
     }
     measured.quantum = scale * quantum_of(channel->values);
     run.channels.push_back(std::move(measured));

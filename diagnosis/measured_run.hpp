@@ -31,14 +31,20 @@ struct MeasuredRun {
   std::string name;  ///< of the file, without folder and ending
   std::string path;
   std::vector<double> time_s;  ///< from 0
-  Cyclogram cyclogram;         ///< recorded
-  TimeSeries hall;             ///< recorded, smoothed to knots; minus the reference [K]
-  bool has_ambient = false;    ///< else the hall is the scenario's
+  /// Times at which the model is asked: the rows, and more of them after changes of the drive, where readings with lags bend.
+  std::vector<double> grid_s;
+  std::vector<Eigen::Index> row_in_grid;
+  Cyclogram cyclogram;       ///< recorded
+  TimeSeries hall;           ///< recorded, smoothed to knots; minus the reference [K]
+  bool has_ambient = false;  ///< else the hall is the scenario's
   std::vector<MeasuredChannel> channels;
   std::vector<DataFinding> findings;
 
   [[nodiscard]] const MeasuredChannel* find(const std::string& channel) const;
 };
+
+/// Sets grid_s and row_in_grid of a run whose rows and cyclogram are known.
+void set_grid(MeasuredRun& run);
 
 /// Reads a record and finds its channels among the model's outputs. Readings of sensors that the model says read the hall itself are left
 /// out where the record has an ambient temperature.

@@ -85,9 +85,10 @@ struct Fitted {
 };
 
 /// The best candidates on top of a hypothesis, fitted in full, best first.
-std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates, const Hypothesis& base,
-                                   const Fit& base_fit, int n) {
-  std::vector<Score> list = scores(fitter, candidates, base, base_fit);
+std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
+                                   const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit,
+                                   int n) {
+  std::vector<Score> list = scores(fitter, candidates, columns, base, base_fit);
   std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
   std::vector<Score> chosen;
   for (const Score& s : list) {  // a second law of a good candidate counts as well, but only a few
@@ -118,6 +119,20 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
   return unique;
 }
 
+/// A hypothesis without one of its claims, and the x of the others.
+std::pair<Hypothesis, Eigen::VectorXd> without_claim(Hypothesis hypothesis, const Fit& fit, std::size_t claim,
+                                                     Eigen::Index n_nuisance) {
+  Eigen::VectorXd x;
+  Eigen::Index at = n_nuisance;
+  for (std::size_t c = 0; c < hypothesis.size(); ++c) {
+    const auto n = static_cast<Eigen::Index>(hypothesis[c].knobs.size());
+    if (c != claim) x = joined(x, fit.x.segment(at, n));
+    at += n;
+  }
+  hypothesis.erase(hypothesis.begin() + static_cast<std::ptrdiff_t>(claim));
+  return {std::move(hypothesis), std::move(x)};
+}
+
 double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
   double price = 0.0;
   for (const Claim& c : hypothesis) price += std::log(static_cast<double>(candidates[c.candidate].variants.size()));
@@ -126,9 +141,8 @@ double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hy
 
 }  // namespace
 
-std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates, const Hypothesis& hypothesis,
-                          const Fit& fit) {
-  const Projection projection(fitter, hypothesis, fit);
+std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
+                                  const Hypothesis& hypothesis, const Fit& fit) {
   const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
   struct Job {
     std::size_t candidate, variant;
@@ -137,7 +151,7 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     for (std::size_t v = 0; v < candidates[c].variants.size(); ++v) jobs.push_back({c, v});
   }
-  std::vector<Score> list(jobs.size());
+  std::vector<std::vector<Signature>> lists(jobs.size());
   Prediction responses;
   {
     Twin::Workspace workspace(fitter.twin());
@@ -150,9 +164,6 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
 #pragma omp for schedule(dynamic)
     for (std::size_t j = 0; j < jobs.size(); ++j) {
       const Variant& v = candidates[jobs[j].candidate].variants[jobs[j].variant];
-      Score& best = list[j];
-      best.candidate = jobs[j].candidate;
-      best.variant = jobs[j].variant;
       const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
       const Hypothesis tried = with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing});
       for (const std::vector<double>& shape : v.grid) {
@@ -162,26 +173,51 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
         try {
           const Prediction p =
               fitter.predict(tried, joined(fit.x, claim), workspace, reading_only ? &kept : nullptr, reading_only);
-          const Eigen::VectorXd s = (fitter.comparison().whitened(p) - base) / v.trial_x;
-          const double ss = projection.square(s), sr = s.dot(projection.rest), sd = v.knobs[0].prior_sd;
-          if (!std::isfinite(ss) || !(ss > 1e-12)) continue;
-          double x = v.all_or_nothing ? v.trial_x : sr / (ss + 1.0 / (sd * sd));
-          double gain = v.all_or_nothing ? sr * x - 0.5 * ss * x * x
-                                         : 0.5 * sr * sr / (ss + 1.0 / (sd * sd)) - 0.5 * std::log1p(sd * sd * ss);
-          const Knob& size = v.knobs[0];
-          if (size.scale == Knob::Scale::kLinear && size.x(size.value(x)) != x) {  // out of range: at the bound
-            x = size.x(size.value(x));
-            gain = sr * x - 0.5 * ss * x * x - 0.5 * std::log1p(sd * sd * ss);
-          }
-          if (size.scale == Knob::Scale::kLog) x = std::clamp(x, -2.0, 2.0);
-          gain -= std::log(static_cast<double>(v.grid.size()));
-          if (!(gain > best.gain)) continue;
-          best.gain = gain;
-          claim[0] = x;
-          best.start = claim;
+          Eigen::VectorXd column = (fitter.comparison().whitened(p) - base) / v.trial_x;
+          if (!column.allFinite() || !(column.squaredNorm() > 1e-12)) continue;
+          lists[j].push_back({jobs[j].candidate, jobs[j].variant, std::move(claim), std::move(column)});
         } catch (const std::exception&) {  // no solution at this size
         }
       }
+    }
+  }
+  std::vector<Signature> all;
+  for (auto& list : lists) {
+    for (Signature& s : list) all.push_back(std::move(s));
+  }
+  return all;
+}
+
+std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
+                          const std::vector<Signature>& signatures, const Hypothesis& hypothesis, const Fit& fit) {
+  const Projection projection(fitter, hypothesis, fit);
+  std::vector<Score> of_each(signatures.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < signatures.size(); ++i) {
+    const Signature& signature = signatures[i];
+    const Variant& v = candidates[signature.candidate].variants[signature.variant];
+    const Eigen::VectorXd& s = signature.column;
+    const double ss = projection.square(s), sr = s.dot(projection.rest), sd = v.knobs[0].prior_sd;
+    if (!(ss > 1e-12)) continue;
+    double x = v.all_or_nothing ? v.trial_x : sr / (ss + 1.0 / (sd * sd));
+    double gain = v.all_or_nothing ? sr * x - 0.5 * ss * x * x
+                                   : 0.5 * sr * sr / (ss + 1.0 / (sd * sd)) - 0.5 * std::log1p(sd * sd * ss);
+    const Knob& size = v.knobs[0];
+    if (size.scale == Knob::Scale::kLinear && size.x(size.value(x)) != x) {  // out of range: at the bound
+      x = size.x(size.value(x));
+      gain = sr * x - 0.5 * ss * x * x - 0.5 * std::log1p(sd * sd * ss);
+    }
+    if (size.scale == Knob::Scale::kLog) x = std::clamp(x, -2.0, 2.0);
+    of_each[i] = {signature.candidate, signature.variant, gain - std::log(static_cast<double>(v.grid.size())),
+                  signature.shape};
+    of_each[i].start[0] = x;
+  }
+  std::vector<Score> list;
+  for (const Score& s : of_each) {  // those of one law follow each other
+    if (!list.empty() && list.back().candidate == s.candidate && list.back().variant == s.variant) {
+      if (s.gain > list.back().gain) list.back() = s;
+    } else if (s.start.size() > 0) {
+      list.push_back(s);
     }
   }
   std::stable_sort(list.begin(), list.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
@@ -203,69 +239,62 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   fitter.settle({}, best_fit);
   best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
   result.without = best_fit;
-  result.scores = scores(fitter, candidates, {}, best_fit);
+  say(fmt::format("signatures of {} candidates", candidates.size()));
+  std::vector<Signature> columns = signatures(fitter, candidates, {}, best_fit);
+  result.scores = scores(fitter, candidates, columns, {}, best_fit);
   double best_value = best_fit.log_evidence;
 
+  const auto exchange = [&] {  // each for a better one, until none is; true where something changed
+    bool any = false;
+    for (int turn = 0; turn < 3; ++turn) {
+      bool changed = false;
+      for (std::size_t i = 0; i < best.size(); ++i) {
+        const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
+        const Fit fit = fit_all(fitter, {{others, x}}).front();
+        const std::vector<Fitted> replacements = best_additions(fitter, candidates, columns, others, fit, options.refits);
+        if (replacements.empty()) continue;
+        const Hypothesis exchanged = with(others, replacements.front().claim);
+        const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
+        if (!(v > best_value + 0.5)) continue;
+        best = exchanged;
+        best_fit = replacements.front().fit;
+        best_value = v;
+        changed = true;
+      }
+      any = any || changed;
+      if (!changed || best.size() < 2) break;
+    }
+    return any;
+  };
   for (int round = 0; round < options.most_effects; ++round) {
     say(fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
-    const std::vector<Fitted> additions = best_additions(fitter, candidates, best, best_fit, options.refits);
+    const std::vector<Fitted> additions = best_additions(fitter, candidates, columns, best, best_fit, options.refits);
     if (additions.empty()) break;
     const Hypothesis tried = with(best, additions.front().claim);
     const double value = evidence(additions.front().fit, tried) - laws_price(candidates, best);
-    if (!(value > best_value + options.must_gain)) break;
+    if (!(value > best_value + options.must_gain[best.size()])) break;
     best = tried;
     best_fit = additions.front().fit;
     best_value = value;
 
-    for (int turn = 0; turn < 2 && best.size() > 1; ++turn) {  // exchange each for a better one
-      bool changed = false;
-      for (std::size_t i = 0; i < best.size(); ++i) {
-        Hypothesis others = best;
-        others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-        Eigen::VectorXd x;
-        Eigen::Index at = fitter.n_nuisance();
-        for (std::size_t c = 0; c < best.size(); ++c) {
-          const auto n = static_cast<Eigen::Index>(best[c].knobs.size());
-          if (c != i) x = joined(x, best_fit.x.segment(at, n));
-          at += n;
-        }
-        const Fit fit = fit_all(fitter, {{others, x}}).front();
-        const std::vector<Fitted> replacements = best_additions(fitter, candidates, others, fit, options.refits);
-        if (replacements.empty()) continue;
-        const Hypothesis exchanged = with(others, replacements.front().claim);
-        const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
-        if (v > best_value + 0.5) {
-          best = exchanged;
-          best_fit = replacements.front().fit;
-          best_value = v;
-          changed = true;
-        }
-      }
-      if (!changed) break;
-    }
+    exchange();
   }
-  if (!best.empty()) {
+  for (int turn = 0; turn < 2 && !best.empty(); ++turn) {
     say("settling the numbers");
     fitter.settle(best, best_fit);
     best_fit = fit_all(fitter, {{best, best_fit.x.tail(best_fit.x.size() - fitter.n_nuisance())}}).front();
     best_value = evidence(best_fit, best) - laws_price(candidates, best);
+    columns = signatures(fitter, candidates, best, best_fit);
+    if (!exchange()) break;
   }
 
   // Prune, and look for others in each one's place.
   say(best.empty() ? "nothing to add" : "looking for other explanations");
   for (std::size_t i = 0; i < best.size();) {
-    Hypothesis others = best;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    Eigen::VectorXd x;
-    Eigen::Index at = fitter.n_nuisance();
-    for (std::size_t c = 0; c < best.size(); ++c) {
-      const auto n = static_cast<Eigen::Index>(best[c].knobs.size());
-      if (c != i) x = joined(x, best_fit.x.segment(at, n));
-      at += n;
-    }
+    const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
     const Fit fit = fit_all(fitter, {{others, x}}).front();
     const double without_value = evidence(fit, others) - laws_price(candidates, others);
-    if (!(best_value > without_value + options.must_gain)) {
+    if (!(best_value > without_value + options.must_gain[best.size() - 1])) {
       best = others;
       best_fit = fit;
       best_value = without_value;
@@ -274,13 +303,20 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
       continue;
     }
     Finding finding{best[i], best_value - without_value, {}};
-    for (Fitted& f : best_additions(fitter, candidates, others, fit, options.refits)) {
+    for (Fitted& f : best_additions(fitter, candidates, columns, others, fit, options.refits)) {
       const double value = evidence(f.fit, with(others, f.claim)) - laws_price(candidates, others);
       if (f.claim.candidate == best[i].candidate || value < best_value - options.cannot_tell) continue;
       finding.alternatives.push_back({std::move(f.claim), std::move(f.fit), value - without_value});
     }
     result.findings.push_back(std::move(finding));
     ++i;
+  }
+  if (!best.empty()) {
+    const std::vector<Fitted> further = best_additions(fitter, candidates, columns, best, best_fit, options.refits / 2);
+    if (!further.empty()) {
+      const Hypothesis tried = with(best, further.front().claim);
+      result.further_gain = evidence(further.front().fit, tried) - laws_price(candidates, best) - best_value;
+    }
   }
   result.hypothesis = std::move(best);
   result.fit = std::move(best_fit);

@@ -8,7 +8,8 @@ namespace driftwright::diagnosis {
 struct SearchOptions {
   int most_effects = 3;
   /// Evidence [nats] a claim must bring beyond the logarithm of how many candidates there are.
-  double must_gain = 3.0;
+  std::vector<double> must_gain = {3.0, 6.0,
+                                   20.0};  ///< the first, the second, the third: few machines are wrong in three ways
   /// Two claims whose evidence differs by less than this cannot be told apart.
   double cannot_tell = 3.0;
   int refits = 10;  ///< candidates of each round that are fitted in full
@@ -26,7 +27,17 @@ struct Finding {
   std::vector<Alternative> alternatives;
 };
 
-/// How much evidence each candidate would bring on top of a fit, its signature taken as it is at trial size: what the linear theory says.
+/// What one law of a candidate does to the whitened readings, at trial size and one shape, per unit of its size.
+struct Signature {
+  std::size_t candidate = 0, variant = 0;
+  Eigen::VectorXd shape;  ///< x of the claim's knobs, the size at its trial
+  Eigen::VectorXd column;
+};
+/// All of them, on top of a fit. They change little with what else is claimed.
+[[nodiscard]] std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
+                                                const Hypothesis& hypothesis, const Fit& fit);
+
+/// How much evidence a candidate would bring on top of a fit: what the linear theory says.
 struct Score {
   std::size_t candidate = 0, variant = 0;
   double gain = -1e300;   ///< nats
@@ -39,6 +50,8 @@ struct SearchResult {
   Fit without;  ///< scatter alone
   std::vector<Finding> findings;
   int n_candidates = 0;
+  /// Evidence that one more effect would bring; too little to claim it, and yet more than chance has to offer.
+  double further_gain = 0.0;
   std::vector<Score> scores;  ///< of all candidates on top of scatter alone
 };
 
@@ -46,8 +59,9 @@ struct SearchResult {
 [[nodiscard]] SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, const SearchOptions& options,
                                   const std::function<void(const std::string&)>& say);
 
-/// The best variant of each candidate, best candidates first.
+/// The best shape of each law of each candidate, best first.
 [[nodiscard]] std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                        const Hypothesis& hypothesis, const Fit& fit);
+                                        const std::vector<Signature>& signatures, const Hypothesis& hypothesis,
+                                        const Fit& fit);
 
 }  // namespace driftwright::diagnosis

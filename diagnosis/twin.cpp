@@ -15,8 +15,10 @@ namespace {
 using effects::Inputs;
 using effects::Law;
 
-constexpr double kExpectedHeat_W = 60.0;  // a missing source is about so strong: how finely the basis must know it
+constexpr double kExpectedHeat_W = 20.0;  // a missing source is about so strong: how finely the basis must know it
 constexpr double kExpectedFilm_W_m2K = 10.0;
+constexpr double kTolerance_K =
+    0.1;                        // with everything that may be wrong stepping at once, which is ten times what a run does
 constexpr double kWider = 2.0;  // coefficients and powers may be wrong by this and more
 
 const effects::EffectKind& kind_of(const std::string& key) {
@@ -138,6 +140,7 @@ AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& me
       asked.machine->hall.time_s.push_back(asked.machine->hall.time_s.back() + 1.0);
   }
   a.plan = scenarios::reduction_plan(asked, cyclograms);
+  a.plan.tolerance_K = std::max(a.plan.tolerance_K, kTolerance_K);
   a.plan.n_modes = 0;
   a.plan.with_fields = false;
   a.plan.with_parts = true;
@@ -199,7 +202,7 @@ effects::ReadingChain Twin::chain(const TwinState& state) const {
   return both;
 }
 
-Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
   // --- matrices
   solver::ReducedSystem& system = workspace.system_;
   const auto& parts = machine_.system.parts;
@@ -271,7 +274,8 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
       if (thins) source_probes[h].insert(source_probes[h].end(), of_body.begin(), of_body.end());
       all.heats[h].power_W.value = [f, thins, inner = all.heats[h].power_W.value](const Inputs& u) {
         const double n = u.drive.speed_rpm / f.at_speed_rpm;
-        const double factor = n > 0.0 && f.change_of_exponent != 0.0 ? std::pow(n, f.change_of_exponent) : 1.0;
+        const double factor =
+            n > 0.0 && f.change_of_exponent != 0.0 ? f.factor * std::pow(n, f.change_of_exponent) : f.factor;
         if (!thins) return factor * inner(u);
         Inputs own_inputs = u;
         const double t_K = own_inputs.probe_K.back();
@@ -310,8 +314,9 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
   if (!augmented_.has_own_gradient) {
     for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
       const auto& unit = machine_.system.exchanges[e];
-      if (unit.offset.size() > 0) system.exchanges[e].offset = state.gradient_K_m * unit.offset;
-      system.exchanges[e].offset_sum = state.gradient_K_m * unit.offset_sum;
+      if (unit.offset.size() == 0) continue;
+      system.exchanges[e].offset = state.gradient_K_m * (unit.offset - state.level_m * unit.to_hall);
+      system.exchanges[e].offset_sum = state.gradient_K_m * (unit.offset_sum - state.level_m * unit.hall_sum);
     }
   }
 
@@ -320,11 +325,12 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
   const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
   Eigen::MatrixXd states;
   if (system.is_linear()) {
-    if (!workspace.propagator_ || workspace.gradient_K_m_ != state.gradient_K_m) {
+    if (!workspace.propagator_ || workspace.gradient_K_m_ != state.gradient_K_m || workspace.level_m_ != state.level_m) {
       workspace.propagator_ = std::make_unique<solver::Propagator>(system);
       workspace.gradient_K_m_ = state.gradient_K_m;
+      workspace.level_m_ = state.level_m;
     }
-    (void)workspace.propagator_->run(felt, hall, run.time_s, start, false, &states);
+    (void)workspace.propagator_->run(felt, hall, run.grid_s, start, false, &states);
   } else {
     const solver::ReducedSystem* small = &system;
     solver::ReducedSystem unit;
@@ -332,20 +338,26 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
       unit = solver::with_unit_mass(system, start);
       small = &unit;
     }
-    const auto n_times = static_cast<Eigen::Index>(run.time_s.size());
+    const auto n_times = static_cast<Eigen::Index>(run.grid_s.size());
     states.resize(system.size(), n_times);
     Eigen::Index k = 0;
-    (void)solver::simulate(*small, felt, hall, run.time_s, tolerances_, start,
+    (void)solver::simulate(*small, felt, hall, run.grid_s, tolerances_, start,
                            [&](double, const Eigen::VectorXd& z) { states.col(k++) = z; });
     if (has_other_mass) {  // back from w = C'z
       const Eigen::LLT<Eigen::MatrixXd> factor(system.mass);
       factor.matrixU().solveInPlace(states);
     }
   }
+  return states;
+}
+
+Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+  const Eigen::MatrixXd z = states(state, run, workspace);
+  const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
   Eigen::MatrixXd weights = outputs_.state;
   for (const ChangedBody& b : state.bodies) {
     if (b.expansion == 1.0) continue;
-    for (const auto& part : parts) {
+    for (const auto& part : machine_.system.parts) {
       if (part.body != b.body) continue;
       for (Eigen::Index o = 0; o < part.outputs.cols(); ++o) {
         const bool is_meant = b.displacement.empty() || outputs_.name[static_cast<std::size_t>(o)] == b.displacement;
@@ -353,20 +365,24 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
       }
     }
   }
-  Eigen::MatrixXd outputs = weights.transpose() * states;
-  for (std::size_t k = 0; k < run.time_s.size(); ++k) {
-    outputs.col(static_cast<Eigen::Index>(k)) += hall.at(run.time_s[k]) * outputs_.hall;
+  Eigen::MatrixXd outputs = weights.transpose() * z;
+  for (std::size_t k = 0; k < run.grid_s.size(); ++k) {
+    outputs.col(static_cast<Eigen::Index>(k)) += hall.at(run.grid_s[k]) * outputs_.hall;
   }
   return outputs;
 }
 
 Eigen::MatrixXd Twin::read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const {
   const effects::ReadingChain readings = chain(state);
-  if (readings.empty()) return outputs;
-  Cyclogram felt = effects::true_cyclogram(drive(state), run.cyclogram);
-  felt.name = run.name;
-  const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
-  return effects::readings(readings, outputs_.name, outputs_.unit, run.time_s, felt, hall, std::move(outputs));
+  if (!readings.empty()) {
+    Cyclogram felt = effects::true_cyclogram(drive(state), run.cyclogram);
+    felt.name = run.name;
+    const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
+    outputs = effects::readings(readings, outputs_.name, outputs_.unit, run.grid_s, felt, hall, std::move(outputs));
+  }
+  Eigen::MatrixXd rows(outputs.rows(), static_cast<Eigen::Index>(run.row_in_grid.size()));
+  for (Eigen::Index i = 0; i < rows.cols(); ++i) rows.col(i) = outputs.col(run.row_in_grid[static_cast<std::size_t>(i)]);
+  return rows;
 }
 
 }  // namespace driftwright::diagnosis

@@ -35,18 +35,21 @@ class Twin {
    private:
     friend class Twin;
     solver::ReducedSystem system_;
-    std::vector<double> factors_;  ///< of conductivities and capacities that system_ has
-    double gradient_K_m_ = 0.0;    ///< of the air
+    std::vector<double> factors_;                ///< of conductivities and capacities that system_ has
+    double gradient_K_m_ = 0.0, level_m_ = 0.0;  ///< of the air
     std::unique_ptr<solver::Propagator> propagator_;
   };
 
   /// The scenario as it stands.
   [[nodiscard]] const TwinState& as_written() const { return as_written_; }
-  /// Outputs of the machine at a run's times, n_outputs x n_times [K over the reference, m, rad]: the model's own, then the mean temperatures
+  /// Reduced states of the machine at a run's grid, size x n_grid.
+  /// @throws SolveError  where a state has no solution
+  [[nodiscard]] Eigen::MatrixXd states(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
+  /// Outputs of the machine at a run's grid, n_outputs x n_grid [K over the reference, m, rad]: the model's own, then the mean temperatures
   /// of its regions and nodes.
   /// @throws SolveError  where a state has no solution
   [[nodiscard]] Eigen::MatrixXd respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
-  /// What its instruments say of them.
+  /// What its instruments say of them at the run's rows, n_outputs x n_times.
   [[nodiscard]] Eigen::MatrixXd read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const;
 
   [[nodiscard]] const solver::Outputs& outputs() const { return outputs_; }

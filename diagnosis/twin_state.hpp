@@ -27,10 +27,10 @@ struct AddedHeat {
   std::string in = {};  ///< name of the only run it happens in; "": in each
 };
 
-/// Another law of what a body's own heat does: P' = P (n / at_speed)^change_of_exponent exp(-decay (T - at_K)).
+/// Another law of what a body's own heat does: P' = factor P (n / at_speed)^change_of_exponent exp(-decay (T - at_K)).
 struct ChangedFriction {
   effects::Body body;
-  double change_of_exponent = 0.0, at_speed_rpm = 1000.0, decay_1_K = 0.0, at_K = 293.15;
+  double factor = 1.0, change_of_exponent = 0.0, at_speed_rpm = 1000.0, decay_1_K = 0.0, at_K = 293.15;
 };
 
 /// A coefficient c of a film, link or joint: c' = factor c + added + growth (n / at_speed)^exponent.
@@ -56,6 +56,7 @@ struct TwinState {
   std::vector<ChangedExchange> exchanges;
   std::vector<ChangedBody> bodies;
   double gradient_K_m = 0.0;  ///< of the hall's air, where the scenario has none
+  double level_m = 0.0;       ///< where the hall's thermometer hangs in it
   effects::DriveChange drive;
   effects::ReadingChain readings;
 };

@@ -25,11 +25,23 @@ Eigen::MatrixXd orthonormalise(const SparseRow& mass, const Eigen::MatrixXd& col
   return basis.leftCols(kept);
 }
 
-ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis) {
+namespace {
+
+Eigen::VectorXd times_ones(const SparseRow& mass, const Eigen::VectorXd& ones) {
+  Eigen::VectorXd m_ones(ones.size());
+  multiply(mass, ones.data(), m_ones.data());
+  return m_ones;
+}
+Eigen::VectorXd times_ones(const Eigen::MatrixXd&, const Eigen::VectorXd& ones) {
+  return ones;  // M = 1, and `ones` is projected already
+}
+
+template <class Matrix>
+ReducedSystem projected(const ThermalSystem<Matrix>& system, const Eigen::MatrixXd& basis) {
   if (!system.nonlinear.empty() || system.capacity || !system.fixed.empty()) {
     throw std::logic_error("project: nonlinear terms, varying capacity and prescribed unknowns have no projection");
   }
-  const auto reduce = [&](const SparseRow& a) -> Eigen::MatrixXd {
+  const auto reduce = [&](const Matrix& a) -> Eigen::MatrixXd {
     const Eigen::MatrixXd r = basis.transpose() * (a * basis);
     return 0.5 * (r + r.transpose());
   };
@@ -58,10 +70,18 @@ ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis) {
   }
   reduced.outputs = {system.outputs.name, system.outputs.unit, basis.transpose() * system.outputs.state,
                      system.outputs.hall};
-  Eigen::VectorXd m_ones(system.size());
-  multiply(system.mass, system.ones.data(), m_ones.data());
-  reduced.ones = basis.transpose() * m_ones;
+  reduced.ones = basis.transpose() * times_ones(system.mass, system.ones);
   return reduced;
+}
+
+}  // namespace
+
+ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis) {
+  return projected(system, basis);
+}
+
+ReducedSystem project(const ReducedSystem& system, const Eigen::MatrixXd& basis) {
+  return projected(system, basis);
 }
 
 ReducedSystem with_unit_mass(const ReducedSystem& system, Eigen::VectorXd& start) {

@@ -13,6 +13,9 @@ namespace driftwright::solver {
 ///                           makes one without them)
 [[nodiscard]] ReducedSystem project(const FullSystem& system, const Eigen::MatrixXd& basis);
 
+/// A smaller one of a reduced system with M = 1. @param basis  orthonormal
+[[nodiscard]] ReducedSystem project(const ReducedSystem& system, const Eigen::MatrixXd& basis);
+
 /// The same system in unknowns w = C'z with M = C C', in which M = 1. @param start  z at t = 0, which becomes w
 [[nodiscard]] ReducedSystem with_unit_mass(const ReducedSystem& system, Eigen::VectorXd& start);
 

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Makes blind cases (tests/blind), diagnoses each, and scores: bench/blind.sh [-n CASES] [-o DIR] [-j JOBS] [-t SECONDS]
+# 400 cases into /tmp/driftwright_blind, one process a core, at most 300 s a case. What is there is kept: a run that was cut short goes
+# on, and a case with a diagnosis.json is not diagnosed again. A diagnosis that fails or takes too long is a miss; diagnose.log says why.
+set -eu
+n=400 out=/tmp/driftwright_blind jobs=$(nproc) cap=300
+while getopts n:o:j:t: option; do
+  case $option in
+    n) n=$OPTARG ;;
+    o) out=$OPTARG ;;
+    j) jobs=$OPTARG ;;
+    t) cap=$OPTARG ;;
+    *) exit 2 ;;
+  esac
+done
+mkdir -p "$out"
+out=$(cd "$out" && pwd)
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+[ -f build/release/build.ninja ] || cmake --preset release >/dev/null
+ninja -C build/release driftwright blind_cases >/dev/null
+. cmake/threads.sh
+export OMP_NUM_THREADS=1 XDG_CACHE_HOME="$out/cache" cap
+export program=$PWD/build/release/app/driftwright
+
+pids=()
+for ((job = 0; job < jobs; ++job)); do
+  build/release/tests/blind/blind_cases --from 0 --to $((n - 1)) --every "$jobs" --offset "$job" -o "$out" 2>>"$out/cases_$job.log" &
+  pids+=($!)
+done
+for pid in "${pids[@]}"; do wait "$pid"; done
+
+diagnose() {
+  case_dir=$1
+  [ -f "$case_dir/diagnosis/diagnosis.json" ] && return 0
+  arguments=()
+  for record in "$case_dir"/measured_*.csv; do arguments+=(--measured "$record"); done
+  without=$(sed -n 's/^  "without": "\(.*\)",$/\1/p' "$case_dir/truth.json")
+  [ -n "$without" ] && arguments+=(--without "$without")
+  # Into a folder of its own first: only what is complete is called diagnosis.
+  rm -rf "$case_dir/diagnosis.part"
+  if timeout "$cap" "$program" diagnose "$case_dir/scenario.yaml" "${arguments[@]}" -o "$case_dir/diagnosis.part" \
+    >"$case_dir/diagnose.log" 2>&1; then
+    rm -rf "$case_dir/diagnosis"
+    mv "$case_dir/diagnosis.part" "$case_dir/diagnosis"
+  else
+    echo "$(basename "$case_dir"): exit $? (log: $case_dir/diagnose.log)" >&2
+  fi
+}
+export -f diagnose
+seq -f "$out/case_%04g" 0 $((n - 1)) | xargs -P "$jobs" -I{} bash -c 'diagnose {}'
+python3 bench/blind/score.py "$out"

@@ -1,0 +1,66 @@
+#pragma once
+// What a seed decides: class, machine, cyclograms, hall, noise, and which effects are hidden where.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "blind/hidden.hpp"
+#include "blind/random.hpp"
+
+namespace driftwright::blind {
+
+enum class CaseClass { kOne, kTwo, kNone, kOutside, kConfounded };
+[[nodiscard]] const char* class_name(CaseClass of);
+/// Of 40 seeds in a row 12 are one, 10 two, 10 none, 5 outside, 3 confounded, in mixed order.
+[[nodiscard]] CaseClass class_of(std::uint64_t seed);
+/// Index into subject_names(); each class meets each machine.
+[[nodiscard]] std::size_t subject_of(std::uint64_t seed);
+
+/// The recorded hall: a ramp and a slow sine, over the reference.
+struct HallCurve {
+  double start_K = 0.0, ramp_K_s = 0.0, sine_K = 0.0, period_s = 7200.0, phase = 0.0;
+  [[nodiscard]] double at(double time_s) const;
+};
+
+struct RecordPlan {
+  std::string name;  ///< "measured_1", "measured_2" or "holdout"
+  Cyclogram drive;   ///< as recorded
+  HallCurve hall;
+};
+
+/// Noise of a channel, in its record's unit (degC or um).
+struct Noise {
+  double white = 0.05;
+  double slow = 0.0, slow_s = 240.0;  ///< AR(1): standard deviation, time constant
+  double quantum = 0.0;
+  /// Standard deviation of a reading, rounding included.
+  [[nodiscard]] double total() const;
+  /// Standard deviation of white noise that hides a slow signal in rows of interval_s as well as this one does.
+  [[nodiscard]] double against_slow(double interval_s) const;
+};
+
+struct CasePlan {
+  std::uint64_t seed = 0;
+  CaseClass of = CaseClass::kNone;
+  std::vector<RecordPlan> records;  ///< measured ones, then the holdout
+  std::vector<Noise> noise;         ///< per output
+  double ambient_noise_K = 0.02;
+  std::vector<std::string> confusable;  ///< "<key> <where>": what the records cannot tell from the truth
+  bool displacements_only = false;      ///< the records hold no temperature of the confounded region
+  std::string confusion;                ///< what makes it confounded, in words
+  [[nodiscard]] std::size_t n_measured() const { return records.size() - 1; }
+};
+
+/// All but the hidden effects. Records of a confounded case are drawn with its effects.
+[[nodiscard]] CasePlan draw_plan(const Subject& subject, std::uint64_t seed);
+
+/// One effect of the catalogue, its size the middle of its range, anywhere.
+[[nodiscard]] Hidden draw_hidden(const Subject& subject, const CasePlan& plan, Random& random);
+/// One whose law is in no catalogue.
+[[nodiscard]] Hidden draw_foreign(const Subject& subject, Random& random);
+/// Effects that the records cannot tell from others; fills the plan's confusable, and its records with such as hide the difference.
+[[nodiscard]] std::vector<Hidden> draw_confounded(const Subject& subject, CasePlan& plan, Random& random);
+
+}  // namespace driftwright::blind

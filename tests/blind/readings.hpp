@@ -1,0 +1,32 @@
+#pragma once
+// Readings on a fine grid of times, and what instruments do to them.
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/cyclogram.hpp"
+
+namespace driftwright::blind {
+
+struct Readings {
+  double step_s = 20.0;
+  std::vector<std::string> name;
+  Eigen::MatrixXd value;   ///< n_outputs x n_times; temperatures over the reference [K], displacements [m]
+  Eigen::VectorXd hall_K;  ///< true air over the reference, n_times
+
+  [[nodiscard]] double time_s(Eigen::Index k) const { return static_cast<double>(k) * step_s; }
+  /// @throws std::logic_error  for a name that is no output
+  [[nodiscard]] Eigen::Index row(const std::string& output) const;
+};
+
+/// y' = (x - y) / lag from y = start, x linear between samples.
+void lag(Eigen::Ref<Eigen::RowVectorXd> x, double step_s, double lag_s, double start);
+/// Readings carry a time that is later by offset_s than that at which they were taken; before the first, the first.
+void shift_clock(Readings& readings, double offset_s);
+/// amount (n / at_speed)^exponent along the grid, n in the middle of the step before.
+[[nodiscard]] Eigen::RowVectorXd of_speed(const Readings& readings, const Cyclogram& drive, double amount,
+                                          double at_speed_rpm, double exponent);
+
+}  // namespace driftwright::blind
