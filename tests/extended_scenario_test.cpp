@@ -71,6 +71,8 @@ MeasuredRun run_of(const scenarios::Scenario& s) {
   run.cyclogram = s.cyclograms.front();
   run.time_s = scenarios::output_times_s(run.cyclogram, s.solver.output_interval_s);
   run.hall = s.machine->hall;
+  run.grid_s = run.time_s;  // as a simulation, whose readings are linear between its rows
+  for (std::size_t i = 0; i < run.time_s.size(); ++i) run.row_in_grid.push_back(static_cast<Eigen::Index>(i));
   return run;
 }
 
@@ -202,7 +204,8 @@ const std::vector<Case> kCases = {
      }},
     {"another_exponent", false,
      [](TwinState& t) {
-       t.frictions.push_back({.body = effects::node("shaft"), .change_of_exponent = 0.6, .at_speed_rpm = 700.0});
+       t.frictions.push_back(
+           {.body = effects::node("shaft"), .factor = 1.2, .change_of_exponent = 0.6, .at_speed_rpm = 700.0});
      }},
     {"friction_that_falls", false,
      [](TwinState& t) {
@@ -224,10 +227,14 @@ const std::vector<Case> kCases = {
     {"another_capacity", false, [](TwinState& t) { t.bodies.push_back({.body = "housing", .heat_capacity = 1.5}); }},
     {"another_sensitivity", false,
      [](TwinState& t) { t.bodies.push_back({.body = "shaft", .expansion = 1.4, .displacement = "nose"}); }},
-    {"another_conductivity", true, [](TwinState& t) { t.bodies.push_back({.body = "column", .conductivity = 0.6}); }},
+    {"another_conductivity", true, [](TwinState& t) { t.bodies.push_back({.body = "column", .conductivity = 0.8}); }},
     {"another_heat_capacity", true, [](TwinState& t) { t.bodies.push_back({.body = "head", .heat_capacity = 1.5}); }},
     {"another_expansion", true, [](TwinState& t) { t.bodies.push_back({.body = "head", .expansion = 1.6}); }},
-    {"stratified_air", true, [](TwinState& t) { t.gradient_K_m = 5.0; }},
+    {"stratified_air", true,
+     [](TwinState& t) {
+       t.gradient_K_m = 5.0;
+       t.level_m = -0.5;
+     }},
     {"hall_offset", false, with_drive([](auto& d) { d.hall.push_back({.offset_K = 1.5}); })},
     {"hall_step_and_ramp", false, with_drive([](auto& d) {
        d.hall.push_back({1.5, 1.0 / 3600.0, 1200.0, "cycle"});
