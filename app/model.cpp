@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/version.hpp"
+#include "base/file_bytes.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "scenarios/machine_key.hpp"
 #include "scenarios/machine_store.hpp"
@@ -22,6 +23,18 @@ int n_fields(const scenarios::Scenario& scenario) {
   double longest_s = 0.0;
   for (const Cyclogram& c : scenario.cyclograms) longest_s = std::max(longest_s, c.duration_s());
   return static_cast<int>(std::min(1e6, longest_s / scenario.solver.fields_every_s)) + 2;
+}
+
+/// Version and bytes of this program: what another build has reduced may be something else.
+std::string build_name() {
+  static const std::string name = [] {
+    try {
+      return fmt::format("{} {:016x}", kVersion, fnv1a(read_bytes("/proc/self/exe")));
+    } catch (const InputError&) {  // no such file system: the version has to do
+      return std::string(kVersion);
+    }
+  }();
+  return name;
 }
 
 }  // namespace
@@ -59,7 +72,7 @@ scenarios::Machine build_machine(const scenarios::MachineModel& model, Progress&
 
 scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, const scenarios::ReductionPlan& plan,
                                        Progress& progress, bool* was_known) {
-  const std::string key = scenarios::machine_key(model, plan, kVersion);
+  const std::string key = scenarios::machine_key(model, plan, build_name());
   const std::filesystem::path store = scenarios::machine_store();
   auto known = scenarios::load_machine(store, key, effects::heat_balance(model.effects));
   if (was_known) *was_known = known.has_value();

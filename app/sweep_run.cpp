@@ -63,33 +63,44 @@ class ReducedMachines {
   /// Whether some member runs on finite elements.
   [[nodiscard]] bool some_are_full() const { return some_are_full_; }
 
-  const scenarios::ReducedMachine& of(const scenarios::MachineModel& model) {
+  /// Of a member. Where no basis holds for all of them (one cannot lose its heat), each gets one of its own.
+  std::shared_ptr<const scenarios::ReducedMachine> of(const Scenario& scenario) {
     const std::lock_guard lock(mutex_);
-    Asked& asked = by_machine_.at(scenarios::machine_text(model));
-    if (!asked.machine) {
-      const std::lock_guard alone(meshing());
-      Progress quiet;
-      asked.machine.emplace(open_reduced(asked.model, asked.plan, quiet));
+    Asked& asked = by_machine_.at(scenarios::machine_text(*scenario.machine));
+    const std::lock_guard alone(meshing());
+    Progress quiet;
+    if (!asked.machine && !asked.failed) {
+      try {
+        asked.machine = std::make_shared<const scenarios::ReducedMachine>(open_reduced(asked.model, asked.plan, quiet));
+      } catch (const std::exception&) {  // the member to blame will say why
+        asked.failed = true;
+      }
     }
-    return *asked.machine;
+    if (asked.machine) return asked.machine;
+    return std::make_shared<const scenarios::ReducedMachine>(open_reduced(*scenario.machine, plan_of(scenario), quiet));
   }
 
  private:
   struct Asked {
     scenarios::MachineModel model;
     scenarios::ReductionPlan plan;
-    std::optional<scenarios::ReducedMachine> machine = {};
+    std::shared_ptr<const scenarios::ReducedMachine> machine = {};
+    bool failed = false;
   };
-  void ask(const Scenario& scenario) {
-    if (scenario.solver.model != scenarios::ModelKind::kReduced) {
-      some_are_full_ = true;
-      return;
-    }
+  static scenarios::ReductionPlan plan_of(const Scenario& scenario) {
     std::vector<const Cyclogram*> cyclograms;
     for (const Cyclogram& c : scenario.cyclograms) cyclograms.push_back(&c);
     scenarios::ReductionPlan plan = scenarios::reduction_plan(scenario, cyclograms);
     plan.n_modes = 0;
     plan.with_fields = false;
+    return plan;
+  }
+  void ask(const Scenario& scenario) {
+    if (scenario.solver.model != scenarios::ModelKind::kReduced) {
+      some_are_full_ = true;
+      return;
+    }
+    const scenarios::ReductionPlan plan = plan_of(scenario);
     const auto [found, is_new] =
         by_machine_.try_emplace(scenarios::machine_text(*scenario.machine), Asked{*scenario.machine, plan});
     if (is_new) return;
@@ -140,7 +151,7 @@ std::vector<double> run_member(const SweepPlan& plan, std::size_t member, Reduce
                                LastMachine& last) {
   const Scenario scenario = scenarios::read_scenario(plan.scenario_of(member));
   if (scenario.solver.model == scenarios::ModelKind::kReduced) {
-    return simulate_member(scenario, reduced.of(*scenario.machine), plan.collect);
+    return simulate_member(scenario, *reduced.of(scenario), plan.collect);
   }
   if (shared.machine) return simulate_member(scenario, *shared.machine, plan.collect);
   const std::string key = scenarios::sharing_key(plan, member, Shared::kMachine);

@@ -101,6 +101,7 @@ std::string machine_text(const MachineModel& model) {
     text += fmt::format("hall at the start {} K\n", felt_hall_at_start_K(model));
   }
   if (model.start == Start::kSteady) text += numbers_of_laws(model);
+  if (has_curves(model)) text += fmt::format("curves frozen in a hall of {} K\n", model.hall.at(0.0));
   return text;
 }
 

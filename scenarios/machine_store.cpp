@@ -129,6 +129,7 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
     return machine;
   } catch (const InputError&) {
   } catch (const nlohmann::json::exception&) {
+  } catch (const std::logic_error&) {  // of another balance
   }
   return std::nullopt;  // damaged: made anew
 }

@@ -100,7 +100,7 @@ void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balanc
   throw InputError(where,
                    fmt::format("heat cannot leave {} while the spindle stands: no film, contact, link, radiation or fixed "
                                "temperature leads to the hall, so there is no steady state and there are no thermal "
-                               "modes. Add one (a film of 0.001 W/(m^2 K) insulates)",
+                               "modes. Add one (a film of 0.001 W/(m^2 K) insulates), or take `solver: {{model: full}}`",
                                fmt::join(shut_in, ", ")));
 }
 

@@ -221,7 +221,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
           take_output(output_s[next], at_output.get());
         }
       }
-      if (flag == ARK_ROOT_RETURN && t_s < stretch.end_s) {
+      if (flag == ARK_ROOT_RETURN) {
         std::vector<int> reached(callee.n_thermostats);
         check(ARKStepGetRootInfo(mem, reached.data()), "ARKStepGetRootInfo", t_s, callee);
         for (int i = 0; i < callee.n_thermostats; ++i) {
@@ -233,6 +233,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
                           "for its volume?",
                           ode.thermostats()[static_cast<std::size_t>(i)].name, n_switches, t_s));
         }
+        if (t_s >= stretch.end_s) break;  // reached at the very end: the next stretch begins with it switched
         (void)ode.begin_stretch(stretch, out(y.get()));
         restart(stretch.end_s);
         check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "solver/stage_ode.hpp"
+
 namespace driftwright::solver {
 namespace {
 
@@ -148,6 +150,13 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
     }
     solution.state(length_s, e, z.head(n));
     state.noalias() = d.vectors * z;
+  }
+  for (std::size_t o = 0; o < system_.outputs.unit.size() && n_times > 0; ++o) {
+    if (system_.outputs.unit[o] != "K") continue;
+    const auto row = run.outputs.row(static_cast<Eigen::Index>(o));
+    Eigen::Index at = 0;
+    const double farthest_K = row.cwiseAbs().maxCoeff(&at), value_K = row[at];
+    if (farthest_K > 0.0) require_sane(&value_K, 1, system_.reference_K, output_s[static_cast<std::size_t>(at)]);
   }
   return run;
 }

@@ -127,6 +127,43 @@ collect: [nose_z.end]
   EXPECT_THAT(read_text(folder / "out" / "report.html"), HasSubstr("2 of 5 members failed"));
 }
 
+TEST(Sweep, AMemberWithoutAWayOutForHeatCostsNoOtherOfAReducedSweep) {
+  // One basis cannot span a machine that loses no heat: each member then gets its own.
+  const fs::path folder = fresh_folder("failing_reduced");
+  std::ofstream(folder / "one_node.yaml") << R"(name: one_node
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: body, capacity: 5 kJ/K}
+  - {type: heat_source, node: body, power: 20 W}
+  - {type: link, node: body, to: hall, conductance: 4 W/K}
+hall: [[0 h, 20 degC]]
+sensors: [{name: t_body, node: body}]
+cyclograms: {rest: [[60 min, 0 rpm]]}
+solver: {model: reduced}
+)";
+  const std::string rest = R"(design: list
+cyclograms: [rest]
+vary:
+  - name: link
+    key: effects[link@body@hall].conductance
+    values: [4 W/K, 0 W/K, 5 W/K]
+collect: [t_body.end]
+)";
+  const CommandOutcome outcome =
+      run_program("sweep " + write_study(folder, "one_node.yaml", rest) + " -o " + (folder / "out").string());
+  const Table table = read_table(folder / "out" / "sweep.csv");
+  ASSERT_EQ(table.size(), 4u) << outcome.output;
+  EXPECT_EQ(cell(table, 1, "status"), "done");
+  EXPECT_THAT(cell(table, 2, "status"), HasSubstr("refused: "));
+  EXPECT_EQ(cell(table, 3, "status"), "done");
+  // C = 5 kJ/K, 60 min: 20 + P/G (1 - exp(-G t / C))
+  EXPECT_NEAR(std::stod(cell(table, 1, "rest_t_body_end_degC")), 20.0 + 5.0 * (1.0 - std::exp(-4.0 * 3600.0 / 5000.0)),
+              0.01);
+  EXPECT_NEAR(std::stod(cell(table, 3, "rest_t_body_end_degC")), 20.0 + 4.0 * (1.0 - std::exp(-5.0 * 3600.0 / 5000.0)),
+              0.01);
+}
+
 TEST(Sweep, GivesTheSameBytesOnOneAndTwoThreads) {
   const fs::path folder = fresh_folder("threads");
   const std::string study = write_study(folder, lumped(), kHypercube);
