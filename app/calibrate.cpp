@@ -33,6 +33,7 @@ void calibrate(const CalibrateOptions& options) {
       write_scenario("calibrated", m, stated_scatter(*m.twin, d), head, folder, &difference);
   nlohmann::ordered_json json = diagnosis_json(d);
   json["warning"] = warning;
+  json["calibrated_scenario"] = {{"written", calibrated.written}, {"not_written", calibrated.not_written}};
   folder.write_text("calibration.json", output::json_text(json));
   const DiagnosisPage page{m, d, candidates, calibrated, difference, "calibrated.yaml"};
   folder.write_text("report.html", output::render_html(calibration_report(page, folder.made_by())));

@@ -38,10 +38,12 @@ void diagnose(const DiagnoseOptions& options) {
                                                      [&](const std::string& work) { progress.begin(work); });
   progress.begin("writing");
   const std::vector<diagnosis::Candidate> candidates = diagnosis::candidates(*m.twin, m.runs, m.how.without);
-  folder.write_text("diagnosis.json", output::json_text(diagnosis_json(d)));
   std::string difference;
   const diagnosis::ExtendedScenario extended =
       write_scenario("extended", m, stated_causes(*m.twin, d), head_of(d, options), folder, &difference);
+  nlohmann::ordered_json json = diagnosis_json(d);
+  json["extended"] = {{"written", extended.written}, {"not_written", extended.not_written}};
+  folder.write_text("diagnosis.json", output::json_text(json));
   const bool has_mesh = write_missing_heat(m.mesh, missing_heat(d, candidates), folder);
   const DiagnosisPage page{m, d, candidates, extended, difference, "extended.yaml"};
   folder.write_text("report.html", output::render_html(diagnosis_report(page, folder.made_by())));

@@ -106,7 +106,10 @@ class Writer {
     for (const ChangedFriction& f : s.frictions) friction(f);
     for (const ChangedExchange& e : s.exchanges) exchange(e);
     for (const ChangedBody& b : s.bodies) body(b);
-    if (s.gradient_K_m != 0.0) append(fmt::format("type: stratification, gradient: {} K/m", number(s.gradient_K_m)));
+    if (s.gradient_K_m != 0.0) {
+      append(fmt::format("type: stratification, gradient: {} K/m{}", number(s.gradient_K_m),
+                         s.level_m != 0.0 ? fmt::format(", level: {} m", number(s.level_m)) : ""));
+    }
     drive(s.drive);
     readings(s.readings);
   }
@@ -317,7 +320,7 @@ class Writer {
         if (!(exponent >= 0.0 && exponent <= 4.0))
           throw CannotWrite{fmt::format("the exponent would be {:.3g}; 0 to 4 is allowed", exponent)};
         append(fmt::format("type: friction_law, {}, power: {} W, at_speed: {} rpm, exponent: {}{}", body_key(f.body),
-                           number(p.power_W), number(f.at_speed_rpm), number(exponent),
+                           number(f.factor * p.power_W), number(f.at_speed_rpm), number(exponent),
                            f.decay_1_K == 0.0 ? ""
                                               : fmt::format(", decay: {} 1/K, at_temperature: {:.2f} degC",
                                                             number(f.decay_1_K), f.at_K - 273.15)));

@@ -210,11 +210,16 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
   set_grid(run);
   run.hall = model.hall;
   const double reference_C = model.reference_K - kZeroCelsius_K;
-  if (const Channel* ambient = record.find("ambient")) {
+  const Channel* ambient = record.find("ambient");
+  for (std::size_t o = 0; !ambient && o < outputs.name.size(); ++o) {  // a thermometer in the hall does as well
+    if (outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) ambient = record.find(outputs.name[o]);
+  }
+  if (ambient) {
     const auto n_readings =
         std::count_if(ambient->values.begin(), ambient->values.end(), [](double v) { return !std::isnan(v); });
-    if (ambient->unit != "degC")
-      throw InputError(fmt::format("{}: channel ambient is in {}; degC is wanted", path, ambient->unit));
+    if (ambient->unit != "degC") {
+      throw InputError(fmt::format("{}: channel {} is in {}; degC is wanted", path, ambient->name, ambient->unit));
+    }
     if (n_readings > 0) {
       std::vector<double> hall_K;
       for (double v : ambient->values) hall_K.push_back(v - reference_C);

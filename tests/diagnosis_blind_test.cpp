@@ -1,0 +1,84 @@
+// Effects that the diagnosis is not told of, in records it did not make (tests/blind), named at their place; and silence where there is
+// none. The full set of 400 runs in bench/blind.sh.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/measured_twin.hpp"
+#include "blind/case.hpp"
+#include "diagnosis/diagnosis.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr const char* kMachines = "tests/blind/machines";
+constexpr double kLoud = 10.0;  // d' from which on an effect must be found
+
+struct Told {
+  nlohmann::json truth;
+  Diagnosis diagnosis;
+};
+
+Told told(std::uint64_t seed) {
+  const std::filesystem::path out =
+      std::filesystem::path(testing::TempDir()) / fmt::format("driftwright_blind-{}", getpid());
+  blind::CaseMaker maker(kMachines);
+  (void)maker.make(seed, out);
+  const std::filesystem::path folder = out / fmt::format("case_{:04d}", seed);
+  Told t{nlohmann::json::parse(std::ifstream(folder / "truth.json")), {}};
+  const scenarios::Scenario scenario = scenarios::read_scenario((folder / "scenario.yaml").string());
+  std::vector<std::string> measured;
+  for (const char* name : {"measured_1.csv", "measured_2.csv"}) {
+    if (std::filesystem::exists(folder / name)) measured.push_back((folder / name).string());
+  }
+  app::Progress progress;
+  app::MeasuredTwin m = app::open_measured_twin(scenario, "diagnose", measured, progress);
+  if (t.truth["without"].is_string()) m.how.without.insert(t.truth["without"].get<std::string>());
+  t.diagnosis = diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, [](const std::string&) {});
+  std::filesystem::remove_all(out);
+  return t;
+}
+
+class NoEffect : public testing::TestWithParam<int> {};
+TEST_P(NoEffect, IsConsistent) {
+  const Told t = told(static_cast<std::uint64_t>(GetParam()));
+  EXPECT_EQ(t.diagnosis.verdict, Verdict::kConsistent) << t.diagnosis.reason;
+  EXPECT_TRUE(t.diagnosis.causes.empty()) << t.diagnosis.reason;
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, NoEffect, testing::Values(2, 6, 14, 18, 22, 26));
+
+class LoudEffects : public testing::TestWithParam<int> {};
+TEST_P(LoudEffects, AreNamedAtTheirPlace) {
+  const Told t = told(static_cast<std::uint64_t>(GetParam()));
+  EXPECT_TRUE(t.diagnosis.verdict == Verdict::kNamed || t.diagnosis.verdict == Verdict::kAmbiguous) << t.diagnosis.reason;
+  int n_loud = 0;
+  for (const auto& hidden : t.truth["effects"]) {
+    if (hidden["d_prime_beside_others"] < kLoud) continue;
+    ++n_loud;
+    const std::string effect = hidden["effect"], where = hidden["where"];
+    const auto matches = [&](const Cause& c) { return c.effect == effect && c.where == where; };
+    EXPECT_TRUE(std::any_of(t.diagnosis.causes.begin(), t.diagnosis.causes.end(), matches))
+        << effect << " at " << where << ": " << t.diagnosis.reason;
+  }
+  EXPECT_GT(n_loud, 0);
+  EXPECT_LE(t.diagnosis.causes.size(), t.truth["effects"].size()) << t.diagnosis.reason;
+  for (const ChannelGain& g : t.diagnosis.gain) {  // kept out of the fit: within a fifth of the noise
+    EXPECT_LT(g.rmse_after, 1.2 * g.noise_floor) << g.name;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, LoudEffects, testing::Values(0, 24, 43, 45, 47, 49, 57));
+
+TEST(EffectOutsideTheCatalogue, IsNotGivenAName) {
+  for (std::uint64_t seed : {4, 15}) {  // heat of acceleration; a lag that the catalogue is without
+    const Told t = told(seed);
+    EXPECT_NE(t.diagnosis.verdict, Verdict::kNamed) << t.diagnosis.reason;
+  }
+}
+
+}  // namespace
+}  // namespace driftwright::diagnosis

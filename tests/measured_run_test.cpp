@@ -1,0 +1,106 @@
+// Records as they come from a shop floor: gaps, stuck sensors, other units, no speed.
+
+#include "diagnosis/measured_run.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+solver::Outputs outputs() {
+  solver::Outputs o;
+  o.name = {"t_front", "nose_z", "hall"};
+  o.unit = {"K", "m", "K"};
+  o.hall = Eigen::Vector3d(0.0, 0.0, 1.0);
+  return o;
+}
+
+class MeasuredRunTest : public testing::Test {
+ protected:
+  MeasuredRun read(const std::string& text) {
+    const std::string path = testing::TempDir() + "measured_run_test.csv";
+    std::ofstream(path) << text;
+    scenarios::MachineModel model;
+    model.reference_K = 293.15;
+    model.hall = {{0.0}, {0.0}};
+    return read_measured(path, model, outputs());
+  }
+  std::string refusal(const std::string& text) {
+    try {
+      (void)read(text);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(MeasuredRunTest, TakesSpeedAsSectionsTheHallAsKnotsAndReadingsInSI) {
+  std::string text = "time_min,speed_rpm,ambient_degC,t_front_degC,nose_z_um\n";
+  for (int i = 0; i <= 60; ++i) {
+    text += std::to_string(10 + i) + (i < 30 ? ",1000" : ",0") + ",21," + std::to_string(20.0 + 0.1 * i) + "," +
+            std::to_string(0.5 * i) + "\n";
+  }
+  const MeasuredRun run = read(text);
+  EXPECT_EQ(run.time_s.front(), 0.0);
+  ASSERT_EQ(run.cyclogram.sections.size(), 2u);
+  EXPECT_EQ(run.cyclogram.sections[0].duration_s, 1800.0);
+  EXPECT_EQ(run.cyclogram.sections[1].drive.speed_rpm, 0.0);
+  EXPECT_NEAR(run.hall.at(1234.0), 1.0, 1e-9);
+  ASSERT_NE(run.find("t_front"), nullptr);
+  EXPECT_NEAR(run.find("t_front")->value[10], 1.0, 1e-9);
+  EXPECT_NEAR(run.find("nose_z")->value[10], 5e-6, 1e-15);
+  EXPECT_TRUE(std::isnan(run.find("nose_z")->value[30]));  // at the very change of speed it is open what has jumped
+  EXPECT_FALSE(std::isnan(run.find("t_front")->value[30]));
+  EXPECT_EQ(run.row_in_grid.size(), run.time_s.size());
+  EXPECT_GT(run.grid_s.size(), run.time_s.size());
+  EXPECT_EQ(run.grid_s[static_cast<std::size_t>(run.row_in_grid[40])], run.time_s[40]);
+}
+
+TEST_F(MeasuredRunTest, TakesAThermometerInTheHallForTheHall) {
+  std::string text = "time_s,speed_rpm,t_front_degC,hall_degC\n";
+  for (int i = 0; i < 40; ++i) text += std::to_string(60 * i) + ",500," + std::to_string(20.0 + 0.013 * i) + ",23\n";
+  const MeasuredRun run = read(text);
+  EXPECT_TRUE(run.has_ambient);
+  EXPECT_NEAR(run.hall.at(600.0), 3.0, 1e-9);
+  EXPECT_EQ(run.find("hall"), nullptr);  // it is an input now
+}
+
+TEST_F(MeasuredRunTest, LeavesOutAStuckSensorByNameAndCountsGaps) {
+  std::string text = "time_s,speed_rpm,t_front_degC,nose_z_um\n";
+  for (int i = 0; i < 40; ++i)
+    text += std::to_string(60 * i) + ",500,23.4," + (i == 7 ? std::string() : std::to_string(1.01 * i * i)) + "\n";
+  const MeasuredRun run = read(text);
+  EXPECT_EQ(run.find("t_front"), nullptr);
+  std::string all;
+  for (const DataFinding& f : run.findings) all += f.what + "\n";
+  EXPECT_THAT(all, AllOf(HasSubstr("t_front is stuck"), HasSubstr("23.4 degC"), HasSubstr("nose_z misses 1 of 40"),
+                         HasSubstr("no hall temperature")));
+}
+
+TEST_F(MeasuredRunTest, RecognisesTheStepOfAnInstrument) {
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 60; ++i) text += std::to_string(60 * i) + ",500," + std::to_string(20.0 + 0.1 * (i / 7)) + "\n";
+  EXPECT_NEAR(read(text).find("t_front")->quantum, 0.1, 1e-12);
+}
+
+TEST_F(MeasuredRunTest, RefusesWhatCannotBeComparedAndSaysWhatIsWanted) {
+  EXPECT_THAT(refusal("time_s,t_front_degC\n0,20\n60,21\n120,22\n"),
+              AllOf(HasSubstr("speed_rpm"), HasSubstr("t_front_degC")));
+  EXPECT_THAT(refusal("time_s,speed_rpm,t_front_um\n0,0,20\n60,0,21\n120,0,22\n"),
+              AllOf(HasSubstr("t_front is in um"), HasSubstr("degC")));
+  EXPECT_THAT(refusal("time_s,speed_rpm,other_degC\n0,0,20\n60,0,21\n120,0,22\n"),
+              AllOf(HasSubstr("no channel to compare"), HasSubstr("t_front")));
+  EXPECT_THAT(refusal("time_s,speed_rpm,t_front_degC\n0,0,20\n60,0,21\n"), HasSubstr("2 rows"));
+  EXPECT_THAT(refusal("time_s,speed_rpm,t_front_degC\n0,-5,20\n60,0,21\n120,0,22\n"), HasSubstr("speeds are positive"));
+}
+
+}  // namespace
+}  // namespace driftwright::diagnosis
