@@ -6,11 +6,11 @@
     to_record.py lathe_no_stop 2016-12-30_TM1.csv         out.csv   the same as if nobody had noted the stop
     to_record.py table_d       -                          out.csv   eight published numbers, at standstill
     to_record.py incubator     2021-01-22_lid_opening.csv out.csv   heater as cutting_power_W
-    to_record.py printer_frame frame_temp_v_pos_....csv   out.csv   chamber as the hall
+    to_record.py printer_frame frame_temp_v_pos_....csv   out.csv   heat of the bed as cutting_power_W
     to_record.py printer_good  frame_temp_v_pos_....csv   out.csv   the same without homings off by more than 1 mm
     to_record.py heated_plate  run.csv                    out.csv   100 rpm per volt of lamp drive
     to_record.py test_house    prbs.csv                   out.csv   heaters as cutting_power_W, sun left out
-    to_record.py test_house_sun prbs.csv                  out.csv   the same, sun as feed_x: 1 mm/min per W/m2
+    to_record.py test_house_sun prbs.csv                  out.csv   the same, sun as feed_x: 100 mm/min per W/m2
 
 Speeds, feeds and cutting power are the drives that a record may have; what drives these machines is written into one of them.
 Standard library only.
@@ -65,13 +65,13 @@ def table_d(_):
         yield [time_h, 0, hall_degC, delta_mm]
 
 
-def with_columns(rename, fixed=None, scale=None, keep=lambda row: True):
+def with_columns(rename, fixed=None, scale=None):
     """Columns renamed (old: new), constant ones put in (name: value), some scaled (old: factor); others are dropped."""
     fixed, scale = fixed or {}, scale or {}
 
     def convert(path):
         yield ["time_s", *fixed, *rename.values()]
-        for row in filter(keep, read(path)):
+        for row in read(path):
             yield [row["time_s"], *fixed.values(), *(f"{float(row[n]) * scale.get(n, 1.0):.6g}" for n in rename)]
 
     return convert
@@ -82,7 +82,19 @@ def spindle_22(path):
     return with_columns({n: n for n in names}, {"speed_rpm": 1000})(path)
 
 
-FRAME = {"chamber_degC": "ambient_degC", "frame_degC": "frame_degC", "drift_um": "drift_um"}
+def printer(keep):
+    """The bed's heat into the chamber, 1 W/K times what it is warmer than the room, of 22 degC, as cutting power."""
+
+    def convert(path):
+        yield ["time_s", "speed_rpm", "cutting_power_W", "frame_degC", "chamber_degC", "drift_um"]
+        for row in filter(keep, read(path)):
+            power_W = max(0.0, float(row["bed_degC"]) - 22.0)
+            yield [row["time_s"], 0, f"{power_W:.2f}", *(f"{float(row[n]):.2f}" for n in ("frame_degC", "chamber_degC")),
+                   row["drift_um"]]
+
+    return convert
+
+
 HOUSE = {"outdoor_degC": "ambient_degC", "heater_W": "cutting_power_W", "indoor_degC": "indoor_degC"}
 CONVERSIONS = {
     "spindle_22": spindle_22,
@@ -91,11 +103,11 @@ CONVERSIONS = {
     "table_d": table_d,
     "incubator": with_columns({"heater_W": "cutting_power_W", "room_degC": "room_degC", "inside_2_degC": "inside_2_degC",
                                "inside_3_degC": "inside_3_degC"}, {"speed_rpm": 0}),
-    "printer_frame": with_columns(FRAME, {"speed_rpm": 0}),
-    "printer_good": with_columns(FRAME, {"speed_rpm": 0}, keep=lambda row: abs(float(row["drift_um"])) < 1000.0),
+    "printer_frame": printer(lambda row: True),
+    "printer_good": printer(lambda row: abs(float(row["drift_um"])) < 1000.0),
     "heated_plate": with_columns({"drive_V": "speed_rpm", "plate_degC": "plate_degC"}, scale={"drive_V": 100.0}),
     "test_house": with_columns(HOUSE, {"speed_rpm": 0}),
-    "test_house_sun": with_columns({**HOUSE, "solar_W_m2": "feed_x_mm_min"}, {"speed_rpm": 0}),
+    "test_house_sun": with_columns({**HOUSE, "solar_W_m2": "feed_x_mm_min"}, {"speed_rpm": 0}, {"solar_W_m2": 100.0}),
 }
 
 if __name__ == "__main__":
