@@ -51,11 +51,12 @@ def lathe(path, with_stop):
     # All readings from their first one on, the hall about 20 degC: yesterday's warmth is in each body as its own start, and a
     # scenario has one start for all.
     names = [n for n in rows[0] if n.endswith("_degC") and n != "ambient_degC"]
+    start_s = float(rows[0]["time_s"])
     first = {n: float(rows[0][n]) for n in [*names, "ambient_degC", "diameter_um"]}
     yield ["time_s", "speed_rpm", "ambient_degC", *(n.replace("degC", "K") for n in names), "diameter_um"]
     for row, turns in zip(rows, turning):
         rise = {n: float(row[n]) - first[n] for n in first}
-        yield [row["time_s"], level if turns else 0, f"{20.0 + rise['ambient_degC']:.2f}", *(f"{rise[n]:.2f}" for n in names),
+        yield [f"{float(row['time_s']) - start_s:g}", level if turns else 0, f"{20.0 + rise['ambient_degC']:.2f}", *(f"{rise[n]:.2f}" for n in names),
                f"{rise['diameter_um']:.3f}"]
 
 
