@@ -13,11 +13,8 @@ using diagnosis::Estimate;
 
 constexpr double kTooFar = 3.5;  // sigmas: beyond, a number is an effect
 
-double scale_of(const Estimate& e) {
-  return e.unit == "s" ? 1.0 / 60.0 : 1.0;
-}
 std::string unit_of(const Estimate& e) {
-  return e.unit == "1" ? "" : e.unit == "s" ? " min" : " " + e.unit;
+  return e.unit == "1" ? "" : " " + e.unit;
 }
 
 /// Lines of equally wide columns; the first is aligned left, the others right, but for a last one of words.
@@ -41,17 +38,19 @@ std::string columns(const std::vector<std::vector<std::string>>& rows, bool ends
 }  // namespace
 
 std::string value_text(const Estimate& e) {
-  return fmt::format("{:.4g}{}", scale_of(e) * e.value, unit_of(e));
+  return fmt::format("{:.4g}{}", e.value, unit_of(e));
 }
 std::string interval_text(const Estimate& e) {
-  const double a = scale_of(e) * e.low, b = scale_of(e) * e.high;
+  const double a = e.low, b = e.high;
   return fmt::format("{:.3g} to {:.3g}", std::min(a, b), std::max(a, b));
 }
 
 std::string parameters_text(const diagnosis::Cause& cause) {
   std::vector<std::string> numbers;
-  for (const Estimate& p : cause.parameters)
+  for (const Estimate& p : cause.parameters) {
+    if (p.name == "at_speed") continue;  // the law says it
     numbers.push_back(fmt::format("{} {} ({})", p.name, value_text(p), interval_text(p)));
+  }
   return fmt::format("{}", fmt::join(numbers, ", "));
 }
 

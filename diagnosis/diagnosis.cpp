@@ -36,8 +36,9 @@ Cause cause_of(const std::vector<Candidate>& list, const Claim& claim, const Fit
     double sd = std::sqrt(std::max(0.0, fit.covariance(i, i)));
     if (knob.is_time) sd = 60.0;
     if (claim.all_or_nothing) continue;
-    c.parameters.push_back(
-        {knob.name, knob.unit, knob.value(fit.x[i]), knob.value(fit.x[i] - 1.96 * sd), knob.value(fit.x[i] + 1.96 * sd)});
+    const double scale = knob.is_time ? 60.0 : 1.0;
+    c.parameters.push_back({knob.name, knob.is_time ? "min" : knob.unit, knob.value(fit.x[i]) / scale,
+                            knob.value(fit.x[i] - 1.96 * sd) / scale, knob.value(fit.x[i] + 1.96 * sd) / scale});
   }
   const double rpm = list[claim.candidate].variants[claim.variant].at_speed_rpm;
   if (rpm > 0.0) c.parameters.push_back({"at_speed", "rpm", rpm, rpm, rpm});
@@ -81,9 +82,9 @@ std::vector<Prediction> mesh_columns(const Twin& twin, const Twin* coarse, doubl
 std::string words(const Cause& c) {
   std::vector<std::string> numbers;
   for (const Estimate& p : c.parameters) {
-    numbers.push_back(p.unit == "s" ? fmt::format("{} {:.0f} min", p.name, p.value / 60.0)
-                                    : fmt::format("{} {:.3g}{} ({:.3g} to {:.3g})", p.name, p.value,
-                                                  p.unit == "1" ? "" : " " + p.unit, p.low, p.high));
+    if (p.name == "at_speed") continue;  // the law says it
+    numbers.push_back(
+        fmt::format("{} {:.3g}{} ({:.3g} to {:.3g})", p.name, p.value, p.unit == "1" ? "" : " " + p.unit, p.low, p.high));
   }
   return fmt::format("{} at {} ({}){}{}", c.effect, c.where, c.law, numbers.empty() ? "" : ": ", fmt::join(numbers, ", "));
 }

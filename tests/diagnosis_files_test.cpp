@@ -46,8 +46,8 @@ TEST(MissingHeat, IsTheBestLawOfEachBodyThatBringsEvidence) {
 }
 
 TEST(DiagnosisSummary, TimesAreInMinutesAndIntervalsInOrder) {
-  EXPECT_EQ(value_text({"at", "s", 7200.0, 7080.0, 7320.0}), "120 min");
-  EXPECT_EQ(interval_text({"at", "s", 7200.0, 7080.0, 7320.0}), "118 to 122");
+  EXPECT_EQ(value_text({"time", "min", 120.0, 118.0, 122.0}), "120 min");
+  EXPECT_EQ(interval_text({"time", "min", 120.0, 118.0, 122.0}), "118 to 122");
   EXPECT_EQ(interval_text({"factor", "1", 0.8, 0.9, 0.7}), "0.7 to 0.9");
   EXPECT_EQ(value_text({"factor", "1", 0.8, 0.7, 0.9}), "0.8");
 }
