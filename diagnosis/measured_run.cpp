@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "base/quantity.hpp"
@@ -92,8 +93,10 @@ Cyclogram cyclogram_of(const Record& record, const std::vector<double>& time_s, 
   return cyclogram;
 }
 
-/// The step that all values are multiples of, among those instruments have; 0 for none.
+/// The step that all values are multiples of, as instruments have it and as its readings show it, whatever the digits they were
+/// written with; 0 for none.
 double quantum_of(const std::vector<double>& values) {
+  constexpr double kFinest = 0.01, kRounding = 5.1e-4;  // three decimals are what records have
   std::map<double, int> distinct;
   int n = 0;
   for (double v : values) {
@@ -102,13 +105,18 @@ double quantum_of(const std::vector<double>& values) {
     ++n;
   }
   if (n < 10 || static_cast<int>(distinct.size()) > n / 2) return 0.0;
-  for (double step : {10.0, 5.0, 2.0, 1.0, 0.5, 0.25, 0.2, 0.1, 0.0625, 0.05, 0.02, 0.01}) {
-    const bool fits = std::all_of(distinct.begin(), distinct.end(), [&](const auto& d) {
-      return std::abs(d.first / step - std::round(d.first / step)) < 1e-4;
+  const auto fits = [&](double step) {
+    return std::all_of(distinct.begin(), distinct.end(), [&](const auto& d) {
+      return std::abs(d.first - step * std::round(d.first / step)) < std::min(kRounding, 0.06 * step);
     });
-    if (fits) return step;
+  };
+  for (double step : {10.0, 5.0, 2.0, 1.0, 0.5, 0.25, 0.2, 0.1, 0.0625, 0.05, 0.02, 0.01}) {
+    if (fits(step)) return step;
   }
-  return 0.0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (auto d = distinct.begin(); d != distinct.end() && std::next(d) != distinct.end(); ++d)
+    smallest = std::min(smallest, std::next(d)->first - d->first);
+  return smallest < 1e3 && smallest > kFinest && fits(smallest) ? smallest : 0.0;
 }
 
 int longest_equal_run(const std::vector<double>& values) {
@@ -274,8 +282,12 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
          false});
   }
   if (run.channels.empty()) {
+    std::string why;
+    for (const DataFinding& f : run.findings) {
+      if (f.leaves_out) why += "; " + f.what;
+    }
     throw InputError(
-        fmt::format("{}: no channel to compare; the scenario's are called {}", path, fmt::join(outputs.name, ", ")));
+        fmt::format("{}: no channel to compare; the scenario's are called {}{}", path, fmt::join(outputs.name, ", "), why));
   }
   return run;
 }

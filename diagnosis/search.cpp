@@ -88,6 +88,7 @@ struct Fitted {
 std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                    const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit,
                                    int n) {
+  if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
   std::vector<Score> list = scores(fitter, candidates, columns, base, base_fit);
   std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
   std::vector<Score> chosen;
@@ -236,8 +237,11 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   Hypothesis best;
   say("fitting the scenario's own numbers");
   Fit best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
+  if (best_fit.prediction.empty())
+    throw SolveError("the scenario's own numbers cannot be fitted: the machine has no solution near them");
   fitter.settle({}, best_fit);
-  best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
+  if (Fit again = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front(); !again.prediction.empty())
+    best_fit = std::move(again);
   result.without = best_fit;
   say(fmt::format("signatures of {} candidates", candidates.size()));
   std::vector<Signature> columns = signatures(fitter, candidates, {}, best_fit);
@@ -282,7 +286,9 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   for (int turn = 0; turn < 2 && !best.empty(); ++turn) {
     say("settling the numbers");
     fitter.settle(best, best_fit);
-    best_fit = fit_all(fitter, {{best, best_fit.x.tail(best_fit.x.size() - fitter.n_nuisance())}}).front();
+    Fit settled = fit_all(fitter, {{best, best_fit.x.tail(best_fit.x.size() - fitter.n_nuisance())}}).front();
+    if (settled.prediction.empty()) break;  // the last one stands
+    best_fit = std::move(settled);
     best_value = evidence(best_fit, best) - laws_price(candidates, best);
     columns = signatures(fitter, candidates, best, best_fit);
     if (!exchange()) break;

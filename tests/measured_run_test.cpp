@@ -2,6 +2,7 @@
 
 #include "diagnosis/measured_run.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -89,6 +90,24 @@ TEST_F(MeasuredRunTest, RecognisesTheStepOfAnInstrument) {
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 60; ++i) text += std::to_string(60 * i) + ",500," + std::to_string(20.0 + 0.1 * (i / 7)) + "\n";
   EXPECT_NEAR(read(text).find("t_front")->quantum, 0.1, 1e-12);
+}
+
+TEST_F(MeasuredRunTest, RecognisesStepsThatWereWrittenRoundedOrBelongToAConverter) {
+  // 1/16 K cut to three decimals, long at rest; a converter's 0.244 K, long at its lower end: neither stuck nor saturated
+  for (const double step : {0.0625, 0.244}) {
+    std::string text = "time_s,speed_rpm,t_front_degC\n";
+    for (int i = 0; i < 90; ++i)
+      text += fmt::format("{},500,{:.3f}\n", 60 * i, step * (340 + (i < 50 ? 0 : (i - 50) / 3)) - 1e-4);
+    const MeasuredRun run = read(text);
+    ASSERT_NE(run.find("t_front"), nullptr) << step;
+    EXPECT_NEAR(run.find("t_front")->quantum, step, 1e-9);
+  }
+}
+
+TEST_F(MeasuredRunTest, SaysWhyTheOnlyChannelIsLeftOut) {
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 40; ++i) text += std::to_string(60 * i) + ",500,23.4\n";
+  EXPECT_THAT(refusal(text), AllOf(HasSubstr("no channel to compare"), HasSubstr("t_front is stuck")));
 }
 
 TEST_F(MeasuredRunTest, RefusesWhatCannotBeComparedAndSaysWhatIsWanted) {
