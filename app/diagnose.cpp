@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/diagnosis_files.hpp"
 #include "app/diagnosis_json.hpp"
@@ -34,6 +36,12 @@ void diagnose(const DiagnoseOptions& options) {
   Progress progress;
   MeasuredTwin m = open_measured_twin(scenario, "diagnose", options.measured, progress);
   m.how.without = {options.without.begin(), options.without.end()};
+  std::set<std::string> keys;
+  for (const diagnosis::Candidate& c : diagnosis::candidates(*m.twin, m.runs, {})) keys.insert(c.effect);
+  for (const std::string& key : options.without) {
+    if (keys.contains(key)) continue;
+    throw InputError(fmt::format("--without {}: no candidate has that key; there are {}", key, fmt::join(keys, ", ")));
+  }
   const diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how,
                                                      [&](const std::string& work) { progress.begin(work); });
   progress.begin("writing");

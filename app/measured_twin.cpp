@@ -64,7 +64,16 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   const scenarios::PlacedMachine placed = scenarios::place(model);
   m.mesh = placed.mesh;
   const solver::Outputs names = output_names(model, placed);
-  for (const std::string& path : measured) m.runs.push_back(diagnosis::read_measured(path, model, names));
+  for (const std::string& path : measured) {
+    m.runs.push_back(diagnosis::read_measured(path, model, names));
+    for (std::size_t r = 0; r + 1 < m.runs.size(); ++r) {
+      if (m.runs[r].name != m.runs.back().name) continue;
+      throw InputError(
+          fmt::format("{}: there is a record called '{}' already ({}); what happened in one of them is said by its "
+                      "name. Rename one of the files",
+                      path, m.runs[r].name, m.runs[r].path));
+    }
+  }
 
   const auto open = [&](const scenarios::Scenario& of) {
     auto parts = std::make_unique<TwinParts>(TwinParts{diagnosis::augment(of, m.mesh, m.runs), {}});

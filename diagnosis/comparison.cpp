@@ -53,7 +53,9 @@ std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>&
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const Eigen::MatrixXd curves = smooth_curves(runs[r].time_s, relative_speed(runs[r]));
     for (const MeasuredChannel& c : runs[r].channels) {
-      series[c.name].push_back({runs[r].time_s, c.value - prediction[r].row(c.output).transpose(), curves});
+      const Eigen::Index n_readings = (c.value.array() == c.value.array()).count();
+      series[c.name].push_back(
+          {runs[r].time_s, c.value - prediction[r].row(c.output).transpose(), telling(curves, n_readings)});
       const double floor = c.unit == "K" ? floor_K : c.unit == "m" ? floor_m : floor_rad;
       floors[c.name] = std::max({floors[c.name], floor, c.quantum / std::sqrt(12.0)});
     }

@@ -11,7 +11,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kMostIterations = 10;
+constexpr int kMostIterations = 16;
 constexpr double kConverged = 0.02;  // in Φ
 
 Eigen::Index n_knobs(const Hypothesis& hypothesis) {

@@ -12,7 +12,7 @@ constexpr double kFitted = 2.0 / 3.0;  // of a single run
 
 /// x of a fit with numbers taken from some rows of the whitened data alone: one Gauss-Newton step from the fit to all.
 Eigen::VectorXd refitted(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit,
-                         const std::vector<char>& is_used) {
+                         const std::vector<char>& is_used, bool keep_unseen) {
   const Eigen::Index n_n = fitter.n_nuisance(), n = fit.x.size();
   Eigen::MatrixXd slopes(fit.residual.size(), n);
   slopes << fitter.nuisance_slopes(), fit.slopes;
@@ -33,12 +33,16 @@ Eigen::VectorXd refitted(const Fitter& fitter, const Hypothesis& hypothesis, con
   hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
   Eigen::VectorXd step = slopes.transpose() * residual - fit.x.cwiseQuotient(sd.cwiseProduct(sd));
   const Eigen::VectorXd used_squares = slopes.colwise().squaredNorm();
+  Eigen::VectorXd from = fit.x;
   for (Eigen::Index i = n_n; i < n; ++i) {  // it happened elsewhere
     if (used_squares[i] > 1e-6 * all_squares[i]) continue;
     step[i] = 0.0;
-    hessian(i, i) = 1e12;
+    hessian.row(i).setZero();
+    hessian.col(i).setZero();
+    hessian(i, i) = 1.0;
+    if (!keep_unseen) from[i] = 0.0;
   }
-  return fit.x + hessian.llt().solve(step);
+  return from + hessian.llt().solve(step);
 }
 
 }  // namespace
@@ -73,11 +77,12 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
         ++row;
       }
     }
-    const Prediction without = fitter.predict({}, refitted(fitter, {}, result.without, is_used), workspace);
+    const Prediction without = fitter.predict({}, refitted(fitter, {}, result.without, is_used, !single), workspace);
     const Prediction with =
         result.hypothesis.empty()
             ? without
-            : fitter.predict(result.hypothesis, refitted(fitter, result.hypothesis, result.fit, is_used), workspace);
+            : fitter.predict(result.hypothesis, refitted(fitter, result.hypothesis, result.fit, is_used, !single),
+                             workspace);
     for (const MeasuredChannel& c : runs[out].channels) {
       ChannelGain& g = held.channels[index[c.name]];
       const double scale = c.unit == "K" ? 1.0 : 1e6;
@@ -105,7 +110,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
             "was decided on the whole record"
           : fmt::format(
                 "each of the {} records in turn, predicted with numbers fitted to the others; which effect it is was "
-                "decided on all",
+                "decided on all, and numbers of what happened in one record alone are kept",
                 runs.size());
   return held;
 }

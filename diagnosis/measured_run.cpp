@@ -16,6 +16,8 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kHallKnots_s = 600.0;  // films pass on nothing faster
+constexpr double kJitter = 0.01;        // of the top speed: no change of the drive
+constexpr int kSaturatedRows = 10;      // at the largest or smallest value of all
 constexpr int kStuckRows = 30;          // equal readings in a row while the model's channel moves
 
 /// Piecewise linear least squares on knots; keeps a recorded hall's slow course and drops its noise.
@@ -69,7 +71,11 @@ Cyclogram cyclogram_of(const Record& record, const std::vector<double>& time_s, 
   const Channel* feeds[] = {record.find("feed_x"), record.find("feed_y"), record.find("feed_z")};
   const Channel* cutting = record.find("cutting_power");
   Cyclogram cyclogram;
-  double last_rpm = 0.0;
+  double top_rpm = 0.0;
+  for (double rpm : speed->values) top_rpm = std::isnan(rpm) ? top_rpm : std::max(top_rpm, rpm);
+  const auto known = std::find_if(speed->values.begin(), speed->values.end(), [](double rpm) { return !std::isnan(rpm); });
+  if (known == speed->values.end()) throw InputError(fmt::format("{}: channel speed_rpm is empty", path));
+  double last_rpm = *known;  // before its first reading as at it
   for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
     Drive drive;
     if (!std::isnan(speed->values[i])) last_rpm = speed->values[i];
@@ -77,7 +83,9 @@ Cyclogram cyclogram_of(const Record& record, const std::vector<double>& time_s, 
       throw InputError(fmt::format("{}: speed {:g} rpm at {:g} s; speeds are positive, whatever the direction", path,
                                    last_rpm, time_s[i]));
     }
-    drive.speed_rpm = last_rpm;
+    const double held_rpm = cyclogram.sections.empty() ? last_rpm : cyclogram.sections.back().drive.speed_rpm;
+    const bool is_jitter = held_rpm > 0.0 && last_rpm > 0.0 && std::abs(last_rpm - held_rpm) <= kJitter * top_rpm;
+    drive.speed_rpm = is_jitter ? held_rpm : last_rpm;
     for (int a = 0; a < 3; ++a) {
       if (feeds[a] && !std::isnan(feeds[a]->values[i]))
         drive.feed_m_s[static_cast<std::size_t>(a)] = feeds[a]->values[i] / 60e3;
@@ -104,7 +112,7 @@ double quantum_of(const std::vector<double>& values) {
     ++distinct[v];
     ++n;
   }
-  if (n < 10 || static_cast<int>(distinct.size()) > n / 2) return 0.0;
+  if (n < 10) return 0.0;
   const auto fits = [&](double step) {
     return std::all_of(distinct.begin(), distinct.end(), [&](const auto& d) {
       return std::abs(d.first - step * std::round(d.first / step)) < std::min(kRounding, 0.06 * step);
@@ -126,6 +134,16 @@ int longest_equal_run(const std::vector<double>& values) {
     if (std::isnan(v)) continue;
     run = v == last ? run + 1 : 1;
     last = v;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
+
+/// Most rows in a row at a value.
+int run_at(const std::vector<double>& values, double value) {
+  int longest = 0, run = 0;
+  for (double v : values) {
+    run = v == value ? run + 1 : 0;
     longest = std::max(longest, run);
   }
   return longest;
@@ -156,20 +174,20 @@ void inspect(const Channel& channel, const std::vector<double>& all, std::vector
                         true});
     return;
   }
-  const auto at_limit = [&](double limit) { return std::count(values.begin(), values.end(), limit); };
   const double quantum = quantum_of(all);
-  if (equal >= kStuckRows && quantum == 0.0) {
+  const bool is_coarse = quantum > 0.05 * (*high - *low);  // equal readings mean nothing then
+  if (equal >= kStuckRows && !is_coarse) {
     findings.push_back(
         {channel.name,
          fmt::format("{} repeats one reading {} times in a row, though its readings have no coarse step: stuck or "
                      "saturated; it is left out",
                      channel.name, equal),
          true});
-  } else if (quantum == 0.0 && std::max(at_limit(*high), at_limit(*low)) > 5) {
+  } else if (!is_coarse && std::max(run_at(all, *low), run_at(all, *high)) >= kSaturatedRows) {
+    const double limit = run_at(all, *high) >= run_at(all, *low) ? *high : *low;
     findings.push_back({channel.name,
-                        fmt::format("{} stops {} times at {:g} {}: saturated; it is left out", channel.name,
-                                    std::max(at_limit(*high), at_limit(*low)),
-                                    at_limit(*high) >= at_limit(*low) ? *high : *low, channel.unit),
+                        fmt::format("{} stays {} rows at its limit of {:g} {}: saturated; it is left out", channel.name,
+                                    run_at(all, limit), limit, channel.unit),
                         true});
   }
   const auto n_missing = static_cast<int>(all.size() - values.size());

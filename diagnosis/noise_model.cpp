@@ -72,7 +72,7 @@ Likelihood likelihood(const std::vector<NoiseSeries>& series, const NoiseModel& 
     n_free += static_cast<double>(r.size() - x.cols());
   }
   Likelihood l;
-  if (n_free < 1.0) return {-1e300, 1.0};
+  if (n_free < 1.0) return {-1e300, 0.0};
   l.variance = std::max(squares / n_free, 1e-300);
   l.log_value = -0.5 * (n_free * std::log(l.variance) + log_determinants + n_free);
   return l;
@@ -142,8 +142,8 @@ NoiseModel estimate_noise(const std::vector<NoiseSeries>& given, double floor) {
 Eigen::MatrixXd smooth_curves(const std::vector<double>& time_s, const Eigen::VectorXd& drive) {
   const auto n = static_cast<Eigen::Index>(time_s.size());
   const double length_s = time_s.back() - time_s.front();
-  const int n_cosines =
-      std::clamp(static_cast<int>(2.0 * length_s / kShortestPeriod_s), 1, std::min(kMostCosines, static_cast<int>(n) / 6));
+  const int n_cosines = std::clamp(static_cast<int>(2.0 * length_s / kShortestPeriod_s), 1,
+                                   std::clamp(static_cast<int>(n) / 6, 1, kMostCosines));
   const std::vector<double> lags_s = {0.0, 180.0, 720.0};
   const bool drives = n >= 60 && drive.maxCoeff() > drive.minCoeff();
   const auto n_drives = drives ? static_cast<Eigen::Index>(2 * lags_s.size()) : 0;
@@ -167,6 +167,10 @@ Eigen::MatrixXd smooth_curves(const std::vector<double>& time_s, const Eigen::Ve
     }
   }
   return curves;
+}
+
+Eigen::MatrixXd telling(const Eigen::MatrixXd& curves, Eigen::Index n_readings) {
+  return curves.leftCols(std::clamp<Eigen::Index>(n_readings / 4, 1, curves.cols()));
 }
 
 }  // namespace driftwright::diagnosis

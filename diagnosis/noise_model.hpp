@@ -47,4 +47,7 @@ struct NoiseSeries {
 /// @param drive  per time, 0 to about 1
 [[nodiscard]] Eigen::MatrixXd smooth_curves(const std::vector<double>& time_s, const Eigen::VectorXd& drive);
 
+/// As many of them as so many readings can tell from noise, the slowest first.
+[[nodiscard]] Eigen::MatrixXd telling(const Eigen::MatrixXd& curves, Eigen::Index n_readings);
+
 }  // namespace driftwright::diagnosis

@@ -12,6 +12,9 @@
 namespace driftwright::diagnosis {
 namespace {
 
+constexpr double kBent =
+    1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
+
 Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   const Variant& v = candidates[score.candidate].variants[score.variant];
   return {score.candidate, score.variant, v.knobs, v.all_or_nothing};
@@ -134,6 +137,17 @@ std::pair<Hypothesis, Eigen::VectorXd> without_claim(Hypothesis hypothesis, cons
   return {std::move(hypothesis), std::move(x)};
 }
 
+/// The scenario as it stands, nothing fitted.
+Fit fit_at_zero(const Fitter& fitter) {
+  Fit fit;
+  fit.x = Eigen::VectorXd::Zero(fitter.n_nuisance());
+  Twin::Workspace workspace(fitter.twin());
+  fit.prediction = fitter.predict({}, fit.x, workspace);
+  fit.residual = fitter.comparison().measured() - fitter.comparison().whitened(fit.prediction);
+  fit.slopes.resize(fit.residual.size(), 0);
+  return fit;
+}
+
 double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
   double price = 0.0;
   for (const Claim& c : hypothesis) price += std::log(static_cast<double>(candidates[c.candidate].variants.size()));
@@ -239,13 +253,22 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   Fit best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
   if (best_fit.prediction.empty())
     throw SolveError("the scenario's own numbers cannot be fitted: the machine has no solution near them");
-  fitter.settle({}, best_fit);
-  if (Fit again = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front(); !again.prediction.empty())
-    best_fit = std::move(again);
+  if (best_fit.prediction.empty()) throw SolveError("the scenario's own machine has no solution on a measured run");
+  // A loud effect bends scatter out of shape: candidates are then weighed where the scenario stands, not where scatter was bent to.
+  const bool is_bent =
+      best_fit.x.cwiseQuotient(fitter.nuisance_sd()).squaredNorm() > kBent * static_cast<double>(fitter.n_nuisance());
+  Fit weighed_at = best_fit;
+  if (is_bent) {
+    weighed_at = fit_at_zero(fitter);
+  } else {
+    fitter.settle({}, best_fit);
+    best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
+    weighed_at = best_fit;
+  }
   result.without = best_fit;
   say(fmt::format("signatures of {} candidates", candidates.size()));
-  std::vector<Signature> columns = signatures(fitter, candidates, {}, best_fit);
-  result.scores = scores(fitter, candidates, columns, {}, best_fit);
+  std::vector<Signature> columns = signatures(fitter, candidates, {}, weighed_at);
+  result.scores = scores(fitter, candidates, columns, {}, weighed_at);
   double best_value = best_fit.log_evidence;
 
   const auto exchange = [&] {  // each for a better one, until none is; true where something changed
@@ -272,7 +295,8 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   };
   for (int round = 0; round < options.most_effects; ++round) {
     say(fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
-    const std::vector<Fitted> additions = best_additions(fitter, candidates, columns, best, best_fit, options.refits);
+    const std::vector<Fitted> additions =
+        best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits);
     if (additions.empty()) break;
     const Hypothesis tried = with(best, additions.front().claim);
     const double value = evidence(additions.front().fit, tried) - laws_price(candidates, best);
@@ -280,7 +304,10 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
     best = tried;
     best_fit = additions.front().fit;
     best_value = value;
-
+    fitter.settle(best, best_fit);  // what comes next starts from here
+    best_fit = fit_all(fitter, {{best, best_fit.x.tail(best_fit.x.size() - fitter.n_nuisance())}}).front();
+    best_value = evidence(best_fit, best) - laws_price(candidates, best);
+    if (is_bent) columns = signatures(fitter, candidates, best, best_fit);
     exchange();
   }
   for (int turn = 0; turn < 2 && !best.empty(); ++turn) {

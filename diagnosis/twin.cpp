@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "scenarios/as_recorded.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"
 
@@ -215,10 +216,10 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
     }
   }
   Eigen::VectorXd start = machine_.start;
-  const double hall_at_start_K = run.hall.at(0.0);
+  const double hall_at_start_K = effects::true_hall(drive(state), run.hall, run.cyclogram).at(0.0);
   if (augmented_.model.start == scenarios::Start::kHall) start = hall_at_start_K * machine_.system.ones;
   if (augmented_.model.start == scenarios::Start::kSteady) {  // a linear machine's steady state moves with its hall
-    start += (hall_at_start_K - augmented_.model.hall.at(0.0)) * machine_.system.ones;
+    start += (hall_at_start_K - scenarios::felt_hall_at_start_K(augmented_.model)) * machine_.system.ones;
   }
   const bool has_other_mass = std::any_of(factors.begin() + static_cast<std::ptrdiff_t>(parts.size()), factors.end(),
                                           [](double f) { return f != 1.0; });
