@@ -40,5 +40,15 @@ TEST(Spindle22, RankingAndRegressionAgreeWithAnIndependentCalculation) {
   EXPECT_NEAR(ranking["channels"][4]["grade"].get<double>(), 0.706740, 1e-6);
 }
 
+TEST(MeasuredScenarios, AreReadByTheProgramWithoutTheirRecords) {
+  int n = 0;
+  for (const auto& file : std::filesystem::directory_iterator("scenarios/measured")) {
+    const CommandOutcome outcome = run_program("check " + file.path().string());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    ++n;
+  }
+  EXPECT_EQ(n, 8);
+}
+
 }  // namespace
 }  // namespace driftwright
