@@ -70,6 +70,7 @@ Json diagnosis_json(const diagnosis::Diagnosis& d) {
     entry["sigmas_of_prior"] = e.deviation;
     json["calibrated"].push_back(entry);
   }
+  json["weighed_by_model_error"] = d.weighed_by_model_error;
   json["n_candidates"] = d.n_candidates;
   return json;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "diagnosis/gain.hpp"
 #include "diagnosis/latent_heat.hpp"
@@ -19,9 +20,11 @@ constexpr double kStandsOut = 7.0;    // sigmas of one channel's leftover
 constexpr double kStandsOutTogether = 6.0;
 constexpr double kJump =
     27.0;  // squares that one step somewhere may take off by chance: exp(-13.5) times some thousand rows
-constexpr double kFurther = 4.0;          // nats of one more effect, its price paid
-constexpr double kNoiseCanBeWider = 1.5;  // than high frequencies say
-constexpr double kWorthNaming = 0.35;     // of the noise: less is no use to anybody
+constexpr double kRough = 3.0;                // leftover over noise: a model that no effect mends
+constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
+constexpr double kFurther = 4.0;              // nats of one more effect, its price paid
+constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
+constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
 
 Cause cause_of(const std::vector<Candidate>& list, const Claim& claim, const Fit& fit, Eigen::Index first, double gain) {
   Cause c{list[claim.candidate].effect,
@@ -139,6 +142,21 @@ std::map<std::string, NoiseModel> widest_noise(const Fitter& fitter, const Fit& 
   return widest;
 }
 
+/// Noise with what the model misses as a slow part of it, where that is far more than the noise: readings of a model so wrong weigh no more.
+std::optional<std::map<std::string, NoiseModel>> models_own_error(const Fitter& fitter, const SearchResult& result,
+                                                                  const std::map<std::string, NoiseModel>& noise) {
+  std::map<std::string, NoiseModel> rough = noise;
+  bool is_rough = false;
+  for (const Leftover& l : leftovers(fitter.runs(), result.fit.prediction, noise)) {
+    if (l.rms < kRough * noise.at(l.channel).total()) continue;
+    rough[l.channel].correlated = std::hypot(noise.at(l.channel).correlated, l.rms);
+    rough[l.channel].time_s = kModelErrorTime_s;
+    is_rough = true;
+  }
+  if (!is_rough) return std::nullopt;
+  return rough;
+}
+
 std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResult& result,
                                           const std::map<std::string, NoiseModel>& noise) {
   const std::vector<Leftover> list =
@@ -214,13 +232,17 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.n_candidates = static_cast<int>(list.size());
 
   say(fmt::format("slopes of {} uncertain numbers", scatter(twin).size()));
-  Fitter fitter(twin, runs, scatter(twin), mesh_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()));
+  const auto fresh_fitter = [&] {
+    return std::make_unique<Fitter>(twin, runs, scatter(twin),
+                                    mesh_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()));
+  };
+  auto own_fitter = fresh_fitter();
   Twin::Workspace workspace(twin);
-  d.as_written = fitter.predict({}, Eigen::VectorXd::Zero(fitter.n_nuisance()), workspace);
+  d.as_written = own_fitter->predict({}, Eigen::VectorXd::Zero(own_fitter->n_nuisance()), workspace);
   d.noise = estimate_noise(runs, d.as_written, options.floor_K, options.floor_m, options.floor_rad);
   for (int pass = 0; pass < 2; ++pass) {
-    fitter.set_noise(d.noise);
-    d.search = search(fitter, list, {.most_effects = options.most_effects}, say);
+    own_fitter->set_noise(d.noise);
+    d.search = search(*own_fitter, list, {.most_effects = options.most_effects}, say);
     const auto sharper = estimate_noise(runs, d.search.fit.prediction, options.floor_K, options.floor_m, options.floor_rad);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(),
                                         [&](const auto& s) { return s.second.total() < 0.9 * d.noise.at(s.first).total(); });
@@ -229,6 +251,30 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       if (noise.total() < d.noise.at(name).total()) d.noise[name] = noise;
     }
   }
+  say("looking at what is left");
+  const auto what_is_left = [&]() -> std::optional<Unexplained> {
+    const Fitter& f = *own_fitter;
+    std::optional<Unexplained> left = unexplained_of(f, d.search, d.noise);
+    if (!left || !coarse || d.search.hypothesis.empty()) return left;
+    // the mesh's error is another one where the machine is another one
+    Fitter again(twin, runs, scatter(twin),
+                 mesh_columns(twin, coarse, options.mesh_error_share, runs, f.state(d.search.hypothesis, d.search.fit.x)));
+    again.set_noise(d.noise);
+    again.settle(d.search.hypothesis, d.search.fit);
+    SearchResult same = d.search;
+    same.fit = again.fit(d.search.hypothesis, d.search.fit.x.tail(d.search.fit.x.size() - f.n_nuisance()), workspace);
+    return unexplained_of(again, same, d.noise);
+  };
+  d.unexplained = what_is_left();
+  if (const auto rough = d.unexplained ? models_own_error(*own_fitter, d.search, d.noise) : std::nullopt) {
+    say("weighing again by what the model misses");
+    own_fitter = fresh_fitter();
+    own_fitter->set_noise(*rough);
+    d.search = search(*own_fitter, list, {.most_effects = options.most_effects}, say);
+    d.weighed_by_model_error = true;
+    if (auto left = unexplained_of(*own_fitter, d.search, d.noise)) d.unexplained = std::move(left);
+  }
+  const Fitter& fitter = *own_fitter;
   d.scatter_alone = d.search.without.prediction;
   d.extended = d.search.fit.prediction;
 
@@ -253,19 +299,6 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     const std::string of = of_one ? " of " + turned.bodies.back().displacement : "";
     d.calibrated.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x),
                             k.value(x - 1.96 * sd), k.value(x + 1.96 * sd), x / k.prior_sd});
-  }
-  say("looking at what is left");
-  d.unexplained = unexplained_of(fitter, d.search, d.noise);
-  if (d.unexplained && coarse &&
-      !d.search.hypothesis.empty()) {  // the mesh's error is another one where the machine is another one
-    Fitter again(
-        twin, runs, scatter(twin),
-        mesh_columns(twin, coarse, options.mesh_error_share, runs, fitter.state(d.search.hypothesis, d.search.fit.x)));
-    again.set_noise(d.noise);
-    again.settle(d.search.hypothesis, d.search.fit);
-    SearchResult same = d.search;
-    same.fit = again.fit(d.search.hypothesis, d.search.fit.x.tail(d.search.fit.x.size() - fitter.n_nuisance()), workspace);
-    d.unexplained = unexplained_of(again, same, d.noise);
   }
   if (n_readings < kFewestReadings && (d.causes.empty() || d.unexplained)) {
     d.verdict = Verdict::kInsufficientData;

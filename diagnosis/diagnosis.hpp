@@ -54,6 +54,8 @@ struct Diagnosis {
   std::vector<Cause> causes;
   std::optional<Experiment> experiment;
   std::optional<Unexplained> unexplained;
+  /// Causes, intervals and gains count what the model misses as noise: it misses far more than noise, whatever is claimed.
+  bool weighed_by_model_error = false;
   std::string holdout;  ///< how the gain was held out
   std::vector<ChannelGain> gain;
   std::vector<DataFinding> data;

@@ -161,12 +161,18 @@ Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin
   into_range(f.x);
   Prediction responses;
   const auto look = [&](Fit& at, Prediction& kept, bool reuse) {
-    at.prediction = predict(hypothesis, at.x, workspace, &kept, reuse);
+    at.misfit = 1e300;
+    try {
+      at.prediction = predict(hypothesis, at.x, workspace, &kept, reuse);
+    } catch (const std::exception&) {  // beyond what some law allows: a step too far
+      return;
+    }
     at.residual = comparison_->measured() - comparison_->whitened(at.prediction);
-    at.misfit = 0.5 * at.residual.squaredNorm() + prior(at.x);
-    if (!std::isfinite(at.misfit)) at.misfit = 1e300;
+    const double misfit = 0.5 * at.residual.squaredNorm() + prior(at.x);
+    if (std::isfinite(misfit)) at.misfit = misfit;
   };
   look(f, responses, false);
+  if (f.prediction.empty() || f.misfit >= 1e300) throw SolveError("the machine has no solution where the fit begins");
 
   Eigen::MatrixXd square(n, n);
   f.slopes.resize(f.residual.size(), n_k);

@@ -46,6 +46,7 @@ class Fitter {
   void settle(const Hypothesis& hypothesis, const Fit& at);
 
   /// @param start  x of the claims, in order; scatter starts where it was last settled
+  /// @throws SolveError  when the machine has no solution there
   [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const;
 
   [[nodiscard]] Eigen::Index n_nuisance() const { return static_cast<Eigen::Index>(scatter_.size() + linear_.size()); }

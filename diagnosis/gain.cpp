@@ -36,11 +36,12 @@ Eigen::VectorXd refitted(const Fitter& fitter, const Hypothesis& hypothesis, con
   Eigen::VectorXd from = fit.x;
   for (Eigen::Index i = n_n; i < n; ++i) {  // it happened elsewhere
     if (used_squares[i] > 1e-6 * all_squares[i]) continue;
+    const bool has_no_slope = all_squares[i] == 0.0;  // a time, or cables that are swapped or not
     step[i] = 0.0;
     hessian.row(i).setZero();
     hessian.col(i).setZero();
     hessian(i, i) = 1.0;
-    if (!keep_unseen) from[i] = 0.0;
+    if (!keep_unseen && !has_no_slope) from[i] = 0.0;
   }
   return from + hessian.llt().solve(step);
 }
