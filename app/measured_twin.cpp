@@ -31,28 +31,6 @@ std::optional<scenarios::Scenario> remeshed(const scenarios::Scenario& scenario,
   return other;
 }
 
-/// Names of what the scenario's instruments tell, before there is a model.
-solver::Outputs output_names(const scenarios::MachineModel& model, const scenarios::PlacedMachine& placed) {
-  solver::Outputs names;
-  for (const auto& s : model.sensors) {
-    names.name.push_back(s.name);
-    names.unit.emplace_back("K");
-  }
-  for (const auto& d : model.displacements) {
-    names.name.push_back(d.name);
-    names.unit.emplace_back("m");
-  }
-  for (const auto& t : model.tilts) {
-    names.name.push_back(t.name);
-    names.unit.emplace_back("rad");
-  }
-  names.hall = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.name.size()));
-  for (std::size_t i = 0; i < placed.sensor_weights.size(); ++i) {
-    if (placed.sensor_weights[i].empty()) names.hall[static_cast<Eigen::Index>(i)] = 1.0;
-  }
-  return names;
-}
-
 }  // namespace
 
 MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
@@ -63,7 +41,7 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   progress.begin("meshing");
   const scenarios::PlacedMachine placed = scenarios::place(model);
   m.mesh = placed.mesh;
-  const solver::Outputs names = output_names(model, placed);
+  const solver::Outputs names = scenarios::output_names(model, placed);
   for (const std::string& path : measured) {
     m.runs.push_back(diagnosis::read_measured(path, model, names));
     for (std::size_t r = 0; r + 1 < m.runs.size(); ++r) {

@@ -4,16 +4,6 @@
 #include <cmath>
 
 namespace driftwright::diagnosis {
-namespace {
-
-std::vector<char> present(const Eigen::VectorXd& series) {
-  std::vector<char> there(static_cast<std::size_t>(series.size()));
-  for (Eigen::Index i = 0; i < series.size(); ++i) there[static_cast<std::size_t>(i)] = !std::isnan(series[i]);
-  return there;
-}
-
-}  // namespace
-
 Comparison::Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise) {
   for (std::size_t r = 0; r < runs.size(); ++r) {
     for (const MeasuredChannel& c : runs[r].channels) {

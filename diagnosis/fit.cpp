@@ -53,6 +53,14 @@ Eigen::VectorXd Fitter::nuisance_sd() const {
   return sd;
 }
 
+Eigen::VectorXd Fitter::prior_sd(const Hypothesis& hypothesis) const {
+  Eigen::VectorXd sd(n_nuisance() + n_knobs(hypothesis));
+  sd.head(n_nuisance()) = nuisance_sd();
+  Eigen::Index k = n_nuisance();
+  for (const Knob* knob : knobs_of(hypothesis)) sd[k++] = knob->prior_sd;
+  return sd;
+}
+
 TwinState Fitter::state(const Hypothesis& hypothesis, const Eigen::VectorXd& x) const {
   TwinState state = twin_.as_written();
   for (std::size_t i = 0; i < scatter_.size(); ++i) {
@@ -115,8 +123,7 @@ void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x)
   differences_ = std::move(differences);
 }
 
-void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise) {
-  comparison_.emplace(runs_, noise);
+void Fitter::whiten_slopes() {
   slopes_.resize(comparison_->n(), n_nuisance());
   for (std::size_t i = 0; i < scatter_.size(); ++i)
     slopes_.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(differences_[i]);
@@ -126,25 +133,22 @@ void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise) {
   squares_.noalias() = slopes_.transpose() * slopes_;
 }
 
+void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise) {
+  comparison_.emplace(runs_, noise);
+  whiten_slopes();
+}
+
 void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
   take_slopes(hypothesis, at.x);
   nuisance_ = at.x.head(n_nuisance());
-  slopes_.resize(comparison_->n(), n_nuisance());
-  for (std::size_t i = 0; i < scatter_.size(); ++i)
-    slopes_.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(differences_[i]);
-  for (std::size_t l = 0; l < linear_.size(); ++l) {
-    slopes_.col(static_cast<Eigen::Index>(scatter_.size() + l)) = comparison_->whitened(linear_[l]);
-  }
-  squares_.noalias() = slopes_.transpose() * slopes_;
+  whiten_slopes();
 }
 
 Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const {
   const Eigen::Index n_n = n_nuisance(), n_k = n_knobs(hypothesis), n = n_n + n_k;
   const std::vector<const Knob*> knobs = knobs_of(hypothesis);
   const std::vector<char> smooth = smooth_knobs(hypothesis);
-  Eigen::VectorXd sd(n);
-  sd.head(n_n) = nuisance_sd();
-  for (Eigen::Index k = 0; k < n_k; ++k) sd[n_n + k] = knobs[static_cast<std::size_t>(k)]->prior_sd;
+  const Eigen::VectorXd sd = prior_sd(hypothesis);
   const auto into_range = [&](Eigen::VectorXd& x) {
     for (Eigen::Index k = 0; k < n_k; ++k) {
       const Knob& knob = *knobs[static_cast<std::size_t>(k)];

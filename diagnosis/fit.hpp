@@ -57,6 +57,8 @@ class Fitter {
   /// W f's slopes by scatter and linear columns.
   [[nodiscard]] const Eigen::MatrixXd& nuisance_slopes() const { return slopes_; }
   [[nodiscard]] Eigen::VectorXd nuisance_sd() const;
+  /// Of x of a hypothesis: the nuisance, then the knobs of each claim.
+  [[nodiscard]] Eigen::VectorXd prior_sd(const Hypothesis& hypothesis) const;
 
   [[nodiscard]] TwinState state(const Hypothesis& hypothesis, const Eigen::VectorXd& x) const;
   /// Readings of all runs; `responses`, unless null, keeps the machine's outputs or, where `reuse`, brings them.
@@ -65,6 +67,7 @@ class Fitter {
 
  private:
   void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x);
+  void whiten_slopes();
 
   const Twin& twin_;
   const std::vector<MeasuredRun>& runs_;

@@ -23,12 +23,7 @@ Eigen::VectorXd refitted(const Fitter& fitter, const Hypothesis& hypothesis, con
     slopes.row(i).setZero();
     residual[i] = 0.0;
   }
-  Eigen::VectorXd sd(n);
-  sd.head(n_n) = fitter.nuisance_sd();
-  Eigen::Index k = n_n;
-  for (const Claim& c : hypothesis) {
-    for (const Knob& knob : c.knobs) sd[k++] = knob.prior_sd;
-  }
+  const Eigen::VectorXd sd = fitter.prior_sd(hypothesis);
   Eigen::MatrixXd hessian = slopes.transpose() * slopes;
   hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
   Eigen::VectorXd step = slopes.transpose() * residual - fit.x.cwiseQuotient(sd.cwiseProduct(sd));

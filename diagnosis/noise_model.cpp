@@ -13,12 +13,6 @@ constexpr double kShortestPeriod_s = 2400.0;
 constexpr int kMostCosines = 24;
 constexpr int kMostJumps = 3;
 
-std::vector<char> present(const Eigen::VectorXd& series) {
-  std::vector<char> there(static_cast<std::size_t>(series.size()));
-  for (Eigen::Index i = 0; i < series.size(); ++i) there[static_cast<std::size_t>(i)] = !std::isnan(series[i]);
-  return there;
-}
-
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -79,6 +73,12 @@ Likelihood likelihood(const std::vector<NoiseSeries>& series, const NoiseModel& 
 }
 
 }  // namespace
+
+std::vector<char> present(const Eigen::VectorXd& series) {
+  std::vector<char> there(static_cast<std::size_t>(series.size()));
+  for (Eigen::Index i = 0; i < series.size(); ++i) there[static_cast<std::size_t>(i)] = !std::isnan(series[i]);
+  return there;
+}
 
 double NoiseModel::total() const {
   return std::hypot(white, correlated);

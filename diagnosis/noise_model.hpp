@@ -13,6 +13,9 @@ struct NoiseModel {
   [[nodiscard]] double total() const;
 };
 
+/// Which values of a series are readings: those that are not NaN.
+[[nodiscard]] std::vector<char> present(const Eigen::VectorXd& series);
+
 /// The linear map that turns this noise, sampled at these times, into independent noise of variance 1: innovations of a Kalman filter.
 /// Source: Durbin & Koopman, Time Series Analysis by State Space Methods, 2nd ed. (2012), ch. 4.
 class Whitener {

@@ -23,6 +23,18 @@ ChangedBody& body_of(TwinState& state, const std::string& body, const std::strin
       state.bodies, [&](const ChangedBody& b) { return b.body == body && b.displacement == displacement; }, fresh);
 }
 
+Knob uncertain_factor(const std::string& effect, const std::string& where, std::function<void(TwinState&, double)> set) {
+  return {.effect = effect,
+          .where = where,
+          .name = "factor",
+          .unit = "1",
+          .scale = Knob::Scale::kLog,
+          .nominal = 1.0,
+          .prior_sd = kScatter,
+          .step = 0.5 * kScatter,
+          .set = std::move(set)};
+}
+
 }  // namespace
 
 std::string where_of(const effects::Effect& e) {
@@ -59,34 +71,19 @@ std::vector<Knob> scatter(const Twin& twin) {
     for (const auto& l : alone.links) names.push_back(l.name);
     for (const auto& c : alone.contacts) names.push_back(c.name);
     for (const std::string& name : names) {
-      knobs.push_back({.effect = e.kind->key == "natural_convection" ? "convection" : "forced_convection",
-                       .where = e.place,
-                       .name = "factor",
-                       .unit = "1",
-                       .scale = Knob::Scale::kLog,
-                       .nominal = 1.0,
-                       .prior_sd = kScatter,
-                       .step = 0.5 * kScatter,
-                       .set = [name](TwinState& s, double value) {
-                         entry(s.exchanges, [&](const ChangedExchange& c) { return c.name == name && c.from_s == 0.0; },
-                               {name})
-                             .factor *= value;
-                       }});
+      const char* effect = e.kind->key == "natural_convection" ? "convection" : "forced_convection";
+      knobs.push_back(uncertain_factor(effect, e.place, [name](TwinState& s, double value) {
+        entry(s.exchanges, [&](const ChangedExchange& c) { return c.name == name && c.from_s == 0.0; }, {name}).factor *=
+            value;
+      }));
     }
   }
   for (const auto& part : twin.machine().system.parts) {
     const auto add = [&](const char* effect, double ChangedBody::*member, const std::string& displacement = {}) {
-      knobs.push_back({.effect = effect,
-                       .where = part.body,
-                       .name = "factor",
-                       .unit = "1",
-                       .scale = Knob::Scale::kLog,
-                       .nominal = 1.0,
-                       .prior_sd = kScatter,
-                       .step = 0.5 * kScatter,
-                       .set = [body = part.body, member, displacement](TwinState& s, double value) {
-                         body_of(s, body, displacement).*member *= value;
-                       }});
+      knobs.push_back(
+          uncertain_factor(effect, part.body, [body = part.body, member, displacement](TwinState& s, double value) {
+            body_of(s, body, displacement).*member *= value;
+          }));
     };
     if (part.conduction.cwiseAbs().maxCoeff() > 0.0) add("conductivity", &ChangedBody::conductivity);
     if (part.mass.cwiseAbs().maxCoeff() > 0.0) add("heat_capacity", &ChangedBody::heat_capacity);

@@ -20,22 +20,16 @@ Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   return {score.candidate, score.variant, v.knobs, v.all_or_nothing};
 }
 
-/// Evidence of noise-free algebra: residual, slopes of everything that is free.
+/// A fit's residual and slopes, with what everything free would take of them taken off.
 struct Projection {
   Eigen::MatrixXd slopes;  // all free knobs
   Eigen::LLT<Eigen::MatrixXd> factor;
   Eigen::VectorXd rest;  // residual minus what free knobs would take of it
 
   Projection(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit) {
-    const Eigen::Index n_n = fitter.n_nuisance(), n_k = fit.slopes.cols();
-    slopes.resize(fit.residual.size(), n_n + n_k);
+    slopes.resize(fit.residual.size(), fitter.n_nuisance() + fit.slopes.cols());
     slopes << fitter.nuisance_slopes(), fit.slopes;
-    Eigen::VectorXd sd(n_n + n_k);
-    sd.head(n_n) = fitter.nuisance_sd();
-    Eigen::Index k = n_n;
-    for (const Claim& c : hypothesis) {
-      for (const Knob& knob : c.knobs) sd[k++] = knob.prior_sd;
-    }
+    const Eigen::VectorXd sd = fitter.prior_sd(hypothesis);
     Eigen::MatrixXd hessian = slopes.transpose() * slopes;
     hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
     factor.compute(hessian);

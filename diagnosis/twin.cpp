@@ -203,42 +203,12 @@ effects::ReadingChain Twin::chain(const TwinState& state) const {
   return both;
 }
 
-Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
-  // --- matrices
-  solver::ReducedSystem& system = workspace.system_;
-  const auto& parts = machine_.system.parts;
-  std::vector<double> factors(2 * parts.size(), 1.0);
-  for (const ChangedBody& b : state.bodies) {
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      if (parts[p].body != b.body) continue;
-      factors[p] *= b.conductivity;
-      factors[parts.size() + p] *= b.heat_capacity;
-    }
-  }
-  Eigen::VectorXd start = machine_.start;
-  const double hall_at_start_K = effects::true_hall(drive(state), run.hall, run.cyclogram).at(0.0);
-  if (augmented_.model.start == scenarios::Start::kHall) start = hall_at_start_K * machine_.system.ones;
-  if (augmented_.model.start == scenarios::Start::kSteady) {  // a linear machine's steady state moves with its hall
-    start += (hall_at_start_K - scenarios::felt_hall_at_start_K(augmented_.model)) * machine_.system.ones;
-  }
-  const bool has_other_mass = std::any_of(factors.begin() + static_cast<std::ptrdiff_t>(parts.size()), factors.end(),
-                                          [](double f) { return f != 1.0; });
-  if (factors != workspace.factors_) {
-    system.conduction = machine_.system.conduction;
-    system.mass = machine_.system.mass;
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      if (factors[p] != 1.0) system.conduction += (factors[p] - 1.0) * parts[p].conduction;
-      if (factors[parts.size() + p] != 1.0) system.mass += (factors[parts.size() + p] - 1.0) * parts[p].mass;
-    }
-    workspace.factors_ = factors;
-    workspace.propagator_.reset();
-  }
-
-  // --- laws
+effects::HeatBalance Twin::laws(const TwinState& state, const MeasuredRun& run,
+                                std::vector<std::vector<int>>& source_probes) const {
   effects::HeatBalance all = scenarios::reducible(effects::heat_balance(state.effects));
-  const std::size_t n_own_heats = balance(state).heats.size();
+  const effects::HeatBalance scenario = balance(state);
+  const std::size_t n_own_heats = scenario.heats.size(), n_own_films = scenario.films.size();
   const std::vector<effects::HeatInput> own(all.heats.begin(), all.heats.begin() + static_cast<std::ptrdiff_t>(n_own_heats));
-  std::vector<std::vector<int>> source_probes;
   for (const auto& s : machine_.system.sources) source_probes.push_back(s.power_W.probes);
   for (std::size_t h = n_own_heats; h < all.heats.size(); ++h) {  // dormant ones sleep unless called
     Law law([](const Inputs&) { return 0.0; });
@@ -286,7 +256,6 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
     }
   }
   for (std::size_t h = n_own_heats; h < all.heats.size(); ++h) source_probes[h].clear();
-  const std::size_t n_own_films = balance(state).films.size();
   std::size_t index = 0;
   for (auto& [name, law] : exchange_laws(all)) {
     const bool sleeps = index >= n_own_films && index < all.films.size();
@@ -310,7 +279,44 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
     for (double t_s = 0.0; t_s < run.time_s.back(); t_s += a.period_s / 16.0) all.change_times_s.push_back(t_s);
   }
   std::sort(all.change_times_s.begin(), all.change_times_s.end());
-  scenarios::bind_laws(system, all);
+  return all;
+}
+
+Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+  // --- matrices
+  solver::ReducedSystem& system = workspace.system_;
+  const auto& parts = machine_.system.parts;
+  std::vector<double> factors(2 * parts.size(), 1.0);
+  for (const ChangedBody& b : state.bodies) {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (parts[p].body != b.body) continue;
+      factors[p] *= b.conductivity;
+      factors[parts.size() + p] *= b.heat_capacity;
+    }
+  }
+  Eigen::VectorXd start = machine_.start;
+  const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
+  const double hall_at_start_K = hall.at(0.0);
+  if (augmented_.model.start == scenarios::Start::kHall) start = hall_at_start_K * machine_.system.ones;
+  if (augmented_.model.start == scenarios::Start::kSteady) {  // a linear machine's steady state moves with its hall
+    start += (hall_at_start_K - scenarios::felt_hall_at_start_K(augmented_.model)) * machine_.system.ones;
+  }
+  const bool has_other_mass = std::any_of(factors.begin() + static_cast<std::ptrdiff_t>(parts.size()), factors.end(),
+                                          [](double f) { return f != 1.0; });
+  if (factors != workspace.factors_) {
+    system.conduction = machine_.system.conduction;
+    system.mass = machine_.system.mass;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (factors[p] != 1.0) system.conduction += (factors[p] - 1.0) * parts[p].conduction;
+      if (factors[parts.size() + p] != 1.0) system.mass += (factors[parts.size() + p] - 1.0) * parts[p].mass;
+    }
+    workspace.factors_ = factors;
+    workspace.propagator_.reset();
+  }
+
+  // --- laws
+  std::vector<std::vector<int>> source_probes;
+  scenarios::bind_laws(system, laws(state, run, source_probes));
   for (std::size_t s = 0; s < system.sources.size(); ++s) system.sources[s].power_W.probes = source_probes[s];
   if (!augmented_.has_own_gradient) {
     for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
@@ -323,7 +329,6 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
 
   // --- run
   const Cyclogram felt = effects::true_cyclogram(drive(state), run.cyclogram);
-  const TimeSeries hall = effects::true_hall(drive(state), run.hall, run.cyclogram);
   Eigen::MatrixXd states;
   if (system.is_linear()) {
     if (!workspace.propagator_ || workspace.gradient_K_m_ != state.gradient_K_m || workspace.level_m_ != state.level_m) {

@@ -60,6 +60,9 @@ class Twin {
   [[nodiscard]] effects::HeatBalance balance(const TwinState& state) const;
 
  private:
+  /// All laws of a state, dormant ones asleep unless called. @param source_probes  out: which probes each source's law looks at
+  [[nodiscard]] effects::HeatBalance laws(const TwinState& state, const MeasuredRun& run,
+                                          std::vector<std::vector<int>>& source_probes) const;
   /// The scenario's own changes and the state's.
   [[nodiscard]] effects::DriveChange drive(const TwinState& state) const;
   [[nodiscard]] effects::ReadingChain chain(const TwinState& state) const;

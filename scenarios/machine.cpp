@@ -344,21 +344,11 @@ Machine build(const MachineModel& model, PlacedMachine placed, bool with_elastic
   return machine;
 }
 
-Machine build_with_influences(const MachineModel& model, PlacedMachine placed, const Eigen::MatrixXd& influence) {
-  Machine machine{std::move(placed), std::nullopt, {}};
-  machine.system =
-      solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance, model.reference_K);
-  solver::Outputs& out = machine.system.outputs;
-  const auto n_sensors = model.sensors.size();
-  const auto n_outputs = static_cast<Eigen::Index>(n_sensors + machine.placed.functionals.size());
-  out.state = Eigen::MatrixXd::Zero(machine.system.size(), n_outputs);
-  out.hall = Eigen::VectorXd::Zero(n_outputs);
-  for (std::size_t i = 0; i < n_sensors; ++i) {
-    out.name.push_back(model.sensors[i].name);
+solver::Outputs output_names(const MachineModel& model, const PlacedMachine& placed) {
+  solver::Outputs out;
+  for (const Sensor& s : model.sensors) {
+    out.name.push_back(s.name);
     out.unit.emplace_back("K");
-    const auto& weights = machine.placed.sensor_weights[i];
-    for (const auto& [unknown, weight] : weights) out.state(unknown, static_cast<Eigen::Index>(i)) += weight;
-    if (weights.empty()) out.hall[static_cast<Eigen::Index>(i)] = 1.0;
   }
   for (const DisplacementOutput& d : model.displacements) {
     out.name.push_back(d.name);
@@ -367,6 +357,27 @@ Machine build_with_influences(const MachineModel& model, PlacedMachine placed, c
   for (const TiltOutput& t : model.tilts) {
     out.name.push_back(t.name);
     out.unit.emplace_back("rad");
+  }
+  out.hall = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(out.name.size()));
+  for (std::size_t i = 0; i < placed.sensor_weights.size(); ++i) {
+    if (placed.sensor_weights[i].empty()) out.hall[static_cast<Eigen::Index>(i)] = 1.0;
+  }
+  return out;
+}
+
+Machine build_with_influences(const MachineModel& model, PlacedMachine placed, const Eigen::MatrixXd& influence) {
+  Machine machine{std::move(placed), std::nullopt, {}};
+  machine.system =
+      solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance, model.reference_K);
+  solver::Outputs& out = machine.system.outputs;
+  const auto n_sensors = model.sensors.size();
+  const auto n_outputs = static_cast<Eigen::Index>(n_sensors + machine.placed.functionals.size());
+  out = output_names(model, machine.placed);
+  out.state = Eigen::MatrixXd::Zero(machine.system.size(), n_outputs);
+  for (std::size_t i = 0; i < n_sensors; ++i) {
+    for (const auto& [unknown, weight] : machine.placed.sensor_weights[i]) {
+      out.state(unknown, static_cast<Eigen::Index>(i)) += weight;
+    }
   }
   for (std::size_t i = 0; i < machine.placed.functionals.size(); ++i) {
     auto output = out.state.col(static_cast<Eigen::Index>(n_sensors + i));

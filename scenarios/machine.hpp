@@ -54,6 +54,9 @@ struct Machine {
 [[nodiscard]] Machine build_with_influences(const MachineModel& model, PlacedMachine placed,
                                             const Eigen::MatrixXd& influence);
 
+/// What the instruments of a scenario tell, in its order, and who of them reads the hall; `state` stays empty: before there is a system.
+[[nodiscard]] solver::Outputs output_names(const MachineModel& model, const PlacedMachine& placed);
+
 /// Temperatures minus the reference temperature at t = 0, by the scenario's `start`.
 /// @throws SolveError  when there is no steady state to start from
 [[nodiscard]] Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine);
