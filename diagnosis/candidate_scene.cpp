@@ -28,7 +28,7 @@ Knob on_readings(Knob k) {
 }
 
 Knob time_knob(std::string name, double run_length_s, std::function<void(TwinState&, double)> set) {
-  Knob k = knob(std::move(name), "s", run_length_s / std::sqrt(12.0), 60.0, std::move(set));
+  Knob k = knob(std::move(name), "s", run_length_s / std::sqrt(12.0), 20.0, std::move(set));
   k.nominal = 0.5 * run_length_s;
   k.low = 0.0;
   k.high = run_length_s;

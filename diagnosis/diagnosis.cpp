@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "diagnosis/gain.hpp"
+#include "diagnosis/interval.hpp"
 #include "diagnosis/latent_heat.hpp"
 #include "diagnosis/leftover.hpp"
 #include "diagnosis/scatter.hpp"
@@ -26,32 +27,31 @@ constexpr double kFurther = 4.0;              // nats of one more effect, its pr
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
 
-Cause cause_of(const std::vector<Candidate>& list, const Claim& claim, const Fit& fit, Eigen::Index first, double gain) {
-  Cause c{list[claim.candidate].effect,
-          list[claim.candidate].where,
-          list[claim.candidate].variants[claim.variant].law,
-          {},
-          gain,
-          {}};
-  for (std::size_t k = 0; k < claim.knobs.size(); ++k) {
-    const Knob& knob = claim.knobs[k];
-    const Eigen::Index i = first + static_cast<Eigen::Index>(k);
-    double sd = std::sqrt(std::max(0.0, fit.covariance(i, i)));
-    if (knob.is_time) sd = 60.0;
-    if (claim.all_or_nothing) continue;
-    const double scale = knob.is_time ? 60.0 : 1.0;
-    c.parameters.push_back({knob.name, knob.is_time ? "min" : knob.unit, knob.value(fit.x[i]) / scale,
-                            knob.value(fit.x[i] - 1.96 * sd) / scale, knob.value(fit.x[i] + 1.96 * sd) / scale});
-  }
-  const double rpm = list[claim.candidate].variants[claim.variant].at_speed_rpm;
-  if (rpm > 0.0) c.parameters.push_back({"at_speed", "rpm", rpm, rpm, rpm});
-  return c;
-}
-
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
   for (std::size_t c = 0; c < claim; ++c) n_nuisance += static_cast<Eigen::Index>(hypothesis[c].knobs.size());
   return n_nuisance;
+}
+
+/// A claim of a hypothesis in numbers.
+Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const Hypothesis& hypothesis, std::size_t claim,
+               const Fit& fit, double gain, Twin::Workspace& workspace) {
+  const Claim& of = hypothesis[claim];
+  const Variant& variant = list[of.candidate].variants[of.variant];
+  Cause c{list[of.candidate].effect, list[of.candidate].where, variant.law, {}, gain, {}};
+  const Eigen::Index first = first_of(hypothesis, claim, fitter.n_nuisance());
+  for (std::size_t k = 0; k < of.knobs.size() && !of.all_or_nothing; ++k) {
+    const Knob& knob = of.knobs[k];
+    const Interval x = profile_interval(fitter, hypothesis, fit, claim, k, workspace);
+    const double scale = knob.is_time ? 60.0 : 1.0;
+    c.parameters.push_back({knob.name, knob.is_time ? "min" : knob.unit,
+                            knob.value(fit.x[first + static_cast<Eigen::Index>(k)]) / scale, knob.value(x.low) / scale,
+                            knob.value(x.high) / scale});
+  }
+  if (variant.at_speed_rpm > 0.0) {
+    c.parameters.push_back({"at_speed", "rpm", variant.at_speed_rpm, variant.at_speed_rpm, variant.at_speed_rpm});
+  }
+  return c;
 }
 
 /// What another mesh changes, one column a channel: the amplitude of each is unknown.
@@ -280,11 +280,12 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
 
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     const Finding& f = d.search.findings[c];
-    Cause cause =
-        cause_of(list, f.claim, d.search.fit, first_of(d.search.hypothesis, c, fitter.n_nuisance()), f.log_evidence_gain);
+    Cause cause = cause_of(list, fitter, d.search.hypothesis, c, d.search.fit, f.log_evidence_gain, workspace);
     for (const Finding::Alternative& a : f.alternatives) {
-      const auto n_knobs = static_cast<Eigen::Index>(a.claim.knobs.size());
-      cause.alternatives.push_back(cause_of(list, a.claim, a.fit, a.fit.x.size() - n_knobs, a.log_evidence_gain));
+      Hypothesis other = d.search.hypothesis;
+      other.erase(other.begin() + static_cast<std::ptrdiff_t>(c));
+      other.push_back(a.claim);
+      cause.alternatives.push_back(cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, workspace));
     }
     d.causes.push_back(std::move(cause));
   }

@@ -28,11 +28,11 @@ std::vector<const Knob*> knobs_of(const Hypothesis& hypothesis) {
   return knobs;
 }
 
-/// Whether a knob is turned by slopes.
+/// Whether a knob is turned by slopes. The time of a jump in a reading has none: its misfit is flat between two rows.
 std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
   std::vector<char> smooth;
   for (const Claim& c : hypothesis) {
-    for (const Knob& k : c.knobs) smooth.push_back(!k.is_time && !c.all_or_nothing);
+    for (const Knob& k : c.knobs) smooth.push_back(!(k.is_time && k.reading_only) && !c.all_or_nothing);
   }
   return smooth;
 }
@@ -145,6 +145,17 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
 }
 
 Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const {
+  Eigen::VectorXd x(n_nuisance() + start.size());
+  x << nuisance_, start;
+  return climb(hypothesis, std::move(x), -1, workspace);
+}
+
+Fit Fitter::fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
+                       Twin::Workspace& workspace) const {
+  return climb(hypothesis, start, held, workspace);
+}
+
+Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::Index held, Twin::Workspace& workspace) const {
   const Eigen::Index n_n = n_nuisance(), n_k = n_knobs(hypothesis), n = n_n + n_k;
   const std::vector<const Knob*> knobs = knobs_of(hypothesis);
   const std::vector<char> smooth = smooth_knobs(hypothesis);
@@ -159,9 +170,7 @@ Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin
   const auto prior = [&](const Eigen::VectorXd& x) { return 0.5 * x.cwiseQuotient(sd).squaredNorm(); };
 
   Fit f;
-  f.x.resize(n);
-  f.x.head(n_n) = nuisance_;
-  f.x.tail(n_k) = start;
+  f.x = std::move(start);
   into_range(f.x);
   Prediction responses;
   const auto look = [&](Fit& at, Prediction& kept, bool reuse) {
@@ -199,7 +208,11 @@ Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin
     square.bottomRightCorner(n_k, n_k).noalias() = f.slopes.transpose() * f.slopes;
   };
 
-  bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
+  double row_s = 60.0;
+  for (const MeasuredRun& run : runs_) {
+    row_s = std::min(row_s, run.time_s.back() / static_cast<double>(run.time_s.size() - 1));
+  }
+  const bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     differentiate();
     Eigen::MatrixXd hessian = square;
@@ -210,6 +223,12 @@ Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin
     gradient -= f.x.cwiseQuotient(sd.cwiseProduct(sd));
     for (Eigen::Index k = 0; k < n_k; ++k) {
       if (!smooth[static_cast<std::size_t>(k)]) gradient[n_n + k] = 0.0;  // no slope: stays where the search has put it
+    }
+    if (held >= 0) {
+      hessian.row(held).setZero();
+      hessian.col(held).setZero();
+      hessian(held, held) = 1.0;
+      gradient[held] = 0.0;
     }
     const Eigen::VectorXd step = hessian.llt().solve(gradient);
     const double before = f.misfit;
@@ -228,8 +247,8 @@ Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin
     if (search_times) {
       for (Eigen::Index k = 0; k < n_k; ++k) {
         const Knob& knob = *knobs[static_cast<std::size_t>(k)];
-        if (!knob.is_time) continue;
-        for (double jump_s : {-960.0, 960.0, -480.0, 480.0, -240.0, 240.0, -120.0, 120.0, -60.0, 60.0}) {
+        if (!knob.is_time || n_n + k == held) continue;
+        for (double jump_s : {-960.0, 960.0, -480.0, 480.0, -240.0, 240.0, -120.0, 120.0, -60.0, 60.0, -row_s, row_s}) {
           Fit tried;
           tried.x = f.x;
           tried.x[n_n + k] += jump_s;
@@ -255,9 +274,10 @@ Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin
   f.log_evidence = -f.misfit - 0.5 * log_det;
   for (Eigen::Index k = 0; k < n_k; ++k) {  // a time was one of many samples
     const Knob& knob = *knobs[static_cast<std::size_t>(k)];
-    if (knob.is_time) f.log_evidence -= std::log(std::max(2.0, knob.prior_sd * std::sqrt(12.0) / 120.0));
+    const bool has_slope = smooth[static_cast<std::size_t>(k)] != 0;
+    if (knob.is_time && !has_slope) f.log_evidence -= std::log(std::max(2.0, knob.prior_sd * std::sqrt(12.0) / 120.0));
     // the prior of a time or of swapped cables is flat
-    if (!smooth[static_cast<std::size_t>(k)]) f.log_evidence += 0.5 * std::pow(f.x[n_n + k] / sd[n_n + k], 2);
+    if (knob.is_time || !has_slope) f.log_evidence += 0.5 * std::pow(f.x[n_n + k] / sd[n_n + k], 2);
   }
   return f;
 }

@@ -48,6 +48,9 @@ class Fitter {
   /// @param start  x of the claims, in order; scatter starts where it was last settled
   /// @throws SolveError  when the machine has no solution there
   [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const;
+  /// The most probable other numbers while one keeps its value. @param start  all of x  @param held  which of x keeps its value
+  [[nodiscard]] Fit fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
+                               Twin::Workspace& workspace) const;
 
   [[nodiscard]] Eigen::Index n_nuisance() const { return static_cast<Eigen::Index>(scatter_.size() + linear_.size()); }
   [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }
@@ -66,6 +69,8 @@ class Fitter {
                                    Prediction* responses = nullptr, bool reuse = false) const;
 
  private:
+  [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held,
+                          Twin::Workspace& workspace) const;
   void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x);
   void whiten_slopes();
 

@@ -279,9 +279,10 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
     for (std::size_t i = 0; i < run.time_s.size(); ++i) {
       measured.value[static_cast<Eigen::Index>(i)] = scale * (channel->values[i] - offset);
     }
-    for (std::size_t i = 1; outputs.unit[o] != "K" && i < run.time_s.size(); ++i) {
-      // at the very moment of a change it is open whether what follows speed at once has jumped
-      if (run.cyclogram.speed_rpm(run.time_s[i]) == run.cyclogram.speed_rpm(run.time_s[i - 1])) continue;
+    for (std::size_t i = 0; outputs.unit[o] != "K" && i < run.time_s.size(); ++i) {
+      // at the very moment of a change, and of the start, it is open whether what follows speed at once has jumped
+      const double before_rpm = i == 0 ? 0.0 : run.cyclogram.speed_rpm(run.time_s[i - 1]);
+      if (run.cyclogram.speed_rpm(run.time_s[i]) == before_rpm) continue;
       measured.value[static_cast<Eigen::Index>(i)] = std::nan("");
     }
     measured.quantum = scale * quantum_of(channel->values);

@@ -26,8 +26,7 @@ solver::Outputs outputs() {
 class MeasuredRunTest : public testing::Test {
  protected:
   MeasuredRun read(const std::string& text) {
-    const std::string path = testing::TempDir() + "measured_run_test.csv";
-    std::ofstream(path) << text;
+    const std::string path = write_file("measured.csv", text);
     scenarios::MachineModel model;
     model.reference_K = 293.15;
     model.hall = {{0.0}, {0.0}};

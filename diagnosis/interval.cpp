@@ -1,0 +1,86 @@
+#include "diagnosis/interval.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kRise = 1.92;  // of Φ: half the 95 % quantile of χ² with one degree of freedom
+constexpr double kNear = 0.15;  // to it
+constexpr int kMostTries = 7;   // a side
+constexpr int kMostRows = 15;
+constexpr double kHopeless = 8.0;  // of Φ
+
+}  // namespace
+
+Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& best, std::size_t claim,
+                          std::size_t which, Twin::Workspace& workspace) {
+  Eigen::Index at = fitter.n_nuisance() + static_cast<Eigen::Index>(which);
+  for (std::size_t c = 0; c < claim; ++c) at += static_cast<Eigen::Index>(hypothesis[c].knobs.size());
+  const Knob& knob = hypothesis[claim].knobs[which];
+  const double middle = best.x[at];
+  const double low = knob.scale == Knob::Scale::kLinear ? knob.low - knob.nominal : -1e300,
+               high = knob.scale == Knob::Scale::kLinear ? knob.high - knob.nominal : 1e300;
+  const bool is_jump = knob.is_time && knob.reading_only;
+  double row_s = 60.0;
+  for (const MeasuredRun& run : fitter.runs())
+    row_s = std::min(row_s, run.time_s.back() / static_cast<double>(run.time_s.size() - 1));
+  const double variance = best.covariance(at, at);
+  const double sd = is_jump ? row_s : std::sqrt(std::max(0.0, variance));
+  if (!(sd > 0.0)) return {middle, middle};
+
+  // Rise of Φ at a distance; the others begin where the best fit's own covariance expects them.
+  const auto rise = [&](double distance) {
+    Eigen::VectorXd start = best.x;
+    if (is_jump || !(variance > 0.0)) {
+      start[at] = middle + distance;
+    } else {
+      start += best.covariance.col(at) * (distance / variance);
+    }
+    try {
+      return fitter.fit_others(hypothesis, start, at, workspace).misfit - best.misfit;
+    } catch (const std::exception&) {  // no solution so far out
+      return 1e300;
+    }
+  };
+  const auto room = [&](double sign) { return std::max(0.0, sign > 0.0 ? high - middle : middle - low); };
+  // A jump between two rows is anywhere between them; beyond a worse row there may be a better one.
+  const auto last_row = [&](double sign) {
+    double last = 0.0;
+    for (int i = 1; i <= kMostRows && i * row_s < room(sign); ++i) {
+      const double r = rise(sign * i * row_s);
+      if (r < kRise) last = i * row_s;
+      if (r > kHopeless) break;
+    }
+    return middle + sign * std::min(room(sign), last + row_s);
+  };
+  const auto end = [&](double sign) {
+    double inside = 0.0, rise_inside = 0.0, outside = 0.0, rise_outside = 0.0;
+    double distance = std::min(room(sign), 1.96 * sd);
+    if (!(distance > 0.0)) return middle;
+    for (int i = 0; i < kMostTries; ++i) {
+      const double r = rise(sign * distance);
+      if (std::abs(r - kRise) < kNear) return middle + sign * distance;
+      if (r < kRise) {
+        inside = distance, rise_inside = std::max(0.0, r);
+        if (inside >= room(sign)) return middle + sign * inside;
+      } else {
+        outside = distance, rise_outside = r;
+      }
+      if (outside > 0.0) {  // Φ is about a parabola: its root between the two
+        const double share = rise_outside < 1e200 ? (std::sqrt(kRise) - std::sqrt(rise_inside)) /
+                                                        (std::sqrt(rise_outside) - std::sqrt(rise_inside))
+                                                  : 0.5;
+        distance = inside + std::clamp(share, 0.1, 0.9) * (outside - inside);
+      } else {
+        distance = std::min(room(sign), std::clamp(std::sqrt(kRise / std::max(1e-3, rise_inside)), 1.2, 3.0) * inside);
+      }
+    }
+    return middle + sign * (outside > 0.0 ? 0.5 * (inside + outside) : inside);
+  };
+  if (is_jump) return {last_row(-1.0), last_row(1.0)};
+  return {end(-1.0), end(1.0)};
+}
+
+}  // namespace driftwright::diagnosis
