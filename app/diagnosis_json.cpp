@@ -39,6 +39,16 @@ Json json_of(const diagnosis::Unexplained& u) {
   for (const auto& c : u.channels)
     json["channels"].push_back({{"name", c.name}, {"unit", c.unit}, {"rms", c.rms}, {"sigmas", c.times_noise}});
   if (!u.heat_would_sit_in.empty()) json["heat_would_sit_in"] = u.heat_would_sit_in;
+  if (u.one_cause) {
+    const char* quantity = u.one_cause->quantity == diagnosis::Unnamed::Quantity::kHeat   ? "heat"
+                           : u.one_cause->quantity == diagnosis::Unnamed::Quantity::kHall ? "hall temperature"
+                                                                                          : "reading";
+    json["one_cause"] = {{"quantity", quantity},
+                         {"where", u.one_cause->where},
+                         {"follows", u.one_cause->follows},
+                         {"instead_of", u.one_cause->instead_of},
+                         {"log_evidence_gain", u.one_cause->log_evidence_gain}};
+  }
   return json;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the kinds of candidates share: the machine and runs they look at, and knobs of a usual make. For candidates*.cpp alone.
+// What the kinds of candidates share: the machine and runs they look at, and knobs of a usual make.
 
 #include "diagnosis/candidates.hpp"
 
@@ -18,6 +18,8 @@ struct Scene {
   std::vector<std::string> sensors = {}, displacements = {};  ///< that were measured
   effects::HeatBalance own = {};                              ///< of the scenario
 };
+
+[[nodiscard]] Scene scene_of(const Twin& twin, const std::vector<MeasuredRun>& runs);
 
 /// A knob around 0 of a value in its unit. @param prior_sd, step  of the value
 [[nodiscard]] Knob knob(std::string name, std::string unit, double prior_sd, double step,

@@ -25,6 +25,7 @@ constexpr double kRough = 3.0;                // leftover over noise: a model th
 constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
 constexpr double kFurther = 4.0;              // nats of one more effect, its price paid
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
+constexpr double kUnnamed = 5.0;              // nats by which one cause without a name must be better than those with one
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
 
 /// Index of a claim's first knob in x.
@@ -92,6 +93,18 @@ std::string words(const Cause& c) {
   return fmt::format("{} at {} ({}){}{}", c.effect, c.where, c.law, numbers.empty() ? "" : ": ", fmt::join(numbers, ", "));
 }
 
+/// One cause without a name, in words.
+std::string words(const Unnamed& u) {
+  const char* what = u.quantity == Unnamed::Quantity::kHeat   ? "heat in"
+                     : u.quantity == Unnamed::Quantity::kHall ? "another temperature of the"
+                                                              : "an error of the reading";
+  const char* course = u.follows == "nothing" ? "constant" : "following";
+  return fmt::format("One cause that the catalogue has no name for explains it better ({:.0f} nats) than {}: {} {}, {}{}",
+                     u.log_evidence_gain,
+                     u.instead_of.size() > 1 ? fmt::format("{} named ones", u.instead_of.size()) : "a named one", what,
+                     u.where, course, u.follows == "nothing" ? "" : " " + u.follows);
+}
+
 std::string reason_of(const Diagnosis& d) {
   std::vector<std::string> parts;
   for (const Cause& c : d.causes) {
@@ -115,6 +128,9 @@ std::string reason_of(const Diagnosis& d) {
             "The measurement holds more than scatter and noise, and none of {} candidates explains it{}.", d.n_candidates,
             d.unexplained && !d.unexplained->channels.empty() ? ", most of all in " + d.unexplained->channels.front().name
                                                               : "");
+      }
+      if (d.unexplained && d.unexplained->one_cause) {
+        return fmt::format("{}. The best of the catalogue: {}.", words(*d.unexplained->one_cause), text);
       }
       return "Something is left that no candidate explains; the best so far: " + text + ".";
     default:
@@ -199,6 +215,45 @@ std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResu
   return u;
 }
 
+/// Where the claims act that one cause without a name explains better, and what that cause looks like.
+Unexplained explained_better(const Fitter& fitter, const SearchResult& result, const Unnamed& unnamed,
+                             const std::map<std::string, NoiseModel>& noise) {
+  const Remainder rest = without_claims(result.hypothesis, unnamed.instead_of, fitter.n_nuisance());
+  Twin::Workspace workspace(fitter.twin());
+  const Prediction without = fitter.predict(rest.hypothesis, result.fit.x(rest.x), workspace);
+  std::map<std::string, std::pair<double, double>> squares;  // of what the claims do; rows
+  for (std::size_t r = 0; r < fitter.runs().size(); ++r) {
+    for (const MeasuredChannel& c : fitter.runs()[r].channels) {
+      auto& [sum, rows] = squares[c.name];
+      sum += (result.fit.prediction[r].row(c.output) - without[r].row(c.output)).squaredNorm();
+      rows += static_cast<double>(without[r].cols());
+    }
+  }
+  Unexplained u;
+  for (const auto& [name, square] : squares) {
+    const std::string& unit = fitter.runs().front().find(name) ? fitter.runs().front().find(name)->unit : "K";
+    const double rms = std::sqrt(square.first / square.second);
+    u.channels.push_back({name,
+                          unit == "K"   ? "K"
+                          : unit == "m" ? "um"
+                                        : "urad",
+                          (unit == "K" ? 1.0 : 1e6) * rms,
+                          square.first / std::pow(noise.at(name).total(), 2) / std::sqrt(2.0 * square.second)});
+  }
+  std::stable_sort(u.channels.begin(), u.channels.end(),
+                   [](const auto& a, const auto& b) { return a.times_noise > b.times_noise; });
+  u.channels.resize(1);
+  Eigen::VectorXd course =
+      Eigen::Map<const Eigen::VectorXd>(unnamed.value.data(), static_cast<Eigen::Index>(unnamed.value.size()));
+  std::tie(u.correlates_with, u.correlation) = resembles(fitter.runs().front(), course);
+  if (unnamed.quantity == Unnamed::Quantity::kHeat) {
+    u.heat_would_sit_in = unnamed.where;
+    u.time_s = unnamed.time_s;
+    u.heat_W = unnamed.value;
+  }
+  return u;
+}
+
 }  // namespace
 
 const char* word(Verdict verdict) {
@@ -275,6 +330,11 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     if (auto left = unexplained_of(*own_fitter, d.search, d.noise)) d.unexplained = std::move(left);
   }
   const Fitter& fitter = *own_fitter;
+  if (auto unnamed = best_unnamed(fitter, list, d.search.hypothesis, d.search.fit);
+      unnamed && unnamed->log_evidence_gain > kUnnamed) {
+    if (!d.unexplained) d.unexplained = explained_better(fitter, d.search, *unnamed, d.noise);
+    d.unexplained->one_cause = std::move(unnamed);
+  }
   d.scatter_alone = d.search.without.prediction;
   d.extended = d.search.fit.prediction;
 

@@ -5,6 +5,7 @@
 
 #include "diagnosis/experiment.hpp"
 #include "diagnosis/search.hpp"
+#include "diagnosis/unnamed.hpp"
 
 namespace driftwright::diagnosis {
 
@@ -46,6 +47,7 @@ struct Unexplained {
   double correlation = 0.0;
   std::string heat_would_sit_in;       ///< region whose missing heat would explain most of it, or ""
   std::vector<double> time_s, heat_W;  ///< that latent heat in the first run, per row
+  std::optional<Unnamed> one_cause;    ///< that explains it better than the named ones
 };
 
 struct Diagnosis {

@@ -28,16 +28,44 @@ std::vector<const Knob*> knobs_of(const Hypothesis& hypothesis) {
   return knobs;
 }
 
-/// Whether a knob is turned by slopes. The time of a jump in a reading has none: its misfit is flat between two rows.
+/// The time of a jump in a reading has no slope: its misfit is flat between two rows.
+bool is_jump(const Knob& k) {
+  return k.is_time && k.reading_only;
+}
+
+/// Whether a knob is turned by slopes.
 std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
   std::vector<char> smooth;
   for (const Claim& c : hypothesis) {
-    for (const Knob& k : c.knobs) smooth.push_back(!(k.is_time && k.reading_only) && !c.all_or_nothing);
+    for (const Knob& k : c.knobs) smooth.push_back(!is_jump(k) && !c.all_or_nothing);
   }
   return smooth;
 }
 
 }  // namespace
+
+double price_of_times(const Claim& claim) {
+  double price = 0.0;
+  for (const Knob& k : claim.knobs) {
+    if (is_jump(k)) price += std::log(std::max(2.0, k.prior_sd * std::sqrt(12.0) / 120.0));
+  }
+  return price;
+}
+
+Remainder without_claims(const Hypothesis& hypothesis, const std::vector<std::size_t>& claims, Eigen::Index n_nuisance) {
+  Remainder left;
+  for (Eigen::Index i = 0; i < n_nuisance; ++i) left.x.push_back(i);
+  Eigen::Index at = n_nuisance;
+  for (std::size_t c = 0; c < hypothesis.size(); ++c) {
+    const auto next = at + static_cast<Eigen::Index>(hypothesis[c].knobs.size());
+    if (std::find(claims.begin(), claims.end(), c) == claims.end()) {
+      left.hypothesis.push_back(hypothesis[c]);
+      for (Eigen::Index i = at; i < next; ++i) left.x.push_back(i);
+    }
+    at = next;
+  }
+  return left;
+}
 
 Fitter::Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter,
                std::vector<Prediction> linear)
@@ -272,10 +300,10 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   // log det(1 + S J'J S) = log det(H) + 2 Σ log sd
   double log_det = 2.0 * factor.matrixLLT().diagonal().array().log().sum() + 2.0 * sd.array().log().sum();
   f.log_evidence = -f.misfit - 0.5 * log_det;
-  for (Eigen::Index k = 0; k < n_k; ++k) {  // a time was one of many samples
+  for (const Claim& c : hypothesis) f.log_evidence -= price_of_times(c);
+  for (Eigen::Index k = 0; k < n_k; ++k) {
     const Knob& knob = *knobs[static_cast<std::size_t>(k)];
     const bool has_slope = smooth[static_cast<std::size_t>(k)] != 0;
-    if (knob.is_time && !has_slope) f.log_evidence -= std::log(std::max(2.0, knob.prior_sd * std::sqrt(12.0) / 120.0));
     // the prior of a time or of swapped cables is flat
     if (knob.is_time || !has_slope) f.log_evidence += 0.5 * std::pow(f.x[n_n + k] / sd[n_n + k], 2);
   }

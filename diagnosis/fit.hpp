@@ -22,6 +22,16 @@ struct Claim {
   bool all_or_nothing = false;
 };
 using Hypothesis = std::vector<Claim>;
+/// Logarithm of how many rows the jumps of a claim could have happened at [nats].
+[[nodiscard]] double price_of_times(const Claim& claim);
+
+/// What is left of a hypothesis without some of its claims.
+struct Remainder {
+  Hypothesis hypothesis;
+  std::vector<Eigen::Index> x;  ///< which of the whole one's x it keeps: scatter, linear columns, knobs of the claims left
+};
+[[nodiscard]] Remainder without_claims(const Hypothesis& hypothesis, const std::vector<std::size_t>& claims,
+                                       Eigen::Index n_nuisance);
 
 struct Fit {
   Eigen::VectorXd x;         ///< scatter, then linear columns, then the knobs of each claim

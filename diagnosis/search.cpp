@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <omp.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "diagnosis/projection.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -20,28 +20,13 @@ Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   return {score.candidate, score.variant, v.knobs, v.all_or_nothing};
 }
 
-/// A fit's residual and slopes, with what everything free would take of them taken off.
-struct Projection {
-  Eigen::MatrixXd slopes;  // all free knobs
-  Eigen::LLT<Eigen::MatrixXd> factor;
-  Eigen::VectorXd rest;  // residual minus what free knobs would take of it
-
-  Projection(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit) {
-    slopes.resize(fit.residual.size(), fitter.n_nuisance() + fit.slopes.cols());
-    slopes << fitter.nuisance_slopes(), fit.slopes;
-    const Eigen::VectorXd sd = fitter.prior_sd(hypothesis);
-    Eigen::MatrixXd hessian = slopes.transpose() * slopes;
-    hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
-    factor.compute(hessian);
-    // at the optimum J'r = S⁻²x: the data's residual about x = 0 of the linearised problem is r + J x
-    const Eigen::VectorXd about_zero = fit.residual + slopes * fit.x;
-    rest = about_zero - slopes * factor.solve(slopes.transpose() * about_zero);
-  }
-  [[nodiscard]] double square(const Eigen::VectorXd& s) const {
-    const Eigen::VectorXd js = slopes.transpose() * s;
-    return s.squaredNorm() - js.dot(factor.solve(js));
-  }
-};
+/// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x.
+Projection projection_of(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit) {
+  Eigen::MatrixXd slopes(fit.residual.size(), fitter.n_nuisance() + fit.slopes.cols());
+  slopes << fitter.nuisance_slopes(), fit.slopes;
+  const Eigen::VectorXd about_zero = fit.residual + slopes * fit.x;
+  return {std::move(slopes), fitter.prior_sd(hypothesis), about_zero};
+}
 
 /// Fits some hypotheses side by side.
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses) {
@@ -118,17 +103,11 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
 }
 
 /// A hypothesis without one of its claims, and the x of the others.
-std::pair<Hypothesis, Eigen::VectorXd> without_claim(Hypothesis hypothesis, const Fit& fit, std::size_t claim,
+std::pair<Hypothesis, Eigen::VectorXd> without_claim(const Hypothesis& hypothesis, const Fit& fit, std::size_t claim,
                                                      Eigen::Index n_nuisance) {
-  Eigen::VectorXd x;
-  Eigen::Index at = n_nuisance;
-  for (std::size_t c = 0; c < hypothesis.size(); ++c) {
-    const auto n = static_cast<Eigen::Index>(hypothesis[c].knobs.size());
-    if (c != claim) x = joined(x, fit.x.segment(at, n));
-    at += n;
-  }
-  hypothesis.erase(hypothesis.begin() + static_cast<std::ptrdiff_t>(claim));
-  return {std::move(hypothesis), std::move(x)};
+  Remainder left = without_claims(hypothesis, {claim}, n_nuisance);
+  const Eigen::VectorXd x = fit.x(left.x);
+  return {std::move(left.hypothesis), x.tail(x.size() - n_nuisance)};
 }
 
 /// The scenario as it stands, nothing fitted.
@@ -199,7 +178,7 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
 
 std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
                           const std::vector<Signature>& signatures, const Hypothesis& hypothesis, const Fit& fit) {
-  const Projection projection(fitter, hypothesis, fit);
+  const Projection projection = projection_of(fitter, hypothesis, fit);
   std::vector<Score> of_each(signatures.size());
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < signatures.size(); ++i) {

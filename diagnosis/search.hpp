@@ -8,7 +8,7 @@ namespace driftwright::diagnosis {
 struct SearchOptions {
   int most_effects = 3;
   /// Evidence [nats] a claim must bring beyond the logarithm of how many candidates there are.
-  std::vector<double> must_gain = {3.0, 6.0,
+  std::vector<double> must_gain = {8.0, 8.0,
                                    20.0};  ///< the first, the second, the third: few machines are wrong in three ways
   /// Two claims whose evidence differs by less than this cannot be told apart.
   double cannot_tell = 3.0;
