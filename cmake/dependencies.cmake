@@ -26,3 +26,5 @@ function(driftwright_import name library header suffixes)
 endfunction()
 driftwright_import(SuiteSparse::CHOLMOD cholmod cholmod.h suitesparse)
 driftwright_import(Gmsh::Gmsh gmsh gmsh.h "")
+# After them: it makes targets of the same names unless they are there.
+find_package(Ceres 2.1 REQUIRED)

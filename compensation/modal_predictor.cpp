@@ -1,5 +1,7 @@
 #include "compensation/modal_predictor.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "solver/propagator.hpp"
@@ -39,6 +41,45 @@ ModalPredictors make_modal_predictors(const solver::FullSystem& full, int most_m
   Eigen::MatrixXd completed(system.size(), modes.shapes.cols() + steady.cols());
   completed << modes.shapes, steady;
   return {in_basis(modes.shapes), in_basis(completed)};
+}
+
+ModalPredictor make_ritz_predictor(const solver::ReducedSystem& system, const Eigen::VectorXd& start, int n_modes,
+                                   const effects::Inputs& at) {
+  Eigen::MatrixXd k = system.conduction;
+  Eigen::VectorXd hall = Eigen::VectorXd::Zero(system.size());
+  for (const auto& e : system.exchanges) {
+    k += e.coefficient(at) * e.matrix;
+    if (e.reaches_hall()) hall += e.coefficient(at) * e.to_hall;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+  const Eigen::Index n = std::min<Eigen::Index>(n_modes, k.rows());
+  Eigen::MatrixXd columns(k.rows(), n + static_cast<Eigen::Index>(system.sources.size()) + 2);
+  columns.leftCols(n) = eigen.eigenvectors().leftCols(n);
+  const Eigen::LDLT<Eigen::MatrixXd> steady(k);
+  for (std::size_t s = 0; s < system.sources.size(); ++s)
+    columns.col(n + static_cast<Eigen::Index>(s)) = steady.solve(system.sources[s].load);
+  columns.col(columns.cols() - 2) = steady.solve(hall);
+  columns.col(columns.cols() - 1) = start;
+  Eigen::MatrixXd basis(k.rows(), 0);
+  for (Eigen::Index c = 0; c < columns.cols(); ++c) {  // Gram-Schmidt, twice; what adds nothing is dropped
+    Eigen::VectorXd v = columns.col(c);
+    const double length = v.norm();
+    for (int pass = 0; pass < 2; ++pass) v -= basis * (basis.transpose() * v);
+    if (!(v.norm() > 1e-10 * length) || basis.cols() == basis.rows()) continue;
+    basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
+    basis.col(basis.cols() - 1) = v.normalized();
+  }
+  ModalPredictor p{{}, solver::project(system, basis), basis.transpose() * start};
+  for (Eigen::Index i = 0; i < n; ++i) p.time_constant_s.push_back(1.0 / eigen.eigenvalues()[i]);
+  return p;
+}
+
+solver::ReducedSystem with_fixed_exchanges(solver::ReducedSystem system, const effects::Inputs& at) {
+  for (auto& e : system.exchanges) {
+    const double coefficient = e.coefficient(at);
+    e.coefficient = solver::BoundLaw([coefficient](const effects::Inputs&) { return coefficient; });
+  }
+  return system;
 }
 
 }  // namespace driftwright::compensation

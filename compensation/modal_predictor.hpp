@@ -33,4 +33,13 @@ struct ModalPredictors {
 [[nodiscard]] ModalPredictors make_modal_predictors(const solver::FullSystem& system, int n_modes,
                                                     const Eigen::VectorXd& start, double hall_K, const Drive& typical);
 
+/// The same from a reduced model with M = 1: its slowest Ritz modes at some inputs, completed by its steady responses to each heat source and
+/// to the hall there. They are modes of the reduced model, close to the machine's own where those are slow.
+/// @param system  linear
+[[nodiscard]] ModalPredictor make_ritz_predictor(const solver::ReducedSystem& system, const Eigen::VectorXd& start,
+                                                 int n_modes, const effects::Inputs& at);
+
+/// A reduced system whose films, joints and links stay as they are at some inputs: one set of time constants for all speeds.
+[[nodiscard]] solver::ReducedSystem with_fixed_exchanges(solver::ReducedSystem system, const effects::Inputs& at);
+
 }  // namespace driftwright::compensation

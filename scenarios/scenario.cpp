@@ -254,6 +254,12 @@ Scenario read_scenario(const ConfigMap& in) {
     }
   }
   if (const auto study = in.optional_map("study")) scenario.study = read_study(*study, scenario);
+  if (const auto programme = in.optional_map("programme")) {
+    if (!has_machine) in.fail("programme", "a programme wants a machine to simulate");
+    scenario.programme = read_programme(*programme);
+    for (const Cyclogram& c : scenario.programme->cyclograms) check_cyclogram(scenario, c);
+    for (const Cyclogram& c : test_cyclograms(*scenario.programme)) check_cyclogram(scenario, c);
+  }
   if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");
   in.reject_unknown_keys();
   return scenario;

@@ -12,6 +12,7 @@
 #include "base/errors.hpp"
 #include "base/fields_format.hpp"
 #include "effects/effect.hpp"
+#include "scenarios/programme.hpp"
 #include "scenarios/read_mechanics.hpp"
 #include "scenarios/read_mesh.hpp"
 #include "scenarios/read_outputs.hpp"
@@ -95,6 +96,7 @@ struct Scenario {
   std::vector<Cyclogram> cyclograms;
   SolverSettings solver;
   std::optional<Study> study;
+  std::optional<Programme> programme;
 
   /// @throws InputError  naming the cyclograms there are
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "app/measured_twin.hpp"
-#include "blind/random.hpp"
+#include "base/random.hpp"
 #include "diagnosis/interval.hpp"
 #include "diagnosis/scatter.hpp"
 #include "tests/temporary_file.hpp"
@@ -33,7 +33,7 @@ displacements:
 cyclograms:
   idle: [[240 min, 0 rpm]]
 )");
-    blind::Random random(7);
+    Random random(7);
     std::string text = "time_s,speed_rpm,ambient_degC,t_body_degC,tip_z_um\n";
     for (int i = 0; i < kRows; ++i) {
       const double noise_K = kNoise_K * random.normal(), noise_m = kNoise_m * random.normal();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "blind/hidden.hpp"
-#include "blind/random.hpp"
+#include "base/random.hpp"
 
 namespace driftwright::blind {
 

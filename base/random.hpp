@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace driftwright::blind {
+namespace driftwright {
 
 /// SplitMix64. Source: Steele, Lea & Flood, OOPSLA 2014, 453-472.
 class Random {
@@ -46,4 +46,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace driftwright::blind
+}  // namespace driftwright

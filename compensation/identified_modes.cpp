@@ -1,0 +1,338 @@
+#include "compensation/identified_modes.hpp"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/errors.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+constexpr double kGrowthExponent = 0.7;  // of rates, as of forced films
+constexpr double kMostGrowth = 4.0;
+constexpr double kShortest_s = 60.0;  // time constant
+constexpr double kLeastNoise = 2e-3;  // of a channel's range: what a smooth, exact record is given
+constexpr double kWorthAMode = 0.97;  // of the held-out error
+
+double rate_1_s(double time_constant_s, double growth, double x) {
+  return (1.0 + growth * (x > 0.0 ? std::pow(x, kGrowthExponent) : 0.0)) / time_constant_s;
+}
+
+/// First-order states with one rate a section: of x^m for each power, then of the hall. n_powers + 1 columns.
+Eigen::MatrixXd mode_states(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
+                            double time_constant_s, double growth, double top_rpm, int powers) {
+  Eigen::MatrixXd states(static_cast<Eigen::Index>(output_s.size()), powers + 1);
+  Eigen::VectorXd now = Eigen::VectorXd::Zero(powers + 1);
+  std::size_t next = 0;
+  const auto write_until = [&](double end_s, bool is_last, auto&& at) {
+    for (; next < output_s.size() && (output_s[next] < end_s || is_last); ++next)
+      states.row(static_cast<Eigen::Index>(next)) = at(output_s[next]).transpose();
+  };
+  const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, hall);
+  for (const LinearStretch& s : stretches) {
+    const double x = s.drive.speed_rpm / top_rpm, lambda = rate_1_s(time_constant_s, growth, x);
+    const double hall_K = hall.at(s.start_s), slope_K_s = (hall.at(s.end_s) - hall_K) / (s.end_s - s.start_s);
+    const auto at = [&, start = now](double t_s) {
+      const double dt_s = t_s - s.start_s, e = std::exp(-lambda * dt_s);
+      Eigen::VectorXd y(powers + 1);
+      for (int m = 0; m < powers; ++m) {
+        const double level = std::pow(x, m);
+        y[m] = level + (start[m] - level) * e;
+      }
+      const double behind_K = slope_K_s / lambda;  // a ramp is followed at this distance
+      y[powers] = hall_K + slope_K_s * dt_s - behind_K + (start[powers] - hall_K + behind_K) * e;
+      return y;
+    };
+    write_until(s.end_s, &s == &stretches.back(), at);
+    now = at(s.end_s);
+  }
+  return states;
+}
+
+/// Tests averaged over some minutes, one below the other, each channel in units of its noise.
+struct Table {
+  std::vector<ThermalTest> tests;
+  std::vector<double> speed_rpm;  ///< highest of each test
+  Eigen::MatrixXd y;              ///< n_rows x n_channels
+  Eigen::VectorXd noise;          ///< of each channel's averaged readings
+  double top_rpm = 0.0, longest_s = 0.0;
+};
+
+/// Of one reading, from second differences; a smooth record has next to none.
+double noise_of(const std::vector<ThermalTest>& tests, Eigen::Index channel) {
+  std::vector<double> differences;
+  double low = 1e300, high = -1e300;
+  for (const ThermalTest& t : tests) {
+    const auto y = t.readings.row(channel);
+    low = std::min(low, y.minCoeff());
+    high = std::max(high, y.maxCoeff());
+    for (Eigen::Index i = 2; i < y.size(); ++i) differences.push_back(std::abs(y[i] - 2.0 * y[i - 1] + y[i - 2]));
+  }
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return std::max(*middle / (0.6745 * std::sqrt(6.0)), kLeastNoise * std::max(1e-12, high - low));
+}
+
+Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channels, const IdentificationOptions& options) {
+  Table t;
+  std::set<double> speeds = {0.0};
+  Eigen::Index n_rows = 0;
+  for (const ThermalTest& test : tests) {
+    if (test.readings.rows() != static_cast<Eigen::Index>(channels.name.size()) ||
+        test.readings.cols() != static_cast<Eigen::Index>(test.time_s.size()) || test.time_s.size() < 8 ||
+        !test.readings.allFinite()) {
+      throw InputError(fmt::format("test '{}': {} channels at 8 times or more are wanted, none missing; there are {} x {}",
+                                   test.cyclogram.name, channels.name.size(), test.readings.rows(), test.readings.cols()));
+    }
+    for (std::size_t i = 1; i < test.time_s.size(); ++i) {
+      if (!(test.time_s[i] > test.time_s[i - 1])) {
+        throw InputError(fmt::format("test '{}': time does not increase at {} s", test.cyclogram.name, test.time_s[i]));
+      }
+    }
+    double top_rpm = 0.0;
+    for (const auto& s : test.cyclogram.sections) {
+      speeds.insert(s.drive.speed_rpm);
+      top_rpm = std::max(top_rpm, s.drive.speed_rpm);
+    }
+    t.speed_rpm.push_back(top_rpm);
+    t.top_rpm = std::max(t.top_rpm, top_rpm);
+    t.longest_s = std::max(t.longest_s, test.time_s.back());
+    t.tests.push_back(averaged(test, options.mean_over_s));
+    n_rows += t.tests.back().readings.cols();
+  }
+  if (static_cast<int>(speeds.size()) < options.powers) {
+    throw InputError(
+        fmt::format("tests at {} speeds (standstill counts) cannot give steady levels by {} powers of speed: {} "
+                    "more are wanted",
+                    speeds.size(), options.powers, options.powers - static_cast<int>(speeds.size())));
+  }
+  const auto n_channels = static_cast<Eigen::Index>(channels.name.size());
+  t.noise.resize(n_channels);
+  for (Eigen::Index c = 0; c < n_channels; ++c) {
+    double low = 1e300, high = -1e300;
+    for (const ThermalTest& test : t.tests) {
+      low = std::min(low, test.readings.row(c).minCoeff());
+      high = std::max(high, test.readings.row(c).maxCoeff());
+    }
+    const double rows =
+        static_cast<double>(tests.front().time_s.size()) / static_cast<double>(t.tests.front().time_s.size());
+    t.noise[c] = std::max(noise_of(tests, c) / std::sqrt(rows), kLeastNoise * std::max(1e-12, high - low));
+  }
+  t.y.resize(n_rows, n_channels);
+  Eigen::Index row = 0;
+  for (const ThermalTest& test : t.tests) {
+    t.y.middleRows(row, test.readings.cols()) = test.readings.transpose() * t.noise.cwiseInverse().asDiagonal();
+    row += test.readings.cols();
+  }
+  return t;
+}
+
+/// Logarithm of each time constant, then each growth.
+using Shape = std::vector<double>;
+
+Eigen::MatrixXd basis(const Table& t, const Shape& shape, int powers, std::size_t test) {
+  const std::size_t n_modes = shape.size() / 2;
+  const ThermalTest& of = t.tests[test];
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(of.time_s.size()), static_cast<Eigen::Index>(n_modes) * (powers + 1));
+  for (std::size_t k = 0; k < n_modes; ++k) {
+    columns.middleCols(static_cast<Eigen::Index>(k) * (powers + 1), powers + 1) =
+        mode_states(of.cyclogram, of.hall, of.time_s, std::exp(shape[k]), shape[n_modes + k], t.top_rpm, powers);
+  }
+  return columns;
+}
+
+/// Rows of the tests that take part, the ridge below them: columns of close time constants would else cancel each other.
+struct Linear {
+  Eigen::MatrixXd columns, y;
+};
+Linear linear(const Table& t, const Shape& shape, int powers, std::size_t left_out) {
+  constexpr double kRidge = 1e-3;  // of a steady level, in units of noise
+  std::vector<Eigen::MatrixXd> parts;
+  Eigen::Index n = 0;
+  for (std::size_t i = 0; i < t.tests.size(); ++i) {
+    parts.push_back(i == left_out ? Eigen::MatrixXd() : basis(t, shape, powers, i));
+    n += parts.back().rows();
+  }
+  const Eigen::Index n_columns = static_cast<Eigen::Index>(shape.size() / 2) * (powers + 1);
+  Linear l{Eigen::MatrixXd::Zero(n + n_columns, n_columns), Eigen::MatrixXd::Zero(n + n_columns, t.y.cols())};
+  Eigen::Index row = 0, from = 0;
+  for (std::size_t i = 0; i < t.tests.size(); ++i) {
+    const Eigen::Index rows = t.tests[i].readings.cols();
+    if (i != left_out) {
+      l.columns.middleRows(row, rows) = parts[i];
+      l.y.middleRows(row, rows) = t.y.middleRows(from, rows);
+      row += rows;
+    }
+    from += rows;
+  }
+  l.columns.bottomRows(n_columns).diagonal().setConstant(kRidge);
+  return l;
+}
+
+struct Fitted {
+  Shape shape;
+  double cost = 0.0;
+  Eigen::MatrixXd covariance;  ///< of the shape, noise as estimated from the residual
+};
+
+Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& options, std::size_t left_out,
+                 bool with_covariance) {
+  const auto n = static_cast<int>(start.size());
+  const std::size_t n_modes = start.size() / 2;
+  const Linear sizes = linear(t, start, options.powers, left_out);
+  const auto n_residuals = static_cast<int>(sizes.y.size());
+  const auto residual = [&](double const* const* parameters, double* out) {
+    const Linear l = linear(t, {parameters[0], parameters[0] + n}, options.powers, left_out);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(l.columns);
+    Eigen::MatrixXd r = qr.householderQ().transpose() * l.y;
+    r.topRows(l.columns.cols()).setZero();  // what no steady levels can take
+    Eigen::Map<Eigen::MatrixXd>(out, r.rows(), r.cols()) = r;
+    return true;
+  };
+  auto* cost = new ceres::DynamicNumericDiffCostFunction<decltype(residual)>(&residual, ceres::DO_NOT_TAKE_OWNERSHIP);
+  cost->AddParameterBlock(n);
+  cost->SetNumResiduals(n_residuals);
+  ceres::Problem problem;
+  problem.AddResidualBlock(cost, nullptr, start.data());
+  for (int k = 0; k < static_cast<int>(n_modes); ++k) {
+    problem.SetParameterLowerBound(start.data(), k, std::log(kShortest_s));
+    problem.SetParameterUpperBound(start.data(), k, std::log(5.0 * t.longest_s));
+    problem.SetParameterLowerBound(start.data(), static_cast<int>(n_modes) + k, 0.0);
+    problem.SetParameterUpperBound(start.data(), static_cast<int>(n_modes) + k, options.with_growth ? kMostGrowth : 1e-9);
+  }
+  ceres::Solver::Options how;
+  how.linear_solver_type = ceres::DENSE_QR;
+  how.max_num_iterations = 60;
+  how.function_tolerance = 1e-7;
+  how.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(how, &problem, &summary);
+  Fitted f{start, summary.final_cost, {}};
+  if (with_covariance) {
+    std::vector<double> jacobian_values;
+    ceres::CRSMatrix jacobian;
+    problem.Evaluate({}, nullptr, nullptr, nullptr, &jacobian);
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n, n);
+    for (int row = 0; row < jacobian.num_rows; ++row) {
+      for (int a = jacobian.rows[static_cast<std::size_t>(row)]; a < jacobian.rows[static_cast<std::size_t>(row) + 1]; ++a) {
+        for (int b = jacobian.rows[static_cast<std::size_t>(row)]; b < jacobian.rows[static_cast<std::size_t>(row) + 1];
+             ++b) {
+          square(jacobian.cols[static_cast<std::size_t>(a)], jacobian.cols[static_cast<std::size_t>(b)]) +=
+              jacobian.values[static_cast<std::size_t>(a)] * jacobian.values[static_cast<std::size_t>(b)];
+        }
+      }
+    }
+    square.diagonal().array() += 1e-12 * (1.0 + square.trace());
+    f.covariance = 2.0 * f.cost / std::max(1, n_residuals - n) * square.inverse();
+  }
+  return f;
+}
+
+/// Time constants spread evenly in their logarithm over what tests can show.
+Shape first_guess(const Table& t, int n_modes) {
+  Shape shape;
+  const double slow = std::log(0.7 * t.longest_s), fast = std::log(600.0);
+  for (int k = 0; k < n_modes; ++k)
+    shape.push_back(n_modes == 1 ? 0.5 * (slow + fast) : slow + (fast - slow) * k / (n_modes - 1));
+  for (int k = 0; k < n_modes; ++k) shape.push_back(0.1);
+  return shape;
+}
+
+Eigen::MatrixXd amplitudes(const Table& t, const Shape& shape, int powers, std::size_t left_out) {
+  const Linear l = linear(t, shape, powers, left_out);
+  return l.columns.colPivHouseholderQr().solve(l.y);
+}
+
+/// Mean square of a test that was left out of its prediction, in units of noise.
+double held_out(const Table& t, const Fitted& all, const IdentificationOptions& options) {
+  double sum = 0.0;
+  int n = 0;
+  for (std::size_t test = 0; test < t.tests.size(); ++test) {
+    const double rpm = t.speed_rpm[test];
+    const bool is_inside =
+        rpm < t.top_rpm && std::any_of(t.speed_rpm.begin(), t.speed_rpm.end(), [&](double s) { return s < rpm; });
+    if (!is_inside && t.tests.size() > 2) continue;  // an outer speed would be extrapolated
+    const Fitted without = fit_shape(t, all.shape, options, test, false);
+    const Eigen::MatrixXd predicted =
+        basis(t, without.shape, options.powers, test) * amplitudes(t, without.shape, options.powers, test);
+    Eigen::Index from = 0;
+    for (std::size_t i = 0; i < test; ++i) from += t.tests[i].readings.cols();
+    sum += (t.y.middleRows(from, predicted.rows()) - predicted).squaredNorm() / static_cast<double>(predicted.size());
+    ++n;
+  }
+  return n > 0 ? std::sqrt(sum / n) : std::sqrt(2.0 * all.cost / static_cast<double>(t.y.size()));
+}
+
+}  // namespace
+
+IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const TestChannels& channels,
+                               const IdentificationOptions& options) {
+  if (tests.empty()) throw InputError("modes cannot be identified without tests");
+  const Table t = table_of(tests, channels, options);
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  Fitted best;
+  double best_error = 1e300;
+  for (int n_modes = 1; n_modes <= options.most_modes; ++n_modes) {
+    Fitted f = fit_shape(t, first_guess(t, n_modes), options, kNone, true);
+    const double error = held_out(t, f, options);
+    if (!(error < kWorthAMode * best_error)) break;
+    best = std::move(f);
+    best_error = error;
+  }
+  const std::size_t n_modes = best.shape.size() / 2;
+  const Eigen::MatrixXd a = amplitudes(t, best.shape, options.powers, kNone);
+  std::vector<std::size_t> order(n_modes);
+  for (std::size_t k = 0; k < n_modes; ++k) order[k] = k;
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return best.shape[i] > best.shape[j]; });
+  IdentifiedModes m;
+  m.channels = channels;
+  m.top_rpm = t.top_rpm;
+  m.held_out_error = best_error;
+  m.lowest_rpm = t.top_rpm;
+  for (const ThermalTest& test : tests) {
+    for (const auto& s : test.cyclogram.sections) {
+      if (s.drive.speed_rpm > 0.0) m.lowest_rpm = std::min(m.lowest_rpm, s.drive.speed_rpm);
+    }
+  }
+  for (std::size_t k : order) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const double sd = std::sqrt(std::max(0.0, best.covariance(i, i)));
+    m.modes.push_back({std::exp(best.shape[k]), std::exp(best.shape[k] - 1.96 * sd), std::exp(best.shape[k] + 1.96 * sd),
+                       best.shape[n_modes + k]});
+    const Eigen::MatrixXd of_mode =
+        t.noise.asDiagonal() * a.middleRows(i * (options.powers + 1), options.powers + 1).transpose();
+    m.level.emplace_back(of_mode.leftCols(options.powers));
+    m.hall.emplace_back(of_mode.col(options.powers));
+  }
+  return m;
+}
+
+Eigen::MatrixXd IdentifiedModes::predict(const Cyclogram& cyclogram, const TimeSeries& hall_K,
+                                         const std::vector<double>& output_s, bool extrapolate) const {
+  for (const auto& s : cyclogram.sections) {
+    const double rpm = s.drive.speed_rpm;
+    if (extrapolate || rpm == 0.0 || (rpm >= lowest_rpm - 1e-9 && rpm <= top_rpm + 1e-9)) continue;
+    throw InputError(
+        fmt::format("cyclogram '{}' runs at {:g} rpm, but the tests ran at {:g} to {:g} rpm; a test there, or "
+                    "extrapolate: true, is wanted",
+                    cyclogram.name, rpm, lowest_rpm, top_rpm));
+  }
+  Eigen::MatrixXd y =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(channels.name.size()), static_cast<Eigen::Index>(output_s.size()));
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    const auto powers = static_cast<int>(level[k].cols());
+    const Eigen::MatrixXd states =
+        mode_states(cyclogram, hall_K, output_s, modes[k].time_constant_s, modes[k].growth, top_rpm, powers);
+    y.noalias() += level[k] * states.leftCols(powers).transpose();
+    y.noalias() += hall[k] * states.col(powers).transpose();
+  }
+  return y;
+}
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,79 @@
+#include "scenarios/programme.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/random.hpp"
+#include "scenarios/read_cyclogram.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+constexpr double kStopShare = 0.15;                          // of a random cyclogram's sections
+constexpr double kShortestShare = 0.5, kLongestShare = 1.5;  // of a section's mean length
+
+}  // namespace
+
+Programme read_programme(const ConfigMap& in) {
+  Programme p;
+  p.where = in.where();
+  const ConfigMap tests = in.map("tests");
+  p.test_rpm = tests.quantities("speeds", "rpm");
+  std::sort(p.test_rpm.begin(), p.test_rpm.end());
+  if (!(p.test_rpm.front() >= 1.0 && p.test_rpm.back() <= 1e6))
+    tests.fail("speeds", "speeds between 1 and 1e6 rpm are wanted");
+  if (std::adjacent_find(p.test_rpm.begin(), p.test_rpm.end()) != p.test_rpm.end())
+    tests.fail("speeds", "a speed stands there twice");
+  p.heating_s = tests.quantity("heating", "s", 60.0, 1e7);
+  p.cooling_s = tests.quantity("cooling", "s", 60.0, 1e7);
+  p.temperature_noise_K = tests.quantity("temperature_noise", "K", 0.0, 10.0, 0.0);
+  p.displacement_noise_um = tests.quantity("displacement_noise", "um", 0.0, 1e3, 0.0);
+  p.seed = tests.integer("seed", 0, 1000000, 1);
+  tests.reject_unknown_keys();
+  if (const auto cyclograms = in.optional_map("cyclograms")) {
+    for (const std::string& name : cyclograms->keys()) p.cyclograms.push_back(read_cyclogram(*cyclograms, name));
+  }
+  if (const auto random = in.optional_map("random")) {
+    p.random.count = random->integer("count", 1, 1000);
+    p.random.sections = random->integer("sections", 2, 100, p.random.sections);
+    p.random.duration_s = random->quantity("duration", "s", 60.0, 1e6);
+    random->reject_unknown_keys();
+    if (p.test_rpm.size() < 2) in.fail("random", "random cyclograms want tests at two speeds or more");
+  }
+  if (p.cyclograms.empty() && p.random.count == 0)
+    in.fail("cyclograms", "neither `cyclograms` nor `random` to judge predictors on");
+  p.most_modes = in.integer("most_modes", 1, 8, p.most_modes);
+  p.model_scatter = in.quantity("model_scatter", "1", 0.0, 1.0, 0.0);
+  p.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, p.tolerance_um);
+  in.reject_unknown_keys();
+  return p;
+}
+
+std::vector<Cyclogram> random_cyclograms(const Programme& programme) {
+  std::vector<Cyclogram> list;
+  Random random(static_cast<std::uint64_t>(programme.seed), 1);
+  for (int i = 0; i < programme.random.count; ++i) {
+    Cyclogram c{fmt::format("random_{:02d}", i + 1), {}};
+    double total = 0.0, before_rpm = -1.0;
+    for (int s = 0; s < programme.random.sections; ++s) {
+      double rpm = before_rpm;
+      while (rpm == before_rpm) rpm = random.chance(kStopShare) ? 0.0 : random.one_of(programme.test_rpm);
+      before_rpm = rpm;
+      c.sections.push_back({random.uniform(kShortestShare, kLongestShare), {.speed_rpm = rpm}});
+      total += c.sections.back().duration_s;
+    }
+    for (auto& s : c.sections) s.duration_s *= programme.random.duration_s / total;
+    list.push_back(std::move(c));
+  }
+  return list;
+}
+
+std::vector<Cyclogram> test_cyclograms(const Programme& programme) {
+  std::vector<Cyclogram> list;
+  for (double rpm : programme.test_rpm)
+    list.push_back({fmt::format("test_{:g}", rpm), {{programme.heating_s, {.speed_rpm = rpm}}, {programme.cooling_s, {}}}});
+  return list;
+}
+
+}  // namespace driftwright::scenarios
