@@ -71,9 +71,4 @@ double discrimination(const Outlook& a, const Outlook& b) {
   return std::sqrt(8.0 * std::max(0.0, distance));
 }
 
-double log_density(const Outlook& of, const Eigen::VectorXd& readings) {
-  const Spread spread(of.root);
-  return -0.5 * spread.square(readings - of.mean) - 0.5 * spread.log_determinant();
-}
-
 }  // namespace driftwright::diagnosis

@@ -20,7 +20,7 @@ struct Explanation {
   Hypothesis hypothesis;
   Eigen::VectorXd x;           ///< scatter, then the knobs of each claim
   Eigen::MatrixXd covariance;  ///< of x
-  double log_evidence = 0.0;   ///< prices paid; up to a constant that all share
+  [[nodiscard]] Eigen::VectorXd claim_x(Eigen::Index n_scatter) const { return x.tail(x.size() - n_scatter); }
 };
 
 struct Outlook {
@@ -37,8 +37,5 @@ struct Outlook {
 
 /// d' >= 0, the same both ways, by the formula above. Both are of the same readings.
 [[nodiscard]] double discrimination(const Outlook& a, const Outlook& b);
-
-/// Logarithm of the density of whitened readings, up to a constant that all outlooks on them share.
-[[nodiscard]] double log_density(const Outlook& of, const Eigen::VectorXd& readings);
 
 }  // namespace driftwright::diagnosis

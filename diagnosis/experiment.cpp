@@ -14,18 +14,19 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kRows_s = 60.0;
-constexpr double kTells = 5.0;                         // d' from which on fewer than 1 record in 40 speaks for the wrong one
+constexpr double kTells = 5.0;   // d' from which on fewer than 1 record in 40 speaks for the wrong one
+constexpr double kHardly = 2.0;  // d' up to which a further thermometer is worth its price; above, a cyclogram costs nothing
 constexpr NoiseModel kThermometer = {0.05, 0.0, 0.0};  // K, where none was measured
 constexpr const char* kMeanOf = "mean of ";
 
 /// Without linear columns: they are about the runs at hand.
-Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fit& fit, double log_evidence) {
+Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fit& fit) {
   const auto n_scatter = static_cast<Eigen::Index>(fitter.scatter().size());
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
     if (i < n_scatter || i >= fitter.n_nuisance()) kept.push_back(i);
   }
-  Explanation e{std::move(hypothesis), fit.x(kept), fit.covariance(kept, kept), log_evidence};
+  Explanation e{std::move(hypothesis), fit.x(kept), fit.covariance(kept, kept)};
   Eigen::Index at = n_scatter;
   for (const Claim& c : e.hypothesis) {  // what has no slope has no covariance: it stays where the search has put it
     for (const Knob& k : c.knobs) {
@@ -49,7 +50,7 @@ struct Open {
 
 Open open_questions(const Fitter& fitter, const SearchResult& result) {
   Open open;
-  open.explanations.push_back(explanation_of(fitter, result.hypothesis, result.fit, 0.0));
+  open.explanations.push_back(explanation_of(fitter, result.hypothesis, result.fit));
   for (std::size_t f = 0; f < result.findings.size(); ++f) {
     const Finding& finding = result.findings[f];
     if (finding.alternatives.empty()) continue;
@@ -61,8 +62,7 @@ Open open_questions(const Fitter& fitter, const SearchResult& result) {
       other.push_back(a.claim);
       for (std::size_t r : rivals) open.pairs.push_back({r, open.explanations.size()});
       rivals.push_back(open.explanations.size());
-      open.explanations.push_back(
-          explanation_of(fitter, std::move(other), a.fit, a.log_evidence_gain - finding.log_evidence_gain));
+      open.explanations.push_back(explanation_of(fitter, std::move(other), a.fit));
       open.claims.push_back(&a.claim);
     }
   }
@@ -275,11 +275,13 @@ std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchR
                                            largest_difference_K(*chosen, open, c.output), d, best.cyclogram};
   }
   best.by_sensor =
-      best.extra_sensor && best.discrimination < kTells && best.extra_sensor->discrimination > best.discrimination + 1.0;
+      best.extra_sensor && best.discrimination < kHardly && best.extra_sensor->discrimination > best.discrimination + 1.0;
   if (!once_only) {
-    std::set<std::string> seen = measured;
-    if (best.by_sensor) seen.insert(kMeanOf + best.extra_sensor->region);
-    const Check check = check_by_simulation(*chosen->fitter, open.explanations, open.pairs, seen);
+    MeasuredRun run = chosen->runs.front();
+    std::erase_if(run.channels, [&](const MeasuredChannel& c) {
+      return !measured.contains(c.name) && !(best.by_sensor && c.name == kMeanOf + best.extra_sensor->region);
+    });
+    const Check check = check_by_simulation(fitter, run, noise, open.explanations, open.pairs);
     best.n_simulated = check.n;
     best.n_told = check.n_told;
   }

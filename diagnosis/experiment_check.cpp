@@ -8,50 +8,78 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kDraws = 20;         // of each explanation
-constexpr double kCannotTell = 3;  // nats, as the search has it
+constexpr int kDraws = 4;            // of each explanation
+constexpr double kCannotTell = 3.0;  // nats, as the search has it
 
 /// Standard normal numbers by Box and Muller: the standard library fixes its engines, not its distributions.
-Eigen::VectorXd normals(Eigen::Index n, std::mt19937_64& random) {
+double normal(std::mt19937_64& random) {
   const auto uniform = [&] { return (static_cast<double>(random() >> 11) + 0.5) * 0x1.0p-53; };
-  Eigen::VectorXd z(n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    z[i] = std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
-  return z;
+  const double radius = std::sqrt(-2.0 * std::log(uniform()));
+  return radius * std::cos(2.0 * std::numbers::pi * uniform());
+}
+
+void add_noise(const NoiseModel& noise, double row_s, Eigen::VectorXd& series, std::mt19937_64& random) {
+  const double kept = noise.time_s > 0.0 ? std::exp(-row_s / noise.time_s) : 0.0;
+  double slow = noise.correlated * normal(random);
+  for (double& value : series) {
+    value += noise.white * normal(random) + slow;
+    slow = kept * slow + std::sqrt(1.0 - kept * kept) * noise.correlated * normal(random);
+  }
+}
+
+/// Linear columns are about the records so far: nothing in the new one.
+std::vector<Prediction> with_nothing_in(const std::vector<Prediction>& linear, std::size_t n_times) {
+  std::vector<Prediction> list = linear;
+  for (Prediction& column : list)
+    column.push_back(Eigen::MatrixXd::Zero(column.front().rows(), static_cast<Eigen::Index>(n_times)));
+  return list;
 }
 
 }  // namespace
 
-Check check_by_simulation(const Fitter& ahead, const std::vector<Explanation>& explanations, const std::vector<Pair>& pairs,
-                          const std::set<std::string>& channels) {
-  Twin::Workspace workspace(ahead.twin());
-  std::vector<Outlook> outlooks;
-  for (const Explanation& e : explanations)
-    outlooks.push_back(only(outlook(ahead, e, workspace), ahead.comparison(), channels));
+Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run, const std::map<std::string, NoiseModel>& noise,
+                          const std::vector<Explanation>& explanations, const std::vector<Pair>& pairs) {
+  std::vector<MeasuredRun> runs = fitter.runs();
+  runs.push_back(run);
+  const std::vector<MeasuredRun> alone = {run};
+  const Fitter ahead(fitter.twin(), alone, fitter.scatter(), {});
+  Fitter joint(fitter.twin(), runs, fitter.scatter(), with_nothing_in(fitter.linear(), run.time_s.size()));
+  joint.set_noise(noise);
+  const Eigen::Index n_scatter = ahead.n_nuisance();
+  Fit at;
+  at.x = Eigen::VectorXd::Zero(explanations.front().x.size() + joint.n_nuisance() - n_scatter);
+  at.x.head(n_scatter) = explanations.front().x.head(n_scatter);
+  at.x.tail(explanations.front().x.size() - n_scatter) = explanations.front().claim_x(n_scatter);
+  joint.settle(explanations.front().hypothesis, at);
+
+  Twin::Workspace workspace(fitter.twin());
+  const double row_s = run.time_s.size() > 1 ? run.time_s[1] - run.time_s[0] : 60.0;
   std::mt19937_64 random(20240229);
   Check check;
   for (std::size_t truth = 0; truth < explanations.size(); ++truth) {
     const Explanation& e = explanations[truth];
     const Eigen::MatrixXd lower = Eigen::LLT<Eigen::MatrixXd>(e.covariance).matrixL();
     for (int draw = 0; draw < kDraws; ++draw) {
-      const Eigen::VectorXd x = e.x + lower * normals(e.x.size(), random);
-      Outlook made;
+      Eigen::VectorXd x = e.x;
+      for (Eigen::Index i = 0; i < x.size(); ++i) x += normal(random) * lower.col(i);
+      std::vector<double> evidence;
       try {
-        made.mean = ahead.comparison().whitened(ahead.predict(e.hypothesis, x, workspace));
+        const Prediction said = ahead.predict(e.hypothesis, x, workspace);
+        for (MeasuredChannel& c : runs.back().channels) {
+          c.value = said.front().row(c.output).transpose();
+          add_noise(noise.at(c.name), row_s, c.value, random);
+        }
+        joint.set_noise(noise);  // looks at the readings anew
+        for (const Explanation& o : explanations)
+          evidence.push_back(joint.fit(o.hypothesis, o.claim_x(n_scatter), workspace).log_evidence);
       } catch (const std::exception&) {  // numbers that no machine can have
         continue;
       }
-      made.mean += normals(made.mean.size(), random);  // whitened noise is white, of 1
-      made.root.resize(made.mean.size(), 0);
-      const Eigen::VectorXd readings = only(made, ahead.comparison(), channels).mean;
-      std::vector<double> value;
-      for (std::size_t i = 0; i < explanations.size(); ++i)
-        value.push_back(explanations[i].log_evidence + log_density(outlooks[i], readings));
       bool is_told = true;
       for (const Pair& p : pairs) {
         if (p.first != truth && p.second != truth) continue;
         const std::size_t rival = p.first == truth ? p.second : p.first;
-        is_told = is_told && value[truth] > value[rival] + kCannotTell;
+        is_told = is_told && evidence[truth] > evidence[rival] + kCannotTell;
       }
       ++check.n;
       check.n_told += is_told ? 1 : 0;

@@ -13,12 +13,14 @@ struct Check {
   int n_told = 0;
 };
 
-/// Draws numbers of each explanation from what is known of them, lets the machine itself answer (no slopes), adds noise, and weighs the
-/// readings under all explanations. Told: the true one is ahead of each rival by more than 3 nats, evidence so far included.
-/// The seed is fixed: the same bytes each time.
-/// @param ahead     of the record to come
-/// @param channels  that it has
-[[nodiscard]] Check check_by_simulation(const Fitter& ahead, const std::vector<Explanation>& explanations,
-                                        const std::vector<Pair>& pairs, const std::set<std::string>& channels);
+/// Draws numbers of each explanation from what is known of them, lets the machine answer, adds noise, and fits all explanations to the
+/// records so far and the new one. Told: the true one is ahead of each rival by more than 3 nats of evidence. What the number of laws
+/// costs is left out. The seed is fixed: the same bytes each time.
+/// @param fitter  of the records so far
+/// @param run     to come, with the channels it will have
+/// @param noise   of these and of those so far
+[[nodiscard]] Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run,
+                                        const std::map<std::string, NoiseModel>& noise,
+                                        const std::vector<Explanation>& explanations, const std::vector<Pair>& pairs);
 
 }  // namespace driftwright::diagnosis

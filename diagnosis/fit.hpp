@@ -54,6 +54,7 @@ class Fitter {
 
   [[nodiscard]] Eigen::Index n_nuisance() const { return static_cast<Eigen::Index>(scatter_.size() + linear_.size()); }
   [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }
+  [[nodiscard]] const std::vector<Prediction>& linear() const { return linear_; }
   [[nodiscard]] const Comparison& comparison() const { return *comparison_; }
   [[nodiscard]] const std::map<std::string, NoiseModel>& noise() const { return noise_; }  ///< by channel
   [[nodiscard]] const std::vector<MeasuredRun>& runs() const { return runs_; }
