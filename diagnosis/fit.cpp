@@ -96,6 +96,23 @@ Prediction Fitter::predict(const Hypothesis& hypothesis, const Eigen::VectorXd& 
   return prediction;
 }
 
+Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base, std::size_t which,
+                         Twin::Workspace& workspace) const {
+  for (double share : {1.0, -1.0, 0.1, -0.1}) {  // a machine that is about to run away has a solution on one side only
+    const double step = share * scatter_[which].step;
+    Eigen::VectorXd turned = x;
+    turned[static_cast<Eigen::Index>(which)] += step;
+    try {
+      Prediction difference = predict(hypothesis, turned, workspace);
+      for (std::size_t r = 0; r < runs_.size(); ++r) difference[r] = (difference[r] - base[r]) / step;
+      return difference;
+    } catch (const SolveError&) {
+      if (share == -0.1) throw;
+    }
+  }
+  return {};
+}
+
 void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x) {
   std::vector<Prediction> differences(scatter_.size());
   Prediction base;
@@ -110,12 +127,7 @@ void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x)
 #pragma omp for schedule(dynamic)
     for (std::size_t i = 0; i < scatter_.size(); ++i) {
       try {
-        Eigen::VectorXd turned = x;
-        turned[static_cast<Eigen::Index>(i)] += scatter_[i].step;
-        differences[i] = predict(hypothesis, turned, workspace);
-        for (std::size_t r = 0; r < runs_.size(); ++r) {
-          differences[i][r] = (differences[i][r] - base[r]) / scatter_[i].step;
-        }
+        differences[i] = slope(hypothesis, x, base, i, workspace);
       } catch (const std::exception& e) {
 #pragma omp critical
         failure = e.what();
@@ -150,12 +162,8 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
 
 Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const {
   Eigen::MatrixXd slopes = slopes_;
-  const Eigen::VectorXd base = comparison_->measured() - at.residual;
   for (std::size_t i = 0; i < scatter_.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    Eigen::VectorXd x = at.x;
-    x[column] += scatter_[i].step;
-    slopes.col(column) = (comparison_->whitened(predict(hypothesis, x, workspace)) - base) / scatter_[i].step;
+    slopes.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(slope(hypothesis, at.x, at.prediction, i, workspace));
   }
   return slopes;
 }

@@ -73,6 +73,9 @@ class Fitter {
  private:
   [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held,
                           Twin::Workspace& workspace) const;
+  /// Slope of the readings by one of scatter's numbers. @param base  at x
+  [[nodiscard]] Prediction slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
+                                 std::size_t which, Twin::Workspace& workspace) const;
   void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x);
   /// W f's slopes by scatter and linear columns at an x far from where scatter was settled.
   [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const;
