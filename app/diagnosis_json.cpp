@@ -20,15 +20,29 @@ Json json_of(const diagnosis::Cause& c) {
   return json;
 }
 
-Json json_of(const diagnosis::Experiment& e) {
+Json json_of(const Cyclogram& cyclogram) {
   Json sections = Json::array();
-  for (const auto& s : e.cyclogram.sections)
-    sections.push_back({{"duration_min", s.duration_s / 60.0}, {"speed_rpm", s.drive.speed_rpm}});
+  for (const auto& s : cyclogram.sections) {
+    Json section = {{"duration_min", s.duration_s / 60.0}, {"speed_rpm", s.drive.speed_rpm}};
+    for (std::size_t a = 0; a < s.drive.feed_m_s.size(); ++a) {
+      if (s.drive.feed_m_s[a] > 0.0) section[std::string("feed_") + "xyz"[a] + "_mm_min"] = 60e3 * s.drive.feed_m_s[a];
+    }
+    sections.push_back(section);
+  }
+  return {{"name", cyclogram.name}, {"sections", sections}};
+}
+
+Json json_of(const diagnosis::Experiment& e) {
   Json json = {{"why", e.why},
-               {"cyclogram", {{"name", e.cyclogram.name}, {"sections", sections}}},
-               {"discrimination", e.discrimination}};
-  if (e.extra_sensor)
-    json["extra_sensor"] = {{"region", e.extra_sensor->region}, {"difference_K", e.extra_sensor->difference_K}};
+               {"proposes", e.by_sensor ? "extra_sensor" : "cyclogram"},
+               {"cyclogram", json_of(e.cyclogram)},
+               {"discrimination", e.discrimination},
+               {"simulated", {{"records", e.n_simulated}, {"told", e.n_told}}}};
+  if (e.extra_sensor) {
+    json["extra_sensor"] = {{"region", e.extra_sensor->region},
+                            {"difference_K", e.extra_sensor->difference_K},
+                            {"discrimination", e.extra_sensor->discrimination}};
+  }
   return json;
 }
 

@@ -57,13 +57,14 @@ void add_causes(const diagnosis::Diagnosis& d, Blocks& blocks) {
 void add_experiment(const diagnosis::Experiment& e, Blocks& blocks) {
   blocks.emplace_back(Heading{"Experiment that would tell them apart"});
   blocks.emplace_back(Paragraph{e.why});
-  blocks.emplace_back(
-      Paragraph{fmt::format("Cyclogram {}: {}. The two best explanations would then differ by {:.1f} sigmas.",
-                            e.cyclogram.name, sections_text(e.cyclogram), e.discrimination)});
+  blocks.emplace_back(Paragraph{fmt::format(
+      "Cyclogram {}: {}. Any two of the explanations would then differ by {:.1f} sigmas or more, what is not known of their "
+      "numbers taken off.",
+      e.cyclogram.name, sections_text(e.cyclogram), e.discrimination)});
   if (e.extra_sensor) {
-    blocks.emplace_back(Paragraph{
-        fmt::format("Or a further thermometer on {}: in the cyclograms measured so far they differ there by {:.2g} K.",
-                    e.extra_sensor->region, e.extra_sensor->difference_K)});
+    blocks.emplace_back(
+        Paragraph{fmt::format("With a further thermometer on {}: {:.1f} sigmas; they differ there by up to {:.2g} K.",
+                              e.extra_sensor->region, e.extra_sensor->discrimination, e.extra_sensor->difference_K)});
   }
 }
 

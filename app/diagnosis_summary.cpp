@@ -56,9 +56,14 @@ std::string parameters_text(const diagnosis::Cause& cause) {
 
 std::string sections_text(const Cyclogram& cyclogram) {
   std::vector<std::string> parts;
-  for (const auto& s : cyclogram.sections)
-    parts.push_back(fmt::format("{:.0f} min at {:.0f} rpm", s.duration_s / 60.0, s.drive.speed_rpm));
-  return fmt::format("{}", fmt::join(parts, ", "));
+  for (const auto& s : cyclogram.sections) {
+    std::string part = fmt::format("{:.0f} min at {:.0f} rpm", s.duration_s / 60.0, s.drive.speed_rpm);
+    for (std::size_t a = 0; a < s.drive.feed_m_s.size(); ++a) {
+      if (s.drive.feed_m_s[a] > 0.0) part += fmt::format(", {} {:.0f} mm/min", "XYZ"[a], 60e3 * s.drive.feed_m_s[a]);
+    }
+    parts.push_back(part);
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 std::string summary_text(const diagnosis::Diagnosis& d) {
@@ -80,8 +85,9 @@ std::string summary_text(const diagnosis::Diagnosis& d) {
   if (d.experiment) {
     text += fmt::format("\nto tell them apart: {}\n  {}\n", d.experiment->why, sections_text(d.experiment->cyclogram));
     if (d.experiment->extra_sensor)
-      text += fmt::format("  or a thermometer on {}: they differ there by {:.2g} K\n", d.experiment->extra_sensor->region,
-                          d.experiment->extra_sensor->difference_K);
+      text += fmt::format("  {} a thermometer on {}: they differ there by {:.2g} K; {:.1f} times the noise in all\n",
+                          d.experiment->by_sensor ? "with" : "better with", d.experiment->extra_sensor->region,
+                          d.experiment->extra_sensor->difference_K, d.experiment->extra_sensor->discrimination);
   }
   if (d.unexplained) {
     text += "\nunexplained, more than noise\n";

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Makes blind cases (tests/blind), diagnoses each, and scores: bench/blind.sh [-n CASES] [-o DIR] [-j JOBS] [-t SECONDS]
+# An ambiguous case gets one more record with the cyclogram proposed (further.csv) and is diagnosed again (resolved/).
 # 400 cases into /tmp/driftwright_blind, one process a core, at most 300 s a case. What is there is kept: a run that was cut short goes
-# on, and a case with a diagnosis.json is not diagnosed again. A diagnosis that fails or takes too long is a miss; diagnose.log says why.
+# on, and a case with a diagnosis.json is not diagnosed again. A diagnosis that fails or takes too long is a miss; diagnosis.log says why.
 set -eu
 n=400 out=/tmp/driftwright_blind jobs=$(nproc) cap=300
 while getopts n:o:j:t: option; do
@@ -20,32 +21,40 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 ninja -C build/release driftwright blind_cases >/dev/null
 . cmake/threads.sh
 export OMP_NUM_THREADS=1 XDG_CACHE_HOME="$out/cache" cap
-export program=$PWD/build/release/app/driftwright
+export program=$PWD/build/release/app/driftwright cases=$PWD/build/release/tests/blind/blind_cases
 
 pids=()
 for ((job = 0; job < jobs; ++job)); do
-  build/release/tests/blind/blind_cases --from 0 --to $((n - 1)) --every "$jobs" --offset "$job" -o "$out" 2>>"$out/cases_$job.log" &
+  "$cases" --from 0 --to $((n - 1)) --every "$jobs" --offset "$job" -o "$out" 2>>"$out/cases_$job.log" &
   pids+=($!)
 done
 for pid in "${pids[@]}"; do wait "$pid"; done
 
-diagnose() {
-  case_dir=$1
-  [ -f "$case_dir/diagnosis/diagnosis.json" ] && return 0
+# diagnose CASE NAME RECORD...: into CASE/NAME, log in CASE/NAME.log
+diagnose_into() {
+  case_dir=$1 name=$2
+  [ -f "$case_dir/$name/diagnosis.json" ] && return 0
   arguments=()
-  for record in "$case_dir"/measured_*.csv; do arguments+=(--measured "$record"); done
+  for record in "${@:3}"; do arguments+=(--measured "$record"); done
   without=$(sed -n 's/^  "without": "\(.*\)",$/\1/p' "$case_dir/truth.json")
   [ -n "$without" ] && arguments+=(--without "$without")
-  # Into a folder of its own first: only what is complete is called diagnosis.
-  rm -rf "$case_dir/diagnosis.part"
-  if timeout "$cap" "$program" diagnose "$case_dir/scenario.yaml" "${arguments[@]}" -o "$case_dir/diagnosis.part" \
-    >"$case_dir/diagnose.log" 2>&1; then
-    rm -rf "$case_dir/diagnosis"
-    mv "$case_dir/diagnosis.part" "$case_dir/diagnosis"
+  # Into a folder of its own first: only what is complete is called by the name.
+  rm -rf "$case_dir/$name.part"
+  if timeout "$cap" "$program" diagnose "$case_dir/scenario.yaml" "${arguments[@]}" -o "$case_dir/$name.part" \
+    >"$case_dir/$name.log" 2>&1; then
+    rm -rf "${case_dir:?}/$name"
+    mv "$case_dir/$name.part" "$case_dir/$name"
   else
-    echo "$(basename "$case_dir"): exit $? (log: $case_dir/diagnose.log)" >&2
+    echo "$(basename "$case_dir"): exit $? (log: $case_dir/$name.log)" >&2
   fi
 }
-export -f diagnose
+# What cannot be told apart: one more record, with the cyclogram proposed, and all records diagnosed again.
+diagnose() {
+  diagnose_into "$1" diagnosis "$1"/measured_*.csv
+  [ -f "$1/diagnosis/diagnosis.json" ] || return 0
+  [ -f "$1/further.csv" ] || "$cases" --further "$1" --diagnosis "$1/diagnosis/diagnosis.json" -o "$1/further.csv"
+  [ ! -f "$1/further.csv" ] || diagnose_into "$1" resolved "$1"/measured_*.csv "$1/further.csv"
+}
+export -f diagnose diagnose_into
 seq -f "$out/case_%04g" 0 $((n - 1)) | xargs -P "$jobs" -I{} bash -c 'diagnose {}'
 python3 bench/blind/score.py "$out"

@@ -373,10 +373,9 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.verdict = is_ambiguous ? Verdict::kAmbiguous : Verdict::kNamed;
   }
   if (n_readings < kFewestReadings && d.verdict == Verdict::kConsistent) d.verdict = Verdict::kInsufficientData;
-  for (const Finding& f : d.search.findings) {
-    if (d.experiment || f.alternatives.empty()) continue;
+  if (std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); })) {
     say("choosing an experiment");
-    d.experiment = propose_experiment(fitter, d.search, f);
+    d.experiment = propose_experiment(fitter, d.search);
   }
   say("measuring the gain");
   HeldOut held = held_out_gain(fitter, d.search, d.noise);

@@ -1,114 +1,291 @@
 #include "diagnosis/experiment.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "diagnosis/experiment_check.hpp"
+#include "diagnosis/experiment_family.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kRows_s = 60.0;
+constexpr double kTells = 5.0;   // d' from which on fewer than 1 record in 40 speaks for the wrong one
+constexpr double kHardly = 2.0;  // d' up to which a further thermometer is worth its price; above, a cyclogram costs nothing
+constexpr NoiseModel kThermometer = {0.05, 0.0, 0.0};  // K, where none was measured
+constexpr const char* kMeanOf = "mean of ";
 
-/// Cyclograms that ask different questions of a machine.
-std::vector<Cyclogram> family(double top_rpm) {
-  const auto section = [](double minutes, double rpm) { return Cyclogram::Section{60.0 * minutes, {.speed_rpm = rpm}}; };
-  std::vector<Cyclogram> list;
-  list.push_back({"steady", {section(360, top_rpm)}});
-  list.push_back({"heat_and_cool", {section(150, top_rpm), section(210, 0.0)}});
-  list.push_back(
-      {"levels", {section(90, 0.3 * top_rpm), section(90, 0.6 * top_rpm), section(90, top_rpm), section(90, 0.0)}});
-  Cyclogram alternating{"alternating", {}};
-  for (int i = 0; i < 9; ++i) {
-    alternating.sections.push_back(section(20, top_rpm));
-    alternating.sections.push_back(section(20, i % 2 ? 0.4 * top_rpm : 0.0));
+/// Without linear columns: they are about the runs at hand.
+Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fit& fit) {
+  const auto n_scatter = static_cast<Eigen::Index>(fitter.scatter().size());
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < fit.x.size(); ++i) {
+    if (i < n_scatter || i >= fitter.n_nuisance()) kept.push_back(i);
   }
-  list.push_back(alternating);
-  list.push_back({"standstill", {section(360, 0.0)}});
+  Explanation e{std::move(hypothesis), fit.x(kept), fit.covariance(kept, kept)};
+  Eigen::Index at = n_scatter;
+  for (const Claim& c : e.hypothesis) {  // what has no slope has no covariance: it stays where the search has put it
+    for (const Knob& k : c.knobs) {
+      if (c.all_or_nothing || (k.is_time && k.reading_only)) {
+        e.covariance.row(at).setZero();
+        e.covariance.col(at).setZero();
+        e.covariance(at, at) = 1e-12;
+      }
+      ++at;
+    }
+  }
+  return e;
+}
+
+/// What stands to be told apart: the search's own hypothesis first, then those with another claim in a finding's place.
+struct Open {
+  std::vector<Explanation> explanations;
+  std::vector<Pair> pairs;
+  std::vector<const Claim*> claims;  ///< in dispute, of each explanation; of the first, the first finding's
+};
+
+Open open_questions(const Fitter& fitter, const SearchResult& result) {
+  Open open;
+  open.explanations.push_back(explanation_of(fitter, result.hypothesis, result.fit));
+  for (std::size_t f = 0; f < result.findings.size(); ++f) {
+    const Finding& finding = result.findings[f];
+    if (finding.alternatives.empty()) continue;
+    if (open.claims.empty()) open.claims.push_back(&finding.claim);
+    std::vector<std::size_t> rivals = {0};
+    for (const Finding::Alternative& a : finding.alternatives) {
+      Hypothesis other = result.hypothesis;
+      other.erase(other.begin() + static_cast<std::ptrdiff_t>(f));
+      other.push_back(a.claim);
+      for (std::size_t r : rivals) open.pairs.push_back({r, open.explanations.size()});
+      rivals.push_back(open.explanations.size());
+      open.explanations.push_back(explanation_of(fitter, std::move(other), a.fit));
+      open.claims.push_back(&a.claim);
+    }
+  }
+  return open;
+}
+
+std::string words(const Claim& c) {
+  return fmt::format("{} at {}", c.knobs.front().effect, c.knobs.front().where);
+}
+
+/// Channels of all runs, without readings.
+std::vector<MeasuredChannel> channels_of(const std::vector<MeasuredRun>& runs) {
+  std::vector<MeasuredChannel> list;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) {
+      if (std::none_of(list.begin(), list.end(), [&](const MeasuredChannel& l) { return l.name == c.name; }))
+        list.push_back(c);
+    }
+  }
   return list;
 }
 
-Eigen::VectorXd without_linear(const Eigen::VectorXd& x, Eigen::Index n_scatter, Eigen::Index n_nuisance) {
-  Eigen::VectorXd kept(x.size() - (n_nuisance - n_scatter));
-  kept << x.head(n_scatter), x.tail(x.size() - n_nuisance);
-  return kept;
+/// That of the median thermometer.
+NoiseModel thermometer_noise(const std::vector<MeasuredChannel>& channels, const std::map<std::string, NoiseModel>& noise) {
+  std::vector<NoiseModel> list;
+  for (const MeasuredChannel& c : channels) {
+    if (c.unit == "K") list.push_back(noise.at(c.name));
+  }
+  if (list.empty()) return kThermometer;
+  const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
+  std::nth_element(list.begin(), middle, list.end(),
+                   [](const NoiseModel& a, const NoiseModel& b) { return a.total() < b.total(); });
+  return *middle;
+}
+
+/// A record to come, and what each explanation says of it.
+struct Ahead {
+  std::vector<MeasuredRun> runs;  ///< one
+  std::unique_ptr<Fitter> fitter;
+  std::vector<Outlook> outlooks;
+
+  /// Least d' of all pairs that some channels see.
+  [[nodiscard]] double least(const std::vector<Pair>& pairs, const std::set<std::string>& channels) const {
+    std::vector<Outlook> seen;
+    for (const Outlook& o : outlooks) seen.push_back(only(o, fitter->comparison(), channels));
+    double d = std::numeric_limits<double>::infinity();
+    for (const Pair& p : pairs) d = std::min(d, discrimination(seen[p.first], seen[p.second]));
+    return d;
+  }
+};
+
+/// @return null where an explanation has no solution there
+std::unique_ptr<Ahead> look_ahead(const Fitter& fitter, const MeasuredRun& run,
+                                  const std::map<std::string, NoiseModel>& noise,
+                                  const std::vector<Explanation>& explanations) {
+  auto ahead = std::make_unique<Ahead>();
+  ahead->runs = {run};
+  try {
+    ahead->fitter = std::make_unique<Fitter>(fitter.twin(), ahead->runs, fitter.scatter(), std::vector<Prediction>{});
+    ahead->fitter->set_noise(noise);
+    Fit at;
+    at.x = explanations.front().x;
+    ahead->fitter->settle(explanations.front().hypothesis, at);
+    Twin::Workspace workspace(fitter.twin());
+    for (const Explanation& e : explanations) ahead->outlooks.push_back(outlook(*ahead->fitter, e, workspace));
+  } catch (const std::exception&) {
+    return nullptr;
+  }
+  return ahead;
+}
+
+/// Whether a claim does nothing in a record to come: it happened once.
+bool is_silent(const Ahead& ahead, const Explanation& of, const Claim& claim) {
+  Hypothesis others;
+  Eigen::VectorXd x = of.x.head(ahead.fitter->n_nuisance());
+  Eigen::Index at = x.size();
+  for (const Claim& c : of.hypothesis) {
+    const auto n = static_cast<Eigen::Index>(c.knobs.size());
+    if (c.candidate != claim.candidate) {
+      others.push_back(c);
+      x.conservativeResize(x.size() + n);
+      x.tail(n) = of.x.segment(at, n);
+    }
+    at += n;
+  }
+  Twin::Workspace workspace(ahead.fitter->twin());
+  return ahead.fitter->predict(of.hypothesis, of.x, workspace) == ahead.fitter->predict(others, x, workspace);
+}
+
+double mean_hall(const std::vector<MeasuredRun>& runs) {
+  double sum = 0.0;
+  Eigen::Index n = 0;
+  for (const MeasuredRun& run : runs) {
+    for (double t_s : run.time_s) sum += run.hall.at(t_s);
+    n += static_cast<Eigen::Index>(run.time_s.size());
+  }
+  return sum / static_cast<double>(n);
+}
+
+MeasuredRun run_of(const std::vector<MeasuredRun>& runs, const Cyclogram& cyclogram,
+                   const std::vector<MeasuredChannel>& channels) {
+  MeasuredRun run;
+  run.name = cyclogram.name;
+  run.cyclogram = cyclogram;
+  run.hall = {{0.0}, {mean_hall(runs)}};
+  run.has_ambient = runs.front().has_ambient;
+  for (double t_s = 0.0; t_s <= cyclogram.duration_s() + 1e-6; t_s += kRows_s) run.time_s.push_back(t_s);
+  set_grid(run);
+  run.channels = channels;
+  for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(run.time_s.size()));
+  return run;
+}
+
+/// What all explanations in pairs differ by at most in an output [K].
+double largest_difference_K(const Ahead& ahead, const Open& open, int output) {
+  Twin::Workspace workspace(ahead.fitter->twin());
+  std::vector<Eigen::VectorXd> rows;
+  for (const Explanation& e : open.explanations)
+    rows.push_back(ahead.fitter->predict(e.hypothesis, e.x, workspace).front().row(output).transpose());
+  double most_K = 0.0;
+  for (const Pair& p : open.pairs) most_K = std::max(most_K, (rows[p.first] - rows[p.second]).cwiseAbs().maxCoeff());
+  return most_K;
+}
+
+std::string why_of(const Experiment& e, const Open& open, bool once_only) {
+  std::vector<std::string> names;
+  for (const Claim* c : open.claims) names.push_back(words(*c));
+  const std::string of = fmt::format("{}", fmt::join(names, " and "));
+  if (once_only) {
+    return fmt::format(
+        "{} each happened in one record only, which a new one does not show again; {}", of,
+        e.extra_sensor && e.extra_sensor->discrimination >= kTells
+            ? fmt::format("if it happens again, a thermometer on {} tells them apart ({:.0f} times the noise)",
+                          e.extra_sensor->region, e.extra_sensor->discrimination)
+            : "no further thermometer would tell them apart either");
+  }
+  const std::string check =
+      e.n_simulated > 0 ? fmt::format("; of {} such records simulated, {} told which it was", e.n_simulated, e.n_told) : "";
+  if (e.by_sensor) {
+    return fmt::format(
+        "{} differ by {:.1f} times the noise in the best cyclogram of the family, and by {:.1f} with a "
+        "thermometer on {}, what is not known of their numbers taken off{}",
+        of, e.discrimination, e.extra_sensor->discrimination, e.extra_sensor->region, check);
+  }
+  if (e.discrimination < kTells) {
+    return fmt::format("no cyclogram of the family surely tells {} apart (at best {:.1f} times the noise){}", of,
+                       e.discrimination, check);
+  }
+  return fmt::format("{} then differ by {:.0f} times the noise, what is not known of their numbers taken off{}", of,
+                     e.discrimination, check);
 }
 
 }  // namespace
 
-std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchResult& result, const Finding& finding) {
-  if (finding.alternatives.empty()) return std::nullopt;
-  const Finding::Alternative& other = finding.alternatives.front();
-  Hypothesis alternative;
-  for (const Claim& c : result.hypothesis) {
-    if (c.candidate != finding.claim.candidate) alternative.push_back(c);
-  }
-  alternative.push_back(other.claim);
-  const auto n_scatter = static_cast<Eigen::Index>(fitter.scatter().size());
-  const Eigen::VectorXd x_a = without_linear(result.fit.x, n_scatter, fitter.n_nuisance()),
-                        x_b = without_linear(other.fit.x, n_scatter, fitter.n_nuisance());
-  double top_rpm = 0.0;
-  std::map<std::string, NoiseModel> noise;
-  MeasuredRun pattern = fitter.runs().front();
-  for (const MeasuredRun& run : fitter.runs()) {
-    for (const auto& s : run.cyclogram.sections) top_rpm = std::max(top_rpm, s.drive.speed_rpm);
-  }
-  if (top_rpm <= 0.0) top_rpm = 1000.0;
-  for (const MeasuredChannel& c : pattern.channels) noise[c.name] = {c.unit == "K" ? 0.05 : 3e-7, 0.0, 0.0};
-
-  Eigen::MatrixXd precision = result.fit.covariance.topLeftCorner(n_scatter, n_scatter).inverse();
-  std::optional<Experiment> best;
-  for (const Cyclogram& cyclogram : family(top_rpm)) {
-    MeasuredRun run = pattern;
-    run.name = cyclogram.name;
-    run.cyclogram = cyclogram;
-    run.hall = {{0.0}, {pattern.hall.at(0.0)}};
-    run.time_s.clear();
-    for (double t_s = 0.0; t_s <= cyclogram.duration_s() + 1e-6; t_s += kRows_s) run.time_s.push_back(t_s);
-    set_grid(run);
-    for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(run.time_s.size()));
-    const std::vector<MeasuredRun> runs = {run};
-    Fitter ahead(fitter.twin(), runs, fitter.scatter(), {});
-    ahead.set_noise(noise);
-    Twin::Workspace workspace(fitter.twin());
-    Eigen::VectorXd difference;
-    try {
-      difference = ahead.comparison().whitened(ahead.predict(result.hypothesis, x_a, workspace)) -
-                   ahead.comparison().whitened(ahead.predict(alternative, x_b, workspace));
-    } catch (const std::exception&) {  // one of them has no solution there
-      continue;
-    }
-    const Eigen::MatrixXd& j = ahead.nuisance_slopes();
-    const Eigen::MatrixXd hessian = j.transpose() * j + precision;
-    const Eigen::VectorXd jd = j.transpose() * difference;
-    const double square = difference.squaredNorm() - jd.dot(hessian.llt().solve(jd));
-    const double discrimination = std::sqrt(std::max(0.0, square));
-    if (best && discrimination <= best->discrimination) continue;
-    best = Experiment{"", cyclogram, discrimination, std::nullopt};
-  }
-  if (!best) return std::nullopt;
-  const auto words = [](const Claim& c) { return fmt::format("{} at {}", c.knobs.front().effect, c.knobs.front().where); };
-  best->why = best->discrimination > 3.0
-                  ? fmt::format("{} and {} then differ by {:.0f} times the noise, scatter taken off", words(finding.claim),
-                                words(other.claim), best->discrimination)
-                  : fmt::format("no cyclogram of the family tells {} from {} (at best {:.1f} times the noise)",
-                                words(finding.claim), words(other.claim), best->discrimination);
-  // Where would one more thermometer see it, on the runs at hand?
+std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchResult& result) {
+  const Open open = open_questions(fitter, result);
+  if (open.pairs.empty()) return std::nullopt;
+  const std::vector<MeasuredRun>& runs = fitter.runs();
+  std::vector<MeasuredChannel> channels = channels_of(runs);
+  std::map<std::string, NoiseModel> noise = fitter.noise();
+  const NoiseModel further = thermometer_noise(channels, noise);
+  std::set<std::string> measured;
+  for (const MeasuredChannel& c : channels) measured.insert(c.name);
   const auto& names = fitter.twin().outputs().name;
-  for (std::size_t o = 0; o < names.size(); ++o) {
-    if (!names[o].starts_with("mean of ")) continue;
-    double most_K = 0.0;
-    for (std::size_t r = 0; r < fitter.runs().size(); ++r) {
-      most_K = std::max(most_K, (result.fit.prediction[r].row(static_cast<Eigen::Index>(o)) -
-                                 other.fit.prediction[r].row(static_cast<Eigen::Index>(o)))
-                                    .cwiseAbs()
-                                    .maxCoeff());
-    }
-    if (!best->extra_sensor || most_K > best->extra_sensor->difference_K)
-      best->extra_sensor = Experiment::Sensor{names[o].substr(8), most_K};
+  for (std::size_t o = 0; o < names.size(); ++o) {  // as if there were a thermometer on each part
+    if (!names[o].starts_with(kMeanOf) || measured.contains(names[o])) continue;
+    channels.push_back({names[o], static_cast<int>(o), "K", {}});
+    noise[names[o]] = further;
   }
+
+  Experiment best;
+  best.discrimination = -1.0;
+  std::unique_ptr<Ahead> chosen;
+  bool once_only = true;
+  for (const Cyclogram& cyclogram : experiment_family(runs)) {
+    auto ahead = look_ahead(fitter, run_of(runs, cyclogram, channels), noise, open.explanations);
+    if (!ahead) continue;
+    for (std::size_t e = 0; e < open.explanations.size() && once_only; ++e)
+      once_only = is_silent(*ahead, open.explanations[e], *open.claims[e]);
+    const double d = ahead->least(open.pairs, measured);
+    if (d <= best.discrimination) continue;
+    best.discrimination = d;
+    best.cyclogram = cyclogram;
+    chosen = std::move(ahead);
+  }
+  if (!chosen) return std::nullopt;
+  if (once_only) {  // the record again, and with it what happened
+    double most_d = -1.0;
+    for (const MeasuredRun& run : runs) {
+      MeasuredRun repeated = run_of(runs, run.cyclogram, channels);
+      repeated.hall = run.hall;
+      auto ahead = look_ahead(fitter, repeated, noise, open.explanations);
+      if (!ahead) continue;
+      const double d = ahead->least(open.pairs, measured);
+      if (d > most_d) {
+        most_d = d;
+        best.cyclogram = run.cyclogram;
+        chosen = std::move(ahead);
+      }
+    }
+    best.discrimination = 0.0;  // what does not happen again is not seen again
+  }
+  for (const MeasuredChannel& c : channels) {
+    if (measured.contains(c.name)) continue;
+    std::set<std::string> seen = measured;
+    seen.insert(c.name);
+    const double d = chosen->least(open.pairs, seen);
+    if (best.extra_sensor && d <= best.extra_sensor->discrimination) continue;
+    best.extra_sensor = Experiment::Sensor{c.name.substr(std::string(kMeanOf).size()),
+                                           largest_difference_K(*chosen, open, c.output), d, best.cyclogram};
+  }
+  best.by_sensor =
+      best.extra_sensor && best.discrimination < kHardly && best.extra_sensor->discrimination > best.discrimination + 1.0;
+  if (!once_only) {
+    MeasuredRun run = chosen->runs.front();
+    std::erase_if(run.channels, [&](const MeasuredChannel& c) {
+      return !measured.contains(c.name) && !(best.by_sensor && c.name == kMeanOf + best.extra_sensor->region);
+    });
+    const Check check = check_by_simulation(fitter, run, noise, open.explanations, open.pairs);
+    best.n_simulated = check.n;
+    best.n_told = check.n_told;
+  }
+  best.why = why_of(best, open, once_only);
   return best;
 }
 

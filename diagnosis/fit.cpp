@@ -11,8 +11,11 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kMostIterations = 16;
+constexpr int kMostIterations = 16;  // and one more for each time that slopes are taken anew
 constexpr double kConverged = 0.02;  // in Φ
+constexpr double kFar = 2.0;         // sigmas that a number has gone from where scatter's slopes were taken
+constexpr double kPromised = 1.0;    // of Φ, by slopes that do not keep it
+constexpr int kMostRetakes = 6;
 
 Eigen::Index n_knobs(const Hypothesis& hypothesis) {
   Eigen::Index n = 0;
@@ -121,6 +124,23 @@ Prediction Fitter::predict(const Hypothesis& hypothesis, const Eigen::VectorXd& 
   return prediction;
 }
 
+Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base, std::size_t which,
+                         Twin::Workspace& workspace) const {
+  for (double share : {1.0, -1.0, 0.1, -0.1}) {  // a machine that is about to run away has a solution on one side only
+    const double step = share * scatter_[which].step;
+    Eigen::VectorXd turned = x;
+    turned[static_cast<Eigen::Index>(which)] += step;
+    try {
+      Prediction difference = predict(hypothesis, turned, workspace);
+      for (std::size_t r = 0; r < runs_.size(); ++r) difference[r] = (difference[r] - base[r]) / step;
+      return difference;
+    } catch (const SolveError&) {
+      if (share == -0.1) throw;
+    }
+  }
+  return {};
+}
+
 void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x) {
   std::vector<Prediction> differences(scatter_.size());
   Prediction base;
@@ -135,12 +155,7 @@ void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x)
 #pragma omp for schedule(dynamic)
     for (std::size_t i = 0; i < scatter_.size(); ++i) {
       try {
-        Eigen::VectorXd turned = x;
-        turned[static_cast<Eigen::Index>(i)] += scatter_[i].step;
-        differences[i] = predict(hypothesis, turned, workspace);
-        for (std::size_t r = 0; r < runs_.size(); ++r) {
-          differences[i][r] = (differences[i][r] - base[r]) / scatter_[i].step;
-        }
+        differences[i] = slope(hypothesis, x, base, i, workspace);
       } catch (const std::exception& e) {
 #pragma omp critical
         failure = e.what();
@@ -162,6 +177,7 @@ void Fitter::whiten_slopes() {
 }
 
 void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise) {
+  noise_ = noise;
   comparison_.emplace(runs_, noise);
   whiten_slopes();
 }
@@ -170,6 +186,14 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
   take_slopes(hypothesis, at.x);
   nuisance_ = at.x.head(n_nuisance());
   whiten_slopes();
+}
+
+Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const {
+  Eigen::MatrixXd slopes = slopes_;
+  for (std::size_t i = 0; i < scatter_.size(); ++i) {
+    slopes.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(slope(hypothesis, at.x, at.prediction, i, workspace));
+  }
+  return slopes;
 }
 
 Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const {
@@ -215,6 +239,23 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   look(f, responses, false);
   if (f.prediction.empty() || f.misfit >= 1e300) throw SolveError("the machine has no solution where the fit begins");
 
+  // Scatter's slopes are those of the fitter, taken anew where a fit has gone far from there.
+  Eigen::MatrixXd own_slopes, own_squares;
+  const Eigen::MatrixXd *nuisance_slopes = &slopes_, *nuisance_squares = &squares_;
+  Eigen::VectorXd taken_at = nuisance_;
+  int n_retakes = 0;
+  const auto retake = [&](double promised) {
+    const Eigen::VectorXd gone = (f.x.head(n_n) - taken_at).cwiseQuotient(sd.head(n_n));
+    if (n_retakes == kMostRetakes || (gone.cwiseAbs().maxCoeff() <= kFar && promised < kPromised)) return false;
+    own_slopes = slopes_at(hypothesis, f, workspace);
+    own_squares.noalias() = own_slopes.transpose() * own_slopes;
+    nuisance_slopes = &own_slopes;
+    nuisance_squares = &own_squares;
+    taken_at = f.x.head(n_n);
+    ++n_retakes;
+    return true;
+  };
+
   Eigen::MatrixXd square(n, n);
   f.slopes.resize(f.residual.size(), n_k);
   const auto differentiate = [&] {
@@ -230,8 +271,8 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
       Prediction kept = knob.reading_only ? responses : Prediction{};
       f.slopes.col(k) = (comparison_->whitened(predict(hypothesis, x, workspace, &kept, knob.reading_only)) - base) / step;
     }
-    square.topLeftCorner(n_n, n_n) = squares_;
-    square.topRightCorner(n_n, n_k).noalias() = slopes_.transpose() * f.slopes;
+    square.topLeftCorner(n_n, n_n) = *nuisance_squares;
+    square.topRightCorner(n_n, n_k).noalias() = nuisance_slopes->transpose() * f.slopes;
     square.bottomLeftCorner(n_k, n_n) = square.topRightCorner(n_n, n_k).transpose();
     square.bottomRightCorner(n_k, n_k).noalias() = f.slopes.transpose() * f.slopes;
   };
@@ -241,12 +282,12 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     row_s = std::min(row_s, run.time_s.back() / static_cast<double>(run.time_s.size() - 1));
   }
   const bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMostIterations + n_retakes; ++iteration) {
     differentiate();
     Eigen::MatrixXd hessian = square;
     hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
     Eigen::VectorXd gradient(n);
-    gradient.head(n_n) = slopes_.transpose() * f.residual;
+    gradient.head(n_n) = nuisance_slopes->transpose() * f.residual;
     gradient.tail(n_k) = f.slopes.transpose() * f.residual;
     gradient -= f.x.cwiseQuotient(sd.cwiseProduct(sd));
     for (Eigen::Index k = 0; k < n_k; ++k) {
@@ -290,7 +331,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
         }
       }
     }
-    if (before - f.misfit < kConverged) break;
+    if (before - f.misfit < kConverged && !retake(0.5 * gradient.dot(step))) break;
   }
   differentiate();
   Eigen::MatrixXd hessian = square;

@@ -64,7 +64,9 @@ class Fitter {
 
   [[nodiscard]] Eigen::Index n_nuisance() const { return static_cast<Eigen::Index>(scatter_.size() + linear_.size()); }
   [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }
+  [[nodiscard]] const std::vector<Prediction>& linear() const { return linear_; }
   [[nodiscard]] const Comparison& comparison() const { return *comparison_; }
+  [[nodiscard]] const std::map<std::string, NoiseModel>& noise() const { return noise_; }  ///< by channel
   [[nodiscard]] const std::vector<MeasuredRun>& runs() const { return runs_; }
   [[nodiscard]] const Twin& twin() const { return twin_; }
   /// W f's slopes by scatter and linear columns.
@@ -81,13 +83,19 @@ class Fitter {
  private:
   [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held,
                           Twin::Workspace& workspace) const;
+  /// Slope of the readings by one of scatter's numbers. @param base  at x
+  [[nodiscard]] Prediction slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
+                                 std::size_t which, Twin::Workspace& workspace) const;
   void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x);
+  /// W f's slopes by scatter and linear columns at an x far from where scatter was settled.
+  [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const;
   void whiten_slopes();
 
   const Twin& twin_;
   const std::vector<MeasuredRun>& runs_;
   std::vector<Knob> scatter_;
   std::vector<Prediction> linear_;
+  std::map<std::string, NoiseModel> noise_;
   std::optional<Comparison> comparison_;
   Eigen::VectorXd nuisance_;             ///< where it was settled
   std::vector<Prediction> differences_;  ///< of readings by scatter, not whitened

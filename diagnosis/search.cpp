@@ -268,8 +268,16 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   };
   for (int round = 0; round < options.most_effects; ++round) {
     say(fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
-    const std::vector<Fitted> additions =
+    std::vector<Fitted> additions =
         best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits);
+    if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself
+      fitter.settle({}, best_fit);
+      const std::vector<Signature> there = signatures(fitter, candidates, {}, best_fit);
+      for (Fitted& f : best_additions(fitter, candidates, there, best, best_fit, options.refits))
+        additions.push_back(std::move(f));
+      std::stable_sort(additions.begin(), additions.end(),
+                       [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
+    }
     if (additions.empty()) break;
     const Hypothesis tried = with(best, additions.front().claim);
     const double value = evidence(additions.front().fit, tried) - laws_price(candidates, best);

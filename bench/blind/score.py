@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Scores diagnoses of blind cases against their truth: score.py CASES [--diagnoses NAME] [--misses N] [--json FILE]
+"""Scores diagnoses of blind cases against their truth: score.py CASES [--diagnoses NAME] [--resolved NAME] [--misses N] [--json FILE]
 
-CASES holds case_*/truth.json (tests/blind) and case_*/NAME/diagnosis.json (NAME: diagnosis).
+CASES holds case_*/truth.json (tests/blind), case_*/NAME/diagnosis.json (NAME: diagnosis), and for what is ambiguous the same after the
+proposed experiment (NAME: resolved). Resolved rightly: each hidden effect is a cause without alternatives at its place, and nothing
+else is one.
 
 Same cause, same place:
 - A place is the set of its words: "a,b", "b,a" and "a/b" are one.
@@ -20,6 +22,8 @@ import os
 import re
 
 LARGEST_SET = 3
+RESOLVED = "ambiguous, proposed experiment simulated: resolved rightly"
+RESOLVED_CATALOGUE = "the same, without effects that are in no catalogue"
 CONSTANT_HEAT = {"heat_source", "coolant", "radiation"}
 
 
@@ -88,6 +92,22 @@ def both_found(effects, causes):
     a, b = effects
     holds = [[i for i, c in enumerate(causes) if find(e, [c])] for e in (a, b)]
     return any(i != j for i in holds[0] for j in holds[1])
+
+
+def resolved_rightly(effects, diagnosis):
+    """Each truth alone at its place, and no other cause."""
+    causes = diagnosis.get("causes", [])
+    return (len(causes) == len(effects) and all(len(members(c)) == 1 for c in causes)
+            and all(any(same_place(e, c) for c in causes) for e in effects))
+
+
+def read_diagnosis(path):
+    """None where there is none that can be read."""
+    try:
+        with open(os.path.join(path, "diagnosis.json"), encoding="utf-8") as file:
+            return json.load(file)
+    except (OSError, ValueError):
+        return None
 
 
 def comparable(effect, claim):
@@ -179,19 +199,18 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("cases")
     parser.add_argument("--diagnoses", default="diagnosis")
+    parser.add_argument("--resolved", default="resolved")
     parser.add_argument("--misses", type=int, default=1000)
     parser.add_argument("--json")
     options = parser.parse_args()
-    table, misses, missing, failed, ratios, per_law = Table(), [], 0, 0, [], {}
+    table, misses, missing, failed, ratios, per_law, expected = Table(), [], 0, 0, [], {}, []
     for path in sorted(glob.glob(os.path.join(options.cases, "case_*", "truth.json"))):
         folder = os.path.dirname(path)
         with open(path, encoding="utf-8") as file:
             truth = json.load(file)
-        try:
-            with open(os.path.join(folder, options.diagnoses, "diagnosis.json"), encoding="utf-8") as file:
-                diagnosis = json.load(file)
-        except (OSError, ValueError):
-            if not os.path.exists(os.path.join(folder, "diagnose.log")):
+        diagnosis = read_diagnosis(os.path.join(folder, options.diagnoses))
+        if diagnosis is None:
+            if not os.path.exists(os.path.join(folder, options.diagnoses + ".log")):
                 missing += 1
                 continue
             diagnosis = {"verdict": "failed", "causes": []}  # begun and not brought to an end: right about nothing
@@ -246,9 +265,23 @@ def main():
             if ratio is not None:
                 ratios.append(ratio)
                 table.add("held-out residual at most 1.1 of the noise", ratio <= 1.1)
+        hidden = "; ".join(f"{e['law']} at {e['where']} (d' {e['d_prime_beside_others']:.0f})" for e in truth["effects"]) or "none"
+        name = f"case_{truth['seed']:04d} {truth['machine']} {kind}: {hidden}"
+        if verdict == "ambiguous":
+            experiment = diagnosis.get("discriminating_experiment") or {}
+            after = read_diagnosis(os.path.join(folder, options.resolved))
+            told = after is not None and resolved_rightly(truth["effects"], after)
+            table.add(RESOLVED, told)
+            if kind != "outside":
+                table.add(RESOLVED_CATALOGUE, told)
+            simulated = experiment.get("simulated") or {}
+            expected.append((simulated.get("told", 0), simulated.get("records", 0)))
+            if not told:
+                how = f"{(experiment.get('cyclogram') or {}).get('name')}, d' {experiment.get('discrimination', 0.0):.1f}"
+                misses.append(f"{name} -> ambiguous: {in_words(causes)}; after {how}: "
+                              + ("not diagnosed" if after is None else f"{after['verdict']}: {in_words(after.get('causes', []))}"))
         if not right:
-            hidden = "; ".join(f"{e['law']} at {e['where']} (d' {e['d_prime_beside_others']:.0f})" for e in truth["effects"]) or "none"
-            misses.append(f"case_{truth['seed']:04d} {truth['machine']} {kind}: {hidden} -> {verdict}: {in_words(causes)}")
+            misses.append(f"{name} -> {verdict}: {in_words(causes)}")
     print(f"{'figure':<62} {'wanted':>8} {'got':>8}  {'95 % interval':>14}")
     order = [("one: cause named or in a set of three", ">= 95 %"), ("one: cause named alone", ">= 80 %"),
              ("one: its place right", ">= 90 %"), ("one: no cause beside it", ""), ("two: both found", ">= 85 %"),
@@ -258,7 +291,7 @@ def main():
              ("outside, in no catalogue: not confidently misnamed", ""), ("outside: something is said to be wrong", ""),
              ("confounded: not confidently misnamed", ""), ("confounded: truth among what is said", ""),
              ("confounded: truth or what it is confused with", ""),
-             ("confounded: said to be ambiguous, or more is asked for", "")]
+             ("confounded: said to be ambiguous, or more is asked for", ""), (RESOLVED, ">= 90 %"), (RESOLVED_CATALOGUE, "")]
     for band in (", d' 5 to 10", ", d' < 5"):
         order += [(row + band, "") for row in ("one: cause named or in a set of three", "one: cause named alone", "one: its place right",
                                                "two: both found", "two: one or both found")]
@@ -267,6 +300,8 @@ def main():
         ratios.sort()
         print(f"held-out residual over noise, a model that knows all has 1: median {ratios[len(ratios) // 2]:.3f}, "
               f"9 of 10 below {ratios[min(len(ratios) - 1, 9 * len(ratios) // 10)]:.3f}")
+    if sum(n for _, n in expected):
+        print(f"experiments: the diagnosis itself expected {sum(t for t, _ in expected)} of {sum(n for _, n in expected)} simulated records to tell")
     if per_law:
         print("\none, d' >= 10, found by law: " + ", ".join(f"{law} {h}/{n}" for law, (h, n) in sorted(per_law.items())))
     if missing:

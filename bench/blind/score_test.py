@@ -71,7 +71,7 @@ class Rules(unittest.TestCase):
             os.makedirs(at)
             with open(os.path.join(at, "truth.json"), "w", encoding="utf-8") as file:
                 json.dump({"seed": 4, "class": "none", "machine": "m", "without": None, "effects": [], "channels": []}, file)
-            with open(os.path.join(at, "diagnose.log"), "w", encoding="utf-8") as file:
+            with open(os.path.join(at, "diagnosis.log"), "w", encoding="utf-8") as file:
                 file.write("gave up")
             script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "score.py")
             said = subprocess.run([sys.executable, script, folder], capture_output=True, text=True, check=True).stdout

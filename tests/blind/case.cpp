@@ -107,6 +107,16 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
   std::filesystem::rename(part, path);
 }
 
+Json read_json(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  if (!in) throw InputError("blind_cases: cannot read " + path.string());
+  try {
+    return Json::parse(in);
+  } catch (const Json::parse_error& e) {
+    throw InputError("blind_cases: " + path.string() + ": " + e.what());
+  }
+}
+
 Json truth_json(const Subject& s, const Case& c) {
   Json truth = {{"seed", c.plan.seed}, {"class", class_name(c.plan.of)}, {"machine", s.name}};
   truth["without"] = c.without.empty() ? Json(nullptr) : Json(c.without);
@@ -243,13 +253,41 @@ void write_case(const Subject& s, const Case& c, const std::filesystem::path& fo
   write_text(folder / "truth.json", truth_json(s, c).dump(2) + "\n");
 }
 
+Record further_record(const Subject& s, Case of, Cyclogram cyclogram, std::uint64_t further) {
+  Random hall(of.plan.seed, 5000 + further);
+  const double duration_s = cyclogram.duration_s();
+  of.plan.records.resize(of.plan.records.size() + further);  // seeds of noise go by the number of the record
+  of.plan.records.push_back({"further", std::move(cyclogram), draw_hall(duration_s, hall)});
+  return measured(s, of, of.plan.records.size() - 1);
+}
+
+const Subject& CaseMaker::subject(std::size_t which) {
+  std::unique_ptr<Subject>& subject = subjects_[which];
+  if (!subject) subject = std::make_unique<Subject>(make_subject(machines_, subject_names()[which], mesh_share_));
+  return *subject;
+}
+
 bool CaseMaker::make(std::uint64_t seed, const std::filesystem::path& out) {
   const std::filesystem::path folder = out / fmt::format("case_{:04d}", seed);
   if (std::filesystem::exists(folder / "truth.json")) return false;
-  std::unique_ptr<Subject>& subject = subjects_[subject_of(seed)];
-  if (!subject) subject = std::make_unique<Subject>(make_subject(machines_, subject_names()[subject_of(seed)], mesh_share_));
-  write_case(*subject, make_case(*subject, seed), folder);
+  const Subject& of = subject(subject_of(seed));
+  write_case(of, make_case(of, seed), folder);
   return true;
+}
+
+std::optional<Record> CaseMaker::proposed(const std::filesystem::path& folder, const std::filesystem::path& diagnosis_json) {
+  const Json truth = read_json(folder / "truth.json"), diagnosis = read_json(diagnosis_json);
+  if (!truth.contains("seed")) throw InputError("blind_cases: " + folder.string() + ": truth.json without a seed");
+  if (diagnosis.value("verdict", "") != "ambiguous" || !diagnosis["discriminating_experiment"].is_object())
+    return std::nullopt;
+  const Json& experiment = diagnosis["discriminating_experiment"];
+  if (experiment.value("proposes", "cyclogram") != "cyclogram") return std::nullopt;
+  Cyclogram cyclogram{.name = "further", .sections = {}};
+  for (const Json& section : experiment.at("cyclogram").at("sections"))
+    cyclogram.sections.push_back({60.0 * section.at("duration_min").get<double>(), {.speed_rpm = section.at("speed_rpm")}});
+  const auto seed = truth["seed"].get<std::uint64_t>();
+  const Subject& of = subject(subject_of(seed));
+  return further_record(of, make_case(of, seed), cyclogram, 0);
 }
 
 }  // namespace driftwright::blind

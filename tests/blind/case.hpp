@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "base/record.hpp"
 #include "blind/signature.hpp"
@@ -38,6 +39,11 @@ struct Case {
 /// drawing that the scenario names to <folder>/../parts.
 void write_case(const Subject& subject, const Case& of, const std::filesystem::path& folder);
 
+/// One more record of a case, with a cyclogram of the user's own: the same machine and hidden effects, another hall, fresh noise. What
+/// happened in one record only does not happen again.
+/// @param further  0, 1, ...: each has its own hall and noise
+[[nodiscard]] Record further_record(const Subject& subject, Case of, Cyclogram cyclogram, std::uint64_t further);
+
 /// Makes cases of a range of seeds; those whose truth.json is there are kept.
 class CaseMaker {
  public:
@@ -46,8 +52,14 @@ class CaseMaker {
       : machines_(std::move(machines)), mesh_share_(mesh_share) {}
   /// @return false for one that was there
   bool make(std::uint64_t seed, const std::filesystem::path& out);
+  /// One more record of the case in a folder, with the cyclogram that a diagnosis of it proposes to tell ambiguous causes apart.
+  /// @return none where the diagnosis is not ambiguous, or proposes a further sensor instead
+  /// @throws InputError  where a file is not there or is none of ours
+  [[nodiscard]] std::optional<Record> proposed(const std::filesystem::path& folder,
+                                               const std::filesystem::path& diagnosis_json);
 
  private:
+  const Subject& subject(std::size_t which);
   std::string machines_;
   double mesh_share_;
   std::map<std::size_t, std::unique_ptr<Subject>> subjects_;

@@ -76,16 +76,6 @@ Cyclogram draw_drive(const std::string& name, double top_rpm, Random& random) {
   return drive;
 }
 
-HallCurve draw_hall(double duration_s, Random& random) {
-  const double range_K = random.uniform(1.0, 3.0);
-  const double share = random.uniform(0.3, 0.8);
-  return {.start_K = random.uniform(-0.4, 0.6),
-          .ramp_K_s = random.sign() * share * range_K / duration_s,
-          .sine_K = 0.5 * (1.0 - share) * range_K,
-          .period_s = random.uniform(5400.0, 14400.0),
-          .phase = random.uniform(0.0, 2.0 * std::numbers::pi)};
-}
-
 /// A time within the middle of a record, on a full minute.
 double draw_time_s(const CasePlan& plan, int record, Random& random) {
   return 60.0 *
@@ -123,6 +113,16 @@ std::size_t subject_of(std::uint64_t seed) {
 double HallCurve::at(double time_s) const {
   return start_K + ramp_K_s * time_s +
          sine_K * (std::sin(2.0 * std::numbers::pi * time_s / period_s + phase) - std::sin(phase));
+}
+
+HallCurve draw_hall(double duration_s, Random& random) {
+  const double range_K = random.uniform(1.0, 3.0);
+  const double share = random.uniform(0.3, 0.8);
+  return {.start_K = random.uniform(-0.4, 0.6),
+          .ramp_K_s = random.sign() * share * range_K / duration_s,
+          .sine_K = 0.5 * (1.0 - share) * range_K,
+          .period_s = random.uniform(5400.0, 14400.0),
+          .phase = random.uniform(0.0, 2.0 * std::numbers::pi)};
 }
 
 double Noise::total() const {

@@ -24,6 +24,9 @@ struct HallCurve {
   [[nodiscard]] double at(double time_s) const;
 };
 
+/// A range of 1 to 3 K over a record, partly ramp, partly sine.
+[[nodiscard]] HallCurve draw_hall(double duration_s, Random& random);
+
 struct RecordPlan {
   std::string name;  ///< "measured_1", "measured_2" or "holdout"
   Cyclogram drive;   ///< as recorded
