@@ -103,6 +103,108 @@ TEST_F(MeasuredRunTest, RecognisesStepsThatWereWrittenRoundedOrBelongToAConverte
   }
 }
 
+/// A front bearing 15 K warmer after an hour's time constant, read in steps; it stands still at some rows. The rear one follows the same
+/// course to two digits, later by 5 min.
+std::string warming(double step_K, int stuck_from, int stuck_until) {
+  std::string text = "time_s,speed_rpm,t_front_degC,t_rear_degC\n";
+  double held_C = 0.0;
+  for (int i = 0; i < 240; ++i) {
+    const auto course = [](double t_min) {  // 100 min on, 70 min off, 70 min on
+      const double x = t_min < 0.0 ? 0.0 : 1.0 - std::exp(-std::min(t_min, 100.0) / 60.0);
+      const double y = t_min < 100.0 ? x : x * std::exp(-(std::min(t_min, 170.0) - 100.0) / 60.0);
+      return t_min < 170.0 ? y : 1.0 + (y - 1.0) * std::exp(-(t_min - 170.0) / 60.0);
+    };
+    double front_C = step_K * std::round((20.0 + 15.0 * course(i)) / step_K);
+    if (i == stuck_from) held_C = front_C;
+    if (i >= stuck_from && i < stuck_until) front_C = held_C;
+    text +=
+        fmt::format("{},{},{:.3f},{:.2f}\n", 60 * i, i < 100 || i >= 170 ? 1000 : 0, front_C, 20.0 + 12.0 * course(i - 5.0));
+  }
+  return text;
+}
+std::string told(const MeasuredRun& run) {
+  std::string all;
+  for (const DataFinding& f : run.findings) all += f.what + "\n";
+  return all;
+}
+
+TEST_F(MeasuredRunTest, CutsOffASensorInCoarseStepsFromWhereItNoLongerFollows) {
+  const MeasuredRun run = read(warming(0.5, 110, 240));
+  ASSERT_NE(run.find("t_front"), nullptr);
+  const Eigen::VectorXd& v = run.find("t_front")->value;
+  // from the first reading that it repeats; a step of 0.5 K takes 3 min there
+  EXPECT_TRUE(v.tail(130).array().isNaN().all());
+  EXPECT_FALSE(v.head(106).array().isNaN().any());
+  EXPECT_THAT(told(run), AllOf(HasSubstr("t_front stands still at "), HasSubstr(" min on (stuck: as "),
+                               HasSubstr("these readings are left out")));
+}
+
+TEST_F(MeasuredRunTest, TakesOutWhereASensorStoodStillForAWhile) {
+  const MeasuredRun run = read(warming(0.5, 110, 165));
+  ASSERT_NE(run.find("t_front"), nullptr);
+  const Eigen::VectorXd& v = run.find("t_front")->value;
+  EXPECT_TRUE(v.segment(110, 55).array().isNaN().all());
+  EXPECT_FALSE(v.tail(70).array().isNaN().any());
+  EXPECT_THAT(told(run), HasSubstr(" to 164 min (stuck"));
+}
+
+TEST_F(MeasuredRunTest, CallsNoCoarseSensorStuckThatFollows) {
+  for (const double step_K : {0.1, 0.5, 1.0, 2.0, 4.0}) {
+    const MeasuredRun run = read(warming(step_K, 0, 0));
+    ASSERT_NE(run.find("t_front"), nullptr) << step_K;
+    EXPECT_FALSE(run.find("t_front")->value.array().isNaN().any()) << step_K << told(run);
+  }
+}
+
+TEST_F(MeasuredRunTest, CutsOffAFineSensorThatRepeatsOneReading) {
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("{},500,{:.5f}\n", 60 * i,
+                        20.0 + 0.0371234 * std::min(i, 65) + (i < 65 ? 0.01 * std::sin(7.0 * i) : 0.0));
+  const MeasuredRun run = read(text);
+  ASSERT_NE(run.find("t_front"), nullptr);
+  EXPECT_EQ((run.find("t_front")->value.array() == run.find("t_front")->value.array()).count(), 65);
+  EXPECT_THAT(told(run), AllOf(HasSubstr("from 65 min on"), HasSubstr("35 equal readings")));
+}
+
+TEST_F(MeasuredRunTest, LeavesOutAChannelOfWhichTooLittleIsLeft) {
+  std::string text = "time_s,speed_rpm,t_front_degC,nose_z_um\n";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("{},500,{:.5f},{}\n", 60 * i, i < 9 ? 20.0 + 0.0371234 * i : 20.3, 1.01 * i * i);
+  const MeasuredRun run = read(text);
+  EXPECT_EQ(run.find("t_front"), nullptr);
+  EXPECT_THAT(told(run), HasSubstr("too little else is there: it is left out"));
+}
+
+TEST_F(MeasuredRunTest, LeavesOutASaturatedSensor) {  // clipped at 24 degC for 12 rows at a time
+  std::string text = "time_s,speed_rpm,t_front_degC,nose_z_um\n";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("{},500,{:.5f},{}\n", 60 * i, std::min(24.0, 22.0 + 2.6123 * std::sin(0.12 * i)), 1.01 * i * i);
+  const MeasuredRun run = read(text);
+  EXPECT_EQ(run.find("t_front"), nullptr);
+  EXPECT_THAT(told(run), HasSubstr("at its limit of 24 degC: saturated"));
+}
+
+TEST_F(MeasuredRunTest, KnowsTheStepOfAnInstrumentWithAnOffset) {  // 1/16 K and a calibration by 0.13 K
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 90; ++i) text += fmt::format("{},500,{:.4f}\n", 60 * i, 20.13 + 0.0625 * (i < 50 ? 0 : (i - 50) / 3));
+  const MeasuredRun run = read(text);
+  ASSERT_NE(run.find("t_front"), nullptr) << told(run);
+  EXPECT_NEAR(run.find("t_front")->quantum, 0.0625, 1e-9);
+}
+
+TEST_F(MeasuredRunTest, RefusesAHallInFahrenheitOrKelvin) {
+  const auto record = [](double ambient) {
+    std::string text = "time_s,speed_rpm,ambient_degC,t_front_degC\n";
+    for (int i = 0; i < 5; ++i) text += fmt::format("{},0,{},{}\n", 60 * i, ambient, 20.0 + 0.1 * i);
+    return text;
+  };
+  EXPECT_THAT(refusal(record(68.5)),
+              AllOf(HasSubstr("ambient_degC looks like degF"), HasSubstr("68.5"), HasSubstr("20 degC")));
+  EXPECT_THAT(refusal(record(294.1)), HasSubstr("ambient_degC looks like kelvin"));
+  for (const double honest_C : {-15.0, 5.0, 38.0, 44.0}) EXPECT_EQ(refusal(record(honest_C)), "") << honest_C;
+}
+
 TEST_F(MeasuredRunTest, SaysWhyTheOnlyChannelIsLeftOut) {
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 40; ++i) text += std::to_string(60 * i) + ",500,23.4\n";

@@ -44,6 +44,7 @@ enum class Hide {
   kOscillatingHeat,   ///< in no catalogue: size W sin(2π t / lag_s)
   kTravelCreep,       ///< in no catalogue: size um per hour at top speed, with the revolutions made so far
   kAcceleratingHeat,  ///< in no catalogue: size J per rpm of each change of speed, released over a minute
+  kContactLater,      ///< link times exp(size) from time_s on
 };
 
 struct Hidden {
