@@ -8,14 +8,14 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kMostWaves = 20.0;  // in the longest record; shorter ones a machine hardly shows
+constexpr double kMostWaves = 14.0;  // in the longest record; shorter ones a machine hardly shows
 
-/// x of period and delay to try: waves that fit into the longest record twice, thrice, ..., each at four moments.
+/// x of period and delay to try: waves that fit into the longest record twice, thrice, ..., sines and cosines.
 std::vector<std::vector<double>> waves(double longest_s, double nominal_period_min) {
   std::vector<std::vector<double>> grid;
   for (double n = 2.0; n <= kMostWaves; n += 1.0) {
     const double period_min = longest_s / n / kMinute_s;
-    for (double quarter = 0.0; quarter < 4.0; quarter += 1.0)
+    for (double quarter = 0.0; quarter < 2.0; quarter += 1.0)
       grid.push_back({period_min - nominal_period_min, 0.25 * quarter * period_min});
   }
   return grid;
@@ -60,7 +60,6 @@ void add_heat(const Scene& s, std::vector<Candidate>& list) {
       c.variants.push_back({fmt::format("the law written, at {:.0f} rpm", s.typical_rpm), {more}, trial_W});
     }
     Knob wave = power(body, AddedHeat::Shape::kPeriodic);
-    wave.low = 0.0;  // half a period later is the same
     Knob period =
         knob("period", "min", 60.0, 0.5, [](TwinState& t, double value) { t.heats.back().period_s = kMinute_s * value; });
     period.nominal = 60.0;
@@ -69,7 +68,10 @@ void add_heat(const Scene& s, std::vector<Candidate>& list) {
     Knob delay =
         knob("delay", "min", 30.0, 0.5, [](TwinState& t, double value) { t.heats.back().delay_s = kMinute_s * value; });
     Knob mean = knob("mean", "W", sd_W, trial_W, [](TwinState& t, double value) { t.heats.back().mean_W = value; });
-    c.variants.push_back({"periodic, about a mean", {wave, period, delay, mean}, trial_W, waves(longest_s, period.nominal)});
+    c.variants.push_back({"periodic, about a mean; negative: half a period later",
+                          {wave, period, delay, mean},
+                          trial_W,
+                          waves(longest_s, period.nominal)});
     if (s.moves_axes) c.variants.push_back({"in proportion to the feeds", {power(body, AddedHeat::Shape::kFeed)}, trial_W});
     list.push_back(c);
 
