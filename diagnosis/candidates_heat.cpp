@@ -8,12 +8,13 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kMostWaves = 14.0;  // in the longest record; shorter ones a machine hardly shows
+constexpr double kFewestWaves = 4.0;  // two or three are what any bend of a model that is wrong looks like
+constexpr double kMostWaves = 14.0;   // in the longest record; shorter ones a machine hardly shows
 
-/// x of period and delay to try: waves that fit into the longest record twice, thrice, ..., sines and cosines.
+/// x of period and delay to try: waves that fit into the longest record 4, 5, ... times, sines and cosines.
 std::vector<std::vector<double>> waves(double longest_s, double nominal_period_min) {
   std::vector<std::vector<double>> grid;
-  for (double n = 2.0; n <= kMostWaves; n += 1.0) {
+  for (double n = kFewestWaves; n <= kMostWaves; n += 1.0) {
     const double period_min = longest_s / n / kMinute_s;
     for (double quarter = 0.0; quarter < 2.0; quarter += 1.0)
       grid.push_back({period_min - nominal_period_min, 0.25 * quarter * period_min});
@@ -60,13 +61,13 @@ void add_heat(const Scene& s, std::vector<Candidate>& list) {
       c.variants.push_back({fmt::format("the law written, at {:.0f} rpm", s.typical_rpm), {more}, trial_W});
     }
     Knob wave = power(body, AddedHeat::Shape::kPeriodic);
-    Knob period =
-        knob("period", "min", 60.0, 0.5, [](TwinState& t, double value) { t.heats.back().period_s = kMinute_s * value; });
-    period.nominal = 60.0;
+    Knob period = knob("period", "min", longest_s / 8.0 / kMinute_s, 0.5,
+                       [](TwinState& t, double value) { t.heats.back().period_s = kMinute_s * value; });
+    period.nominal = longest_s / 7.0 / kMinute_s;
     period.low = 0.5 * longest_s / kMostWaves / kMinute_s;
-    period.high = longest_s / kMinute_s;
-    Knob delay =
-        knob("delay", "min", 30.0, 0.5, [](TwinState& t, double value) { t.heats.back().delay_s = kMinute_s * value; });
+    period.high = longest_s / kFewestWaves / kMinute_s;
+    Knob delay = knob("delay", "min", 0.5 * period.nominal, 0.5,
+                      [](TwinState& t, double value) { t.heats.back().delay_s = kMinute_s * value; });
     Knob mean = knob("mean", "W", sd_W, trial_W, [](TwinState& t, double value) { t.heats.back().mean_W = value; });
     c.variants.push_back({"periodic, about a mean; negative: half a period later",
                           {wave, period, delay, mean},

@@ -118,6 +118,21 @@ TEST(ForeignUnits, AModelThatIsFarOffIsNoOtherUnit) {
   }
 }
 
+TEST(ForeignUnits, AnIndicatorThatTouchesNothingIsNoOtherUnit) {  // a thousandth of what is expected, and none of it
+  Bench b;
+  Eigen::VectorXd& v = b.channel(2).value;
+  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = 2e-8 * std::sin(12.9898 * static_cast<double>(i * i % 977));
+  leave_out_foreign_units(b.runs, *b.twin);
+  EXPECT_EQ(b.told(), "");
+}
+
+TEST(ForeignUnits, ATemperatureThatMayWellBeIsLeft) {
+  EXPECT_EQ(foreign_temperature({13.0, 14.0, 15.0}, -10.0, -10.0),
+            std::nullopt);  // 14 degF are -10 degC, and 24 K is no proof
+  EXPECT_EQ(foreign_temperature({31.0, 32.0, 33.0}, 0.0, 0.0), "degF");
+  EXPECT_EQ(foreign_temperature({}, 0.0, 0.0), std::nullopt);
+}
+
 TEST(ForeignUnits, NothingLeftToCompareIsRefusedWithTheReason) {
   Bench b;
   b.runs[0].channels.resize(1);
