@@ -14,6 +14,7 @@ constexpr std::size_t kStuckRows = 30;   // equal readings of a channel without 
 constexpr std::size_t kJudgedRows = 20;  // equal readings that the other channels are asked about
 constexpr std::size_t kFewestRows = 20;  // outside the stretch, to learn from
 constexpr double kManySteps = 5.0;       // that it should have moved by
+constexpr double kJumpSteps = 2.5;       // by which a sensor that was stuck comes back
 constexpr double kBeyondMisses = 3.0;    // times what the neighbour misses elsewhere
 constexpr double kExtrapolation = 2.0;   // times the channel's own range elsewhere: more was not learnt
 constexpr double kLags_s[] = {900.0, 3600.0};
@@ -186,6 +187,10 @@ std::vector<StuckStretch> stuck_stretches(const Record& record, const Channel& c
       if (n >= kStuckRows) stuck.push_back(stretch);
       continue;
     }
+    const auto next = std::find_if(elsewhere.begin() + static_cast<std::ptrdiff_t>(stretch.last), elsewhere.end(),
+                                   [](double v) { return !std::isnan(v); });
+    const bool comes_back = next != elsewhere.end();  // then to where the machine is by now; one at rest leaves step by step
+    if (comes_back && std::abs(*next - channel.values[stretch.last]) < kJumpSteps * quantum) continue;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (double v : elsewhere) {
       low = v < low ? v : low;

@@ -27,6 +27,7 @@ struct StuckStretch {
 /// Fine readings: 30 equal ones in a row. Readings in steps that noise does not blur stand still at rest, too: there the other channels
 /// judge. Each is fitted to the channel outside the stretch (itself and behind lags of 15 and 60 min); the one that predicts best stretches
 /// as long elsewhere, left out of the fit, says how far the channel should have moved: 5 steps at least, and thrice what it misses elsewhere.
+/// A sensor that goes on later must do so by 3 steps at once.
 /// @param quantum  of the channel, by quantum_of()
 [[nodiscard]] std::vector<StuckStretch> stuck_stretches(const Record& record, const Channel& channel, double quantum);
 
