@@ -7,6 +7,8 @@
 #include "app/results.hpp"
 #include "base/errors.hpp"
 #include "diagnosis/scatter.hpp"
+#include "diagnosis/unit_check.hpp"
+#include "diagnosis/warm_start.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -63,6 +65,8 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const diagnosis::Twin whole(m.fine->augmented, m.fine->machine, tolerances);
+  diagnosis::leave_out_foreign_units(m.runs, whole);
+  diagnosis::find_warm_starts(m.runs, whole);
   progress.begin("looking what states the measured runs come to");
   m.focus = std::make_unique<diagnosis::Focus>(
       diagnosis::focus(whole, m.runs, diagnosis::scatter(whole), diagnosis::candidates(whole, m.runs, {})));

@@ -22,6 +22,21 @@ void add_exchanges(const Scene& s, std::vector<Candidate>& list) {
     list.push_back({effect, where, {}});
     return list.back();
   };
+  const auto add_from_a_time_on = [&](const std::string& what, const std::string& name, Candidate& c) {
+    for (const MeasuredRun& run : s.runs) {
+      Knob other = factor([name, in = run.name](TwinState& t, double value) {
+        ChangedExchange e{name, value};
+        e.in = in;
+        t.exchanges.push_back(e);
+      });
+      c.variants.push_back(
+          {what + " from a time on, in " + run.name,
+           {other, time_knob("time", length_s(run),
+                             [](TwinState& t, double value) { t.exchanges.back().from_s = std::max(1.0, value); })},
+           0.3,
+           time_grid(length_s(run), 8)});
+    }
+  };
   const effects::HeatBalance all = scenarios::reducible(effects::heat_balance(s.twin.augmented().model.effects));
   for (std::size_t i = 0; i < all.films.size(); ++i) {
     const effects::Film& f = all.films[i];
@@ -36,19 +51,7 @@ void add_exchanges(const Scene& s, std::vector<Candidate>& list) {
     if (is_constant) {
       Candidate& c = find("convection", f.surface);
       c.variants.push_back({"another film", {factor(changed(f.name, &ChangedExchange::factor))}, 0.2});
-      for (const MeasuredRun& run : s.runs) {
-        Knob other = factor([name = f.name, in = run.name](TwinState& t, double value) {
-          ChangedExchange e{name, value};
-          e.in = in;
-          t.exchanges.push_back(e);
-        });
-        c.variants.push_back(
-            {"another film from a time on, in " + run.name,
-             {other, time_knob("time", length_s(run),
-                               [](TwinState& t, double value) { t.exchanges.back().from_s = std::max(1.0, value); })},
-             0.3,
-             time_grid(length_s(run), 8)});
-      }
+      add_from_a_time_on("another film", f.name, c);
       const bool has_grown =
           std::any_of(all.films.begin(), all.films.begin() + static_cast<std::ptrdiff_t>(s.own.films.size()),
                       [&](const effects::Film& other) {
@@ -94,18 +97,17 @@ void add_exchanges(const Scene& s, std::vector<Candidate>& list) {
           .variants.push_back({fmt::format("a film that grows with speed, at {:.0f} rpm", s.typical_rpm), {growth}, 4.0});
     }
   }
-  for (const effects::Contact& c : all.contacts) {
-    find("contact", c.joint)
-        .variants.push_back({"another conductance", {factor(changed(c.name, &ChangedExchange::factor))}, 0.2});
-  }
+  const auto conductance = [&](const std::string& where, const std::string& name) {
+    Candidate& c = find("contact", where);
+    c.variants.push_back({"another conductance", {factor(changed(name, &ChangedExchange::factor))}, 0.2});
+    add_from_a_time_on("another conductance", name, c);
+  };
+  for (const effects::Contact& c : all.contacts) conductance(c.joint, c.name);
   for (const effects::Effect& e : s.twin.augmented().model.effects) {
     if (e.kind->key != "link" && e.kind->key != "air_node") continue;
     const effects::HeatBalance alone = effects::heat_balance({e});
     const std::string where = e.kind->key == "link" ? where_of(e) : e.place + ",hall";
-    for (const effects::Link& l : alone.links) {
-      find("contact", where)
-          .variants.push_back({"another conductance", {factor(changed(l.name, &ChangedExchange::factor))}, 0.2});
-    }
+    for (const effects::Link& l : alone.links) conductance(where, l.name);
   }
 }
 

@@ -6,9 +6,28 @@
 #include "diagnosis/candidate_scene.hpp"
 
 namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kFewestWaves = 4.0;  // two or three are what any bend of a model that is wrong looks like
+constexpr double kMostWaves = 14.0;   // in the longest record; shorter ones a machine hardly shows
+
+/// x of period and delay to try: waves that fit into the longest record 4, 5, ... times, sines and cosines.
+std::vector<std::vector<double>> waves(double longest_s, double nominal_period_min) {
+  std::vector<std::vector<double>> grid;
+  for (double n = kFewestWaves; n <= kMostWaves; n += 1.0) {
+    const double period_min = longest_s / n / kMinute_s;
+    for (double quarter = 0.0; quarter < 2.0; quarter += 1.0)
+      grid.push_back({period_min - nominal_period_min, 0.25 * quarter * period_min});
+  }
+  return grid;
+}
+
+}  // namespace
 
 void add_heat(const Scene& s, std::vector<Candidate>& list) {
   const double sd_W = std::max(20.0, 0.5 * s.heat_W), trial_W = 0.1 * sd_W;
+  double longest_s = 0.0;
+  for (const MeasuredRun& run : s.runs) longest_s = std::max(longest_s, length_s(run));
   const auto power = [&](const effects::Body& body, AddedHeat::Shape shape) {
     return knob("power", "W", sd_W, trial_W, [body, shape, rpm = s.typical_rpm](TwinState& t, double value) {
       AddedHeat heat{.body = body, .power_W = value, .shape = shape};
@@ -41,6 +60,19 @@ void add_heat(const Scene& s, std::vector<Candidate>& list) {
       more.low = -0.95 * written_W;
       c.variants.push_back({fmt::format("the law written, at {:.0f} rpm", s.typical_rpm), {more}, trial_W});
     }
+    Knob wave = power(body, AddedHeat::Shape::kPeriodic);
+    Knob period = knob("period", "min", longest_s / 8.0 / kMinute_s, 0.5,
+                       [](TwinState& t, double value) { t.heats.back().period_s = kMinute_s * value; });
+    period.nominal = longest_s / 7.0 / kMinute_s;
+    period.low = 0.5 * longest_s / kMostWaves / kMinute_s;
+    period.high = longest_s / kFewestWaves / kMinute_s;
+    Knob delay = knob("delay", "min", 0.5 * period.nominal, 0.5,
+                      [](TwinState& t, double value) { t.heats.back().delay_s = kMinute_s * value; });
+    Knob mean = knob("mean", "W", sd_W, trial_W, [](TwinState& t, double value) { t.heats.back().mean_W = value; });
+    c.variants.push_back({"periodic, about a mean; negative: half a period later",
+                          {wave, period, delay, mean},
+                          trial_W,
+                          waves(longest_s, period.nominal)});
     if (s.moves_axes) c.variants.push_back({"in proportion to the feeds", {power(body, AddedHeat::Shape::kFeed)}, trial_W});
     list.push_back(c);
 

@@ -11,7 +11,9 @@
 #include "diagnosis/interval.hpp"
 #include "diagnosis/latent_heat.hpp"
 #include "diagnosis/leftover.hpp"
+#include "diagnosis/missing_data.hpp"
 #include "diagnosis/scatter.hpp"
+#include "diagnosis/warm_start.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -55,10 +57,10 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
   return c;
 }
 
-/// What another mesh changes, one column a channel: the amplitude of each is unknown.
-std::vector<Prediction> mesh_columns(const Twin& twin, const Twin* coarse, double share,
-                                     const std::vector<MeasuredRun>& runs, const TwinState& state) {
-  std::vector<Prediction> columns;
+/// What a warm start and another mesh change (one column a channel): the amplitude of each is unknown.
+std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double share,
+                                        const std::vector<MeasuredRun>& runs, const TwinState& state) {
+  std::vector<Prediction> columns = start_columns(twin, runs);
   if (!coarse) return columns;
   Twin::Workspace fine_space(twin), coarse_space(*coarse);
   Prediction difference;
@@ -289,7 +291,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   say(fmt::format("slopes of {} uncertain numbers", scatter(twin).size()));
   const auto fresh_fitter = [&] {
     return std::make_unique<Fitter>(twin, runs, scatter(twin),
-                                    mesh_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()));
+                                    unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()));
   };
   auto own_fitter = fresh_fitter();
   Twin::Workspace workspace(twin);
@@ -312,8 +314,9 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     std::optional<Unexplained> left = unexplained_of(f, d.search, d.noise);
     if (!left || !coarse || d.search.hypothesis.empty()) return left;
     // the mesh's error is another one where the machine is another one
-    Fitter again(twin, runs, scatter(twin),
-                 mesh_columns(twin, coarse, options.mesh_error_share, runs, f.state(d.search.hypothesis, d.search.fit.x)));
+    Fitter again(
+        twin, runs, scatter(twin),
+        unknown_columns(twin, coarse, options.mesh_error_share, runs, f.state(d.search.hypothesis, d.search.fit.x)));
     again.set_noise(d.noise);
     again.settle(d.search.hypothesis, d.search.fit);
     SearchResult same = d.search;
@@ -381,11 +384,9 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   HeldOut held = held_out_gain(fitter, d.search, d.noise);
   d.holdout = std::move(held.how);
   d.gain = std::move(held.channels);
-  d.reason = d.verdict == Verdict::kInsufficientData ? fmt::format(
-                                                           "{} readings of {} channels are too few to tell an effect from "
-                                                           "scatter; at least {} are wanted, with the speed changing.",
-                                                           n_readings, d.gain.size(), kFewestReadings)
-                                                     : reason_of(d);
+  d.reason = d.verdict == Verdict::kInsufficientData
+                 ? what_is_missing(twin, runs, static_cast<int>(n_readings), kFewestReadings)
+                 : reason_of(d);
   return d;
 }
 

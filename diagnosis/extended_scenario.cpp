@@ -283,8 +283,14 @@ class Writer {
         }
         return;
       }
-      case AddedHeat::Shape::kPeriodic:
-        throw CannotWrite{"the catalogue has no periodic heat"};
+      case AddedHeat::Shape::kPeriodic: {
+        double longest_s = 0.0;
+        for (const MeasuredRun& run : runs_) longest_s = std::max(longest_s, run.time_s.back());
+        append(fmt::format("type: heat_source, {}, power: {} W, period: {} s, delay: {} s, until: {} s", place,
+                           number(h.power_W), number(h.period_s), number(h.delay_s), number(longest_s)));
+        if (h.mean_W != 0.0) append(fmt::format("type: heat_source, {}, power: {} W", place, number(h.mean_W)));
+        return;
+      }
     }
   }
 
@@ -367,7 +373,7 @@ class Writer {
     if (whose.empty()) throw CannotWrite{"the scenario has no such exchange"};
     for (std::size_t i : whose) {
       if (is_late) {
-        late_film(i, c, to);
+        late_exchange(i, c, to);
       } else if (own(i).tables.contains("conductance_over_pressure")) {
         const ConfigNode& rows = *entry(i).find("conductance_over_pressure");
         for (const ConfigNodePtr& row : rows.items) scale(*row->items.at(1), c.factor, "conductance");
@@ -391,12 +397,14 @@ class Writer {
     }
   }
 
-  /// A film ends, and another one begins.
-  void late_film(std::size_t i, const ChangedExchange& c, const std::string& to) {
-    if (own(i).kind->key != "convection")
-      throw CannotWrite{fmt::format("{} cannot end at a time; only `convection` can", own(i).name())};
+  /// A film, joint or link ends, and another one begins.
+  void late_exchange(std::size_t i, const ChangedExchange& c, const std::string& to) {
+    const std::string& kind = own(i).kind->key;
+    if ((kind != "convection" && kind != "contact" && kind != "link") || own(i).tables.contains("conductance_over_pressure"))
+      throw CannotWrite{
+          fmt::format("{} cannot end at a time; `convection`, `contact` and `link` of a number can", own(i).name())};
     const double until_s = own(i).has("until") ? own(i)["until"] : kNever_s;
-    if (!(c.from_s > own(i)["from"] && c.from_s < until_s)) throw CannotWrite{"the film does not act at that time"};
+    if (!(c.from_s > own(i)["from"] && c.from_s < until_s)) throw CannotWrite{"it does not act at that time"};
     const std::string at = number(c.from_s) + " s";
     if (const ConfigNode* written = entry(i).find("until")) {
       if (!yaml_.replace(*written, at)) throw CannotWrite{"its `until` cannot be edited safely"};
@@ -404,8 +412,16 @@ class Writer {
     } else {
       set_pair(i, "until", at);
     }
-    append(fmt::format("type: convection, surface: {}, film: {} W/(m^2 K){}, from: {}{}", own(i).place,
-                       number(c.factor * own(i)["film"]), to, at,
+    std::string what;
+    if (kind == "convection") {
+      what = fmt::format("surface: {}, film: {} W/(m^2 K){}", own(i).place, number(c.factor * own(i)["film"]), to);
+    } else if (kind == "contact") {
+      what = fmt::format("joint: {}, conductance: {} W/(m^2 K)", own(i).place, number(c.factor * own(i)["conductance"]));
+    } else {
+      what = fmt::format("{}, to: {}, conductance: {} W/K", body_key(own(i).body()), own(i).references.at("to").name,
+                         number(c.factor * own(i)["conductance"]));
+    }
+    append(fmt::format("type: {}, {}, from: {}{}", kind, what, at,
                        until_s < kNever_s ? fmt::format(", until: {} s", number(until_s)) : ""));
   }
 

@@ -7,18 +7,18 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
-#include <map>
 
 #include "base/quantity.hpp"
+#include "diagnosis/stuck_sensor.hpp"
+#include "diagnosis/unit_check.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHallKnots_s = 600.0;  // films pass on nothing faster
-constexpr double kJitter = 0.01;        // of the top speed: no change of the drive
-constexpr int kSaturatedRows = 10;      // at the largest or smallest value of all
-constexpr int kStuckRows = 30;          // equal readings in a row while the model's channel moves
+constexpr double kHallKnots_s = 600.0;      // films pass on nothing faster
+constexpr double kJitter = 0.01;            // of the top speed: no change of the drive
+constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
+constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
 
 /// Piecewise linear least squares on knots; keeps a recorded hall's slow course and drops its noise.
 TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
@@ -101,42 +101,16 @@ Cyclogram cyclogram_of(const Record& record, const std::vector<double>& time_s, 
   return cyclogram;
 }
 
-/// The step that all values are multiples of, as instruments have it and as its readings show it, whatever the digits they were
-/// written with; 0 for none.
-double quantum_of(const std::vector<double>& values) {
-  constexpr double kFinest = 0.01, kRounding = 5.1e-4;  // three decimals are what records have
-  std::map<double, int> distinct;
-  int n = 0;
-  for (double v : values) {
-    if (std::isnan(v)) continue;
-    ++distinct[v];
-    ++n;
-  }
-  if (n < 10) return 0.0;
-  const auto fits = [&](double step) {
-    return std::all_of(distinct.begin(), distinct.end(), [&](const auto& d) {
-      return std::abs(d.first - step * std::round(d.first / step)) < std::min(kRounding, 0.06 * step);
-    });
-  };
-  for (double step : {10.0, 5.0, 2.0, 1.0, 0.5, 0.25, 0.2, 0.1, 0.0625, 0.05, 0.02, 0.01}) {
-    if (fits(step)) return step;
-  }
-  double smallest = std::numeric_limits<double>::infinity();
-  for (auto d = distinct.begin(); d != distinct.end() && std::next(d) != distinct.end(); ++d)
-    smallest = std::min(smallest, std::next(d)->first - d->first);
-  return smallest < 1e3 && smallest > kFinest && fits(smallest) ? smallest : 0.0;
-}
-
-int longest_equal_run(const std::vector<double>& values) {
-  int longest = 0, run = 0;
-  double last = std::nan("");
-  for (double v : values) {
-    if (std::isnan(v)) continue;
-    run = v == last ? run + 1 : 1;
-    last = v;
-    longest = std::max(longest, run);
-  }
-  return longest;
+/// The hall drives the machine: in the wrong unit it spoils every channel.
+void refuse_foreign_hall(const Channel& ambient, const TimeSeries& hall, double reference_C, const std::string& path) {
+  const auto [low, high] = std::minmax_element(hall.value.begin(), hall.value.end());
+  const auto unit = foreign_temperature(ambient.values, reference_C + *low, reference_C + *high);
+  if (!unit) return;
+  const auto first = std::find_if(ambient.values.begin(), ambient.values.end(), [](double v) { return !std::isnan(v); });
+  throw InputError(
+      fmt::format("{}: {} looks like {}: it begins with {:g}, and the scenario's hall is {:g} to {:g} degC; "
+                  "write it in degC",
+                  path, ambient.header(), *unit, *first, reference_C + *low, reference_C + *high));
 }
 
 /// Most rows in a row at a value.
@@ -155,45 +129,59 @@ bool same_kind(const std::string& record_unit, const std::string& output_unit) {
   return record_unit == "urad";
 }
 
-/// Looks at a channel for what no model is to blame for.
-void inspect(const Channel& channel, const std::vector<double>& all, std::vector<DataFinding>& findings) {
-  std::vector<double> values;
-  for (double v : all) {
-    if (!std::isnan(v)) values.push_back(v);
-  }
-  if (values.size() < 3) {
-    findings.push_back({channel.name, fmt::format("{} has {} readings; it is left out", channel.name, values.size()), true});
+/// Looks at a channel for what no model is to blame for, and takes out of its values what is not to be compared.
+/// @param time_s  from the start of the record
+void inspect(const Record& record, const std::vector<double>& time_s, Channel& channel, std::vector<DataFinding>& findings) {
+  const auto n_readings = [&] {
+    return std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isnan(v); });
+  };
+  const auto n_there = n_readings();
+  if (n_there < 3) {
+    findings.push_back({channel.name, fmt::format("{} has {} readings; it is left out", channel.name, n_there), true});
     return;
   }
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const int equal = longest_equal_run(all);
-  if (*low == *high) {
-    findings.push_back({channel.name,
-                        fmt::format("{} is stuck: all {} readings are {:g} {}; it is left out", channel.name, values.size(),
-                                    *low, channel.unit),
-                        true});
-    return;
-  }
-  const double quantum = quantum_of(all);
-  const bool is_coarse = quantum > 0.05 * (*high - *low);  // equal readings mean nothing then
-  if (equal >= kStuckRows && !is_coarse) {
+  const auto less = [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; };
+  const double low = *std::min_element(channel.values.begin(), channel.values.end(), less);
+  double high = low;
+  for (double v : channel.values) high = v > high ? v : high;
+  if (low == high) {
     findings.push_back(
         {channel.name,
-         fmt::format("{} repeats one reading {} times in a row, though its readings have no coarse step: stuck or "
-                     "saturated; it is left out",
-                     channel.name, equal),
+         fmt::format("{} is stuck: all {} readings are {:g} {}; it is left out", channel.name, n_there, low, channel.unit),
          true});
-  } else if (!is_coarse && std::max(run_at(all, *low), run_at(all, *high)) >= kSaturatedRows) {
-    const double limit = run_at(all, *high) >= run_at(all, *low) ? *high : *low;
-    findings.push_back({channel.name,
-                        fmt::format("{} stays {} rows at its limit of {:g} {}: saturated; it is left out", channel.name,
-                                    run_at(all, limit), limit, channel.unit),
-                        true});
+    return;
   }
-  const auto n_missing = static_cast<int>(all.size() - values.size());
+  const auto n_missing = static_cast<std::ptrdiff_t>(channel.values.size()) - n_there;
   if (n_missing > 0)
     findings.push_back(
-        {channel.name, fmt::format("{} misses {} of {} readings", channel.name, n_missing, all.size()), false});
+        {channel.name, fmt::format("{} misses {} of {} readings", channel.name, n_missing, channel.values.size()), false});
+  const double quantum = quantum_of(channel.values);
+  for (const StuckStretch& s : stuck_stretches(record, channel, quantum)) {
+    const double value = channel.values[s.first];
+    const std::string when = s.last + 1 == channel.values.size()
+                                 ? fmt::format("from {:.0f} min on", time_s[s.first] / 60.0)
+                                 : fmt::format("from {:.0f} to {:.0f} min", time_s[s.first] / 60.0, time_s[s.last] / 60.0);
+    const std::string why =
+        s.neighbour.empty()
+            ? fmt::format("stuck or saturated: {} equal readings, though they have no coarse step", s.last - s.first + 1)
+            : fmt::format("stuck: as {} goes, it should have moved by {:.2g} {}", s.neighbour, s.missed,
+                          channel.unit == "degC" ? "K" : channel.unit);
+    for (std::size_t i = s.first; i <= s.last; ++i) channel.values[i] = std::nan("");
+    const bool leaves_out = n_readings() < std::max<std::ptrdiff_t>(kFewestLeft, n_there / 5);
+    findings.push_back({channel.name,
+                        fmt::format("{} stands still at {:g} {} {} ({}); {}", channel.name, value, channel.unit, when, why,
+                                    leaves_out ? "too little else is there: it is left out" : "these readings are left out"),
+                        leaves_out});
+    if (leaves_out) return;
+  }
+  const bool is_fine = quantum == 0.0 || dithers(channel.values);  // else equal readings mean nothing
+  if (const double limit = run_at(channel.values, high) >= run_at(channel.values, low) ? high : low;
+      is_fine && run_at(channel.values, limit) >= kSaturatedRows) {
+    findings.push_back({channel.name,
+                        fmt::format("{} stays {} rows at its limit of {:g} {}: saturated; it is left out", channel.name,
+                                    run_at(channel.values, limit), limit, channel.unit),
+                        true});
+  }
 }
 
 }  // namespace
@@ -247,6 +235,7 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
       throw InputError(fmt::format("{}: channel {} is in {}; degC is wanted", path, ambient->name, ambient->unit));
     }
     if (n_readings > 0) {
+      refuse_foreign_hall(*ambient, model.hall, reference_C, path);
       std::vector<double> hall_K;
       for (double v : ambient->values) hall_K.push_back(v - reference_C);
       run.hall = smoothed(run.time_s, hall_K);
@@ -257,27 +246,28 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
     run.findings.push_back({"ambient", "the record has no hall temperature (ambient_degC); the scenario's is taken", false});
   }
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
-    const Channel* channel = record.find(outputs.name[o]);
-    if (!channel) continue;
+    const Channel* recorded = record.find(outputs.name[o]);
+    if (!recorded) continue;
     if (run.has_ambient && outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) continue;
-    if (!same_kind(channel->unit, outputs.unit[o])) {
-      throw InputError(fmt::format("{}: channel {} is in {}, but the scenario's {} is a {}", path, channel->name,
-                                   channel->unit, channel->name,
+    if (!same_kind(recorded->unit, outputs.unit[o])) {
+      throw InputError(fmt::format("{}: channel {} is in {}, but the scenario's {} is a {}", path, recorded->name,
+                                   recorded->unit, recorded->name,
                                    outputs.unit[o] == "K"   ? "temperature (degC)"
                                    : outputs.unit[o] == "m" ? "displacement (um)"
                                                             : "tilt (urad)"));
     }
     const std::size_t n_before = run.findings.size();
-    inspect(*channel, channel->values, run.findings);
+    Channel channel = *recorded;
+    inspect(record, run.time_s, channel, run.findings);
     const bool left_out = std::any_of(run.findings.begin() + static_cast<std::ptrdiff_t>(n_before), run.findings.end(),
                                       [](const DataFinding& f) { return f.leaves_out; });
     if (left_out) continue;
-    MeasuredChannel measured{channel->name, static_cast<int>(o), outputs.unit[o], {}, 0.0};
-    const double scale = outputs.unit[o] == "K" ? 1.0 : channel->unit == "mm" ? 1e-3 : 1e-6;
-    const double offset = channel->unit == "degC" ? reference_C : 0.0;
+    MeasuredChannel measured{channel.name, static_cast<int>(o), outputs.unit[o], {}, 0.0, channel.unit};
+    const double scale = outputs.unit[o] == "K" ? 1.0 : channel.unit == "mm" ? 1e-3 : 1e-6;
+    const double offset = channel.unit == "degC" ? reference_C : 0.0;
     measured.value.resize(static_cast<Eigen::Index>(run.time_s.size()));
     for (std::size_t i = 0; i < run.time_s.size(); ++i) {
-      measured.value[static_cast<Eigen::Index>(i)] = scale * (channel->values[i] - offset);
+      measured.value[static_cast<Eigen::Index>(i)] = scale * (channel.values[i] - offset);
     }
     for (std::size_t i = 0; outputs.unit[o] != "K" && i < run.time_s.size(); ++i) {
       // at the very moment of a change, and of the start, it is open whether what follows speed at once has jumped
@@ -285,7 +275,7 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
       if (run.cyclogram.speed_rpm(run.time_s[i]) == before_rpm) continue;
       measured.value[static_cast<Eigen::Index>(i)] = std::nan("");
     }
-    measured.quantum = scale * quantum_of(channel->values);
+    measured.quantum = scale * quantum_of(recorded->values);
     run.channels.push_back(std::move(measured));
   }
   std::vector<std::string> unknown;

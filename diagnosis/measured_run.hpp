@@ -14,10 +14,11 @@ namespace driftwright::diagnosis {
 /// One reading that is compared with the model.
 struct MeasuredChannel {
   std::string name;
-  int output = -1;        ///< of the model
-  std::string unit;       ///< "K", "m" or "rad"
-  Eigen::VectorXd value;  ///< per time; temperatures minus the reference; NaN where missing
-  double quantum = 0.0;   ///< step that all readings are multiples of; 0: none found
+  int output = -1;                 ///< of the model
+  std::string unit;                ///< "K", "m" or "rad"
+  Eigen::VectorXd value;           ///< per time; temperatures minus the reference; NaN where missing
+  double quantum = 0.0;            ///< step that all readings are multiples of; 0: none found
+  std::string recorded_unit = {};  ///< of the record's header
 };
 
 /// Something wrong with the data themselves.
@@ -37,6 +38,10 @@ struct MeasuredRun {
   Cyclogram cyclogram;       ///< recorded
   TimeSeries hall;           ///< recorded, smoothed to knots; minus the reference [K]
   bool has_ambient = false;  ///< else the hall is the scenario's
+  /// Of a run that begins warm (warm_start.hpp), else empty: how much warmer than the scenario's start each part of the machine is, and
+  /// directions of what that is not known to.
+  Eigen::VectorXd start_K;
+  Eigen::MatrixXd start_doubt_K;
   std::vector<MeasuredChannel> channels;
   std::vector<DataFinding> findings;
 
@@ -48,8 +53,9 @@ void set_grid(MeasuredRun& run);
 
 /// Reads a record and finds its channels among the model's outputs. Readings of sensors that the model says read the hall itself are left
 /// out where the record has an ambient temperature.
+/// Readings of a sensor that stood still are taken out (stuck_sensor.hpp).
 /// @throws InputError  for a record without speed, with fewer than three rows, with a channel that is called as an output but has a
-///                     unit of another kind, or with nothing to compare
+///                     unit of another kind, with a hall temperature in another unit than its header says, or with nothing to compare
 [[nodiscard]] MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model,
                                         const solver::Outputs& outputs);
 

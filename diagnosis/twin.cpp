@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "effects/time_window.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"
@@ -81,7 +82,7 @@ Law added_law(const AddedHeat& heat, const std::vector<effects::HeatInput>& own)
     }
     case AddedHeat::Shape::kPeriodic:
       return [heat](const Inputs& u) {
-        return heat.power_W * (1.0 + std::sin(2.0 * std::numbers::pi * u.time_s / heat.period_s));
+        return heat.mean_W + heat.power_W * std::sin(2.0 * std::numbers::pi * (u.time_s - heat.delay_s) / heat.period_s);
       };
     case AddedHeat::Shape::kFeed:
       return [heat](const Inputs& u) {
@@ -180,6 +181,14 @@ effects::HeatBalance Twin::balance(const TwinState& state) const {
   return scenarios::reducible(effects::heat_balance(own));
 }
 
+Eigen::MatrixXd Twin::warmer_bodies() const {
+  const auto& parts = machine_.system.parts;
+  Eigen::MatrixXd heat(machine_.system.size(), static_cast<Eigen::Index>(parts.size()));
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    heat.col(static_cast<Eigen::Index>(p)) = parts[p].mass * machine_.system.ones;  // ones: the state 1 K everywhere
+  return machine_.system.mass.llt().solve(heat);
+}
+
 effects::DriveChange Twin::drive(const TwinState& state) const {
   effects::DriveChange both = effects::drive_change(state.effects);
   both.speed_factor *= state.drive.speed_factor;
@@ -276,7 +285,8 @@ effects::HeatBalance Twin::laws(const TwinState& state, const MeasuredRun& run,
   }
   for (const AddedHeat& a : state.heats) {  // a period is cut into steps
     if (a.shape != AddedHeat::Shape::kPeriodic) continue;
-    for (double t_s = 0.0; t_s < run.time_s.back(); t_s += a.period_s / 16.0) all.change_times_s.push_back(t_s);
+    for (double t_s = 0.0; t_s < run.time_s.back(); t_s += a.period_s / effects::kStepsAPeriod)
+      all.change_times_s.push_back(t_s);
   }
   std::sort(all.change_times_s.begin(), all.change_times_s.end());
   return all;
@@ -301,6 +311,7 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
   if (augmented_.model.start == scenarios::Start::kSteady) {  // a linear machine's steady state moves with its hall
     start += (hall_at_start_K - scenarios::felt_hall_at_start_K(augmented_.model)) * machine_.system.ones;
   }
+  if (run.start_K.size() > 0) start += warmer_bodies() * run.start_K;
   const bool has_other_mass = std::any_of(factors.begin() + static_cast<std::ptrdiff_t>(parts.size()), factors.end(),
                                           [](double f) { return f != 1.0; });
   if (factors != workspace.factors_) {

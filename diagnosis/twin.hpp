@@ -56,6 +56,8 @@ class Twin {
   [[nodiscard]] double reference_K() const { return machine_.system.reference_K; }
   [[nodiscard]] const scenarios::ReducedMachine& machine() const { return machine_; }
   [[nodiscard]] const AugmentedModel& augmented() const { return augmented_; }
+  /// States of each part of the machine 1 K warmer than the rest, size x n_parts; in a reduced model as near as its basis comes.
+  [[nodiscard]] Eigen::MatrixXd warmer_bodies() const;
   /// The scenario's own heat balance in a state, as the reduced model has it.
   [[nodiscard]] effects::HeatBalance balance(const TwinState& state) const;
 

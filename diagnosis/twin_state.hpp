@@ -19,10 +19,11 @@ struct AddedHeat {
     kConstant,   ///< also at standstill
     kPower,      ///< power_W (n / at_speed)^exponent
     kAsWritten,  ///< power_W times the body's own heat over that at the stated speed
-    kPeriodic,   ///< power_W sin(2π t / period), plus itself: never negative
+    kPeriodic,   ///< mean_W + power_W sin(2π (t - delay) / period)
     kFeed,       ///< power_W at at_feed of all axes together, in proportion
   } shape = Shape::kConstant;
-  double at_speed_rpm = 1000.0, exponent = 1.0, period_s = 3600.0, at_feed_m_s = 0.1;
+  double at_speed_rpm = 1000.0, exponent = 1.0, at_feed_m_s = 0.1;
+  double mean_W = 0.0, period_s = 3600.0, delay_s = 0.0;
   double from_s = 0.0, until_s = kNever_s;
   std::string in = {};  ///< name of the only run it happens in; "": in each
 };

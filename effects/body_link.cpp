@@ -1,4 +1,4 @@
-#include "effects/effect.hpp"
+#include "effects/time_window.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -6,10 +6,13 @@ namespace {
 void contribute(const Effect& e, HeatBalance& balance) {
   const double conductance_W_K = e["conductance"];
   balance.links.push_back({e.name() + " - " + e.references.at("to").name, e.body(),
-                           [=](const Inputs&) { return conductance_W_K; }, e.references.at("to").name});
+                           in_window(
+                               e, [=](const Inputs&) { return conductance_W_K; }, balance),
+                           e.references.at("to").name});
 }
 
 void check(const Effect& e, const ConfigMap& in) {
+  check_window(e, in);
   if (e.body() == e.references.at("to")) in.fail("to", "a link joins two bodies");
 }
 
@@ -20,7 +23,7 @@ EffectKind body_link() {
           .title = "conductance between a body and a lumped node or the hall",
           .law = "Q = conductance (T - T_to), spread evenly over the region or surface",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
-          .parameters = {{"conductance", "W/K", 0.0, 1e9, {}, "total conductance", 0.1, "contact"}},
+          .parameters = with_window({{"conductance", "W/K", 0.0, 1e9, {}, "total conductance", 0.1, "contact"}}),
           .contribute = contribute,
           .references = {{"to", {BodyKind::kNode}, {}, "lumped node at the other end, or hall"}},
           .check = check};

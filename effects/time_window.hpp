@@ -5,6 +5,8 @@
 
 namespace driftwright::effects {
 
+inline constexpr double kStepsAPeriod = 16.0;  ///< of constant power that a wave is cut into: its amplitude is met to 0.6 %
+
 /// A kind's parameters, and `from` and `until` behind them.
 [[nodiscard]] std::vector<Parameter> with_window(std::vector<Parameter> own);
 

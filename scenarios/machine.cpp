@@ -123,10 +123,16 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   }
   for (std::size_t i = 0; i < model.effects.size(); ++i) {
     const effects::Effect& e = model.effects[i];
-    const bool is_single = e.kind->key == "fixed_temperature" || e.kind->key == "stratification" || e.kind->key == "contact";
-    const bool again = std::any_of(
-        model.effects.begin(), model.effects.begin() + static_cast<std::ptrdiff_t>(i),
-        [&](auto& other) { return other.kind == e.kind && other.place_kind == e.place_kind && other.place == e.place; });
+    const bool is_joint = e.kind->key == "contact";  // one after another is no doubt
+    const bool is_single = e.kind->key == "fixed_temperature" || e.kind->key == "stratification" || is_joint;
+    const auto follows = [&](const effects::Effect& a, const effects::Effect& b) {
+      return is_joint && a.has("until") && b["from"] >= a["until"];
+    };
+    const bool again =
+        std::any_of(model.effects.begin(), model.effects.begin() + static_cast<std::ptrdiff_t>(i), [&](auto& other) {
+          return other.kind == e.kind && other.place_kind == e.place_kind && other.place == e.place && !follows(other, e) &&
+                 !follows(e, other);
+        });
     if (is_single && again) throw InputError(e.where, fmt::format("{} stands there twice; which one is meant?", e.name()));
   }
   for (const mesh::Joint& joint : mesh.joints) {

@@ -65,6 +65,9 @@ TEST(BlindHeat, FilmsJointsAndLinks) {
               4000.0, 1e-9);
   EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a,hall", .size = ln2}).links[0].conductance_W_K(at(0.0)), 8.0,
               1e-12);
+  const auto loosens = with({.what = Hide::kContactLater, .where = "a,hall", .size = -ln2, .time_s = 600.0});
+  EXPECT_DOUBLE_EQ(loosens.links[0].conductance_W_K(at(0.0, 599.0)), 4.0);
+  EXPECT_NEAR(loosens.links[0].conductance_W_K(at(0.0, 600.0)), 2.0, 1e-12);
   const auto draught = with({.what = Hide::kDraught, .where = "s", .size = 20.0, .time_s = 600.0});
   EXPECT_DOUBLE_EQ(draught.films[2].htc_W_m2K(at(0.0, 599.0)), 0.0);
   EXPECT_DOUBLE_EQ(draught.films[2].htc_W_m2K(at(0.0, 600.0)), 20.0);

@@ -24,12 +24,7 @@ struct Told {
   Diagnosis diagnosis;
 };
 
-Told told(std::uint64_t seed) {
-  const std::filesystem::path out =
-      std::filesystem::path(testing::TempDir()) / fmt::format("driftwright_blind-{}", getpid());
-  blind::CaseMaker maker(kMachines);
-  (void)maker.make(seed, out);
-  const std::filesystem::path folder = out / fmt::format("case_{:04d}", seed);
+Told told(const std::filesystem::path& folder) {
   Told t{nlohmann::json::parse(std::ifstream(folder / "truth.json")), {}};
   const scenarios::Scenario scenario = scenarios::read_scenario((folder / "scenario.yaml").string());
   std::vector<std::string> measured;
@@ -40,8 +35,58 @@ Told told(std::uint64_t seed) {
   app::MeasuredTwin m = app::open_measured_twin(scenario, "diagnose", measured, progress);
   if (t.truth["without"].is_string()) m.how.without.insert(t.truth["without"].get<std::string>());
   t.diagnosis = diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, [](const std::string&) {});
-  std::filesystem::remove_all(out);
+  std::filesystem::remove_all(folder.parent_path());
   return t;
+}
+std::filesystem::path cases_folder() {
+  return std::filesystem::path(testing::TempDir()) / fmt::format("driftwright_blind-{}", getpid());
+}
+Told told(std::uint64_t seed) {
+  blind::CaseMaker maker(kMachines);
+  (void)maker.make(seed, cases_folder());
+  return told(cases_folder() / fmt::format("case_{:04d}", seed));
+}
+/// A case of the motor spindle that the seed would leave without effect, with one that seeds do not draw.
+Told told_of(const blind::Hidden& hidden) {
+  const blind::Subject spindle = blind::make_subject(kMachines, "motor_spindle");
+  std::uint64_t seed = 0;
+  while (blind::class_of(seed) != blind::CaseClass::kNone || blind::subject_names()[blind::subject_of(seed)] != spindle.name)
+    ++seed;
+  blind::Case c = blind::make_case(spindle, seed);
+  c.hidden = {{hidden, 0.0, 0.0}};
+  blind::write_case(spindle, c, cases_folder() / "case");
+  return told(cases_folder() / "case");
+}
+
+void expect_inside(const Cause& cause, const std::string& name, double truth) {
+  const auto p =
+      std::find_if(cause.parameters.begin(), cause.parameters.end(), [&](const auto& e) { return e.name == name; });
+  ASSERT_NE(p, cause.parameters.end()) << name;
+  EXPECT_GE(truth, std::min(p->low, p->high)) << name << " " << p->value;
+  EXPECT_LE(truth, std::max(p->low, p->high)) << name << " " << p->value;
+}
+
+TEST(PeriodicHeat, IsNamedWithItsPowerAndPeriod) {
+  const Told t = told_of({.what = blind::Hide::kOscillatingHeat, .where = "housing", .size = 60.0, .lag_s = 44.0 * 60.0});
+  ASSERT_EQ(t.diagnosis.causes.size(), 1U) << t.diagnosis.reason;
+  const Cause& c = t.diagnosis.causes[0];
+  EXPECT_EQ(c.effect + " " + c.where, "heat_source housing") << t.diagnosis.reason;
+  expect_inside(c, "power", c.parameters[0].value < 0.0 ? -60.0 : 60.0);  // negative: half a period later
+  expect_inside(c, "period", 44.0);
+  expect_inside(c, "mean", 0.0);
+}
+
+TEST(ContactThatLoosens, IsNamedWithItsFactorAndTime) {
+  const Told t = told_of({.what = blind::Hide::kContactLater,
+                          .where = "bearing_front,housing",
+                          .size = std::log(0.4),
+                          .time_s = 95.0 * 60.0,
+                          .record = 0});
+  ASSERT_EQ(t.diagnosis.causes.size(), 1U) << t.diagnosis.reason;
+  const Cause& c = t.diagnosis.causes[0];
+  EXPECT_EQ(c.effect + " " + c.where, "contact bearing_front,housing") << t.diagnosis.reason;
+  expect_inside(c, "factor", 0.4);
+  expect_inside(c, "time", 95.0);
 }
 
 class NoEffect : public testing::TestWithParam<int> {};

@@ -193,6 +193,27 @@ TEST(Windows, BeginInclusivelyEndExclusivelyAndStopTheIntegrator) {
   EXPECT_EQ(open.heats.at(0).power_W({.drive = {}, .time_s = 1e9}), 5.0);
 }
 
+TEST(Windows, JointsAndLinksHaveThem) {
+  const Law joint =
+      balance_of("{type: contact, joint: a/b, conductance: 2000 W/(m^2 K), until: 60 s}").contacts.at(0).conductance_W_m2K;
+  EXPECT_EQ(joint({.drive = {}, .time_s = 59.0}), 2000.0);
+  EXPECT_EQ(joint({.drive = {}, .time_s = 60.0}), 0.0);
+  const Law link = balance_of("{type: link, node: n, to: hall, conductance: 3 W/K, from: 60 s}").links.at(0).conductance_W_K;
+  EXPECT_EQ(link({.drive = {}, .time_s = 59.0}), 0.0);
+  EXPECT_EQ(link({.drive = {}, .time_s = 60.0}), 3.0);
+}
+
+TEST(HeatSource, InAWaveRisesThroughZeroAtItsDelayAndIsCutIntoSteps) {
+  const HeatBalance b = balance_of("{type: heat_source, node: n, power: 8 W, period: 40 min, delay: 5 min, until: 80 min}");
+  const Law& power_W = b.heats.at(0).power_W;
+  EXPECT_NEAR(power_W({.drive = {}, .time_s = 300.0}), 0.0, 1e-12);
+  EXPECT_NEAR(power_W({.drive = {}, .time_s = 900.0}), 8.0, 1e-12);            // a quarter later
+  EXPECT_NEAR(power_W({.drive = {}, .time_s = 2100.0}), -8.0, 1e-12);          // three quarters
+  EXPECT_NEAR(power_W({.drive = {}, .time_s = 400.0}), 8.0 * 0.258819, 1e-5);  // sin 15 deg
+  EXPECT_EQ(power_W({.drive = {}, .time_s = 4800.0}), 0.0);
+  EXPECT_EQ(b.change_times_s.size(), 32U);  // 31 between, and the end: every 150 s
+}
+
 // --- documentation and errors -----------------------------------------------------------------------------------
 
 TEST(Documentation, ListsEveryEffectOfTheCatalogueInItsOrder) {
@@ -246,6 +267,10 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: guideway_friction, region: n, axis: x, friction: 2, load: 1 N}", "outside what is allowed"},
         Bad{"{type: cutting_heat, region: n, share: 1.2}", "outside what is allowed"},
         Bad{"{type: heat_source, region: n, power: 1 W, from: 20 s, until: 20 s}", "behind `from`"},
+        Bad{"{type: heat_source, region: n, power: 1 W, period: 20 min}", "`until` is wanted"},
+        Bad{"{type: heat_source, region: n, power: 1 W, period: 1 min, until: 1e7 s}", "at most 10000 periods"},
+        Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), from: 20 s, until: 10 s}", "behind `from`"},
+        Bad{"{type: link, node: n, to: hall, conductance: 1 W/K, from: 20 s, until: 10 s}", "behind `from`"},
         Bad{"{type: convection, surface: s, film: 1 W/(m^2 K), from: -1 s}", "outside what is allowed"},
         Bad{"{type: natural_convection, surface: s, length: 1 m}", "key 'orientation' is missing"},
         Bad{"{type: natural_convection, surface: s, orientation: up, length: 0 m}", "outside what is allowed"},

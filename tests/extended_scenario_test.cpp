@@ -202,6 +202,23 @@ const std::vector<Case> kCases = {
        t.heats.back().from_s = 600.0;
        t.heats.back().until_s = 2400.0;
      }},
+    {"heat_in_a_wave", false,
+     [](TwinState& t) {
+       t.heats.push_back(heat(effects::node("shaft"), 60.0, Shape::kPeriodic));
+       t.heats.back().period_s = 1500.0;
+       t.heats.back().delay_s = 200.0;
+       t.heats.back().mean_W = -10.0;
+     }},
+    {"a_link_that_loosens", false,
+     [](TwinState& t) {
+       t.exchanges.push_back(exchange("link housing - hall", 0.3));
+       t.exchanges.back().from_s = 1800.0;
+     }},
+    {"a_joint_that_loosens", true,
+     [](TwinState& t) {
+       t.exchanges.push_back(exchange("contact column/head", 0.3));
+       t.exchanges.back().from_s = 1800.0;
+     }},
     {"another_exponent", false,
      [](TwinState& t) {
        t.frictions.push_back(
@@ -319,7 +336,12 @@ TEST(ExtendedScenario, SaysWhatTheCatalogueCannotExpress) {
   expect_not_written(
       extend(column_and_head(), [](TwinState& t) { t.exchanges.push_back(exchange("natural_convection front", 2.0)); }),
       "no number of natural_convection front multiplies it", column_and_head());
-  expect_not_written(extend(spindle(), added_heat(effects::node("shaft"), 40.0, Shape::kPeriodic)), "periodic", spindle());
+  expect_not_written(extend(spindle(),
+                            [](TwinState& t) {
+                              t.exchanges.push_back(exchange("coolant housing - tank", 2.0));
+                              t.exchanges.back().from_s = 600.0;
+                            }),
+                     "cannot end at a time", spindle());
 }
 
 TEST(ExtendedScenario, LeavesNothingHalfDone) {  // a heat that can be written beside a change that cannot

@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 solver::Outputs outputs() {
   solver::Outputs o;
@@ -64,6 +65,34 @@ TEST_F(MeasuredRunTest, TakesSpeedAsSectionsTheHallAsKnotsAndReadingsInSI) {
   EXPECT_EQ(run.grid_s[static_cast<std::size_t>(run.row_in_grid[40])], run.time_s[40]);
 }
 
+TEST_F(MeasuredRunTest, TakesFeedsCuttingPowerAndMillimetresInSI) {
+  std::string text = "time_s,speed_rpm,feed_x_mm_min,feed_z_mm_min,cutting_power_W,nose_z_mm\n";
+  for (int i = 0; i < 6; ++i) text += fmt::format("{},500,6000,{},250,{}\n", 60 * i, i < 3 ? "" : "1200", 0.001 * i * i);
+  const MeasuredRun run = read(text);
+  const Drive early = run.cyclogram.drive(30.0), late = run.cyclogram.drive(270.0);
+  EXPECT_DOUBLE_EQ(early.feed_m_s[0], 0.1);
+  EXPECT_EQ(early.feed_m_s[2], 0.0);
+  EXPECT_DOUBLE_EQ(late.feed_m_s[2], 0.02);
+  EXPECT_EQ(early.cutting_power_W, 250.0);
+  EXPECT_NEAR(run.find("nose_z")->value[4], 16e-6, 1e-15);
+  EXPECT_EQ(run.find("nose_z")->recorded_unit, "mm");
+}
+
+TEST_F(MeasuredRunTest, HoldsTheSpeedOverJitterAndGapsAndAsksOftenerAfterItsChanges) {
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 40; ++i) {
+    const std::string speed = i == 12 || i == 0 ? "" : std::to_string((i < 20 ? 1000 : 400) + 3 * (i % 3));
+    text += fmt::format("{},{},{:.3f}\n", 60 * i, speed, 20.0 + 0.0131 * i * i);
+  }
+  const MeasuredRun run = read(text);
+  ASSERT_EQ(run.cyclogram.sections.size(), 2u);  // 3 and 6 rpm of 1006 are jitter
+  EXPECT_EQ(run.cyclogram.sections[0].duration_s, 1200.0);
+  EXPECT_EQ(run.cyclogram.sections[0].drive.speed_rpm, 1003.0);  // the first that is known
+  // four times as often for six intervals after the start and after the change
+  EXPECT_EQ(run.grid_s.size(), 40u + 3u * 12u);
+  EXPECT_DOUBLE_EQ(run.grid_s[static_cast<std::size_t>(run.row_in_grid[20]) + 1], 1215.0);
+}
+
 TEST_F(MeasuredRunTest, TakesAThermometerInTheHallForTheHall) {
   std::string text = "time_s,speed_rpm,t_front_degC,hall_degC\n";
   for (int i = 0; i < 40; ++i) text += std::to_string(60 * i) + ",500," + std::to_string(20.0 + 0.013 * i) + ",23\n";
@@ -101,6 +130,136 @@ TEST_F(MeasuredRunTest, RecognisesStepsThatWereWrittenRoundedOrBelongToAConverte
     ASSERT_NE(run.find("t_front"), nullptr) << step;
     EXPECT_NEAR(run.find("t_front")->quantum, step, 1e-9);
   }
+}
+
+/// A front bearing 15 K warmer after an hour's time constant, read in steps; it stands still at some rows. The rear one follows the same
+/// course to two digits, later by 5 min.
+std::string warming(double step_K, int stuck_from, int stuck_until) {
+  std::string text = "time_s,speed_rpm,t_front_degC,t_rear_degC\n";
+  double held_C = 0.0;
+  for (int i = 0; i < 240; ++i) {
+    const auto course = [](double t_min) {  // 100 min on, 70 min off, 70 min on
+      const double x = t_min < 0.0 ? 0.0 : 1.0 - std::exp(-std::min(t_min, 100.0) / 60.0);
+      const double y = t_min < 100.0 ? x : x * std::exp(-(std::min(t_min, 170.0) - 100.0) / 60.0);
+      return t_min < 170.0 ? y : 1.0 + (y - 1.0) * std::exp(-(t_min - 170.0) / 60.0);
+    };
+    double front_C = step_K * std::round((20.0 + 15.0 * course(i)) / step_K);
+    if (i == stuck_from) held_C = front_C;
+    if (i >= stuck_from && i < stuck_until) front_C = held_C;
+    text +=
+        fmt::format("{},{},{:.3f},{:.2f}\n", 60 * i, i < 100 || i >= 170 ? 1000 : 0, front_C, 20.0 + 12.0 * course(i - 5.0));
+  }
+  return text;
+}
+std::string told(const MeasuredRun& run) {
+  std::string all;
+  for (const DataFinding& f : run.findings) all += f.what + "\n";
+  return all;
+}
+
+TEST_F(MeasuredRunTest, CutsOffASensorInCoarseStepsFromWhereItNoLongerFollows) {
+  const MeasuredRun run = read(warming(0.5, 110, 240));
+  ASSERT_NE(run.find("t_front"), nullptr);
+  const Eigen::VectorXd& v = run.find("t_front")->value;
+  // from the first reading that it repeats; a step of 0.5 K takes 3 min there
+  EXPECT_TRUE(v.tail(130).array().isNaN().all());
+  EXPECT_FALSE(v.head(106).array().isNaN().any());
+  EXPECT_THAT(told(run), AllOf(HasSubstr("t_front stands still at "), HasSubstr(" min on (stuck: as "),
+                               HasSubstr("these readings are left out")));
+}
+
+TEST_F(MeasuredRunTest, TakesOutWhereASensorStoodStillForAWhile) {
+  const MeasuredRun run = read(warming(0.5, 110, 165));
+  ASSERT_NE(run.find("t_front"), nullptr);
+  const Eigen::VectorXd& v = run.find("t_front")->value;
+  EXPECT_TRUE(v.segment(110, 55).array().isNaN().all());
+  EXPECT_FALSE(v.tail(70).array().isNaN().any());
+  EXPECT_THAT(told(run), HasSubstr(" to 164 min (stuck"));
+}
+
+TEST_F(MeasuredRunTest, CallsNoCoarseSensorStuckThatFollows) {
+  for (const double step_K : {0.1, 0.5, 1.0, 2.0, 4.0}) {
+    const MeasuredRun run = read(warming(step_K, 0, 0));
+    ASSERT_NE(run.find("t_front"), nullptr) << step_K;
+    EXPECT_FALSE(run.find("t_front")->value.array().isNaN().any()) << step_K << told(run);
+  }
+}
+
+TEST_F(MeasuredRunTest, CutsOffAFineSensorThatRepeatsOneReading) {
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("{},500,{:.5f}\n", 60 * i,
+                        20.0 + 0.0371234 * std::min(i, 65) + (i < 65 ? 0.01 * std::sin(7.0 * i) : 0.0));
+  const MeasuredRun run = read(text);
+  ASSERT_NE(run.find("t_front"), nullptr);
+  EXPECT_EQ((run.find("t_front")->value.array() == run.find("t_front")->value.array()).count(), 65);
+  EXPECT_THAT(told(run), AllOf(HasSubstr("from 65 min on"), HasSubstr("35 equal readings")));
+}
+
+TEST_F(MeasuredRunTest, CutsOffASensorWhoseNoiseIsLargerThanItsStep) {  // 0.1 K, noise of 0.3 K: 40 equal readings are none
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("{},500,{:.1f}\n", 60 * i, 23.0 + 0.3 * std::sin(12.9898 * ((i < 60 ? i * i : 3600) % 977)));
+  const MeasuredRun run = read(text);
+  ASSERT_NE(run.find("t_front"), nullptr);
+  EXPECT_EQ(run.find("t_front")->quantum, 0.1);
+  EXPECT_TRUE(run.find("t_front")->value.tail(40).array().isNaN().all());
+  EXPECT_FALSE(run.find("t_front")->value.head(59).array().isNaN().any());
+}
+
+TEST_F(MeasuredRunTest, CallsNoCoarseSensorStuckForAChannelThatGoesItsOwnWay) {  // a bearing at rest beside a draughty door
+  // the first: at its end the door swings and never told the bearing; the second: it told the rise by chance, and the bearing leaves its
+  // rest step by step
+  for (const auto& [swing_K, share] : {std::pair{8.0, 0.25}, {4.0, 0.5}}) {
+    std::string text = "time_s,speed_rpm,t_front_degC,door_degC\n";
+    for (int i = 0; i < 200; ++i) {
+      const double rise_K = i < 80 ? 0.0 : 15.0 * (1.0 - std::exp(-(i - 80) / 40.0));
+      text += fmt::format("{},500,{:.1f},{:.2f}\n", 60 * i, 20.0 + 0.5 * std::round(rise_K / 0.5),
+                          18.0 + swing_K * std::sin(i / 35.0) + share * rise_K);
+    }
+    const MeasuredRun run = read(text);
+    ASSERT_NE(run.find("t_front"), nullptr);
+    EXPECT_FALSE(run.find("t_front")->value.array().isNaN().any()) << told(run);
+  }
+}
+
+TEST_F(MeasuredRunTest, LeavesOutAChannelOfWhichTooLittleIsLeft) {
+  std::string text = "time_s,speed_rpm,t_front_degC,nose_z_um\n";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("{},500,{:.5f},{}\n", 60 * i, i < 9 ? 20.0 + 0.0371234 * i : 20.3, 1.01 * i * i);
+  const MeasuredRun run = read(text);
+  EXPECT_EQ(run.find("t_front"), nullptr);
+  EXPECT_THAT(told(run), HasSubstr("too little else is there: it is left out"));
+  EXPECT_THAT(told(run), Not(HasSubstr("saturated; it is left out")));  // said once
+}
+
+TEST_F(MeasuredRunTest, LeavesOutASaturatedSensor) {  // clipped at 24 degC for 12 rows at a time
+  std::string text = "time_s,speed_rpm,t_front_degC,nose_z_um\n";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("{},500,{:.5f},{}\n", 60 * i, std::min(24.0, 22.0 + 2.6123 * std::sin(0.12 * i)), 1.01 * i * i);
+  const MeasuredRun run = read(text);
+  EXPECT_EQ(run.find("t_front"), nullptr);
+  EXPECT_THAT(told(run), HasSubstr("at its limit of 24 degC: saturated"));
+}
+
+TEST_F(MeasuredRunTest, KnowsTheStepOfAnInstrumentWithAnOffset) {  // 1/16 K and a calibration by 0.13 K
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 90; ++i) text += fmt::format("{},500,{:.4f}\n", 60 * i, 20.13 + 0.0625 * (i < 50 ? 0 : (i - 50) / 3));
+  const MeasuredRun run = read(text);
+  ASSERT_NE(run.find("t_front"), nullptr) << told(run);
+  EXPECT_NEAR(run.find("t_front")->quantum, 0.0625, 1e-9);
+}
+
+TEST_F(MeasuredRunTest, RefusesAHallInFahrenheitOrKelvin) {
+  const auto record = [](double ambient) {
+    std::string text = "time_s,speed_rpm,ambient_degC,t_front_degC\n";
+    for (int i = 0; i < 5; ++i) text += fmt::format("{},0,{},{}\n", 60 * i, ambient, 20.0 + 0.1 * i);
+    return text;
+  };
+  EXPECT_THAT(refusal(record(68.5)),
+              AllOf(HasSubstr("ambient_degC looks like degF"), HasSubstr("68.5"), HasSubstr("20 degC")));
+  EXPECT_THAT(refusal(record(294.1)), HasSubstr("ambient_degC looks like kelvin"));
+  for (const double honest_C : {-15.0, 5.0, 38.0, 44.0}) EXPECT_EQ(refusal(record(honest_C)), "") << honest_C;
 }
 
 TEST_F(MeasuredRunTest, SaysWhyTheOnlyChannelIsLeftOut) {

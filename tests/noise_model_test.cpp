@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace driftwright::diagnosis {
@@ -51,6 +53,77 @@ TEST(Whitener, MakesCorrelatedNoiseIndependentWithVarianceOne) {
   EXPECT_EQ(w.size(), 3940);
   EXPECT_NEAR(w.squaredNorm() / n, 1.0, 4.0 * std::sqrt(2.0 / n));  // four standard errors
   EXPECT_NEAR(w.head(w.size() - 1).dot(w.tail(w.size() - 1)) / n, 0.0, 4.0 / std::sqrt(n));
+}
+
+TEST(Whitener, IsTheInverseRootOfTheCovarianceAcrossGapsAndUnevenRows) {
+  const NoiseModel model{0.05, 0.08, 300.0};
+  const std::vector<double> t = {0.0, 60.0, 90.0, 300.0, 360.0, 420.0, 1500.0, 1560.0};
+  const std::vector<char> there = {1, 1, 0, 1, 1, 0, 1, 1};
+  const Whitener whitener(model, t, there);
+  ASSERT_EQ(whitener.n(), 6);
+  Eigen::MatrixXd w(6, 6), covariance(6, 6);
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    if (there[i]) rows.push_back(static_cast<Eigen::Index>(i));
+  }
+  for (Eigen::Index a = 0; a < 6; ++a) {
+    Eigen::VectorXd unit = Eigen::VectorXd::Zero(8);
+    unit[rows[static_cast<std::size_t>(a)]] = 1.0;
+    Eigen::VectorXd column(6);
+    whitener.apply(unit, column);
+    w.col(a) = column;
+    for (Eigen::Index b = 0; b < 6; ++b) {
+      const double apart_s = std::abs(t[static_cast<std::size_t>(rows[static_cast<std::size_t>(a)])] -
+                                      t[static_cast<std::size_t>(rows[static_cast<std::size_t>(b)])]);
+      covariance(a, b) = 0.08 * 0.08 * std::exp(-apart_s / 300.0) + (a == b ? 0.05 * 0.05 : 0.0);
+    }
+  }
+  EXPECT_LT((w * covariance * w.transpose() - Eigen::MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_NEAR(whitener.log_determinant(), std::log(covariance.determinant()), 1e-10);
+}
+
+TEST(EstimateNoise, CountsWhatTheCurvesTake) {  // 24 curves of 60 readings: unaware of them it would say 0.155
+  const std::vector<double> t = minutes(60);
+  Eigen::MatrixXd curves(60, 24);
+  for (Eigen::Index k = 0; k < 24; ++k) {
+    for (Eigen::Index i = 0; i < 60; ++i)
+      curves(i, k) = std::cos(std::numbers::pi * static_cast<double>(k) * (static_cast<double>(i) + 0.5) / 60.0);
+  }
+  std::vector<NoiseSeries> series;
+  for (unsigned seed = 1; seed <= 20; ++seed) series.push_back({t, noise({0.2, 0.0, 0.0}, t, seed), curves});
+  EXPECT_NEAR(estimate_noise(series, 1e-3).total(), 0.2, 4.0 * 0.2 / std::sqrt(2.0 * 20.0 * 36.0));  // four standard errors
+}
+
+TEST(EstimateNoise, ClaimsNoCorrelationWithoutEvidence) {
+  const std::vector<double> t = minutes(300);
+  int n_white = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const auto found = estimate_noise({{t, noise({0.2, 0.0, 0.0}, t, seed), Eigen::MatrixXd::Ones(300, 1)}}, 1e-3);
+    n_white += found.correlated == 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(n_white, 8);  // two nats are a false claim in some twenty
+}
+
+TEST(SmoothCurves, FollowTheDriveItsSquareAndTheirLags) {
+  const std::vector<double> t = minutes(121);
+  Eigen::VectorXd drive = Eigen::VectorXd::Constant(121, 0.5);
+  drive.head(30).setZero();
+  const Eigen::MatrixXd curves = smooth_curves(t, drive);
+  // 120 min: cosines of 240 min to 40 min, the mean, and drive and square behind 0, 3 and 12 min
+  ASSERT_EQ(curves.cols(), 1 + 6 + 6);
+  EXPECT_NEAR(curves(120, 6), 1.0, 1e-12);  // three periods of 40 min
+  EXPECT_NEAR(curves(20, 6), -1.0, 1e-12);
+  EXPECT_EQ(curves(60, 7), 0.5);
+  EXPECT_EQ(curves(60, 10), 0.25);
+  EXPECT_NEAR(curves(42, 9), 0.5 * (1.0 - std::exp(-1.0)), 1e-12);  // 12 min after the change
+  EXPECT_NEAR(curves(33, 11), 0.25 * (1.0 - std::exp(-1.0)), 1e-12);
+}
+
+TEST(Telling, KeepsACurveForFourReadings) {
+  const Eigen::MatrixXd curves = Eigen::MatrixXd::Ones(100, 20);
+  EXPECT_EQ(telling(curves, 40).cols(), 10);
+  EXPECT_EQ(telling(curves, 1000).cols(), 20);
+  EXPECT_EQ(telling(curves, 2).cols(), 1);
 }
 
 TEST(EstimateNoise, FindsWhiteAndCorrelatedPartBeneathADriftOfManyTimesTheirSize) {

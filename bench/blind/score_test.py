@@ -57,7 +57,9 @@ class Rules(unittest.TestCase):
                     ("one", [effect("sensor_lag", "a")], "named", [cause("sensor_lag", "a")]),
                     ("one", [effect("sensor_lag", "a")], "consistent", []),
                     ("none", [], "consistent", []),
-                    ("outside", [effect(None, "a", "travel creep")], "named", [cause("sensor_lag", "a")])]):
+                    ("outside", [effect(None, "a", "travel creep")], "named", [cause("sensor_lag", "a")]),
+                    ("outside", [effect(None, "a", "oscillating heat")], "named", [cause("heat_source", "a")]),
+                    ("outside", [effect(None, "a", "oscillating heat")], "named", [cause("sensor_lag", "a")])]):
                 at = os.path.join(folder, f"case_{seed:04d}", "diagnosis")
                 os.makedirs(at)
                 truth = {"seed": seed, "class": kind, "machine": "m", "without": None, "effects": effects,
@@ -67,10 +69,10 @@ class Rules(unittest.TestCase):
                 gain = {"channels": [{"name": "a", "rmse_after": 0.2}]}
                 with open(os.path.join(at, "diagnosis.json"), "w", encoding="utf-8") as file:
                     json.dump({"verdict": verdict, "causes": causes, "gain": gain}, file)
-            at = os.path.join(folder, "case_0004")
+            at = os.path.join(folder, "case_0006")
             os.makedirs(at)
             with open(os.path.join(at, "truth.json"), "w", encoding="utf-8") as file:
-                json.dump({"seed": 4, "class": "none", "machine": "m", "without": None, "effects": [], "channels": []}, file)
+                json.dump({"seed": 6, "class": "none", "machine": "m", "without": None, "effects": [], "channels": []}, file)
             with open(os.path.join(at, "diagnosis.log"), "w", encoding="utf-8") as file:
                 file.write("gave up")
             script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "score.py")
@@ -78,7 +80,7 @@ class Rules(unittest.TestCase):
         rows = {line.split("  ")[0]: line.split()[-1] for line in said.splitlines() if line[-1:].isdigit()}
         self.assertEqual(rows["one: cause named or in a set of three"], "1/2")
         self.assertEqual(rows["none: consistent"], "1/2")
-        self.assertEqual(rows["outside: not confidently misnamed"], "0/1")
+        self.assertEqual(rows["outside: not confidently misnamed"], "1/3")
         self.assertIn("case_0001 m one:", said)
         self.assertIn("median 2.000", said)
 

@@ -73,6 +73,7 @@ std::string key_of(Hide what) {
     case Hide::kForcedNew:
       return "forced_convection";
     case Hide::kContactFactor:
+    case Hide::kContactLater:
       return "contact";
     case Hide::kAmbientOffset:
     case Hide::kAmbientRamp:
@@ -122,12 +123,12 @@ std::string key_of(Hide what) {
 
 const char* law_name(Hide what) {
   constexpr std::array kNames = {
-      "constant heat",   "heat of speed",    "friction exponent", "friction decay", "film factor",   "draught",
-      "growth factor",   "growth new",       "contact factor",    "ambient offset", "ambient ramp",  "ambient step",
-      "stratification",  "radiation",        "coolant",           "conductivity",   "heat capacity", "expansion",
-      "spindle growth",  "centrifugal",      "mount shift",       "sensor bias",    "sensor lag",    "sensor drift",
-      "sensor detached", "sensor swap",      "clock offset",      "speed override", "missing stop",  "oscillating heat",
-      "travel creep",    "accelerating heat"};
+      "constant heat",   "heat of speed",     "friction exponent", "friction decay", "film factor",   "draught",
+      "growth factor",   "growth new",        "contact factor",    "ambient offset", "ambient ramp",  "ambient step",
+      "stratification",  "radiation",         "coolant",           "conductivity",   "heat capacity", "expansion",
+      "spindle growth",  "centrifugal",       "mount shift",       "sensor bias",    "sensor lag",    "sensor drift",
+      "sensor detached", "sensor swap",       "clock offset",      "speed override", "missing stop",  "oscillating heat",
+      "travel creep",    "accelerating heat", "contact later"};
   return kNames.at(static_cast<std::size_t>(what));
 }
 
@@ -156,6 +157,8 @@ std::vector<TruthParameter> parameters_of(const Hidden& h) {
       return {{"film", "W/m^2K", h.size}, time};
     case Hide::kForcedNew:
       return {{"growth", "W/m^2K", h.size}, speed, {"exponent", "1", h.exponent}};
+    case Hide::kContactLater:
+      return {{"factor", "1", std::exp(h.size)}, time};
     case Hide::kAmbientOffset:
       return {{"offset", "K", h.size}};
     case Hide::kAmbientRamp:
@@ -271,6 +274,13 @@ void hide_in_heat(const Hidden& h, const Subject& s, const Cyclogram& drive, Hea
         multiply(named(balance.links, link_name(h.where)).conductance_W_K, std::exp(size));
       }
       return;
+    case Hide::kContactLater: {
+      Law& law = named(balance.links, link_name(h.where)).conductance_W_K;
+      law.value = [inner = law.value, size, from_s](const Inputs& u) {
+        return u.time_s >= from_s ? std::exp(size) * inner(u) : inner(u);
+      };
+      return;
+    }
     case Hide::kStratification:
       balance.stratifications.push_back({size, 1.2});
       return;

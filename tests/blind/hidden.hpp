@@ -41,9 +41,10 @@ enum class Hide {
   kClockOffset,       ///< size s, > 0: logged late
   kSpeedOverride,     ///< true speed = (1 + size) times the recorded one
   kMissingStop,       ///< from time_s on for size s
-  kOscillatingHeat,   ///< in no catalogue: size W sin(2π t / lag_s)
+  kOscillatingHeat,   ///< size W sin(2π t / lag_s); drawn as if in no catalogue, of which it is by now
   kTravelCreep,       ///< in no catalogue: size um per hour at top speed, with the revolutions made so far
   kAcceleratingHeat,  ///< in no catalogue: size J per rpm of each change of speed, released over a minute
+  kContactLater,      ///< link times exp(size) from time_s on
 };
 
 struct Hidden {

@@ -1,0 +1,125 @@
+#include "diagnosis/unit_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "base/quantity.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kBeside_K = 25.0;      // a model that is so far off over a whole record is no model of the machine
+constexpr double kFarBetter = 5.0;      // is what is left after the conversion
+constexpr double kWithin = 5.0;         // of a thousand
+constexpr double kFollows = 0.6;        // correlation of readings with the twin
+constexpr double kLeastMoved_m = 1e-6;  // of the twin: where it stands still nothing can be said
+
+/// Readings of another scale, and what they are in degC.
+struct Scale {
+  const char* unit;
+  double zero, per_K;
+};
+constexpr Scale kScales[] = {{"degF", 32.0, 1.8}, {"kelvin", kZeroCelsius_K, 1.0}};
+
+struct Pairs {
+  Eigen::ArrayXd read, model;  // of rows that have a reading
+};
+Pairs pairs_of(const MeasuredChannel& channel, const Eigen::MatrixXd& prediction) {
+  Pairs p;
+  const Eigen::Index n = (channel.value.array() == channel.value.array()).count();
+  p.read.resize(n);
+  p.model.resize(n);
+  Eigen::Index k = 0;
+  for (Eigen::Index i = 0; i < channel.value.size(); ++i) {
+    if (std::isnan(channel.value[i])) continue;
+    p.read[k] = channel.value[i];
+    p.model[k++] = prediction(channel.output, i);
+  }
+  return p;
+}
+
+double rms(const Eigen::ArrayXd& x) {
+  return std::sqrt(x.square().mean());
+}
+
+std::optional<std::string> temperature_finding(const MeasuredChannel& c, const Pairs& p, double reference_C) {
+  const Eigen::ArrayXd read_C = p.read + (c.recorded_unit == "degC" ? reference_C : 0.0);
+  const Eigen::ArrayXd model_C = p.model + reference_C;
+  // Kelvin counted from zero under a header that wants differences to the reference.
+  const double as_read_K = rms(c.recorded_unit == "degC" ? read_C - model_C : p.read - p.model);
+  for (const Scale& s : kScales) {
+    if (c.recorded_unit == "K" && s.per_K != 1.0) continue;  // rises may be large
+    const Eigen::ArrayXd meant_C = (read_C - s.zero) / s.per_K;
+    if (!(as_read_K > kBeside_K && kFarBetter * rms(meant_C - model_C) < as_read_K)) continue;
+    return fmt::format(
+        "{}_{} looks like {}: it reads {:.1f} to {:.1f} where the scenario has {:.1f} to {:.1f} degC, and in {} "
+        "that is {:.1f} to {:.1f} degC; it is left out until its header or its numbers are mended",
+        c.name, c.recorded_unit, s.unit, read_C.minCoeff(), read_C.maxCoeff(), model_C.minCoeff(), model_C.maxCoeff(),
+        s.unit, meant_C.minCoeff(), meant_C.maxCoeff());
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> displacement_finding(const MeasuredChannel& c, const Pairs& p) {
+  const Eigen::ArrayXd read = p.read - p.read.mean(), model = p.model - p.model.mean();
+  const double read_m = rms(read), model_m = rms(model);
+  if (!(model_m > kLeastMoved_m && read_m > 0.0)) return std::nullopt;
+  if (!(std::abs((read * model).mean()) > kFollows * read_m * model_m)) return std::nullopt;
+  for (const auto& [times, meant] : {std::pair{1e-3, "um"}, std::pair{1e3, "mm"}}) {
+    const double ratio = times * read_m / model_m;
+    if (ratio > kWithin || ratio < 1.0 / kWithin) continue;
+    const bool is_tilt = c.unit == "rad", is_mm = c.recorded_unit == "mm";
+    const std::string unit = is_tilt                  ? (times > 1.0 ? "mrad" : "nrad")
+                             : is_mm == (times > 1.0) ? (is_mm ? "m" : "nm")
+                                                      : meant;
+    const double scale = is_mm ? 1e3 : 1e6;
+    return fmt::format(
+        "{}_{} looks like {}: it reads {:.3g} to {:.3g} where the scenario has {:.3g} to {:.3g} {}; it is left "
+        "out until its header or its numbers are mended",
+        c.name, c.recorded_unit, unit, scale * p.read.minCoeff(), scale * p.read.maxCoeff(), scale * p.model.minCoeff(),
+        scale * p.model.maxCoeff(), c.recorded_unit);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> foreign_temperature(const std::vector<double>& readings, double low_C, double high_C) {
+  std::vector<double> there;
+  for (double v : readings) {
+    if (!std::isnan(v)) there.push_back(v);
+  }
+  if (there.empty()) return std::nullopt;
+  const auto middle = there.begin() + static_cast<std::ptrdiff_t>(there.size() / 2);
+  std::nth_element(there.begin(), middle, there.end());
+  const auto beside_K = [&](double t_C) { return std::max({0.0, low_C - t_C, t_C - high_C}); };
+  const double as_read_K = beside_K(*middle);
+  for (const Scale& s : kScales) {
+    if (as_read_K > kBeside_K && kFarBetter * beside_K((*middle - s.zero) / s.per_K) < as_read_K) return s.unit;
+  }
+  return std::nullopt;
+}
+
+void leave_out_foreign_units(std::vector<MeasuredRun>& runs, const Twin& twin) {
+  const double reference_C = twin.reference_K() - kZeroCelsius_K;
+  Twin::Workspace workspace(twin);
+  for (MeasuredRun& run : runs) {
+    const Eigen::MatrixXd prediction = twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace));
+    std::string why;
+    std::erase_if(run.channels, [&](const MeasuredChannel& c) {
+      const Pairs p = pairs_of(c, prediction);
+      if (p.read.size() < 3) return false;
+      const auto what = c.unit == "K" ? temperature_finding(c, p, reference_C) : displacement_finding(c, p);
+      if (!what) return false;
+      run.findings.push_back({c.name, *what, true});
+      why += "; " + *what;
+      return true;
+    });
+    if (run.channels.empty()) throw InputError(fmt::format("{}: no channel to compare{}", run.path, why));
+  }
+}
+
+}  // namespace driftwright::diagnosis

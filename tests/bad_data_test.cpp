@@ -1,0 +1,222 @@
+// Records that are right in themselves and wrong beside the scenario: other units, a machine still warm, too few readings.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/missing_data.hpp"
+#include "diagnosis/unit_check.hpp"
+#include "diagnosis/warm_start.hpp"
+#include "scenarios/machine.hpp"
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kSpindle = R"(name: spindle
+reference_temperature: 20 degC
+start: hall
+machine: {generator: lumped}
+effects:
+  - {type: node, node: shaft, capacity: 5 kJ/K}
+  - {type: node, node: housing, capacity: 20 kJ/K}
+  - {type: motor_loss, node: shaft, power: 150 W, at_speed: 1000 rpm, exponent: 1.5}
+  - {type: link, node: shaft, to: housing, conductance: 12 W/K}
+  - {type: link, node: housing, to: hall, conductance: 9 W/K}
+hall: [[0 min, 20 degC]]
+sensors:
+  - {name: t_shaft, node: shaft}
+  - {name: t_housing, node: housing}
+displacements:
+  - name: nose
+    sensitivities:
+      - {node: shaft, sensitivity: 3 um/K}
+      - {node: housing, sensitivity: -1 um/K}
+cyclograms:
+  cycle: [[100 min, 1000 rpm], [60 min, 0 rpm], [80 min, 600 rpm]]
+solver: {output_interval: 1 min}
+)";
+
+/// The twin of the spindle and a run that reads exactly what it says, from `start_K` of shaft and housing.
+struct Bench {
+  scenarios::Scenario scenario = scenarios::read_scenario(write_file("bad_data_spindle.yaml", kSpindle));
+  std::vector<MeasuredRun> runs{1};
+  AugmentedModel augmented;
+  scenarios::ReducedMachine machine;
+  std::optional<Twin> twin;
+
+  Bench() {
+    MeasuredRun& run = runs[0];
+    run.name = run.path = "cycle";
+    run.cyclogram = scenario.cyclograms.front();
+    run.time_s = scenarios::output_times_s(run.cyclogram, scenario.solver.output_interval_s);
+    run.hall = scenario.machine->hall;
+    run.has_ambient = true;
+    set_grid(run);
+    const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
+    augmented = augment(scenario, placed.mesh, runs);
+    machine = scenarios::reduce(augmented.model, scenarios::build(augmented.model, scenarios::place(augmented.model)),
+                                augmented.plan);
+    twin.emplace(augmented, machine, solver::TransientOptions{});
+    measure({0.0, 0.0});
+  }
+  void measure(const Eigen::Vector2d& start_K) {
+    MeasuredRun warm = runs[0];
+    warm.start_K = start_K;
+    Twin::Workspace workspace(*twin);
+    const Eigen::MatrixXd readings =
+        twin->read(twin->as_written(), warm, twin->respond(twin->as_written(), warm, workspace));
+    runs[0].channels = {{"t_shaft", 0, "K", readings.row(0), 0.0, "degC"},
+                        {"t_housing", 1, "K", readings.row(1), 0.0, "degC"},
+                        {"nose", 2, "m", readings.row(2), 0.0, "um"}};
+  }
+  MeasuredChannel& channel(std::size_t i) { return runs[0].channels[i]; }
+  std::string told() const {
+    std::string all;
+    for (const DataFinding& f : runs[0].findings) all += f.what + "\n";
+    return all;
+  }
+};
+
+TEST(ForeignUnits, FahrenheitAndKelvinUnderDegreesCelsiusAreNamedAndLeftOut) {
+  Bench b;
+  b.channel(0).value = 1.8 * (b.channel(0).value.array() + 20.0) + 32.0 - 20.0;
+  b.channel(1).value = b.channel(1).value.array() + 273.15;
+  leave_out_foreign_units(b.runs, *b.twin);
+  EXPECT_THAT(b.told(),
+              AllOf(HasSubstr("t_shaft_degC looks like degF: it reads 68.0 to"), HasSubstr("in degF that is 20.0 to"),
+                    HasSubstr("t_housing_degC looks like kelvin: it reads 293.1")));
+  ASSERT_EQ(b.runs[0].channels.size(), 1U);
+  EXPECT_EQ(b.channel(0).name, "nose");
+}
+
+TEST(ForeignUnits, AThousandTimesTooMuchOrTooLittleIsNamed) {
+  for (const auto& [factor, unit, looks] :
+       {std::tuple{1e-3, "um", "nose_um looks like mm"}, {1e3, "mm", "nose_mm looks like um"}}) {
+    Bench b;
+    b.channel(2).recorded_unit = unit;
+    b.channel(2).value *= factor * 1.7;  // and the scenario is off, too
+    leave_out_foreign_units(b.runs, *b.twin);
+    EXPECT_THAT(b.told(), HasSubstr(looks));
+    EXPECT_EQ(b.runs[0].find("nose"), nullptr);
+  }
+}
+
+TEST(ForeignUnits, AModelThatIsFarOffIsNoOtherUnit) {
+  for (const double factor : {0.05, 0.4, 1.0, 3.0, 30.0}) {
+    for (const double offset_K : {-20.0, 0.0, 8.0, 15.0}) {
+      Bench b;
+      b.channel(0).value = factor * b.channel(0).value.array() + offset_K;
+      b.channel(2).value *= factor;
+      leave_out_foreign_units(b.runs, *b.twin);
+      EXPECT_EQ(b.told(), "") << factor << " " << offset_K;
+    }
+  }
+}
+
+TEST(ForeignUnits, AnIndicatorThatTouchesNothingIsNoOtherUnit) {  // a thousandth of what is expected, and none of it
+  Bench b;
+  Eigen::VectorXd& v = b.channel(2).value;
+  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = 2e-8 * std::sin(12.9898 * static_cast<double>(i * i % 977));
+  leave_out_foreign_units(b.runs, *b.twin);
+  EXPECT_EQ(b.told(), "");
+}
+
+TEST(ForeignUnits, ATemperatureThatMayWellBeIsLeft) {
+  EXPECT_EQ(foreign_temperature({13.0, 14.0, 15.0}, -10.0, -10.0),
+            std::nullopt);  // 14 degF are -10 degC, and 24 K is no proof
+  EXPECT_EQ(foreign_temperature({31.0, 32.0, 33.0}, 0.0, 0.0), "degF");
+  EXPECT_EQ(foreign_temperature({}, 0.0, 0.0), std::nullopt);
+}
+
+TEST(ForeignUnits, NothingLeftToCompareIsRefusedWithTheReason) {
+  Bench b;
+  b.runs[0].channels.resize(1);
+  b.channel(0).value = b.channel(0).value.array() + 273.15;
+  try {
+    leave_out_foreign_units(b.runs, *b.twin);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), AllOf(HasSubstr("no channel to compare"), HasSubstr("t_shaft_degC looks like kelvin")));
+  }
+}
+
+/// Reproducible noise: a sine of no period that a machine has.
+void add_noise(MeasuredChannel& c, double amplitude) {
+  for (Eigen::Index i = 0; i < c.value.size(); ++i)
+    c.value[i] += amplitude * std::sin(12.9898 * static_cast<double>(i * i % 977));
+}
+
+TEST(WarmStart, IsAFindingAndNoCause) {
+  Bench b;
+  b.measure({13.0, 9.0});
+  add_noise(b.channel(0), 0.05);
+  add_noise(b.channel(1), 0.05);
+  add_noise(b.channel(2), 0.2e-6);
+  find_warm_starts(b.runs, *b.twin);
+  EXPECT_THAT(b.told(), AllOf(HasSubstr("2 of 2 thermometers read more than 4 K beside"), HasSubstr("t_shaft by +13.")));
+  ASSERT_EQ(b.runs[0].start_K.size(), 2);
+  EXPECT_NEAR(b.runs[0].start_K[0], 13.0, 0.3);
+  EXPECT_NEAR(b.runs[0].start_K[1], 9.0, 0.3);
+  const Diagnosis d = diagnose(*b.twin, nullptr, b.runs, {}, [](const std::string&) {});
+  EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
+}
+
+TEST(WarmStart, OfABodyWithoutThermometerIsFitted) {
+  Bench b;
+  b.measure({13.0, 6.0});
+  b.runs[0].channels.erase(b.runs[0].channels.begin() + 1);
+  add_noise(b.channel(0), 0.05);
+  add_noise(b.channel(1), 0.2e-6);
+  find_warm_starts(b.runs, *b.twin);
+  EXPECT_NEAR(b.runs[0].start_K[1], 9.1, 0.5);  // 0.7 of its neighbour: that is all a first reading says
+  EXPECT_FALSE(start_columns(*b.twin, b.runs).empty());
+  const Diagnosis d = diagnose(*b.twin, nullptr, b.runs, {}, [](const std::string&) {});
+  EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
+}
+
+TEST(WarmStart, IsNotTakenForABiasOrAHallThatIsOff) {
+  Bench b;
+  b.channel(0).value.array() += 6.0;  // one thermometer of two
+  find_warm_starts(b.runs, *b.twin);
+  b.channel(0).value.array() -= 3.0;
+  b.channel(1).value.array() += 3.0;
+  find_warm_starts(b.runs, *b.twin);
+  EXPECT_EQ(b.told(), "");
+  EXPECT_EQ(b.runs[0].start_K.size(), 0);
+}
+
+TEST(MissingData, NamesTheChannelsTheThermometersAndTheTime) {
+  Bench b;
+  b.runs[0].channels.erase(b.runs[0].channels.begin(), b.runs[0].channels.begin() + 2);
+  b.runs[0].has_ambient = false;
+  b.runs[0].time_s = {0.0, 10800.0, 21600.0};
+  b.runs[0].cyclogram.sections = {{21600.0, {.speed_rpm = 800.0}}};
+  EXPECT_THAT(
+      what_is_missing(*b.twin, b.runs, 3, 150),
+      AllOf(HasSubstr("3 readings of 1 channel are too few"), HasSubstr("do not hold t_shaft, t_housing."),
+            HasSubstr("a thermometer on each of shaft, housing"), HasSubstr("No hall temperature (ambient_degC) in cycle"),
+            HasSubstr("at 800 rpm throughout"), HasSubstr("A row comes every 180 min; one every 10 min is wanted.")));
+}
+
+TEST(MissingData, IsSilentOnWhatIsThere) {
+  Bench b;
+  EXPECT_THAT(what_is_missing(*b.twin, b.runs, 100, 150),
+              AllOf(Not(HasSubstr("do not hold")), Not(HasSubstr("No temperature")), Not(HasSubstr("No hall")),
+                    Not(HasSubstr("throughout")), Not(HasSubstr("A row comes"))));
+}
+
+TEST(MissingData, KnowsHowLongTheMachineTakes) {
+  Bench b;
+  // s^2 + (12/5000 + 21/20000) s + 12/5000 21/20000 - 12/5000 12/20000 = 0: the slower time constant is 2872 s. The shaft starts with a
+  // little more than 1 K of that mode, and times are looked at in steps of a tenth.
+  EXPECT_GT(settling_time_s(*b.twin, b.runs[0]), 2872.0);
+  EXPECT_LT(settling_time_s(*b.twin, b.runs[0]), 1.1 * 1.17 * 2872.0);
+}
+
+}  // namespace
+}  // namespace driftwright::diagnosis
