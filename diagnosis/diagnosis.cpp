@@ -27,7 +27,7 @@ constexpr double kRough = 3.0;                // leftover over noise: a model th
 constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
 constexpr double kFurther = 4.0;              // nats of one more effect, its price paid
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
-constexpr double kUnnamed = 5.0;              // nats by which one cause without a name must be better than those with one
+constexpr double kUnnamed = 3.0;              // nats by which one cause without a name must be better than those with one
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
 
 /// Index of a claim's first knob in x.

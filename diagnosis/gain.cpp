@@ -5,14 +5,16 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "base/errors.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kFitted = 2.0 / 3.0;  // of a single run
 
-/// x of a fit with numbers taken from some rows of the whitened data alone: one Gauss-Newton step from the fit to all.
+/// x of a fit with numbers taken from some rows of the whitened data alone: one Gauss-Newton step, damped, from the fit to all.
 Eigen::VectorXd refitted(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit,
-                         const std::vector<char>& is_used, bool keep_unseen) {
+                         const std::vector<char>& is_used, bool keep_unseen, Twin::Workspace& workspace) {
   const Eigen::Index n_n = fitter.n_nuisance(), n = fit.x.size();
   Eigen::MatrixXd slopes(fit.residual.size(), n);
   slopes << fitter.nuisance_slopes(), fit.slopes;
@@ -38,7 +40,26 @@ Eigen::VectorXd refitted(const Fitter& fitter, const Hypothesis& hypothesis, con
     hessian(i, i) = 1.0;
     if (!keep_unseen && !has_no_slope) from[i] = 0.0;
   }
-  return from + hessian.llt().solve(step);
+  // What few data want may be more than the machine stands: only as far as it explains them better.
+  const auto misfit = [&](const Eigen::VectorXd& x) {
+    try {
+      const Eigen::VectorXd r =
+          fitter.comparison().measured() - fitter.comparison().whitened(fitter.predict(hypothesis, x, workspace));
+      double sum = 0.5 * x.cwiseQuotient(sd).squaredNorm();
+      for (Eigen::Index i = 0; i < r.size(); ++i) {
+        if (is_used[static_cast<std::size_t>(i)]) sum += 0.5 * r[i] * r[i];
+      }
+      return sum;
+    } catch (const SolveError&) {
+      return 1e300;
+    }
+  };
+  const Eigen::VectorXd whole = hessian.llt().solve(step);
+  const double before = misfit(from);
+  for (double share : {1.0, 0.5, 0.25, 0.1}) {
+    if (misfit(from + share * whole) < before) return from + share * whole;
+  }
+  return from;
 }
 
 }  // namespace
@@ -73,11 +94,12 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
         ++row;
       }
     }
-    const Prediction without = fitter.predict({}, refitted(fitter, {}, result.without, is_used, !single), workspace);
+    const Prediction without =
+        fitter.predict({}, refitted(fitter, {}, result.without, is_used, !single, workspace), workspace);
     const Prediction with =
         result.hypothesis.empty()
             ? without
-            : fitter.predict(result.hypothesis, refitted(fitter, result.hypothesis, result.fit, is_used, !single),
+            : fitter.predict(result.hypothesis, refitted(fitter, result.hypothesis, result.fit, is_used, !single, workspace),
                              workspace);
     for (const MeasuredChannel& c : runs[out].channels) {
       ChannelGain& g = held.channels[index[c.name]];
