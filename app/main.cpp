@@ -29,10 +29,12 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
   return verb;
 }
 
-void add_records(CLI::App* verb, app::RecordOptions& options, bool with_test) {
-  verb->add_option("--train", options.train, "record CSV to fit on; may be repeated")->required()->allow_extra_args(false);
-  if (with_test)
-    verb->add_option("--test", options.test, "record CSV to judge on; may be repeated")->required()->allow_extra_args(false);
+/// @param judges  it also tests, and does without records where the scenario has a programme
+void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
+  verb->add_option("--train", options.train, "record CSV to fit on; may be repeated")
+      ->required(!judges)
+      ->allow_extra_args(false);
+  if (judges) verb->add_option("--test", options.test, "record CSV to judge on; may be repeated")->allow_extra_args(false);
 }
 
 /// CLI11 would only say that a subcommand is required.
@@ -86,8 +88,11 @@ int main(int argc, char** argv) {
                   "select scenarios/spindle_22.yaml --train run1.csv --train run2.csv", select);
   add_records(verb, select, false);
   verb->callback([&] { app::select(select); });
-  verb = add_verb(cli, "validate", "fit a regression on records, judge it on others against two baselines",
-                  "validate scenarios/spindle_22.yaml --train run1.csv --train run2.csv --test run3.csv", validate);
+  verb = add_verb(cli, "validate",
+                  "judge predictors: a regression on records it was not fitted on, or those of the scenario's programme",
+                  "validate scenarios/fp3_spindle.yaml\n  driftwright validate scenarios/spindle_22.yaml --train run1.csv "
+                  "--train run2.csv --test run3.csv",
+                  validate);
   add_records(verb, validate, true);
   verb->callback([&] { app::validate(validate); });
   verb = add_verb(cli, "calibrate", "the scenario's uncertain numbers, fitted to measured records, with intervals",

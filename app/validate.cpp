@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/programme_report.hpp"
 #include "app/record_study.hpp"
 #include "app/results.hpp"
 #include "output/html_report.hpp"
@@ -79,10 +80,42 @@ output::Report report(const scenarios::Scenario& scenario, const RecordStudy& st
   return page;
 }
 
+void validate_programme(const scenarios::Scenario& scenario, const CommonOptions& options) {
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress;
+  const std::vector<Cyclogram> tests = scenarios::test_cyclograms(*scenario.programme),
+                               random = scenarios::random_cyclograms(*scenario.programme);
+  std::vector<const Cyclogram*> asked;
+  for (const auto* list : {&tests, &random, &scenario.programme->cyclograms}) {
+    for (const Cyclogram& c : *list) asked.push_back(&c);
+  }
+  const Model model = open_model(scenario, asked, progress, false);
+  const ProgrammeStudy study = study_programme(scenario, model, progress);
+  progress.begin("writing");
+  folder.write_text("programme.csv", programme_csv(study));
+  folder.write_text("summary.json", output::json_text(programme_json(study, folder.made_by())));
+  folder.write_text("report.html", output::render_html(programme_report(scenario, study, folder.made_by())));
+  folder.commit();
+  progress.end();
+  fmt::print("{}\n{}report in {}\n", model.words(), programme_text(study), shown_path(folder.target() / "report.html"));
+}
+
 }  // namespace
 
 void validate(const RecordOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  if (options.train.empty() && options.test.empty()) {
+    if (!scenario.programme) {
+      throw InputError(
+          fmt::format("{}: `validate` wants records (--train, --test), or the key `programme` in the scenario "
+                      "(docs/prediction.md)",
+                      scenario.path));
+    }
+    return validate_programme(scenario, options);
+  }
+  for (const auto& [list, name] : {std::pair{&options.train, "--train"}, std::pair{&options.test, "--test"}}) {
+    if (list->empty()) throw InputError(fmt::format("`validate` on records wants {} too, at least once", name));
+  }
   const scenarios::Study& settings = require_study(scenario, "validate");
   RecordStudy study = read_records(settings, options);
   fit_and_judge(study, settings);

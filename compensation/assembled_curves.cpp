@@ -33,6 +33,11 @@ std::optional<double> time_at(const Eigen::MatrixXd& table, Eigen::Index channel
   return std::nullopt;
 }
 
+/// What cooling leaves of a level: no more than it was, whatever a small start is divided by.
+double shrunk(double share) {
+  return std::clamp(share, -1.0, 1.0);
+}
+
 double time_nearest(const Eigen::MatrixXd& table, Eigen::Index channel, double level) {
   Eigen::Index at = 0;
   (table.row(channel).array() - level).abs().minCoeff(&at);
@@ -147,12 +152,12 @@ Eigen::MatrixXd AssembledCurves::predict(const Cyclogram& cyclogram, const std::
         if (rpm > 0.0) {
           if (const auto t_s = time_at(now.heating, c, from)) return value(now.heating, c, *t_s + dt_s);
           const bool is_beyond = std::abs(from) > std::abs(steady) && from * steady > 0.0;
-          if (is_beyond && cold != 0.0) return steady + (from - steady) * value(now.cooling, c, dt_s) / cold;
+          if (is_beyond && cold != 0.0) return steady + (from - steady) * shrunk(value(now.cooling, c, dt_s) / cold);
           return value(now.heating, c, time_nearest(now.heating, c, from) + dt_s);
         }
         if (before_rpm == 0.0) return from;  // it has not run yet
         if (const auto t_s = time_at(now.cooling, c, from)) return value(now.cooling, c, *t_s + dt_s);
-        if (cold != 0.0 && from * cold > 0.0) return from * value(now.cooling, c, dt_s) / cold;
+        if (cold != 0.0 && from * cold > 0.0) return from * shrunk(value(now.cooling, c, dt_s) / cold);
         return value(now.cooling, c, time_nearest(now.cooling, c, from) + dt_s);
       };
       for (std::size_t i = next; i < end; ++i) y(c, static_cast<Eigen::Index>(i)) = along(output_s[i] - start_s);

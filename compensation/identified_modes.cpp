@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -24,7 +24,13 @@ double rate_1_s(double time_constant_s, double growth, double x) {
   return (1.0 + growth * (x > 0.0 ? std::pow(x, kGrowthExponent) : 0.0)) / time_constant_s;
 }
 
-/// First-order states with one rate a section: of x^m for each power, then of the hall. n_powers + 1 columns.
+/// What power m has of a speed: standstill has a level of its own, for films and idle heat change there at once.
+double steady_level(int m, double x) {
+  if (m == 0) return x > 0.0 ? 0.0 : 1.0;
+  return x > 0.0 ? std::pow(x, m - 1) : 0.0;
+}
+
+/// First-order states with one rate a section: of the level of each power, then of the hall. n_powers + 1 columns.
 Eigen::MatrixXd mode_states(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
                             double time_constant_s, double growth, double top_rpm, int powers) {
   Eigen::MatrixXd states(static_cast<Eigen::Index>(output_s.size()), powers + 1);
@@ -42,7 +48,7 @@ Eigen::MatrixXd mode_states(const Cyclogram& cyclogram, const TimeSeries& hall, 
       const double dt_s = t_s - s.start_s, e = std::exp(-lambda * dt_s);
       Eigen::VectorXd y(powers + 1);
       for (int m = 0; m < powers; ++m) {
-        const double level = std::pow(x, m);
+        const double level = steady_level(m, x);
         y[m] = level + (start[m] - level) * e;
       }
       const double behind_K = slope_K_s / lambda;  // a ramp is followed at this distance
@@ -61,7 +67,9 @@ struct Table {
   std::vector<double> speed_rpm;  ///< highest of each test
   Eigen::MatrixXd y;              ///< n_rows x n_channels
   Eigen::VectorXd noise;          ///< of each channel's averaged readings
+  Eigen::VectorXd range;          ///< of each channel, in units of its noise
   double top_rpm = 0.0, longest_s = 0.0;
+  double warmest_K = 10.0;  ///< largest range of a temperature, where one is read
 };
 
 /// Of one reading, from second differences; a smooth record has next to none.
@@ -113,7 +121,9 @@ Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channe
                     speeds.size(), options.powers, options.powers - static_cast<int>(speeds.size())));
   }
   const auto n_channels = static_cast<Eigen::Index>(channels.name.size());
+  double warmest_K = 0.0;
   t.noise.resize(n_channels);
+  t.range.resize(n_channels);
   for (Eigen::Index c = 0; c < n_channels; ++c) {
     double low = 1e300, high = -1e300;
     for (const ThermalTest& test : t.tests) {
@@ -123,7 +133,10 @@ Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channe
     const double rows =
         static_cast<double>(tests.front().time_s.size()) / static_cast<double>(t.tests.front().time_s.size());
     t.noise[c] = std::max(noise_of(tests, c) / std::sqrt(rows), kLeastNoise * std::max(1e-12, high - low));
+    t.range[c] = std::max(1.0, (high - low) / t.noise[c]);
+    if (channels.unit[static_cast<std::size_t>(c)] == "K") warmest_K = std::max(warmest_K, high - low);
   }
+  if (warmest_K > 0.0) t.warmest_K = warmest_K;
   t.y.resize(n_rows, n_channels);
   Eigen::Index row = 0;
   for (const ThermalTest& test : t.tests) {
@@ -133,45 +146,69 @@ Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channe
   return t;
 }
 
-/// Logarithm of each time constant, then each growth.
+/// Logarithm of the slowest time constant, of the ratio of each to the next faster one, then the growth.
 using Shape = std::vector<double>;
+constexpr double kClosest = 2.2, kFurthest = 40.0;  // ratios: closer modes would only cancel each other
+
+std::vector<double> time_constants_s(const Shape& shape) {
+  std::vector<double> list;
+  double log_s = 0.0;
+  for (std::size_t k = 0; k + 1 < shape.size(); ++k) {
+    log_s = k == 0 ? shape[0] : log_s - shape[k];
+    list.push_back(std::exp(log_s));
+  }
+  return list;
+}
 
 Eigen::MatrixXd basis(const Table& t, const Shape& shape, int powers, std::size_t test) {
-  const std::size_t n_modes = shape.size() / 2;
+  const std::size_t n_modes = shape.size() - 1;
   const ThermalTest& of = t.tests[test];
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(of.time_s.size()), static_cast<Eigen::Index>(n_modes) * (powers + 1));
+  const std::vector<double> time_constant_s = time_constants_s(shape);
   for (std::size_t k = 0; k < n_modes; ++k) {
     columns.middleCols(static_cast<Eigen::Index>(k) * (powers + 1), powers + 1) =
-        mode_states(of.cyclogram, of.hall, of.time_s, std::exp(shape[k]), shape[n_modes + k], t.top_rpm, powers);
+        mode_states(of.cyclogram, of.hall, of.time_s, time_constant_s[k], shape.back(), t.top_rpm, powers);
   }
   return columns;
 }
 
-/// Rows of the tests that take part, the ridge below them: columns of close time constants would else cancel each other.
+/// Steady levels of given time constants: least squares with a prior that none is larger than the channel itself (1 sigma is its range), and that
+/// a kelvin of hall does no more than a kelvin of machine, without which columns that the tests tell apart badly would cancel each other there and not elsewhere.
 struct Linear {
-  Eigen::MatrixXd columns, y;
+  Eigen::MatrixXd amplitude;  ///< n_columns x n_channels, in units of noise
+  Eigen::MatrixXd residual;   ///< of the rows that take part, then amplitude over its prior
 };
 Linear linear(const Table& t, const Shape& shape, int powers, std::size_t left_out) {
-  constexpr double kRidge = 1e-3;  // of a steady level, in units of noise
   std::vector<Eigen::MatrixXd> parts;
   Eigen::Index n = 0;
   for (std::size_t i = 0; i < t.tests.size(); ++i) {
     parts.push_back(i == left_out ? Eigen::MatrixXd() : basis(t, shape, powers, i));
     n += parts.back().rows();
   }
-  const Eigen::Index n_columns = static_cast<Eigen::Index>(shape.size() / 2) * (powers + 1);
-  Linear l{Eigen::MatrixXd::Zero(n + n_columns, n_columns), Eigen::MatrixXd::Zero(n + n_columns, t.y.cols())};
+  const Eigen::Index n_columns = static_cast<Eigen::Index>(shape.size() - 1) * (powers + 1);
+  Eigen::MatrixXd columns(n, n_columns), y(n, t.y.cols());
   Eigen::Index row = 0, from = 0;
   for (std::size_t i = 0; i < t.tests.size(); ++i) {
     const Eigen::Index rows = t.tests[i].readings.cols();
     if (i != left_out) {
-      l.columns.middleRows(row, rows) = parts[i];
-      l.y.middleRows(row, rows) = t.y.middleRows(from, rows);
+      columns.middleRows(row, rows) = parts[i];
+      y.middleRows(row, rows) = t.y.middleRows(from, rows);
       row += rows;
     }
     from += rows;
   }
-  l.columns.bottomRows(n_columns).diagonal().setConstant(kRidge);
+  for (Eigen::Index c = powers; c < n_columns; c += powers + 1) columns.col(c) /= t.warmest_K;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(columns.transpose() * columns);
+  const Eigen::VectorXd square = eigen.eigenvalues().cwiseMax(0.0);
+  const Eigen::MatrixXd in_eigen = eigen.eigenvectors().transpose() * (columns.transpose() * y);
+  Linear l{Eigen::MatrixXd(n_columns, y.cols()), Eigen::MatrixXd(n + n_columns, y.cols())};
+  for (Eigen::Index c = 0; c < y.cols(); ++c) {
+    const double ridge = std::pow(1.0 / t.range[c], 2);
+    l.amplitude.col(c) = eigen.eigenvectors() * in_eigen.col(c).cwiseQuotient((square.array() + ridge).matrix());
+    l.residual.col(c).tail(n_columns) = l.amplitude.col(c) / t.range[c];
+  }
+  l.residual.topRows(n) = y - columns * l.amplitude;
+  for (Eigen::Index c = powers; c < n_columns; c += powers + 1) l.amplitude.row(c) /= t.warmest_K;
   return l;
 }
 
@@ -184,15 +221,11 @@ struct Fitted {
 Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& options, std::size_t left_out,
                  bool with_covariance) {
   const auto n = static_cast<int>(start.size());
-  const std::size_t n_modes = start.size() / 2;
   const Linear sizes = linear(t, start, options.powers, left_out);
-  const auto n_residuals = static_cast<int>(sizes.y.size());
+  const auto n_residuals = static_cast<int>(sizes.residual.size());
   const auto residual = [&](double const* const* parameters, double* out) {
     const Linear l = linear(t, {parameters[0], parameters[0] + n}, options.powers, left_out);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(l.columns);
-    Eigen::MatrixXd r = qr.householderQ().transpose() * l.y;
-    r.topRows(l.columns.cols()).setZero();  // what no steady levels can take
-    Eigen::Map<Eigen::MatrixXd>(out, r.rows(), r.cols()) = r;
+    Eigen::Map<Eigen::MatrixXd>(out, l.residual.rows(), l.residual.cols()) = l.residual;
     return true;
   };
   auto* cost = new ceres::DynamicNumericDiffCostFunction<decltype(residual)>(&residual, ceres::DO_NOT_TAKE_OWNERSHIP);
@@ -200,12 +233,14 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
   cost->SetNumResiduals(n_residuals);
   ceres::Problem problem;
   problem.AddResidualBlock(cost, nullptr, start.data());
-  for (int k = 0; k < static_cast<int>(n_modes); ++k) {
-    problem.SetParameterLowerBound(start.data(), k, std::log(kShortest_s));
-    problem.SetParameterUpperBound(start.data(), k, std::log(5.0 * t.longest_s));
-    problem.SetParameterLowerBound(start.data(), static_cast<int>(n_modes) + k, 0.0);
-    problem.SetParameterUpperBound(start.data(), static_cast<int>(n_modes) + k, options.with_growth ? kMostGrowth : 1e-9);
+  problem.SetParameterLowerBound(start.data(), 0, std::log(kShortest_s));
+  problem.SetParameterUpperBound(start.data(), 0, std::log(5.0 * t.longest_s));
+  for (int k = 1; k + 1 < n; ++k) {
+    problem.SetParameterLowerBound(start.data(), k, std::log(kClosest));
+    problem.SetParameterUpperBound(start.data(), k, std::log(kFurthest));
   }
+  problem.SetParameterLowerBound(start.data(), n - 1, 0.0);
+  problem.SetParameterUpperBound(start.data(), n - 1, options.with_growth ? kMostGrowth : 1e-9);
   ceres::Solver::Options how;
   how.linear_solver_type = ceres::DENSE_QR;
   how.max_num_iterations = 60;
@@ -235,21 +270,15 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
 }
 
 /// Time constants spread evenly in their logarithm over what tests can show.
-Shape first_guess(const Table& t, int n_modes) {
-  Shape shape;
-  const double slow = std::log(0.7 * t.longest_s), fast = std::log(600.0);
-  for (int k = 0; k < n_modes; ++k)
-    shape.push_back(n_modes == 1 ? 0.5 * (slow + fast) : slow + (fast - slow) * k / (n_modes - 1));
-  for (int k = 0; k < n_modes; ++k) shape.push_back(0.1);
+Shape first_guess(const Table& t, int n_modes, const IdentificationOptions& options) {
+  const double slow = std::log(0.7 * t.longest_s), fast = std::log(n_modes < 3 ? 1800.0 : 400.0);
+  Shape shape = {n_modes == 1 ? 0.5 * (slow + fast) : slow};
+  for (int k = 1; k < n_modes; ++k) shape.push_back(std::max(std::log(1.05 * kClosest), (slow - fast) / (n_modes - 1)));
+  shape.push_back(options.with_growth ? 0.1 : 0.0);
   return shape;
 }
 
-Eigen::MatrixXd amplitudes(const Table& t, const Shape& shape, int powers, std::size_t left_out) {
-  const Linear l = linear(t, shape, powers, left_out);
-  return l.columns.colPivHouseholderQr().solve(l.y);
-}
-
-/// Mean square of a test that was left out of its prediction, in units of noise.
+/// Root mean square error of tests of inner speeds, each predicted from the others, in units of noise.
 double held_out(const Table& t, const Fitted& all, const IdentificationOptions& options) {
   double sum = 0.0;
   int n = 0;
@@ -257,16 +286,20 @@ double held_out(const Table& t, const Fitted& all, const IdentificationOptions& 
     const double rpm = t.speed_rpm[test];
     const bool is_inside =
         rpm < t.top_rpm && std::any_of(t.speed_rpm.begin(), t.speed_rpm.end(), [&](double s) { return s < rpm; });
-    if (!is_inside && t.tests.size() > 2) continue;  // an outer speed would be extrapolated
+    if (!is_inside) continue;  // an outer speed would be extrapolated
     const Fitted without = fit_shape(t, all.shape, options, test, false);
     const Eigen::MatrixXd predicted =
-        basis(t, without.shape, options.powers, test) * amplitudes(t, without.shape, options.powers, test);
+        basis(t, without.shape, options.powers, test) * linear(t, without.shape, options.powers, test).amplitude;
     Eigen::Index from = 0;
     for (std::size_t i = 0; i < test; ++i) from += t.tests[i].readings.cols();
     sum += (t.y.middleRows(from, predicted.rows()) - predicted).squaredNorm() / static_cast<double>(predicted.size());
     ++n;
   }
-  return n > 0 ? std::sqrt(sum / n) : std::sqrt(2.0 * all.cost / static_cast<double>(t.y.size()));
+  if (n > 0) return std::sqrt(sum / n);
+  // too few tests to leave one out: generalised cross-validation (Craven & Wahba, Numer. Math. 31 (1979) 377-403)
+  const double n_readings = static_cast<double>(t.y.rows()),
+               n_free = static_cast<double>(all.shape.size() - 1) * (options.powers + 1) + 1.0;
+  return std::sqrt(2.0 * all.cost / static_cast<double>(t.y.size())) / std::max(0.01, 1.0 - n_free / n_readings);
 }
 
 }  // namespace
@@ -279,17 +312,15 @@ IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const Test
   Fitted best;
   double best_error = 1e300;
   for (int n_modes = 1; n_modes <= options.most_modes; ++n_modes) {
-    Fitted f = fit_shape(t, first_guess(t, n_modes), options, kNone, true);
+    Fitted f = fit_shape(t, first_guess(t, n_modes, options), options, kNone, true);
     const double error = held_out(t, f, options);
     if (!(error < kWorthAMode * best_error)) break;
     best = std::move(f);
     best_error = error;
   }
-  const std::size_t n_modes = best.shape.size() / 2;
-  const Eigen::MatrixXd a = amplitudes(t, best.shape, options.powers, kNone);
-  std::vector<std::size_t> order(n_modes);
-  for (std::size_t k = 0; k < n_modes; ++k) order[k] = k;
-  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return best.shape[i] > best.shape[j]; });
+  const std::size_t n_modes = best.shape.size() - 1;
+  const Eigen::MatrixXd a = linear(t, best.shape, options.powers, kNone).amplitude;
+  const std::vector<double> time_constant_s = time_constants_s(best.shape);
   IdentifiedModes m;
   m.channels = channels;
   m.top_rpm = t.top_rpm;
@@ -300,11 +331,15 @@ IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const Test
       if (s.drive.speed_rpm > 0.0) m.lowest_rpm = std::min(m.lowest_rpm, s.drive.speed_rpm);
     }
   }
-  for (std::size_t k : order) {
+  for (std::size_t k = 0; k < n_modes; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    const double sd = std::sqrt(std::max(0.0, best.covariance(i, i)));
-    m.modes.push_back({std::exp(best.shape[k]), std::exp(best.shape[k] - 1.96 * sd), std::exp(best.shape[k] + 1.96 * sd),
-                       best.shape[n_modes + k]});
+    // log τ_k = s_0 - s_1 - ... - s_k
+    Eigen::VectorXd of_shape = Eigen::VectorXd::Zero(best.covariance.rows());
+    of_shape[0] = 1.0;
+    of_shape.segment(1, i).setConstant(-1.0);
+    const double sd = std::sqrt(std::max(0.0, of_shape.dot(best.covariance * of_shape)));
+    m.modes.push_back({time_constant_s[k], time_constant_s[k] * std::exp(-1.96 * sd),
+                       time_constant_s[k] * std::exp(1.96 * sd), best.shape.back()});
     const Eigen::MatrixXd of_mode =
         t.noise.asDiagonal() * a.middleRows(i * (options.powers + 1), options.powers + 1).transpose();
     m.level.emplace_back(of_mode.leftCols(options.powers));

@@ -1,11 +1,11 @@
 #pragma once
 // Thermal modes from tests alone: each channel is a sum of first-order states that all channels share.
 //
-//     y_c(t) = Σ_k a_ck(t),   a_ck' = λ_k(n) (Σ_m A_ckm x^m + H_ck θ_hall - a_ck),   x = n / N,   λ_k(n) = (1 + g_k x^0.7) / τ_k
+//     y_c(t) = Σ_k a_ck(t),   a_ck' = λ_k(n) (A_ck(n) + H_ck θ_hall - a_ck),   x = n / N,   λ_k(n) = (1 + g x^0.7) / τ_k
 //
 // Over a section at constant speed that is the sum of exponentials of heating and cooling tests, T = Σ A (1 - e^(-t/τ)) + Σ B e^(-t/τ); what goes
-// beyond it is that states live on when the speed changes, that rates grow with speed as forced films do, and that steady levels between the
-// tested speeds follow one polynomial. Steady levels are linear in the data; τ_k and g_k are found by variable projection.
+// beyond it is that states live on when the speed changes, that rates grow with speed as forced films do, and that steady levels A between the
+// tested speeds follow one polynomial of x, with a level of its own at standstill. Steady levels are linear in the data; τ_k and g are found by variable projection.
 // Source: Polyakov, Marusich & Nikitina (thermal modes); Golub & Pereyra, SIAM J. Numer. Anal. 10 (1973) 413-432.
 
 #include "compensation/thermal_test.hpp"

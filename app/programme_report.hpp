@@ -1,0 +1,18 @@
+#pragma once
+// A programme of predictors as a page, a table and a few lines.
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "app/programme_study.hpp"
+#include "output/html_report.hpp"
+
+namespace driftwright::app {
+
+[[nodiscard]] output::Report programme_report(const scenarios::Scenario& scenario, const ProgrammeStudy& study,
+                                              const output::Provenance& made_by);
+[[nodiscard]] nlohmann::ordered_json programme_json(const ProgrammeStudy& study, const output::Provenance& made_by);
+/// One row a predictor, cyclogram and channel.
+[[nodiscard]] std::string programme_csv(const ProgrammeStudy& study);
+[[nodiscard]] std::string programme_text(const ProgrammeStudy& study);
+
+}  // namespace driftwright::app

@@ -1,0 +1,286 @@
+#include "app/programme_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "base/quantity.hpp"
+#include "base/random.hpp"
+#include "compensation/schedule.hpp"
+#include "scenarios/as_recorded.hpp"
+#include "solver/propagator.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using namespace compensation;
+
+constexpr int kMostModelModes = 40;
+constexpr double kWantedPercent = 1.0;
+
+/// Displacements and tilts, then temperatures where asked for: as rows.
+Eigen::MatrixXd rows_of(const Record& record, const TestChannels& channels, double hall_C) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(channels.name.size()), static_cast<Eigen::Index>(record.time_s.size()));
+  for (std::size_t c = 0; c < channels.name.size(); ++c) {
+    const std::vector<double>& values = record.at(channels.name[c]).values;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      rows(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i)) =
+          values[i] - (channels.unit[c] == "K" ? hall_C : 0.0);
+  }
+  return rows;
+}
+
+/// Channels of tests: temperatures help to find the time constants that displacements share.
+struct TestBed {
+  TestChannels all;                ///< displacements, tilts, temperatures
+  std::vector<ThermalTest> tests;  ///< noisy
+};
+
+void add_noise(std::vector<ThermalTest>& tests, const TestChannels& channels, const scenarios::Programme& p) {
+  for (std::size_t t = 0; t < tests.size(); ++t) {
+    for (std::size_t c = 0; c < channels.name.size(); ++c) {
+      const double sd = channels.unit[c] == "K" ? p.temperature_noise_K
+                                                : p.displacement_noise_um * (channels.unit[c] == "urad" ? 10.0 : 1.0);
+      Random random(static_cast<std::uint64_t>(p.seed), 1000 * (t + 1) + c);
+      for (Eigen::Index i = 0; i < tests[t].readings.cols(); ++i)
+        tests[t].readings(static_cast<Eigen::Index>(c), i) += sd * random.normal();
+    }
+  }
+}
+
+TimeSeries from_start(TimeSeries hall) {
+  const double start_K = hall.at(0.0);
+  for (double& v : hall.value) v -= start_K;
+  return hall;
+}
+
+/// A linear model off by random factors: what a hybrid may start from.
+solver::ReducedSystem scattered(solver::ReducedSystem system, double sigma, int seed) {
+  Random random(static_cast<std::uint64_t>(seed), 2);
+  for (auto& s : system.sources) s.load *= std::exp(sigma * random.normal());
+  for (auto& e : system.exchanges) {
+    const double f = std::exp(sigma * random.normal());
+    e.matrix *= f;
+    e.to_hall *= f;
+    e.offset *= f;
+  }
+  return system;
+}
+
+PredictionError error_of(const Eigen::MatrixXd& truth, const Eigen::MatrixXd& predicted, const TestChannels& channels,
+                         Eigen::Index channel) {
+  PredictionError e;
+  e.peak = truth.row(channel).cwiseAbs().maxCoeff();
+  const Eigen::ArrayXd off = (truth.row(channel) - predicted.row(channel)).cwiseAbs();
+  e.largest = off.maxCoeff();
+  e.mean = off.mean();
+  Eigen::ArrayXd square = Eigen::ArrayXd::Zero(truth.cols());
+  for (Eigen::Index c = 0; c < truth.rows(); ++c) {
+    if (channels.unit[static_cast<std::size_t>(c)] == channels.unit[static_cast<std::size_t>(channel)])
+      square += truth.row(c).array().square().transpose();
+  }
+  e.of = std::max(e.peak, 0.1 * std::sqrt(square.maxCoeff()));
+  return e;
+}
+
+/// Rows of a trajectory, in um and urad.
+Eigen::MatrixXd rows_of(const solver::Trajectory& run, const solver::Outputs& outputs, const TestChannels& channels) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(channels.name.size()), run.outputs.cols());
+  for (std::size_t c = 0; c < channels.name.size(); ++c) {
+    const auto o = std::find(outputs.name.begin(), outputs.name.end(), channels.name[c]) - outputs.name.begin();
+    rows.row(static_cast<Eigen::Index>(c)) = 1e6 * run.outputs.row(o);
+  }
+  return rows;
+}
+
+void judge(ProgrammeStudy& study, const std::string& name,
+           const std::function<Eigen::MatrixXd(const JudgedCyclogram&)>& predict) {
+  ProgrammeStudy::Predictor p{name, {}, {}, 0.0};
+  const auto start = std::chrono::steady_clock::now();
+  for (const JudgedCyclogram& j : study.judged) p.predicted.push_back(predict(j));
+  p.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
+              static_cast<double>(study.judged.size());
+  for (std::size_t i = 0; i < study.judged.size(); ++i) {
+    p.errors.emplace_back();
+    for (Eigen::Index c = 0; c < p.predicted[i].rows(); ++c)
+      p.errors.back().push_back(error_of(study.judged[i].truth, p.predicted[i], study.channels, c));
+  }
+  study.predictors.push_back(std::move(p));
+}
+
+double largest_percent(const ProgrammeStudy::Predictor& p) {
+  double largest = 0.0;
+  for (const auto& cyclogram : p.errors) {
+    for (const PredictionError& e : cyclogram) largest = std::max(largest, e.largest_percent());
+  }
+  return largest;
+}
+
+/// Corrections planned on each prediction of a random cyclogram, and what the true drift leaves of them.
+ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& p, std::size_t channel,
+                                        double tolerance_um) {
+  ProgrammeStudy::Scheduled s{p.name, study.channels.name[channel]};
+  const auto c = static_cast<Eigen::Index>(channel);
+  for (std::size_t i = 0; i < study.judged.size(); ++i) {
+    const JudgedCyclogram& j = study.judged[i];
+    if (!j.is_random) continue;
+    const Eigen::VectorXd predicted = p.predicted[i].row(c);
+    const std::vector<double> drift_um(predicted.begin(), predicted.end());
+    std::vector<double> boundaries_s = {0.0};
+    for (const auto& section : j.cyclogram.sections) boundaries_s.push_back(boundaries_s.back() + section.duration_s);
+    boundaries_s.back() = std::min(boundaries_s.back(), j.time_s.back());
+    // half the tolerance is left to the predictor's error
+    const Schedule schedule =
+        plan_schedule(j.time_s, drift_um, boundaries_s, {.tolerance_um = tolerance_um, .margin_um = 0.5 * tolerance_um});
+    double worst_um = 0.0, before_um = 0.0;
+    int changes = 0;
+    for (std::size_t k = 0; k < j.time_s.size(); ++k) {
+      const double correction_um = correction_at(schedule, j.time_s[k]);
+      changes += correction_um != before_um;
+      before_um = correction_um;
+      worst_um = std::max(worst_um, std::abs(j.truth(c, static_cast<Eigen::Index>(k)) - correction_um));
+    }
+    ++s.n_cyclograms;
+    s.n_inside += worst_um <= tolerance_um;
+    s.worst_um = std::max(s.worst_um, worst_um);
+    s.mean_changes += changes;
+    s.most_changes = std::max(s.most_changes, changes);
+  }
+  if (s.n_cyclograms > 0) s.mean_changes /= s.n_cyclograms;
+  return s;
+}
+
+}  // namespace
+
+Summary summary(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& predictor, std::size_t channel,
+                const std::function<bool(const JudgedCyclogram&)>& counts) {
+  Summary s;
+  for (std::size_t i = 0; i < study.judged.size(); ++i) {
+    if (!counts(study.judged[i])) continue;
+    const PredictionError& e = predictor.errors[i][channel];
+    s.largest = std::max(s.largest, e.largest);
+    s.largest_percent = std::max(s.largest_percent, e.largest_percent());
+    s.mean += e.mean;
+    s.mean_percent += e.mean_percent();
+    ++s.n;
+  }
+  if (s.n > 0) {
+    s.mean /= s.n;
+    s.mean_percent /= s.n;
+  }
+  return s;
+}
+
+ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model& model, Progress& progress) {
+  const scenarios::Programme& programme = *scenario.programme;
+  const scenarios::MachineModel& machine = *scenario.machine;
+  ProgrammeStudy study;
+  for (const auto& d : machine.displacements) {
+    study.channels.name.push_back(d.name);
+    study.channels.unit.emplace_back("um");
+  }
+  for (const auto& t : machine.tilts) {
+    study.channels.name.push_back(t.name);
+    study.channels.unit.emplace_back("urad");
+  }
+
+  // --- truth
+  const std::vector<Cyclogram> tests = scenarios::test_cyclograms(programme),
+                               random = scenarios::random_cyclograms(programme);
+  std::vector<Cyclogram> judged = programme.cyclograms;
+  judged.insert(judged.end(), random.begin(), random.end());
+  std::vector<const Cyclogram*> all;
+  for (const Cyclogram& c : tests) all.push_back(&c);
+  for (const Cyclogram& c : judged) all.push_back(&c);
+  const std::vector<SimulatedRun> runs = simulate_cyclograms(scenario, model, all, progress, 0, nullptr);
+  const double hall_K = scenarios::felt_hall_at_start_K(machine);
+  const double hall_C = machine.reference_K - kZeroCelsius_K + hall_K;
+  TestBed bed{study.channels, {}};
+  for (const scenarios::Sensor& s : machine.sensors) {
+    if (scenarios::is_on_hall(s)) continue;
+    bed.all.name.push_back(s.name);
+    bed.all.unit.emplace_back("K");
+  }
+  const TimeSeries hall = from_start(machine.hall);
+  for (std::size_t t = 0; t < tests.size(); ++t) {
+    bed.tests.push_back({tests[t], hall, runs[t].record.time_s, rows_of(runs[t].record, bed.all, hall_C)});
+  }
+  add_noise(bed.tests, bed.all, programme);
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    const Record& record = runs[tests.size() + i].record;
+    study.judged.push_back({judged[i], type_of(judged[i]), i >= programme.cyclograms.size(), record.time_s,
+                            rows_of(record, study.channels, hall_C)});
+  }
+  const std::size_t n_channels = study.channels.name.size();
+  const auto displacements = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
+    return rows.topRows(static_cast<Eigen::Index>(n_channels));
+  };
+
+  // --- from tests alone
+  progress.begin("identifying modes from tests");
+  study.identified = identify_modes(bed.tests, bed.all, {.most_modes = programme.most_modes});
+  judge(study, "modes from tests",
+        [&](const JudgedCyclogram& j) { return displacements(study.identified.predict(j.cyclogram, hall, j.time_s)); });
+  const IdentifiedModes fixed =
+      identify_modes(bed.tests, bed.all, {.most_modes = programme.most_modes, .with_growth = false});
+  judge(study, "modes from tests, one set of time constants",
+        [&](const JudgedCyclogram& j) { return displacements(fixed.predict(j.cyclogram, hall, j.time_s)); });
+  progress.begin("cutting curves");
+  std::vector<ThermalTest> of_displacements = bed.tests;
+  for (ThermalTest& t : of_displacements) t.readings = displacements(t.readings);
+  const AssembledCurves curves(of_displacements, study.channels);
+  judge(study, "assembled curves", [&](const JudgedCyclogram& j) { return curves.predict(j.cyclogram, j.time_s); });
+
+  // --- from the model
+  const scenarios::ReducedMachine* reduced = model.reduced();
+  if (reduced && reduced->system.is_linear()) {
+    progress.begin("modes of the model");
+    const solver::ReducedSystem& system = reduced->system;
+    const auto by_propagator = [&](const solver::ReducedSystem& s, const Eigen::VectorXd& start) {
+      auto propagator = std::make_shared<solver::Propagator>(s);
+      return [&, propagator, start](const JudgedCyclogram& j) {
+        const scenarios::FeltRun felt = scenarios::felt_run(machine, j.cyclogram);
+        return rows_of(propagator->run(felt.cyclogram, felt.hall, j.time_s, start), system.outputs, study.channels);
+      };
+    };
+    std::vector<const Cyclogram*> pointers;
+    for (const Cyclogram& c : tests) pointers.push_back(&c);
+    const effects::Inputs standstill{.drive = {}, .hall_K = hall_K},
+        typical{.drive = mean_drive(pointers), .hall_K = hall_K};
+    for (int n = 1; n <= std::min(kMostModelModes, system.size()); ++n) {
+      const ModalPredictor p = make_ritz_predictor(system, reduced->start, n, standstill);
+      ProgrammeStudy trial;
+      trial.channels = study.channels;
+      trial.judged = study.judged;
+      judge(trial, fmt::format("{} modes of the model", n), by_propagator(p.system, p.start));
+      study.error_by_modes.emplace_back(n, largest_percent(trial.predictors.front()));
+      const bool is_enough = study.error_by_modes.back().second <= kWantedPercent;
+      if (!is_enough && n < std::min(kMostModelModes, system.size())) continue;
+      study.n_modes_wanted = is_enough ? n : 0;
+      study.time_constant_s = p.time_constant_s;
+      study.predictors.push_back(std::move(trial.predictors.front()));
+      const solver::ReducedSystem frozen = with_fixed_exchanges(p.system, typical);
+      judge(study, fmt::format("{} modes of the model, time constants of the mean speed", n),
+            by_propagator(frozen, p.start));
+      const solver::ReducedSystem wrong = scattered(p.system, programme.model_scatter, programme.seed);
+      judge(study, "the same from a model that is off", by_propagator(wrong, p.start));
+      progress.begin("scaling the model's modes to tests");
+      const ScaledModes scaled = fit_scaled_modes(wrong, p.start, hall_K, bed.tests, bed.all);
+      study.factors = scaled.factors;
+      judge(study, "hybrid: that model's modes, scaled to tests", by_propagator(scaled.system, p.start));
+      break;
+    }
+  }
+
+  // --- schedules along the axis the study is about
+  const std::string target = scenario.study ? scenario.study->target : study.channels.name.front();
+  const auto channel = static_cast<std::size_t>(std::find(study.channels.name.begin(), study.channels.name.end(), target) -
+                                                study.channels.name.begin());
+  for (const auto& p : study.predictors) study.scheduled.push_back(schedule_with(study, p, channel, programme.tolerance_um));
+  return study;
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,64 @@
+#pragma once
+// Predictors of drift side by side: each learns from the programme's tests, or from the model, and predicts its cyclograms.
+
+#include <functional>
+
+#include "app/results.hpp"
+#include "compensation/assembled_curves.hpp"
+#include "compensation/identified_modes.hpp"
+#include "compensation/scaled_modes.hpp"
+
+namespace driftwright::app {
+
+/// How far a predictor is off on one channel of one cyclogram.
+struct PredictionError {
+  double peak = 0.0;                 ///< of the true course
+  double largest = 0.0, mean = 0.0;  ///< of |true - predicted|, over its rows
+  double of = 0.0;                   ///< what per cents are of: max(peak of the channel, 10 % of the peak of the vector)
+  [[nodiscard]] double largest_percent() const { return of > 0.0 ? 100.0 * largest / of : 0.0; }
+  [[nodiscard]] double mean_percent() const { return of > 0.0 ? 100.0 * mean / of : 0.0; }
+};
+
+struct JudgedCyclogram {
+  Cyclogram cyclogram;
+  compensation::CyclogramType type = compensation::CyclogramType::kContinuous;
+  bool is_random = false;
+  std::vector<double> time_s;
+  Eigen::MatrixXd truth;  ///< n_channels x n_times, um and urad
+};
+
+struct ProgrammeStudy {
+  compensation::TestChannels channels;  ///< displacements, then tilts
+  std::vector<JudgedCyclogram> judged;
+  struct Predictor {
+    std::string name;
+    std::vector<Eigen::MatrixXd> predicted;            ///< per judged cyclogram, as its truth
+    std::vector<std::vector<PredictionError>> errors;  ///< per judged cyclogram, per channel
+    double seconds = 0.0;                              ///< of one prediction, mean
+  };
+  std::vector<Predictor> predictors;
+  compensation::IdentifiedModes identified;
+  std::vector<compensation::ScaledModes::Factor> factors;
+  int n_modes_wanted = 0;  ///< of the model, completed, so that every error is at most 1 %; 0: no number reaches it
+  std::vector<std::pair<int, double>> error_by_modes;  ///< number of modes, largest error of all [%]
+  std::vector<double> time_constant_s;                 ///< of the model's modes at standstill, slowest first
+  struct Scheduled {
+    std::string predictor, channel;
+    int n_inside = 0, n_cyclograms = 0;  ///< random ones that the corrections keep inside the tolerance
+    double worst_um = 0.0, mean_changes = 0.0;
+    int most_changes = 0;
+  };
+  std::vector<Scheduled> scheduled;
+};
+
+/// Largest over some cyclograms, of one channel. @param random  which: random ones or the others; both where empty
+struct Summary {
+  double largest = 0.0, largest_percent = 0.0, mean = 0.0, mean_percent = 0.0;
+  int n = 0;
+};
+[[nodiscard]] Summary summary(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& predictor, std::size_t channel,
+                              const std::function<bool(const JudgedCyclogram&)>& counts);
+
+[[nodiscard]] ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model& model, Progress& progress);
+
+}  // namespace driftwright::app
