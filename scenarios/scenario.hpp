@@ -15,6 +15,7 @@
 #include "scenarios/read_mechanics.hpp"
 #include "scenarios/read_mesh.hpp"
 #include "scenarios/read_outputs.hpp"
+#include "scenarios/read_schedule.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
 
@@ -95,6 +96,7 @@ struct Scenario {
   std::vector<Cyclogram> cyclograms;
   SolverSettings solver;
   std::optional<Study> study;
+  std::optional<ScheduleSettings> schedule;
 
   /// @throws InputError  naming the cyclograms there are
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;
