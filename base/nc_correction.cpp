@@ -182,7 +182,7 @@ CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vec
   if (steps.empty() || !steps.back().ends_program) throw std::logic_error("a program without its last block");
   Writer writer(bytes, steps, options);
   std::size_t first = 0;
-  while (first + 1 < steps.size() && steps[first].kind == NcStepKind::kNone && !(steps[first].duration_s() > 0.0)) ++first;
+  while (first + 1 < steps.size() && steps[first].kind == NcStepKind::kNone) ++first;
   std::vector<std::pair<std::size_t, std::size_t>> marks;
   (void)writer.set_all(first, initial_m);
   for (const NcOffsetChange& change : changes) marks.emplace_back(change.step, writer.change(change));

@@ -35,8 +35,8 @@ struct CorrectedNcProgram {
   std::vector<int> lines;  ///< line of each change's first offset word in `text`, from one
 };
 
-/// Puts changes of the offset into a program. In front stands a line that sets the offset of `axes` (a run cut short leaves the last
-/// one behind), before its end one that sets base_m again. Each change is
+/// Puts changes of the offset into a program. Before its first motion stands a line that sets the offset of `axes` (a run cut short
+/// leaves the last one behind), before its end one that sets base_m again. Each change is
 ///
 ///     [share > 0: the block's own motion word and F to the point at that share of its straight line]
 ///     the offset

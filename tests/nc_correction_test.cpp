@@ -73,7 +73,8 @@ class NcPlaces : public ::testing::TestWithParam<Allowed> {};
 TEST_P(NcPlaces, AreAllowed) {
   const std::vector<NcStep> steps = steps_of(std::string("G0 X0 Y0 Z5\n") + GetParam().text);
   std::string found;
-  for (NcEntry e : nc_entries(steps)[on_line(steps, GetParam().line)]) found += "Rrf-"[static_cast<int>(e)];
+  const std::array<NcEntry, 3> entries = nc_entries(steps)[on_line(steps, GetParam().line)];
+  for (NcEntry e : entries) found += "Rrf-"[static_cast<int>(e)];
   EXPECT_EQ(found, GetParam().expected);
 }
 
@@ -171,6 +172,16 @@ TEST(CorrectedProgram, KeepsInchesAndIncrementalMode) {
         (void)corrected_nc_program(text, steps, {0, 0, 0}, changes, options);
       },
       ThrowsMessage<InputError>(HasSubstr("inches")));
+}
+
+// Units may be written behind the tool change: the first offset waits for the first motion, and so for them.
+TEST(CorrectedProgram, SetsTheOffsetBeforeTheFirstMotion) {
+  const std::string text = "T1 M6\nG20\nG0 X1\nM2\n";
+  EXPECT_EQ(
+      corrected_nc_program(text, steps_of(text), {25.4e-6, 0, 0}, {},
+                           {.dialect = NcDialect::kLinuxCnc, .work_offset = 540, .base_m = {}, .axes = {true, false, false}})
+          .text,
+      "T1 M6\nG20\nG10 L2 P1 X0.001\nG0 X1\nG10 L2 P1 X0\nM2\n");
 }
 
 TEST(CorrectedProgram, WithoutChangesIsTheProgramItself) {

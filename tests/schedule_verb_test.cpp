@@ -49,7 +49,7 @@ schedule:
 std::string passes() {
   std::string text = "%\nG21 G90 G17 G54\nS2000 M3\nG0 X0 Y0 Z5\n";
   for (int i = 0; i < 12; ++i) {
-    text += "G1 Z-1 F50\nX300 F50 (pass)\nG3 X310 Y10 J10\nY20\nG1 X0 F60\nG0 Z5\nG0 X0 Y0\n";
+    text += "G1 Z-1 F50\nX300 F50 (pass)\nG3 X310 Y10 J10\nG1 Y20\nX0 F60\nG0 Z5\nG0 X0 Y0\n";
     if (i % 3 == 1) text += "G81 X5 Y5 Z-10 R2 F20\nX40\nG80\nG0 X0 Y0 Z5\n";
     if (i % 4 == 2) text += "G91\nG1 X10 F50\nX-10\nG90\n";
   }
@@ -156,6 +156,17 @@ TEST(ScheduleVerb, MovesTheOffsetAgainstTheDriftFromItsBase) {
   EXPECT_THAT(text, HasSubstr("X99.996"));
 }
 
+// The machine stands 5 K above its reference, 20 um: corrected from the start on, unless the workpiece was set up warm.
+TEST(ScheduleVerb, CountsTheDriftFromTheReferenceOrFromTheStart) {
+  std::string scenario = kHead;
+  scenario.replace(scenario.find("reference_temperature: 20 degC"), 30, "reference_temperature: 15 degC\nstart: hall");
+  const std::string reference = read_text(run_schedule("from_reference", passes(), "", scenario).folder / "schedule.csv");
+  const std::string start =
+      read_text(run_schedule("from_start", passes(), "", scenario + "  drift_from: start\n").folder / "schedule.csv");
+  EXPECT_THAT(lines_of(reference).at(2), Not(HasSubstr(",0.000,0.000,-20.000000")));
+  EXPECT_THAT(lines_of(start).at(2), HasSubstr(",0.000,0.000,-20.000000"));
+}
+
 TEST(ScheduleVerb, SpeaksTheDialectThatIsAskedFor) {
   const std::string siemens = read_text(run_schedule("siemens", passes(), "--dialect siemens").folder / "part.ngc");
   EXPECT_THAT(siemens, AllOf(HasSubstr("$P_BFRAME[Z,TR]=-20.0"), Not(HasSubstr("G10"))));
@@ -197,6 +208,19 @@ TEST(ScheduleVerb, NamesBlocksThatCannotKeepTheToleranceAndDividesThem) {
   const Scheduled parts = run_schedule("parts", slow, "--split");
   EXPECT_THAT(parts.outcome.output, AllOf(HasSubstr("1 block(s) divided"), Not(HasSubstr("beyond"))));
   EXPECT_THAT(read_text(parts.folder / "part.ngc"), AllOf(HasSubstr(" F10\nG10 L2 P1 "), HasSubstr("\nG1 X600 F10\n")));
+  if (!has_rs274()) GTEST_SKIP() << kNoRs274;
+  const Path path = rs274(parts.folder / "part.ngc");
+  EXPECT_TRUE(path.accepted) << path.said;
+  double x_mm = 100.0;  // G54 of this scenario; the machine's own is 0
+  for (const std::string& motion : path.motions) {
+    if (!motion.starts_with("STRAIGHT_FEED(")) continue;
+    const std::vector<double> here = end_of(motion);  // always onward along x, at y = z = 0
+    EXPECT_GT(here[0] + 1e-3, x_mm - 100.0);
+    EXPECT_EQ(here[1], 0.0);
+    EXPECT_EQ(here[2], 0.0);
+    x_mm = here[0] + 100.0;
+  }
+  EXPECT_EQ(x_mm, 700.0);
 }
 
 TEST(ScheduleVerb, NamesAnUnreadableBlockAndWritesNothing) {
