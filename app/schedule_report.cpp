@@ -93,7 +93,7 @@ Plot course_plot(const CorrectedPart& part, std::size_t a) {
           .y_label = "error [um]",
           .series = {{.label = "predicted drift", .x = t_min, .y = course.drift_um},
                      {.label = "correction", .x = t_min, .y = course.correction_um, .style = Series::Style::kDashed},
-                     {.label = "what is left", .x = t_min, .y = course.residual_um}},
+                     {.label = "what is left", .x = t_min, .y = course.residual_um, .color = 3}},
           .bands = {{.label = "tolerance", .low = -axis.tolerance_um, .high = axis.tolerance_um}},
           .marks = section_marks(part.cyclogram)};
 }

@@ -131,22 +131,24 @@ class Writer {
     return step.feed_word.empty() ? line : line + " " + step.feed_word;
   }
 
-  /// Commands the axes once more to where they stand, except those that the block itself brings by rapid.
+  /// Commands the axes once more to where they stand, unless the block itself brings them all by rapid.
   std::vector<std::string> again(const NcOffsetChange& change, const std::array<bool, 3>& axes) const {
     const NcStep& step = steps_[change.step];
     const bool on_its_way = change.share > 0.0;
     std::string words;
     bool in_feed = false;
     const std::array<NcEntry, 3> entries = nc_entries(steps_, change.step);
+    bool wanted = false;
+    for (int axis = 0; axis < 3; ++axis) wanted = wanted || (axes[axis] && entries[axis] != NcEntry::kAlongRapid);
+    if (!wanted) return {};
     for (int axis = 0; axis < 3; ++axis) {
-      if (!axes[axis] || entries[axis] == NcEntry::kAlongRapid) continue;
+      if (!axes[axis] || (entries[axis] == NcEntry::kAlongRapid && !step.known[axis])) continue;
       if (!on_its_way && entries[axis] == NcEntry::kNever)
         throw std::logic_error(fmt::format("an offset of {} may not change before line {}", "XYZ"[axis], step.where.line));
-      in_feed = on_its_way ? step.kind == NcStepKind::kLine : entries[axis] == NcEntry::kStepInFeed;
+      in_feed = on_its_way ? step.kind == NcStepKind::kLine : in_feed || entries[axis] == NcEntry::kStepInFeed;
       const double x_m = step.start_m[axis] + change.share * (step.end_m[axis] - step.start_m[axis]);
       words += fmt::format(" {}{}", "XYZ"[axis], number(x_m, step.before.unit_m));
     }
-    if (words.empty()) return {};
     const std::string line = (in_feed ? "G1" : "G0") + words;
     if (step.before.absolute) return {line};
     return {"G90 " + line, "G91"};

@@ -40,7 +40,7 @@ struct CorrectedNcProgram {
 ///
 ///     [share > 0: the block's own motion word and F to the point at that share of its straight line]
 ///     the offset
-///     [the axes that do not come to it by the rapid that follows: `G0` or `G1` to where they stand; in G91 by G90 and back]
+///     [unless all of its axes come to it by the rapid that follows: `G0` or `G1` to where they stand; in G91 by G90 and back]
 ///
 /// Points are written to 1e-6 mm or 1e-7 inch, offsets in the unit in force. Line ends are those of the line behind.
 /// Without changes the text is the program as it was.

@@ -174,6 +174,15 @@ TEST(CorrectedProgram, KeepsInchesAndIncrementalMode) {
       ThrowsMessage<InputError>(HasSubstr("inches")));
 }
 
+// X comes by the rapid, Z would not: the line that commands Z once more has X as well, so that no motion is seen on its own.
+TEST(CorrectedProgram, CommandsAllAxesOfAChangeTogether) {
+  const std::string text = "G0 X0 Z5\nG1 Z0 F100\nG0 X3\nM2\n";
+  const std::vector<NcOffsetChange> changes = {{2, 0.0, {{1e-5, std::nullopt, 2e-5}}}};
+  EXPECT_EQ(corrected_nc_program(text, steps_of(text), {0, 0, 0}, changes, kXZ).text,
+            "G10 L2 P1 X100 Z-20\nG0 X0 Z5\nG1 Z0 F100\nG10 L2 P1 X100.01 Z-19.98\nG1 X0 Z0\nG0 X3\n"
+            "G10 L2 P1 X100 Z-20\nM2\n");
+}
+
 // Units may be written behind the tool change: the first offset waits for the first motion, and so for them.
 TEST(CorrectedProgram, SetsTheOffsetBeforeTheFirstMotion) {
   const std::string text = "T1 M6\nG20\nG0 X1\nM2\n";
