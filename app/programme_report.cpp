@@ -147,6 +147,7 @@ nlohmann::ordered_json programme_json(const ProgrammeStudy& study, const output:
     j["predictors"].push_back({{"name", p.name}, {"errors", rows}});
   }
   j["modes_of_the_model"] = study.n_modes_wanted;
+  if (!study.without_model.empty()) j["without_model"] = study.without_model;
   for (const auto& m : study.identified.modes)
     j["identified_modes"].push_back({{"time_constant_min", m.time_constant_s / 60.0},
                                      {"ci95", {m.low_s / 60.0, m.high_s / 60.0}},
@@ -198,6 +199,7 @@ std::string programme_text(const ProgrammeStudy& study) {
                 : fmt::format("no number of modes keeps every error below 1 %; the best leaves {:.2f} %\n",
                               study.error_by_modes.back().second);
   }
+  if (!study.without_model.empty()) text += fmt::format("no modes of the model, no hybrid: {}\n", study.without_model);
   for (const auto& s : study.scheduled) {
     if (s.n_cyclograms == 0) continue;
     text += fmt::format(
