@@ -84,6 +84,20 @@ output::Report programme_report(const scenarios::Scenario& scenario, const Progr
   page.blocks.emplace_back(output::Preformatted{programme_text(study)});
   page.blocks.emplace_back(error_table(study, true));
   page.blocks.emplace_back(error_table(study, false));
+  if (!study.scheduled.empty() && study.scheduled.front().n_cyclograms > 0) {
+    output::Table table{
+        .caption =
+            fmt::format("Corrections planned ahead on the predictions of the random cyclograms along {}, tolerance {:g} um.",
+                        study.scheduled.front().channel, scenario.programme->tolerance_um),
+        .headers = {"predictor", "inside the tolerance", "worst [um]", "changes, mean", "changes, most"},
+        .rows = {}};
+    for (const auto& s : study.scheduled) {
+      table.rows.push_back({s.predictor, fmt::format("{} of {}", s.n_inside, s.n_cyclograms),
+                            fmt::format("{:.1f}", s.worst_um), fmt::format("{:.1f}", s.mean_changes),
+                            fmt::format("{}", s.most_changes)});
+    }
+    page.blocks.emplace_back(std::move(table));
+  }
   output::Table modes{
       .caption =
           "Modes identified from the tests: time constants at standstill and by how much rates grow up to the top speed.",
@@ -200,6 +214,11 @@ std::string programme_text(const ProgrammeStudy& study) {
                               study.error_by_modes.back().second);
   }
   if (!study.without_model.empty()) text += fmt::format("no modes of the model, no hybrid: {}\n", study.without_model);
+  return text;
+}
+
+std::string schedule_text(const ProgrammeStudy& study) {
+  std::string text;
   for (const auto& s : study.scheduled) {
     if (s.n_cyclograms == 0) continue;
     text += fmt::format(

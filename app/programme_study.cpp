@@ -19,6 +19,7 @@ using namespace compensation;
 
 constexpr int kMostModelModes = 40;
 constexpr double kWantedPercent = 1.0;
+constexpr double kBalance_K = 0.01;
 
 /// Channels since the start, as rows.
 Eigen::MatrixXd rows_of(const Record& record, const TestChannels& channels) {
@@ -175,6 +176,15 @@ Summary summary(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& pr
 ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model& model, Progress& progress) {
   const scenarios::Programme& programme = *scenario.programme;
   const scenarios::MachineModel& machine = *scenario.machine;
+  const bool starts_with_the_hall =
+      machine.start == scenarios::Start::kHall || machine.start == scenarios::Start::kSteady ||
+      std::abs((machine.start == scenarios::Start::kUniform ? machine.start_K - machine.reference_K : 0.0) -
+               scenarios::felt_hall_at_start_K(machine)) < kBalance_K;
+  if (!starts_with_the_hall) {
+    throw InputError(
+        programme.where,
+        "tests and cyclograms of a programme start in balance with the hall; `start: hall` or `start: steady` is wanted");
+  }
   if (!effects::reading_chain(machine.effects).empty()) {
     throw InputError(
         programme.where,
@@ -229,7 +239,7 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   });
   const IdentifiedModes fixed =
       identify_modes(bed.tests, bed.all, {.most_modes = programme.most_modes, .with_growth = false});
-  judge(study, "modes from tests, one set of time constants", [&](const JudgedCyclogram& j) {
+  judge(study, "modes from tests, fixed rates", [&](const JudgedCyclogram& j) {
     return displacements(fixed.predict(j.cyclogram, hall, j.time_s, programme.extrapolate));
   });
   progress.begin("cutting curves");
@@ -243,9 +253,9 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   const scenarios::ReducedMachine* reduced = model.reduced();
   if (!reduced) {
     study.without_model =
-        "the scenario asks for the full model (`model: full`); predictors from the model want a reduced one";
+        "they come from a reduced model, and this machine was run in full (a lumped one, or `model: full`)";
   } else if (!reduced->system.is_linear()) {
-    study.without_model = "films, heat or materials follow temperatures; predictors from the model want a linear one";
+    study.without_model = "they come from a linear model, and in this one films, heat or thermostats follow temperatures";
   } else {
     progress.begin("modes of the model");
     const solver::ReducedSystem& system = reduced->system;
@@ -273,10 +283,9 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
       study.time_constant_s = p.time_constant_s;
       study.predictors.push_back(std::move(trial.predictors.front()));
       const solver::ReducedSystem frozen = with_fixed_exchanges(p.system, typical);
-      judge(study, fmt::format("{} modes of the model, time constants of the mean speed", n),
-            by_propagator(frozen, p.start));
+      judge(study, fmt::format("{} modes of the model, fixed rates", n), by_propagator(frozen, p.start));
       const solver::ReducedSystem wrong = scattered(p.system, programme.model_scatter, programme.seed);
-      judge(study, "the same from a model that is off", by_propagator(wrong, p.start));
+      judge(study, "modes of a model that is off", by_propagator(wrong, p.start));
       progress.begin("scaling the model's modes to tests");
       std::vector<ThermalTest> felt_tests = bed.tests;
       for (ThermalTest& t : felt_tests) {
@@ -286,7 +295,7 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
       }
       const ScaledModes scaled = fit_scaled_modes(wrong, p.start, hall_K, felt_tests, bed.all);
       study.factors = scaled.factors;
-      judge(study, "hybrid: that model's modes, scaled to tests", by_propagator(scaled.system, p.start));
+      judge(study, "hybrid: those, scaled to tests", by_propagator(scaled.system, p.start));
       break;
     }
   }
