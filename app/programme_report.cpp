@@ -35,8 +35,10 @@ output::Table error_table(const ProgrammeStudy& study, bool in_percent) {
   for (std::size_t c = 0; c < study.channels.name.size(); ++c)
     table.headers.push_back(fmt::format("{} [{}]", study.channels.name[c], in_percent ? "%" : study.channels.unit[c]));
   for (const auto& p : study.predictors) {
+    bool is_first = true;
     for (const Group& g : groups(study)) {
-      std::vector<std::string> row = {p.name, g.name, ""};
+      std::vector<std::string> row = {is_first ? p.name : "", g.name, ""};
+      is_first = false;
       for (std::size_t c = 0; c < study.channels.name.size(); ++c) {
         const Summary s = summary(study, p, c, g.holds);
         row[2] = fmt::format("{}", s.n);
