@@ -11,6 +11,7 @@
 #include "app/version.hpp"
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
+#include "scenarios/read_schedule.hpp"
 
 namespace {
 
@@ -60,6 +61,7 @@ int main(int argc, char** argv) {
   app::CommonOptions run, check, mesh;
   app::SimulateOptions simulate;
   app::PredictOptions predict;
+  app::ScheduleVerbOptions schedule;
   app::RecordOptions select, validate;
   app::SweepOptions sweep;
   app::DiagnoseOptions diagnose;
@@ -84,6 +86,17 @@ int main(int argc, char** argv) {
                    "name in the scenario, or a record CSV with the column speed_rpm (docs/cyclograms.md)")
       ->required();
   verb->callback([&] { app::predict(predict); });
+  verb =
+      add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
+               "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/fp3_part", schedule);
+  verb->add_option("--program", schedule.program, "NC program, ISO (docs/schedule.md)")->required();
+  verb->add_option("--policy", schedule.policy,
+                   "paper (steps of the tolerance) or minimal (fewest changes) [the scenario's, else minimal]")
+      ->check(CLI::IsMember(scenarios::kSchedulePolicies));
+  verb->add_option("--dialect", schedule.dialect, "linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
+      ->check(CLI::IsMember(scenarios::kScheduleDialects));
+  verb->add_flag("--split", schedule.split, "divide straight blocks that cannot keep the tolerance in one piece");
+  verb->callback([&] { app::schedule(schedule); });
   verb = add_verb(cli, "select", "rank the temperature sensors of records by grey relational analysis",
                   "select scenarios/spindle_22.yaml --train run1.csv --train run2.csv", select);
   add_records(verb, select, false);

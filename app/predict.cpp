@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/results.hpp"
+#include "app/prediction.hpp"
 #include "app/verbs.hpp"
-#include "compensation/modal_predictor.hpp"
-#include "scenarios/as_recorded.hpp"
 #include "scenarios/read_cyclogram.hpp"
-#include "scenarios/ways_out.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -27,31 +24,15 @@ void predict(const PredictOptions& options) {
   scenarios::check_cyclogram(scenario, cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const Model machine = open_model(scenario, {&cyclogram}, progress, false);
-  if (const scenarios::Machine* full = machine.full()) {
-    scenarios::require_ways_out(full->placed.mesh, full->placed.balance, model.where);
-  }
-  progress.begin("computing thermal modes");
-  const scenarios::FeltRun felt = scenarios::felt_run(model, cyclogram);
-  const int most_modes = scenario.study ? scenario.study->thermal_modes : scenarios::Study{}.thermal_modes;
-  const compensation::ModalPredictor predictor =
-      modal_predictors(scenario, machine, most_modes, mean_drive({&felt.cyclogram})).completed;
-  const std::size_t n_modes = predictor.time_constant_s.size();  // a machine of few nodes has fewer
-  const std::vector<double> times_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s);
-  const Record record =
-      scenarios::as_recorded(model, predictor.predict(felt.cyclogram, felt.hall, times_s), machine.outputs(), cyclogram);
-  folder.write_text("record.csv",
-                    record_csv(record, provenance_lines(folder.made_by(), fmt::format("predicted by {} thermal modes for {}",
-                                                                                      n_modes, options.cyclogram))));
+  const Prediction prediction = predict_drift(scenario, cyclogram, progress, "predict");
+  const Record& record = prediction.record;
+  folder.write_text("record.csv", record_csv(record, provenance_lines(folder.made_by(),
+                                                                      fmt::format("predicted by {} thermal modes for {}",
+                                                                                  prediction.n_modes, options.cyclogram))));
   folder.commit();
   progress.end();
-  fmt::print("{}, {:.0f} min, predicted by {} thermal modes and the steady responses\n", options.cyclogram,
-             cyclogram.duration_s() / 60.0, n_modes);
-  if (!machine.is_linear()) {
-    fmt::print(
-        "  radiation, films, friction and properties that change with temperature stay as they are in the steady state of "
-        "the mean drive; `simulate` follows them\n");
-  }
+  fmt::print("{}, {:.0f} min, predicted by {} thermal modes and the steady responses\n{}", options.cyclogram,
+             cyclogram.duration_s() / 60.0, prediction.n_modes, prediction_note(prediction));
   for (const auto& d : model.displacements) {
     const std::vector<double>& values = record.at(d.name).values;
     const auto peak =

@@ -28,6 +28,14 @@ struct PredictOptions : CommonOptions {
 };
 void predict(const PredictOptions& options);
 
+struct ScheduleVerbOptions : CommonOptions {
+  std::string program;  ///< NC program
+  std::string policy;   ///< empty: the scenario's
+  std::string dialect;  ///< empty: the scenario's
+  bool split = false;   ///< divide blocks that cannot keep the tolerance
+};
+void schedule(const ScheduleVerbOptions& options);
+
 struct RecordOptions : CommonOptions {
   std::vector<std::string> train;  ///< record CSVs
   std::vector<std::string> test;

@@ -24,7 +24,8 @@ class Interpreter {
   /// @returns whether the program goes on
   bool run(const NcBlock& block) {
     motion_.where = block.where;
-    if (block.words[0].letter == '%') return false;
+    begin_step(block);
+    if (block.words[0].letter == '%') return !(steps_.back().ends_program = true);
     NcWords words(block);
     const std::vector<NcCode> g = words.take_codes('G', settings_.ignored);
     const std::vector<NcCode> m = words.take_codes('M', settings_.ignored);
@@ -40,16 +41,60 @@ class Interpreter {
     move(g, words);
     if (motion_.feed_mode == NcFeedMode::InverseTime) motion_.feed = 0.0;  // an F holds for its own block
     words.reject_unused();
-    return !contains(m, 20) && !contains(m, 300);
+    end_step(g, m);
+    return !steps_.back().ends_program;
   }
 
-  NcProgram result() && { return {motion_.moves(), std::move(notes_)}; }
+  NcProgram result() && { return {motion_.moves(), std::move(steps_), std::move(notes_)}; }
 
  private:
   [[noreturn]] void fail(const std::string& message) const { throw InputError(motion_.where, message); }
 
   void note(const std::string& word, const std::string& message) {
     if (noted_.insert(word).second) notes_.push_back(fmt::format("line {}: {}: {}", motion_.where.line, word, message));
+  }
+
+  void begin_step(const NcBlock& block) {
+    NcStep step{.where = block.where, .start_s = time_s_, .end_s = time_s_, .start_m = motion_.position_m};
+    step.end_m = step.start_m;
+    step.known = known_;
+    step.before = {.motion = modal_,
+                   .absolute = absolute_,
+                   .compensated = compensated_,
+                   .unit_m = unit_m_,
+                   .feed_mode = motion_.feed_mode,
+                   .has_feed = motion_.feed > 0.0};
+    const std::string& line = block.where.excerpt;
+    const auto first = line.find_first_not_of(" \t");
+    step.deletable = first != std::string::npos && line[first] == '/';
+    step.plain = true;
+    for (const NcWord& word : block.words) {
+      const bool straight = word.letter == 'G' && (word.value == 0.0 || word.value == 1.0);
+      step.plain = step.plain && (straight || std::string("XYZF").find(word.letter) != std::string::npos);
+      if (word.letter == 'F') step.feed_word = word.text;
+    }
+    steps_.push_back(std::move(step));
+  }
+
+  void end_step(const std::vector<NcCode>& g, const std::vector<NcCode>& m) {
+    for (; n_timed_ < motion_.moves().size(); ++n_timed_) time_s_ += motion_.moves()[n_timed_].duration_s;
+    NcStep& step = steps_.back();
+    step.end_s = time_s_;
+    step.end_m = motion_.position_m;
+    step.absolute = absolute_;
+    step.motion_word = of_group(g, "motion").has_value();
+    step.compensated = compensated_;
+    step.tool_change = contains(m, 60);
+    step.system = of_group(g, "coordinate system");
+    step.ends_program = contains(m, 20) || contains(m, 300);
+    if (step.kind == NcStepKind::kNone) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (step.kind == NcStepKind::kMachine) {
+        known_[axis] = false;
+      } else if (step.named[axis] && absolute_ && !(step.kind == NcStepKind::kDrilling && axis == normal_)) {
+        known_[axis] = true;  // the level at the end of a drilling series is that of its start or R: no news
+      }
+    }
   }
 
   void set_feed(const std::vector<NcCode>& g, NcWords& words) {
@@ -103,10 +148,14 @@ class Interpreter {
     if (contains(g, 190)) normal_ = 0;
     if (contains(g, 410) || contains(g, 420)) {
       (void)words.take('D');
+      compensated_ = true;
       note(contains(g, 410) ? "G41" : "G42", "cutter compensation; the path is counted along the programmed contour");
     }
     if (contains(g, 430)) (void)words.take('H');
-    if (contains(g, 400)) (void)words.take('D');
+    if (contains(g, 400)) {
+      compensated_ = false;
+      (void)words.take('D');
+    }
     if (contains(g, 490)) (void)words.take('H');
     if (const auto system = of_group(g, "coordinate system")) {
       if (system_ && *system_ != *system)
@@ -129,8 +178,9 @@ class Interpreter {
   std::array<double, 3> take_target(NcWords& words, bool absolute) {
     std::array<double, 3> target_m = motion_.position_m;
     for (int axis = 0; axis < 3; ++axis) {
-      if (const auto value = words.take(static_cast<char>('X' + axis)))
-        target_m[axis] = absolute ? *value * unit_m_ : target_m[axis] + *value * unit_m_;
+      const auto value = words.take(static_cast<char>('X' + axis));
+      steps_.back().named[axis] = steps_.back().named[axis] || value.has_value();
+      if (value) target_m[axis] = absolute ? *value * unit_m_ : target_m[axis] + *value * unit_m_;
     }
     return target_m;
   }
@@ -144,6 +194,7 @@ class Interpreter {
   void go_to_reference(NcCode code, NcWords& words) {
     std::array<bool, 3> named = {words.has('X'), words.has('Y'), words.has('Z')};
     const bool all = !named[0] && !named[1] && !named[2];
+    steps_.back().kind = NcStepKind::kMachine;
     const std::array<double, 3>& zero_m = machine_zero(nc_word_name('G', code));
     motion_.rapid_to(take_target(words, absolute_));
     std::array<double, 3> target_m = motion_.position_m;
@@ -165,6 +216,11 @@ class Interpreter {
       return;
     }
     if (!modal_) fail("axis words before any motion word; G0 or G1 is wanted first");
+    steps_.back().kind = contains(g, 530) ? NcStepKind::kMachine
+                         : modal_ == 0    ? NcStepKind::kRapid
+                         : modal_ == 10   ? NcStepKind::kLine
+                         : arc            ? NcStepKind::kArc
+                                          : NcStepKind::kDrilling;
     if (contains(g, 530)) {
       if (modal_ != 0 && modal_ != 10) fail("G53 goes with G0 and G1 alone");
       std::array<double, 3> target_m = motion_.position_m;
@@ -260,7 +316,11 @@ class Interpreter {
   NcMotion motion_;
   double unit_m_ = kMillimetre_m;
   int normal_ = 2;
-  bool absolute_ = true, absolute_centre_ = false, to_initial_level_ = true;
+  bool absolute_ = true, absolute_centre_ = false, to_initial_level_ = true, compensated_ = false;
+  double time_s_ = 0.0;
+  std::size_t n_timed_ = 0;  // moves that time_s_ counts
+  std::array<bool, 3> known_ = {false, false, false};
+  std::vector<NcStep> steps_;
   std::optional<NcCode> modal_, system_;
   Sticky drilling_;
   std::set<std::string> noted_;

@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "base/nc_motion.hpp"
+#include "base/nc_step.hpp"
 
 namespace driftwright {
 
@@ -40,6 +40,7 @@ struct NcSettings {
 
 struct NcProgram {
   std::vector<NcMove> moves;
+  std::vector<NcStep> steps;       ///< its blocks in their order, the last one ends it
   std::vector<std::string> notes;  ///< words that might matter and were passed over, with their lines
 
   [[nodiscard]] double duration_s() const;

@@ -49,30 +49,6 @@ long next_increments(long n, const Range& drift, double band_um, double step_um)
   return serves ? changed : std::lround(0.5 * (drift.low + drift.high) / step_um);
 }
 
-void check(std::span<const double> time_s, std::span<const double> drift_um, std::span<const double> boundaries_s) {
-  const auto rises = [](std::span<const double> x) {
-    return std::adjacent_find(x.begin(), x.end(), [](double a, double b) { return !(a < b); }) == x.end();
-  };
-  if (time_s.size() < 2 || time_s.size() != drift_um.size() || !rises(time_s)) {
-    throw InputError(
-        fmt::format("the predicted drift needs two samples or more and times that increase; there are {} "
-                    "times and {} values",
-                    time_s.size(), drift_um.size()));
-  }
-  for (std::size_t i = 0; i < drift_um.size(); ++i) {
-    if (!std::isfinite(drift_um[i])) {
-      throw InputError(fmt::format("the predicted drift has no value at {} s; a schedule needs it throughout", time_s[i]));
-    }
-  }
-  if (boundaries_s.size() < 2 || !rises(boundaries_s)) {
-    throw InputError("the operations need boundaries that increase: a start and an end at least");
-  }
-  if (!(boundaries_s.front() >= time_s.front() && boundaries_s.back() <= time_s.back())) {
-    throw InputError(fmt::format("the operations last from {} s to {} s, but the drift is predicted from {} s to {} s",
-                                 boundaries_s.front(), boundaries_s.back(), time_s.front(), time_s.back()));
-  }
-}
-
 void check(const ScheduleOptions& options, double step_um) {
   if (!(options.tolerance_um > 0.0)) throw RangeError(fmt::format("tolerance {} um must be positive", options.tolerance_um));
   if (!(options.margin_um >= 0.0 && options.margin_um < options.tolerance_um)) {
@@ -97,10 +73,34 @@ std::string short_number(double x) {
 
 }  // namespace
 
+void check_drift(std::span<const double> time_s, std::span<const double> drift_um, std::span<const double> boundaries_s) {
+  const auto rises = [](std::span<const double> x) {
+    return std::adjacent_find(x.begin(), x.end(), [](double a, double b) { return !(a < b); }) == x.end();
+  };
+  if (time_s.size() < 2 || time_s.size() != drift_um.size() || !rises(time_s)) {
+    throw InputError(
+        fmt::format("the predicted drift needs two samples or more and times that increase; there are {} "
+                    "times and {} values",
+                    time_s.size(), drift_um.size()));
+  }
+  for (std::size_t i = 0; i < drift_um.size(); ++i) {
+    if (!std::isfinite(drift_um[i])) {
+      throw InputError(fmt::format("the predicted drift has no value at {} s; a schedule needs it throughout", time_s[i]));
+    }
+  }
+  if (boundaries_s.size() < 2 || !rises(boundaries_s)) {
+    throw InputError("the operations need boundaries that increase: a start and an end at least");
+  }
+  if (!(boundaries_s.front() >= time_s.front() && boundaries_s.back() <= time_s.back())) {
+    throw InputError(fmt::format("the operations last from {} s to {} s, but the drift is predicted from {} s to {} s",
+                                 boundaries_s.front(), boundaries_s.back(), time_s.front(), time_s.back()));
+  }
+}
+
 Schedule plan_schedule(std::span<const double> time_s, std::span<const double> drift_um,
                        std::span<const double> boundaries_s, const ScheduleOptions& options) {
   const double step_um = options.step_um.value_or(options.tolerance_um);
-  check(time_s, drift_um, boundaries_s);
+  check_drift(time_s, drift_um, boundaries_s);
   check(options, step_um);
   const double band_um = options.tolerance_um - options.margin_um;
 

@@ -38,7 +38,8 @@ struct Schedule {
   bool inside_band = true;
 };
 
-/// Plans the corrections of a predicted drift d(t), linear between its samples.
+/// Plans the corrections of a predicted drift d(t), linear between its samples, for a run judged in this program. Those that go into
+/// an NC program are planned by the policies of schedule_policy.hpp.
 ///
 /// remaining error = d - c, where c is the sum of the increments so far: c is how much of the drift is taken
 /// away, the axis moves by -c. The correction is held while the remaining error stays inside +-(tolerance -
@@ -57,6 +58,9 @@ struct Schedule {
 /// Source: Polyakov, Marusich & Nikitina. That their deltas are increments, not totals, is our reading.
 [[nodiscard]] Schedule plan_schedule(std::span<const double> time_s, std::span<const double> drift_um,
                                      std::span<const double> boundaries_s, const ScheduleOptions& options = {});
+
+/// @throws InputError  as plan_schedule(), for a series or boundaries that are not as said there
+void check_drift(std::span<const double> time_s, std::span<const double> drift_um, std::span<const double> boundaries_s);
 
 /// Correction c [um] that holds at time t [s]: 0 before the first operation; an increment counts from its own
 /// time on; after the end the last correction stays.

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "base/nc_program.hpp"
 #include "base/nc_sections.hpp"
 
 namespace driftwright::scenarios {
@@ -85,40 +84,16 @@ std::vector<const Column*> read_columns(const ConfigMap& in) {
   return given;
 }
 
-NcSettings read_nc_settings(const ConfigMap& in) {
-  NcSettings settings;
-  if (in.has("rapid")) settings.rapid_m_s = in.quantity("rapid", "m/s", 1e-6, kMostFeed_m_s);
-  if (in.has("tool_change")) settings.tool_change_s = in.quantity("tool_change", "s", 0.0, 3600.0);
-  settings.dwell_P_s = in.choice("dwell_unit", {"s", "ms"}, "s") == "s" ? 1.0 : 1e-3;
-  if (in.has("machine_zero")) {
-    const Eigen::Vector3d zero_m = in.vector3("machine_zero", "m");
-    settings.machine_zero_m = {zero_m[0], zero_m[1], zero_m[2]};
-  }
-  if (in.has("ignore")) {
-    for (const std::string& word : in.texts("ignore")) {
-      const bool fine = word.size() >= 2 && (word[0] == 'G' || word[0] == 'M') && (word[1] != '0' || word.size() == 2) &&
-                        word.find_first_not_of("0123456789.", 1) == std::string::npos;
-      if (!fine) in.fail("ignore", fmt::format("'{}' is no G or M word such as M88 (capital, no leading zero)", word));
-      settings.ignored.insert(word);
-    }
-  }
-  return settings;
-}
-
 void read_nc_cyclogram(const ConfigMap& in, Cyclogram& cyclogram) {
   const NcProgram program = read_nc_program(beside(in, "nc_program"), read_nc_settings(in));
   const double resolution_s = in.quantity("resolution", "s", 0.0, 1e6, 10.0);
   const double cutting_power_W = in.quantity("cutting_power", "W", 0.0, kMostPower_W, 0.0);
-  cyclogram.sections = merged_sections(program.moves, resolution_s, cutting_power_W);
-  cyclogram.remarks.push_back(fmt::format("{}: machining time {:.1f} s, {} moves", in.text("nc_program"),
-                                          program.duration_s(), program.moves.size()));
-  cyclogram.remarks.insert(cyclogram.remarks.end(), program.notes.begin(), program.notes.end());
-  for (const Cyclogram::Section& section : cyclogram.sections) {
-    if (!(section.drive.speed_rpm <= kMostSpeed_rpm)) {
-      in.fail("nc_program", fmt::format("the program turns the spindle at {:g} rpm; 0 to {:g} rpm is allowed",
-                                        section.drive.speed_rpm, kMostSpeed_rpm));
-    }
+  try {
+    cyclogram = cyclogram_of(program, cyclogram.name, resolution_s, cutting_power_W);
+  } catch (const InputError& e) {
+    in.fail("nc_program", e.what());
   }
+  cyclogram.remarks.front() = fmt::format("{}: {}", in.text("nc_program"), cyclogram.remarks.front());
 }
 
 }  // namespace
@@ -149,6 +124,39 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
             fmt::format("{} times {} sections are more than {:g}", repeat, cyclogram.sections.size(), kMostSections));
   cyclogram.sections = repeated(cyclogram.sections, repeat);
   if (cyclogram.sections.empty()) cyclograms.fail(name, "the cyclogram takes no time; at least one move or dwell is wanted");
+  return cyclogram;
+}
+
+NcSettings read_nc_settings(const ConfigMap& in) {
+  NcSettings settings;
+  if (in.has("rapid")) settings.rapid_m_s = in.quantity("rapid", "m/s", 1e-6, kMostFeed_m_s);
+  if (in.has("tool_change")) settings.tool_change_s = in.quantity("tool_change", "s", 0.0, 3600.0);
+  settings.dwell_P_s = in.choice("dwell_unit", {"s", "ms"}, "s") == "s" ? 1.0 : 1e-3;
+  if (in.has("machine_zero")) {
+    const Eigen::Vector3d zero_m = in.vector3("machine_zero", "m");
+    settings.machine_zero_m = {zero_m[0], zero_m[1], zero_m[2]};
+  }
+  if (in.has("ignore")) {
+    for (const std::string& word : in.texts("ignore")) {
+      const bool fine = word.size() >= 2 && (word[0] == 'G' || word[0] == 'M') && (word[1] != '0' || word.size() == 2) &&
+                        word.find_first_not_of("0123456789.", 1) == std::string::npos;
+      if (!fine) in.fail("ignore", fmt::format("'{}' is no G or M word such as M88 (capital, no leading zero)", word));
+      settings.ignored.insert(word);
+    }
+  }
+  return settings;
+}
+
+Cyclogram cyclogram_of(const NcProgram& program, const std::string& name, double resolution_s, double cutting_power_W) {
+  Cyclogram cyclogram{.name = name, .sections = merged_sections(program.moves, resolution_s, cutting_power_W)};
+  cyclogram.remarks = {fmt::format("machining time {:.1f} s, {} moves", program.duration_s(), program.moves.size())};
+  cyclogram.remarks.insert(cyclogram.remarks.end(), program.notes.begin(), program.notes.end());
+  for (const Cyclogram::Section& section : cyclogram.sections) {
+    if (!(section.drive.speed_rpm <= kMostSpeed_rpm)) {
+      throw InputError(fmt::format("the program turns the spindle at {:g} rpm; 0 to {:g} rpm is allowed",
+                                   section.drive.speed_rpm, kMostSpeed_rpm));
+    }
+  }
   return cyclogram;
 }
 

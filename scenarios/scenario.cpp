@@ -262,6 +262,12 @@ Scenario read_scenario(const ConfigMap& in) {
     for (const Cyclogram& c : scenario.programme->cyclograms) check_cyclogram(scenario, c);
     for (const Cyclogram& c : test_cyclograms(*scenario.programme)) check_cyclogram(scenario, c);
   }
+  if (const auto schedule = in.optional_map("schedule")) {
+    if (!has_machine)
+      in.fail("schedule", "a scenario about measured records alone has no machine whose drift a program corrects");
+    const double tolerance_um = scenario.study ? scenario.study->tolerance_um : Study{}.tolerance_um;
+    scenario.schedule = read_schedule(*schedule, scenario.machine->displacements, tolerance_um);
+  }
   if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");
   in.reject_unknown_keys();
   return scenario;

@@ -16,6 +16,7 @@
 #include "scenarios/read_mechanics.hpp"
 #include "scenarios/read_mesh.hpp"
 #include "scenarios/read_outputs.hpp"
+#include "scenarios/read_schedule.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
 
@@ -97,6 +98,7 @@ struct Scenario {
   SolverSettings solver;
   std::optional<Study> study;
   std::optional<Programme> programme;
+  std::optional<ScheduleSettings> schedule;
 
   /// @throws InputError  naming the cyclograms there are
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;

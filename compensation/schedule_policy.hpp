@@ -1,0 +1,64 @@
+#pragma once
+// Corrections planned ahead where they may change at permitted times only, such as the ends of a program's blocks.
+
+#include <span>
+#include <vector>
+
+#include "compensation/schedule.hpp"
+
+namespace driftwright::compensation {
+
+/// What the drift does from one permitted time to the next.
+struct DriftCell {
+  double start_s = 0.0;
+  double end_s = 0.0;
+  double low_um = 0.0;
+  double high_um = 0.0;
+};
+
+/// The cells between permitted times; the drift is linear between its samples.
+/// @param permitted_s  strictly increasing, two at least (start and end), inside time_s
+/// @throws InputError  as plan_schedule()
+[[nodiscard]] std::vector<DriftCell> drift_cells(std::span<const double> time_s, std::span<const double> drift_um,
+                                                 std::span<const double> permitted_s);
+
+/// The part of a step by which the policy `paper` may be early (late on the way back) for the sake of a better place.
+inline constexpr double kPaperReach = 0.1;
+
+/// The paper's policy: the correction c is a whole number of steps, as many as the drift has passed:
+///
+///     c = sgn(d) step (ceil(|d| / step) - 1),   d: the largest drift of the cell by size
+///
+/// A drift that rises from 0 is corrected whenever it passes the next multiple, and what is left, d - c, stays in [0, step]. On the
+/// way back c steps back as the drift passes the multiples downward, so that d - c is in [0, step] again. A negative drift is the
+/// mirror image: c is negative and d - c in [-step, 0]. A drift that passes a multiple in the middle of a cell is corrected from
+/// the start of that cell on: d - c is then below 0 by at most what the drift does in the cell, and never above the step because
+/// a change had to wait. With `cost`, a change moves to the cheapest cell among those earlier (on the way back: later) where d - c
+/// stays above -kPaperReach step.
+/// @param step_um  > 0
+/// @param cost     of a change at the start of each cell, or empty
+/// @returns the correction in force in each cell [um]
+/// Source: Polyakov, Marusich & Nikitina, example of five operations.
+[[nodiscard]] std::vector<double> steps_of_tolerance(std::span<const DriftCell> cells, double step_um,
+                                                     std::span<const int> cost = {});
+
+/// The fewest changes: |d - c| <= tolerance throughout, c free, 0 before the first cell.
+///
+/// A cell admits c in [high - tolerance, low + tolerance]; one that admits none, its drift moving by more than twice the tolerance,
+/// admits the middle alone, which misses by the least. A c can be held over neighbouring cells whose intervals share a point, so
+/// that holding each as long as possible gives the fewest changes. Among all plans with as few, the one with the least sum of
+/// costs is taken, changes as late as it allows; each c is the middle of what its cells admit.
+/// @param tolerance_um   > 0
+/// @param resolution_um  each c is a multiple of it; 0: any number
+/// @param cost           of a change at the start of each cell, or empty
+/// @returns the correction in force in each cell [um]
+[[nodiscard]] std::vector<double> fewest_changes(std::span<const DriftCell> cells, double tolerance_um,
+                                                 double resolution_um = 0.0, std::span<const int> cost = {});
+
+/// The paper's notation of such a plan: changes as increments, per operation.
+/// @param correction_um  per cell
+/// @param boundaries_s   starts of the operations and the end of the last; the cells cover them
+[[nodiscard]] Schedule schedule_of(std::span<const DriftCell> cells, std::span<const double> correction_um,
+                                   std::span<const double> boundaries_s, double tolerance_um);
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,298 @@
+// `driftwright schedule` as a user runs it; its LinuxCNC programs read by LinuxCNC's own interpreter, where that is installed.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "base/record.hpp"
+#include "tests/command_line.hpp"
+
+namespace driftwright {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// One lumped body that grows 60 um along z over hours, as a milling head does, and half as much along x.
+constexpr const char* kHead = R"(name: head
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: head, capacity: 60 kJ/K}
+  - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
+  - {type: link, node: head, to: hall, conductance: 20 W/K}
+hall: [[0 h, 20 degC], [9 h, 20 degC]]
+sensors: [{name: t_head, node: head}]
+displacements:
+  - {name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}
+  - {name: nose_x, sensitivities: [{node: head, sensitivity: -2 um/K}]}
+cyclograms: {warm_up: [[60 min, 2000 rpm]]}
+schedule:
+  axes: {x: {displacement: nose_x, sign: -1, tolerance: 4 um}, z: {displacement: nose_z}}
+  tolerance: 10 um
+  base_offset: [100 mm, 50 mm, -20 mm]
+  rapid: 10 m/min
+)";
+
+/// Three hours of passes: lines, arcs, incremental moves, a canned cycle.
+std::string passes() {
+  std::string text = "%\nG21 G90 G17 G54\nS2000 M3\nG0 X0 Y0 Z5\n";
+  for (int i = 0; i < 12; ++i) {
+    text += "G1 Z-1 F50\nX300 F50 (pass)\nG3 X310 Y10 J10\nG1 Y20\nX0 F60\nG0 Z5\nG0 X0 Y0\n";
+    if (i % 3 == 1) text += "G81 X5 Y5 Z-10 R2 F20\nX40\nG80\nG0 X0 Y0 Z5\n";
+    if (i % 4 == 2) text += "G91\nG1 X10 F50\nX-10\nG90\n";
+  }
+  return text + "M30\n%\n";
+}
+
+struct Scheduled {
+  CommandOutcome outcome;
+  std::filesystem::path folder;
+};
+
+Scheduled run_schedule(const std::string& name, const std::string& program, const std::string& arguments = "",
+                       const std::string& scenario = kHead) {
+  const auto folder = fresh_folder(name);
+  std::ofstream(folder / "head.yaml") << scenario;
+  std::ofstream(folder / "part.ngc", std::ios::binary) << program;
+  const auto out = folder / "out";
+  return {run_program("schedule " + (folder / "head.yaml").string() + " --program " + (folder / "part.ngc").string() +
+                      " -o " + out.string() + " " + arguments),
+          out};
+}
+
+/// Where a motion of rs274 ends: x, y, z of a line, u, v, w of an arc in the plane XY.
+std::vector<double> end_of(const std::string& motion) {
+  std::vector<double> n(6);
+  const auto open = motion.find('(');
+  if (std::sscanf(motion.c_str() + open, "(%lf, %lf, %lf, %lf, %lf, %lf", &n[0], &n[1], &n[2], &n[3], &n[4], &n[5]) != 6)
+    return {};
+  return motion.starts_with("ARC_FEED") ? std::vector{n[0], n[1], n[5]} : std::vector{n[0], n[1], n[2]};
+}
+
+/// A program as rs274 runs it: motions with their coordinates in the work offset, and the offsets.
+struct Path {
+  std::vector<std::string> motions;  ///< such as "STRAIGHT_FEED(1.0000, ..."
+  std::vector<std::array<double, 3>> offsets_mm;
+  bool accepted = false;  ///< exit code 0, and it came to the end
+  std::string said;
+};
+
+bool has_rs274() {
+  return std::system("command -v rs274 >/dev/null 2>&1") == 0;
+}
+
+constexpr const char* kNoRs274 = "no rs274 here; Debian's linuxcnc-uspace has it";
+
+Path rs274(const std::filesystem::path& program) {
+  // In a folder of the test's own: the interpreter keeps its parameters in a file where it runs.
+  FILE* pipe = popen(("cd " + program.parent_path().string() + " && rs274 -g " + program.string() + " 2>&1").c_str(), "r");
+  Path path;
+  char buffer[4096];
+  while (std::fgets(buffer, sizeof buffer, pipe)) path.said += buffer;
+  path.accepted = pclose(pipe) == 0 && path.said.find("PROGRAM_END") != std::string::npos;
+  bool behind_an_offset = false;
+  for (const std::string& line : lines_of(path.said)) {
+    const auto find = [&](const char* call) { return line.find(call) != std::string::npos; };
+    if (find("SET_G5X_OFFSET(1,")) {
+      std::array<double, 3> offset{};
+      const std::string call = line.substr(line.find("SET_G5X"));
+      if (std::sscanf(call.c_str(), "SET_G5X_OFFSET(1, %lf, %lf, %lf", &offset[0], &offset[1], &offset[2]) == 3)
+        path.offsets_mm.push_back(offset);
+      behind_an_offset = true;
+    } else if (find("STRAIGHT_") || find("ARC_FEED(")) {
+      path.motions.push_back(line.substr(line.find(find("STRAIGHT_") ? "STRAIGHT_" : "ARC_FEED(")));
+      // Behind an offset the axes may be commanded once more to where they stand: no motion of the program.
+      const std::vector<double> here = end_of(path.motions.back());
+      if (behind_an_offset && path.motions.size() > 1 && !find("ARC_FEED(") &&
+          here == end_of(path.motions[path.motions.size() - 2]))
+        path.motions.pop_back();
+      behind_an_offset = false;
+    }
+  }
+  return path;
+}
+
+TEST(ScheduleVerb, WritesTheProgramAndItsSchedule) {
+  const Scheduled s = run_schedule("verb", passes(), "--policy paper");
+  ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
+  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("part.ngc"), HasSubstr("z (nose_z)"), HasSubstr("tolerance 10 um"),
+                                      HasSubstr("x (nose_x)"), HasSubstr("policy paper, written for linuxcnc")));
+  EXPECT_THAT(read_text(s.folder / "schedule.txt"), AllOf(HasSubstr("# axis z, nose_z"), HasSubstr("}-{0,10,10")));
+  EXPECT_THAT(read_text(s.folder / "report.html"), HasSubstr("what is left"));
+  EXPECT_GT(read_record_csv((s.folder / "record.csv").string()).at("nose_z").values.back(), 30.0);
+  // Lines of the table are those where the offsets stand in the corrected program.
+  const std::vector<std::string> corrected = lines_of(read_text(s.folder / "part.ngc"));
+  const std::vector<std::string> table = lines_of(read_text(s.folder / "schedule.csv"));
+  ASSERT_GT(table.size(), 5u);
+  EXPECT_EQ(
+      table[1],
+      "time_s,line,corrected_line,x_increment_um,x_correction_um,x_offset_mm,z_increment_um,z_correction_um,z_offset_mm");
+  for (std::size_t i = 3; i < table.size(); ++i) {
+    int line = 0, corrected_line = 0;
+    double time_s = 0.0;
+    ASSERT_EQ(std::sscanf(table[i].c_str(), "%lf,%d,%d", &time_s, &line, &corrected_line), 3) << table[i];
+    EXPECT_THAT(corrected.at(static_cast<std::size_t>(corrected_line) - 1), HasSubstr("G10 L2 P1 "));
+  }
+}
+
+// nose_z rises: Z goes back from its -20 mm in steps of 10 um. nose_x falls along -x of the program: X goes back as well.
+TEST(ScheduleVerb, MovesTheOffsetAgainstTheDriftFromItsBase) {
+  const Scheduled s = run_schedule("signs", passes(), "--policy paper");
+  const std::string text = read_text(s.folder / "part.ngc");
+  EXPECT_THAT(text, HasSubstr("G10 L2 P1 X100 Z-20\n"));
+  EXPECT_THAT(text, HasSubstr("Z-20.01\n"));
+  EXPECT_THAT(text, HasSubstr("X99.996"));
+}
+
+// The machine stands 5 K above its reference, 20 um: corrected from the start on, unless the workpiece was set up warm.
+TEST(ScheduleVerb, CountsTheDriftFromTheReferenceOrFromTheStart) {
+  std::string scenario = kHead;
+  scenario.replace(scenario.find("reference_temperature: 20 degC"), 30, "reference_temperature: 15 degC\nstart: hall");
+  const std::string reference = read_text(run_schedule("from_reference", passes(), "", scenario).folder / "schedule.csv");
+  const std::string start =
+      read_text(run_schedule("from_start", passes(), "", scenario + "  drift_from: start\n").folder / "schedule.csv");
+  EXPECT_THAT(lines_of(reference).at(2), Not(HasSubstr(",0.000,0.000,-20.000000")));
+  EXPECT_THAT(lines_of(start).at(2), HasSubstr(",0.000,0.000,-20.000000"));
+}
+
+TEST(ScheduleVerb, SpeaksTheDialectThatIsAskedFor) {
+  const std::string siemens = read_text(run_schedule("siemens", passes(), "--dialect siemens").folder / "part.ngc");
+  EXPECT_THAT(siemens, AllOf(HasSubstr("$P_BFRAME[Z,TR]=-20.0"), Not(HasSubstr("G10"))));
+  const std::string heidenhain = read_text(run_schedule("heidenhain", passes(), "--dialect heidenhain").folder / "part.ngc");
+  EXPECT_THAT(heidenhain, AllOf(HasSubstr("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+"), Not(HasSubstr("G10"))));
+}
+
+TEST(ScheduleVerb, LinuxCncAcceptsTheProgramAndRunsTheSamePath) {
+  for (const char* arguments : {"--policy paper", "--policy minimal", "--policy minimal --split"}) {
+    const Scheduled s = run_schedule("rs274", passes(), arguments, [] {
+      std::string base_at_zero = kHead;  // the interpreter's own G54, so that both programs begin at the same place
+      base_at_zero.replace(base_at_zero.find("[100 mm, 50 mm, -20 mm]"), 23, "[0 mm, 0 mm, 0 mm]");
+      return base_at_zero;
+    }());
+    ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
+    if (!has_rs274()) GTEST_SKIP() << kNoRs274;
+    const Path original = rs274(s.folder.parent_path() / "part.ngc"), corrected = rs274(s.folder / "part.ngc");
+    ASSERT_TRUE(original.accepted) << original.said;
+    ASSERT_TRUE(corrected.accepted) << corrected.said;
+    ASSERT_GT(original.motions.size(), 80u);
+    EXPECT_EQ(corrected.motions, original.motions) << arguments;
+    const auto table = lines_of(read_text(s.folder / "schedule.csv"));
+    EXPECT_EQ(corrected.offsets_mm.size(), table.size() - 2 + original.offsets_mm.size() + 1)
+        << "each row one offset, one behind";
+    EXPECT_GT(corrected.offsets_mm.size(), 4u);
+    EXPECT_EQ(corrected.offsets_mm.back(), (std::array<double, 3>{0, 0, 0}));
+    double lowest_mm = 0.0;
+    for (const auto& offset : corrected.offsets_mm) lowest_mm = std::min(lowest_mm, offset[2]);
+    EXPECT_LT(lowest_mm, -0.02);
+    EXPECT_GT(lowest_mm, -0.1);
+  }
+}
+
+TEST(ScheduleVerb, NamesBlocksThatCannotKeepTheToleranceAndDividesThem) {
+  const std::string slow = "G21 G90 G54\nS2000 M3\nG0 X0 Y0 Z0\nG1 X600 F10\nG0 Z5\nM30\n";
+  const Scheduled whole = run_schedule("whole", slow);
+  ASSERT_EQ(whole.outcome.exit_code, 0) << whole.outcome.output;
+  EXPECT_THAT(whole.outcome.output, AllOf(HasSubstr("line 4: z "), HasSubstr("um beyond, in 60.0 min; --split divides it")));
+  const Scheduled parts = run_schedule("parts", slow, "--split");
+  EXPECT_THAT(parts.outcome.output, AllOf(HasSubstr("1 block(s) divided"), Not(HasSubstr("beyond"))));
+  EXPECT_THAT(read_text(parts.folder / "part.ngc"), AllOf(HasSubstr(" F10\nG10 L2 P1 "), HasSubstr("\nG1 X600 F10\n")));
+  if (!has_rs274()) GTEST_SKIP() << kNoRs274;
+  const Path path = rs274(parts.folder / "part.ngc");
+  EXPECT_TRUE(path.accepted) << path.said;
+  double x_mm = 100.0;  // G54 of this scenario; the machine's own is 0
+  for (const std::string& motion : path.motions) {
+    if (!motion.starts_with("STRAIGHT_FEED(")) continue;
+    const std::vector<double> here = end_of(motion);  // always onward along x, at y = z = 0
+    EXPECT_GT(here[0] + 1e-3, x_mm - 100.0);
+    EXPECT_EQ(here[1], 0.0);
+    EXPECT_EQ(here[2], 0.0);
+    x_mm = here[0] + 100.0;
+  }
+  EXPECT_EQ(x_mm, 700.0);
+}
+
+TEST(ScheduleVerb, NamesAnUnreadableBlockAndWritesNothing) {
+  const Scheduled s = run_schedule("unreadable", "G21\nG0 X0\nG1 X1O F100\nM30\n");
+  EXPECT_EQ(s.outcome.exit_code, 2);
+  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("part.ngc:3:"), HasSubstr("G1 X1O F100")));
+  EXPECT_FALSE(std::filesystem::exists(s.folder));
+}
+
+struct BadSchedule {
+  const char* name;
+  const char* right;
+  const char* wrong;
+  const char* message;
+};
+
+class ScheduleMistakes : public ::testing::TestWithParam<BadSchedule> {};
+
+TEST_P(ScheduleMistakes, EndWithTwoAndNameTheKey) {
+  std::string scenario = kHead;
+  const auto at = scenario.find(GetParam().right);
+  ASSERT_NE(at, std::string::npos);
+  scenario.replace(at, std::string(GetParam().right).size(), GetParam().wrong);
+  const Scheduled s = run_schedule(std::string("bad_") + GetParam().name, passes(), "", scenario);
+  EXPECT_EQ(s.outcome.exit_code, 2) << s.outcome.output;
+  EXPECT_THAT(s.outcome.output, HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, ScheduleMistakes,
+    ::testing::Values(BadSchedule{"no_base", "  base_offset: [100 mm, 50 mm, -20 mm]\n", "", "key 'base_offset' is missing"},
+                      BadSchedule{"sign", "sign: -1", "sign: minus", "'minus' is not known here"},
+                      BadSchedule{"channel", "displacement: nose_x", "displacement: nose_q", "'nose_q' is not known here"},
+                      BadSchedule{"nobody_along_y", "x: {displacement: nose_x, sign: -1, tolerance: 4 um}", "y: {}",
+                                  "no displacement is along y"},
+                      BadSchedule{"tolerance", "tolerance: 10 um", "tolerance: 0 um", "schedule.tolerance"},
+                      BadSchedule{"policy", "  tolerance: 10 um", "  policy: greedy", "'greedy' is not known here"},
+                      BadSchedule{"unknown_key", "  tolerance: 10 um", "  tolerances: 10 um", "unknown key 'tolerances'"},
+                      BadSchedule{"no_rapid", "  rapid: 10 m/min\n", "", "state `rapid`"},
+                      BadSchedule{"work_offset", "  tolerance: 10 um", "  work_offset: G55", "G54"}),
+    [](const auto& each) { return each.param.name; });
+
+TEST(ScheduleVerb, ShowsWhatToWriteWhereTheScenarioSaysNothing) {
+  const std::string scenario = std::string(kHead).substr(0, std::string(kHead).find("schedule:"));
+  const Scheduled s = run_schedule("no_block", passes(), "", scenario);
+  EXPECT_EQ(s.outcome.exit_code, 2);
+  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("head.yaml"), HasSubstr("schedule: {tolerance: 10 um, base_offset:")));
+}
+
+TEST(ScheduleVerb, WantsAProgramAndKnownPolicies) {
+  EXPECT_EQ(run_program("schedule scenarios/fp3_spindle.yaml").exit_code, 2);
+  EXPECT_EQ(run_schedule("policy", passes(), "--policy none").outcome.exit_code, 2);
+  const CommandOutcome help = run_program("schedule --help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.output,
+              HasSubstr("driftwright schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc"));
+}
+
+// The shipped part on the shipped machine. Each axis ends inside its 10 um, and LinuxCNC reads what is written.
+TEST(Fp3Part, KeepsTheToleranceOfThePaper) {
+  const auto folder = fresh_folder("fp3_part") / "out";
+  const CommandOutcome outcome =
+      run_program("schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o " + folder.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("5 operations"), Not(HasSubstr("LEFT")), Not(HasSubstr("beyond"))));
+  if (!has_rs274()) GTEST_SKIP() << kNoRs274;
+  std::filesystem::copy_file("scenarios/parts/fp3_part.ngc", folder.parent_path() / "fp3_part.ngc");
+  const Path before = rs274(folder.parent_path() / "fp3_part.ngc"), after = rs274(folder / "fp3_part.ngc");
+  EXPECT_TRUE(after.accepted) << after.said;
+  EXPECT_EQ(after.motions, before.motions);
+  EXPECT_GT(after.offsets_mm.size(), before.offsets_mm.size() + 3);
+}
+
+}  // namespace
+}  // namespace driftwright
