@@ -35,8 +35,10 @@ output::Table error_table(const ProgrammeStudy& study, bool in_percent) {
   for (std::size_t c = 0; c < study.channels.name.size(); ++c)
     table.headers.push_back(fmt::format("{} [{}]", study.channels.name[c], in_percent ? "%" : study.channels.unit[c]));
   for (const auto& p : study.predictors) {
+    bool is_first = true;
     for (const Group& g : groups(study)) {
-      std::vector<std::string> row = {p.name, g.name, ""};
+      std::vector<std::string> row = {is_first ? p.name : "", g.name, ""};
+      is_first = false;
       for (std::size_t c = 0; c < study.channels.name.size(); ++c) {
         const Summary s = summary(study, p, c, g.holds);
         row[2] = fmt::format("{}", s.n);
@@ -84,6 +86,20 @@ output::Report programme_report(const scenarios::Scenario& scenario, const Progr
   page.blocks.emplace_back(output::Preformatted{programme_text(study)});
   page.blocks.emplace_back(error_table(study, true));
   page.blocks.emplace_back(error_table(study, false));
+  if (!study.scheduled.empty() && study.scheduled.front().n_cyclograms > 0) {
+    output::Table table{
+        .caption =
+            fmt::format("Corrections planned ahead on the predictions of the random cyclograms along {}, tolerance {:g} um.",
+                        study.scheduled.front().channel, scenario.programme->tolerance_um),
+        .headers = {"predictor", "inside the tolerance", "worst [um]", "changes, mean", "changes, most"},
+        .rows = {}};
+    for (const auto& s : study.scheduled) {
+      table.rows.push_back({s.predictor, fmt::format("{} of {}", s.n_inside, s.n_cyclograms),
+                            fmt::format("{:.1f}", s.worst_um), fmt::format("{:.1f}", s.mean_changes),
+                            fmt::format("{}", s.most_changes)});
+    }
+    page.blocks.emplace_back(std::move(table));
+  }
   output::Table modes{
       .caption =
           "Modes identified from the tests: time constants at standstill and by how much rates grow up to the top speed.",
@@ -147,6 +163,7 @@ nlohmann::ordered_json programme_json(const ProgrammeStudy& study, const output:
     j["predictors"].push_back({{"name", p.name}, {"errors", rows}});
   }
   j["modes_of_the_model"] = study.n_modes_wanted;
+  if (!study.without_model.empty()) j["without_model"] = study.without_model;
   for (const auto& m : study.identified.modes)
     j["identified_modes"].push_back({{"time_constant_min", m.time_constant_s / 60.0},
                                      {"ci95", {m.low_s / 60.0, m.high_s / 60.0}},
@@ -198,6 +215,12 @@ std::string programme_text(const ProgrammeStudy& study) {
                 : fmt::format("no number of modes keeps every error below 1 %; the best leaves {:.2f} %\n",
                               study.error_by_modes.back().second);
   }
+  if (!study.without_model.empty()) text += fmt::format("no modes of the model, no hybrid: {}\n", study.without_model);
+  return text;
+}
+
+std::string schedule_text(const ProgrammeStudy& study) {
+  std::string text;
   for (const auto& s : study.scheduled) {
     if (s.n_cyclograms == 0) continue;
     text += fmt::format(

@@ -14,5 +14,7 @@ namespace driftwright::app {
 /// One row a predictor, cyclogram and channel.
 [[nodiscard]] std::string programme_csv(const ProgrammeStudy& study);
 [[nodiscard]] std::string programme_text(const ProgrammeStudy& study);
+/// What schedules planned on the predictions keep, a line each.
+[[nodiscard]] std::string schedule_text(const ProgrammeStudy& study);
 
 }  // namespace driftwright::app

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 
-#include "base/quantity.hpp"
 #include "base/random.hpp"
 #include "compensation/schedule.hpp"
 #include "scenarios/as_recorded.hpp"
@@ -20,15 +19,15 @@ using namespace compensation;
 
 constexpr int kMostModelModes = 40;
 constexpr double kWantedPercent = 1.0;
+constexpr double kBalance_K = 0.01;
 
-/// Displacements and tilts, then temperatures where asked for: as rows.
-Eigen::MatrixXd rows_of(const Record& record, const TestChannels& channels, double hall_C) {
+/// Channels since the start, as rows.
+Eigen::MatrixXd rows_of(const Record& record, const TestChannels& channels) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(channels.name.size()), static_cast<Eigen::Index>(record.time_s.size()));
   for (std::size_t c = 0; c < channels.name.size(); ++c) {
     const std::vector<double>& values = record.at(channels.name[c]).values;
     for (std::size_t i = 0; i < values.size(); ++i)
-      rows(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i)) =
-          values[i] - (channels.unit[c] == "K" ? hall_C : 0.0);
+      rows(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i)) = values[i] - values.front();
   }
   return rows;
 }
@@ -86,12 +85,12 @@ PredictionError error_of(const Eigen::MatrixXd& truth, const Eigen::MatrixXd& pr
   return e;
 }
 
-/// Rows of a trajectory, in um and urad.
+/// Rows of a trajectory, in um and urad since the start.
 Eigen::MatrixXd rows_of(const solver::Trajectory& run, const solver::Outputs& outputs, const TestChannels& channels) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(channels.name.size()), run.outputs.cols());
   for (std::size_t c = 0; c < channels.name.size(); ++c) {
     const auto o = std::find(outputs.name.begin(), outputs.name.end(), channels.name[c]) - outputs.name.begin();
-    rows.row(static_cast<Eigen::Index>(c)) = 1e6 * run.outputs.row(o);
+    rows.row(static_cast<Eigen::Index>(c)) = 1e6 * (run.outputs.row(o).array() - run.outputs(o, 0));
   }
   return rows;
 }
@@ -177,6 +176,20 @@ Summary summary(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& pr
 ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model& model, Progress& progress) {
   const scenarios::Programme& programme = *scenario.programme;
   const scenarios::MachineModel& machine = *scenario.machine;
+  const bool starts_with_the_hall =
+      machine.start == scenarios::Start::kHall || machine.start == scenarios::Start::kSteady ||
+      std::abs((machine.start == scenarios::Start::kUniform ? machine.start_K - machine.reference_K : 0.0) -
+               scenarios::felt_hall_at_start_K(machine)) < kBalance_K;
+  if (!starts_with_the_hall) {
+    throw InputError(
+        programme.where,
+        "tests and cyclograms of a programme start in balance with the hall; `start: hall` or `start: steady` is wanted");
+  }
+  if (!effects::reading_chain(machine.effects).empty()) {
+    throw InputError(
+        programme.where,
+        "a programme judges true drift; leave out the effects that change what instruments read and nothing else");
+  }
   ProgrammeStudy study;
   for (const auto& d : machine.displacements) {
     study.channels.name.push_back(d.name);
@@ -197,7 +210,6 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   for (const Cyclogram& c : judged) all.push_back(&c);
   const std::vector<SimulatedRun> runs = simulate_cyclograms(scenario, model, all, progress, 0, nullptr);
   const double hall_K = scenarios::felt_hall_at_start_K(machine);
-  const double hall_C = machine.reference_K - kZeroCelsius_K + hall_K;
   TestBed bed{study.channels, {}};
   for (const scenarios::Sensor& s : machine.sensors) {
     if (scenarios::is_on_hall(s)) continue;
@@ -206,13 +218,13 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   }
   const TimeSeries hall = from_start(machine.hall);
   for (std::size_t t = 0; t < tests.size(); ++t) {
-    bed.tests.push_back({tests[t], hall, runs[t].record.time_s, rows_of(runs[t].record, bed.all, hall_C)});
+    bed.tests.push_back({tests[t], hall, runs[t].record.time_s, rows_of(runs[t].record, bed.all)});
   }
   add_noise(bed.tests, bed.all, programme);
   for (std::size_t i = 0; i < judged.size(); ++i) {
     const Record& record = runs[tests.size() + i].record;
-    study.judged.push_back({judged[i], type_of(judged[i]), i >= programme.cyclograms.size(), record.time_s,
-                            rows_of(record, study.channels, hall_C)});
+    study.judged.push_back(
+        {judged[i], type_of(judged[i]), i >= programme.cyclograms.size(), record.time_s, rows_of(record, study.channels)});
   }
   const std::size_t n_channels = study.channels.name.size();
   const auto displacements = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
@@ -222,21 +234,29 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   // --- from tests alone
   progress.begin("identifying modes from tests");
   study.identified = identify_modes(bed.tests, bed.all, {.most_modes = programme.most_modes});
-  judge(study, "modes from tests",
-        [&](const JudgedCyclogram& j) { return displacements(study.identified.predict(j.cyclogram, hall, j.time_s)); });
+  judge(study, "modes from tests", [&](const JudgedCyclogram& j) {
+    return displacements(study.identified.predict(j.cyclogram, hall, j.time_s, programme.extrapolate));
+  });
   const IdentifiedModes fixed =
       identify_modes(bed.tests, bed.all, {.most_modes = programme.most_modes, .with_growth = false});
-  judge(study, "modes from tests, one set of time constants",
-        [&](const JudgedCyclogram& j) { return displacements(fixed.predict(j.cyclogram, hall, j.time_s)); });
+  judge(study, "modes from tests, fixed rates", [&](const JudgedCyclogram& j) {
+    return displacements(fixed.predict(j.cyclogram, hall, j.time_s, programme.extrapolate));
+  });
   progress.begin("cutting curves");
   std::vector<ThermalTest> of_displacements = bed.tests;
   for (ThermalTest& t : of_displacements) t.readings = displacements(t.readings);
   const AssembledCurves curves(of_displacements, study.channels);
-  judge(study, "assembled curves", [&](const JudgedCyclogram& j) { return curves.predict(j.cyclogram, j.time_s); });
+  judge(study, "assembled curves",
+        [&](const JudgedCyclogram& j) { return curves.predict(j.cyclogram, j.time_s, programme.extrapolate); });
 
   // --- from the model
   const scenarios::ReducedMachine* reduced = model.reduced();
-  if (reduced && reduced->system.is_linear()) {
+  if (!reduced) {
+    study.without_model =
+        "they come from a reduced model, and this machine was run in full (a lumped one, or `model: full`)";
+  } else if (!reduced->system.is_linear()) {
+    study.without_model = "they come from a linear model, and in this one films, heat or thermostats follow temperatures";
+  } else {
     progress.begin("modes of the model");
     const solver::ReducedSystem& system = reduced->system;
     const auto by_propagator = [&](const solver::ReducedSystem& s, const Eigen::VectorXd& start) {
@@ -263,14 +283,19 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
       study.time_constant_s = p.time_constant_s;
       study.predictors.push_back(std::move(trial.predictors.front()));
       const solver::ReducedSystem frozen = with_fixed_exchanges(p.system, typical);
-      judge(study, fmt::format("{} modes of the model, time constants of the mean speed", n),
-            by_propagator(frozen, p.start));
+      judge(study, fmt::format("{} modes of the model, fixed rates", n), by_propagator(frozen, p.start));
       const solver::ReducedSystem wrong = scattered(p.system, programme.model_scatter, programme.seed);
-      judge(study, "the same from a model that is off", by_propagator(wrong, p.start));
+      judge(study, "modes of a model that is off", by_propagator(wrong, p.start));
       progress.begin("scaling the model's modes to tests");
-      const ScaledModes scaled = fit_scaled_modes(wrong, p.start, hall_K, bed.tests, bed.all);
+      std::vector<ThermalTest> felt_tests = bed.tests;
+      for (ThermalTest& t : felt_tests) {
+        scenarios::FeltRun felt = scenarios::felt_run(machine, t.cyclogram);
+        t.cyclogram = std::move(felt.cyclogram);
+        t.hall = from_start(std::move(felt.hall));
+      }
+      const ScaledModes scaled = fit_scaled_modes(wrong, p.start, hall_K, felt_tests, bed.all);
       study.factors = scaled.factors;
-      judge(study, "hybrid: that model's modes, scaled to tests", by_propagator(scaled.system, p.start));
+      judge(study, "hybrid: those, scaled to tests", by_propagator(scaled.system, p.start));
       break;
     }
   }

@@ -24,7 +24,7 @@ struct JudgedCyclogram {
   compensation::CyclogramType type = compensation::CyclogramType::kContinuous;
   bool is_random = false;
   std::vector<double> time_s;
-  Eigen::MatrixXd truth;  ///< n_channels x n_times, um and urad
+  Eigen::MatrixXd truth;  ///< n_channels x n_times, um and urad, since the start
 };
 
 struct ProgrammeStudy {
@@ -34,12 +34,13 @@ struct ProgrammeStudy {
     std::string name;
     std::vector<Eigen::MatrixXd> predicted;            ///< per judged cyclogram, as its truth
     std::vector<std::vector<PredictionError>> errors;  ///< per judged cyclogram, per channel
-    double seconds = 0.0;                              ///< of one prediction, mean
+    double seconds = 0.0;                              ///< of one prediction, mean; for the terminal alone
   };
   std::vector<Predictor> predictors;
   compensation::IdentifiedModes identified;
   std::vector<compensation::ScaledModes::Factor> factors;
-  int n_modes_wanted = 0;  ///< of the model, completed, so that every error is at most 1 %; 0: no number reaches it
+  int n_modes_wanted = 0;     ///< of the model, completed, so that every error is at most 1 %; 0: no number reaches it
+  std::string without_model;  ///< why the model's own predictors and the hybrid are left out; empty where they are not
   std::vector<std::pair<int, double>> error_by_modes;  ///< number of modes, largest error of all [%]
   std::vector<double> time_constant_s;                 ///< of the model's modes at standstill, slowest first
   struct Scheduled {
@@ -51,14 +52,16 @@ struct ProgrammeStudy {
   std::vector<Scheduled> scheduled;
 };
 
-/// Largest over some cyclograms, of one channel. @param random  which: random ones or the others; both where empty
+/// Of one channel over some cyclograms: the largest error, and the mean of their mean errors.
 struct Summary {
   double largest = 0.0, largest_percent = 0.0, mean = 0.0, mean_percent = 0.0;
   int n = 0;
 };
+/// @param counts  which cyclograms do
 [[nodiscard]] Summary summary(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& predictor, std::size_t channel,
                               const std::function<bool(const JudgedCyclogram&)>& counts);
 
+/// @throws InputError, SolveError  as the predictors
 [[nodiscard]] ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model& model, Progress& progress);
 
 }  // namespace driftwright::app

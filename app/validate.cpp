@@ -97,7 +97,9 @@ void validate_programme(const scenarios::Scenario& scenario, const CommonOptions
   folder.write_text("report.html", output::render_html(programme_report(scenario, study, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}\n{}report in {}\n", model.words(), programme_text(study), shown_path(folder.target() / "report.html"));
+  fmt::print("{}\n{}{}", model.words(), programme_text(study), schedule_text(study));
+  for (const auto& p : study.predictors) fmt::print("one prediction by {}: {:.2f} ms\n", p.name, 1e3 * p.seconds);
+  fmt::print("report in {}\n", shown_path(folder.target() / "report.html"));
 }
 
 }  // namespace

@@ -123,16 +123,7 @@ AssembledCurves::Curves AssembledCurves::at(double speed_rpm) const {
 
 Eigen::MatrixXd AssembledCurves::predict(const Cyclogram& cyclogram, const std::vector<double>& output_s,
                                          bool extrapolate) const {
-  for (const auto& s : cyclogram.sections) {
-    const double rpm = s.drive.speed_rpm;
-    if (extrapolate || rpm == 0.0) continue;
-    if (rpm < curves_.front().speed_rpm - kSame_rpm || rpm > curves_.back().speed_rpm + kSame_rpm) {
-      throw InputError(
-          fmt::format("cyclogram '{}' runs at {:g} rpm, but the tests ran at {:g} to {:g} rpm; a test there, or "
-                      "extrapolate: true, is wanted",
-                      cyclogram.name, rpm, curves_.front().speed_rpm, curves_.back().speed_rpm));
-    }
-  }
+  require_tested(cyclogram, {curves_.front().speed_rpm, curves_.back().speed_rpm, true}, extrapolate);
   Eigen::MatrixXd y =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n_channels_), static_cast<Eigen::Index>(output_s.size()));
   Eigen::VectorXd level = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_channels_));

@@ -17,7 +17,6 @@ namespace {
 constexpr double kGrowthExponent = 0.7;  // of rates, as of forced films
 constexpr double kMostGrowth = 4.0;
 constexpr double kShortest_s = 60.0;  // time constant
-constexpr double kLeastNoise = 2e-3;  // of a channel's range: what a smooth, exact record is given
 constexpr double kWorthAMode = 0.97;  // of the held-out error
 
 double rate_1_s(double time_constant_s, double growth, double x) {
@@ -72,40 +71,34 @@ struct Table {
   double warmest_K = 10.0;  ///< largest range of a temperature, where one is read
 };
 
-/// Of one reading, from second differences; a smooth record has next to none.
-double noise_of(const std::vector<ThermalTest>& tests, Eigen::Index channel) {
-  std::vector<double> differences;
-  double low = 1e300, high = -1e300;
-  for (const ThermalTest& t : tests) {
-    const auto y = t.readings.row(channel);
-    low = std::min(low, y.minCoeff());
-    high = std::max(high, y.maxCoeff());
-    for (Eigen::Index i = 2; i < y.size(); ++i) differences.push_back(std::abs(y[i] - 2.0 * y[i - 1] + y[i - 2]));
-  }
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return std::max(*middle / (0.6745 * std::sqrt(6.0)), kLeastNoise * std::max(1e-12, high - low));
-}
-
 Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channels, const IdentificationOptions& options) {
   Table t;
-  std::set<double> speeds = {0.0};
+  std::set<double> speeds;
   Eigen::Index n_rows = 0;
   for (const ThermalTest& test : tests) {
     if (test.readings.rows() != static_cast<Eigen::Index>(channels.name.size()) ||
-        test.readings.cols() != static_cast<Eigen::Index>(test.time_s.size()) || test.time_s.size() < 8 ||
-        !test.readings.allFinite()) {
-      throw InputError(fmt::format("test '{}': {} channels at 8 times or more are wanted, none missing; there are {} x {}",
+        test.readings.cols() != static_cast<Eigen::Index>(test.time_s.size()) || test.time_s.size() < 8) {
+      throw InputError(fmt::format("test '{}': {} channels at 8 times or more are wanted; there are {} x {}",
                                    test.cyclogram.name, channels.name.size(), test.readings.rows(), test.readings.cols()));
     }
-    for (std::size_t i = 1; i < test.time_s.size(); ++i) {
-      if (!(test.time_s[i] > test.time_s[i - 1])) {
+    for (std::size_t i = 0; i < test.time_s.size(); ++i) {
+      for (std::size_t c = 0; c < channels.name.size(); ++c) {
+        if (!std::isfinite(test.readings(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(i)))) {
+          throw InputError(
+              fmt::format("test '{}': no reading of '{}' at {} s", test.cyclogram.name, channels.name[c], test.time_s[i]));
+        }
+      }
+      if (i > 0 && !(test.time_s[i] > test.time_s[i - 1])) {
         throw InputError(fmt::format("test '{}': time does not increase at {} s", test.cyclogram.name, test.time_s[i]));
       }
     }
     double top_rpm = 0.0;
     for (const auto& s : test.cyclogram.sections) {
-      speeds.insert(s.drive.speed_rpm);
+      if (s.drive != Drive{.speed_rpm = s.drive.speed_rpm}) {
+        throw InputError(
+            fmt::format("test '{}' has feeds or cutting power; a test at fixed speeds has none", test.cyclogram.name));
+      }
+      if (s.drive.speed_rpm > 0.0) speeds.insert(s.drive.speed_rpm);
       top_rpm = std::max(top_rpm, s.drive.speed_rpm);
     }
     t.speed_rpm.push_back(top_rpm);
@@ -114,18 +107,18 @@ Table table_of(const std::vector<ThermalTest>& tests, const TestChannels& channe
     t.tests.push_back(averaged(test, options.mean_over_s));
     n_rows += t.tests.back().readings.cols();
   }
-  if (static_cast<int>(speeds.size()) < options.powers) {
+  const int n_missing = options.powers - 1 - static_cast<int>(speeds.size());
+  if (n_missing > 0) {
     throw InputError(
-        fmt::format("tests at {} speeds (standstill counts) cannot give steady levels by {} powers of speed: {} "
-                    "more are wanted",
-                    speeds.size(), options.powers, options.powers - static_cast<int>(speeds.size())));
+        fmt::format("tests at {} speeds above 0 rpm cannot give steady levels by {} powers of speed: {} more {} wanted",
+                    speeds.size(), options.powers - 1, n_missing, n_missing == 1 ? "is" : "are"));
   }
   const auto n_channels = static_cast<Eigen::Index>(channels.name.size());
   double warmest_K = 0.0;
   t.noise.resize(n_channels);
   t.range.resize(n_channels);
   for (Eigen::Index c = 0; c < n_channels; ++c) {
-    double low = 1e300, high = -1e300;
+    double low = 0.0, high = 0.0;
     for (const ThermalTest& test : t.tests) {
       low = std::min(low, test.readings.row(c).minCoeff());
       high = std::max(high, test.readings.row(c).maxCoeff());
@@ -240,7 +233,8 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
     problem.SetParameterUpperBound(start.data(), k, std::log(kFurthest));
   }
   problem.SetParameterLowerBound(start.data(), n - 1, 0.0);
-  problem.SetParameterUpperBound(start.data(), n - 1, options.with_growth ? kMostGrowth : 1e-9);
+  problem.SetParameterUpperBound(start.data(), n - 1, kMostGrowth);
+  if (!options.with_growth) problem.SetManifold(start.data(), new ceres::SubsetManifold(n, {n - 1}));
   ceres::Solver::Options how;
   how.linear_solver_type = ceres::DENSE_QR;
   how.max_num_iterations = 60;
@@ -248,12 +242,15 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
   how.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(how, &problem, &summary);
+  if (!summary.IsSolutionUsable())
+    throw SolveError(fmt::format("modes could not be fitted to the tests: {}", summary.message));
   Fitted f{start, summary.final_cost, {}};
   if (with_covariance) {
     std::vector<double> jacobian_values;
     ceres::CRSMatrix jacobian;
     problem.Evaluate({}, nullptr, nullptr, nullptr, &jacobian);
-    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n, n);
+    const int n_free = jacobian.num_cols;  // a growth that is held comes last and has no column
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n_free, n_free);
     for (int row = 0; row < jacobian.num_rows; ++row) {
       for (int a = jacobian.rows[static_cast<std::size_t>(row)]; a < jacobian.rows[static_cast<std::size_t>(row) + 1]; ++a) {
         for (int b = jacobian.rows[static_cast<std::size_t>(row)]; b < jacobian.rows[static_cast<std::size_t>(row) + 1];
@@ -264,7 +261,11 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
       }
     }
     square.diagonal().array() += 1e-12 * (1.0 + square.trace());
-    f.covariance = 2.0 * f.cost / std::max(1, n_residuals - n) * square.inverse();
+    // levels are fitted, too; residuals of their prior count for nothing
+    const auto n_levels = static_cast<int>(2 * sizes.amplitude.size());
+    f.covariance.setZero(n, n);
+    f.covariance.topLeftCorner(n_free, n_free) =
+        2.0 * f.cost / std::max(1, n_residuals - n_levels - n_free) * square.inverse();
   }
   return f;
 }
@@ -314,6 +315,7 @@ IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const Test
   for (int n_modes = 1; n_modes <= options.most_modes; ++n_modes) {
     Fitted f = fit_shape(t, first_guess(t, n_modes, options), options, kNone, true);
     const double error = held_out(t, f, options);
+    if (!std::isfinite(error)) throw SolveError(fmt::format("the error of {} modes is not finite", n_modes));
     if (!(error < kWorthAMode * best_error)) break;
     best = std::move(f);
     best_error = error;
@@ -323,14 +325,8 @@ IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const Test
   const std::vector<double> time_constant_s = time_constants_s(best.shape);
   IdentifiedModes m;
   m.channels = channels;
-  m.top_rpm = t.top_rpm;
   m.held_out_error = best_error;
-  m.lowest_rpm = t.top_rpm;
-  for (const ThermalTest& test : tests) {
-    for (const auto& s : test.cyclogram.sections) {
-      if (s.drive.speed_rpm > 0.0) m.lowest_rpm = std::min(m.lowest_rpm, s.drive.speed_rpm);
-    }
-  }
+  m.tested = tested_speeds(tests);
   for (std::size_t k = 0; k < n_modes; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     // log τ_k = s_0 - s_1 - ... - s_k
@@ -350,20 +346,13 @@ IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const Test
 
 Eigen::MatrixXd IdentifiedModes::predict(const Cyclogram& cyclogram, const TimeSeries& hall_K,
                                          const std::vector<double>& output_s, bool extrapolate) const {
-  for (const auto& s : cyclogram.sections) {
-    const double rpm = s.drive.speed_rpm;
-    if (extrapolate || rpm == 0.0 || (rpm >= lowest_rpm - 1e-9 && rpm <= top_rpm + 1e-9)) continue;
-    throw InputError(
-        fmt::format("cyclogram '{}' runs at {:g} rpm, but the tests ran at {:g} to {:g} rpm; a test there, or "
-                    "extrapolate: true, is wanted",
-                    cyclogram.name, rpm, lowest_rpm, top_rpm));
-  }
+  require_tested(cyclogram, tested, extrapolate);
   Eigen::MatrixXd y =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(channels.name.size()), static_cast<Eigen::Index>(output_s.size()));
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const auto powers = static_cast<int>(level[k].cols());
     const Eigen::MatrixXd states =
-        mode_states(cyclogram, hall_K, output_s, modes[k].time_constant_s, modes[k].growth, top_rpm, powers);
+        mode_states(cyclogram, hall_K, output_s, modes[k].time_constant_s, modes[k].growth, tested.top_rpm, powers);
     y.noalias() += level[k] * states.leftCols(powers).transpose();
     y.noalias() += hall[k] * states.col(powers).transpose();
   }

@@ -4,8 +4,9 @@
 //     y_c(t) = Σ_k a_ck(t),   a_ck' = λ_k(n) (A_ck(n) + H_ck θ_hall - a_ck),   x = n / N,   λ_k(n) = (1 + g x^0.7) / τ_k
 //
 // Over a section at constant speed that is the sum of exponentials of heating and cooling tests, T = Σ A (1 - e^(-t/τ)) + Σ B e^(-t/τ); what goes
-// beyond it is that states live on when the speed changes, that rates grow with speed as forced films do, and that steady levels A between the
-// tested speeds follow one polynomial of x, with a level of its own at standstill. Steady levels are linear in the data; τ_k and g are found by variable projection.
+// beyond it is that states live on when the speed changes, that rates grow with speed as forced films do (one g for all modes), and that steady
+// levels A between the tested speeds follow one polynomial of x, with a level of its own at standstill. Steady levels are linear in the data;
+// τ_k and g are found by variable projection. All channels start at 0, in balance with the hall.
 // Source: Polyakov, Marusich & Nikitina (thermal modes); Golub & Pereyra, SIAM J. Numer. Anal. 10 (1973) 413-432.
 
 #include "compensation/thermal_test.hpp"
@@ -22,24 +23,24 @@ struct IdentifiedModes {
   TestChannels channels;
   std::vector<Eigen::MatrixXd> level;  ///< per mode, n_channels x n_powers
   std::vector<Eigen::VectorXd> hall;   ///< per mode, H of each channel
-  double top_rpm = 1.0;                ///< N, the highest speed of the tests
-  double lowest_rpm = 0.0;             ///< the lowest one that turned
+  TestedSpeeds tested;                 ///< its top is N
   double held_out_error = 0.0;         ///< root mean square in units of the noise, speeds left out of the fit one at a time
 
   /// Channels at the times asked for, n_channels x n_times. @param hall  minus its temperature at the start [K]
-  /// @throws InputError  for a speed outside the tested ones (0 is always tested), unless `extrapolate`
+  /// @throws InputError  as require_tested()
   [[nodiscard]] Eigen::MatrixXd predict(const Cyclogram& cyclogram, const TimeSeries& hall,
                                         const std::vector<double>& output_s, bool extrapolate = false) const;
 };
 
 struct IdentificationOptions {
-  int most_modes = 4;          ///< the number of modes is the one with the least held-out error
-  int powers = 4;              ///< of x: a polynomial of degree 3
+  int most_modes = 4;          ///< one more as long as it takes 3 % off the held-out error
+  int powers = 4;              ///< levels a mode has: one at standstill, the others a polynomial of x of degree powers - 2
   double mean_over_s = 300.0;  ///< readings are averaged over so long before the fit
   bool with_growth = true;     ///< false: one set of time constants for all speeds
 };
 
-/// @throws InputError  for fewer tested speeds than powers (standstill counts), rows that do not fit, missing readings
+/// @throws InputError  for fewer speeds above 0 than powers - 1, rows that do not fit, times that do not increase, missing readings
+/// @throws SolveError  when no time constants are found
 [[nodiscard]] IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const TestChannels& channels,
                                              const IdentificationOptions& options = {});
 

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "base/errors.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/steady_state.hpp"
@@ -46,19 +47,24 @@ ModalPredictors make_modal_predictors(const solver::FullSystem& full, int most_m
 ModalPredictor make_ritz_predictor(const solver::ReducedSystem& system, const Eigen::VectorXd& start, int n_modes,
                                    const effects::Inputs& at) {
   Eigen::MatrixXd k = system.conduction;
-  Eigen::VectorXd hall = Eigen::VectorXd::Zero(system.size());
+  Eigen::VectorXd hall = Eigen::VectorXd::Zero(system.size()), stratified = hall;
   for (const auto& e : system.exchanges) {
     k += e.coefficient(at) * e.matrix;
     if (e.reaches_hall()) hall += e.coefficient(at) * e.to_hall;
+    if (e.offset.size() > 0) stratified += e.coefficient(at) * e.offset;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+  constexpr double kRounding = 1e-12;  // of the fastest rate
+  if (!(eigen.eigenvalues()[0] > kRounding * eigen.eigenvalues()[k.rows() - 1]))
+    throw SolveError("the reduced model has no steady state there: heat has no way out of a part of the machine");
   const Eigen::Index n = std::min<Eigen::Index>(n_modes, k.rows());
-  Eigen::MatrixXd columns(k.rows(), n + static_cast<Eigen::Index>(system.sources.size()) + 2);
+  Eigen::MatrixXd columns(k.rows(), n + static_cast<Eigen::Index>(system.sources.size()) + 3);
   columns.leftCols(n) = eigen.eigenvectors().leftCols(n);
   const Eigen::LDLT<Eigen::MatrixXd> steady(k);
   for (std::size_t s = 0; s < system.sources.size(); ++s)
     columns.col(n + static_cast<Eigen::Index>(s)) = steady.solve(system.sources[s].load);
-  columns.col(columns.cols() - 2) = steady.solve(hall);
+  columns.col(columns.cols() - 3) = steady.solve(hall);
+  columns.col(columns.cols() - 2) = steady.solve(stratified);
   columns.col(columns.cols() - 1) = start;
   Eigen::MatrixXd basis(k.rows(), 0);
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {  // Gram-Schmidt, twice; what adds nothing is dropped

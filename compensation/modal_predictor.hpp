@@ -36,10 +36,11 @@ struct ModalPredictors {
 /// The same from a reduced model with M = 1: its slowest Ritz modes at some inputs, completed by its steady responses to each heat source and
 /// to the hall there. They are modes of the reduced model, close to the machine's own where those are slow.
 /// @param system  linear
+/// @throws SolveError  when it has no steady state there
 [[nodiscard]] ModalPredictor make_ritz_predictor(const solver::ReducedSystem& system, const Eigen::VectorXd& start,
                                                  int n_modes, const effects::Inputs& at);
 
-/// A reduced system whose films, joints and links stay as they are at some inputs: one set of time constants for all speeds.
+/// A linear reduced system whose films, joints and links stay as they are at some inputs: one set of time constants for all speeds.
 [[nodiscard]] solver::ReducedSystem with_fixed_exchanges(solver::ReducedSystem system, const effects::Inputs& at);
 
 }  // namespace driftwright::compensation

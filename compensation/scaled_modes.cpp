@@ -14,7 +14,15 @@ namespace {
 
 constexpr double kPrior = 0.3;  // 1 sigma of a factor's logarithm: tests decide
 constexpr double kRowsEvery_s = 300.0;
-constexpr double kNoise_K = 0.05, kNoise_um = 0.5;  // of a mean of some minutes: what channels weigh against each other
+
+void scale(solver::Exchange<Eigen::MatrixXd>& exchange, double factor) {
+  exchange.matrix *= factor;
+  exchange.to_hall *= factor;
+  exchange.flow *= factor;
+  exchange.offset *= factor;
+  exchange.hall_sum *= factor;
+  exchange.offset_sum *= factor;
+}
 
 /// The model with factors: sources, hall, joints, rates, then displacements.
 solver::ReducedSystem scaled(const solver::ReducedSystem& model, const double* log_factor) {
@@ -24,17 +32,12 @@ solver::ReducedSystem scaled(const solver::ReducedSystem& model, const double* l
   const double hall = std::exp(log_factor[next++]), joints = std::exp(log_factor[next++]),
                rates = std::exp(log_factor[next++]);
   for (auto& e : s.exchanges) {
-    const double f = e.reaches_hall() ? hall : joints;
-    e.matrix *= f;
-    e.to_hall *= f;
+    scale(e, e.reaches_hall() ? hall : joints);
   }
   // a faster machine is one of less capacity: all flows grow, levels stay
   s.conduction *= rates;
   for (auto& source : s.sources) source.load *= rates;
-  for (auto& e : s.exchanges) {
-    e.matrix *= rates;
-    e.to_hall *= rates;
-  }
+  for (auto& e : s.exchanges) scale(e, rates);
   for (Eigen::Index o = 0; o < s.outputs.state.cols(); ++o) {
     if (s.outputs.unit[static_cast<std::size_t>(o)] == "K") continue;
     const double f = std::exp(log_factor[next++]);
@@ -48,6 +51,7 @@ solver::ReducedSystem scaled(const solver::ReducedSystem& model, const double* l
 
 ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::VectorXd& start, double hall_K,
                              const std::vector<ThermalTest>& tests, const TestChannels& channels) {
+  if (tests.empty()) throw InputError("a model cannot be scaled without tests");
   std::vector<std::size_t> output;
   for (const std::string& name : channels.name) {
     const auto found = std::find(model.outputs.name.begin(), model.outputs.name.end(), name);
@@ -63,11 +67,19 @@ ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::Ve
   }
   const auto n = static_cast<int>(m.factors.size());
   std::vector<ThermalTest> rows;
-  for (const ThermalTest& t : tests) rows.push_back(averaged(t, kRowsEvery_s));
+  for (const ThermalTest& t : tests) {
+    if (!t.readings.allFinite()) throw InputError(fmt::format("test '{}' lacks readings", t.cyclogram.name));
+    rows.push_back(averaged(t, kRowsEvery_s));
+  }
+  const double n_mean = static_cast<double>(tests.front().time_s.size()) / static_cast<double>(rows.front().time_s.size());
+  std::vector<double> noise;
+  for (std::size_t c = 0; c < channels.name.size(); ++c)
+    noise.push_back(noise_of(tests, static_cast<Eigen::Index>(c)) / std::sqrt(n_mean));
   int n_residuals = n;
   for (const ThermalTest& t : rows) n_residuals += static_cast<int>(t.readings.size());
   const auto residual = [&](double const* const* parameters, double* out) {
     const solver::ReducedSystem s = scaled(model, parameters[0]);
+    const Eigen::VectorXd at_start = s.observe(start, hall_K);
     solver::Propagator propagator(s);
     Eigen::Index at = 0;
     for (std::size_t t = 0; t < tests.size(); ++t) {
@@ -77,10 +89,10 @@ ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::Ve
       for (std::size_t c = 0; c < output.size(); ++c) {
         const auto o = static_cast<Eigen::Index>(output[c]);
         const bool is_temperature = channels.unit[c] == "K";
-        const double scale = is_temperature ? 1.0 : 1e6, offset = is_temperature ? hall_K : 0.0;
-        const double noise = is_temperature ? kNoise_K : kNoise_um;
+        const double unit = is_temperature ? 1.0 : 1e6;
         for (Eigen::Index i = 0; i < run.outputs.cols(); ++i) {
-          out[at++] = (rows[t].readings(static_cast<Eigen::Index>(c), i) - (scale * run.outputs(o, i) - offset)) / noise;
+          out[at++] =
+              (rows[t].readings(static_cast<Eigen::Index>(c), i) - unit * (run.outputs(o, i) - at_start[o])) / noise[c];
         }
       }
     }
@@ -100,13 +112,16 @@ ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::Ve
   how.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(how, &problem, &summary);
+  if (!summary.IsSolutionUsable())
+    throw SolveError(fmt::format("the model could not be scaled to the tests: {}", summary.message));
   ceres::Covariance::Options precision;
   precision.algorithm_type = ceres::DENSE_SVD;
   precision.null_space_rank = -1;
   ceres::Covariance covariance(precision);
   std::vector<double> square(x.size() * x.size(), 0.0);
   const std::vector<std::pair<const double*, const double*>> blocks = {{x.data(), x.data()}};
-  if (covariance.Compute(blocks, &problem)) covariance.GetCovarianceBlock(x.data(), x.data(), square.data());
+  if (!covariance.Compute(blocks, &problem) || !covariance.GetCovarianceBlock(x.data(), x.data(), square.data()))
+    throw SolveError("the factors of the scaled model have no intervals: their covariance could not be computed");
   const double variance = 2.0 * summary.final_cost / std::max(1, n_residuals - n);
   for (std::size_t k = 0; k < x.size(); ++k) {
     const double sd = std::sqrt(std::max(0.0, variance * square[k * x.size() + k]));

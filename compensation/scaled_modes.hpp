@@ -22,7 +22,8 @@ struct ScaledModes {
 /// @param start     its state at t = 0
 /// @param hall_K    temperature of the hall at the start minus the reference temperature: tests' halls count from it
 /// @param channels  all of them outputs of the model
-/// @throws InputError  for a channel that the model has not
+/// @throws InputError  for a channel that the model has not, tests that lack readings
+/// @throws SolveError  when no factors are found
 [[nodiscard]] ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::VectorXd& start, double hall_K,
                                            const std::vector<ThermalTest>& tests, const TestChannels& channels);
 

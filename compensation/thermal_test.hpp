@@ -2,6 +2,8 @@
 // What a predictor without sensors learns from: a machine running at known speeds in a known hall, and what was read.
 
 #include <Eigen/Core>
+#include <string>
+#include <vector>
 
 #include "base/cyclogram.hpp"
 
@@ -11,7 +13,7 @@ struct ThermalTest {
   Cyclogram cyclogram;
   TimeSeries hall;  ///< minus its temperature at the start [K]
   std::vector<double> time_s;
-  Eigen::MatrixXd readings;  ///< n_channels x n_times; temperatures minus the hall's at the start
+  Eigen::MatrixXd readings;  ///< n_channels x n_times, each minus what it was at the start
 };
 
 /// Names of what all tests have read, in the order of their rows.
@@ -21,5 +23,21 @@ struct TestChannels {
 
 /// Rows averaged over some time, never across a change of the drive: that would bend the curve.
 [[nodiscard]] ThermalTest averaged(const ThermalTest& test, double over_s);
+
+/// Of how far a channel goes from 0: the noise that even exact readings are given, so that they do not count without end.
+inline constexpr double kLeastNoise = 2e-3;
+/// Standard deviation of one reading of a channel, in its unit, from second differences of all tests: a smooth course has next to none.
+[[nodiscard]] double noise_of(const std::vector<ThermalTest>& tests, Eigen::Index channel);
+
+/// At what the tests ran.
+struct TestedSpeeds {
+  double lowest_rpm = 0.0, top_rpm = 0.0;  ///< of those that turned
+  bool has_standstill = false;
+};
+[[nodiscard]] TestedSpeeds tested_speeds(const std::vector<ThermalTest>& tests);
+
+/// @param extrapolate  speeds may lie outside the tested ones
+/// @throws InputError  for a cyclogram that the tests say nothing about: speeds outside theirs, feeds, cutting
+void require_tested(const Cyclogram& cyclogram, const TestedSpeeds& tested, bool extrapolate);
 
 }  // namespace driftwright::compensation

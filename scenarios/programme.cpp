@@ -11,6 +11,7 @@ namespace driftwright::scenarios {
 namespace {
 
 constexpr double kStopShare = 0.15;                          // of a random cyclogram's sections
+constexpr std::size_t kFewestSpeeds = 3;                     // levels that curve with speed want them, standstill beside
 constexpr double kShortestShare = 0.5, kLongestShare = 1.5;  // of a section's mean length
 
 }  // namespace
@@ -25,6 +26,8 @@ Programme read_programme(const ConfigMap& in) {
     tests.fail("speeds", "speeds between 1 and 1e6 rpm are wanted");
   if (std::adjacent_find(p.test_rpm.begin(), p.test_rpm.end()) != p.test_rpm.end())
     tests.fail("speeds", "a speed stands there twice");
+  if (p.test_rpm.size() < kFewestSpeeds)
+    tests.fail("speeds", fmt::format("{} speeds at least are wanted; there are {}", kFewestSpeeds, p.test_rpm.size()));
   p.heating_s = tests.quantity("heating", "s", 60.0, 1e7);
   p.cooling_s = tests.quantity("cooling", "s", 60.0, 1e7);
   p.temperature_noise_K = tests.quantity("temperature_noise", "K", 0.0, 10.0, 0.0);
@@ -32,19 +35,37 @@ Programme read_programme(const ConfigMap& in) {
   p.seed = tests.integer("seed", 0, 1000000, 1);
   tests.reject_unknown_keys();
   if (const auto cyclograms = in.optional_map("cyclograms")) {
-    for (const std::string& name : cyclograms->keys()) p.cyclograms.push_back(read_cyclogram(*cyclograms, name));
+    for (const std::string& name : cyclograms->keys()) {
+      p.cyclograms.push_back(read_cyclogram(*cyclograms, name));
+      for (const auto& s : p.cyclograms.back().sections) {
+        if (s.drive != Drive{.speed_rpm = s.drive.speed_rpm})
+          cyclograms->fail(name, "it has feeds or cutting power, which tests at fixed speeds say nothing about");
+      }
+    }
   }
   if (const auto random = in.optional_map("random")) {
     p.random.count = random->integer("count", 1, 1000);
     p.random.sections = random->integer("sections", 2, 100, p.random.sections);
     p.random.duration_s = random->quantity("duration", "s", 60.0, 1e6);
     random->reject_unknown_keys();
-    if (p.test_rpm.size() < 2) in.fail("random", "random cyclograms want tests at two speeds or more");
   }
   if (p.cyclograms.empty() && p.random.count == 0)
     in.fail("cyclograms", "neither `cyclograms` nor `random` to judge predictors on");
   p.most_modes = in.integer("most_modes", 1, 8, p.most_modes);
   p.model_scatter = in.quantity("model_scatter", "1", 0.0, 1.0, 0.0);
+  p.extrapolate = in.choice("extrapolate", {"true", "false"}, "false") == "true";
+  for (const Cyclogram& c : p.cyclograms) {
+    for (const auto& s : c.sections) {
+      const double rpm = s.drive.speed_rpm;
+      if (p.extrapolate || rpm == 0.0 || (rpm >= p.test_rpm.front() - 1e-9 && rpm <= p.test_rpm.back() + 1e-9)) continue;
+      in.map("cyclograms")
+          .fail(
+              c.name,
+              fmt::format("it runs at {:g} rpm, but the tests at {:g} to {:g} rpm; a test there, or `extrapolate: true` in "
+                          "the programme, is wanted",
+                          rpm, p.test_rpm.front(), p.test_rpm.back()));
+    }
+  }
   p.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, p.tolerance_um);
   in.reject_unknown_keys();
   return p;

@@ -7,7 +7,7 @@
 namespace driftwright::scenarios {
 
 struct Programme {
-  std::vector<double> test_rpm;  ///< increasing; each test heats from the start and then stands
+  std::vector<double> test_rpm;  ///< increasing, three at least; each test heats from the start and then stands
   double heating_s = 0.0, cooling_s = 0.0;
   double temperature_noise_K = 0.0, displacement_noise_um = 0.0;  ///< white, on the tests' readings; tilts: per 100 mm
   int seed = 1;
@@ -19,6 +19,7 @@ struct Programme {
   int most_modes = 4;          ///< that may be identified from tests
   double model_scatter = 0.0;  ///< 1 sigma of the logarithm by which a hybrid's model is wrong in each power and coefficient
   double tolerance_um = 10.0;  ///< of scheduled corrections
+  bool extrapolate = false;    ///< cyclograms may run outside the tested speeds
   Where where;
 };
 

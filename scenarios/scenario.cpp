@@ -256,6 +256,8 @@ Scenario read_scenario(const ConfigMap& in) {
   if (const auto study = in.optional_map("study")) scenario.study = read_study(*study, scenario);
   if (const auto programme = in.optional_map("programme")) {
     if (!has_machine) in.fail("programme", "a programme wants a machine to simulate");
+    if (scenario.machine->displacements.empty())
+      in.fail("programme", "a programme judges predictors of drift and wants `displacements`");
     scenario.programme = read_programme(*programme);
     for (const Cyclogram& c : scenario.programme->cyclograms) check_cyclogram(scenario, c);
     for (const Cyclogram& c : test_cyclograms(*scenario.programme)) check_cyclogram(scenario, c);

@@ -4,9 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "base/errors.hpp"
+#include "solver/propagator.hpp"
+#include "solver/reduced_model.hpp"
 #include "solver/transient.hpp"
 #include "tests/effect_list.hpp"
 #include "tests/fixtures.hpp"
+#include "tests/two_blocks.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -64,6 +70,69 @@ TEST(ModalPredictor, StartsWithWhatIsHeldAtItsTemperature) {
   const ModalPredictor predictor = make_modal_predictors(system, system.size(), start, 0.0, Drive{}).completed;
   // Prescribed temperatures are rows a million times stiffer than the others: 1e-6 of 40 K.
   EXPECT_LT((predictor.predict(rest, hall, {0, 60, 600, 3600}).outputs - full.outputs).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+/// Two blocks in a complete basis; their film and heat grow with speed.
+solver::ReducedSystem reduced_blocks() {
+  const solver::FullSystem full = fixtures::two_blocks(1);
+  return solver::project(full, solver::orthonormalise(full.mass, Eigen::MatrixXd::Identity(full.size(), full.size())));
+}
+
+const Cyclogram kJob{.name = "job", .sections = {{1800, {.speed_rpm = 2000}}, {650, {}}, {3600, {.speed_rpm = 500}}}};
+const TimeSeries kHall{{0.0, 2000.0, 6050.0}, {1.0, 2.0, -1.0}};
+const std::vector<double> kTimes_s = {0, 60, 1800, 2000, 2450, 3000, 6050};
+
+TEST(RitzPredictor, WithAllModesIsTheReducedSystem) {
+  const solver::ReducedSystem system = reduced_blocks();
+  const Eigen::VectorXd start = 1.0 * system.ones;
+  const ModalPredictor predictor = make_ritz_predictor(system, start, system.size(), {.drive = {}, .hall_K = 1.0});
+  EXPECT_EQ(predictor.system.size(), system.size());
+  EXPECT_EQ(predictor.time_constant_s.size(), static_cast<std::size_t>(system.size()));
+  EXPECT_TRUE(std::is_sorted(predictor.time_constant_s.rbegin(), predictor.time_constant_s.rend()));
+  const Eigen::MatrixXd exact = solver::Propagator(system).run(kJob, kHall, kTimes_s, start).outputs;
+  EXPECT_GT(exact.maxCoeff(), 5.0);  // K
+  EXPECT_LT((predictor.predict(kJob, kHall, kTimes_s).outputs - exact).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(RitzPredictor, OfFewModesKeepsTheSteadyStateAtItsInputsExactly) {
+  const solver::ReducedSystem system = reduced_blocks();
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
+  const Drive drive{.speed_rpm = 1000};
+  const ModalPredictor predictor = make_ritz_predictor(system, start, 2, {.drive = drive, .hall_K = 0.0});
+  EXPECT_LE(predictor.system.size(), 4);  // two modes, one source, the hall
+  const Cyclogram longest{.name = "long", .sections = {{1e7, drive}}};
+  const TimeSeries warm{{0.0}, {3.0}};
+  const Eigen::MatrixXd exact = solver::Propagator(system).run(longest, warm, {600, 1e7}, start).outputs,
+                        few = predictor.predict(longest, warm, {600, 1e7}).outputs;
+  EXPECT_LT((few - exact).col(1).cwiseAbs().maxCoeff(), 1e-9 * exact.col(1).maxCoeff());
+  EXPECT_GT((few - exact).col(0).cwiseAbs().maxCoeff(), 1e-6);  // on the way there they are cut off
+}
+
+TEST(RitzPredictor, OfAMachineWithoutAWayOutForHeatIsRefused) {
+  solver::ReducedSystem system = reduced_blocks();
+  std::erase_if(system.exchanges, [](const auto& e) { return e.reaches_hall(); });
+  EXPECT_THROW((void)make_ritz_predictor(system, Eigen::VectorXd::Zero(system.size()), 3, {}), SolveError);
+}
+
+TEST(FixedExchanges, KeepTimeConstantsAtAllSpeeds) {
+  const solver::ReducedSystem system = reduced_blocks();
+  const effects::Inputs at{.drive = {.speed_rpm = 500}, .hall_K = 0.0};
+  const solver::ReducedSystem fixed = with_fixed_exchanges(system, at);
+  solver::Propagator of_system(system), of_fixed(fixed);
+  const Eigen::VectorXd start = 1.0 * system.ones;
+  (void)of_system.run(kJob, kHall, kTimes_s, start);
+  (void)of_fixed.run(kJob, kHall, kTimes_s, start);
+  EXPECT_EQ(of_system.n_decompositions(), 3);  // one a speed
+  EXPECT_EQ(of_fixed.n_decompositions(), 1);
+  // At those inputs they are the system itself, elsewhere not.
+  const Cyclogram there{.name = "there", .sections = {{3600, at.drive}}}, off{.name = "off", .sections = {{3600, {}}}};
+  const auto difference_K = [&](const Cyclogram& c) {
+    return (of_system.run(c, kHall, {600, 3600}, start).outputs - of_fixed.run(c, kHall, {600, 3600}, start).outputs)
+        .cwiseAbs()
+        .maxCoeff();
+  };
+  EXPECT_LT(difference_K(there), 1e-12);
+  EXPECT_GT(difference_K(off), 1e-3);
 }
 
 }  // namespace
