@@ -26,5 +26,7 @@ function(driftwright_import name library header suffixes)
 endfunction()
 driftwright_import(SuiteSparse::CHOLMOD cholmod cholmod.h suitesparse)
 driftwright_import(Gmsh::Gmsh gmsh gmsh.h "")
-# After them: it makes targets of the same names unless they are there.
-find_package(Ceres 2.1 REQUIRED)
+# Its own CMake files would link the first BLAS they find (ATLAS) before the one CHOLMOD is meant to run on.
+driftwright_import(Ceres::ceres ceres ceres/ceres.h "")
+find_library(GLOG_LIBRARY glog REQUIRED)  # its headers call it
+set_target_properties(Ceres::ceres PROPERTIES INTERFACE_LINK_LIBRARIES "${GLOG_LIBRARY}")
