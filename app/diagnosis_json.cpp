@@ -53,6 +53,7 @@ Json json_of(const diagnosis::Unexplained& u) {
   for (const auto& c : u.channels)
     json["channels"].push_back({{"name", c.name}, {"unit", c.unit}, {"rms", c.rms}, {"sigmas", c.times_noise}});
   if (!u.heat_would_sit_in.empty()) json["heat_would_sit_in"] = u.heat_would_sit_in;
+  if (u.fails_held_out) json["fails_held_out"] = true;
   if (u.one_cause) {
     const char* quantity = u.one_cause->quantity == diagnosis::Unnamed::Quantity::kHeat   ? "heat"
                            : u.one_cause->quantity == diagnosis::Unnamed::Quantity::kHall ? "hall temperature"

@@ -33,6 +33,19 @@ std::optional<scenarios::Scenario> remeshed(const scenarios::Scenario& scenario,
   return other;
 }
 
+/// Whether two files hold one record.
+bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun& b) {
+  if (a.time_s != b.time_s || a.channels.size() != b.channels.size()) return false;
+  for (const diagnosis::MeasuredChannel& c : a.channels) {
+    const diagnosis::MeasuredChannel* other = b.find(c.name);
+    if (!other) return false;
+    for (Eigen::Index i = 0; i < c.value.size(); ++i) {
+      if (c.value[i] != other->value[i] && !(std::isnan(c.value[i]) && std::isnan(other->value[i]))) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
@@ -47,6 +60,9 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   for (const std::string& path : measured) {
     m.runs.push_back(diagnosis::read_measured(path, model, names));
     for (std::size_t r = 0; r + 1 < m.runs.size(); ++r) {
+      if (same_readings(m.runs[r], m.runs.back())) {
+        throw InputError(fmt::format("{}: the same readings as {}; a record counts once", path, m.runs[r].path));
+      }
       if (m.runs[r].name != m.runs.back().name) continue;
       throw InputError(
           fmt::format("{}: there is a record called '{}' already ({}); what happened in one of them is said by its "

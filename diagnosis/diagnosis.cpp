@@ -27,6 +27,7 @@ constexpr double kRough = 3.0;                // leftover over noise: a model th
 constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
 constexpr double kFurther = 4.0;              // nats of one more effect, its price paid
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
+constexpr double kWorseHeldOut = 1.2;         // kept-out misses with the causes over those of scatter alone
 constexpr double kUnnamed = 3.0;              // nats by which one cause without a name must be better than those with one
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
 
@@ -130,6 +131,10 @@ std::string reason_of(const Diagnosis& d) {
             "The measurement holds more than scatter and noise, and none of {} candidates explains it{}.", d.n_candidates,
             d.unexplained && !d.unexplained->channels.empty() ? ", most of all in " + d.unexplained->channels.front().name
                                                               : "");
+      }
+      if (d.unexplained && d.unexplained->fails_held_out) {
+        return fmt::format("What fits best predicts kept-out data worse than no cause does, most of all {}: {}.",
+                           d.unexplained->channels.front().name, text);
       }
       if (d.unexplained && d.unexplained->one_cause) {
         return fmt::format("{}. The best of the catalogue: {}.", words(*d.unexplained->one_cause), text);
@@ -256,6 +261,25 @@ Unexplained explained_better(const Fitter& fitter, const SearchResult& result, c
   return u;
 }
 
+/// Kept-out misses with the causes over those of scatter alone: geometric mean over the channels.
+double worse_than_scatter(const std::vector<ChannelGain>& gain) {
+  double sum = 0.0;
+  for (const ChannelGain& g : gain) sum += std::log(std::max(1e-12, g.rmse_after) / std::max(1e-12, g.rmse_calibrated));
+  return gain.empty() ? 1.0 : std::exp(sum / static_cast<double>(gain.size()));
+}
+
+/// Causes that fit all data and predict kept-out ones worse than no cause does.
+Unexplained failed_held_out(const std::vector<ChannelGain>& gain) {
+  const auto worst = std::max_element(gain.begin(), gain.end(), [](const ChannelGain& a, const ChannelGain& b) {
+    return a.rmse_after * b.rmse_calibrated < b.rmse_after * a.rmse_calibrated;
+  });
+  Unexplained u;
+  u.channels.push_back(
+      {worst->name, worst->unit, worst->rmse_after, worst->rmse_after / std::max(1e-12, worst->noise_floor)});
+  u.fails_held_out = true;
+  return u;
+}
+
 }  // namespace
 
 const char* word(Verdict verdict) {
@@ -364,7 +388,13 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.calibrated.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x),
                             k.value(x - 1.96 * sd), k.value(x + 1.96 * sd), x / k.prior_sd});
   }
-  if (n_readings < kFewestReadings && (d.causes.empty() || d.unexplained)) {
+  say("measuring the gain");
+  HeldOut held = held_out_gain(fitter, d.search, d.noise);
+  d.holdout = std::move(held.how);
+  d.gain = std::move(held.channels);
+  const bool fails_held_out = !d.causes.empty() && worse_than_scatter(d.gain) > kWorseHeldOut;
+  if (fails_held_out && !d.unexplained) d.unexplained = failed_held_out(d.gain);
+  if (n_readings < kFewestReadings) {
     d.verdict = Verdict::kInsufficientData;
   } else if (d.unexplained) {
     d.verdict = Verdict::kUnexplained;
@@ -375,15 +405,10 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
         std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
     d.verdict = is_ambiguous ? Verdict::kAmbiguous : Verdict::kNamed;
   }
-  if (n_readings < kFewestReadings && d.verdict == Verdict::kConsistent) d.verdict = Verdict::kInsufficientData;
   if (std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); })) {
     say("choosing an experiment");
     d.experiment = propose_experiment(fitter, d.search);
   }
-  say("measuring the gain");
-  HeldOut held = held_out_gain(fitter, d.search, d.noise);
-  d.holdout = std::move(held.how);
-  d.gain = std::move(held.channels);
   d.reason = d.verdict == Verdict::kInsufficientData
                  ? what_is_missing(twin, runs, static_cast<int>(n_readings), kFewestReadings)
                  : reason_of(d);

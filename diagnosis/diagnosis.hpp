@@ -48,6 +48,7 @@ struct Unexplained {
   std::string heat_would_sit_in;       ///< region whose missing heat would explain most of it, or ""
   std::vector<double> time_s, heat_W;  ///< that latent heat in the first run, per row
   std::optional<Unnamed> one_cause;    ///< that explains it better than the named ones
+  bool fails_held_out = false;         ///< the causes predict kept-out data worse than scatter alone
 };
 
 struct Diagnosis {

@@ -15,7 +15,7 @@ constexpr int kMostIterations = 16;  // and one more for each time that slopes a
 constexpr double kConverged = 0.02;  // in Φ
 constexpr double kFar = 2.0;         // sigmas that a number has gone from where scatter's slopes were taken
 constexpr double kPromised = 1.0;    // of Φ, by slopes that do not keep it
-constexpr int kMostRetakes = 6;
+constexpr int kMostRetakes = 3;
 
 Eigen::Index n_knobs(const Hypothesis& hypothesis) {
   Eigen::Index n = 0;

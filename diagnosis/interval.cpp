@@ -77,7 +77,8 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
         distance = std::min(room(sign), std::clamp(std::sqrt(kRise / std::max(1e-3, rise_inside)), 1.2, 3.0) * inside);
       }
     }
-    return middle + sign * (outside > 0.0 ? 0.5 * (inside + outside) : inside);
+    // never left: the data allow all that the knob does
+    return middle + sign * (outside > 0.0 ? 0.5 * (inside + outside) : std::min(room(sign), 8.0 * knob.prior_sd));
   };
   if (is_jump) return {last_row(-1.0), last_row(1.0)};
   return {end(-1.0), end(1.0)};

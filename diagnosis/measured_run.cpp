@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "base/quantity.hpp"
+#include "diagnosis/record_faults.hpp"
 #include "diagnosis/stuck_sensor.hpp"
 #include "diagnosis/unit_check.hpp"
 
@@ -210,14 +211,15 @@ void set_grid(MeasuredRun& run) {
 }
 
 MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model, const solver::Outputs& outputs) {
-  const Record record = read_record_csv(path);
-  if (record.n_samples() < 3) {
+  const Record whole = read_record_csv(path);
+  if (whole.n_samples() < 3) {
     throw InputError(
-        fmt::format("{}: {} rows; a diagnosis wants at least three, and rather a hundred", path, record.n_samples()));
+        fmt::format("{}: {} rows; a diagnosis wants at least three, and rather a hundred", path, whole.n_samples()));
   }
   MeasuredRun run;
   run.path = path;
   run.name = std::filesystem::path(path).stem().string();
+  const Record record = without_spikes(without_holes(whole, run.findings), run.findings);
   for (double t_s : record.time_s) run.time_s.push_back(t_s - record.time_s.front());
   run.cyclogram = cyclogram_of(record, run.time_s, path);
   run.cyclogram.name = run.name;

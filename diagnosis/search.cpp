@@ -306,7 +306,9 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   say(best.empty() ? "nothing to add" : "looking for other explanations");
   for (std::size_t i = 0; i < best.size();) {
     const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
-    const Fit fit = fit_all(fitter, {{others, x}}).front();
+    Fit fit = fit_all(fitter, {{others, x}}).front();
+    // a fit that starts where the cause was may stay far from its best
+    if (others.empty() && result.without.log_evidence > fit.log_evidence) fit = result.without;
     const double without_value = evidence(fit, others) - laws_price(candidates, others);
     if (!(best_value > without_value + options.must_gain[best.size() - 1])) {
       best = others;
