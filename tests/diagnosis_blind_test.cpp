@@ -125,6 +125,13 @@ TEST(EffectOutsideTheCatalogue, IsNotGivenAName) {
   }
 }
 
+TEST(EffectOutsideTheCatalogue, IsNotNamedWhereTheNamePredictsKeptOutDataWorse) {
+  const Told t = told(164);  // heat of speed at a shaft, its key taken out: another friction law fits, and predicts worse
+  EXPECT_EQ(t.diagnosis.verdict, Verdict::kUnexplained) << t.diagnosis.reason;
+  ASSERT_TRUE(t.diagnosis.unexplained);
+  EXPECT_TRUE(t.diagnosis.unexplained->fails_held_out);
+}
+
 TEST(EffectOutsideTheCatalogue, IsOneCauseWithoutANameWhereTwoNamedOnesWouldDo) {
   const Told coolant = told(55);  // the catalogue is without heat that is constant
   ASSERT_TRUE(coolant.diagnosis.unexplained && coolant.diagnosis.unexplained->one_cause) << coolant.diagnosis.reason;

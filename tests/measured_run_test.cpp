@@ -262,6 +262,43 @@ TEST_F(MeasuredRunTest, RefusesAHallInFahrenheitOrKelvin) {
   for (const double honest_C : {-15.0, 5.0, 38.0, 44.0}) EXPECT_EQ(refusal(record(honest_C)), "") << honest_C;
 }
 
+TEST_F(MeasuredRunTest, TakesTheLongerSideOfAHoleAcrossWhichTheSpeedChanged) {
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 100; ++i) {  // rows 20 to 39 have no speed, and when it fell nobody knows
+    const std::string speed = i < 20 ? "500" : i < 40 ? "" : "0";
+    text += fmt::format("{},{},{:.3f}\n", 60 * i, speed, 20.0 + 0.013 * i);
+  }
+  const MeasuredRun run = read(text);
+  EXPECT_EQ(run.time_s.size(), 60u);
+  EXPECT_EQ(run.cyclogram.speed_rpm(0.0), 0.0);
+  ASSERT_FALSE(run.findings.empty());
+  EXPECT_THAT(run.findings.front().what,
+              AllOf(HasSubstr("from 19 to 40 min there is no speed"), HasSubstr("500 rpm before and 0 rpm after")));
+}
+
+TEST_F(MeasuredRunTest, KeepsAHoleAcrossWhichTheSpeedIsTheSameAndSaysSo) {
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 100; ++i) {
+    if (i < 20 || i >= 40) text += fmt::format("{},500,{:.3f}\n", 60 * i, 20.0 + 0.013 * i);
+  }
+  const MeasuredRun run = read(text);
+  EXPECT_EQ(run.time_s.size(), 80u);
+  ASSERT_FALSE(run.findings.empty());
+  EXPECT_THAT(run.findings.front().what, HasSubstr("500 rpm before and after is taken to have been held"));
+}
+
+TEST_F(MeasuredRunTest, LeavesOutAReadingThatLeapsAwayAndBack) {
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  for (int i = 0; i < 100; ++i)
+    text += fmt::format("{},500,{:.3f}\n", 60 * i, i == 50 ? -999.0 : 20.0 + 0.013 * i + 0.05 * std::sin(7.0 * i));
+  const MeasuredRun run = read(text);
+  ASSERT_NE(run.find("t_front"), nullptr);
+  EXPECT_TRUE(std::isnan(run.find("t_front")->value[50]));
+  EXPECT_FALSE(std::isnan(run.find("t_front")->value[51]));
+  ASSERT_FALSE(run.findings.empty());
+  EXPECT_THAT(run.findings.front().what, HasSubstr("reads -999 degC at 50 min"));
+}
+
 TEST_F(MeasuredRunTest, SaysWhyTheOnlyChannelIsLeftOut) {
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 40; ++i) text += std::to_string(60 * i) + ",500,23.4\n";
