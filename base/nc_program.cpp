@@ -87,9 +87,11 @@ class Interpreter {
     step.tool_change = contains(m, 60);
     step.system = of_group(g, "coordinate system");
     step.ends_program = contains(m, 20) || contains(m, 300);
+    // Another tool, length or zero: the numbers of before are other places now.
+    if (step.tool_change || step.system || of_group(g, "tool length")) known_ = {false, false, false};
     if (step.kind == NcStepKind::kNone) return;
     for (int axis = 0; axis < 3; ++axis) {
-      if (step.kind == NcStepKind::kMachine) {
+      if (step.kind == NcStepKind::kMachine || (step.deletable && step.named[axis])) {
         known_[axis] = false;
       } else if (step.named[axis] && absolute_ && !(step.kind == NcStepKind::kDrilling && axis == normal_)) {
         known_[axis] = true;  // the level at the end of a drilling series is that of its start or R: no news

@@ -38,7 +38,9 @@ struct NcStep {
   NcStepKind kind = NcStepKind::kNone;
   std::array<double, 3> start_m = {0, 0, 0}, end_m = {0, 0, 0};  ///< in the coordinates of the program
   std::array<bool, 3> named = {false, false, false};             ///< axes that the block has a word for
-  std::array<bool, 3> known = {false, false, false};             ///< axes that stood, before it, where a word has put them
+  /// Axes that stood, before it, where a word in G90 has put them for certain: not since the start or the last G28, G30, G53, tool
+  /// change, tool length, work offset, or block with '/' that names the axis.
+  std::array<bool, 3> known = {false, false, false};
   NcModes before = {};
   bool absolute = true;            ///< G90 as the block itself has it
   bool motion_word = false;        ///< it names its motion

@@ -98,6 +98,14 @@ INSTANTIATE_TEST_SUITE_P(
                       Allowed{"inverse_time", "G93\nG1 X1 F1\nG1 X2 F1\nM2\n", 4, "---"},
                       Allowed{"rapid_after_inverse_time", "G93\nG1 X1 F1\nG0 X2\nM2\n", 4, "R--"},
                       Allowed{"after_the_machines_zero", "G28\nG0 X1\nM2\n", 3, "R--"},
+                      Allowed{"after_a_tool_change", "M6\nG4 P1\nM2\n", 3, "---"},
+                      Allowed{"after_a_tool_change_that_x_has_left", "M6\nG0 X1\nG4 P1\nM2\n", 4, "r--"},
+                      Allowed{"without_the_length_of_the_tool", "G49\nG4 P1\nM2\n", 3, "---"},
+                      Allowed{"with_another_length", "G43 H2\nG4 P1\nM2\n", 3, "---"},
+                      Allowed{"put_with_another_length", "G43 H2 G0 Z9\nG4 P1\nM2\n", 3, "--r"},
+                      Allowed{"another_work_offset", "G55\nG4 P1\nM2\n", 3, "---"},
+                      Allowed{"after_a_deletable_block", "/G0 X1\nG4 P1\nM2\n", 3, "-rr"},
+                      Allowed{"put_behind_a_deletable_block", "/G0 X1 Y1\nG0 Y2\nG4 P1\nM2\n", 4, "-rr"},
                       Allowed{"no_time", "M8\nM2\n", 2, "---"}),
     [](const auto& each) { return each.param.name; });
 
