@@ -151,7 +151,7 @@ double peak_before_um(const AxisCourse& course) {
 }
 
 double peak_after_um(const AxisCourse& course) {
-  return peak(course.residual_um);
+  return course.worst_um;
 }
 
 int n_changes(const compensation::ProgramSchedule& plan, int axis) {
