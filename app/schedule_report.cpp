@@ -186,6 +186,7 @@ std::string schedule_terminal(const CorrectedPart& part) {
   }
   if (stretches.size() > kMostLines)
     text += fmt::format("    and {} more, all in report.html\n", stretches.size() - kMostLines);
+  for (const std::string& note : part.corrected.notes) text += fmt::format("  note: {}\n", note);
   for (const std::string& note : part.program.notes) text += fmt::format("  note: {}\n", note);
   return text;
 }

@@ -174,22 +174,70 @@ void check(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
   }
 }
 
+bool moves(const NcStep& step) {
+  return step.kind != NcStepKind::kNone;
+}
+
+/// A work offset that nobody names is the one left in force by whoever ran before: G54 after a start, otherwise unknown.
+void check_offset_named(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
+  if (options.dialect != NcDialect::kLinuxCnc || options.work_offset == 540) return;
+  for (const NcStep& step : steps) {
+    if (step.system && !step.deletable) return;
+    if (!moves(step)) continue;
+    throw InputError(step.where,
+                     fmt::format("no work offset is named before this first motion; {}, which `work_offset` names, "
+                                 "is wanted in the program",
+                                 nc_word_name('G', options.work_offset)));
+  }
+}
+
+/// The step that the first offset stands before: the first that moves or turns cutter compensation on, which forbids G10.
+std::size_t front_of(const std::vector<NcStep>& steps) {
+  std::size_t first = 0;
+  while (first + 1 < steps.size() && !moves(steps[first]) && !steps[first].compensated) ++first;
+  for (std::size_t i = 0; i < first; ++i) {
+    if (steps[i].unit_word && !steps[i].deletable) return first;
+  }
+  throw InputError(
+      steps[first].where,
+      "no unit is stated before this block, and the offset that stands in front of it needs one; write G21 or G20 "
+      "in a block before the first motion, G41 and G42");
+}
+
+/// The line that takes corrections back stands before the last block.
+void check_end(const NcStep& last, std::vector<std::string>& notes) {
+  if (last.before.compensated || last.compensated)
+    throw InputError(last.where, "G41 or G42 is still on at the end, where the offset must change; write G40 before it");
+  const bool offset_counts = moves(last) && last.kind != NcStepKind::kMachine;
+  if (!offset_counts) return;
+  if (last.kind != NcStepKind::kRapid && last.duration_s() > 0.0) {
+    throw InputError(last.where,
+                     "the last block cuts, behind the line that takes corrections back; write M2 or M30 in a block of "
+                     "its own");
+  }
+  notes.push_back(fmt::format("line {}: the last block moves; it goes without corrections", last.where.line));
+}
+
 }  // namespace
 
 CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vector<NcStep>& steps,
                                         const std::array<double, 3>& initial_m, const std::vector<NcOffsetChange>& changes,
                                         const NcOffsetOptions& options) {
   check(steps, options);
+  check_offset_named(steps, options);
   if (changes.empty() && initial_m == std::array<double, 3>{0, 0, 0}) return {bytes, {}};
   if (steps.empty() || !steps.back().ends_program) throw std::logic_error("a program without its last block");
   Writer writer(bytes, steps, options);
-  std::size_t first = 0;
-  while (first + 1 < steps.size() && steps[first].kind == NcStepKind::kNone) ++first;
+  std::vector<std::string> notes;
+  check_end(steps.back(), notes);
+  const std::size_t first = front_of(steps);
   std::vector<std::pair<std::size_t, std::size_t>> marks;
   (void)writer.set_all(first, initial_m);
   for (const NcOffsetChange& change : changes) marks.emplace_back(change.step, writer.change(change));
   (void)writer.set_all(steps.size() - 1, {0, 0, 0});
-  return writer.result(marks);
+  CorrectedNcProgram corrected = writer.result(marks);
+  corrected.notes = std::move(notes);
+  return corrected;
 }
 
 }  // namespace driftwright

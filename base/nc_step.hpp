@@ -47,6 +47,7 @@ struct NcStep {
   bool deletable = false;          ///< '/' in the first place
   bool plain = false;              ///< no words but N, G0, G1, X, Y, Z, F
   bool compensated = false;        ///< G41, G42 in force after it
+  bool unit_word = false;          ///< G20, G21
   bool tool_change = false;        ///< M6
   std::string feed_word = {};      ///< its F as written, or empty
   std::optional<int> system = {};  ///< G54 ... G59.3 where it names one, times ten

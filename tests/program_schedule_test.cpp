@@ -225,7 +225,7 @@ TEST(ProgramSchedule, LeavesEveryLineAsItWas) {
 
 // Passes to and fro with rapids between. X is named by every fourth block as a rapid, and 25 um take one change with much freedom.
 TEST(ProgramSchedule, PrefersARapidThatNamesTheAxis) {
-  std::string text = "G0 X0 Y0 Z5\n";
+  std::string text = "G21\nG0 X0 Y0 Z5\n";
   for (int i = 0; i < 10; ++i) text += "G1 X60 F60\nG0 Y" + std::to_string(i) + "\nG1 X0\nG0 X1 Z5\n";
   text += "M2\n";
   const NcProgram program = read(text);
@@ -273,7 +273,7 @@ TEST(ProgramSchedule, NamesALongBlockWithItsMicrometresAndDividesIt) {
 }
 
 TEST(ProgramSchedule, SaysWhatCannotBeDivided) {
-  const std::string text = "G0 X0 Y0 Z5\nG1 Z-1 F100\nG2 X0 Y0 I200 F10\nG4 P9000\nG0 Z5\nM2\n";
+  const std::string text = "G21\nG0 X0 Y0 Z5\nG1 Z-1 F100\nG2 X0 Y0 I200 F10\nG4 P9000\nG0 Z5\nM2\n";
   const NcProgram program = read(text);
   const std::vector<ProgramAxis> axes = {{0, 1.0, 5.0, {0, 60}}};
   const Corrected c = correct(text, program, std::vector<double>{0, program.duration_s()}, axes, {.split = true});

@@ -200,6 +200,24 @@ TEST(ScheduleVerb, LinuxCncAcceptsTheProgramAndRunsTheSamePath) {
   }
 }
 
+// rs274 refuses G10 with cutter compensation on: the offset stands in front of G41.
+TEST(ScheduleVerb, LinuxCncAcceptsAProgramThatBeginsWithAContour) {
+  const Scheduled s = run_schedule("contour",
+                                   "G21 G90 G17 G54 G94\nS2000 M3\nG41 D0\nG0 X10 Y10 Z5\nG1 X200 F20\nG1 Y100\n"
+                                   "G40 G0 X0\nG0 Z9\nM30\n");
+  ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
+  if (!has_rs274()) GTEST_SKIP() << kNoRs274;
+  const Path path = rs274(s.folder / "part.ngc");
+  EXPECT_TRUE(path.accepted) << path.said;
+}
+
+TEST(ScheduleVerb, NotesHaltsAndALastBlockThatMoves) {
+  const Scheduled s = run_schedule("notes", "G21 G90 G54\nS2000 M3\nG0 X0 Z5\nG1 X100 F5\nM0\nG0 X0\nG0 X9 M30\n");
+  ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
+  EXPECT_THAT(s.outcome.output,
+              AllOf(HasSubstr("line 5: M0: a halt counts as no time"), HasSubstr("line 7: the last block moves")));
+}
+
 TEST(ScheduleVerb, NamesBlocksThatCannotKeepTheToleranceAndDividesThem) {
   const std::string slow = "G21 G90 G54\nS2000 M3\nG0 X0 Y0 Z0\nG1 X600 F10\nG0 Z5\nM30\n";
   const Scheduled whole = run_schedule("whole", slow);
