@@ -12,8 +12,9 @@ namespace driftwright {
 
 enum class NcDialect {
   kLinuxCnc,  ///< G10 L2 Pn X Y Z: the active work offset, absolute; no G92, which the program may use
-  kSiemens,  ///< $P_BFRAME[X,TR]=: the base frame, absolute. Every work offset follows it; TRANS and ATRANS stay the program's
-  kHeidenhain,  ///< CYCL DEF 7.0 DATUM SHIFT, absolute, all of `axes` each time
+  kSiemens,  ///< $P_BFRAME[X,TR]=: the base frame, absolute. Every work offset follows it; written again behind each G54 ... of the
+             ///< program, which loads it anew. TRANS and ATRANS stay the program's
+  kHeidenhain,  ///< G54 X+... of DIN/ISO, its datum shift, absolute, all of `axes` each time
 };
 
 struct NcOffsetOptions {
@@ -50,7 +51,8 @@ struct CorrectedNcProgram {
 /// @param initial  shift in front [m]
 /// @param changes  in their order; each where nc_entries() or why_not_divisible() allow it
 /// @throws InputError  with the line: for another work offset than `work_offset` or one other than G54 that is not named before the
-///                     first motion (LinuxCNC), for inches (Siemens, Heidenhain), and where lines are put: without G20 or G21 before
+///                     first motion (LinuxCNC), for inches (Siemens, Heidenhain), for G28, G30, G53 to G59 (Heidenhain),
+///                     and where lines are put: without G20 or G21 before
 ///                     them, with G41 or G42 on at the end, for a last block that cuts
 [[nodiscard]] CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vector<NcStep>& steps,
                                                       const std::array<double, 3>& initial_m,

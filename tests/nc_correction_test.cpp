@@ -159,9 +159,38 @@ TEST(CorrectedProgram, ForSiemensAndHeidenhainByValue) {
             "$P_BFRAME[X,TR]=100\n$P_BFRAME[Z,TR]=-20\nM30\n");
   options.dialect = NcDialect::kHeidenhain;
   EXPECT_EQ(corrected_nc_program(text, steps, {-5e-6, 0, 0}, changes, options).text,
-            "G21\nCYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+99.995\nCYCL DEF 7.2 Z-20\nG0 X0 Z5\nG1 Z-1 F100\n"
-            "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+99.995\nCYCL DEF 7.2 Z-20.01\nG1 Z-1\nX100\n"
-            "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+100\nCYCL DEF 7.2 Z-20\nM30\n");
+            "G21\nG54 X+99.995 Z-20\nG0 X0 Z5\nG1 Z-1 F100\nG54 X+99.995 Z-20.01\nG1 Z-1\nX100\nG54 X+100 Z-20\nM30\n");
+  const std::string incremental = "G21\nG0 X0 Z5\nG91\nM30\n";
+  EXPECT_EQ(corrected_nc_program(incremental, steps_of(incremental), {-5e-6, 0, 0}, {}, options).text,
+            "G21\nG54 X+99.995 Z-20\nG0 X0 Z5\nG91\nG90 G54 X+100 Z-20\nG91\nM30\n");
+  for (const char* own : {"G54\n", "G53 G0 X0\n", "G28\n"}) {
+    const std::string text_own = "G21\nG0 X0\n" + std::string(own) + "M30\n";
+    EXPECT_THAT(
+        [&] {
+          (void)corrected_nc_program(text_own, steps_of(text_own), {1e-5, 0, 0}, {}, options);
+        },
+        ThrowsMessage<InputError>(::testing::AllOf(HasSubstr(":3:"), HasSubstr("datum shifts"))));
+  }
+}
+
+// A settable offset loads the base frame anew: the correction in force stands behind it once more.
+TEST(CorrectedProgram, ForSiemensStandsAgainBehindAWorkOffset) {
+  const std::string text = "G21 G54\nG0 X0 Z5\nG55\nG0 X1\nG54\nG0 X2\nM30\n";
+  NcOffsetOptions options = kXZ;
+  options.dialect = NcDialect::kSiemens;
+  const std::vector<NcOffsetChange> changes = {{3, 0.0, {{1e-5, std::nullopt, std::nullopt}}}};
+  const CorrectedNcProgram c = corrected_nc_program(text, steps_of(text), {0, 0, 0}, changes, options);
+  EXPECT_EQ(c.text,
+            "G21 G54\n$P_BFRAME[X,TR]=100\n$P_BFRAME[Z,TR]=-20\nG0 X0 Z5\nG55\n$P_BFRAME[X,TR]=100\n$P_BFRAME[Z,TR]=-20\n"
+            "$P_BFRAME[X,TR]=100.01\nG0 X1\nG54\n$P_BFRAME[X,TR]=100.01\n$P_BFRAME[Z,TR]=-20\nG0 X2\n"
+            "$P_BFRAME[X,TR]=100\n$P_BFRAME[Z,TR]=-20\nM30\n");
+  EXPECT_THAT(c.lines, ElementsAre(8));
+  const std::string moving = "G21 G54\nG0 X0 Z5\nG55 G0 X1\nM30\n";
+  EXPECT_THAT(
+      [&] {
+        (void)corrected_nc_program(moving, steps_of(moving), {1e-5, 0, 0}, {}, options);
+      },
+      ThrowsMessage<InputError>(::testing::AllOf(HasSubstr(":3:"), HasSubstr("block of its own"))));
 }
 
 // Offsets and points are written in the unit in force: 12.7 um are 0.0005 inch. In G91 the line that commands the axis once more is

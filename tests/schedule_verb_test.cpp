@@ -170,8 +170,13 @@ TEST(ScheduleVerb, CountsTheDriftFromTheReferenceOrFromTheStart) {
 TEST(ScheduleVerb, SpeaksTheDialectThatIsAskedFor) {
   const std::string siemens = read_text(run_schedule("siemens", passes(), "--dialect siemens").folder / "part.ngc");
   EXPECT_THAT(siemens, AllOf(HasSubstr("$P_BFRAME[Z,TR]=-20.0"), Not(HasSubstr("G10"))));
-  const std::string heidenhain = read_text(run_schedule("heidenhain", passes(), "--dialect heidenhain").folder / "part.ngc");
-  EXPECT_THAT(heidenhain, AllOf(HasSubstr("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+"), Not(HasSubstr("G10"))));
+  const std::string own_datum = passes();
+  std::string without = own_datum;
+  without.replace(without.find(" G54"), 4, "");
+  const std::string heidenhain = read_text(run_schedule("heidenhain", without, "--dialect heidenhain").folder / "part.ngc");
+  EXPECT_THAT(heidenhain, AllOf(HasSubstr("\nG54 X+100 Z-20\n"), Not(HasSubstr("G10"))));
+  const CommandOutcome refused = run_schedule("heidenhain_datum", own_datum, "--dialect heidenhain").outcome;
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
 }
 
 TEST(ScheduleVerb, LinuxCncAcceptsTheProgramAndRunsTheSamePath) {
