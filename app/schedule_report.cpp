@@ -151,7 +151,7 @@ double peak_before_um(const AxisCourse& course) {
 }
 
 double peak_after_um(const AxisCourse& course) {
-  return peak(course.residual_um);
+  return course.worst_um;
 }
 
 int n_changes(const compensation::ProgramSchedule& plan, int axis) {
@@ -186,6 +186,7 @@ std::string schedule_terminal(const CorrectedPart& part) {
   }
   if (stretches.size() > kMostLines)
     text += fmt::format("    and {} more, all in report.html\n", stretches.size() - kMostLines);
+  for (const std::string& note : part.corrected.notes) text += fmt::format("  note: {}\n", note);
   for (const std::string& note : part.program.notes) text += fmt::format("  note: {}\n", note);
   return text;
 }

@@ -48,7 +48,9 @@ class Writer {
       : lines_(lines_of(bytes)), before_(lines_.size()), steps_(steps), options_(options) {}
 
   /// The offset's own lines, for the axes given.
-  std::vector<std::string> offset_lines(const std::array<bool, 3>& axes, double unit_m) const {
+  std::vector<std::string> offset_lines(const std::array<bool, 3>& axes, const NcModes& modes) const {
+    const double unit_m = modes.unit_m;
+    const bool absolute = modes.absolute;
     std::vector<std::string> lines;
     std::string words;
     const auto word = [&](int axis) { return number(options_.base_m[axis] + shift_m_[axis], unit_m); };
@@ -66,13 +68,14 @@ class Writer {
         }
         break;
       case NcDialect::kHeidenhain:
-        lines.emplace_back("CYCL DEF 7.0 DATUM SHIFT");
+        words = absolute ? "G54" : "G90 G54";  // its values would be increments in G91
         for (int axis = 0; axis < 3; ++axis) {
           if (!options_.axes[axis]) continue;
           const std::string value = word(axis);
-          lines.push_back(
-              fmt::format("CYCL DEF 7.{} {}{}{}", lines.size(), "XYZ"[axis], value.front() == '-' ? "" : "+", value));
+          words += fmt::format(" {}{}{}", "XYZ"[axis], value.front() == '-' ? "" : "+", value);
         }
+        lines.push_back(words);
+        if (!absolute) lines.emplace_back("G91");
         break;
     }
     return lines;
@@ -81,8 +84,11 @@ class Writer {
   /// All axes at once, before a block, without any motion. @returns how many lines stand before it there
   std::size_t set_all(std::size_t step, const std::array<double, 3>& shift_m) {
     shift_m_ = shift_m;
-    return insert(step, offset_lines(options_.axes, steps_[step].before.unit_m));
+    return insert(step, offset_lines(options_.axes, steps_[step].before));
   }
+
+  /// What is in force once more, before a block.
+  void renew(std::size_t step) { insert(step, offset_lines(options_.axes, steps_[step].before)); }
 
   std::size_t change(const NcOffsetChange& change) {
     const NcStep& step = steps_[change.step];
@@ -92,7 +98,7 @@ class Writer {
       if (axes[axis]) shift_m_[axis] = *change.shift_m[axis];
     }
     if (change.share > 0.0) insert(change.step, {part(step, change.share)});
-    const std::size_t at = insert(change.step, offset_lines(axes, step.before.unit_m));
+    const std::size_t at = insert(change.step, offset_lines(axes, step.before));
     insert(change.step, again(change, axes));
     return at;
   }
@@ -171,7 +177,57 @@ void check(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
     } else if (step.before.unit_m != kMillimetre_m) {
       throw InputError(step.where, "inches; corrections for this control are written in mm, so G21 is wanted");
     }
+    if (options.dialect == NcDialect::kHeidenhain && (step.system || step.kind == NcStepKind::kMachine)) {
+      throw InputError(
+          step.where,
+          "G53 to G59, G28 and G30: datum shifts and other words of this control, which would undo its corrections "
+          "or mean something else; leave them out");
+    }
   }
+}
+
+bool moves(const NcStep& step) {
+  return step.kind != NcStepKind::kNone;
+}
+
+/// A work offset that nobody names is the one left in force by whoever ran before: G54 after a start, otherwise unknown.
+void check_offset_named(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
+  if (options.dialect != NcDialect::kLinuxCnc || options.work_offset == 540) return;
+  for (const NcStep& step : steps) {
+    if (step.system && !step.deletable) return;
+    if (!moves(step)) continue;
+    throw InputError(step.where,
+                     fmt::format("no work offset is named before this first motion; {}, which `work_offset` names, "
+                                 "is wanted in the program",
+                                 nc_word_name('G', options.work_offset)));
+  }
+}
+
+/// The step that the first offset stands before: the first that moves or turns cutter compensation on, which forbids G10.
+std::size_t front_of(const std::vector<NcStep>& steps) {
+  std::size_t first = 0;
+  while (first + 1 < steps.size() && !moves(steps[first]) && !steps[first].compensated) ++first;
+  for (std::size_t i = 0; i < first; ++i) {
+    if (steps[i].unit_word && !steps[i].deletable) return first;
+  }
+  throw InputError(
+      steps[first].where,
+      "no unit is stated before this block, and the offset that stands in front of it needs one; write G21 or G20 "
+      "in a block before the first motion, G41 and G42");
+}
+
+/// The line that takes corrections back stands before the last block.
+void check_end(const NcStep& last, std::vector<std::string>& notes) {
+  if (last.before.compensated || last.compensated)
+    throw InputError(last.where, "G41 or G42 is still on at the end, where the offset must change; write G40 before it");
+  const bool offset_counts = moves(last) && last.kind != NcStepKind::kMachine;
+  if (!offset_counts) return;
+  if (last.kind != NcStepKind::kRapid && last.duration_s() > 0.0) {
+    throw InputError(last.where,
+                     "the last block cuts, behind the line that takes corrections back; write M2 or M30 in a block of "
+                     "its own");
+  }
+  notes.push_back(fmt::format("line {}: the last block moves; it goes without corrections", last.where.line));
 }
 
 }  // namespace
@@ -180,16 +236,35 @@ CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vec
                                         const std::array<double, 3>& initial_m, const std::vector<NcOffsetChange>& changes,
                                         const NcOffsetOptions& options) {
   check(steps, options);
+  check_offset_named(steps, options);
   if (changes.empty() && initial_m == std::array<double, 3>{0, 0, 0}) return {bytes, {}};
   if (steps.empty() || !steps.back().ends_program) throw std::logic_error("a program without its last block");
   Writer writer(bytes, steps, options);
-  std::size_t first = 0;
-  while (first + 1 < steps.size() && steps[first].kind == NcStepKind::kNone) ++first;
+  std::vector<std::string> notes;
+  check_end(steps.back(), notes);
+  const std::size_t first = front_of(steps);
   std::vector<std::pair<std::size_t, std::size_t>> marks;
   (void)writer.set_all(first, initial_m);
-  for (const NcOffsetChange& change : changes) marks.emplace_back(change.step, writer.change(change));
+  std::size_t next = first;
+  const auto renew_until = [&](std::size_t end) {  // a settable offset loads the base frame again (Siemens)
+    for (; next < end; ++next) {
+      if (options.dialect != NcDialect::kSiemens || !steps[next].system) continue;
+      if (moves(steps[next]))
+        throw InputError(steps[next].where,
+                         "this control may load its base frame again at a work offset, so the offset is wanted "
+                         "in a block of its own, before the motion");
+      writer.renew(next + 1);
+    }
+  };
+  for (const NcOffsetChange& change : changes) {
+    renew_until(change.step);
+    marks.emplace_back(change.step, writer.change(change));
+  }
+  renew_until(steps.size() - 1);
   (void)writer.set_all(steps.size() - 1, {0, 0, 0});
-  return writer.result(marks);
+  CorrectedNcProgram corrected = writer.result(marks);
+  corrected.notes = std::move(notes);
+  return corrected;
 }
 
 }  // namespace driftwright

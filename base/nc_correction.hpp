@@ -12,8 +12,9 @@ namespace driftwright {
 
 enum class NcDialect {
   kLinuxCnc,  ///< G10 L2 Pn X Y Z: the active work offset, absolute; no G92, which the program may use
-  kSiemens,  ///< $P_BFRAME[X,TR]=: the base frame, absolute. Every work offset follows it; TRANS and ATRANS stay the program's
-  kHeidenhain,  ///< CYCL DEF 7.0 DATUM SHIFT, absolute, all of `axes` each time
+  kSiemens,  ///< $P_BFRAME[X,TR]=: the base frame, absolute. Every work offset follows it; written again behind each G54 ... of the
+             ///< program, which loads it anew. TRANS and ATRANS stay the program's
+  kHeidenhain,  ///< G54 X+... of DIN/ISO, its datum shift, absolute, all of `axes` each time
 };
 
 struct NcOffsetOptions {
@@ -32,11 +33,12 @@ struct NcOffsetChange {
 
 struct CorrectedNcProgram {
   std::string text;
-  std::vector<int> lines;  ///< line of each change's first offset word in `text`, from one
+  std::vector<int> lines;               ///< line of each change's first offset word in `text`, from one
+  std::vector<std::string> notes = {};  ///< what runs without corrections, with its line
 };
 
-/// Puts changes of the offset into a program. Before its first motion stands a line that sets the offset of `axes` (a run cut short
-/// leaves the last one behind), before its end one that sets base_m again. Each change is
+/// Puts changes of the offset into a program. Before its first motion, and before any G41 or G42, stands a line that sets the offset of
+/// `axes` (a run cut short leaves the last one behind), before its end one that sets base_m again. Each change is
 ///
 ///     [share > 0: the block's own motion word and F to the point at that share of its straight line]
 ///     the offset
@@ -48,7 +50,10 @@ struct CorrectedNcProgram {
 /// @param steps    of the same program
 /// @param initial  shift in front [m]
 /// @param changes  in their order; each where nc_entries() or why_not_divisible() allow it
-/// @throws InputError  with the line: for another work offset than `work_offset` (LinuxCNC), for inches (Siemens, Heidenhain)
+/// @throws InputError  with the line: for another work offset than `work_offset` or one other than G54 that is not named before the
+///                     first motion (LinuxCNC), for inches (Siemens, Heidenhain), for G28, G30, G53 to G59 (Heidenhain),
+///                     and where lines are put: without G20 or G21 before
+///                     them, with G41 or G42 on at the end, for a last block that cuts
 [[nodiscard]] CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vector<NcStep>& steps,
                                                       const std::array<double, 3>& initial_m,
                                                       const std::vector<NcOffsetChange>& changes,

@@ -20,7 +20,7 @@ enum class NcEntry {
 ///
 /// kNever: before, in and after a series of canned cycles until G80 or another motion word has ended it (its sticky levels), with
 /// cutter compensation on (the contour looks ahead), before a block with '/', and, where a line of its own would be wanted: while
-/// the axis has not been put anywhere by a G90 block since the start or the last G28, G30, G53; where the next motion block has
+/// the axis is not NcStep::known (after G28, G53, M6, G43, G54, '/' and the like until a G90 block names it again); where the next motion block has
 /// no motion word and goes on with an arc; and in feed without a feed per minute in force.
 /// @param step  < steps.size()
 [[nodiscard]] std::array<NcEntry, 3> nc_entries(const std::vector<NcStep>& steps, std::size_t step);

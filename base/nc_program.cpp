@@ -84,12 +84,15 @@ class Interpreter {
     step.absolute = absolute_;
     step.motion_word = of_group(g, "motion").has_value();
     step.compensated = compensated_;
+    step.unit_word = contains(g, 200) || contains(g, 210);
     step.tool_change = contains(m, 60);
     step.system = of_group(g, "coordinate system");
     step.ends_program = contains(m, 20) || contains(m, 300);
+    // Another tool, length or zero: the numbers of before are other places now.
+    if (step.tool_change || step.system || of_group(g, "tool length")) known_ = {false, false, false};
     if (step.kind == NcStepKind::kNone) return;
     for (int axis = 0; axis < 3; ++axis) {
-      if (step.kind == NcStepKind::kMachine) {
+      if (step.kind == NcStepKind::kMachine || (step.deletable && step.named[axis])) {
         known_[axis] = false;
       } else if (step.named[axis] && absolute_ && !(step.kind == NcStepKind::kDrilling && axis == normal_)) {
         known_[axis] = true;  // the level at the end of a drilling series is that of its start or R: no news
@@ -127,6 +130,10 @@ class Interpreter {
         fail("M6 changes the tool, but nobody says how long that takes; state `tool_change`, such as 8 s");
       motion_.turning = false;
       motion_.wait(*settings_.tool_change_s);
+    }
+    for (const NcCode halt : {0, 10, 600}) {
+      if (contains(m, halt))
+        note(nc_word_name('M', halt), "a halt counts as no time; all that comes later is timed as if nobody waited");
     }
     if (contains(m, 30) || contains(m, 40)) motion_.turning = true;
     if (contains(m, 50) || contains(m, 190)) motion_.turning = false;

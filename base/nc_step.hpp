@@ -38,13 +38,16 @@ struct NcStep {
   NcStepKind kind = NcStepKind::kNone;
   std::array<double, 3> start_m = {0, 0, 0}, end_m = {0, 0, 0};  ///< in the coordinates of the program
   std::array<bool, 3> named = {false, false, false};             ///< axes that the block has a word for
-  std::array<bool, 3> known = {false, false, false};             ///< axes that stood, before it, where a word has put them
+  /// Axes that stood, before it, where a word in G90 has put them for certain: not since the start or the last G28, G30, G53, tool
+  /// change, tool length, work offset, or block with '/' that names the axis.
+  std::array<bool, 3> known = {false, false, false};
   NcModes before = {};
   bool absolute = true;            ///< G90 as the block itself has it
   bool motion_word = false;        ///< it names its motion
   bool deletable = false;          ///< '/' in the first place
   bool plain = false;              ///< no words but N, G0, G1, X, Y, Z, F
   bool compensated = false;        ///< G41, G42 in force after it
+  bool unit_word = false;          ///< G20, G21
   bool tool_change = false;        ///< M6
   std::string feed_word = {};      ///< its F as written, or empty
   std::optional<int> system = {};  ///< G54 ... G59.3 where it names one, times ten

@@ -1,5 +1,7 @@
 #include "compensation/program_schedule.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -139,37 +141,107 @@ class AxisPlanner {
   double end_s_;
 };
 
-/// Samples, and both sides of each change; between them all is linear.
-AxisCourse course_of(const AxisPlanner& planner, const ProgramAxis& axis, std::span<const double> time_s, double end_s) {
+/// A block behind which the axis has the offset in force: one that is always run, in G90 and not in machine coordinates.
+bool takes_offset(const NcStep& step, int axis) {
+  return step.kind != NcStepKind::kNone && step.kind != NcStepKind::kMachine && step.named[axis] && step.absolute &&
+         !step.deletable;
+}
+
+/// A block behind which the axis stands where no offset counts. The last block runs behind the line that takes corrections back.
+bool loses_offset(const NcStep& step, int axis) {
+  if (step.ends_program) return step.named[axis];
+  const bool all = !step.named[0] && !step.named[1] && !step.named[2];
+  return step.kind == NcStepKind::kMachine && (all || step.named[axis]);
+}
+
+bool cuts(const NcStep& step) {
+  return step.kind == NcStepKind::kLine || step.kind == NcStepKind::kArc || step.kind == NcStepKind::kDrilling;
+}
+
+/// What the axis itself has of the plan: an offset moves nothing, so the first counts from the end of the block that commands the
+/// axis for the first time. Samples and both sides of each change; between them all is linear.
+class CourseWriter {
+ public:
+  CourseWriter(const ProgramAxis& axis, std::span<const double> time_s) : axis_(axis), time_s_(time_s) {}
+
+  void run(const std::vector<NcStep>& steps, const std::vector<Place>& places, const std::vector<double>& planned_um) {
+    planned_um_ = planned_um.front();
+    std::size_t k = 1;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const NcStep& step = steps[i];
+      for (; k < places.size() && places[k].step <= i; ++k) {
+        if (planned_um[k] == planned_um[k - 1]) continue;
+        if (places[k].share > 0.0) along(step, i, places[k].time_s);
+        planned_um_ = planned_um[k];
+        if (!(places[k].in_force_s > places[k].time_s)) has_um_ = planned_um_;
+      }
+      along(step, i, step.end_s);
+      if (loses_offset(step, axis_.axis)) taken_ = false;
+      if (takes_offset(step, axis_.axis) && !step.ends_program) taken_ = true;
+    }
+  }
+
   AxisCourse course;
-  const auto add = [&](double t_s, double correction_um) {
-    const double drift_um = interpolate(time_s, axis.drift_um, t_s);
+  std::optional<LongStretch> without;  ///< where it cuts without a correction and leaves the tolerance
+
+ private:
+  void along(const NcStep& step, std::size_t i, double until_s) {
+    const double to_um = loses_offset(step, axis_.axis) ? 0.0 : takes_offset(step, axis_.axis) ? planned_um_ : has_um_;
+    const bool judged = cuts(step) || (taken_ && !loses_offset(step, axis_.axis));
+    if (until_s > from_s_) {
+      const double slope_um_s = (to_um - has_um_) / (until_s - from_s_);
+      add(from_s_, has_um_, judged);
+      while (sample_ < time_s_.size() && time_s_[sample_] <= from_s_) ++sample_;
+      double worst_um = course.residual_um.back();
+      const auto next = [&](double t_s, double c_um) {
+        add(t_s, c_um, judged);
+        if (std::abs(course.residual_um.back()) > std::abs(worst_um)) worst_um = course.residual_um.back();
+      };
+      for (; sample_ < time_s_.size() && time_s_[sample_] < until_s; ++sample_)
+        next(time_s_[sample_], has_um_ + slope_um_s * (time_s_[sample_] - from_s_));
+      next(until_s, to_um);
+      if ((!taken_ || step.ends_program) && judged) note_without(i, step, worst_um, until_s - from_s_);
+      from_s_ = until_s;
+    }
+    has_um_ = to_um;
+  }
+
+  void add(double t_s, double correction_um, bool judged) {
+    const double drift_um = interpolate(time_s_, axis_.drift_um, t_s), left_um = drift_um - correction_um;
+    if (judged) course.worst_um = std::max(course.worst_um, std::abs(left_um));
+    if (!course.time_s.empty() && course.time_s.back() == t_s && course.correction_um.back() == correction_um) {
+      return;  // the end of the block before
+    }
     course.time_s.push_back(t_s);
     course.drift_um.push_back(drift_um);
     course.correction_um.push_back(correction_um);
-    course.residual_um.push_back(drift_um - correction_um);
-  };
-  double from_s = 0.0, correction_um = planner.correction_um[0];
-  std::size_t sample = 0;
-  const auto go_to = [&](double until_s, double slope_um_s) {  // from from_s on, both ends included
-    add(from_s, correction_um);
-    while (sample < time_s.size() && time_s[sample] <= from_s) ++sample;
-    for (; sample < time_s.size() && time_s[sample] < until_s; ++sample)
-      add(time_s[sample], correction_um + slope_um_s * (time_s[sample] - from_s));
-    correction_um += slope_um_s * (until_s - from_s);
-    if (until_s > from_s) add(until_s, correction_um);
-    from_s = until_s;
-  };
-  for (std::size_t k = 1; k < planner.cells.size(); ++k) {
-    if (planner.correction_um[k] == planner.correction_um[k - 1]) continue;
-    go_to(planner.places[k].time_s, 0.0);
-    const double ramp_s = planner.places[k].in_force_s - planner.places[k].time_s;
-    if (ramp_s > 0.0)
-      go_to(planner.places[k].in_force_s, (planner.correction_um[k] - planner.correction_um[k - 1]) / ramp_s);
-    correction_um = planner.correction_um[k];
+    course.residual_um.push_back(left_um);
   }
-  go_to(end_s, 0.0);
-  return course;
+
+  void note_without(std::size_t i, const NcStep& step, double worst_um, double duration_s) {
+    if (!(std::abs(worst_um) > axis_.tolerance_um + kRounding_um)) return;
+    if (!without) without = LongStretch{.first = i, .last = i, .residual_um = worst_um};
+    without->last = i;
+    without->duration_s += duration_s;
+    if (std::abs(worst_um) > std::abs(without->residual_um)) without->residual_um = worst_um;
+    without->not_divisible = step.ends_program ? "the last block runs without corrections"
+                                               : "nobody has commanded the axis in G90 since the start, G28, G30 or G53";
+  }
+
+  const ProgramAxis& axis_;
+  std::span<const double> time_s_;
+  std::size_t sample_ = 0;
+  double from_s_ = 0.0, planned_um_ = 0.0, has_um_ = 0.0;
+  bool taken_ = false;
+};
+
+void check_commanded(const std::vector<NcStep>& steps, int axis) {
+  const auto takes = [&](const NcStep& step) { return takes_offset(step, axis) && !step.ends_program; };
+  if (std::any_of(steps.begin(), steps.end(), takes)) return;
+  throw InputError(steps.back().where,
+                   fmt::format("{} is never commanded in G90 before the last block, so no correction would ever reach it; "
+                               "leave {} out of `axes`, or name {} once in G90",
+                               "XYZ"[axis], "xyz"[axis], "XYZ"[axis]));
 }
 
 std::vector<LongStretch> long_stretches(const AxisPlanner& planner, const std::vector<NcStep>& steps, std::size_t axis,
@@ -215,6 +287,7 @@ ProgramSchedule plan_program(const std::vector<NcStep>& steps, std::span<const d
   std::map<Key, std::array<bool, 3>> used;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const ProgramAxis& axis = axes[a];
+    check_commanded(steps, axis.axis);
     AxisPlanner planner(steps, time_s, axis, options, end_s);
     planner.plan(entries, used);
     schedule.initial_um[axis.axis] = planner.correction_um[0];
@@ -231,7 +304,13 @@ ProgramSchedule plan_program(const std::vector<NcStep>& steps, std::span<const d
       used[key][axis.axis] = true;
     }
     schedule.schedules.push_back(schedule_of(planner.cells, planner.correction_um, boundaries_s, axis.tolerance_um));
-    schedule.courses.push_back(course_of(planner, axis, time_s, end_s));
+    CourseWriter writer(axis, time_s);
+    writer.run(steps, planner.places, planner.correction_um);
+    schedule.courses.push_back(std::move(writer.course));
+    if (writer.without) {
+      writer.without->axis = a;
+      schedule.long_stretches.push_back(*writer.without);
+    }
     const std::vector<LongStretch> found = long_stretches(planner, steps, a, axis.tolerance_um);
     schedule.long_stretches.insert(schedule.long_stretches.end(), found.begin(), found.end());
   }

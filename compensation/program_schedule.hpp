@@ -39,12 +39,14 @@ struct ProgramChange {
   std::array<double, 3> in_force_s{};  ///< the axis has it from then on: at once, or at the end of its rapid
 };
 
-/// Drift, correction and what is left of one axis. Where the correction steps, its time stands there twice.
+/// Drift, correction and what is left of one axis, as the axis has it: none until the end of the first block that commands it in
+/// G90, and none after G28, G30, G53 until it is commanded again. Where the correction steps, its time stands there twice.
 struct AxisCourse {
   std::vector<double> time_s, drift_um, correction_um, residual_um;
+  double worst_um = 0.0;  ///< largest |residual|; while the axis has no correction, of cutting blocks alone
 };
 
-/// Blocks between two permitted places during which one correction cannot keep the tolerance.
+/// Blocks between two permitted places during which one correction cannot keep the tolerance, or that cut without any.
 struct LongStretch {
   std::size_t first = 0, last = 0;  ///< steps
   std::size_t axis = 0;             ///< index among the axes
@@ -70,7 +72,7 @@ struct ProgramSchedule {
 /// than kPaperReach) may be divided; only as many parts are made as there are changes.
 /// @param steps   of the program, with times from 0
 /// @param time_s  of the drifts: from 0 to the end of the program, strictly increasing
-/// @throws InputError  for a drift without value
+/// @throws InputError  for a drift without value, for an axis that no block commands in G90
 [[nodiscard]] ProgramSchedule plan_program(const std::vector<NcStep>& steps, std::span<const double> time_s,
                                            const std::vector<ProgramAxis>& axes, const ProgramScheduleOptions& options);
 

@@ -21,6 +21,9 @@ constexpr double kRounding = 1e-9;     // part of a step that is rounding, not s
 long steps_passed(const DriftCell& cell, double step_um) {
   const double extreme_um = cell.high_um >= -cell.low_um ? cell.high_um : cell.low_um;
   const long n = std::max(0L, std::lround(std::ceil(std::abs(extreme_um) / step_um - kRounding)) - 1);
+  const double c_um = static_cast<double>(extreme_um < 0.0 ? -n : n) * step_um;
+  const bool kept = cell.high_um - c_um <= (1.0 + kRounding) * step_um && c_um - cell.low_um <= (1.0 + kRounding) * step_um;
+  if (!kept) return std::lround(0.5 * (cell.low_um + cell.high_um) / step_um);
   return extreme_um < 0.0 ? -n : n;
 }
 

@@ -33,7 +33,8 @@ inline constexpr double kPaperReach = 0.1;
 /// way back c steps back as the drift passes the multiples downward, so that d - c is in [0, step] again. A negative drift is the
 /// mirror image: c is negative and d - c in [-step, 0]. A drift that passes a multiple in the middle of a cell is corrected from
 /// the start of that cell on: d - c is then below 0 by at most what the drift does in the cell, and never above the step because
-/// a change had to wait. With `cost`, a change moves to the cheapest cell among those earlier (on the way back: later) where d - c
+/// a change had to wait. Where that leaves more than a step (a cell too long for one c), it is the multiple nearest the middle of the
+/// cell's range. With `cost`, a change moves to the cheapest cell among those earlier (on the way back: later) where d - c
 /// stays above -kPaperReach step.
 /// @param step_um  > 0
 /// @param cost     of a change at the start of each cell, or empty

@@ -98,6 +98,14 @@ INSTANTIATE_TEST_SUITE_P(
                       Allowed{"inverse_time", "G93\nG1 X1 F1\nG1 X2 F1\nM2\n", 4, "---"},
                       Allowed{"rapid_after_inverse_time", "G93\nG1 X1 F1\nG0 X2\nM2\n", 4, "R--"},
                       Allowed{"after_the_machines_zero", "G28\nG0 X1\nM2\n", 3, "R--"},
+                      Allowed{"after_a_tool_change", "M6\nG4 P1\nM2\n", 3, "---"},
+                      Allowed{"after_a_tool_change_that_x_has_left", "M6\nG0 X1\nG4 P1\nM2\n", 4, "r--"},
+                      Allowed{"without_the_length_of_the_tool", "G49\nG4 P1\nM2\n", 3, "---"},
+                      Allowed{"with_another_length", "G43 H2\nG4 P1\nM2\n", 3, "---"},
+                      Allowed{"put_with_another_length", "G43 H2 G0 Z9\nG4 P1\nM2\n", 3, "--r"},
+                      Allowed{"another_work_offset", "G55\nG4 P1\nM2\n", 3, "---"},
+                      Allowed{"after_a_deletable_block", "/G0 X1\nG4 P1\nM2\n", 3, "-rr"},
+                      Allowed{"put_behind_a_deletable_block", "/G0 X1 Y1\nG0 Y2\nG4 P1\nM2\n", 4, "-rr"},
                       Allowed{"no_time", "M8\nM2\n", 2, "---"}),
     [](const auto& each) { return each.param.name; });
 
@@ -141,19 +149,48 @@ TEST(CorrectedProgram, ForLinuxCncByValue) {
 }
 
 TEST(CorrectedProgram, ForSiemensAndHeidenhainByValue) {
-  const std::string text = "G0 X0 Z5\nG1 Z-1 F100\nX100\nM30\n";
+  const std::string text = "G21\nG0 X0 Z5\nG1 Z-1 F100\nX100\nM30\n";
   const std::vector<NcStep> steps = steps_of(text);
-  const std::vector<NcOffsetChange> changes = {{2, 0.0, {{std::nullopt, std::nullopt, -1e-5}}}};
+  const std::vector<NcOffsetChange> changes = {{3, 0.0, {{std::nullopt, std::nullopt, -1e-5}}}};
   NcOffsetOptions options = kXZ;
   options.dialect = NcDialect::kSiemens;
   EXPECT_EQ(corrected_nc_program(text, steps, {-5e-6, 0, 0}, changes, options).text,
-            "$P_BFRAME[X,TR]=99.995\n$P_BFRAME[Z,TR]=-20\nG0 X0 Z5\nG1 Z-1 F100\n$P_BFRAME[Z,TR]=-20.01\nG1 Z-1\nX100\n"
+            "G21\n$P_BFRAME[X,TR]=99.995\n$P_BFRAME[Z,TR]=-20\nG0 X0 Z5\nG1 Z-1 F100\n$P_BFRAME[Z,TR]=-20.01\nG1 Z-1\nX100\n"
             "$P_BFRAME[X,TR]=100\n$P_BFRAME[Z,TR]=-20\nM30\n");
   options.dialect = NcDialect::kHeidenhain;
   EXPECT_EQ(corrected_nc_program(text, steps, {-5e-6, 0, 0}, changes, options).text,
-            "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+99.995\nCYCL DEF 7.2 Z-20\nG0 X0 Z5\nG1 Z-1 F100\n"
-            "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+99.995\nCYCL DEF 7.2 Z-20.01\nG1 Z-1\nX100\n"
-            "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+100\nCYCL DEF 7.2 Z-20\nM30\n");
+            "G21\nG54 X+99.995 Z-20\nG0 X0 Z5\nG1 Z-1 F100\nG54 X+99.995 Z-20.01\nG1 Z-1\nX100\nG54 X+100 Z-20\nM30\n");
+  const std::string incremental = "G21\nG0 X0 Z5\nG91\nM30\n";
+  EXPECT_EQ(corrected_nc_program(incremental, steps_of(incremental), {-5e-6, 0, 0}, {}, options).text,
+            "G21\nG54 X+99.995 Z-20\nG0 X0 Z5\nG91\nG90 G54 X+100 Z-20\nG91\nM30\n");
+  for (const char* own : {"G54\n", "G53 G0 X0\n", "G28\n"}) {
+    const std::string text_own = "G21\nG0 X0\n" + std::string(own) + "M30\n";
+    EXPECT_THAT(
+        [&] {
+          (void)corrected_nc_program(text_own, steps_of(text_own), {1e-5, 0, 0}, {}, options);
+        },
+        ThrowsMessage<InputError>(::testing::AllOf(HasSubstr(":3:"), HasSubstr("datum shifts"))));
+  }
+}
+
+// A settable offset loads the base frame anew: the correction in force stands behind it once more.
+TEST(CorrectedProgram, ForSiemensStandsAgainBehindAWorkOffset) {
+  const std::string text = "G21 G54\nG0 X0 Z5\nG55\nG0 X1\nG54\nG0 X2\nM30\n";
+  NcOffsetOptions options = kXZ;
+  options.dialect = NcDialect::kSiemens;
+  const std::vector<NcOffsetChange> changes = {{3, 0.0, {{1e-5, std::nullopt, std::nullopt}}}};
+  const CorrectedNcProgram c = corrected_nc_program(text, steps_of(text), {0, 0, 0}, changes, options);
+  EXPECT_EQ(c.text,
+            "G21 G54\n$P_BFRAME[X,TR]=100\n$P_BFRAME[Z,TR]=-20\nG0 X0 Z5\nG55\n$P_BFRAME[X,TR]=100\n$P_BFRAME[Z,TR]=-20\n"
+            "$P_BFRAME[X,TR]=100.01\nG0 X1\nG54\n$P_BFRAME[X,TR]=100.01\n$P_BFRAME[Z,TR]=-20\nG0 X2\n"
+            "$P_BFRAME[X,TR]=100\n$P_BFRAME[Z,TR]=-20\nM30\n");
+  EXPECT_THAT(c.lines, ElementsAre(8));
+  const std::string moving = "G21 G54\nG0 X0 Z5\nG55 G0 X1\nM30\n";
+  EXPECT_THAT(
+      [&] {
+        (void)corrected_nc_program(moving, steps_of(moving), {1e-5, 0, 0}, {}, options);
+      },
+      ThrowsMessage<InputError>(::testing::AllOf(HasSubstr(":3:"), HasSubstr("block of its own"))));
 }
 
 // Offsets and points are written in the unit in force: 12.7 um are 0.0005 inch. In G91 the line that commands the axis once more is
@@ -176,10 +213,10 @@ TEST(CorrectedProgram, KeepsInchesAndIncrementalMode) {
 
 // X comes by the rapid, Z would not: the line that commands Z once more has X as well, so that no motion is seen on its own.
 TEST(CorrectedProgram, CommandsAllAxesOfAChangeTogether) {
-  const std::string text = "G0 X0 Z5\nG1 Z0 F100\nG0 X3\nM2\n";
-  const std::vector<NcOffsetChange> changes = {{2, 0.0, {{1e-5, std::nullopt, 2e-5}}}};
+  const std::string text = "G21\nG0 X0 Z5\nG1 Z0 F100\nG0 X3\nM2\n";
+  const std::vector<NcOffsetChange> changes = {{3, 0.0, {{1e-5, std::nullopt, 2e-5}}}};
   EXPECT_EQ(corrected_nc_program(text, steps_of(text), {0, 0, 0}, changes, kXZ).text,
-            "G10 L2 P1 X100 Z-20\nG0 X0 Z5\nG1 Z0 F100\nG10 L2 P1 X100.01 Z-19.98\nG1 X0 Z0\nG0 X3\n"
+            "G21\nG10 L2 P1 X100 Z-20\nG0 X0 Z5\nG1 Z0 F100\nG10 L2 P1 X100.01 Z-19.98\nG1 X0 Z0\nG0 X3\n"
             "G10 L2 P1 X100 Z-20\nM2\n");
 }
 
@@ -200,10 +237,10 @@ TEST(CorrectedProgram, WithoutChangesIsTheProgramItself) {
 
 // The last line has no end: what stands before it takes that of the others.
 TEST(CorrectedProgram, EndsItsOwnLinesAsTheOthersEnd) {
-  const std::string text = "G0 X1 Z0\r\nX2\r\nM2";
-  const std::vector<NcOffsetChange> changes = {{1, 0.0, {{1e-5, std::nullopt, std::nullopt}}}};
+  const std::string text = "G21\r\nG0 X1 Z0\r\nX2\r\nM2";
+  const std::vector<NcOffsetChange> changes = {{2, 0.0, {{1e-5, std::nullopt, std::nullopt}}}};
   EXPECT_EQ(corrected_nc_program(text, steps_of(text), {0, 0, 0}, changes, kXZ).text,
-            "G10 L2 P1 X100 Z-20\r\nG0 X1 Z0\r\nG10 L2 P1 X100.01\r\nX2\r\nG10 L2 P1 X100 Z-20\r\nM2");
+            "G21\r\nG10 L2 P1 X100 Z-20\r\nG0 X1 Z0\r\nG10 L2 P1 X100.01\r\nX2\r\nG10 L2 P1 X100 Z-20\r\nM2");
 }
 
 TEST(CorrectedProgram, RefusesAnotherWorkOffsetByItsLine) {
@@ -216,9 +253,60 @@ TEST(CorrectedProgram, RefusesAnotherWorkOffsetByItsLine) {
       ThrowsMessage<InputError>(::testing::AllOf(HasSubstr(":3:"), HasSubstr("G55"), HasSubstr("G54"))));
 }
 
+struct Refused {
+  const char* name;
+  const char* text;
+  const char* where;
+  const char* message;
+  int work_offset = 540;
+};
+
+class RefusedPrograms : public ::testing::TestWithParam<Refused> {};
+
+TEST_P(RefusedPrograms, AreNamedByTheirLine) {
+  const std::vector<NcStep> steps = steps_of(GetParam().text);
+  NcOffsetOptions options = kXZ;
+  options.work_offset = GetParam().work_offset;
+  EXPECT_THAT(
+      [&] {
+        (void)corrected_nc_program(GetParam().text, steps, {1e-5, 0, 0}, {}, options);
+      },
+      ThrowsMessage<InputError>(::testing::AllOf(HasSubstr(GetParam().where), HasSubstr(GetParam().message))));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, RefusedPrograms,
+    ::testing::Values(Refused{"no_unit", "S1000\nG0 X1\nM2\n", ":2:", "write G21 or G20"},
+                      Refused{"unit_with_the_first_motion", "S1000\nG20 G0 X1\nM2\n", ":2:", "write G21 or G20"},
+                      Refused{"unit_that_may_be_left_out", "/G20\nG0 X1\nM2\n", ":2:", "write G21 or G20"},
+                      Refused{"unit_behind_a_contour", "G41 D1\nG21\nG0 X1\nG40\nM2\n", ":1:", "write G21 or G20"},
+                      Refused{"contour_at_the_end", "G21\nG41 D1\nG1 X9 F10\nM2\n", ":4:", "write G40"},
+                      Refused{"contour_that_ends_with_the_program", "G21\nG41 D1\nG1 X9 F10\nG40 M2\n", ":4:", "write G40"},
+                      Refused{"work_offset_never_named", "G21\nG0 X1\nM2\n", ":2:", "G55, which `work_offset` names", 550},
+                      Refused{"work_offset_named_late", "G21\nG0 X1\nG55\nM2\n", ":2:", "G55, which `work_offset` names",
+                              550},
+                      Refused{"work_offset_that_may_be_left_out", "G21\n/G55\nG0 X1\nM2\n", ":3:", "G55, which", 550},
+                      Refused{"last_block_cuts", "G21\nG0 X1\nG1 X9 F10 M30\n", ":3:", "the last block cuts"},
+                      Refused{"last_block_cuts_an_arc", "G21\nG0 X1\nG2 X9 I4 F10 M30\n", ":3:", "the last block cuts"}),
+    [](const auto& each) { return each.param.name; });
+
+TEST(CorrectedProgram, NotesALastBlockThatMoves) {
+  const std::string text = "G21\nG0 X1\nG0 X9 M2\n";
+  const CorrectedNcProgram c = corrected_nc_program(text, steps_of(text), {1e-5, 0, 0}, {}, kXZ);
+  EXPECT_THAT(c.notes, ElementsAre(HasSubstr("line 3: the last block moves")));
+  EXPECT_EQ(c.text, "G21\nG10 L2 P1 X100.01 Z-20\nG0 X1\nG10 L2 P1 X100 Z-20\nG0 X9 M2\n");
+}
+
+// G10 is an error with G41 or G42 on.
+TEST(CorrectedProgram, SetsTheOffsetBeforeTheContour) {
+  const std::string text = "G21 G54\nM3\nG41 D1\nG0 X1\nG40\nM2\n";
+  EXPECT_EQ(corrected_nc_program(text, steps_of(text), {1e-5, 0, 0}, {}, kXZ).text,
+            "G21 G54\nM3\nG10 L2 P1 X100.01 Z-20\nG41 D1\nG0 X1\nG40\nG10 L2 P1 X100 Z-20\nM2\n");
+}
+
 TEST(CorrectedProgram, WantsAnAllowedPlace) {
-  const std::string text = "G0 X1 Z1\nG81 X1 Z-1 R1 F100\nX2\nG80\nM2\n";
-  const std::vector<NcOffsetChange> changes = {{2, 0.0, {{1e-5, std::nullopt, std::nullopt}}}};
+  const std::string text = "G21\nG0 X1 Z1\nG81 X1 Z-1 R1 F100\nX2\nG80\nM2\n";
+  const std::vector<NcOffsetChange> changes = {{3, 0.0, {{1e-5, std::nullopt, std::nullopt}}}};
   EXPECT_THROW((void)corrected_nc_program(text, steps_of(text), {0, 0, 0}, changes, kXZ), std::logic_error);
 }
 

@@ -21,8 +21,11 @@ namespace {
 using ::testing::HasSubstr;
 
 NcProgram read(const std::string& text) {
-  const NcSettings settings{
-      .rapid_m_s = 0.1, .tool_change_s = 8.0, .dwell_P_s = 1.0, .machine_zero_m = std::nullopt, .ignored = {}};
+  const NcSettings settings{.rapid_m_s = 0.1,
+                            .tool_change_s = 8.0,
+                            .dwell_P_s = 1.0,
+                            .machine_zero_m = std::array<double, 3>{0, 0, 0.2},
+                            .ignored = {}};
   return read_nc_program(write_file("program_schedule_test.ngc", text), settings);
 }
 
@@ -89,7 +92,11 @@ std::array<double, 3> follow(const std::vector<std::string>& original, const std
       if (!now || now->where.line != static_cast<int>(line)) continue;  // a comment
       std::array<double, 3> to_mm = taken_mm;
       for (int axis = 0; axis < 3; ++axis) {
-        if (now->named[axis]) to_mm[axis] = offset_mm[axis];
+        if (now->kind == NcStepKind::kMachine) {
+          to_mm[axis] = base_mm[axis];
+        } else if (now->named[axis] && now->absolute && !now->deletable) {
+          to_mm[axis] = offset_mm[axis];
+        }
       }
       if (now->end_s > now_s) go(now->end_s, to_mm);
       taken_mm = to_mm;
@@ -218,7 +225,7 @@ TEST(ProgramSchedule, LeavesEveryLineAsItWas) {
 
 // Passes to and fro with rapids between. X is named by every fourth block as a rapid, and 25 um take one change with much freedom.
 TEST(ProgramSchedule, PrefersARapidThatNamesTheAxis) {
-  std::string text = "G0 X0 Y0 Z5\n";
+  std::string text = "G21\nG0 X0 Y0 Z5\n";
   for (int i = 0; i < 10; ++i) text += "G1 X60 F60\nG0 Y" + std::to_string(i) + "\nG1 X0\nG0 X1 Z5\n";
   text += "M2\n";
   const NcProgram program = read(text);
@@ -266,7 +273,7 @@ TEST(ProgramSchedule, NamesALongBlockWithItsMicrometresAndDividesIt) {
 }
 
 TEST(ProgramSchedule, SaysWhatCannotBeDivided) {
-  const std::string text = "G0 X0 Y0 Z5\nG1 Z-1 F100\nG2 X0 Y0 I200 F10\nG4 P9000\nG0 Z5\nM2\n";
+  const std::string text = "G21\nG0 X0 Y0 Z5\nG1 Z-1 F100\nG2 X0 Y0 I200 F10\nG4 P9000\nG0 Z5\nM2\n";
   const NcProgram program = read(text);
   const std::vector<ProgramAxis> axes = {{0, 1.0, 5.0, {0, 60}}};
   const Corrected c = correct(text, program, std::vector<double>{0, program.duration_s()}, axes, {.split = true});
@@ -284,6 +291,58 @@ TEST(ProgramSchedule, BeginsAnOperationAtAToolChange) {
   EXPECT_DOUBLE_EQ(plan.schedules[0].operations[1].start_s, 601.0);
   EXPECT_DOUBLE_EQ(plan.schedules[0].operations[1].end_s, 609.0);
   EXPECT_TRUE(plan.changes.empty());
+}
+
+// Z takes its 8 um at the end of the pass that names it first, and loses them at the machine's zero: the pass behind that has none.
+TEST(ProgramSchedule, CountsACorrectionFromTheBlockThatCommandsTheAxis) {
+  const std::string text = "G21\nG0 X0\nG1 X200 F20\nG1 X0 Z1\nG1 X200\nG28\nG1 X50 F20\nG0 Z5\nG1 X9\nM2\n";
+  const NcProgram program = read(text);
+  const std::vector<double> time_s = {0, program.duration_s()};
+  for (const double tolerance_um : {5.0, 10.0}) {
+    const std::vector<ProgramAxis> axes = {{2, 1.0, tolerance_um, {8, 8}}};
+    const Corrected c = correct(text, program, time_s, axes, {.policy = SchedulePolicy::kPaper});
+    const AxisCourse& course = c.plan.courses[0];
+    EXPECT_DOUBLE_EQ(course.worst_um, 8.0);
+    EXPECT_NEAR(follow(lines_of(text), lines_of(c.text), program, time_s, axes)[2], 8.0, 1e-9);
+    if (tolerance_um > 8.0) {
+      EXPECT_TRUE(c.plan.long_stretches.empty());
+      continue;
+    }
+    const auto has_um = [&](int line, double share) {
+      const NcStep& step = program.steps[static_cast<std::size_t>(line) - 1];
+      return interpolate(course.time_s, course.correction_um, step.start_s + share * step.duration_s());
+    };
+    EXPECT_DOUBLE_EQ(has_um(3, 0.5), 0.0);
+    EXPECT_DOUBLE_EQ(has_um(4, 0.5), 2.5);
+    EXPECT_DOUBLE_EQ(has_um(5, 0.5), 5.0);
+    EXPECT_DOUBLE_EQ(has_um(7, 0.5), 0.0);
+    EXPECT_DOUBLE_EQ(has_um(9, 0.5), 5.0);
+    ASSERT_EQ(c.plan.long_stretches.size(), 1u);
+    EXPECT_EQ(c.plan.long_stretches[0].first, 2u);
+    EXPECT_EQ(c.plan.long_stretches[0].last, 6u);
+    EXPECT_THAT(c.plan.long_stretches[0].not_divisible, HasSubstr("nobody has commanded the axis"));
+  }
+}
+
+// Warm from the start, but nothing is cut before the axis is commanded: a tool change at 30 um counts for nothing.
+TEST(ProgramSchedule, JudgesWhatIsCut) {
+  const NcProgram program = read("T1 M6\nG0 X0 Z5\nG1 X50 F100\nM2\n");
+  const std::vector<ProgramAxis> axes = {{2, 1.0, 5.0, {30, 30}}};
+  const ProgramSchedule plan = plan_program(program.steps, std::vector<double>{0, program.duration_s()}, axes, {});
+  EXPECT_DOUBLE_EQ(plan.courses[0].worst_um, 0.0);
+  EXPECT_DOUBLE_EQ(plan.courses[0].residual_um.front(), 30.0);
+}
+
+TEST(ProgramSchedule, RefusesAnAxisThatNoBlockCommandsInG90) {
+  for (const char* text : {"G0 X0\nG1 X9 F10\nM2\n", "G0 X0\nG91 G1 Z9 F10\nM2\n", "G0 X0\nG53 G0 Z0\nM2\n",
+                           "G0 X0\n/G0 Z1\nM2\n", "G0 X0\nG0 Z1 M2\n"}) {
+    const NcProgram program = read(text);
+    const std::vector<ProgramAxis> axes = {{2, 1.0, 5.0, {0, 1}}};
+    const std::vector<double> time_s = {0, program.duration_s()};
+    EXPECT_THAT([&] { (void)plan_program(program.steps, time_s, axes, {}); },
+                ::testing::ThrowsMessage<InputError>(HasSubstr("Z is never commanded in G90")))
+        << text;
+  }
 }
 
 // A drift of 30 um from the start: the axis stands 30 um too far, so its offset goes back; against the axis, forward.

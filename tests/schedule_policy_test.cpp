@@ -59,6 +59,13 @@ TEST(PaperPolicy, YieldsThePapersExample) {
   }
 }
 
+// From 2 to 26 um in one cell, with a step of 3: no multiple serves, 15 misses by the least (14 is the middle). The rule serves cells
+// of 2 and 4.5 um.
+TEST(PaperPolicy, TakesTheMiddleOfACellTooLongForOneMultiple) {
+  const std::vector<DriftCell> cells = {{0, 1, 0, 2}, {1, 2, 2, 26}, {2, 3, 26, 28}, {3, 4, 28, 32.5}, {4, 5, -26, -2}};
+  EXPECT_EQ(steps_of_tolerance(cells, 3.0), (std::vector<double>{0, 15, 27, 30, -15}));
+}
+
 // Up to 25 um and back to -25: forward at 10 and 20, back when it passes them downward, the mirror image below zero.
 TEST(PaperPolicy, StepsBackAtTheSameMultiplesAndMirrorsNegativeDrift) {
   const std::vector<double> t_s = {0, 250, 750, 1000}, d_um = {0, 25, -25, 0};

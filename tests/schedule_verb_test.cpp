@@ -170,8 +170,13 @@ TEST(ScheduleVerb, CountsTheDriftFromTheReferenceOrFromTheStart) {
 TEST(ScheduleVerb, SpeaksTheDialectThatIsAskedFor) {
   const std::string siemens = read_text(run_schedule("siemens", passes(), "--dialect siemens").folder / "part.ngc");
   EXPECT_THAT(siemens, AllOf(HasSubstr("$P_BFRAME[Z,TR]=-20.0"), Not(HasSubstr("G10"))));
-  const std::string heidenhain = read_text(run_schedule("heidenhain", passes(), "--dialect heidenhain").folder / "part.ngc");
-  EXPECT_THAT(heidenhain, AllOf(HasSubstr("CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+"), Not(HasSubstr("G10"))));
+  const std::string own_datum = passes();
+  std::string without = own_datum;
+  without.replace(without.find(" G54"), 4, "");
+  const std::string heidenhain = read_text(run_schedule("heidenhain", without, "--dialect heidenhain").folder / "part.ngc");
+  EXPECT_THAT(heidenhain, AllOf(HasSubstr("\nG54 X+100 Z-20\n"), Not(HasSubstr("G10"))));
+  const CommandOutcome refused = run_schedule("heidenhain_datum", own_datum, "--dialect heidenhain").outcome;
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
 }
 
 TEST(ScheduleVerb, LinuxCncAcceptsTheProgramAndRunsTheSamePath) {
@@ -198,6 +203,24 @@ TEST(ScheduleVerb, LinuxCncAcceptsTheProgramAndRunsTheSamePath) {
     EXPECT_LT(lowest_mm, -0.02);
     EXPECT_GT(lowest_mm, -0.1);
   }
+}
+
+// rs274 refuses G10 with cutter compensation on: the offset stands in front of G41.
+TEST(ScheduleVerb, LinuxCncAcceptsAProgramThatBeginsWithAContour) {
+  const Scheduled s = run_schedule("contour",
+                                   "G21 G90 G17 G54 G94\nS2000 M3\nG41 D0\nG0 X10 Y10 Z5\nG1 X200 F20\nG1 Y100\n"
+                                   "G40 G0 X0\nG0 Z9\nM30\n");
+  ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
+  if (!has_rs274()) GTEST_SKIP() << kNoRs274;
+  const Path path = rs274(s.folder / "part.ngc");
+  EXPECT_TRUE(path.accepted) << path.said;
+}
+
+TEST(ScheduleVerb, NotesHaltsAndALastBlockThatMoves) {
+  const Scheduled s = run_schedule("notes", "G21 G90 G54\nS2000 M3\nG0 X0 Z5\nG1 X100 F5\nM0\nG0 X0\nG0 X9 M30\n");
+  ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
+  EXPECT_THAT(s.outcome.output,
+              AllOf(HasSubstr("line 5: M0: a halt counts as no time"), HasSubstr("line 7: the last block moves")));
 }
 
 TEST(ScheduleVerb, NamesBlocksThatCannotKeepTheToleranceAndDividesThem) {
