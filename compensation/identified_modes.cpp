@@ -246,7 +246,6 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
     throw SolveError(fmt::format("modes could not be fitted to the tests: {}", summary.message));
   Fitted f{start, summary.final_cost, {}};
   if (with_covariance) {
-    std::vector<double> jacobian_values;
     ceres::CRSMatrix jacobian;
     problem.Evaluate({}, nullptr, nullptr, nullptr, &jacobian);
     const int n_free = jacobian.num_cols;  // a growth that is held comes last and has no column

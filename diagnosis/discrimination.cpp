@@ -35,7 +35,7 @@ Outlook outlook(const Fitter& ahead, const Explanation& of, Twin::Workspace& wor
     for (const Knob& k : c.knobs) {
       const Eigen::Index i = at++;
       // The fit has no slope by these either: what is not known of them is left out.
-      if (c.all_or_nothing || (k.is_time && k.reading_only)) continue;
+      if (c.all_or_nothing || k.is_jump()) continue;
       double step = k.step;
       if (k.value(of.x[i] + step) == k.value(of.x[i])) step = -step;  // at its bound
       Eigen::VectorXd x = of.x;

@@ -30,7 +30,7 @@ Explanation explanation_of(const Fitter& fitter, Hypothesis hypothesis, const Fi
   Eigen::Index at = n_scatter;
   for (const Claim& c : e.hypothesis) {  // what has no slope has no covariance: it stays where the search has put it
     for (const Knob& k : c.knobs) {
-      if (c.all_or_nothing || (k.is_time && k.reading_only)) {
+      if (c.all_or_nothing || k.is_jump()) {
         e.covariance.row(at).setZero();
         e.covariance.col(at).setZero();
         e.covariance(at, at) = 1e-12;

@@ -31,16 +31,11 @@ std::vector<const Knob*> knobs_of(const Hypothesis& hypothesis) {
   return knobs;
 }
 
-/// The time of a jump in a reading has no slope: its misfit is flat between two rows.
-bool is_jump(const Knob& k) {
-  return k.is_time && k.reading_only;
-}
-
 /// Whether a knob is turned by slopes.
 std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
   std::vector<char> smooth;
   for (const Claim& c : hypothesis) {
-    for (const Knob& k : c.knobs) smooth.push_back(!is_jump(k) && !c.all_or_nothing);
+    for (const Knob& k : c.knobs) smooth.push_back(!k.is_jump() && !c.all_or_nothing);
   }
   return smooth;
 }
@@ -50,7 +45,7 @@ std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
 double price_of_times(const Claim& claim) {
   double price = 0.0;
   for (const Knob& k : claim.knobs) {
-    if (is_jump(k)) price += std::log(std::max(2.0, k.prior_sd * std::sqrt(12.0) / 120.0));
+    if (k.is_jump()) price += std::log(std::max(2.0, k.prior_sd * std::sqrt(12.0) / 120.0));
   }
   return price;
 }

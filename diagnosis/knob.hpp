@@ -23,6 +23,8 @@ struct Knob {
   bool reading_only = false;          ///< the machine's own response does not change
   std::function<void(TwinState&, double value)> set;
 
+  /// The time of a jump in a reading has no slope: its misfit is flat between two rows.
+  [[nodiscard]] bool is_jump() const { return is_time && reading_only; }
   [[nodiscard]] double value(double x) const;
   /// The x of a value.
   [[nodiscard]] double x(double value) const;

@@ -226,7 +226,6 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   Fit best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
   if (best_fit.prediction.empty())
     throw SolveError("the scenario's own numbers cannot be fitted: the machine has no solution near them");
-  if (best_fit.prediction.empty()) throw SolveError("the scenario's own machine has no solution on a measured run");
   // A loud effect bends scatter out of shape: candidates are then weighed where the scenario stands, not where scatter was bent to.
   const bool is_bent =
       best_fit.x.cwiseQuotient(fitter.nuisance_sd()).squaredNorm() > kBent * static_cast<double>(fitter.n_nuisance());
