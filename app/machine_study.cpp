@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compensation/thermometers.hpp"
 #include "scenarios/as_recorded.hpp"
 
 namespace driftwright::app {
@@ -19,16 +20,6 @@ std::vector<Record> training_records(const MachineStudy& study) {
   std::vector<Record> records;
   for (const SimulatedRun& run : study.train) records.push_back(run.record);
   return records;
-}
-
-/// The record as thermometers of that resolution would have given it; displacements as they are.
-Record as_read(Record record, double resolution_K) {
-  if (resolution_K == 0.0) return record;
-  for (Channel& channel : record.channels) {
-    if (channel.unit != "degC") continue;
-    for (double& value : channel.values) value = resolution_K * std::round(value / resolution_K);
-  }
-  return record;
 }
 
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -95,7 +86,7 @@ void fit_modal(MachineStudy& study, const Scenario& scenario, const Model& model
 
 void fit_regression_on_best(MachineStudy& study, const scenarios::Study& settings) {
   std::vector<Record> records = training_records(study);
-  for (Record& record : records) record = as_read(std::move(record), settings.sensor_resolution_K);
+  for (Record& record : records) record = as_read(std::move(record), {.resolution_K = settings.sensor_resolution_K}, 0);
   study.ranking = rank_channels(records, settings.target, candidates(settings, records.front()));
   const std::vector<std::string> inputs = best(study.ranking, settings.sensors_to_choose);
   for (const std::string& d : study.displacements) {
@@ -112,7 +103,7 @@ void correct(MachineStudy& study, const Scenario& scenario) {
   const Record& record = study.judged.record;
   // The injector works on readings of the run itself. A schedule is written before the run: what it may know of the
   // temperatures is the modal model's prediction of them.
-  const Record readings = as_read(record, settings.sensor_resolution_K);
+  const Record readings = as_read(record, {.resolution_K = settings.sensor_resolution_K}, 0);
   const Record& ahead = study.modal_prediction;
   for (std::size_t d = 0; d < study.displacements.size(); ++d) {
     const std::string& channel = study.displacements[d];

@@ -1,0 +1,73 @@
+#include "compensation/thermometers.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "compensation/score.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::NanSensitiveDoubleEq;
+using ::testing::ThrowsMessage;
+
+Record four_rows() {
+  return {.source = "four",
+          .time_s = {0, 10, 20, 30},
+          .channels = {{"speed", "rpm", {0, 1000, 1000, 0}},
+                       {"a", "degC", {20.0, 21.04, NAN, 23.06}},
+                       {"b", "degC", {20.0, 20.0, 20.5, 20.5}},
+                       {"drift", "um", {0.0, 1.23, 2.34, 3.45}}}};
+}
+
+TEST(Thermometers, RoundTemperaturesAndNothingElse) {
+  const Record r = as_read(four_rows(), {.resolution_K = 0.1}, 1);
+  EXPECT_THAT(r.at("a").values, ElementsAre(20.0, 21.0, NanSensitiveDoubleEq(NAN), DoubleNear(23.1, 1e-12)));
+  EXPECT_EQ(r.at("drift").values, four_rows().at("drift").values);
+}
+
+TEST(Thermometers, NoiseHasTheDeviationAskedForAndIsEachSensorsOwn) {
+  Record r{.source = "still", .time_s = {}, .channels = {{"a", "degC", {}}, {"b", "K", {}}}};
+  for (int i = 0; i < 20000; ++i) {
+    r.time_s.push_back(i);
+    for (Channel& c : r.channels) c.values.push_back(0.0);
+  }
+  const Record noisy = as_read(r, {.noise_K = 0.1}, 7);
+  double product = 0.0;
+  for (int i = 0; i < 20000; ++i) product += noisy.at("a").values[i] * noisy.at("b").values[i] / 20000;
+  EXPECT_NEAR(score(noisy.at("a").values).rmse, 0.1, 5 * 0.1 / std::sqrt(2.0 * 20000));  // five standard errors
+  EXPECT_NEAR(product, 0.0, 5 * 0.01 / std::sqrt(20000.0));
+  EXPECT_EQ(noisy.at("a").values, as_read(r, {.noise_K = 0.1}, 7).at("a").values);
+  EXPECT_NE(noisy.at("a").values, as_read(r, {.noise_K = 0.1}, 8).at("a").values);
+}
+
+TEST(Thermometers, FailAsTheyAreTold) {
+  const Record r = four_rows();
+  EXPECT_THAT(with_failed_sensor(r, "a", SensorFailure::kStuck, 20.0).at("a").values,
+              ElementsAre(20.0, 21.04, 21.04, 21.04));
+  EXPECT_THAT(with_failed_sensor(r, "b", SensorFailure::kOpen, 15.0).at("b").values,
+              ElementsAre(20.0, 20.0, NanSensitiveDoubleEq(NAN), NanSensitiveDoubleEq(NAN)));
+  EXPECT_THAT(with_failed_sensor(r, "b", SensorFailure::kDetached, 30.0, "a").at("b").values,
+              ElementsAre(20.0, 20.0, 20.5, 23.06));
+  EXPECT_THAT([&] { (void)with_failed_sensor(r, "b", SensorFailure::kDetached, 0.0, "drift"); },
+              ThrowsMessage<InputError>(HasSubstr("'b' in degC cannot read 'drift' in um")));
+}
+
+TEST(Sampling, IsLinearBetweenRowsAndHoldsTheSpeed) {
+  const Record r = sampled(four_rows(), 4.0);
+  EXPECT_THAT(r.time_s, ElementsAre(0, 4, 8, 12, 16, 20, 24, 28));
+  EXPECT_THAT(r.at("speed").values, ElementsAre(0, 0, 0, 1000, 1000, 1000, 1000, 1000));
+  EXPECT_NEAR(r.at("drift").values[1], 0.4 * 1.23, 1e-12);
+  EXPECT_TRUE(std::isnan(r.at("a").values[4]));
+  EXPECT_EQ(sampled(four_rows(), 10.0).at("drift").values, four_rows().at("drift").values);
+  EXPECT_THROW((void)sampled(four_rows(), 0.0), RangeError);
+}
+
+}  // namespace
+}  // namespace driftwright::compensation
