@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/random.hpp"
+#include "compensation/observability.hpp"
 #include "compensation/schedule.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "solver/propagator.hpp"
@@ -54,19 +55,6 @@ TimeSeries from_start(TimeSeries hall) {
   const double start_K = hall.at(0.0);
   for (double& v : hall.value) v -= start_K;
   return hall;
-}
-
-/// A linear model off by random factors: what a hybrid may start from.
-solver::ReducedSystem scattered(solver::ReducedSystem system, double sigma, int seed) {
-  Random random(static_cast<std::uint64_t>(seed), 2);
-  for (auto& s : system.sources) s.load *= std::exp(sigma * random.normal());
-  for (auto& e : system.exchanges) {
-    const double f = std::exp(sigma * random.normal());
-    e.matrix *= f;
-    e.to_hall *= f;
-    e.offset *= f;
-  }
-  return system;
 }
 
 PredictionError error_of(const Eigen::MatrixXd& truth, const Eigen::MatrixXd& predicted, const TestChannels& channels,

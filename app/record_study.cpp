@@ -1,40 +1,26 @@
 #include "app/record_study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
-#include "scenarios/as_recorded.hpp"
+#include "base/errors.hpp"
+#include "compensation/product_sums.hpp"
+#include "compensation/regression_quality.hpp"
 
 namespace driftwright::app {
 namespace {
 
-using namespace compensation;
-
-std::vector<std::string> candidates(const scenarios::Study& settings, const Record& record) {
-  if (!settings.candidates.empty()) return settings.candidates;
-  std::vector<std::string> names;
-  for (const Channel& c : record.channels) {
-    const bool is_temperature = (c.unit == "degC" || c.unit == "K") && c.name != scenarios::kAmbient;
-    if (is_temperature && &c != record.find(settings.target)) names.push_back(c.name);
-  }
-  if (names.empty()) throw InputError(fmt::format("{}: no temperature channel (degC or K) to choose from", record.source));
-  return names;
-}
-
-std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
-  std::vector<double> d;
-  for (std::size_t i = 0; i < a.size(); ++i) d.push_back(a[i] - b[i]);
-  return d;
-}
+constexpr std::size_t kMostPairs = 5;  // of near-duplicates that are named
+constexpr double kWorthAWord = 0.01;   // share of rows in which a sensor is missing
 
 }  // namespace
 
-RecordStudy read_records(const scenarios::Study& study, const RecordOptions& options) {
-  RecordStudy records;
-  records.target = study.target;
+StudyRecords read_records(const scenarios::Study& study, const RecordOptions& options) {
+  StudyRecords records;
   for (const std::string& file : options.train) {
     for (const std::string& test : options.test) {
       std::error_code ignored;
@@ -55,30 +41,43 @@ RecordStudy read_records(const scenarios::Study& study, const RecordOptions& opt
   return records;
 }
 
-void rank(RecordStudy& study, const scenarios::Study& settings) {
-  study.ranking = rank_channels(study.train, study.target, candidates(settings, study.train.front()));
-}
-
-void fit_and_judge(RecordStudy& study, const scenarios::Study& settings) {
-  rank(study, settings);
-  study.regression = fit_regression(study.train, best(study.ranking, settings.sensors_to_choose), study.target);
-  for (const Record& test : study.test) {
-    const std::vector<double>& measured = test.at(study.target).values;
-    const std::vector<std::pair<const char*, std::vector<double>>> predictions = {
-        {"regression", study.regression.predict(test)},
-        {"mean of the training records", baseline_mean(study.train, test, study.target)},
-        {"training records at the same time", baseline_same_time(study.train, test, study.target)}};
-    // Judged on the rows that all three can predict, or they could not be compared.
-    std::vector<double> common = measured;
-    for (const auto& [strategy, predicted] : predictions) {
-      for (std::size_t i = 0; i < common.size(); ++i) {
-        if (std::isnan(predicted[i])) common[i] = predicted[i];
+std::vector<std::string> sensor_warnings(const std::vector<Record>& records, const std::vector<std::string>& candidates) {
+  std::vector<std::string> lines;
+  std::vector<std::string> moving;
+  for (const std::string& name : candidates) {
+    std::size_t n = 0, n_missing = 0;
+    double low = INFINITY, high = -INFINITY;
+    for (const Record& record : records) {
+      for (double v : record.at(name).values) {
+        ++n;
+        if (std::isnan(v)) {
+          ++n_missing;
+          continue;
+        }
+        low = std::min(low, v);
+        high = std::max(high, v);
       }
     }
-    for (const auto& [strategy, predicted] : predictions) {
-      study.judged.push_back({strategy, test.source, predicted, score(difference(common, predicted))});
+    const double missing = static_cast<double>(n_missing) / static_cast<double>(n);
+    if (missing > kWorthAWord)
+      lines.push_back(fmt::format("{} has no value in {:.0f} % of the rows; no fit that uses it sees these rows", name,
+                                  100.0 * missing));
+    if (n_missing < n && !(high > low)) {
+      lines.push_back(
+          fmt::format("{} reads {:.4g} in every row: flat, broken or not connected; it is not chosen", name, low));
+    } else if (n_missing < n) {
+      moving.push_back(name);
     }
   }
+  if (moving.size() < 2) return lines;
+  const std::vector<compensation::NearDuplicate> pairs = compensation::near_duplicates(records, moving);
+  for (std::size_t i = 0; i < std::min(pairs.size(), kMostPairs); ++i) {
+    lines.push_back(fmt::format(
+        "{} and {} move as one (correlation {:.4f}); a regression on both shares the effect between them arbitrarily",
+        pairs[i].first, pairs[i].second, pairs[i].correlation));
+  }
+  if (pairs.size() > kMostPairs) lines.push_back(fmt::format("so do {} more pairs", pairs.size() - kMostPairs));
+  return lines;
 }
 
 }  // namespace driftwright::app

@@ -15,6 +15,7 @@ CompleteRows complete_rows(std::span<const Record> records, const std::vector<st
   CompleteRows rows;
   std::vector<std::vector<double>> kept;
   for (const Record& record : records) {
+    rows.first.push_back(static_cast<Eigen::Index>(kept.size()));
     std::vector<const Channel*> columns;
     for (std::size_t j = 0; j < channels.size(); ++j) {
       columns.push_back(&record.at(channels[j]));
@@ -35,6 +36,7 @@ CompleteRows complete_rows(std::span<const Record> records, const std::vector<st
     }
   }
 
+  rows.first.push_back(static_cast<Eigen::Index>(kept.size()));
   rows.values.resize(static_cast<Eigen::Index>(kept.size()), static_cast<Eigen::Index>(channels.size()));
   for (Eigen::Index i = 0; i < rows.values.rows(); ++i) {
     const std::vector<double>& row = kept[static_cast<std::size_t>(i)];

@@ -11,9 +11,10 @@
 namespace driftwright::compensation {
 
 struct CompleteRows {
-  Eigen::MatrixXd values;          ///< n_rows x n_channels, each column in its channel's unit
-  std::vector<std::string> units;  ///< one per channel
-  int n_left_out = 0;              ///< rows in which at least one of the channels is missing
+  Eigen::MatrixXd values;           ///< n_rows x n_channels, each column in its channel's unit
+  std::vector<std::string> units;   ///< one per channel
+  std::vector<Eigen::Index> first;  ///< first row of each record, and n_rows behind them: n_records + 1
+  int n_left_out = 0;               ///< rows in which at least one of the channels is missing
 };
 
 /// Stacks the records in their order and keeps the rows in which all of `channels` have a value.

@@ -1,6 +1,7 @@
 #pragma once
 // Grey relational analysis: which sensors move like the drift? A ranking by closeness of shape, no model.
 
+#include <Eigen/Core>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,9 +20,16 @@ enum class Image {
   kRange          ///< x' = (x - min) / (max - min); all series fill [0, 1]
 };
 
+/// What of a series is ranked.
+enum class Quantity {
+  kAsRecorded,
+  kRise  ///< minus its first value in each record: all series start at 0, and degC and K are the same
+};
+
 struct GreyOptions {
   double rho = 0.5;  ///< distinguishing coefficient [-], 0 < rho <= 1
   Image image = Image::kAutomatic;
+  Quantity quantity = Quantity::kAsRecorded;
   /// A series that falls while the reference rises tells as much as one that rises. With `true`, the image of
   /// a candidate whose covariance with the reference is negative is mirrored: x' -> 1 - x' (range), x' -> 2 -
   /// x' (initial and mean value, whose images start at or scatter about 1). `false` is Deng's definition to
@@ -31,9 +39,11 @@ struct GreyOptions {
 
 struct RankedChannel {
   std::string name;
-  std::optional<double> grade;  ///< grey relational grade [-] in (0, 1]; none where the channel has no image
-  bool reversed = false;        ///< its image was mirrored
-  std::string note;             ///< why there is no grade; else empty
+  std::optional<double> grade;     ///< Deng's grade [-] in (0, 1]; none where the channel has no image
+  std::optional<double> absolute;  ///< absolute grade [-] of the same images
+  std::optional<double> slope;     ///< slope grade [-] of the same images
+  bool reversed = false;           ///< its image was mirrored
+  std::string note;                ///< why there is no grade; else empty
 };
 
 struct Ranking {
@@ -43,6 +53,40 @@ struct Ranking {
   int n_samples = 0;                    ///< rows used
   int n_left_out = 0;                   ///< rows left out because a channel was missing in them
 };
+
+/// The dimensionless series that grades compare.
+struct GreyImages {
+  Eigen::MatrixXd reference;        ///< n_samples x 1
+  Eigen::MatrixXd candidates;       ///< n_samples x n; zero where a candidate has no image
+  std::vector<Eigen::Index> first;  ///< first row of each record, and n_samples behind them
+  std::vector<bool> reversed;
+  std::vector<std::string> note;  ///< why a candidate has no image; else empty
+  Image image = Image::kRange;
+  std::string reason;
+  int n_left_out = 0;
+};
+/// @throws  as rank_channels()
+[[nodiscard]] GreyImages grey_images(std::span<const Record> records, const std::string& reference,
+                                     const std::vector<std::string>& candidates, const GreyOptions& options = {});
+
+/// Deng's grade of each column of `candidates` (n_samples x m) against `reference` (n_samples x 1); formula below.
+[[nodiscard]] Eigen::VectorXd deng_grades(const Eigen::MatrixXd& reference, const Eigen::MatrixXd& candidates, double rho);
+
+/// Absolute grade of grey incidence of each column: likeness of the areas under the series counted from their starts,
+///
+///     s = sum over records of the trapezoid sum of x'(k) - x'(1) over k,   grade = (1 + |s0| + |si|) / (1 + |s0| + |si| + |si - s0|)
+///
+/// The areas are divided by the number of samples, so that a record sampled twice as often has the same grade.
+/// Source: Liu & Lin, Grey Systems: Theory and Applications (2010), section 5.3.
+[[nodiscard]] Eigen::VectorXd absolute_grades(const GreyImages& images);
+
+/// Slope grade of each column: likeness of the slopes D(k) = (n - 1) (x'(k+1) - x'(k)), per length of the series,
+///
+///     grade = mean_k (1 + |D0(k)|) / (1 + |D0(k)| + |D0(k) - Di(k)|)
+///
+/// Steps from one record to the next do not count. Readings in coarse steps have no slopes to speak of: their grades are low
+/// whatever they tell. Source: Dang, Liu & Liu, Engineering Science 6 (2004) no. 3, 41-44.
+[[nodiscard]] Eigen::VectorXd slope_grades(const GreyImages& images);
 
 /// Grey relational grades of `candidates` against `reference` over the records laid end to end.
 ///

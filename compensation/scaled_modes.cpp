@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "compensation/observability.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::compensation {
@@ -14,15 +15,6 @@ namespace {
 
 constexpr double kPrior = 0.3;  // 1 sigma of a factor's logarithm: tests decide
 constexpr double kRowsEvery_s = 300.0;
-
-void scale(solver::Exchange<Eigen::MatrixXd>& exchange, double factor) {
-  exchange.matrix *= factor;
-  exchange.to_hall *= factor;
-  exchange.flow *= factor;
-  exchange.offset *= factor;
-  exchange.hall_sum *= factor;
-  exchange.offset_sum *= factor;
-}
 
 /// The model with factors: sources, hall, joints, rates, then displacements.
 solver::ReducedSystem scaled(const solver::ReducedSystem& model, const double* log_factor) {

@@ -33,6 +33,15 @@ std::vector<double> baseline_mean(std::span<const Record> train, const Record& t
   return std::vector<double>(test.n_samples(), rows.values.mean());
 }
 
+std::vector<double> baseline_last(std::span<const Record> train, const Record& test, const std::string& channel) {
+  for (auto record = train.rbegin(); record != train.rend(); ++record) {
+    const std::vector<double>& values = record->at(channel).values;
+    const auto last = std::find_if(values.rbegin(), values.rend(), [](double v) { return std::isfinite(v); });
+    if (last != values.rend()) return std::vector<double>(test.n_samples(), *last);
+  }
+  throw InputError(fmt::format("channel '{}' has no value in any training record", channel));
+}
+
 std::vector<double> baseline_same_time(std::span<const Record> train, const Record& test, const std::string& channel) {
   if (train.empty()) throw InputError("no training record was given; at least one is needed");
   std::vector<double> predicted;

@@ -29,6 +29,10 @@ struct Score {
 [[nodiscard]] std::vector<double> baseline_mean(std::span<const Record> train, const Record& test,
                                                 const std::string& channel);
 
+/// The same with the last training value of the last record that has one, as if the machine stayed where it was left.
+[[nodiscard]] std::vector<double> baseline_last(std::span<const Record> train, const Record& test,
+                                                const std::string& channel);
+
 /// Baseline 2: at each row of `test` the average of the training records at the same time, linear between
 /// samples. A record counts only inside its own time span and not beside its missing values; where none
 /// counts, NaN.

@@ -16,6 +16,14 @@ constexpr double kShortestShare = 0.5, kLongestShare = 1.5;  // of a section's m
 
 }  // namespace
 
+Programme::Random read_random(const ConfigMap& in) {
+  Programme::Random random;
+  random.count = in.integer("count", 1, 1000);
+  random.sections = in.integer("sections", 2, 100, random.sections);
+  random.duration_s = in.quantity("duration", "s", 60.0, 1e6);
+  return random;
+}
+
 Programme read_programme(const ConfigMap& in) {
   Programme p;
   p.where = in.where();
@@ -44,9 +52,7 @@ Programme read_programme(const ConfigMap& in) {
     }
   }
   if (const auto random = in.optional_map("random")) {
-    p.random.count = random->integer("count", 1, 1000);
-    p.random.sections = random->integer("sections", 2, 100, p.random.sections);
-    p.random.duration_s = random->quantity("duration", "s", 60.0, 1e6);
+    p.random = read_random(*random);
     random->reject_unknown_keys();
   }
   if (p.cyclograms.empty() && p.random.count == 0)
@@ -71,23 +77,27 @@ Programme read_programme(const ConfigMap& in) {
   return p;
 }
 
-std::vector<Cyclogram> random_cyclograms(const Programme& programme) {
+std::vector<Cyclogram> random_cyclograms(const Programme::Random& wanted, const std::vector<double>& speeds_rpm, int seed) {
   std::vector<Cyclogram> list;
-  Random random(static_cast<std::uint64_t>(programme.seed), 1);
-  for (int i = 0; i < programme.random.count; ++i) {
+  Random random(static_cast<std::uint64_t>(seed), 1);
+  for (int i = 0; i < wanted.count; ++i) {
     Cyclogram c{fmt::format("random_{:02d}", i + 1), {}};
     double total = 0.0, before_rpm = -1.0;
-    for (int s = 0; s < programme.random.sections; ++s) {
+    for (int s = 0; s < wanted.sections; ++s) {
       double rpm = before_rpm;
-      while (rpm == before_rpm) rpm = random.chance(kStopShare) ? 0.0 : random.one_of(programme.test_rpm);
+      while (rpm == before_rpm) rpm = random.chance(kStopShare) ? 0.0 : random.one_of(speeds_rpm);
       before_rpm = rpm;
       c.sections.push_back({random.uniform(kShortestShare, kLongestShare), {.speed_rpm = rpm}});
       total += c.sections.back().duration_s;
     }
-    for (auto& s : c.sections) s.duration_s *= programme.random.duration_s / total;
+    for (auto& s : c.sections) s.duration_s *= wanted.duration_s / total;
     list.push_back(std::move(c));
   }
   return list;
+}
+
+std::vector<Cyclogram> random_cyclograms(const Programme& programme) {
+  return random_cyclograms(programme.random, programme.test_rpm, programme.seed);
 }
 
 std::vector<Cyclogram> test_cyclograms(const Programme& programme) {

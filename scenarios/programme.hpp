@@ -23,9 +23,14 @@ struct Programme {
   Where where;
 };
 
+/// The keys count, sections, duration. @throws InputError  file, line, key
+[[nodiscard]] Programme::Random read_random(const ConfigMap& in);
 /// @throws InputError  file, line, key
 [[nodiscard]] Programme read_programme(const ConfigMap& in);
 
+/// Cyclograms of `count` as `random` has it, at some speeds: "random_01" and so on.
+[[nodiscard]] std::vector<Cyclogram> random_cyclograms(const Programme::Random& random,
+                                                       const std::vector<double>& speeds_rpm, int seed);
 /// Cyclograms of sections of random length at the tests' speeds, no speed twice in a row, now and then a stop. The same seed gives the same.
 [[nodiscard]] std::vector<Cyclogram> random_cyclograms(const Programme& programme);
 /// The tests as cyclograms: "test_800" and so on.

@@ -146,6 +146,7 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     if (std::count(s.candidates.begin(), s.candidates.end(), name) > 1)
       in.fail("candidates", fmt::format("'{}' stands there twice", name));
   }
+  s.count_from_start = in.choice("count_from_start", {"true", "false"}, "false") == "true";
   s.sensors_to_choose = in.integer("sensors_to_choose", 1, 1000, s.sensors_to_choose);
   s.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, s.tolerance_um);
   s.encoder_period_um = in.quantity("encoder_period", "um", 1e-3, 1e6, s.encoder_period_um);
@@ -261,6 +262,22 @@ Scenario read_scenario(const ConfigMap& in) {
     scenario.programme = read_programme(*programme);
     for (const Cyclogram& c : scenario.programme->cyclograms) check_cyclogram(scenario, c);
     for (const Cyclogram& c : test_cyclograms(*scenario.programme)) check_cyclogram(scenario, c);
+  }
+  if (const auto validation = in.optional_map("validation")) {
+    if (!has_machine || !scenario.study)
+      in.fail("validation", "it wants a machine to simulate, and a `study` that names the target");
+    std::vector<const Cyclogram*> known;
+    for (const Cyclogram& c : scenario.cyclograms) known.push_back(&c);
+    if (scenario.programme) {
+      for (const Cyclogram& c : scenario.programme->cyclograms) {
+        if (std::none_of(known.begin(), known.end(), [&](const Cyclogram* k) { return k->name == c.name; }))
+          known.push_back(&c);
+      }
+    }
+    scenario.validation = read_validation(*validation, known, scenario.study->tolerance_um);
+    for (const Validation::Family& family : scenario.validation->families) {
+      for (const Cyclogram& c : family.cyclograms) check_cyclogram(scenario, c);
+    }
   }
   if (const auto schedule = in.optional_map("schedule")) {
     if (!has_machine)

@@ -17,6 +17,7 @@
 #include "scenarios/read_mesh.hpp"
 #include "scenarios/read_outputs.hpp"
 #include "scenarios/read_schedule.hpp"
+#include "scenarios/validation.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
 
@@ -79,8 +80,10 @@ struct SolverSettings {
 struct Study {
   std::string target;                   ///< displacement channel that ranking and verdict are about
   std::vector<std::string> candidates;  ///< temperature channels to choose from; empty: all of the record
-  std::vector<std::string> train;       ///< cyclograms
-  std::string judge;                    ///< cyclogram
+  /// Temperatures and target count from the first row of each record, as where the tool is set anew before each run.
+  bool count_from_start = false;
+  std::vector<std::string> train;  ///< cyclograms
+  std::string judge;               ///< cyclogram
   int sensors_to_choose = 4;
   /// Step of the thermometers' readings [K], 0 = exact. Predictors are fitted and judged on readings rounded to it.
   double sensor_resolution_K = 0.0;
@@ -98,6 +101,7 @@ struct Scenario {
   SolverSettings solver;
   std::optional<Study> study;
   std::optional<Programme> programme;
+  std::optional<Validation> validation;
   std::optional<ScheduleSettings> schedule;
 
   /// @throws InputError  naming the cyclograms there are

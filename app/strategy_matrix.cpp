@@ -1,0 +1,225 @@
+#include "app/strategy_matrix.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+namespace driftwright::app {
+namespace {
+
+using namespace compensation;
+
+constexpr double kHour_s = 3600.0;
+
+double range_until(const std::vector<double>& time_s, const std::vector<double>& x, double until_s) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t i = 0; i < x.size() && time_s[i] - time_s.front() <= until_s; ++i) {
+    if (std::isnan(x[i])) continue;
+    low = std::min(low, x[i]);
+    high = std::max(high, x[i]);
+  }
+  return high >= low ? high - low : std::numeric_limits<double>::quiet_NaN();
+}
+
+Case judge(const FittedStrategy& strategy, std::size_t index, const ObservedRun& run, const std::vector<double>& drift_um) {
+  Case c;
+  c.run = index;
+  const std::vector<double> predicted = strategy.predict(run);
+  const GuardedCorrection correction = strategy.correct(run, predicted);
+  std::vector<double> left, unguarded;
+  int n_inside = 0, n = 0;
+  for (std::size_t i = 0; i < drift_um.size(); ++i) {
+    left.push_back(drift_um[i] - correction.correction_um[i]);
+    const double off = drift_um[i] - predicted[i];
+    if (std::isnan(drift_um[i])) continue;
+    unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
+    ++n;
+    if (strategy.interval_um && std::abs(off) <= *strategy.interval_um) ++n_inside;
+  }
+  c.before = score(drift_um);
+  c.after = score(left);
+  for (double off : unguarded) c.peak_unguarded_um = std::max(c.peak_unguarded_um, std::abs(off));
+  c.first_hour_um = range_until(run.readings.time_s, left, kHour_s);
+  c.whole_um = range_until(run.readings.time_s, left, std::numeric_limits<double>::infinity());
+  c.covered = strategy.interval_um && n > 0 ? static_cast<double>(n_inside) / n : std::numeric_limits<double>::quiet_NaN();
+  c.events = correction.events;
+  return c;
+}
+
+struct Failure {
+  SensorFailure kind;
+  const char* word;
+};
+constexpr Failure kFailures[] = {
+    {SensorFailure::kStuck, "stuck"}, {SensorFailure::kOpen, "open"}, {SensorFailure::kDetached, "fallen off"}};
+
+/// What to run one strategy on: the run as it is, and with each of its sensors failed in each way.
+std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings& settings, const FittedStrategy& strategy,
+                                                            const JudgedRunOfMachine& judged) {
+  std::vector<std::pair<std::string, ObservedRun>> list = {{"", judged.run}};
+  if (!settings.fails_at || judged.season != settings.fails_in) return list;
+  const std::vector<double>& t = judged.run.readings.time_s;
+  const double from_s = t.front() + *settings.fails_at * (t.back() - t.front());
+  for (const std::string& sensor : strategy.sensors) {
+    for (const Failure& failure : kFailures) {
+      if (failure.kind == SensorFailure::kDetached && (settings.elsewhere.empty() || settings.elsewhere == sensor)) continue;
+      ObservedRun run = judged.run;
+      run.readings = with_failed_sensor(std::move(run.readings), sensor, failure.kind, from_s, settings.elsewhere);
+      list.emplace_back(fmt::format("{} {}", sensor, failure.word), std::move(run));
+    }
+  }
+  return list;
+}
+
+std::string where_of(const StrategyMatrix& m, const Case& c) {
+  const JudgedRunOfMachine& run = m.runs[c.run];
+  return fmt::format("on '{}'{}{}", run.name, run.season.empty() ? "" : fmt::format(" ({})", run.season),
+                     c.failed.empty() ? "" : fmt::format(" with {}", c.failed));
+}
+
+void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
+  const double tolerance = m.settings.tolerance_um;
+  const Worst all = worst_of(s, [](const Case&) { return true; });
+  if (!all.peak) return;
+  const auto keeps = [&](const Case& c) { return c.after.peak_abs <= tolerance; };
+  const auto harms = [&](const Case& c) { return c.after.peak_abs > std::max(tolerance, c.before.peak_abs); };
+  if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
+    s.safety = Safety::kSafe;
+    s.why = fmt::format("never more than {:.1f} um left of the drift; the most {}", all.peak->after.peak_abs,
+                        where_of(m, *all.peak));
+    return;
+  }
+  const auto harm = std::max_element(s.cases.begin(), s.cases.end(), [&](const Case& a, const Case& b) {
+    return (harms(a) ? a.after.peak_abs - a.before.peak_abs : -1.0) <
+           (harms(b) ? b.after.peak_abs - b.before.peak_abs : -1.0);
+  });
+  if (harms(*harm)) {
+    s.safety = Safety::kUnsafe;
+    s.why = fmt::format("it makes things worse: {:.1f} um instead of {:.1f} um {}", harm->after.peak_abs,
+                        harm->before.peak_abs, where_of(m, *harm));
+    return;
+  }
+  for (const std::string& family : families_of(m)) {
+    for (const std::string& season : seasons_of(m)) {
+      bool has_any = false, keeps_all = true;
+      for (const Case& c : s.cases) {
+        if (m.runs[c.run].family != family || m.runs[c.run].season != season) continue;
+        has_any = true;
+        keeps_all = keeps_all && keeps(c);
+      }
+      if (has_any && keeps_all) s.limits.push_back(season.empty() ? family : fmt::format("{} ({})", family, season));
+    }
+  }
+  const std::string worst = fmt::format("{:.1f} um of {:.1f} um are left {}", all.peak->after.peak_abs,
+                                        all.peak->before.peak_abs, where_of(m, *all.peak));
+  s.safety = s.limits.empty() ? Safety::kUnsafe : Safety::kWithinLimits;
+  s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst : worst;
+}
+
+template <class F>
+std::vector<std::string> each_once(const std::vector<JudgedRunOfMachine>& runs, F name) {
+  std::vector<std::string> names;
+  for (const JudgedRunOfMachine& r : runs) {
+    if (std::find(names.begin(), names.end(), name(r)) == names.end()) names.push_back(name(r));
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> families_of(const StrategyMatrix& matrix) {
+  return each_once(matrix.runs, [](const JudgedRunOfMachine& r) { return r.family; });
+}
+
+std::vector<std::string> seasons_of(const StrategyMatrix& matrix) {
+  return each_once(matrix.runs, [](const JudgedRunOfMachine& r) { return r.season; });
+}
+
+Worst worst_of(const JudgedStrategy& strategy, const std::function<bool(const Case&)>& counts) {
+  Worst w;
+  int n = 0;
+  for (const Case& c : strategy.cases) {
+    if (!counts(c)) continue;
+    if (!w.peak || c.after.peak_abs > w.peak->after.peak_abs) w.peak = &c;
+    w.left = std::max(w.left, c.left());
+    w.rms_um = std::max(w.rms_um, c.after.rmse);
+    w.covered = std::min(w.covered, c.covered);
+    w.mean_covered += c.covered;
+    ++n;
+  }
+  if (n > 0) w.mean_covered /= n;
+  return w;
+}
+
+const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::string& family) {
+  for (const JudgedStrategy& s : matrix.strategies) {
+    if (s.fitted.is_baseline && s.fitted.name != kNoCorrection) continue;
+    const Worst w = worst_of(s, [&](const Case& c) { return c.failed.empty() && matrix.runs[c.run].family == family; });
+    if (w.peak && w.peak->after.peak_abs <= matrix.settings.tolerance_um) return &s;
+  }
+  return nullptr;
+}
+
+const JudgedStrategy* best_strategy(const StrategyMatrix& matrix) {
+  const JudgedStrategy* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const JudgedStrategy& s : matrix.strategies) {
+    if (s.fitted.is_baseline) continue;
+    const Worst w = worst_of(s, [](const Case& c) { return c.failed.empty(); });
+    if (w.peak && w.left < least) {
+      least = w.left;
+      best = &s;
+    }
+  }
+  return best;
+}
+
+StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
+                                std::vector<JudgedRunOfMachine> runs) {
+  StrategyMatrix matrix{
+      .training = std::move(training), .runs = std::move(runs), .strategies = {}, .left_out = {}, .settings = settings};
+  FittedStrategies fitted = fit_strategies(settings.strategies, matrix.training);
+  matrix.left_out = std::move(fitted.left_out);
+  std::vector<std::vector<double>> drift_um;
+  for (const JudgedRunOfMachine& r : matrix.runs) {
+    const std::string& target = settings.strategies.target;
+    drift_um.push_back((settings.strategies.count_from_start ? counted_from_start(r.run.readings, target) : r.run.readings)
+                           .at(target)
+                           .values);
+  }
+  const std::size_t n_runs = matrix.runs.size(), n_jobs = fitted.strategies.size() * n_runs;
+  std::vector<std::vector<Case>> cases(n_jobs);
+  std::vector<std::exception_ptr> failures(n_jobs);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t job = 0; job < n_jobs; ++job) {
+    const FittedStrategy& strategy = fitted.strategies[job / n_runs];
+    const std::size_t r = job % n_runs;
+    try {
+      for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
+        cases[job].push_back(judge(strategy, r, run, drift_um[r]));
+        cases[job].back().failed = failed;
+      }
+    } catch (...) {
+      failures[job] = std::current_exception();  // none may leave the parallel loop
+    }
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  for (std::size_t s = 0; s < fitted.strategies.size(); ++s) {
+    JudgedStrategy judged{.fitted = std::move(fitted.strategies[s]), .cases = {}, .why = {}, .limits = {}};
+    for (std::size_t r = 0; r < n_runs; ++r) {
+      auto& of_run = cases[s * n_runs + r];
+      std::move(of_run.begin(), of_run.end(), std::back_inserter(judged.cases));
+    }
+    matrix.strategies.push_back(std::move(judged));
+  }
+  for (JudgedStrategy& s : matrix.strategies) give_verdict(matrix, s);
+  return matrix;
+}
+
+}  // namespace driftwright::app

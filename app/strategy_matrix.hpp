@@ -1,0 +1,81 @@
+#pragma once
+// Strategies x conditions: what each leaves of the drift on runs that it was not fitted on, and whether it may go on a machine.
+
+#include "app/strategies.hpp"
+#include "compensation/score.hpp"
+#include "compensation/thermometers.hpp"
+
+namespace driftwright::app {
+
+/// A run to judge on.
+struct JudgedRunOfMachine {
+  std::string family, season, name;
+  ObservedRun run;  ///< readings as instruments give them, the target true
+};
+
+struct MatrixSettings {
+  StrategySettings strategies;
+  double tolerance_um = 10.0;
+  std::optional<double>
+      fails_at;           ///< share of a run after which one sensor fails, each in turn and in each way; none: none fails
+  std::string fails_in;   ///< season in which
+  std::string elsewhere;  ///< channel that a sensor reads which fell off; empty: none falls off
+};
+
+/// One strategy on one run, all sensors intact or one failed.
+struct Case {
+  std::size_t run = 0;                ///< index of the judged run
+  std::string failed;                 ///< "t05 stuck"; empty: none
+  compensation::Score before, after;  ///< of the drift; of what the correction in force leaves
+  double peak_unguarded_um = 0.0;     ///< of what the bare prediction leaves; infinite where it is missing
+  double first_hour_um = 0.0,
+         whole_um = 0.0;            ///< ranges of what is left within 60 min and in all, as ISO 230-3 asks of drift
+  double covered = 0.0;             ///< share of rows whose drift is inside the prediction interval; NaN without one
+  std::vector<std::string> events;  ///< of the fail-safe
+
+  [[nodiscard]] double left() const { return after.peak_abs / before.peak_abs; }
+};
+
+enum class Safety { kSafe, kWithinLimits, kUnsafe };
+
+/// All cases of one strategy.
+struct JudgedStrategy {
+  FittedStrategy fitted;
+  std::vector<Case> cases;
+  Safety safety = Safety::kUnsafe;
+  std::string why;                  ///< one sentence
+  std::vector<std::string> limits;  ///< families and seasons in which it keeps the tolerance, where not everywhere
+};
+
+struct StrategyMatrix {
+  std::vector<ObservedRun> training;
+  std::vector<JudgedRunOfMachine> runs;
+  std::vector<JudgedStrategy> strategies;
+  std::vector<LeftOut> left_out;
+  MatrixSettings settings;
+};
+
+/// Fits on `training`, judges on `runs`. Cases go side by side on all cores; the result is the same on any number of them.
+[[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
+                                              std::vector<JudgedRunOfMachine> runs);
+
+/// Over some cases of a strategy: the worst.
+struct Worst {
+  const Case* peak = nullptr;  ///< largest peak left; null: no case
+  double left = 0.0;           ///< largest peak left over peak drift [-]
+  double rms_um = 0.0;         ///< largest
+  double covered = 1.0;        ///< smallest
+  double mean_covered = 0.0;
+};
+[[nodiscard]] Worst worst_of(const JudgedStrategy& strategy, const std::function<bool(const Case&)>& counts);
+
+/// Families, or seasons, of the runs in their order.
+[[nodiscard]] std::vector<std::string> families_of(const StrategyMatrix& matrix);
+[[nodiscard]] std::vector<std::string> seasons_of(const StrategyMatrix& matrix);
+
+/// The simplest strategy, no baseline, that keeps the tolerance in a family with intact sensors in all seasons; null: none.
+[[nodiscard]] const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::string& family);
+/// The one that leaves the smallest share in its worst case with intact sensors, baselines apart; null: there is none.
+[[nodiscard]] const JudgedStrategy* best_strategy(const StrategyMatrix& matrix);
+
+}  // namespace driftwright::app

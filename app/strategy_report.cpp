@@ -1,0 +1,307 @@
+#include "app/strategy_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "output/drift_model_files.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using namespace compensation;
+using Json = nlohmann::ordered_json;
+
+const char* word(Safety safety) {
+  return safety == Safety::kSafe ? "safe to deploy" : safety == Safety::kWithinLimits ? "safe within limits" : "unsafe";
+}
+
+std::string um(double x) {
+  return std::isfinite(x) ? fmt::format("{:.1f}", x) : "-";
+}
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.0f}", 100.0 * share) : "-";
+}
+
+bool is_intact(const Case& c) {
+  return c.failed.empty();
+}
+
+bool has_failures(const StrategyMatrix& m) {
+  return m.settings.fails_at.has_value();
+}
+
+/// One column of the matrix: which cases it is the worst of.
+struct Column {
+  std::string title;
+  std::function<bool(const Case&)> counts;
+};
+std::vector<Column> columns(const StrategyMatrix& m) {
+  std::vector<Column> list;
+  const std::vector<std::string> seasons = seasons_of(m);
+  for (const std::string& family : families_of(m)) {
+    for (const std::string& season : seasons) {
+      list.push_back({season.empty() ? family : family + ", " + season, [&m, family, season](const Case& c) {
+                        return is_intact(c) && m.runs[c.run].family == family && m.runs[c.run].season == season;
+                      }});
+    }
+  }
+  if (has_failures(m)) list.push_back({"one sensor failed", [](const Case& c) { return !is_intact(c); }});
+  return list;
+}
+
+/// The run on which a regression on few sensors leaves most compared with the observer (or, without one, with the best strategy).
+struct Contrast {
+  const JudgedStrategy *simple = nullptr, *best = nullptr;
+  std::size_t run = 0;
+};
+Contrast contrast(const StrategyMatrix& m) {
+  Contrast c;
+  for (const JudgedStrategy& s : m.strategies) {
+    if (s.fitted.name == "regression, grey grade") c.simple = &s;
+  }
+  c.best = best_strategy(m);
+  if (!c.simple || !c.best) return c;
+  double most = -1.0;
+  for (const Case& k : c.simple->cases) {
+    if (is_intact(k) && k.after.peak_abs > most) {
+      most = k.after.peak_abs;
+      c.run = k.run;
+    }
+  }
+  return c;
+}
+
+output::Plot course(const StrategyMatrix& m, std::size_t run, const std::vector<const JudgedStrategy*>& shown) {
+  const JudgedRunOfMachine& r = m.runs[run];
+  std::vector<double> t_min;
+  for (double t_s : r.run.readings.time_s) t_min.push_back(t_s / 60.0);
+  const std::string& target = m.settings.strategies.target;
+  const Record counted =
+      m.settings.strategies.count_from_start ? counted_from_start(r.run.readings, target) : r.run.readings;
+  output::Plot plot{
+      .title =
+          fmt::format("{}{}: {} and what strategies take it for", r.name, r.season.empty() ? "" : ", " + r.season, target),
+      .x_label = "time [min]",
+      .y_label = target + " [um]",
+      .series = {
+          {.label = r.season.empty() ? "measured" : "true", .x = t_min, .y = counted.at(target).values, .width = 3.0}}};
+  for (const JudgedStrategy* s : shown)
+    plot.series.push_back({.label = s->fitted.name, .x = t_min, .y = s->fitted.predict(r.run)});
+  return plot;
+}
+
+output::Table matrix_table(const StrategyMatrix& m) {
+  output::Table table{.caption = fmt::format("Largest |residual| in um with the correction in force (prediction x trust, "
+                                             "clamped, slewed), worst run of each column; fitted on {} "
+                                             "training runs that are none of these. Tolerance {:g} um.",
+                                             m.training.size(), m.settings.tolerance_um),
+                      .headers = {"strategy"},
+                      .rows = {}};
+  const std::vector<Column> list = columns(m);
+  for (const Column& c : list) table.headers.push_back(c.title + " [um]");
+  table.headers.insert(table.headers.end(), {"worst left [%]", "interval [um]", "covered [%]", "verdict"});
+  for (const JudgedStrategy& s : m.strategies) {
+    std::vector<std::string> row = {s.fitted.name};
+    for (const Column& c : list) {
+      const Worst w = worst_of(s, c.counts);
+      row.push_back(w.peak ? um(w.peak->after.peak_abs) : "");
+    }
+    const Worst intact = worst_of(s, is_intact);
+    row.push_back(percent(intact.left));
+    row.push_back(s.fitted.interval_um ? um(*s.fitted.interval_um) : "-");
+    row.push_back(percent(intact.mean_covered));
+    row.push_back(s.fitted.is_baseline ? "baseline" : word(s.safety));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+output::Table worst_table(const StrategyMatrix& m) {
+  output::Table table{.caption =
+                          "Worst case of each strategy with all sensors intact. Ranges as ISO 230-3 asks of drift: of what "
+                          "is left within 60 min, and in all. "
+                          "Without fail-safe: of the bare prediction, sensors failed or not.",
+                      .headers = {"strategy", "run", "peak before [um]", "peak left [um]", "removed [%]", "RMS left [um]",
+                                  "range in 60 min [um]", "range in all [um]", "peak with failed sensor [um]",
+                                  "the same without fail-safe [um]"},
+                      .rows = {}};
+  for (const JudgedStrategy& s : m.strategies) {
+    const Worst w = worst_of(s, is_intact), failed = worst_of(s, [](const Case&c) { return !is_intact(c); });
+    if (!w.peak) continue;
+    double bare = 0.0;
+    for (const Case& c : s.cases) {
+      if (!is_intact(c)) bare = std::max(bare, c.peak_unguarded_um);
+    }
+    const Case& c = *w.peak;
+    const JudgedRunOfMachine& r = m.runs[c.run];
+    table.rows.push_back({s.fitted.name, r.season.empty() ? r.name : fmt::format("{}, {}", r.name, r.season),
+                          um(c.before.peak_abs), um(c.after.peak_abs), fmt::format("{:.0f}", 100.0 * (1.0 - c.left())),
+                          um(c.after.rmse), um(c.first_hour_um), um(c.whole_um),
+                          failed.peak ? um(failed.peak->after.peak_abs) : "",
+                          failed.peak ? (std::isinf(bare) ? "no value" : um(bare)) : ""});
+  }
+  return table;
+}
+
+std::string enough_text(const StrategyMatrix& m, const std::string& family) {
+  const JudgedStrategy* s = simplest_enough(m, family);
+  if (!s) return fmt::format("none keeps {:g} um", m.settings.tolerance_um);
+  return s->fitted.name;
+}
+
+}  // namespace
+
+std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
+  std::vector<output::ReportBlock> blocks;
+  const JudgedStrategy* best = best_strategy(m);
+  if (best) {
+    const Worst intact = worst_of(*best, is_intact), failed = worst_of(*best, [](const Case&c) { return !is_intact(c); });
+    blocks.emplace_back(output::Verdict{
+        best->safety == Safety::kUnsafe ? output::Verdict::Kind::kBad
+        : best->safety == Safety::kSafe ? output::Verdict::Kind::kGood
+                                        : output::Verdict::Kind::kNeutral,
+        fmt::format("{}: {}", best->fitted.name, word(best->safety)),
+        fmt::format("It leaves the smallest share in its worst run, {:.0f} % of the peak{}. {}.", 100.0 * intact.left,
+                    failed.peak ? fmt::format(", {:.0f} % with one sensor failed", 100.0 * failed.left) : "", best->why)});
+  }
+  blocks.emplace_back(matrix_table(m));
+  output::Table enough{
+      .caption = "The simplest strategy that keeps the tolerance on every run of a family, in every season, sensors intact.",
+      .headers = {"family", "enough"},
+      .rows = {}};
+  for (const std::string& family : families_of(m)) enough.rows.push_back({family, enough_text(m, family)});
+  blocks.emplace_back(std::move(enough));
+  output::Table verdicts{.caption = "Whether a strategy may go on the machine, and why.",
+                         .headers = {"strategy", "verdict", "why", "keeps the tolerance in"},
+                         .rows = {}};
+  for (const JudgedStrategy& s : m.strategies) {
+    if (!s.fitted.is_baseline)
+      verdicts.rows.push_back({s.fitted.name, word(s.safety), s.why, fmt::format("{}", fmt::join(s.limits, "; "))});
+  }
+  blocks.emplace_back(std::move(verdicts));
+  blocks.emplace_back(worst_table(m));
+  output::Bars bars{.caption = "Largest share of the peak that is left in any run, sensors intact [%].", .bars = {}};
+  for (const JudgedStrategy& s : m.strategies) {
+    const double left = 100.0 * worst_of(s, is_intact).left;
+    bars.bars.push_back({s.fitted.name, std::min(left, 200.0), fmt::format("{:.0f} %", left)});
+  }
+  blocks.emplace_back(std::move(bars));
+  if (const Contrast c = contrast(m); c.simple && c.best) blocks.emplace_back(course(m, c.run, {c.simple, c.best}));
+  output::Table fits{
+      .caption = "What each fit decided, on the training runs alone.", .headers = {"strategy", "decided"}, .rows = {}};
+  for (const JudgedStrategy& s : m.strategies) {
+    if (!s.fitted.reason.empty()) fits.rows.push_back({s.fitted.name, s.fitted.reason});
+  }
+  for (const LeftOut& l : m.left_out) fits.rows.push_back({l.name, "left out: " + l.why});
+  blocks.emplace_back(std::move(fits));
+  for (const JudgedStrategy& s : m.strategies) {
+    if (s.fitted.model && s.fitted.fail_safe && s.fitted.name == "regression, forward") {
+      blocks.emplace_back(output::Heading{"The formula of '" + s.fitted.name + "'"});
+      blocks.emplace_back(output::Preformatted{
+          output::formula_text({*s.fitted.model, *s.fitted.fail_safe, s.fitted.interval_um.value_or(NAN)})});
+    }
+  }
+  return blocks;
+}
+
+Json strategy_json(const StrategyMatrix& m) {
+  Json j = {{"target", m.settings.strategies.target},
+            {"tolerance_um", m.settings.tolerance_um},
+            {"count_from_start", m.settings.strategies.count_from_start}};
+  for (const ObservedRun& r : m.training) j["trained_on"].push_back(r.readings.source);
+  for (const JudgedStrategy& s : m.strategies) {
+    const Worst intact = worst_of(s, is_intact), failed = worst_of(s, [](const Case&c) { return !is_intact(c); });
+    Json entry = {{"name", s.fitted.name},
+                  {"baseline", s.fitted.is_baseline},
+                  {"sensors", s.fitted.sensors},
+                  {"decided", s.fitted.reason}};
+    if (!s.fitted.is_baseline) {
+      entry["verdict"] = word(s.safety);
+      entry["why"] = s.why;
+      entry["keeps_tolerance_in"] = s.limits;
+    }
+    entry["worst_left_percent"] = 100.0 * intact.left;
+    entry["worst_peak_um"] = intact.peak ? intact.peak->after.peak_abs : NAN;
+    entry["largest_rms_um"] = intact.rms_um;
+    if (failed.peak) {
+      entry["failed_sensor_worst_left_percent"] = 100.0 * failed.left;
+      entry["failed_sensor_worst_peak_um"] = failed.peak->after.peak_abs;
+    }
+    entry["interval_95_um"] = s.fitted.interval_um ? Json(*s.fitted.interval_um) : Json(nullptr);
+    entry["covered_percent"] = s.fitted.interval_um ? Json(100.0 * intact.mean_covered) : Json(nullptr);
+    j["strategies"].push_back(std::move(entry));
+  }
+  for (const std::string& family : families_of(m)) j["simplest_enough"][family] = enough_text(m, family);
+  j["left_out"] = Json::array();
+  for (const LeftOut& l : m.left_out) j["left_out"].push_back({{"name", l.name}, {"why", l.why}});
+  return j;
+}
+
+std::string strategy_csv(const StrategyMatrix& m) {
+  std::string csv =
+      "strategy,family,season,run,failed_sensor,peak_before_um,rms_before_um,peak_left_um,rms_left_um,mean_left_um,removed_"
+      "percent,range_60min_um,range_um,"
+      "peak_without_fail_safe_um,covered_percent,rows\n";
+  for (const JudgedStrategy& s : m.strategies) {
+    for (const Case& c : s.cases) {
+      const JudgedRunOfMachine& r = m.runs[c.run];
+      csv += fmt::format("\"{}\",{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.4f},{:.4f},{},{},{}\n",
+                         s.fitted.name, r.family, r.season, r.name, c.failed, c.before.peak_abs, c.before.rmse,
+                         c.after.peak_abs, c.after.rmse, c.after.mean, 100.0 * (1.0 - c.left()), c.first_hour_um, c.whole_um,
+                         std::isfinite(c.peak_unguarded_um) ? fmt::format("{:.4f}", c.peak_unguarded_um) : "",
+                         std::isfinite(c.covered) ? fmt::format("{:.2f}", 100.0 * c.covered) : "", c.after.n);
+    }
+  }
+  return csv;
+}
+
+std::string strategy_text(const StrategyMatrix& m) {
+  const bool failures = has_failures(m);
+  std::string text = fmt::format(
+      "{} fitted on {} runs, judged on {} others: largest residual [um], share of the peak left [%]{}\n",
+      m.settings.strategies.target, m.training.size(), m.runs.size(), failures ? ", both with one sensor failed" : "");
+  for (const JudgedStrategy& s : m.strategies) {
+    const Worst intact = worst_of(s, is_intact), failed = worst_of(s, [](const Case&c) { return !is_intact(c); });
+    text += fmt::format("  {:<38} {:>7} {:>5}", s.fitted.name, intact.peak ? um(intact.peak->after.peak_abs) : "",
+                        percent(intact.left));
+    if (failures)
+      text += fmt::format("   {:>7} {:>5}", failed.peak ? um(failed.peak->after.peak_abs) : "",
+                          failed.peak ? percent(failed.left) : "");
+    text += fmt::format("   RMS {:>6}", fmt::format("{:.2f}", intact.rms_um));
+    text += s.fitted.is_baseline ? "   baseline\n" : fmt::format("   {}\n", word(s.safety));
+  }
+  for (const LeftOut& l : m.left_out) text += fmt::format("  {:<38} left out: {}\n", l.name, l.why);
+  for (const std::string& family : families_of(m))
+    text += fmt::format("enough for '{}': {}\n", family, enough_text(m, family));
+  if (const JudgedStrategy* best = best_strategy(m))
+    text += fmt::format("best: {}, {}; {}\n", best->fitted.name, word(best->safety), best->why);
+  return text;
+}
+
+void write_models(const StrategyMatrix& m, output::ResultsFolder& folder) {
+  for (const JudgedStrategy& s : m.strategies) {
+    if (!s.fitted.model || !s.fitted.fail_safe) continue;
+    const output::DeployedModel d{*s.fitted.model, *s.fitted.fail_safe,
+                                  s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN())};
+    std::string name;
+    for (char ch : s.fitted.name) {
+      if (std::isalnum(static_cast<unsigned char>(ch))) {
+        name += ch;
+      } else if (!name.empty() && name.back() != '_') {
+        name += '_';
+      }
+    }
+    folder.write_text(fmt::format("models/{}.json", name), output::model_json(d).dump(2) + "\n");
+    folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(d));
+    folder.write_text(fmt::format("models/{}.c", name),
+                      output::c_function(d, fmt::format("Driftwright {}, scenario {}", folder.made_by().version,
+                                                        folder.made_by().scenario)));
+  }
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,21 @@
+#pragma once
+// A matrix of strategies as a page, a table and a few lines; deployable models as files.
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "app/strategy_matrix.hpp"
+#include "output/html_report.hpp"
+#include "output/results_folder.hpp"
+
+namespace driftwright::app {
+
+[[nodiscard]] std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& matrix);
+[[nodiscard]] nlohmann::ordered_json strategy_json(const StrategyMatrix& matrix);
+/// One row a strategy, run and failed sensor.
+[[nodiscard]] std::string strategy_csv(const StrategyMatrix& matrix);
+[[nodiscard]] std::string strategy_text(const StrategyMatrix& matrix);
+
+/// models/<strategy>.json, .txt and .c of each strategy that is a formula.
+void write_models(const StrategyMatrix& matrix, output::ResultsFolder& folder);
+
+}  // namespace driftwright::app

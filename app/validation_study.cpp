@@ -1,0 +1,184 @@
+#include "app/validation_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+
+#include "base/random.hpp"
+#include "compensation/observability.hpp"
+#include "compensation/thermometers.hpp"
+#include "scenarios/as_recorded.hpp"
+#include "solver/reduced_transient.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using namespace compensation;
+using scenarios::Scenario;
+using scenarios::Validation;
+
+constexpr int kObserverModes = 12;   // the slowest of the model, beside its steady responses
+constexpr double kRounding = 0.289;  // standard deviation of an error spread evenly over one step, 1 / sqrt(12)
+
+/// One simulation to make.
+struct Job {
+  const Cyclogram* cyclogram;
+  const Validation::Season* season;
+};
+
+/// Simulates, true: no noise, no rounding.
+ObservedRun simulate(const Scenario& scenario, const Model& model, const Job& job) {
+  scenarios::MachineModel machine = *scenario.machine;
+  machine.hall = scenarios::hall_in(*job.season, machine.hall, job.cyclogram->duration_s());
+  const scenarios::FeltRun felt = scenarios::felt_run(machine, *job.cyclogram);
+  const std::vector<double> times_s = scenarios::output_times_s(*job.cyclogram, scenario.solver.output_interval_s);
+  const auto run = [&](const auto& system, const Eigen::VectorXd& start) {
+    const Eigen::VectorXd shifted = start + job.season->offset_K * system.ones;
+    return scenarios::as_recorded(
+        machine, solver::simulate(system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, shifted),
+        model.outputs(), *job.cyclogram);
+  };
+  ObservedRun result{.cyclogram = *job.cyclogram, .hall = machine.hall, .readings = {}};
+  result.readings = model.reduced() ? run(model.reduced()->system, model.reduced()->start)
+                                    : run(model.full()->system, scenarios::start_state(*scenario.machine, *model.full()));
+  result.readings.source = job.cyclogram->name;
+  return result;
+}
+
+std::string speed_channel(const Record& record) {
+  const Channel* speed = record.find("speed");
+  if (!speed || speed->unit != "rpm") return {};
+  const auto [low, high] = std::minmax_element(speed->values.begin(), speed->values.end());
+  return *high > *low || *high > 0.0 ? "speed" : "";
+}
+
+/// The hall among the channels: a sensor on it, or `ambient`.
+std::string hall_channel(const Scenario& scenario, const Record& record) {
+  if (scenario.machine) {
+    for (const scenarios::Sensor& s : scenario.machine->sensors) {
+      if (scenarios::is_on_hall(s)) return s.name;
+    }
+  }
+  return record.find(scenarios::kAmbient) ? scenarios::kAmbient : "";
+}
+
+/// The model as strategies get it; none where it is not a linear reduced one.
+std::optional<Physics> physics_of(const Scenario& scenario, const Model& model, double scatter, int seed) {
+  const scenarios::ReducedMachine* reduced = model.reduced();
+  if (!reduced || !reduced->system.is_linear()) return std::nullopt;
+  const double hall_K = scenarios::felt_hall_at_start_K(*scenario.machine);
+  const ModalPredictor modes =
+      make_ritz_predictor(reduced->system, reduced->start, kObserverModes, {.drive = {}, .hall_K = hall_K});
+  return Physics{scattered(modes.system, scatter, seed), modes.start, hall_K};
+}
+
+}  // namespace
+
+std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record) {
+  if (!study.candidates.empty()) return study.candidates;
+  std::vector<std::string> names;
+  for (const Channel& c : record.channels) {
+    const bool is_temperature = (c.unit == "degC" || c.unit == "K") && c.name != scenarios::kAmbient;
+    if (is_temperature && &c != record.find(study.target)) names.push_back(c.name);
+  }
+  if (names.empty()) throw InputError(fmt::format("{}: no temperature channel (degC or K) to choose from", record.source));
+  return names;
+}
+
+StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model, Progress& progress) {
+  const Validation& v = *scenario.validation;
+  const scenarios::Study& study = *scenario.study;
+  if (!effects::reading_chain(scenario.machine->effects).empty()) {
+    throw InputError(v.where,
+                     "strategies are judged by the true drift; leave out the effects that change what instruments read");
+  }
+  std::vector<Job> jobs;
+  for (const Cyclogram& c : v.train) jobs.push_back({&c, &v.seasons.front()});
+  std::vector<std::pair<std::string, std::string>> family_and_season;
+  for (const Validation::Family& family : v.families) {
+    for (const Validation::Season& season : v.seasons) {
+      for (const Cyclogram& c : family.cyclograms) {
+        jobs.push_back({&c, &season});
+        family_and_season.emplace_back(family.name, season.name);
+      }
+    }
+  }
+  progress.begin(fmt::format("simulating {} runs", jobs.size()));
+  std::vector<ObservedRun> runs(jobs.size());
+  std::vector<std::exception_ptr> failures(jobs.size());
+  std::size_t n_done = 0;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    try {
+      runs[i] = simulate(scenario, model, jobs[i]);
+    } catch (...) {
+      failures[i] = std::current_exception();  // none may leave the parallel loop
+    }
+#pragma omp critical(progress)
+    progress.update(static_cast<double>(++n_done) / static_cast<double>(jobs.size()));
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  const std::vector<std::string> candidates = candidate_sensors(study, runs.front().readings);
+  const Thermometers instrument{.noise_K = v.noise_K, .resolution_K = v.resolution_K};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::uint64_t seed = 1000 * static_cast<std::uint64_t>(v.seed) + i;
+    runs[i].readings = as_read(std::move(runs[i].readings), instrument, seed);
+    if (i >= v.train.size()) continue;
+    Random random(seed, 99);
+    const auto target = static_cast<std::size_t>(&runs[i].readings.at(study.target) - runs[i].readings.channels.data());
+    for (double& um : runs[i].readings.channels[target].values) um += v.drift_noise_um * random.normal();
+  }
+  const std::string hall = hall_channel(scenario, runs.front().readings);
+  MatrixSettings settings;
+  StrategySettings& how = settings.strategies;
+  how.target = study.target;
+  how.candidates = candidates;
+  how.n_sensors = study.sensors_to_choose;
+  how.count_from_start = true;
+  how.speed = speed_channel(runs.front().readings);
+  how.hall = hall;
+  how.reading_K = std::max(1e-3, std::hypot(v.noise_K, kRounding * v.resolution_K));
+  how.drift_um = std::max(0.1, v.drift_noise_um);
+  how.physics = physics_of(scenario, model, v.model_scatter, v.seed);
+  settings.tolerance_um = v.tolerance_um;
+  settings.fails_at = v.fails_at;
+  settings.fails_in = v.seasons.front().name;
+  settings.elsewhere = hall;
+  std::vector<ObservedRun> training(std::make_move_iterator(runs.begin()),
+                                    std::make_move_iterator(runs.begin() + static_cast<std::ptrdiff_t>(v.train.size())));
+  std::vector<JudgedRunOfMachine> judged;
+  for (std::size_t k = 0; k < family_and_season.size(); ++k) {
+    ObservedRun& run = runs[v.train.size() + k];
+    judged.push_back({family_and_season[k].first, family_and_season[k].second, run.cyclogram.name, std::move(run)});
+  }
+  progress.begin(fmt::format("fitting and judging strategies on {} runs", judged.size()));
+  return judge_strategies(settings, std::move(training), std::move(judged));
+}
+
+StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<Record>& training,
+                                   const std::vector<Record>& test) {
+  const scenarios::Study& study = *scenario.study;
+  const auto as_run = [](const Record& record) { return ObservedRun{.cyclogram = {}, .hall = {}, .readings = record}; };
+  std::vector<ObservedRun> runs;
+  for (const Record& record : training) runs.push_back(as_run(record));
+  std::vector<JudgedRunOfMachine> judged;
+  for (const Record& record : test)
+    judged.push_back({"measured", "", std::filesystem::path(record.source).filename().string(), as_run(record)});
+  MatrixSettings settings;
+  StrategySettings& how = settings.strategies;
+  how.target = study.target;
+  how.candidates = candidate_sensors(study, training.front());
+  how.n_sensors = study.sensors_to_choose;
+  how.count_from_start = study.count_from_start;
+  how.speed = speed_channel(training.front());
+  how.hall = hall_channel(scenario, training.front());
+  settings.tolerance_um = study.tolerance_um;
+  return judge_strategies(settings, std::move(runs), std::move(judged));
+}
+
+}  // namespace driftwright::app

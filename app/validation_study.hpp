@@ -1,0 +1,24 @@
+#pragma once
+// The runs that strategies are fitted on and judged by: simulated in every season of a scenario's `validation`, or measured.
+
+#include "app/model.hpp"
+#include "app/strategy_matrix.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace driftwright::app {
+
+/// Strategies on the scenario's `validation`. The simulation of its model is the truth; the model that strategies may use is off by
+/// `model_scatter`. Drift counts from the start of each run.
+/// @throws InputError  for effects that change readings alone, and as judge_strategies()
+[[nodiscard]] StrategyMatrix validate_strategies(const scenarios::Scenario& scenario, const Model& model,
+                                                 Progress& progress);
+
+/// Strategies on measured records; those with physics are left out.
+[[nodiscard]] StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, const std::vector<Record>& training,
+                                                 const std::vector<Record>& test);
+
+/// Thermometers of a record to choose from: the study's candidates, or every temperature channel but the target and `ambient`.
+/// @throws InputError  when there is none
+[[nodiscard]] std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record);
+
+}  // namespace driftwright::app

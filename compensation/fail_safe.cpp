@@ -1,0 +1,180 @@
+#include "compensation/fail_safe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "compensation/drift_model.hpp"
+#include "compensation/regression.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+// Room beside what the training records kept.
+constexpr double kRangeRoom = 0.2;  // of a range's width, on both sides
+constexpr double kClampRoom = 0.5;  // of the drift's
+constexpr double kJumpRoom = 2.0;   // times the largest
+constexpr double kSlewRoom = 2.0;   // times the largest rate of the prediction, over ten rows
+constexpr double kApartRoom = 3.0;  // times the largest distance on a run left out
+constexpr double kLeastRange_K = 2.0, kLeastJump_K = 1.0, kLeastApart_K = 0.5;  // below, instruments are what is seen
+constexpr std::size_t kSlewRows = 10;
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  void take(double x) {
+    if (std::isnan(x)) return;
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  [[nodiscard]] double width() const { return high - low; }
+};
+
+/// The largest distance between an input and what the others lead to, on records left out where there are two or more.
+double most_apart(std::span<const Record> training, const std::string& input, const std::vector<std::string>& others) {
+  double apart = 0.0;
+  for (std::size_t left_out = 0; left_out < training.size(); ++left_out) {
+    std::vector<Record> rest;
+    for (std::size_t r = 0; r < training.size(); ++r) {
+      if (r != left_out || training.size() == 1) rest.push_back(training[r]);
+    }
+    const std::vector<double> expected = fit_regression(rest, others, input).predict(training[left_out]);
+    const std::vector<double>& read = training[left_out].at(input).values;
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      if (std::isfinite(read[i] - expected[i])) apart = std::max(apart, std::abs(read[i] - expected[i]));
+    }
+  }
+  return apart;
+}
+
+/// What one guard remembers from row to row.
+struct Watch {
+  double last = std::numeric_limits<double>::quiet_NaN(), last_s = 0.0;
+  double doubted_until_s = -std::numeric_limits<double>::infinity();
+  bool was_doubted = false;
+};
+
+}  // namespace
+
+FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std::string>& inputs,
+                         const std::vector<std::vector<double>>& predicted) {
+  FailSafe safe;
+  Range drift;
+  double rate = 0.0;
+  std::vector<double> steps_s;
+  for (std::size_t r = 0; r < training.size(); ++r) {
+    const std::vector<double>&d = predicted[r], &t = training[r].time_s;
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      drift.take(d[i]);
+      if (i > 0) steps_s.push_back(t[i] - t[i - 1]);
+      if (i < kSlewRows) continue;
+      const double over = (d[i] - d[i - kSlewRows]) / (t[i] - t[i - kSlewRows]);
+      if (std::isfinite(over)) rate = std::max(rate, std::abs(over));
+    }
+  }
+  std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2), steps_s.end());
+  safe.period_s = steps_s[steps_s.size() / 2];
+  safe.stale_s = 5.0 * safe.period_s;
+  safe.fade_s = 10.0 * safe.period_s;
+  drift.take(0.0);  // no correction is always allowed
+  safe.lowest_um = drift.low - kClampRoom * drift.width();
+  safe.highest_um = drift.high + kClampRoom * drift.width();
+  safe.most_rate_um_s = kSlewRoom * rate;
+
+  for (const std::string& input : inputs) {
+    const bool is_speed = is_drive(training.front().at(input).unit);
+    FailSafe::Guard g;
+    g.input = input;
+    g.unit = training.front().at(input).unit;
+    Range range;
+    double jump = 0.0;
+    for (const Record& record : training) {
+      const std::vector<double>& x = record.at(input).values;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        range.take(x[i]);
+        if (i > 0 && std::isfinite(x[i] - x[i - 1])) jump = std::max(jump, std::abs(x[i] - x[i - 1]));
+      }
+    }
+    const double room = std::max(kRangeRoom * range.width(), is_speed ? 0.0 : 0.5 * (kLeastRange_K - range.width()));
+    g.low = range.low - room;
+    g.high = range.high + room;
+    g.most_jump = is_speed ? std::numeric_limits<double>::infinity() : std::max(kJumpRoom * jump, kLeastJump_K);
+    std::vector<std::string> others;
+    for (const std::string& other : inputs) {
+      if (other != input && !is_drive(training.front().at(other).unit)) others.push_back(other);
+    }
+    if (!is_speed && !others.empty()) {
+      const Regression r = fit_regression(training, others, input);
+      g.others_intercept = r.intercept;
+      for (const std::string& other : inputs) {
+        const auto at = std::find(others.begin(), others.end(), other);
+        g.others_coefficient.push_back(at == others.end() ? 0.0
+                                                          : r.coefficients[static_cast<std::size_t>(at - others.begin())]);
+      }
+      g.most_apart = std::max(kApartRoom * most_apart(training, input, others), kLeastApart_K);
+    }
+    safe.guards.push_back(std::move(g));
+  }
+  return safe;
+}
+
+GuardedCorrection guarded(const FailSafe& safe, const Record& readings, std::span<const double> predicted) {
+  GuardedCorrection result;
+  std::vector<const std::vector<double>*> x;
+  for (const FailSafe::Guard& g : safe.guards) x.push_back(&readings.at(g.input).values);
+  std::vector<Watch> watches(safe.guards.size(), Watch{.last_s = readings.time_s.front()});
+  double trust = 1.0, in_force = 0.0, last = 0.0;
+  for (std::size_t i = 0; i < readings.n_samples(); ++i) {
+    const double t_s = readings.time_s[i], step_s = i > 0 ? t_s - readings.time_s[i - 1] : 0.0;
+    double deserved = 1.0;
+    for (std::size_t k = 0; k < safe.guards.size(); ++k) {
+      const FailSafe::Guard& g = safe.guards[k];
+      Watch& w = watches[k];
+      const double read = (*x[k])[i];
+      std::string why;
+      const auto doubt = [&](std::string reason) {
+        why = std::move(reason);
+        w.doubted_until_s = t_s + kBackAfter * safe.fade_s;
+      };
+      if (std::isnan(read)) {
+        if (t_s - w.last_s > safe.stale_s) doubt("gives no reading");
+      } else {
+        const double steps = std::max(1.0, (t_s - w.last_s) / safe.period_s);
+        if (std::isfinite(w.last) && std::abs(read - w.last) > steps * g.most_jump)
+          doubt(fmt::format("jumps by {:.2f} {}", read - w.last, g.unit));
+        if (!g.others_coefficient.empty()) {
+          double expected = g.others_intercept;
+          for (std::size_t j = 0; j < x.size(); ++j) {
+            if (g.others_coefficient[j] != 0.0) expected += g.others_coefficient[j] * (*x[j])[i];
+          }
+          if (std::abs(read - expected) > g.most_apart)
+            doubt(fmt::format("is {:+.2f} {} from what the others say", read - expected, g.unit));
+        }
+        const double outside = std::max({0.0, g.low - read, read - g.high});
+        if (outside > 0.0) {
+          deserved = std::min(deserved, std::max(0.0, 1.0 - outside / (0.5 * (g.high - g.low))));
+          if (why.empty() && !w.was_doubted)
+            why = fmt::format("reads {:.4g} {}, outside {:.4g} to {:.4g}", read, g.unit, g.low, g.high);
+        }
+        w.last = read;
+        w.last_s = t_s;
+      }
+      if (t_s < w.doubted_until_s) deserved = 0.0;
+      const bool is_doubted = !why.empty() || t_s < w.doubted_until_s;
+      if (is_doubted && !w.was_doubted)
+        result.events.push_back(fmt::format("from {:.0f} min: {} {}", t_s / 60.0, g.input, why));
+      w.was_doubted = is_doubted;
+    }
+    trust = i == 0 ? deserved : trust + (1.0 - std::exp(-step_s / safe.fade_s)) * (deserved - trust);
+    if (std::isfinite(predicted[i])) last = predicted[i];
+    const double wanted = std::clamp(trust * last, safe.lowest_um, safe.highest_um);
+    const double most_um = safe.most_rate_um_s * step_s;
+    in_force = i == 0 ? wanted : in_force + std::clamp(wanted - in_force, -most_um, most_um);
+    result.correction_um.push_back(in_force);
+    result.trust.push_back(trust);
+  }
+  return result;
+}
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,283 @@
+#include "compensation/observer.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <stdexcept>
+
+#include "base/errors.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+constexpr double kFlag = 5.0;          // deviations of the mean innovation
+constexpr double kOutlier = 6.0;       // deviations of one innovation: that reading is passed over
+constexpr double kMemory = 0.9;        // of the mean innovation from row to row
+constexpr std::size_t kRowsBack = 30;  // to which the filter returns when a sensor is dropped
+constexpr double kStart_K = 0.1;       // by which all of the machine may be warmer than the start says
+
+}  // namespace
+
+/// Over a step of constant drive: z+ = decay z + gain f.
+struct Observer::Step {
+  Eigen::MatrixXd decay, gain;
+  std::vector<double> power_W, coefficient;
+};
+
+class Observer::Run {
+ public:
+  Run(const Observer& observer, const ObservedRun& run, bool with_drift)
+      : o_(observer), s_(observer.system_), run_(run), with_drift_(with_drift) {
+    n_ = s_.size();
+    n_sources_ = static_cast<Eigen::Index>(s_.sources.size());
+    n_exchanges_ = static_cast<Eigen::Index>(s_.exchanges.size());
+    const Eigen::Index n_factors = n_sources_ + n_exchanges_ + 1, n_all = n_ + n_factors;
+    const double first_s = run.readings.time_s.front(), hall_K = run.hall.at(first_s);
+    belief_ = {Eigen::VectorXd::Zero(n_all), Eigen::MatrixXd::Zero(n_all, n_all)};
+    belief_.mean.head(n_) = o_.start_ + (hall_K - o_.start_hall_K_) * s_.ones;
+    belief_.covariance.topLeftCorner(n_, n_) = kStart_K * kStart_K * s_.ones * s_.ones.transpose();
+    belief_.mean.tail(n_factors) = o_.factors_.mean;
+    belief_.covariance.bottomRightCorner(n_factors, n_factors) = o_.factors_.covariance;
+    live_.assign(o_.sensors_.size(), true);
+    mean_innovation_.assign(o_.sensors_.size(), 0.0);
+    for (const std::string& name : o_.sensors_) readings_.push_back(&run.readings.at(name).values);
+    if (with_drift_) drift_um_ = &run.readings.at(o_.drift_).values;
+    start_drift_m_ = drift_m(first_s);
+  }
+
+  Observation go() {
+    Observation seen;
+    const std::vector<double>& t = run_.readings.time_s;
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      history_.push_back({i, belief_});
+      if (history_.size() > kRowsBack) history_.pop_front();
+      take_row(i);
+      if (const int suspect = worst_suspect(i); suspect >= 0) {
+        live_[static_cast<std::size_t>(suspect)] = false;
+        seen.distrusted.push_back(
+            fmt::format("{} from {:.0f} min", o_.sensors_[static_cast<std::size_t>(suspect)], t[i] / 60.0));
+        belief_ = history_.front().belief;
+        mean_innovation_.assign(mean_innovation_.size(), 0.0);
+        for (std::size_t k = history_.front().row; k <= i; ++k) take_row(k);
+        history_.clear();
+      }
+      seen.drift_um.push_back(1e6 * (drift_m(t[i]) - start_drift_m_));
+      const Eigen::VectorXd h = drift_gradient();
+      seen.deviation_um.push_back(1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h))));
+    }
+    return seen;
+  }
+
+  [[nodiscard]] Belief factors() const {
+    const Eigen::Index n_factors = n_sources_ + n_exchanges_ + 1;
+    return {belief_.mean.tail(n_factors), belief_.covariance.bottomRightCorner(n_factors, n_factors)};
+  }
+
+ private:
+  struct Snapshot {
+    std::size_t row;
+    Belief belief;  // before that row's step and readings
+  };
+
+  void take_row(std::size_t i) {
+    const std::vector<double>& t = run_.readings.time_s;
+    if (i > 0) advance(t[i - 1], t[i]);
+    for (std::size_t k = 0; k < readings_.size(); ++k) {
+      const double read = (*readings_[k])[i];
+      if (!live_[k] || std::isnan(read)) continue;
+      const Eigen::Index output = o_.sensor_output_[k];
+      Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
+      h.head(n_) = s_.outputs.state.col(output);
+      const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * run_.hall.at(t[i]) + s_.reference_K - 273.15;
+      const double variance = o_.settings_.reading_K * o_.settings_.reading_K + o_.settings_.model_K * o_.settings_.model_K;
+      const double innovation = read - expected_K, spread = std::sqrt(h.dot(belief_.covariance * h) + variance);
+      mean_innovation_[k] = kMemory * mean_innovation_[k] + (1.0 - kMemory) * innovation / spread;
+      if (std::abs(innovation) < kOutlier * spread) correct(h, innovation, variance);
+    }
+    if (with_drift_ && std::isfinite((*drift_um_)[i])) {
+      const double variance = std::pow(1e-6 * o_.settings_.drift_um, 2);
+      correct(drift_gradient(), 1e-6 * ((*drift_um_)[i] - (*drift_um_)[0]) - (drift_m(t[i]) - start_drift_m_), variance);
+    }
+  }
+
+  /// The live sensor whose mean innovation is the furthest out, if any is beyond the flag.
+  [[nodiscard]] int worst_suspect(std::size_t i) const {
+    constexpr double kWarm = 10;  // rows before a mean means anything
+    if (i < kWarm) return -1;
+    const double deviation = std::sqrt((1.0 - kMemory) / (1.0 + kMemory));  // of the mean of white innovations
+    int worst = -1;
+    double most = kFlag * deviation;
+    for (std::size_t k = 0; k < live_.size(); ++k) {
+      if (live_[k] && std::abs(mean_innovation_[k]) > most) {
+        most = std::abs(mean_innovation_[k]);
+        worst = static_cast<int>(k);
+      }
+    }
+    return worst;
+  }
+
+  void advance(double from_s, double to_s) {
+    double section_end_s = 0.0;
+    for (std::size_t c = 0; c < run_.cyclogram.sections.size() && from_s < to_s; ++c) {
+      const bool is_last = c + 1 == run_.cyclogram.sections.size();
+      section_end_s += run_.cyclogram.sections[c].duration_s;
+      const double until_s = is_last ? to_s : std::min(to_s, section_end_s);
+      while (from_s < until_s - 1e-9) {
+        const auto n_left = std::ceil((until_s - from_s) / o_.settings_.longest_step_s - 1e-9);
+        const double h_s = (until_s - from_s) / n_left;
+        step(run_.cyclogram.sections[c].drive, run_.hall.at(from_s + 0.5 * h_s), from_s, h_s);
+        from_s += h_s;
+      }
+      from_s = std::max(from_s, std::min(until_s, to_s));
+    }
+  }
+
+  const Step& step_of(const effects::Inputs& u, double h_s) {
+    Step now;
+    for (const auto& source : s_.sources) now.power_W.push_back(source.power_W(u));
+    for (const auto& e : s_.exchanges) now.coefficient.push_back(e.coefficient(u));
+    std::vector<double> key = now.coefficient;
+    key.push_back(h_s);
+    key.insert(key.end(), now.power_W.begin(), now.power_W.end());
+    const auto [at, is_new] = steps_.try_emplace(std::move(key), Step{});
+    if (!is_new) return at->second;
+    Eigen::MatrixXd k = s_.conduction;
+    for (std::size_t e = 0; e < s_.exchanges.size(); ++e) k += now.coefficient[e] * s_.exchanges[e].matrix;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+    Eigen::VectorXd decay(n_), gain(n_);
+    for (Eigen::Index j = 0; j < n_; ++j) {
+      const double x = eigen.eigenvalues()(j) * h_s;
+      decay(j) = std::exp(-x);
+      gain(j) = std::abs(x) > 1e-8 ? -h_s * std::expm1(-x) / x : h_s;
+    }
+    const Eigen::MatrixXd& v = eigen.eigenvectors();
+    now.decay = v * decay.asDiagonal() * v.transpose();
+    now.gain = v * gain.asDiagonal() * v.transpose();
+    at->second = std::move(now);
+    return at->second;
+  }
+
+  void step(const Drive& drive, double hall_K, double at_s, double h_s) {
+    const Step& now = step_of({.drive = drive, .hall_K = hall_K, .time_s = at_s}, h_s);
+    const Eigen::VectorXd z = belief_.mean.head(n_);
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(n_);
+    Eigen::MatrixXd by_factor(n_, n_sources_ + n_exchanges_);  // heat per unit of each factor
+    for (Eigen::Index s = 0; s < n_sources_; ++s) {
+      by_factor.col(s) = now.power_W[static_cast<std::size_t>(s)] * s_.sources[static_cast<std::size_t>(s)].load;
+      load += by_factor.col(s);
+    }
+    Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(n_, n_);  // of the exchanges' factors' heat along z
+    for (Eigen::Index e = 0; e < n_exchanges_; ++e) {
+      const auto& exchange = s_.exchanges[static_cast<std::size_t>(e)];
+      const double c = now.coefficient[static_cast<std::size_t>(e)];
+      Eigen::VectorXd outside = Eigen::VectorXd::Zero(n_);
+      if (exchange.reaches_hall()) outside += hall_K * exchange.to_hall;
+      if (exchange.offset.size() > 0) outside += exchange.offset;
+      load += c * outside;
+      by_factor.col(n_sources_ + e) = c * (outside - exchange.matrix * z);
+      slope -= belief_.mean(n_ + n_sources_ + e) * c * exchange.matrix;
+    }
+    const Eigen::Index n_factors = by_factor.cols(), n_all = belief_.mean.size();
+    const Eigen::VectorXd factor = belief_.mean.segment(n_, n_factors);
+    Eigen::MatrixXd f(n_, n_ + n_factors);
+    f.leftCols(n_) = now.decay + now.gain * slope;
+    f.rightCols(n_factors) = now.gain * by_factor;
+    belief_.mean.head(n_) = now.decay * z + now.gain * (load + by_factor * factor);
+    Eigen::MatrixXd& p = belief_.covariance;
+    const Eigen::MatrixXd top = f * p.topRows(n_ + n_factors);  // rows of the new state against everything old
+    p.topRightCorner(n_, n_all - n_) = top.rightCols(n_all - n_);
+    p.bottomLeftCorner(n_all - n_, n_) = top.rightCols(n_all - n_).transpose();
+    p.topLeftCorner(n_, n_) = top.leftCols(n_ + n_factors) * f.transpose();
+    const double walk = o_.settings_.factor_walk * o_.settings_.factor_walk * h_s / 3600.0;
+    p.diagonal().segment(n_, n_factors).array() += walk;
+  }
+
+  void correct(const Eigen::VectorXd& h, double innovation, double variance) {
+    const Eigen::VectorXd ph = belief_.covariance * h;
+    const double total = h.dot(ph) + variance;
+    belief_.mean += ph * (innovation / total);
+    belief_.covariance -= ph * ph.transpose() / total;
+  }
+
+  [[nodiscard]] double drift_m(double time_s) const {
+    return (1.0 + belief_.mean(belief_.mean.size() - 1)) * s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_)) +
+           s_.outputs.hall(o_.drift_output_) * run_.hall.at(time_s);
+  }
+  [[nodiscard]] Eigen::VectorXd drift_gradient() const {
+    Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
+    h.head(n_) = (1.0 + belief_.mean(belief_.mean.size() - 1)) * s_.outputs.state.col(o_.drift_output_);
+    h(h.size() - 1) = s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_));
+    return h;
+  }
+
+  const Observer& o_;
+  const solver::ReducedSystem& s_;
+  const ObservedRun& run_;
+  bool with_drift_;
+  Eigen::Index n_ = 0, n_sources_ = 0, n_exchanges_ = 0;
+  Belief belief_;
+  double start_drift_m_ = 0.0;
+  std::vector<const std::vector<double>*> readings_;
+  const std::vector<double>* drift_um_ = nullptr;
+  std::vector<bool> live_;
+  std::vector<double> mean_innovation_;
+  std::deque<Snapshot> history_;
+  std::map<std::vector<double>, Step> steps_;
+};
+
+Observer::Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_hall_K,
+                   std::vector<std::string> sensors, std::string drift, ObserverSettings settings)
+    : system_(std::move(system)),
+      start_(std::move(start)),
+      start_hall_K_(start_hall_K),
+      sensors_(std::move(sensors)),
+      drift_(std::move(drift)),
+      settings_(settings) {
+  if (!system_.is_linear()) throw std::logic_error("an observer follows a linear reduced model");
+  const auto output = [&](const std::string& name) {
+    const auto found = std::find(system_.outputs.name.begin(), system_.outputs.name.end(), name);
+    if (found == system_.outputs.name.end()) throw InputError(fmt::format("the model has no output '{}'", name));
+    return static_cast<Eigen::Index>(found - system_.outputs.name.begin());
+  };
+  for (const std::string& sensor : sensors_) sensor_output_.push_back(output(sensor));
+  drift_output_ = output(drift_);
+  const auto n = static_cast<Eigen::Index>(system_.sources.size() + system_.exchanges.size());
+  factors_ = {Eigen::VectorXd::Zero(n + 1), Eigen::MatrixXd::Zero(n + 1, n + 1)};
+  factors_.covariance.diagonal().head(n).setConstant(settings_.factor * settings_.factor);
+  factors_.covariance(n, n) = settings_.scale * settings_.scale;
+}
+
+void Observer::learn(std::span<const ObservedRun> runs) {
+  for (const ObservedRun& run : runs) {
+    Run pass(*this, run, true);
+    (void)pass.go();
+    factors_ = pass.factors();
+  }
+}
+
+Observer Observer::with_sensors(std::vector<std::string> sensors) const {
+  Observer other(system_, start_, start_hall_K_, std::move(sensors), drift_, settings_);
+  other.factors_ = factors_;
+  return other;
+}
+
+Observation Observer::follow(const ObservedRun& run) const {
+  return Run(*this, run, false).go();
+}
+
+std::vector<Observer::Factor> Observer::factors() const {
+  std::vector<Factor> result;
+  const auto add = [&](const std::string& name) {
+    const auto i = static_cast<Eigen::Index>(result.size());
+    result.push_back({name, 1.0 + factors_.mean(i), std::sqrt(std::max(0.0, factors_.covariance(i, i)))});
+  };
+  for (const auto& s : system_.sources) add(s.name);
+  for (const auto& e : system_.exchanges) add(e.name);
+  add(drift_);
+  return result;
+}
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,91 @@
+#pragma once
+// State observer: the reduced model, corrected by the thermometers there are. It uses physics and sensors: what the model has
+// wrong shows in the readings, and what the sensors do not see is the model's.
+
+#include <map>
+#include <span>
+
+#include "base/record.hpp"
+#include "solver/thermal_system.hpp"
+
+namespace driftwright::compensation {
+
+/// How much is taken for granted. Standard deviations.
+struct ObserverSettings {
+  double reading_K = 0.1;  ///< of a thermometer: noise and rounding
+  double model_K = 0.1;    ///< by which the model may miss a reading though its factors are right
+  double drift_um = 1.0;   ///< of the drift while it learns
+  double factor = 0.15;    ///< of the logarithm of each heat source and each film, joint and link, before anything is known
+  double factor_walk = 0.02;     ///< by which a factor may wander in an hour
+  double scale = 0.05;           ///< of each displacement
+  double longest_step_s = 60.0;  ///< of the filter between readings
+};
+
+/// One run of the machine as the observer sees it.
+struct ObservedRun {
+  Cyclogram cyclogram;
+  TimeSeries hall;  ///< minus the reference temperature [K]
+  Record readings;  ///< channels named as the model's outputs; temperatures in degC, displacements in um
+};
+
+struct Observation {
+  std::vector<double> drift_um;         ///< per row of the readings: actual - commanded since the start of the run
+  std::vector<double> deviation_um;     ///< that the filter gives it, 1 sigma
+  std::vector<std::string> distrusted;  ///< sensors that were dropped, and when
+};
+
+/// Extended Kalman filter over the reduced state z and factors on everything uncertain:
+///
+///     dz/dt = -K(u) z + sum_s (1 + w_s) P_s(u) b_s + f_hall(u) + sum_e v_e c_e(u) (hall g_e + o_e - G_e z),   w, v: random walks
+///     reading_i = l_i'z + hall share,   drift = (1 + g) l_d'z
+///
+/// K(u) enters by its exponential, exact for any step; factors on exchanges act as heat over a step. Where readings keep away from what the
+/// rest expects (their mean over about ten rows by more than five deviations), the sensor is dropped for the rest of the run and the filter
+/// goes back to before it began. Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
+class Observer {
+ public:
+  /// @param system   linear, M = 1; copied
+  /// @param start    its state at the start of every run at the hall temperature `start_hall_K`; a run that starts in another hall starts
+  ///                 as many kelvins higher everywhere
+  /// @param sensors  outputs in K that it reads; none: the model alone
+  /// @param drift    output in m
+  /// @throws std::logic_error  for a system that is not linear; @throws InputError  for an output that the system has not
+  Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_hall_K, std::vector<std::string> sensors,
+           std::string drift, ObserverSettings settings = {});
+
+  /// Follows runs in which the drift was measured too; what it learns of the factors stays.
+  void learn(std::span<const ObservedRun> runs);
+  /// Follows a run by its sensors alone; afterwards the observer is what it was.
+  [[nodiscard]] Observation follow(const ObservedRun& run) const;
+
+  /// The same, with what it has learned, reading other sensors.
+  [[nodiscard]] Observer with_sensors(std::vector<std::string> sensors) const;
+
+  /// Factors on heat sources, exchanges, and the displacement's scale, with their standard deviations.
+  struct Factor {
+    std::string name;
+    double value = 1.0, deviation = 0.0;
+  };
+  [[nodiscard]] std::vector<Factor> factors() const;
+  [[nodiscard]] const std::vector<std::string>& sensors() const { return sensors_; }
+
+ private:
+  struct Belief {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd covariance;
+  };
+  struct Step;  // what one drive does to the state over one step
+  class Run;
+
+  solver::ReducedSystem system_;
+  Eigen::VectorXd start_;
+  double start_hall_K_ = 0.0;
+  std::vector<std::string> sensors_;
+  std::string drift_;
+  ObserverSettings settings_;
+  std::vector<Eigen::Index> sensor_output_;
+  Eigen::Index drift_output_ = 0;
+  Belief factors_;  // w, v, g
+};
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,331 @@
+#include "output/drift_model_files.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.hpp"
+
+namespace driftwright::output {
+namespace {
+
+using compensation::DriftModel;
+using compensation::FailSafe;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "driftwright drift model 1";
+
+std::string unit_word(const std::string& unit) {
+  return unit == "um" ? "um" : unit;
+}
+
+/// A term without its coefficient.
+std::string term_text(const DriftModel& model, const DriftModel::Term& t) {
+  const bool is_rise = model.from_start && !compensation::is_drive(t.unit);
+  std::string x = is_rise ? fmt::format("({} - {} at start)", t.input, t.input) : t.input;
+  if (t.power != 1) x += fmt::format("^{}", t.power);
+  if (t.lag_s > 0.0) x = fmt::format("LAG({:g} min, {})", t.lag_s / 60.0, x);
+  return x;
+}
+
+Json number(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+double as_number(const Json& j, double missing) {
+  return j.is_null() ? missing : j.get<double>();
+}
+
+/// A name that C allows.
+std::string c_name(const std::string& name) {
+  std::string result = name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) ? "x_" : "";
+  for (char ch : name) result += std::isalnum(static_cast<unsigned char>(ch)) ? ch : '_';
+  return result;
+}
+
+std::string c_number(double x) {
+  if (std::isinf(x)) return x > 0.0 ? "HUGE_VAL" : "-HUGE_VAL";
+  const std::string text = fmt::format("{:.17g}", x);
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+std::string c_array(const std::vector<double>& x) {
+  std::vector<std::string> text;
+  for (double v : x) text.push_back(c_number(v));
+  return fmt::format("{{{}}}", fmt::join(text, ", "));
+}
+
+}  // namespace
+
+std::string formula_text(const DeployedModel& d) {
+  const DriftModel& m = d.model;
+  std::string text = fmt::format("{} [{}] =  {:.4g}\n", m.target, unit_word(m.target_unit), m.intercept);
+  for (const DriftModel::Term& t : m.terms) {
+    const std::string per = t.power == 1 ? t.unit : fmt::format("{}^{}", t.unit, t.power);
+    text += fmt::format("    {} {:.5g} {}/{} * {}\n", t.coefficient < 0.0 ? '-' : '+', std::abs(t.coefficient),
+                        unit_word(m.target_unit), per, term_text(m, t));
+  }
+  if (std::any_of(m.terms.begin(), m.terms.end(), [](const auto& t) { return t.lag_s > 0.0; })) {
+    text += "LAG(tau, x): y += (1 - exp(-dt / tau)) * (x - y) at each call; readings settled at the start, speeds from 0.\n";
+  }
+  if (m.from_start) text += "Temperatures count from their first reading of the run, and so does the drift.\n";
+  if (std::isfinite(d.interval_um))
+    text += fmt::format("95 % of the drift within +-{:.2g} {} of it, on runs left out of the fit.\n", d.interval_um,
+                        m.target_unit);
+  text += "Valid for\n";
+  for (const FailSafe::Guard& g : d.safe.guards) {
+    text += fmt::format("    {:.5g} <= {} <= {:.5g} {}{}\n", g.low,
+                        m.from_start && !compensation::is_drive(g.unit) ? g.input + " - start" : g.input, g.high, g.unit,
+                        std::isfinite(g.most_jump)
+                            ? fmt::format(", steps of at most {:.3g} {} in {:g} s", g.most_jump, g.unit, d.safe.period_s)
+                            : "");
+  }
+  text += fmt::format("Correction between {:.4g} and {:.4g} um, at most {:.3g} um/min.\n", d.safe.lowest_um,
+                      d.safe.highest_um, 60.0 * d.safe.most_rate_um_s);
+  return text;
+}
+
+Json model_json(const DeployedModel& d) {
+  Json j = {{"format", kFormat},
+            {"kind", d.model.kind},
+            {"target", d.model.target},
+            {"target_unit", d.model.target_unit},
+            {"from_start", d.model.from_start},
+            {"intercept", d.model.intercept},
+            {"terms", Json::array()},
+            {"interval_95_um", number(d.interval_um)}};
+  for (const DriftModel::Term& t : d.model.terms) {
+    j["terms"].push_back(
+        {{"input", t.input}, {"unit", t.unit}, {"coefficient", t.coefficient}, {"power", t.power}, {"lag_s", t.lag_s}});
+  }
+  const FailSafe& s = d.safe;
+  Json safe = {{"period_s", s.period_s},     {"lowest_um", s.lowest_um},
+               {"highest_um", s.highest_um}, {"most_rate_um_s", s.most_rate_um_s},
+               {"fade_s", s.fade_s},         {"stale_s", s.stale_s},
+               {"guards", Json::array()}};
+  for (const FailSafe::Guard& g : s.guards) {
+    safe["guards"].push_back({{"input", g.input},
+                              {"unit", g.unit},
+                              {"low", g.low},
+                              {"high", g.high},
+                              {"most_jump", number(g.most_jump)},
+                              {"others_intercept", g.others_intercept},
+                              {"others_coefficient", g.others_coefficient},
+                              {"most_apart", g.most_apart}});
+  }
+  j["fail_safe"] = std::move(safe);
+  return j;
+}
+
+DeployedModel read_model(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: no such file; a model.json of `validate` is wanted", path));
+  try {
+    const Json j = Json::parse(file);
+    if (!j.is_object() || j.value("format", "") != kFormat)
+      throw InputError(fmt::format("{}: no drift model (key `format` must be \"{}\"); `validate` writes them as model.json",
+                                   path, kFormat));
+    constexpr double kEndless = std::numeric_limits<double>::infinity();
+    DeployedModel d;
+    d.model.kind = j.at("kind");
+    d.model.target = j.at("target");
+    d.model.target_unit = j.at("target_unit");
+    d.model.from_start = j.at("from_start");
+    d.model.intercept = j.at("intercept");
+    for (const Json& t : j.at("terms")) {
+      DriftModel::Term term{.input = t.at("input"),
+                            .unit = t.at("unit"),
+                            .coefficient = t.at("coefficient"),
+                            .power = t.at("power"),
+                            .lag_s = t.at("lag_s")};
+      if (!(term.lag_s >= 0.0) || term.power < 1)
+        throw InputError(fmt::format("{}: term '{}' has lag {} s and power {}; at least 0 and 1 are wanted", path,
+                                     term.input, term.lag_s, term.power));
+      d.model.terms.push_back(std::move(term));
+    }
+    d.interval_um = as_number(j.at("interval_95_um"), std::numeric_limits<double>::quiet_NaN());
+    const Json& s = j.at("fail_safe");
+    d.safe.period_s = s.at("period_s");
+    d.safe.lowest_um = s.at("lowest_um");
+    d.safe.highest_um = s.at("highest_um");
+    d.safe.most_rate_um_s = s.at("most_rate_um_s");
+    d.safe.fade_s = s.at("fade_s");
+    d.safe.stale_s = s.at("stale_s");
+    if (!(d.safe.lowest_um <= d.safe.highest_um))
+      throw InputError(
+          fmt::format("{}: `lowest_um` {} is above `highest_um` {}", path, d.safe.lowest_um, d.safe.highest_um));
+    for (const Json& g : s.at("guards")) {
+      FailSafe::Guard guard;
+      guard.input = g.at("input");
+      guard.unit = g.at("unit");
+      guard.low = g.at("low");
+      guard.high = g.at("high");
+      guard.most_jump = as_number(g.at("most_jump"), kEndless);
+      guard.others_intercept = g.at("others_intercept");
+      guard.others_coefficient = g.at("others_coefficient").get<std::vector<double>>();
+      guard.most_apart = g.at("most_apart");
+      d.safe.guards.push_back(std::move(guard));
+    }
+    for (const FailSafe::Guard& g : d.safe.guards) {
+      if (!g.others_coefficient.empty() && g.others_coefficient.size() != d.safe.guards.size())
+        throw InputError(fmt::format("{}: guard '{}' has {} `others_coefficient`, but there are {} guards", path, g.input,
+                                     g.others_coefficient.size(), d.safe.guards.size()));
+    }
+    return d;
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(fmt::format("{}: {}", path, e.what()));
+  }
+}
+
+std::string c_function(const DeployedModel& d, const std::string& made_by) {
+  const DriftModel& m = d.model;
+  const std::vector<std::string> inputs = m.inputs();
+  const std::size_t n = inputs.size(), n_terms = m.terms.size();
+  const std::string name = c_name(m.target);
+  // guards in the order of the inputs, terms by the index of their input
+  std::vector<double> low, high, jump, apart, intercept, coefficient, lag, others;
+  std::vector<std::string> unit(n), of, power, drive, arguments, readings;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto g = std::find_if(d.safe.guards.begin(), d.safe.guards.end(),
+                                [&](const FailSafe::Guard& guard) { return guard.input == inputs[i]; });
+    if (g == d.safe.guards.end()) throw std::logic_error("an input without a guard");
+    low.push_back(g->low);
+    high.push_back(g->high);
+    jump.push_back(g->most_jump);
+    apart.push_back(g->most_apart);
+    intercept.push_back(g->others_intercept);
+    for (std::size_t k = 0; k < n; ++k) others.push_back(g->others_coefficient.empty() ? 0.0 : g->others_coefficient[k]);
+    unit[i] = g->unit;
+    drive.push_back(compensation::is_drive(g->unit) ? "1" : "0");
+    arguments.push_back(fmt::format("double {}_{}", c_name(inputs[i]), g->unit));
+    readings.push_back(fmt::format("{}_{}", c_name(inputs[i]), g->unit));
+  }
+  for (const DriftModel::Term& t : m.terms) {
+    coefficient.push_back(t.coefficient);
+    lag.push_back(t.lag_s);
+    power.push_back(std::to_string(t.power));
+    of.push_back(std::to_string(std::find(inputs.begin(), inputs.end(), t.input) - inputs.begin()));
+  }
+  std::string comment = formula_text(d);
+  for (std::size_t at = 0; (at = comment.find('\n', at)) != std::string::npos && at + 1 < comment.size(); at += 4)
+    comment.replace(at, 1, "\n * ");
+  const FailSafe& s = d.safe;
+  return fmt::format(
+      R"(/* Correction of {target} [um], by {kind}. {made_by}
+ * {comment} */
+#include <math.h>
+
+#define {NAME}_INPUTS {n}
+#define {NAME}_TERMS {n_terms}
+
+/* All zero before the first call. */
+typedef struct {{
+  int is_running;
+  double time_s;
+  double start[{NAME}_INPUTS], last[{NAME}_INPUTS], last_s[{NAME}_INPUTS], doubted_until_s[{NAME}_INPUTS];
+  int has_start[{NAME}_INPUTS], has_last[{NAME}_INPUTS], is_doubted[{NAME}_INPUTS];
+  double lag[{NAME}_TERMS], before[{NAME}_TERMS], before_s[{NAME}_TERMS];
+  int has_lag[{NAME}_TERMS];
+  double trust, prediction_um, correction_um;
+}} {name}_state;
+
+/* What to take away from the position [um]: the axis moves by its negative. Readings that are missing are NAN.
+ * dt_s: since the call before; it does not matter in the first one. */
+double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
+  static const double low[] = {low}, high[] = {high}, most_jump[] = {jump}, most_apart[] = {apart};
+  static const double expected_0[] = {intercept};
+  static const double expected_by[] = {others};
+  static const double coefficient[] = {coefficient}, lag_s[] = {lag};
+  static const int power[] = {{{power}}}, input_of[] = {{{of}}}, is_drive[] = {{{drive}}};
+  const double fade_s = {fade}, stale_s = {stale}, period_s = {period};
+  double x[{NAME}_INPUTS] = {{{readings}}};
+  double prediction = {model_intercept}, deserved = 1.0, step_s, wanted, most;
+  int i, k;
+  step_s = s->is_running ? dt_s : 0.0;
+  s->time_s += step_s;
+  for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* rises, where they are wanted */
+    if (!{from_start} || is_drive[i] || isnan(x[i])) continue;
+    if (!s->has_start[i]) {{
+      s->start[i] = x[i];
+      s->has_start[i] = 1;
+    }}
+    x[i] -= s->start[i];
+  }}
+  for (k = 0; k < {NAME}_TERMS; ++k) {{
+    const double read = x[input_of[k]];
+    double value = 1.0;
+    if (isnan(read)) {{
+      prediction = NAN;
+      continue;
+    }}
+    for (i = 0; i < power[k]; ++i) value *= read;
+    if (lag_s[k] > 0.0) {{
+      const double towards = is_drive[input_of[k]] ? s->before[k] : 0.5 * (s->before[k] + value);
+      if (s->has_lag[k]) {{
+        s->lag[k] += (1.0 - exp(-(s->time_s - s->before_s[k]) / lag_s[k])) * (towards - s->lag[k]);
+      }} else {{
+        s->lag[k] = is_drive[input_of[k]] ? 0.0 : value;
+        s->has_lag[k] = 1;
+      }}
+      s->before[k] = value;
+      s->before_s[k] = s->time_s;
+      value = s->lag[k];
+    }}
+    prediction += coefficient[k] * value;
+  }}
+  for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* what each reading deserves */
+    int doubt = 0;
+    if (isnan(x[i])) {{
+      doubt = s->time_s - s->last_s[i] > stale_s;
+    }} else {{
+      const double steps = fmax(1.0, (s->time_s - s->last_s[i]) / period_s);
+      double expected = expected_0[i], outside;
+      int has_others = 0;
+      if (s->has_last[i] && fabs(x[i] - s->last[i]) > steps * most_jump[i]) doubt = 1;
+      for (k = 0; k < {NAME}_INPUTS; ++k) {{
+        if (expected_by[i * {NAME}_INPUTS + k] == 0.0) continue;
+        expected += expected_by[i * {NAME}_INPUTS + k] * x[k];
+        has_others = 1;
+      }}
+      if (has_others && fabs(x[i] - expected) > most_apart[i]) doubt = 1;
+      outside = fmax(0.0, fmax(low[i] - x[i], x[i] - high[i]));
+      if (outside > 0.0) deserved = fmin(deserved, fmax(0.0, 1.0 - outside / (0.5 * (high[i] - low[i]))));
+      s->last[i] = x[i];
+      s->last_s[i] = s->time_s;
+      s->has_last[i] = 1;
+    }}
+    if (doubt) {{
+      s->doubted_until_s[i] = s->time_s + {back} * fade_s;
+      s->is_doubted[i] = 1;
+    }}
+    if (s->is_doubted[i] && s->time_s < s->doubted_until_s[i]) deserved = 0.0;
+  }}
+  s->trust = s->is_running ? s->trust + (1.0 - exp(-step_s / fade_s)) * (deserved - s->trust) : deserved;
+  if (!isnan(prediction)) s->prediction_um = prediction;
+  wanted = fmax({lowest}, fmin({highest}, s->trust * s->prediction_um));
+  most = {rate} * step_s;
+  s->correction_um = s->is_running ? s->correction_um + fmax(-most, fmin(most, wanted - s->correction_um)) : wanted;
+  s->is_running = 1;
+  return s->correction_um;
+}}
+)",
+      fmt::arg("target", m.target), fmt::arg("kind", m.kind), fmt::arg("made_by", made_by), fmt::arg("comment", comment),
+      fmt::arg("NAME", fmt::format("DRIFT_{}", name)), fmt::arg("name", name), fmt::arg("n", n),
+      fmt::arg("n_terms", n_terms), fmt::arg("arguments", fmt::join(arguments, ", ")),
+      fmt::arg("readings", fmt::join(readings, ", ")), fmt::arg("low", c_array(low)), fmt::arg("high", c_array(high)),
+      fmt::arg("jump", c_array(jump)), fmt::arg("apart", c_array(apart)), fmt::arg("intercept", c_array(intercept)),
+      fmt::arg("others", c_array(others)), fmt::arg("coefficient", c_array(coefficient)), fmt::arg("lag", c_array(lag)),
+      fmt::arg("power", fmt::join(power, ", ")), fmt::arg("of", fmt::join(of, ", ")),
+      fmt::arg("drive", fmt::join(drive, ", ")), fmt::arg("fade", c_number(s.fade_s)),
+      fmt::arg("stale", c_number(s.stale_s)), fmt::arg("period", c_number(s.period_s)),
+      fmt::arg("model_intercept", c_number(m.intercept)), fmt::arg("from_start", m.from_start ? 1 : 0),
+      fmt::arg("back", c_number(compensation::kBackAfter)), fmt::arg("lowest", c_number(s.lowest_um)),
+      fmt::arg("highest", c_number(s.highest_um)), fmt::arg("rate", c_number(s.most_rate_um_s)));
+}
+
+}  // namespace driftwright::output

@@ -1,0 +1,42 @@
+#pragma once
+// What strategies of correction are judged on: families of cyclograms, seasons of the hall, instruments, failing sensors.
+
+#include "base/config_map.hpp"
+#include "base/cyclogram.hpp"
+
+namespace driftwright::scenarios {
+
+struct Validation {
+  std::vector<Cyclogram> train;  ///< fitted on, in the hall as the scenario has it
+  struct Family {
+    std::string name;
+    std::vector<Cyclogram> cyclograms;
+  };
+  std::vector<Family> families;
+  struct Season {
+    std::string name;
+    double offset_K = 0.0;  ///< of the hall against the scenario's
+    double swing_K = 0.0;   ///< amplitude of a sine of 24 h that begins with each cyclogram
+  };
+  std::vector<Season> seasons;  ///< the first is the scenario's own hall, "as trained"
+  double noise_K = 0.0;         ///< of thermometers, white, 1 sigma
+  double resolution_K = 0.0;
+  double drift_noise_um = 0.0;  ///< of the indicator in the training runs
+  double model_scatter =
+      0.1;  ///< 1 sigma of the logarithm by which the model that strategies are given is wrong in each power and exchange
+  double fails_at = 0.5;  ///< share of a cyclogram after which a sensor fails
+  double tolerance_um = 10.0;
+  int seed = 1;
+  Where where;
+};
+
+/// @param known      cyclograms that may be named
+/// @param tolerance  where the block has none
+/// @throws InputError  file, line, key
+[[nodiscard]] Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogram*>& known,
+                                         double tolerance_um);
+
+/// The hall of a season [K, as the series given], over a cyclogram.
+[[nodiscard]] TimeSeries hall_in(const Validation::Season& season, const TimeSeries& hall, double duration_s);
+
+}  // namespace driftwright::scenarios
