@@ -197,23 +197,27 @@ FittedStrategy fit_one(const Strategy& strategy, const StrategySettings& s, std:
   FittedStrategy f = strategy.fit(training);
   f.name = strategy.name;
   f.is_baseline = strategy.is_baseline;
-  f.count_from_start = s.count_from_start;
   f.interval_um = interval(strategy, s, training);
   if (f.is_baseline) return f;
   std::vector<std::vector<double>> predicted;
   for (const ObservedRun& run : training) predicted.push_back(f.predict(run));
   // an observer looks after its sensors itself
+  std::vector<Record> readings;
+  for (const ObservedRun& run : training) readings.push_back(run.readings);
   f.fail_safe =
-      learn_fail_safe(records_of(training, s), f.model ? f.model->inputs() : std::vector<std::string>{}, predicted);
+      learn_fail_safe(readings, f.model ? f.model->inputs() : std::vector<std::string>{}, predicted, s.count_from_start);
   return f;
 }
 
 }  // namespace
 
-GuardedCorrection FittedStrategy::correct(const ObservedRun& run, const std::vector<double>& predicted) const {
-  if (fail_safe)
-    return guarded(*fail_safe, count_from_start ? counted_from_start(run.readings, {}) : run.readings, predicted);
-  GuardedCorrection c{.correction_um = predicted, .trust = std::vector<double>(predicted.size(), 1.0), .events = {}};
+GuardedCorrection FittedStrategy::correct(const ObservedRun& run) const {
+  if (fail_safe) {
+    const Repaired readings = repaired(*fail_safe, run.readings);
+    return guarded(*fail_safe, readings, predict({run.cyclogram, run.hall, readings.readings}));
+  }
+  GuardedCorrection c{
+      .correction_um = predict(run), .trust = std::vector<double>(run.readings.n_samples(), 1.0), .events = {}};
   for (double& v : c.correction_um) v = std::isfinite(v) ? v : 0.0;
   return c;
 }

@@ -45,9 +45,8 @@ struct FittedStrategy {
   /// largest of those. None where only one run was given.
   std::optional<double> interval_um;
 
-  /// The correction as it goes to an axis; without a fail-safe the prediction, 0 where it says nothing.
-  [[nodiscard]] compensation::GuardedCorrection correct(const ObservedRun& run, const std::vector<double>& predicted) const;
-  bool count_from_start = false;
+  /// The correction as it goes to an axis: of repaired readings, guarded. Without a fail-safe the prediction, 0 where it says nothing.
+  [[nodiscard]] compensation::GuardedCorrection correct(const ObservedRun& run) const;
 };
 
 /// One that could not be fitted, and why.

@@ -29,7 +29,7 @@ Case judge(const FittedStrategy& strategy, std::size_t index, const ObservedRun&
   Case c;
   c.run = index;
   const std::vector<double> predicted = strategy.predict(run);
-  const GuardedCorrection correction = strategy.correct(run, predicted);
+  const GuardedCorrection correction = strategy.correct(run);
   std::vector<double> left, unguarded;
   int n_inside = 0, n = 0;
   for (std::size_t i = 0; i < drift_um.size(); ++i) {

@@ -17,9 +17,11 @@ constexpr double kRangeRoom = 0.2;  // of a range's width, on both sides
 constexpr double kClampRoom = 0.5;  // of the drift's
 constexpr double kJumpRoom = 2.0;   // times the largest
 constexpr double kSlewRoom = 2.0;   // times the largest rate of the prediction, over ten rows
-constexpr double kApartRoom = 3.0;  // times the largest distance on a run left out
-constexpr double kLeastRange_K = 2.0, kLeastJump_K = 1.0, kLeastApart_K = 0.5;  // below, instruments are what is seen
+constexpr double kApartRoom = 1.5;  // times the largest distance on a run left out
+constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 0.5;  // below, instruments are what is seen
 constexpr std::size_t kSlewRows = 10;
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
@@ -50,16 +52,30 @@ double most_apart(std::span<const Record> training, const std::string& input, co
 
 /// What one guard remembers from row to row.
 struct Watch {
-  double last = std::numeric_limits<double>::quiet_NaN(), last_s = 0.0;
+  double start = kMissing;  // first reading, where readings count from it
+  double last = kMissing, last_s = 0.0;
   double doubted_until_s = -std::numeric_limits<double>::infinity();
   bool was_doubted = false;
 };
 
+double expected_by_others(const FailSafe::Guard& guard, const std::vector<double>& x) {
+  double expected = guard.others_intercept;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (guard.others_coefficient[k] != 0.0) expected += guard.others_coefficient[k] * x[k];
+  }
+  return expected;
+}
+
 }  // namespace
 
-FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std::string>& inputs,
-                         const std::vector<std::vector<double>>& predicted) {
+FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std::string>& inputs,
+                         const std::vector<std::vector<double>>& predicted, bool from_start) {
+  std::vector<Record> training(as_given.begin(), as_given.end());
+  if (from_start) {
+    for (Record& record : training) record = counted_from_start(std::move(record), {});
+  }
   FailSafe safe;
+  safe.from_start = from_start;
   Range drift;
   double rate = 0.0;
   std::vector<double> steps_s;
@@ -96,7 +112,7 @@ FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std
         if (i > 0 && std::isfinite(x[i] - x[i - 1])) jump = std::max(jump, std::abs(x[i] - x[i - 1]));
       }
     }
-    const double room = std::max(kRangeRoom * range.width(), is_speed ? 0.0 : 0.5 * (kLeastRange_K - range.width()));
+    const double room = std::max(kRangeRoom * range.width(), is_speed ? 0.0 : kLeastRoom_K);
     g.low = range.low - room;
     g.high = range.high + room;
     g.most_jump = is_speed ? std::numeric_limits<double>::infinity() : std::max(kJumpRoom * jump, kLeastJump_K);
@@ -119,53 +135,93 @@ FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std
   return safe;
 }
 
-GuardedCorrection guarded(const FailSafe& safe, const Record& readings, std::span<const double> predicted) {
-  GuardedCorrection result;
-  std::vector<const std::vector<double>*> x;
-  for (const FailSafe::Guard& g : safe.guards) x.push_back(&readings.at(g.input).values);
-  std::vector<Watch> watches(safe.guards.size(), Watch{.last_s = readings.time_s.front()});
-  double trust = 1.0, in_force = 0.0, last = 0.0;
-  for (std::size_t i = 0; i < readings.n_samples(); ++i) {
-    const double t_s = readings.time_s[i], step_s = i > 0 ? t_s - readings.time_s[i - 1] : 0.0;
-    double deserved = 1.0;
-    for (std::size_t k = 0; k < safe.guards.size(); ++k) {
+Repaired repaired(const FailSafe& safe, Record readings) {
+  const std::size_t n = safe.guards.size();
+  Repaired result{.readings = std::move(readings), .deserved = {}, .events = {}};
+  const std::vector<double>& time_s = result.readings.time_s;
+  std::vector<std::vector<double>*> channel;
+  for (const FailSafe::Guard& g : safe.guards) {
+    channel.push_back(
+        &result.readings.channels[static_cast<std::size_t>(&result.readings.at(g.input) - result.readings.channels.data())]
+             .values);
+  }
+  std::vector<Watch> watches(n, Watch{.last_s = time_s.front()});
+  std::vector<double> x(n);
+  std::vector<std::string> why(n);
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    const double t_s = time_s[i];
+    const auto doubt = [&](std::size_t k, std::string reason) {
+      if (why[k].empty()) why[k] = std::move(reason);
+      watches[k].doubted_until_s = t_s + kBackAfter * safe.fade_s;
+    };
+    const auto is_doubted = [&](std::size_t k) { return t_s < watches[k].doubted_until_s; };
+    for (std::size_t k = 0; k < n; ++k) {
       const FailSafe::Guard& g = safe.guards[k];
       Watch& w = watches[k];
-      const double read = (*x[k])[i];
-      std::string why;
-      const auto doubt = [&](std::string reason) {
-        why = std::move(reason);
-        w.doubted_until_s = t_s + kBackAfter * safe.fade_s;
-      };
+      why[k].clear();
+      double read = (*channel[k])[i];
+      if (safe.from_start && !is_drive(g.unit)) {
+        if (std::isnan(w.start)) w.start = read;
+        read -= w.start;
+      }
       if (std::isnan(read)) {
-        if (t_s - w.last_s > safe.stale_s) doubt("gives no reading");
+        if (std::isnan(w.last) || t_s - w.last_s > safe.stale_s) doubt(k, "gives no reading");
       } else {
         const double steps = std::max(1.0, (t_s - w.last_s) / safe.period_s);
         if (std::isfinite(w.last) && std::abs(read - w.last) > steps * g.most_jump)
-          doubt(fmt::format("jumps by {:.2f} {}", read - w.last, g.unit));
-        if (!g.others_coefficient.empty()) {
-          double expected = g.others_intercept;
-          for (std::size_t j = 0; j < x.size(); ++j) {
-            if (g.others_coefficient[j] != 0.0) expected += g.others_coefficient[j] * (*x[j])[i];
-          }
-          if (std::abs(read - expected) > g.most_apart)
-            doubt(fmt::format("is {:+.2f} {} from what the others say", read - expected, g.unit));
-        }
-        const double outside = std::max({0.0, g.low - read, read - g.high});
-        if (outside > 0.0) {
-          deserved = std::min(deserved, std::max(0.0, 1.0 - outside / (0.5 * (g.high - g.low))));
-          if (why.empty() && !w.was_doubted)
-            why = fmt::format("reads {:.4g} {}, outside {:.4g} to {:.4g}", read, g.unit, g.low, g.high);
-        }
+          doubt(k, fmt::format("jumps by {:.2f} {}", read - w.last, g.unit));
         w.last = read;
         w.last_s = t_s;
       }
-      if (t_s < w.doubted_until_s) deserved = 0.0;
-      const bool is_doubted = !why.empty() || t_s < w.doubted_until_s;
-      if (is_doubted && !w.was_doubted)
-        result.events.push_back(fmt::format("from {:.0f} min: {} {}", t_s / 60.0, g.input, why));
-      w.was_doubted = is_doubted;
+      x[k] = std::isnan(w.last) ? 0.0 : w.last;
     }
+    for (std::size_t pass = 0; pass <= n; ++pass) {
+      for (std::size_t k = 0; k < n; ++k) {
+        const FailSafe::Guard& g = safe.guards[k];
+        if (!is_doubted(k) || g.others_coefficient.empty()) continue;
+        x[k] = expected_by_others(g, x);
+        const bool is_back = std::abs(watches[k].last - x[k]) <= kBackWithin * g.most_apart;
+        if (pass == 0 && !is_back) doubt(k, {});
+      }
+      std::size_t worst = n;
+      double most = 1.0;
+      for (std::size_t k = 0; k < n; ++k) {
+        const FailSafe::Guard& g = safe.guards[k];
+        if (is_doubted(k) || g.others_coefficient.empty()) continue;
+        const double apart = std::abs(x[k] - expected_by_others(g, x)) / g.most_apart;
+        if (apart > most) {
+          most = apart;
+          worst = k;
+        }
+      }
+      if (worst == n) break;
+      const FailSafe::Guard& g = safe.guards[worst];
+      doubt(worst, fmt::format("is {:+.2f} {} from what the others say", x[worst] - expected_by_others(g, x), g.unit));
+    }
+    double deserved = 1.0;
+    int n_doubted = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const FailSafe::Guard& g = safe.guards[k];
+      Watch& w = watches[k];
+      if (is_doubted(k) && (++n_doubted > 1 || g.others_coefficient.empty())) deserved = 0.0;
+      const double outside = std::max({0.0, g.low - x[k], x[k] - g.high});
+      if (outside > 0.0) deserved = std::min(deserved, std::max(0.0, 1.0 - outside / (g.high - g.low)));
+      if (is_doubted(k) && !w.was_doubted)
+        result.events.push_back(fmt::format("from {:.0f} min: {} {}", t_s / 60.0, g.input, why[k]));
+      w.was_doubted = is_doubted(k);
+      (*channel[k])[i] = std::clamp(x[k], g.low, g.high) + (safe.from_start && !is_drive(g.unit) ? w.start : 0.0);
+    }
+    result.deserved.push_back(deserved);
+  }
+  return result;
+}
+
+GuardedCorrection guarded(const FailSafe& safe, const Repaired& readings, std::span<const double> predicted) {
+  GuardedCorrection result{.correction_um = {}, .trust = {}, .events = readings.events};
+  const std::vector<double>& time_s = readings.readings.time_s;
+  double trust = 1.0, in_force = 0.0, last = 0.0;
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    const double step_s = i > 0 ? time_s[i] - time_s[i - 1] : 0.0, deserved = readings.deserved[i];
     trust = i == 0 ? deserved : trust + (1.0 - std::exp(-step_s / safe.fade_s)) * (deserved - trust);
     if (std::isfinite(predicted[i])) last = predicted[i];
     const double wanted = std::clamp(trust * last, safe.lowest_um, safe.highest_um);

@@ -104,9 +104,13 @@ Json model_json(const DeployedModel& d) {
         {{"input", t.input}, {"unit", t.unit}, {"coefficient", t.coefficient}, {"power", t.power}, {"lag_s", t.lag_s}});
   }
   const FailSafe& s = d.safe;
-  Json safe = {{"period_s", s.period_s},     {"lowest_um", s.lowest_um},
-               {"highest_um", s.highest_um}, {"most_rate_um_s", s.most_rate_um_s},
-               {"fade_s", s.fade_s},         {"stale_s", s.stale_s},
+  Json safe = {{"from_start", s.from_start},
+               {"period_s", s.period_s},
+               {"lowest_um", s.lowest_um},
+               {"highest_um", s.highest_um},
+               {"most_rate_um_s", s.most_rate_um_s},
+               {"fade_s", s.fade_s},
+               {"stale_s", s.stale_s},
                {"guards", Json::array()}};
   for (const FailSafe::Guard& g : s.guards) {
     safe["guards"].push_back({{"input", g.input},
@@ -150,6 +154,7 @@ DeployedModel read_model(const std::string& path) {
     }
     d.interval_um = as_number(j.at("interval_95_um"), std::numeric_limits<double>::quiet_NaN());
     const Json& s = j.at("fail_safe");
+    d.safe.from_start = s.at("from_start");
     d.safe.period_s = s.at("period_s");
     d.safe.lowest_um = s.at("lowest_um");
     d.safe.highest_um = s.at("highest_um");
@@ -189,7 +194,7 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
   const std::string name = c_name(m.target);
   // guards in the order of the inputs, terms by the index of their input
   std::vector<double> low, high, jump, apart, intercept, coefficient, lag, others;
-  std::vector<std::string> unit(n), of, power, drive, arguments, readings;
+  std::vector<std::string> unit(n), of, power, drive, has_others, arguments, readings;
   for (std::size_t i = 0; i < n; ++i) {
     const auto g = std::find_if(d.safe.guards.begin(), d.safe.guards.end(),
                                 [&](const FailSafe::Guard& guard) { return guard.input == inputs[i]; });
@@ -201,6 +206,7 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
     intercept.push_back(g->others_intercept);
     for (std::size_t k = 0; k < n; ++k) others.push_back(g->others_coefficient.empty() ? 0.0 : g->others_coefficient[k]);
     unit[i] = g->unit;
+    has_others.push_back(g->others_coefficient.empty() ? "0" : "1");
     drive.push_back(compensation::is_drive(g->unit) ? "1" : "0");
     arguments.push_back(fmt::format("double {}_{}", c_name(inputs[i]), g->unit));
     readings.push_back(fmt::format("{}_{}", c_name(inputs[i]), g->unit));
@@ -229,10 +235,17 @@ typedef struct {{
   double time_s;
   double start[{NAME}_INPUTS], last[{NAME}_INPUTS], last_s[{NAME}_INPUTS], doubted_until_s[{NAME}_INPUTS];
   int has_start[{NAME}_INPUTS], has_last[{NAME}_INPUTS], is_doubted[{NAME}_INPUTS];
-  double lag[{NAME}_TERMS], before[{NAME}_TERMS], before_s[{NAME}_TERMS];
-  int has_lag[{NAME}_TERMS];
-  double trust, prediction_um, correction_um;
+  double lag[{NAME}_TERMS], before[{NAME}_TERMS];
+  double trust, correction_um;
 }} {name}_state;
+
+static double {name}_by_others(double expected, const double *by, const double *x) {{
+  int k;
+  for (k = 0; k < {NAME}_INPUTS; ++k) {{
+    if (by[k] != 0.0) expected += by[k] * x[k];
+  }}
+  return expected;
+}}
 
 /* What to take away from the position [um]: the axis moves by its negative. Readings that are missing are NAN.
  * dt_s: since the call before; it does not matter in the first one. */
@@ -241,11 +254,11 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
   static const double expected_0[] = {intercept};
   static const double expected_by[] = {others};
   static const double coefficient[] = {coefficient}, lag_s[] = {lag};
-  static const int power[] = {{{power}}}, input_of[] = {{{of}}}, is_drive[] = {{{drive}}};
+  static const int power[] = {{{power}}}, input_of[] = {{{of}}}, is_drive[] = {{{drive}}}, has_others[] = {{{has_others}}};
   const double fade_s = {fade}, stale_s = {stale}, period_s = {period};
   double x[{NAME}_INPUTS] = {{{readings}}};
   double prediction = {model_intercept}, deserved = 1.0, step_s, wanted, most;
-  int i, k;
+  int i, k, n_doubted = 0;
   step_s = s->is_running ? dt_s : 0.0;
   s->time_s += step_s;
   for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* rises, where they are wanted */
@@ -256,45 +269,13 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
     }}
     x[i] -= s->start[i];
   }}
-  for (k = 0; k < {NAME}_TERMS; ++k) {{
-    const double read = x[input_of[k]];
-    double value = 1.0;
-    if (isnan(read)) {{
-      prediction = NAN;
-      continue;
-    }}
-    for (i = 0; i < power[k]; ++i) value *= read;
-    if (lag_s[k] > 0.0) {{
-      const double towards = is_drive[input_of[k]] ? s->before[k] : 0.5 * (s->before[k] + value);
-      if (s->has_lag[k]) {{
-        s->lag[k] += (1.0 - exp(-(s->time_s - s->before_s[k]) / lag_s[k])) * (towards - s->lag[k]);
-      }} else {{
-        s->lag[k] = is_drive[input_of[k]] ? 0.0 : value;
-        s->has_lag[k] = 1;
-      }}
-      s->before[k] = value;
-      s->before_s[k] = s->time_s;
-      value = s->lag[k];
-    }}
-    prediction += coefficient[k] * value;
-  }}
-  for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* what each reading deserves */
+  for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* missing for too long, or jumping */
     int doubt = 0;
     if (isnan(x[i])) {{
-      doubt = s->time_s - s->last_s[i] > stale_s;
+      doubt = !s->has_last[i] || s->time_s - s->last_s[i] > stale_s;
     }} else {{
       const double steps = fmax(1.0, (s->time_s - s->last_s[i]) / period_s);
-      double expected = expected_0[i], outside;
-      int has_others = 0;
-      if (s->has_last[i] && fabs(x[i] - s->last[i]) > steps * most_jump[i]) doubt = 1;
-      for (k = 0; k < {NAME}_INPUTS; ++k) {{
-        if (expected_by[i * {NAME}_INPUTS + k] == 0.0) continue;
-        expected += expected_by[i * {NAME}_INPUTS + k] * x[k];
-        has_others = 1;
-      }}
-      if (has_others && fabs(x[i] - expected) > most_apart[i]) doubt = 1;
-      outside = fmax(0.0, fmax(low[i] - x[i], x[i] - high[i]));
-      if (outside > 0.0) deserved = fmin(deserved, fmax(0.0, 1.0 - outside / (0.5 * (high[i] - low[i]))));
+      doubt = s->has_last[i] && fabs(x[i] - s->last[i]) > steps * most_jump[i];
       s->last[i] = x[i];
       s->last_s[i] = s->time_s;
       s->has_last[i] = 1;
@@ -303,11 +284,55 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
       s->doubted_until_s[i] = s->time_s + {back} * fade_s;
       s->is_doubted[i] = 1;
     }}
-    if (s->is_doubted[i] && s->time_s < s->doubted_until_s[i]) deserved = 0.0;
+    if (s->is_doubted[i] && s->time_s >= s->doubted_until_s[i]) s->is_doubted[i] = 0;
+    x[i] = s->has_last[i] ? s->last[i] : 0.0;
+  }}
+  for (k = 0; k <= {NAME}_INPUTS; ++k) {{ /* or too far from what the others say: replaced by that */
+    int worst = -1;
+    double furthest = 1.0;
+    for (i = 0; i < {NAME}_INPUTS; ++i) {{
+      if (!s->is_doubted[i] || !has_others[i]) continue;
+      x[i] = {name}_by_others(expected_0[i], &expected_by[i * {NAME}_INPUTS], x);
+      if (k == 0 && !(s->has_last[i] && fabs(s->last[i] - x[i]) <= {within} * most_apart[i]))
+        s->doubted_until_s[i] = s->time_s + {back} * fade_s;
+    }}
+    for (i = 0; i < {NAME}_INPUTS; ++i) {{
+      double apart;
+      if (s->is_doubted[i] || !has_others[i]) continue;
+      apart = fabs(x[i] - {name}_by_others(expected_0[i], &expected_by[i * {NAME}_INPUTS], x)) / most_apart[i];
+      if (apart > furthest) {{
+        furthest = apart;
+        worst = i;
+      }}
+    }}
+    if (worst < 0) break;
+    s->doubted_until_s[worst] = s->time_s + {back} * fade_s;
+    s->is_doubted[worst] = 1;
+  }}
+  for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* what the readings deserve; outside its range each counts as the edge */
+    const double outside = fmax(0.0, fmax(low[i] - x[i], x[i] - high[i]));
+    if (s->is_doubted[i] && (++n_doubted > 1 || !has_others[i])) deserved = 0.0;
+    if (outside > 0.0) deserved = fmin(deserved, fmax(0.0, 1.0 - outside / (high[i] - low[i])));
+    x[i] = fmax(low[i], fmin(high[i], x[i]));
+  }}
+  for (k = 0; k < {NAME}_TERMS; ++k) {{
+    const double read = x[input_of[k]];
+    double value = 1.0;
+    for (i = 0; i < power[k]; ++i) value *= read;
+    if (lag_s[k] > 0.0) {{
+      const double towards = is_drive[input_of[k]] ? s->before[k] : 0.5 * (s->before[k] + value);
+      if (s->is_running) {{
+        s->lag[k] += (1.0 - exp(-step_s / lag_s[k])) * (towards - s->lag[k]);
+      }} else {{
+        s->lag[k] = is_drive[input_of[k]] ? 0.0 : value;
+      }}
+      s->before[k] = value;
+      value = s->lag[k];
+    }}
+    prediction += coefficient[k] * value;
   }}
   s->trust = s->is_running ? s->trust + (1.0 - exp(-step_s / fade_s)) * (deserved - s->trust) : deserved;
-  if (!isnan(prediction)) s->prediction_um = prediction;
-  wanted = fmax({lowest}, fmin({highest}, s->trust * s->prediction_um));
+  wanted = fmax({lowest}, fmin({highest}, s->trust * prediction));
   most = {rate} * step_s;
   s->correction_um = s->is_running ? s->correction_um + fmax(-most, fmin(most, wanted - s->correction_um)) : wanted;
   s->is_running = 1;
@@ -321,11 +346,12 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
       fmt::arg("jump", c_array(jump)), fmt::arg("apart", c_array(apart)), fmt::arg("intercept", c_array(intercept)),
       fmt::arg("others", c_array(others)), fmt::arg("coefficient", c_array(coefficient)), fmt::arg("lag", c_array(lag)),
       fmt::arg("power", fmt::join(power, ", ")), fmt::arg("of", fmt::join(of, ", ")),
-      fmt::arg("drive", fmt::join(drive, ", ")), fmt::arg("fade", c_number(s.fade_s)),
-      fmt::arg("stale", c_number(s.stale_s)), fmt::arg("period", c_number(s.period_s)),
+      fmt::arg("drive", fmt::join(drive, ", ")), fmt::arg("has_others", fmt::join(has_others, ", ")),
+      fmt::arg("fade", c_number(s.fade_s)), fmt::arg("stale", c_number(s.stale_s)), fmt::arg("period", c_number(s.period_s)),
       fmt::arg("model_intercept", c_number(m.intercept)), fmt::arg("from_start", m.from_start ? 1 : 0),
-      fmt::arg("back", c_number(compensation::kBackAfter)), fmt::arg("lowest", c_number(s.lowest_um)),
-      fmt::arg("highest", c_number(s.highest_um)), fmt::arg("rate", c_number(s.most_rate_um_s)));
+      fmt::arg("within", c_number(compensation::kBackWithin)), fmt::arg("back", c_number(compensation::kBackAfter)),
+      fmt::arg("lowest", c_number(s.lowest_um)), fmt::arg("highest", c_number(s.highest_um)),
+      fmt::arg("rate", c_number(s.most_rate_um_s)));
 }
 
 }  // namespace driftwright::output
