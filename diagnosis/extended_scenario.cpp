@@ -440,8 +440,8 @@ class Writer {
     const auto& displacements = twin_.augmented().model.displacements;
     const ConfigNode* written = yaml_.root().find("displacements");
     for (std::size_t d = 0; d < displacements.size(); ++d) {
-      const auto* sum = std::get_if<scenarios::BySensitivity>(&displacements[d].how);
-      expands_itself = expands_itself || (!sum && b.displacement.empty());
+      const auto& sum = displacements[d].by_sensitivity;
+      expands_itself = expands_itself || (displacements[d].points && b.displacement.empty());
       if (!sum || (!b.displacement.empty() && displacements[d].name != b.displacement)) continue;
       const ConfigNode* terms = nullptr;
       for (const ConfigNodePtr& item : written->items) {

@@ -1,5 +1,6 @@
 #include "diagnosis/scatter.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace driftwright::diagnosis {
@@ -78,6 +79,7 @@ std::vector<Knob> scatter(const Twin& twin) {
       }));
     }
   }
+  const std::vector<std::string>& regions = twin.machine().mesh.regions;
   for (const auto& part : twin.machine().system.parts) {
     const auto add = [&](const char* effect, double ChangedBody::*member, const std::string& displacement = {}) {
       knobs.push_back(
@@ -88,21 +90,19 @@ std::vector<Knob> scatter(const Twin& twin) {
     if (part.conduction.cwiseAbs().maxCoeff() > 0.0) add("conductivity", &ChangedBody::conductivity);
     if (part.mass.cwiseAbs().maxCoeff() > 0.0) add("heat_capacity", &ChangedBody::heat_capacity);
     const auto& model = a.model;
-    for (std::size_t d = 0; d < model.displacements.size(); ++d) {  // each sensitivity is a number of its own
-      const auto o = static_cast<Eigen::Index>(model.sensors.size() + d);
-      if (!std::holds_alternative<scenarios::BySensitivity>(model.displacements[d].how)) continue;
-      if (part.outputs.col(o).cwiseAbs().maxCoeff() > 0.0)
+    const bool is_meshed = std::find(regions.begin(), regions.end(), part.body) != regions.end();
+    bool expands = false;
+    for (std::size_t o = model.sensors.size(); o < static_cast<std::size_t>(part.outputs.cols()); ++o) {
+      if (!(part.outputs.col(static_cast<Eigen::Index>(o)).cwiseAbs().maxCoeff() > 0.0)) continue;
+      const std::size_t d = o - model.sensors.size();
+      // A sensitivity is a number of its own, but for a region that bends the mesh as well: that is one expansion.
+      const bool by_points = d >= model.displacements.size() || (model.displacements[d].points && is_meshed);
+      if (by_points) {
+        expands = true;
+      } else {
         add("expansion", &ChangedBody::expansion, model.displacements[d].name);
-    }
-    const bool expands = [&] {
-      for (std::size_t o = model.sensors.size(); o < static_cast<std::size_t>(part.outputs.cols()); ++o) {
-        const std::size_t d = o - model.sensors.size();
-        if (d < model.displacements.size() && std::holds_alternative<scenarios::BySensitivity>(model.displacements[d].how))
-          continue;
-        if (part.outputs.col(static_cast<Eigen::Index>(o)).cwiseAbs().maxCoeff() > 0.0) return true;
       }
-      return false;
-    }();
+    }
     if (expands) add("expansion", &ChangedBody::expansion);
   }
   return knobs;

@@ -56,9 +56,9 @@ std::vector<Part> body_parts(const MachineModel& model, const Machine& machine, 
   }
   for (std::size_t f = 0; f < machine.placed.functionals.size(); ++f) {
     const auto output = n_sensors + static_cast<Eigen::Index>(f);
-    const auto* by = f < model.displacements.size() ? std::get_if<BySensitivity>(&model.displacements[f].how) : nullptr;
-    if (by) {
-      for (const auto& [body, sensitivity_m_K] : by->terms) {
+    const DisplacementOutput* displacement = f < model.displacements.size() ? &model.displacements[f] : nullptr;
+    if (displacement && displacement->by_sensitivity) {
+      for (const auto& [body, sensitivity_m_K] : displacement->by_sensitivity->terms) {
         auto part = std::find_if(parts.begin(), parts.end(), [&](const Part& p) { return p.body == body.name; });
         if (part == parts.end()) {  // a surface
           parts.push_back({body.name, {}, {}, Eigen::MatrixXd::Zero(n, n_outputs)});
@@ -67,12 +67,12 @@ std::vector<Part> body_parts(const MachineModel& model, const Machine& machine, 
         }
         part->outputs.col(output) += sensitivity_m_K * solver::mean_weights(mesh, balance, body);
       }
-      continue;
     }
+    if (displacement && !displacement->points) continue;
     if (!machine.elasticity) throw std::logic_error("body_parts: displacements of a mesh want its elasticity");
     const Eigen::VectorXd response = machine.elasticity->response(machine.placed.functionals[f]);
     for (std::size_t r = 0; r < loads.size(); ++r) {
-      parts[r].outputs.col(output).head(mesh.n_nodes()) = loads[r].transposed(response);
+      parts[r].outputs.col(output).head(mesh.n_nodes()) += loads[r].transposed(response);
     }
   }
   return parts;

@@ -242,9 +242,9 @@ int n_functionals(const PlacedMachine& placed) {
   return static_cast<int>(placed.functionals.size());
 }
 
-bool is_by_sensitivity(const MachineModel& model, std::size_t functional) {
-  return functional < model.displacements.size() &&
-         std::holds_alternative<BySensitivity>(model.displacements[functional].how);
+/// Whether a displacement or tilt is one of points of the mesh, at least in part.
+bool has_points(const MachineModel& model, std::size_t functional) {
+  return functional >= model.displacements.size() || model.displacements[functional].points;
 }
 
 Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed,
@@ -252,7 +252,7 @@ Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& place
   Eigen::MatrixXd influence =
       Eigen::MatrixXd::Zero(placed.mesh.n_nodes(), static_cast<Eigen::Index>(placed.functionals.size()));
   for (std::size_t i = 0; i < placed.functionals.size(); ++i) {
-    if (is_by_sensitivity(model, i)) continue;
+    if (!has_points(model, i)) continue;
     if (!elasticity) throw std::logic_error("influences: a displacement without elasticity");
     influence.col(static_cast<Eigen::Index>(i)) = elasticity->influence(placed.functionals[i]);
   }
@@ -322,9 +322,8 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
     placed.sensor_weights.push_back(std::move(weights));
   }
   for (const DisplacementOutput& d : model.displacements) {
-    const auto* tool = std::get_if<ToolAgainstTable>(&d.how);
-    placed.functionals.push_back(tool ? tool_against_table(mesh, *tool) : DisplacementFunctional{});
-    if (const auto* by = std::get_if<BySensitivity>(&d.how)) check_bodies(*by, mesh, placed.balance);
+    placed.functionals.push_back(d.points ? tool_against_table(mesh, *d.points) : DisplacementFunctional{});
+    if (d.by_sensitivity) check_bodies(*d.by_sensitivity, mesh, placed.balance);
   }
   for (const TiltOutput& t : model.tilts) placed.functionals.push_back(tilt_against_table(mesh, t));
   return placed;
@@ -387,12 +386,10 @@ Machine build_with_influences(const MachineModel& model, PlacedMachine placed, c
   }
   for (std::size_t i = 0; i < machine.placed.functionals.size(); ++i) {
     auto output = out.state.col(static_cast<Eigen::Index>(n_sensors + i));
-    if (is_by_sensitivity(model, i)) {
-      for (const auto& [body, sensitivity_m_K] : std::get<BySensitivity>(model.displacements[i].how).terms) {
-        output += sensitivity_m_K * solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
-      }
-    } else {
-      output.head(machine.placed.mesh.n_nodes()) = influence.col(static_cast<Eigen::Index>(i));
+    if (has_points(model, i)) output.head(machine.placed.mesh.n_nodes()) = influence.col(static_cast<Eigen::Index>(i));
+    if (i >= model.displacements.size() || !model.displacements[i].by_sensitivity) continue;
+    for (const auto& [body, sensitivity_m_K] : model.displacements[i].by_sensitivity->terms) {
+      output += sensitivity_m_K * solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
     }
   }
   return machine;

@@ -20,7 +20,7 @@ struct PlacedMachine {
   std::vector<solver::JointMechanics> joints;
   /// Weights of each thermometer on the unknowns; empty for one that reads the hall.
   std::vector<std::vector<std::pair<int, double>>> sensor_weights;
-  /// Displacements, then tilts; of no terms for a displacement by sensitivities.
+  /// Displacements, then tilts; of no terms for a displacement by sensitivities alone.
   std::vector<solver::DisplacementFunctional> functionals;
 };
 
@@ -47,7 +47,7 @@ struct Machine {
 /// True where displacements or tilts of a mesh are asked for, or whole fields of it.
 [[nodiscard]] bool needs_elasticity(const PlacedMachine& placed, bool with_fields);
 
-/// Influence vectors of displacements and tilts, n_nodes x n_functionals; columns of displacements by sensitivities are zero.
+/// Influence vectors of displacements and tilts, n_nodes x n_functionals; columns of displacements by sensitivities alone are zero.
 /// They follow from mesh, materials, supports, joints and points alone, so models that differ in effects share them.
 [[nodiscard]] Eigen::MatrixXd influences(const MachineModel& model, const PlacedMachine& placed);
 /// build() with influences() that are known: no factorisation, and no displacement fields.

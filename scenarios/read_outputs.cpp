@@ -33,18 +33,18 @@ BySensitivity read_sensitivities(const ConfigMap& in) {
 }
 
 /// `positions: {axis: x, at: [-200 mm, 0 mm, 200 mm]}`: where the table has travelled to.
-std::vector<DisplacementOutput> at_positions(const ConfigMap& in, const std::string& name, const ToolAgainstTable& base) {
+std::vector<DisplacementOutput> at_positions(const ConfigMap& in, const DisplacementOutput& base) {
   const int axis = read_axis(in, "axis");
   std::vector<DisplacementOutput> outputs;
   for (double travel_m : in.quantities("at", "m")) {
-    ToolAgainstTable output = base;
-    output.travel_m = travel_m * Eigen::Vector3d::Unit(axis);
-    const std::string named = fmt::format("{}_{}{:.0f}", name, "xyz"[axis], 1e3 * travel_m);
+    DisplacementOutput output = base;
+    output.points->travel_m = travel_m * Eigen::Vector3d::Unit(axis);
+    output.name = fmt::format("{}_{}{:.0f}", base.name, "xyz"[axis], 1e3 * travel_m);
     for (const DisplacementOutput& other : outputs) {
-      if (other.name == named)
-        in.fail("at", fmt::format("two positions make the name '{}'; they must differ by 1 mm", named));
+      if (other.name == output.name)
+        in.fail("at", fmt::format("two positions make the name '{}'; they must differ by 1 mm", output.name));
     }
-    outputs.push_back({named, output});
+    outputs.push_back(std::move(output));
   }
   in.reject_unknown_keys();
   return outputs;
@@ -65,20 +65,21 @@ Sensor read_sensor(const ConfigMap& in) {
 }
 
 std::vector<DisplacementOutput> read_displacements(const ConfigMap& in) {
-  const std::string name = in.name("name");
-  if (in.has("sensitivities")) {
-    const DisplacementOutput output{name, read_sensitivities(in)};
+  DisplacementOutput base{.name = in.name("name")};
+  if (in.has("sensitivities")) base.by_sensitivity = read_sensitivities(in);
+  const bool has_points = in.has("along") || in.has("tool") || in.has("table") || in.has("positions");
+  if (base.by_sensitivity && !has_points) {
     in.reject_unknown_keys();
-    return {output};
+    return {base};
   }
-  ToolAgainstTable base{.axis = read_axis(in, "along"), .tool = read_point(in.map("tool")), .table = {}};
-  if (const auto table = in.optional_map("table")) base.table = read_point(*table);
+  base.points = ToolAgainstTable{.axis = read_axis(in, "along"), .tool = read_point(in.map("tool")), .table = {}};
+  if (const auto table = in.optional_map("table")) base.points->table = read_point(*table);
   const auto positions = in.optional_map("positions");
-  if (positions && !base.table)
+  if (positions && !base.points->table)
     in.fail("positions", "these are positions of the table; `table` says where it is in the mesh");
   in.reject_unknown_keys();
-  if (positions) return at_positions(*positions, name, base);
-  return {{name, base}};
+  if (positions) return at_positions(*positions, base);
+  return {base};
 }
 
 TiltOutput read_tilt(const ConfigMap& in) {

@@ -35,7 +35,8 @@ struct ToolAgainstTable {
   Eigen::Vector3d travel_m = Eigen::Vector3d::Zero();
 };
 
-/// Displacement by mean temperatures alone: Σ sensitivity (T - T_reference). For machines of lumped nodes.
+/// Displacement by mean temperatures: Σ sensitivity (T - T_reference). For machines of lumped nodes, and beside a mesh for bodies
+/// that are not in it: the screw of a semi-closed axis, whose growth moves the tool and is unseen by the motor's encoder.
 struct BySensitivity {
   struct Term {
     effects::Body body;
@@ -46,10 +47,12 @@ struct BySensitivity {
 };
 
 /// Error of the tool against the table along an axis: actual - commanded. The stand of the indicator is a rigid body that
-/// moves and turns with the table at its foot; without a table it stands on the ground.
+/// moves and turns with the table at its foot; without a table it stands on the ground. One of both parts at least; with both
+/// the error is their sum, and a positive sensitivity moves the tool along the axis.
 struct DisplacementOutput {
   std::string name;
-  std::variant<ToolAgainstTable, BySensitivity> how;
+  std::optional<ToolAgainstTable> points = {};
+  std::optional<BySensitivity> by_sensitivity = {};
 };
 
 /// Change of angle of the line from -> to about an axis, against the table (ISO 230-3); right-handed.

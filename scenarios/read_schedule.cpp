@@ -18,8 +18,7 @@ const std::vector<std::string> kLetters = {"x", "y", "z"};
 std::vector<std::string> along(const std::vector<DisplacementOutput>& displacements, int axis) {
   std::vector<std::string> names;
   for (const DisplacementOutput& d : displacements) {
-    const auto* tool = std::get_if<ToolAgainstTable>(&d.how);
-    if (tool && tool->axis == axis) names.push_back(d.name);
+    if (d.points && d.points->axis == axis) names.push_back(d.name);
   }
   return names;
 }

@@ -74,12 +74,12 @@ TEST_F(PlacedFp3, ATurnOfTheSpindleIsItsTilt) {
 TEST_F(PlacedFp3, ATurnOfTheTableIsSeenThroughTheStand) {
   // Only the table turns, about its own foot point of the stand: an indicator at arm a reads -(ω × a), the tilts -ω.
   const auto& d = scenario_.machine->displacements;
-  const Eigen::Vector3d foot = std::get<ToolAgainstTable>(d[0].how).table->at_m;
+  const Eigen::Vector3d foot = d[0].points->table->at_m;
   const Eigen::VectorXd r = readings([&](const std::string& region, const Eigen::Vector3d& x) -> Eigen::Vector3d {
     return region == "table" ? Eigen::Vector3d(kTurn.cross(x - foot)) : Eigen::Vector3d::Zero();
   });
   for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_NEAR(r[axis], -kTurn.cross(std::get<ToolAgainstTable>(d[axis].how).tool.at_m - foot)[axis],
+    EXPECT_NEAR(r[axis], -kTurn.cross(d[axis].points->tool.at_m - foot)[axis],
                 1e-5);  // the tool point was moved onto the mesh: mm x mrad
   }
   EXPECT_NEAR(r[3], -kTurn.x(), 1e-12);
@@ -88,7 +88,7 @@ TEST_F(PlacedFp3, ATurnOfTheTableIsSeenThroughTheStand) {
 
 TEST_F(PlacedFp3, WithoutATableTheToolIsReadAgainstTheGround) {
   MachineModel model = *scenario_.machine;
-  for (DisplacementOutput& d : model.displacements) std::get<ToolAgainstTable>(d.how).table.reset();
+  for (DisplacementOutput& d : model.displacements) d.points->table.reset();
   const PlacedMachine on_ground = place(model);
   const auto motion = [](const Eigen::Vector3d& x) -> Eigen::Vector3d { return kShift + kTurn.cross(x); };
   for (std::size_t i = 0; i < model.displacements.size(); ++i) {
@@ -96,7 +96,7 @@ TEST_F(PlacedFp3, WithoutATableTheToolIsReadAgainstTheGround) {
     for (const auto& [node, weight] : on_ground.functionals[i].terms) {
       reading_m += weight.dot(motion(on_ground.mesh.coords.col(node)));
     }
-    const auto& tool = std::get<ToolAgainstTable>(model.displacements[i].how);
+    const auto& tool = *model.displacements[i].points;
     EXPECT_NEAR(reading_m, motion(tool.tool.at_m)[tool.axis], 1e-5);  // the tool point was moved onto the mesh: mm x mrad
   }
 }

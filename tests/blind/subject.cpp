@@ -74,7 +74,7 @@ std::vector<ScatterParameter> scatter_of(const Subject& s) {
     list.push_back({"expansion " + region, 0.1, Of::kExpansion, r, 0, region});
   }
   for (std::size_t d = 0; d < s.model.displacements.size(); ++d) {
-    const auto* by = std::get_if<scenarios::BySensitivity>(&s.model.displacements[d].how);
+    const auto& by = s.model.displacements[d].by_sensitivity;
     for (std::size_t t = 0; by && t < by->terms.size(); ++t) {
       list.push_back({"sensitivity " + s.model.displacements[d].name + " " + by->terms[t].body.name, 0.1, Of::kSensitivity,
                       d, t, s.model.displacements[d].name});
@@ -96,8 +96,9 @@ solver::RegionMaterials scaled_materials(const Subject& s, const Values& v) {
 template <class Matrix>
 void add_sensitivities(const Subject& s, const Values& v, Network<Matrix>& net) {
   for (std::size_t d = 0; d < s.model.displacements.size(); ++d) {
-    const auto* by = std::get_if<scenarios::BySensitivity>(&s.model.displacements[d].how);
+    const auto& by = s.model.displacements[d].by_sensitivity;
     if (!by) continue;
+    if (s.model.displacements[d].points) throw std::logic_error("blind: a displacement of both points and sensitivities");
     auto column = net.outputs.col(static_cast<Eigen::Index>(s.n_sensors() + d));
     column.setZero();
     for (std::size_t t = 0; t < by->terms.size(); ++t) {
@@ -280,8 +281,7 @@ Values nominal_values(const Subject& s) {
   v.conductivity = v.heat_capacity = v.expansion = std::vector<double>(s.placed.mesh.regions.size(), 1.0);
   v.node_capacity.assign(s.nodes.size(), 1.0);
   for (const auto& d : s.model.displacements) {
-    const auto* by = std::get_if<scenarios::BySensitivity>(&d.how);
-    v.sensitivity.emplace_back(by ? by->terms.size() : 0, 1.0);
+    v.sensitivity.emplace_back(d.by_sensitivity ? d.by_sensitivity->terms.size() : 0, 1.0);
   }
   return v;
 }
