@@ -17,8 +17,8 @@ constexpr double kRangeRoom = 0.2;  // of a range's width, on both sides
 constexpr double kClampRoom = 0.5;  // of the drift's
 constexpr double kJumpRoom = 2.0;   // times the largest
 constexpr double kSlewRoom = 2.0;   // times the largest rate of the prediction, over ten rows
-constexpr double kApartRoom = 1.5;  // times the largest distance on a run left out
-constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 0.5;  // below, instruments are what is seen
+constexpr double kApartRoom = 2.0;  // times the largest distance on a run left out
+constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 1.5;  // below, instruments are what is seen
 constexpr std::size_t kSlewRows = 10;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
@@ -135,6 +135,10 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
   return safe;
 }
 
+int most_replaced(std::size_t n_inputs) {
+  return std::max(1, static_cast<int>(n_inputs / 3));
+}
+
 Repaired repaired(const FailSafe& safe, Record readings) {
   const std::size_t n = safe.guards.size();
   Repaired result{.readings = std::move(readings), .deserved = {}, .events = {}};
@@ -146,6 +150,7 @@ Repaired repaired(const FailSafe& safe, Record readings) {
              .values);
   }
   std::vector<Watch> watches(n, Watch{.last_s = time_s.front()});
+  const int most_doubted = most_replaced(n);
   std::vector<double> x(n);
   std::vector<std::string> why(n);
   for (std::size_t i = 0; i < time_s.size(); ++i) {
@@ -203,7 +208,7 @@ Repaired repaired(const FailSafe& safe, Record readings) {
     for (std::size_t k = 0; k < n; ++k) {
       const FailSafe::Guard& g = safe.guards[k];
       Watch& w = watches[k];
-      if (is_doubted(k) && (++n_doubted > 1 || g.others_coefficient.empty())) deserved = 0.0;
+      if (is_doubted(k) && (++n_doubted > most_doubted || g.others_coefficient.empty())) deserved = 0.0;
       const double outside = std::max({0.0, g.low - x[k], x[k] - g.high});
       if (outside > 0.0) deserved = std::min(deserved, std::max(0.0, 1.0 - outside / (g.high - g.low)));
       if (is_doubted(k) && !w.was_doubted)

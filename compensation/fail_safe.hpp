@@ -48,13 +48,15 @@ struct FailSafe {
 ///
 /// A reading is doubted that is missing for too long, that jumps, or that is too far from what the others say; of several that
 /// disagree, the one furthest beyond its bound is doubted first, and the rest is looked at anew with its replacement. It stays doubted
-/// until nothing has been wrong, and its reading near what the others say, for kBackAfter fade times. One doubted sensor is replaced and costs no trust; two, or one that nothing can
-/// replace, cost all of it.
+/// until nothing has been wrong, and its reading near what the others say, for kBackAfter fade times. Up to a third of the inputs (one at least) are
+/// replaced and cost no trust; more, or one that nothing can replace, cost all of it.
 struct Repaired {
   Record readings;                  ///< channels of the guards repaired, others as they were
   std::vector<double> deserved;     ///< trust that the readings of each row deserve, 0 to 1
   std::vector<std::string> events;  ///< what was doubted, from when: one line each
 };
+/// How many of n inputs may be replaced.
+[[nodiscard]] int most_replaced(std::size_t n_inputs);
 [[nodiscard]] Repaired repaired(const FailSafe& safe, Record readings);
 
 struct GuardedCorrection {

@@ -311,7 +311,7 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
   }}
   for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* what the readings deserve; outside its range each counts as the edge */
     const double outside = fmax(0.0, fmax(low[i] - x[i], x[i] - high[i]));
-    if (s->is_doubted[i] && (++n_doubted > 1 || !has_others[i])) deserved = 0.0;
+    if (s->is_doubted[i] && (++n_doubted > {most_replaced} || !has_others[i])) deserved = 0.0;
     if (outside > 0.0) deserved = fmin(deserved, fmax(0.0, 1.0 - outside / (high[i] - low[i])));
     x[i] = fmax(low[i], fmin(high[i], x[i]));
   }}
@@ -349,6 +349,7 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
       fmt::arg("drive", fmt::join(drive, ", ")), fmt::arg("has_others", fmt::join(has_others, ", ")),
       fmt::arg("fade", c_number(s.fade_s)), fmt::arg("stale", c_number(s.stale_s)), fmt::arg("period", c_number(s.period_s)),
       fmt::arg("model_intercept", c_number(m.intercept)), fmt::arg("from_start", m.from_start ? 1 : 0),
+      fmt::arg("most_replaced", compensation::most_replaced(d.safe.guards.size())),
       fmt::arg("within", c_number(compensation::kBackWithin)), fmt::arg("back", c_number(compensation::kBackAfter)),
       fmt::arg("lowest", c_number(s.lowest_um)), fmt::arg("highest", c_number(s.highest_um)),
       fmt::arg("rate", c_number(s.most_rate_um_s)));
