@@ -87,7 +87,7 @@ void fit_modal(MachineStudy& study, const Scenario& scenario, const Model& model
 void fit_regression_on_best(MachineStudy& study, const scenarios::Study& settings) {
   std::vector<Record> records = training_records(study);
   for (Record& record : records) record = as_read(std::move(record), {.resolution_K = settings.sensor_resolution_K}, 0);
-  study.ranking = rank_channels(records, settings.target, candidates(settings, records.front()));
+  study.ranking = rank_channels(records, settings.target, candidates(settings, records.front()), {.image = settings.image});
   const std::vector<std::string> inputs = best(study.ranking, settings.sensors_to_choose);
   for (const std::string& d : study.displacements) {
     study.regressions.push_back(fit_regression(records, inputs, d));

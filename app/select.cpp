@@ -57,7 +57,8 @@ void select(const RecordOptions& options) {
   const scenarios::Study& settings = require_study(scenario, "select");
   const std::vector<Record> records = read_records(settings, options).train;
   const std::vector<std::string> candidates = candidate_sensors(settings, records.front());
-  const GreyOptions how{.quantity = settings.count_from_start ? Quantity::kRise : Quantity::kAsRecorded};
+  const GreyOptions how{.image = settings.image,
+                        .quantity = settings.count_from_start ? Quantity::kRise : Quantity::kAsRecorded};
   const int n = settings.sensors_to_choose;
   const Ranking ranking = rank_channels(records, settings.target, candidates, how);
   const RankingStability stability = ranking_stability(records, settings.target, candidates, how, n);
@@ -147,7 +148,12 @@ void select(const RecordOptions& options) {
       "grey relational grades against {}, {} samples; {}\n        channel          Deng       absolute slope   rank (90 %)  "
       "chosen in\n{}",
       settings.target, ranking.n_samples, ranking.reason, shown);
-  for (const auto& [a, b] : stability.undecided) fmt::print("  {} or {} first: these data do not decide\n", a, b);
+  for (const auto& [a, b] : stability.undecided) {
+    const auto rank =
+        std::find_if(ranking.channels.begin(), ranking.channels.end(), [&](const RankedChannel& c) { return c.name == a; }) -
+        ranking.channels.begin();
+    if (rank < n) fmt::print("  {} or {} first: these data do not decide\n", a, b);  // the rest is in summary.json
+  }
   fmt::print("chosen by\n{}", selected);
   for (const std::string& warning : warnings) fmt::print("warning: {}\n", warning);
   fmt::print("written to {}\n", shown_path(folder.target()));

@@ -155,6 +155,16 @@ Worst worst_of(const JudgedStrategy& strategy, const std::function<bool(const Ca
   return w;
 }
 
+double overall_rms(const JudgedStrategy& strategy) {
+  double squares = 0.0, n = 0.0;
+  for (const Case& c : strategy.cases) {
+    if (!c.failed.empty() || c.after.n == 0) continue;
+    squares += c.after.n * c.after.rmse * c.after.rmse;
+    n += c.after.n;
+  }
+  return std::sqrt(squares / n);
+}
+
 const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::string& family) {
   for (const JudgedStrategy& s : matrix.strategies) {
     if (s.fitted.is_baseline && s.fitted.name != kNoCorrection) continue;
@@ -218,7 +228,16 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
     }
     matrix.strategies.push_back(std::move(judged));
   }
-  for (JudgedStrategy& s : matrix.strategies) give_verdict(matrix, s);
+  for (JudgedStrategy& s : matrix.strategies) {
+    give_verdict(matrix, s);
+    if (s.fitted.is_baseline) continue;
+    double least = overall_rms(s);
+    for (const JudgedStrategy& baseline : matrix.strategies) {
+      if (!baseline.fitted.is_baseline || !(overall_rms(baseline) < least)) continue;
+      least = overall_rms(baseline);
+      s.beaten_by = baseline.fitted.name;
+    }
+  }
   return matrix;
 }
 

@@ -44,6 +44,7 @@ struct JudgedStrategy {
   std::vector<Case> cases;
   Safety safety = Safety::kUnsafe;
   std::string why;                  ///< one sentence
+  std::string beaten_by;            ///< baseline whose RMS over all intact rows is smaller; empty: none, and for baselines
   std::vector<std::string> limits;  ///< families and seasons in which it keeps the tolerance, where not everywhere
 };
 
@@ -68,6 +69,9 @@ struct Worst {
   double mean_covered = 0.0;
 };
 [[nodiscard]] Worst worst_of(const JudgedStrategy& strategy, const std::function<bool(const Case&)>& counts);
+
+/// RMS of what is left over the rows of all runs, all sensors intact [um].
+[[nodiscard]] double overall_rms(const JudgedStrategy& strategy);
 
 /// Families, or seasons, of the runs in their order.
 [[nodiscard]] std::vector<std::string> families_of(const StrategyMatrix& matrix);

@@ -104,7 +104,8 @@ output::Table matrix_table(const StrategyMatrix& m) {
                       .rows = {}};
   const std::vector<Column> list = columns(m);
   for (const Column& c : list) table.headers.push_back(c.title + " [um]");
-  table.headers.insert(table.headers.end(), {"worst left [%]", "interval [um]", "covered [%]", "verdict"});
+  table.headers.insert(table.headers.end(),
+                       {"worst left [%]", "RMS of all [um]", "interval [um]", "covered [%]", "verdict"});
   for (const JudgedStrategy& s : m.strategies) {
     std::vector<std::string> row = {s.fitted.name};
     for (const Column& c : list) {
@@ -113,6 +114,7 @@ output::Table matrix_table(const StrategyMatrix& m) {
     }
     const Worst intact = worst_of(s, is_intact);
     row.push_back(percent(intact.left));
+    row.push_back(fmt::format("{:.2f}", overall_rms(s)));
     row.push_back(s.fitted.interval_um ? um(*s.fitted.interval_um) : "-");
     row.push_back(percent(intact.mean_covered));
     row.push_back(s.fitted.is_baseline ? "baseline" : word(s.safety));
@@ -177,11 +179,12 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
   for (const std::string& family : families_of(m)) enough.rows.push_back({family, enough_text(m, family)});
   blocks.emplace_back(std::move(enough));
   output::Table verdicts{.caption = "Whether a strategy may go on the machine, and why.",
-                         .headers = {"strategy", "verdict", "why", "keeps the tolerance in"},
+                         .headers = {"strategy", "verdict", "why", "keeps the tolerance in", "beaten by"},
                          .rows = {}};
   for (const JudgedStrategy& s : m.strategies) {
     if (!s.fitted.is_baseline)
-      verdicts.rows.push_back({s.fitted.name, word(s.safety), s.why, fmt::format("{}", fmt::join(s.limits, "; "))});
+      verdicts.rows.push_back(
+          {s.fitted.name, word(s.safety), s.why, fmt::format("{}", fmt::join(s.limits, "; ")), s.beaten_by});
   }
   blocks.emplace_back(std::move(verdicts));
   blocks.emplace_back(worst_table(m));
@@ -191,7 +194,13 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
     bars.bars.push_back({s.fitted.name, std::min(left, 200.0), fmt::format("{:.0f} %", left)});
   }
   blocks.emplace_back(std::move(bars));
-  if (const Contrast c = contrast(m); c.simple && c.best) blocks.emplace_back(course(m, c.run, {c.simple, c.best}));
+  if (const Contrast c = contrast(m); c.simple && c.best) {
+    std::vector<const JudgedStrategy*> shown = {c.simple, c.best};
+    for (const JudgedStrategy& s : m.strategies) {
+      if (s.fitted.name == "observer" && &s != c.best) shown.push_back(&s);
+    }
+    blocks.emplace_back(course(m, c.run, shown));
+  }
   output::Table fits{
       .caption = "What each fit decided, on the training runs alone.", .headers = {"strategy", "decided"}, .rows = {}};
   for (const JudgedStrategy& s : m.strategies) {
@@ -224,10 +233,12 @@ Json strategy_json(const StrategyMatrix& m) {
       entry["verdict"] = word(s.safety);
       entry["why"] = s.why;
       entry["keeps_tolerance_in"] = s.limits;
+      entry["beaten_by"] = s.beaten_by;
     }
     entry["worst_left_percent"] = 100.0 * intact.left;
     entry["worst_peak_um"] = intact.peak ? intact.peak->after.peak_abs : NAN;
     entry["largest_rms_um"] = intact.rms_um;
+    entry["overall_rms_um"] = overall_rms(s);
     if (failed.peak) {
       entry["failed_sensor_worst_left_percent"] = 100.0 * failed.left;
       entry["failed_sensor_worst_peak_um"] = failed.peak->after.peak_abs;
@@ -263,7 +274,8 @@ std::string strategy_csv(const StrategyMatrix& m) {
 std::string strategy_text(const StrategyMatrix& m) {
   const bool failures = has_failures(m);
   std::string text = fmt::format(
-      "{} fitted on {} runs, judged on {} others: largest residual [um], share of the peak left [%]{}\n",
+      "{} fitted on {} runs, judged on {} others: largest residual [um], share of the peak left [%]{}; RMS over all rows "
+      "[um]\n",
       m.settings.strategies.target, m.training.size(), m.runs.size(), failures ? ", both with one sensor failed" : "");
   for (const JudgedStrategy& s : m.strategies) {
     const Worst intact = worst_of(s, is_intact), failed = worst_of(s, [](const Case&c) { return !is_intact(c); });
@@ -272,8 +284,10 @@ std::string strategy_text(const StrategyMatrix& m) {
     if (failures)
       text += fmt::format("   {:>7} {:>5}", failed.peak ? um(failed.peak->after.peak_abs) : "",
                           failed.peak ? percent(failed.left) : "");
-    text += fmt::format("   RMS {:>6}", fmt::format("{:.2f}", intact.rms_um));
-    text += s.fitted.is_baseline ? "   baseline\n" : fmt::format("   {}\n", word(s.safety));
+    text += fmt::format("   RMS {:>6}", fmt::format("{:.2f}", overall_rms(s)));
+    text += s.fitted.is_baseline ? "   baseline\n"
+                                 : fmt::format("   {}{}\n", word(s.safety),
+                                               s.beaten_by.empty() ? "" : fmt::format(", but beaten by '{}'", s.beaten_by));
   }
   for (const LeftOut& l : m.left_out) text += fmt::format("  {:<38} left out: {}\n", l.name, l.why);
   for (const std::string& family : families_of(m))

@@ -146,6 +146,11 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     if (std::count(s.candidates.begin(), s.candidates.end(), name) > 1)
       in.fail("candidates", fmt::format("'{}' stands there twice", name));
   }
+  const std::string image = in.choice("image", {"automatic", "initial_value", "mean_value", "range"}, "automatic");
+  s.image = image == "initial_value" ? compensation::Image::kInitialValue
+            : image == "mean_value"  ? compensation::Image::kMeanValue
+            : image == "range"       ? compensation::Image::kRange
+                                     : compensation::Image::kAutomatic;
   s.count_from_start = in.choice("count_from_start", {"true", "false"}, "false") == "true";
   s.sensors_to_choose = in.integer("sensors_to_choose", 1, 1000, s.sensors_to_choose);
   s.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, s.tolerance_um);

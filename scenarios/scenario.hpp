@@ -11,6 +11,7 @@
 #include "base/cyclogram.hpp"
 #include "base/errors.hpp"
 #include "base/fields_format.hpp"
+#include "compensation/grey_relational.hpp"
 #include "effects/effect.hpp"
 #include "scenarios/programme.hpp"
 #include "scenarios/read_mechanics.hpp"
@@ -82,8 +83,9 @@ struct Study {
   std::vector<std::string> candidates;  ///< temperature channels to choose from; empty: all of the record
   /// Temperatures and target count from the first row of each record, as where the tool is set anew before each run.
   bool count_from_start = false;
-  std::vector<std::string> train;  ///< cyclograms
-  std::string judge;               ///< cyclogram
+  compensation::Image image = compensation::Image::kAutomatic;  ///< that sensors are ranked by
+  std::vector<std::string> train;                               ///< cyclograms
+  std::string judge;                                            ///< cyclogram
   int sensors_to_choose = 4;
   /// Step of the thermometers' readings [K], 0 = exact. Predictors are fitted and judged on readings rounded to it.
   double sensor_resolution_K = 0.0;
