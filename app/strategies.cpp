@@ -80,6 +80,16 @@ Strategy formula_of_all(const std::string& name, const StrategySettings& s, Form
           }};
 }
 
+/// The factors that are known best, against their own prior.
+std::string words(std::vector<Observer::Factor> factors) {
+  constexpr std::size_t kShown = 8;
+  std::stable_sort(factors.begin(), factors.end(), [](const auto& a, const auto& b) { return a.deviation < b.deviation; });
+  std::vector<std::string> text;
+  for (std::size_t i = 0; i < std::min(kShown, factors.size()); ++i)
+    text.push_back(fmt::format("{} {:.2f} +- {:.2f}", factors[i].name, factors[i].value, factors[i].deviation));
+  return fmt::format("{}", fmt::join(text, ", "));
+}
+
 /// An observer with some sensors, or none, taught by the training runs or not.
 Strategy observing(const std::string& name, const StrategySettings& s, bool with_sensors, bool learns) {
   return {name, false, [s, with_sensors, learns](std::span<const ObservedRun> training) {
@@ -96,6 +106,7 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
                                                        learns ? s.candidates : selection.sensors, s.target, how);
             if (learns) {
               observer->learn(training);
+              f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer->factors()));
               observer = std::make_shared<Observer>(observer->with_sensors(selection.sensors));
             }
             f.predict = [observer](const ObservedRun& run) { return observer->follow(run).drift_um; };

@@ -221,7 +221,8 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
     if (failure) std::rethrow_exception(failure);
   }
   for (std::size_t s = 0; s < fitted.strategies.size(); ++s) {
-    JudgedStrategy judged{.fitted = std::move(fitted.strategies[s]), .cases = {}, .why = {}, .limits = {}};
+    JudgedStrategy judged;
+    judged.fitted = std::move(fitted.strategies[s]);
     for (std::size_t r = 0; r < n_runs; ++r) {
       auto& of_run = cases[s * n_runs + r];
       std::move(of_run.begin(), of_run.end(), std::back_inserter(judged.cases));

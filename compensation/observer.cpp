@@ -17,6 +17,7 @@ constexpr double kFlag = 5.0;          // deviations of the mean innovation
 constexpr double kOutlier = 6.0;       // deviations of one innovation: that reading is passed over
 constexpr double kMemory = 0.9;        // of the mean innovation from row to row
 constexpr std::size_t kRowsBack = 30;  // to which the filter returns when a sensor is dropped
+constexpr double kZero = 2.0;          // of an indicator's deviation: what its zero may be off by
 constexpr double kStart_K = 0.1;       // by which all of the machine may be warmer than the start says
 
 }  // namespace
@@ -34,17 +35,24 @@ class Observer::Run {
     n_ = s_.size();
     n_sources_ = static_cast<Eigen::Index>(s_.sources.size());
     n_exchanges_ = static_cast<Eigen::Index>(s_.exchanges.size());
-    const Eigen::Index n_factors = n_sources_ + n_exchanges_ + 1, n_all = n_ + n_factors;
+    const Eigen::Index n_factors = n_sources_ + n_exchanges_ + 1, n_all = n_ + n_factors + 1;
+    scale_ = n_all - 2;
+    zero_ = n_all - 1;
     const double first_s = run.readings.time_s.front(), hall_K = run.hall.at(first_s);
     belief_ = {Eigen::VectorXd::Zero(n_all), Eigen::MatrixXd::Zero(n_all, n_all)};
     belief_.mean.head(n_) = o_.start_ + (hall_K - o_.start_hall_K_) * s_.ones;
     belief_.covariance.topLeftCorner(n_, n_) = kStart_K * kStart_K * s_.ones * s_.ones.transpose();
-    belief_.mean.tail(n_factors) = o_.factors_.mean;
-    belief_.covariance.bottomRightCorner(n_factors, n_factors) = o_.factors_.covariance;
+    belief_.mean.segment(n_, n_factors) = o_.factors_.mean;
+    belief_.covariance.block(n_, n_, n_factors, n_factors) = o_.factors_.covariance;
+    belief_.covariance(zero_, zero_) = std::pow(kZero * 1e-6 * o_.settings_.drift_um, 2);
     live_.assign(o_.sensors_.size(), true);
     mean_innovation_.assign(o_.sensors_.size(), 0.0);
     for (const std::string& name : o_.sensors_) readings_.push_back(&run.readings.at(name).values);
-    if (with_drift_) drift_um_ = &run.readings.at(o_.drift_).values;
+    if (with_drift_) {
+      drift_um_ = &run.readings.at(o_.drift_).values;
+      const auto first = std::find_if(drift_um_->begin(), drift_um_->end(), [](double um) { return std::isfinite(um); });
+      if (first != drift_um_->end()) first_um_ = *first;
+    }
     start_drift_m_ = drift_m(first_s);
   }
 
@@ -73,7 +81,7 @@ class Observer::Run {
 
   [[nodiscard]] Belief factors() const {
     const Eigen::Index n_factors = n_sources_ + n_exchanges_ + 1;
-    return {belief_.mean.tail(n_factors), belief_.covariance.bottomRightCorner(n_factors, n_factors)};
+    return {belief_.mean.segment(n_, n_factors), belief_.covariance.block(n_, n_, n_factors, n_factors)};
   }
 
  private:
@@ -92,15 +100,24 @@ class Observer::Run {
       Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
       h.head(n_) = s_.outputs.state.col(output);
       const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * run_.hall.at(t[i]) + s_.reference_K - 273.15;
-      const double variance = o_.settings_.reading_K * o_.settings_.reading_K + o_.settings_.model_K * o_.settings_.model_K;
+      const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, i);
       const double innovation = read - expected_K, spread = std::sqrt(h.dot(belief_.covariance * h) + variance);
       mean_innovation_[k] = kMemory * mean_innovation_[k] + (1.0 - kMemory) * innovation / spread;
       if (std::abs(innovation) < kOutlier * spread) correct(h, innovation, variance);
     }
     if (with_drift_ && std::isfinite((*drift_um_)[i])) {
-      const double variance = std::pow(1e-6 * o_.settings_.drift_um, 2);
-      correct(drift_gradient(), 1e-6 * ((*drift_um_)[i] - (*drift_um_)[0]) - (drift_m(t[i]) - start_drift_m_), variance);
+      const double variance = 1e-12 * variance_of(o_.settings_.drift_um, o_.settings_.model_um, i);
+      Eigen::VectorXd h = drift_gradient();
+      h(zero_) = 1.0;
+      correct(h, 1e-6 * ((*drift_um_)[i] - first_um_) - (drift_m(t[i]) - start_drift_m_ + belief_.mean(zero_)), variance);
     }
+  }
+
+  /// Of a row's white error and the model's own, which rows near each other share.
+  [[nodiscard]] double variance_of(double white, double model, std::size_t i) const {
+    const std::vector<double>& t = run_.readings.time_s;
+    const double step_s = i > 0 ? t[i] - t[i - 1] : t[1] - t[0];
+    return white * white + model * model * std::max(1.0, o_.settings_.model_holds_s / step_s);
   }
 
   /// The live sensor whose mean innovation is the furthest out, if any is beyond the flag.
@@ -203,13 +220,13 @@ class Observer::Run {
   }
 
   [[nodiscard]] double drift_m(double time_s) const {
-    return (1.0 + belief_.mean(belief_.mean.size() - 1)) * s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_)) +
+    return (1.0 + belief_.mean(scale_)) * s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_)) +
            s_.outputs.hall(o_.drift_output_) * run_.hall.at(time_s);
   }
   [[nodiscard]] Eigen::VectorXd drift_gradient() const {
     Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
-    h.head(n_) = (1.0 + belief_.mean(belief_.mean.size() - 1)) * s_.outputs.state.col(o_.drift_output_);
-    h(h.size() - 1) = s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_));
+    h.head(n_) = (1.0 + belief_.mean(scale_)) * s_.outputs.state.col(o_.drift_output_);
+    h(scale_) = s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_));
     return h;
   }
 
@@ -218,8 +235,9 @@ class Observer::Run {
   const ObservedRun& run_;
   bool with_drift_;
   Eigen::Index n_ = 0, n_sources_ = 0, n_exchanges_ = 0;
+  Eigen::Index scale_ = 0, zero_ = 0;  // of the drift: its factor, and what the indicator showed at the start of the run
   Belief belief_;
-  double start_drift_m_ = 0.0;
+  double start_drift_m_ = 0.0, first_um_ = 0.0;
   std::vector<const std::vector<double>*> readings_;
   const std::vector<double>* drift_um_ = nullptr;
   std::vector<bool> live_;
