@@ -103,17 +103,22 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
                         harm->before.peak_abs, where_of(m, *harm));
     return;
   }
+  const std::vector<std::string> seasons = seasons_of(m);
   for (const std::string& family : families_of(m)) {
-    for (const std::string& season : seasons_of(m)) {
-      bool has_any = false, keeps_all = true;
-      for (const Case& c : s.cases) {
-        if (m.runs[c.run].family != family || m.runs[c.run].season != season) continue;
-        has_any = true;
-        keeps_all = keeps_all && keeps(c);
-      }
-      if (has_any && keeps_all) s.limits.push_back(season.empty() ? family : fmt::format("{} ({})", family, season));
+    std::vector<std::string> kept;
+    for (const std::string& season : seasons) {
+      if (std::all_of(s.cases.begin(), s.cases.end(), [&](const Case& c) {
+            return !c.failed.empty() || m.runs[c.run].family != family || m.runs[c.run].season != season || keeps(c);
+          }))
+        kept.push_back(season);
     }
+    if (kept.size() == seasons.size()) s.limits.push_back(family);
+    if (!kept.empty() && kept.size() < seasons.size())
+      s.limits.push_back(fmt::format("{} ({})", family, fmt::join(kept, ", ")));
   }
+  if (!s.limits.empty() &&
+      !std::all_of(s.cases.begin(), s.cases.end(), [&](const Case& c) { return c.failed.empty() || keeps(c); }))
+    s.limits.emplace_back("all with sensors intact");
   const std::string worst = fmt::format("{:.1f} um of {:.1f} um are left {}", all.peak->after.peak_abs,
                                         all.peak->before.peak_abs, where_of(m, *all.peak));
   s.safety = s.limits.empty() ? Safety::kUnsafe : Safety::kWithinLimits;

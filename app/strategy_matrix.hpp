@@ -43,9 +43,10 @@ struct JudgedStrategy {
   FittedStrategy fitted;
   std::vector<Case> cases;
   Safety safety = Safety::kUnsafe;
-  std::string why;                  ///< one sentence
-  std::string beaten_by;            ///< baseline whose RMS over all intact rows is smaller; empty: none, and for baselines
-  std::vector<std::string> limits;  ///< families and seasons in which it keeps the tolerance, where not everywhere
+  std::string why;        ///< one sentence
+  std::string beaten_by;  ///< baseline whose RMS over all intact rows is smaller; empty: none, and for baselines
+  std::vector<std::string>
+      limits;  ///< families (seasons) in which it keeps the tolerance with sensors intact, where not everywhere
 };
 
 struct StrategyMatrix {

@@ -42,15 +42,13 @@ struct Column {
 };
 std::vector<Column> columns(const StrategyMatrix& m) {
   std::vector<Column> list;
-  const std::vector<std::string> seasons = seasons_of(m);
-  for (const std::string& family : families_of(m)) {
-    for (const std::string& season : seasons) {
-      list.push_back({season.empty() ? family : family + ", " + season, [&m, family, season](const Case& c) {
-                        return is_intact(c) && m.runs[c.run].family == family && m.runs[c.run].season == season;
-                      }});
-    }
+  for (const std::string& family : families_of(m))
+    list.push_back({family, [&m, family](const Case& c) { return is_intact(c) && m.runs[c.run].family == family; }});
+  for (const std::string& season : seasons_of(m)) {
+    if (!season.empty())
+      list.push_back({season, [&m, season](const Case& c) { return is_intact(c) && m.runs[c.run].season == season; }});
   }
-  if (has_failures(m)) list.push_back({"one sensor failed", [](const Case& c) { return !is_intact(c); }});
+  if (has_failures(m)) list.push_back({"sensor failed", [](const Case& c) { return !is_intact(c); }});
   return list;
 }
 
@@ -103,9 +101,8 @@ output::Table matrix_table(const StrategyMatrix& m) {
                       .headers = {"strategy"},
                       .rows = {}};
   const std::vector<Column> list = columns(m);
-  for (const Column& c : list) table.headers.push_back(c.title + " [um]");
-  table.headers.insert(table.headers.end(),
-                       {"worst left [%]", "RMS of all [um]", "interval [um]", "covered [%]", "verdict"});
+  for (const Column& c : list) table.headers.push_back(c.title);
+  table.headers.insert(table.headers.end(), {"left [%]", "RMS [um]", "95 % [um]", "covered [%]", "verdict"});
   for (const JudgedStrategy& s : m.strategies) {
     std::vector<std::string> row = {s.fitted.name};
     for (const Column& c : list) {
