@@ -13,6 +13,7 @@
 #include "base/fields_format.hpp"
 #include "effects/effect.hpp"
 #include "scenarios/programme.hpp"
+#include "scenarios/read_axis_loop.hpp"
 #include "scenarios/read_mechanics.hpp"
 #include "scenarios/read_mesh.hpp"
 #include "scenarios/read_outputs.hpp"
@@ -99,6 +100,7 @@ struct Scenario {
   std::optional<Study> study;
   std::optional<Programme> programme;
   std::optional<ScheduleSettings> schedule;
+  std::optional<AxisLoopSettings> axis_loop;
 
   /// @throws InputError  naming the cyclograms there are
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;
