@@ -37,19 +37,17 @@ Series shown(const std::string& label, const AxisLoopRun& run, const std::vector
 }
 
 Bars cause_bars(const AxisLoopRun& run) {
-  Bars bars{.caption =
-                "RMS error of the tool with one cause more switched on from bar to bar: first without correction, then "
-                "corrected by "
-                "the predictor on true temperatures at every moment, and so on; the last has all of them. At rest, just "
-                "before each "
-                "renewal of the correction.",
+  Bars bars{.caption = fmt::format(
+                "RMS error of the tool with one cause more switched on from bar to bar: corrected by the predictor on true "
+                "temperatures at every moment, then from readings, and so on; the last bar has all causes. Without "
+                "correction it is "
+                "{:.1f} um. At rest, just before each renewal of the correction.",
+                run.stages.front().rms_um),
             .bars = {}};
-  for (const ErrorStage& s : run.stages) {
-    bars.bars.push_back({.label = s.cause == "none"    ? s.words
-                                  : s.cause == "model" ? s.cause
-                                                       : "+ " + s.cause,
-                         .value = s.rms_um,
-                         .text = fmt::format("{:.2f} um", s.rms_um)});
+  for (std::size_t i = 1; i < run.stages.size(); ++i) {
+    const ErrorStage& s = run.stages[i];
+    bars.bars.push_back(
+        {.label = i == 1 ? s.cause : "+ " + s.cause, .value = s.rms_um, .text = fmt::format("{:.2f} um", s.rms_um)});
   }
   return bars;
 }
@@ -91,6 +89,33 @@ Plot room_plot(const AxisLoop& loop) {
   return plot;
 }
 
+/// The axis at standstill after a correction by ten insertions at once: as fast as they may follow each other, and at the slew.
+Plot step_plot(const AxisLoop& loop) {
+  constexpr int kInsertions = 10, kSamples = 600;
+  const double step_um = kInsertions * loop.insertion_um();
+  Plot plot{.title = fmt::format("A correction of {:g} um at standstill", step_um),
+            .x_label = "time [s]",
+            .y_label = "axis - commanded [um]",
+            .series = {}};
+  const double end_s = 1.0 + 1.2 * step_um / loop.injector.largest_slew_um_s;
+  for (bool at_once : {true, false}) {
+    compensation::InjectorSettings injector = loop.injector;
+    constexpr double kNoLimit_um_s = 1e6;
+    if (at_once) injector.largest_slew_um_s = kNoLimit_um_s;
+    compensation::InjectedAxis axis(loop.encoder, injector, loop.servo);
+    axis.set_correction(static_cast<std::int64_t>(kInsertions) * loop.injector.rules.quarters);
+    Series series{.label = at_once ? "all at once" : fmt::format("at {:g} um/s, as set", injector.largest_slew_um_s)};
+    for (int i = 0; i <= kSamples; ++i) {
+      const double t_s = (at_once ? std::min(1.0, end_s) : end_s) * i / kSamples;
+      axis.run_until(t_s);
+      series.x.push_back(t_s);
+      series.y.push_back(axis.position_um());
+    }
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
 double largest_feed_mm_min(const AxisLoop& loop) {
   return 60e-3 * compensation::largest_feed_um_s(loop.encoder.quarter_um(), loop.injector.rules.quarters,
                                                  loop.injector.separation_s());
@@ -121,7 +146,10 @@ void add_axis_loop(output::Report& report, const scenarios::AxisLoopSettings& se
            .series = {shown("before", run, run.before_um, 3.0), shown("after", run, run.after_um, 1.5)},
            .bands = {{fmt::format("tolerance ±{:g} um", tolerance_um), -tolerance_um, tolerance_um}},
            .marks = marks});
-  add(room_plot(loop));
+  for (Plot plot : {step_plot(loop), room_plot(loop)}) {
+    plot.half_width = true;
+    add(std::move(plot));
+  }
 }
 
 std::string axis_loop_line(const scenarios::AxisLoopSettings& settings, const AxisLoopRun& run) {
