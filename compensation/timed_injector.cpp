@@ -23,7 +23,7 @@ std::int64_t TimedInjector::next_step() const {
 std::int64_t TimedInjector::next_insertion() const {
   const InsertionRules& rules = limits_.rules;
   if (std::abs(target_ - inserted_) < rules.quarters || rules.bypass || frozen_) return kNever;
-  if (burst_ != 0 || held_ != 0 || !encoder_.started() || !encoder_.trusted()) return kNever;
+  if (!encoder_.started() || !encoder_.trusted()) return kNever;
   if (!rules.anywhere && (encoder_.lines() & kLinesAB) != 0) return kNever;
   const std::int64_t at = std::max(clock_, last_insertion_ + limits_.insertion_interval);
   const std::int64_t room = limits_.room();
@@ -32,7 +32,8 @@ std::int64_t TimedInjector::next_insertion() const {
 }
 
 std::int64_t TimedInjector::next_event() const {
-  return std::min(next_step(), next_insertion());
+  const std::int64_t step = next_step();
+  return step != kNever ? step : next_insertion();
 }
 
 void TimedInjector::make_step(std::int64_t t, std::vector<Edge>& out) {
@@ -50,7 +51,7 @@ void TimedInjector::make_step(std::int64_t t, std::vector<Edge>& out) {
 
 void TimedInjector::advance(std::int64_t t, std::vector<Edge>& out) {
   while (true) {
-    if (const std::int64_t step = next_step(); step != kNever) {
+    if (const std::int64_t step = next_step(); step != kNever) {  // what waits goes before a new insertion
       if (step > t) break;
       make_step(step, out);
       continue;
