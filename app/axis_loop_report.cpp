@@ -65,8 +65,8 @@ Table cause_table(const AxisLoopRun& run) {
 }
 
 Plot room_plot(const AxisLoop& loop) {
-  Plot plot{.title = "Correction that can be brought in while the axis moves",
-            .x_label = "feed [mm/min]",
+  Plot plot{.title = "Correction that finds room while the axis moves",
+            .x_label = "feed [m/min]",
             .y_label = "rate [um/s]",
             .series = {}};
   const double separation_s = loop.injector.separation_s();
@@ -80,7 +80,7 @@ Plot room_plot(const AxisLoop& loop) {
     constexpr int kPoints = 600;
     for (int i = 1; i <= kPoints; ++i) {
       const double feed_um_s = 1.1 * most_um_s * i / kPoints;
-      series.x.push_back(feed_um_s * 60e-3);
+      series.x.push_back(feed_um_s * 60e-6);
       series.y.push_back(compensation::insertion_rate_um_s(feed_um_s, loop.encoder.quarter_um(), quarters, separation_s,
                                                            loop.injector.largest_slew_um_s));
     }

@@ -60,7 +60,7 @@ class CountConverter {
 /// The axis over a series of corrections, each in force from its time to the next one's.
 struct InjectedSeries {
   std::vector<double>
-      axis_um;  ///< axis - commanded position, just before each time's own correction and from then unseen growth too
+      axis_um;  ///< axis - commanded position, as far as the encoder sees it, just before each time's own correction
   std::vector<bool> at_rest;                    ///< false: a pass is under way, or has just ended
   std::vector<std::int64_t> inserted_quarters;  ///< at that moment
   std::int64_t encoder_quarters = 0;            ///< at the end: counts in,
