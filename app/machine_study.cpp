@@ -127,6 +127,13 @@ void correct(MachineStudy& study, const Scenario& scenario) {
   }
 }
 
+void run_axis(MachineStudy& study, const scenarios::AxisLoopSettings& settings) {
+  const auto d = std::find(study.displacements.begin(), study.displacements.end(), settings.displacement);
+  const Regression& regression = study.regressions[static_cast<std::size_t>(d - study.displacements.begin())];
+  study.axis_loop = run_axis_loop(settings.loop, study.judged.record, settings.displacement,
+                                  [&](const Record& readings) { return regression.predict(readings); });
+}
+
 void find_ambiguities(MachineStudy& study, const Scenario& scenario) {
   std::vector<Record> records = training_records(study);
   records.push_back(study.judged.record);
@@ -166,6 +173,7 @@ MachineStudy study_machine(const Scenario& scenario, const Model& model, Progres
   fit_regression_on_best(study, settings);
   fit_modal(study, scenario, model);
   correct(study, scenario);
+  if (scenario.axis_loop) run_axis(study, *scenario.axis_loop);
   find_ambiguities(study, scenario);
   return study;
 }

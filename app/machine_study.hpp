@@ -2,8 +2,10 @@
 // The main job: simulate the training cyclograms and the judged one, fit both predictors on the former, correct the latter.
 
 #include <array>
+#include <optional>
 
 #include "app/results.hpp"
+#include "compensation/axis_loop.hpp"
 #include "compensation/correction.hpp"
 #include "compensation/grey_relational.hpp"
 #include "compensation/modal_predictor.hpp"
@@ -42,7 +44,8 @@ struct MachineStudy {
   std::vector<ModalError> modal_errors;  ///< on the judged cyclogram: bare modes, then completed ones
   /// Displacement by displacement: predictors (kPredictors) x actuators (pulse injector, schedule).
   std::vector<compensation::CorrectedRun> corrections;
-  std::vector<SensorAmbiguity> ambiguities;  ///< of the target at each point on the machine, worst first
+  std::optional<compensation::AxisLoopRun> axis_loop;  ///< the regression through the injector, where the scenario says how
+  std::vector<SensorAmbiguity> ambiguities;            ///< of the target at each point on the machine, worst first
   double worst_energy_gap = 0.0;
 
   /// The corrections of one channel.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/axis_loop_report.hpp"
 #include "app/machine_study_output.hpp"
 #include "app/run_report.hpp"
 
@@ -175,6 +176,8 @@ output::Report study_report(const scenarios::Scenario& scenario, const Model& mo
   add(verdict(settings, study));
   add(strategies_table(study));
   add(residual_plot(settings.target, scenario, study));
+  if (study.axis_loop)
+    add_axis_loop(report, *scenario.axis_loop, *study.axis_loop, settings.tolerance_um, section_marks(judged));
   add(Heading{"The judged cyclogram: " + settings.judge});
   std::vector<std::string> temperatures = study.judged.record.names_with_unit("degC");
   const auto half = static_cast<std::ptrdiff_t>((temperatures.size() + 1) / 2);

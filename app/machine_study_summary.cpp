@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/axis_loop_report.hpp"
 #include "app/machine_study_output.hpp"
 
 namespace driftwright::app {
@@ -60,6 +61,7 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
       text += fmt::format("   {} {} {:g} um\n", settings.target, inside ? "stays inside" : "LEAVES", settings.tolerance_um);
     }
   }
+  if (study.axis_loop) text += axis_loop_line(*scenario.axis_loop, *study.axis_loop);
   text += fmt::format("  sensors chosen for the regression: {} (grey relational grade {:.3f} to {:.3f})\n",
                       fmt::join(study.regressions.front().inputs, ", "), *study.ranking.channels.front().grade,
                       study.ranking.channels[study.regressions.front().inputs.size() - 1].grade.value());
@@ -115,6 +117,7 @@ Json summary_json(const scenarios::Scenario& scenario, const Model& model, const
   }
   j["corrections"] = Json::array();
   for (const CorrectedRun& c : study.corrections) j["corrections"].push_back(json_of(c));
+  if (study.axis_loop) j["axis_loop"] = axis_loop_json(*scenario.axis_loop, *study.axis_loop);
   j["drift_at_one_temperature"] = Json::array();
   for (const auto& [sensor, a] : study.ambiguities) {
     j["drift_at_one_temperature"].push_back({{"sensor", sensor},

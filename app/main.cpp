@@ -38,6 +38,45 @@ void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
   if (judges) verb->add_option("--test", options.test, "record CSV to judge on; may be repeated")->allow_extra_args(false);
 }
 
+/// The filter: no scenario, no folder of results.
+void add_inject(CLI::App& cli, app::InjectOptions& options) {
+  CLI::App* verb = cli.add_subcommand(
+      "inject", "encoder rows \"A B\" from standard input, with a correction inserted, to standard output");
+  verb->add_option("--correction", options.correction,
+                   "CSV by row or time, or a FIFO with one number a line: the tool's error (actual - commanded)")
+      ->required();
+  verb->add_option("--period", options.period, "travel of one signal period, such as '4 um'; for corrections in um");
+  verb->add_option("--row-time", options.row_time, "time of one row, such as '1 ms'; for corrections by time");
+  verb->add_option("--unit", options.unit, "of numbers from a FIFO")
+      ->check(CLI::IsMember({"um", "count"}))
+      ->capture_default_str();
+  verb->add_option("--counts", options.counts, "how the control counts: a cycle is 4, 2 or 1 counts")
+      ->check(CLI::IsMember({"x4", "x2", "x1"}))
+      ->capture_default_str();
+  verb->add_option("--insert", options.insert, "what is inserted at once; less than a cycle shifts the phase")
+      ->check(CLI::IsMember({"cycle", "half", "quarter"}))
+      ->capture_default_str();
+  verb->add_flag("--anywhere", options.anywhere, "insert also while a line is high");
+  verb->add_flag("--bypass", options.bypass, "pass all bytes on as they are");
+  verb->add_flag("--clocked", options.clocked,
+                 "one row out for each row in, as in a running simulation; else inserted rows are added");
+  verb->add_option("--separation", options.separation, "with --clocked: least rows from edge to edge")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  verb->add_option("--interval", options.interval, "with --clocked: least rows from insertion to insertion (the slew)")
+      ->check(CLI::Range(1, 1000000000))
+      ->capture_default_str();
+  verb->add_option("--vcd", options.vcd, "value change dump of the lines before and after");
+  verb->add_option("--halstream", options.halstream, "rows for LinuxCNC's halstreamer");
+  verb->add_option("--hal", options.hal, "HAL file that plays them into LinuxCNC's encoder");
+  verb->add_option("--log", options.log, "CSV of counts in, inserted and out");
+  verb->footer(
+      "Example:\n  halsampler | driftwright inject --clocked --period '4 um' --row-time '1 ms' --correction drift.csv | "
+      "halstreamer\n"
+      "  with drift.csv: 'time_s,drift_um', then '0,0', '60,4.5', ... (docs/injector.md)");
+  verb->callback([&] { app::inject(options); });
+}
+
 /// CLI11 would only say that a subcommand is required.
 void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
   std::vector<std::string> verbs;
@@ -62,6 +101,7 @@ int main(int argc, char** argv) {
   app::SimulateOptions simulate;
   app::PredictOptions predict;
   app::ScheduleVerbOptions schedule;
+  app::InjectOptions inject;
   app::RecordOptions select, validate;
   app::SweepOptions sweep;
   app::DiagnoseOptions diagnose;
@@ -97,6 +137,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(scenarios::kScheduleDialects));
   verb->add_flag("--split", schedule.split, "divide straight blocks that cannot keep the tolerance in one piece");
   verb->callback([&] { app::schedule(schedule); });
+  add_inject(cli, inject);
   verb = add_verb(cli, "select", "rank the temperature sensors of records by grey relational analysis",
                   "select scenarios/spindle_22.yaml --train run1.csv --train run2.csv", select);
   add_records(verb, select, false);

@@ -36,6 +36,22 @@ struct ScheduleVerbOptions : CommonOptions {
 };
 void schedule(const ScheduleVerbOptions& options);
 
+struct InjectOptions {
+  std::string correction;        ///< table, FIFO or /dev/fd/N (app/correction_input.hpp)
+  std::string unit = "um";       ///< of numbers from a pipe: um or count
+  std::string period;            ///< travel of one signal period, "4 um"; empty: corrections are in counts
+  std::string row_time;          ///< time of a row, "1 ms"; empty: corrections are by row
+  std::string counts = "x4";     ///< of the control: x4, x2, x1
+  std::string insert = "cycle";  ///< cycle, half, quarter
+  bool anywhere = false;         ///< not only while both lines are low
+  bool bypass = false;
+  bool clocked = false;                  ///< one row out for each row in
+  int separation = 1;                    ///< rows between two edges, where clocked
+  int interval = 1;                      ///< rows between two insertions, where clocked
+  std::string vcd, halstream, hal, log;  ///< files beside standard output
+};
+void inject(const InjectOptions& options);
+
 struct RecordOptions : CommonOptions {
   std::vector<std::string> train;  ///< record CSVs
   std::vector<std::string> test;

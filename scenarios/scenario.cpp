@@ -191,6 +191,18 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
   return s;
 }
 
+AxisLoopSettings read_axis_loop_of(const ConfigMap& in, const ConfigMap& axis_loop, const Scenario& scenario) {
+  if (!scenario.machine || !scenario.study)
+    in.fail("axis_loop", "an axis is corrected by what a `study` of a machine has learned");
+  AxisLoopContext context{.target = scenario.study->target,
+                          .sensor_resolution_K = scenario.study->sensor_resolution_K,
+                          .encoder_period_um = scenario.study->encoder_period_um,
+                          .duration_s = scenario.cyclogram(scenario.study->judge).duration_s()};
+  for (const DisplacementOutput& d : scenario.machine->displacements) context.displacements.push_back(d.name);
+  for (const Sensor& s : scenario.machine->sensors) context.sensors.push_back(s.name);
+  return read_axis_loop(axis_loop, context);
+}
+
 }  // namespace
 
 const Cyclogram& Scenario::cyclogram(const std::string& cyclogram_name) const {
@@ -290,6 +302,7 @@ Scenario read_scenario(const ConfigMap& in) {
     const double tolerance_um = scenario.study ? scenario.study->tolerance_um : Study{}.tolerance_um;
     scenario.schedule = read_schedule(*schedule, scenario.machine->displacements, tolerance_um);
   }
+  if (const auto axis_loop = in.optional_map("axis_loop")) scenario.axis_loop = read_axis_loop_of(in, *axis_loop, scenario);
   if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");
   in.reject_unknown_keys();
   return scenario;

@@ -14,6 +14,7 @@
 #include "compensation/grey_relational.hpp"
 #include "effects/effect.hpp"
 #include "scenarios/programme.hpp"
+#include "scenarios/read_axis_loop.hpp"
 #include "scenarios/read_mechanics.hpp"
 #include "scenarios/read_mesh.hpp"
 #include "scenarios/read_outputs.hpp"
@@ -105,6 +106,7 @@ struct Scenario {
   std::optional<Programme> programme;
   std::optional<Validation> validation;
   std::optional<ScheduleSettings> schedule;
+  std::optional<AxisLoopSettings> axis_loop;
 
   /// @throws InputError  naming the cyclograms there are
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;

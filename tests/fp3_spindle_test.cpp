@@ -93,6 +93,28 @@ TEST_F(Fp3Spindle, ScoresAreThoseOfTheWrittenRecord) {
   }
 }
 
+TEST_F(Fp3Spindle, EdgeByEdgeTheInjectorLeavesLittleMoreThanTheModelsError) {
+  const auto& loop = summary_["axis_loop"];
+  std::vector<std::string> causes;
+  std::vector<double> rms_um;
+  for (const auto& stage : loop["switched_on_in_turn"]) {
+    causes.push_back(stage["cause"]);
+    rms_um.push_back(stage["rms_um"]);
+  }
+  EXPECT_THAT(causes,
+              ::testing::ElementsAre("none", "model", "thermometers", "sampling", "resolution", "rate limit", "axis"));
+  EXPECT_GT(rms_um.front(), 20.0);
+  // Half an insertion of 1 um, evenly spread, is 0.29 um RMS, the axis rests within one count of 1 um, which is 0.29 um RMS again,
+  // and the readings' noise comes to 0.3 um: in squares beside the model's error.
+  EXPECT_LT(rms_um.back(), std::hypot(rms_um[1], 0.29, 0.29) + 0.3);
+  const auto& counts = loop["counts"];
+  EXPECT_EQ(counts["encoder_quarters"].get<int>() + counts["inserted_quarters"].get<int>(),
+            counts["control_quarters"].get<int>() + counts["waiting_quarters"].get<int>());
+  EXPECT_EQ(counts["illegal_transitions"], 0);
+  EXPECT_EQ(counts["inserted_quarters"].get<int>() % 4, 0);  // whole cycles
+  EXPECT_THAT(read_text(folder_ / "report.html"), HasSubstr("through the pulse injector, edge by edge"));
+}
+
 TEST_F(Fp3Spindle, FewModesMissTheBearingAndSteadyResponsesMendIt) {
   const auto& errors = summary_["modal"]["errors_against_full_model"];
   EXPECT_GT(errors[0]["worst_temperature_K"].get<double>(), 1.0);  // what the issue warns of

@@ -1,0 +1,251 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <optional>
+
+#include "app/correction_input.hpp"
+#include "app/row_pipe.hpp"
+#include "app/verbs.hpp"
+#include "app/version.hpp"
+#include "base/errors.hpp"
+#include "base/quantity.hpp"
+#include "compensation/axis_loop.hpp"
+#include "output/signal_files.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using namespace compensation;
+
+Counting counting_of(const std::string& name) {
+  return name == "x1" ? Counting::kX1 : name == "x2" ? Counting::kX2 : Counting::kX4;
+}
+
+int quarters_of(const std::string& name) {
+  return name == "quarter" ? 1 : name == "half" ? 2 : kQuartersPerPeriod;
+}
+
+double positive_quantity(const std::string& option, const std::string& text, const std::string& unit) {
+  if (text.empty()) return 0.0;
+  try {
+    const double value = parse_quantity(text, unit);
+    if (value > 0.0) return value;
+  } catch (const RangeError& e) {
+    throw InputError(fmt::format("{} '{}': {}", option, text, e.what()));
+  }
+  throw InputError(fmt::format("{} '{}': more than 0 is wanted", option, text));
+}
+
+/// The injector with rows for its unit of time, in either way to use it.
+class RowInjector {
+ public:
+  RowInjector(const InsertionRules& rules, bool clocked, std::int64_t separation, std::int64_t interval) : rows_(rules) {
+    if (clocked) timed_.emplace(InsertionLimits{.rules = rules, .separation = separation, .insertion_interval = interval});
+  }
+
+  void set_target(std::int64_t quarters) {
+    rows_.set_target(quarters);
+    target_ = quarters;
+  }
+  /// Appends the rows that the control gets.
+  void run(std::span<const Lines> rows, std::vector<Lines>& out) {
+    if (!timed_) {
+      const std::size_t before = out.size();
+      out.resize(before + rows.size() * kMostRowsPerRow);
+      out.resize(before + rows_.run(rows, out.data() + before));
+      return;
+    }
+    for (Lines row : rows) {
+      timed_->input({++n_rows_, row}, edges_);
+      timed_->set_target(n_rows_, target_, edges_);
+      timed_->advance(n_rows_, edges_);
+      if (!edges_.empty()) last_ = edges_.back().lines;
+      edges_.clear();
+      out.push_back(last_);
+    }
+  }
+  /// Appends the rows that complete what has begun when the input ends.
+  void finish(std::vector<Lines>& out) {
+    if (!timed_) return;
+    timed_->freeze();
+    while (timed_->waiting() != 0 && edges_.empty()) {
+      timed_->advance(++n_rows_, edges_);
+      if (!edges_.empty()) last_ = edges_.back().lines;
+      edges_.clear();
+      out.push_back(last_);
+    }
+  }
+
+  [[nodiscard]] const EncoderReader& encoder() const { return timed_ ? timed_->encoder() : rows_.encoder(); }
+  [[nodiscard]] std::int64_t inserted() const { return timed_ ? timed_->inserted() - timed_->waiting() : rows_.inserted(); }
+  [[nodiscard]] std::int64_t n_too_fast() const { return timed_ ? timed_->n_too_fast() : 0; }
+
+ private:
+  PulseInjector rows_;
+  std::optional<TimedInjector> timed_;
+  std::int64_t target_ = 0, n_rows_ = 0;
+  Lines last_ = 0;
+  std::vector<Edge> edges_;
+};
+
+/// What goes to files beside standard output.
+struct SideFiles {
+  std::optional<output::VcdFile> vcd;
+  std::optional<output::HalStreamFile> hal;
+  std::optional<std::ofstream> log;
+
+  [[nodiscard]] bool any() const { return vcd || hal || log; }
+};
+
+/// One run of the verb.
+class Filter {
+ public:
+  explicit Filter(const InjectOptions& options)
+      : options_(options),
+        rules_{.quarters = quarters_of(options.insert), .anywhere = options.anywhere, .bypass = options.bypass},
+        counting_(counting_of(options.counts)),
+        row_s_(positive_quantity("--row-time", options.row_time, "s")),
+        correction_(options.correction, {.period_um = positive_quantity("--period", options.period, "um"),
+                                         .counting = counting_,
+                                         .row_s = row_s_,
+                                         .unit = options.unit}),
+        converter_(rules_.quarters),
+        injector_(rules_, options.clocked, options.separation, options.interval) {
+    if (!options.hal.empty() && options.halstream.empty())
+      throw InputError("--hal plays the file of --halstream, which is not given");
+    if (!options.hal.empty() && counting_ == Counting::kX2)
+      throw InputError("--hal: LinuxCNC's encoder counts x4 or x1, not x2");
+  }
+
+  void run() {
+    std::signal(SIGPIPE, SIG_IGN);  // write() tells
+    RowReader reader(STDIN_FILENO);
+    bool wanted = true;
+    while (wanted) {
+      const std::span<const Lines> rows = reader.next();
+      if (rows.empty()) break;
+      if (n_rows_ == 0) begin(rows.front(), reader.has_index());
+      correction_.poll();
+      pass_on(rows);
+      wanted = rules_.bypass ? write_bytes(STDOUT_FILENO, reader.bytes()) : write_rows(STDOUT_FILENO, out_, has_index_);
+    }
+    if (n_rows_ == 0) begin(0, false);
+    std::vector<Lines> rest;
+    injector_.finish(rest);
+    take(rest, last_in_);
+    if (wanted) wanted = write_rows(STDOUT_FILENO, rest, has_index_);
+    end();
+  }
+
+ private:
+  static std::string made_by() { return fmt::format("driftwright {} inject", kVersion); }
+
+  void begin(Lines first, bool has_index) {
+    has_index_ = has_index;
+    control_ = QuadratureCounter(first);
+    counted_ = QuadratureCounter(first, counting_);
+    if (!options_.vcd.empty()) files_.vcd.emplace(options_.vcd, row_s_ > 0.0 ? row_s_ : 1e-6, has_index, made_by());
+    if (!options_.halstream.empty()) files_.hal.emplace(options_.halstream, has_index);
+    if (!options_.log.empty()) {
+      files_.log.emplace(options_.log, std::ios::binary);
+      if (!*files_.log) throw InputError(fmt::format("{}: cannot be written", options_.log));
+      *files_.log << "# " << made_by()
+                  << "\n# counts are quarter steps (x4); a line for each change of wish, insertion or jumps\n"
+                  << "row,output_row,encoder_count,wished_count,inserted_count,control_count,jumps\n";
+    }
+  }
+
+  void pass_on(std::span<const Lines> rows) {
+    const std::size_t block = files_.any() ? 1 : rows.size();  // files tell of each row
+    out_.clear();
+    for (std::size_t i = 0; i < rows.size();) {
+      const double wish = correction_.quarters_at(n_rows_ + 1);
+      target_ = converter_.insertions(wish) * rules_.quarters;
+      injector_.set_target(target_);
+      const std::int64_t same = correction_.holds_until() - n_rows_;
+      const auto n = static_cast<std::size_t>(
+          std::min<std::int64_t>(same, static_cast<std::int64_t>(std::min(block, rows.size() - i))));
+      const std::size_t before = out_.size();
+      injector_.run(rows.subspan(i, n), out_);
+      n_rows_ += static_cast<std::int64_t>(n);
+      i += n;
+      last_in_ = rows[i - 1];
+      take({out_.data() + before, out_.size() - before}, last_in_);
+    }
+  }
+
+  void take(std::span<const Lines> out, Lines in) {
+    for (Lines row : out) {
+      control_.step(row);
+      counted_.step(row);
+      if (files_.vcd) files_.vcd->row(n_out_, in, row);
+      if (files_.hal) files_.hal->row(row);
+      ++n_out_;
+    }
+    if (files_.log) log(false);
+  }
+
+  void log(bool at_end) {
+    const std::array<std::int64_t, 3> now = {target_, injector_.inserted(), injector_.encoder().n_jumps()};
+    if (now == logged_ && !at_end) return;
+    logged_ = now;
+    *files_.log << fmt::format("{},{},{},{},{},{},{}\n", n_rows_, n_out_, injector_.encoder().count(), now[0], now[1],
+                               control_.count(), now[2]);
+  }
+
+  void end() {
+    const EncoderReader& encoder = injector_.encoder();
+    const bool wire =
+        rules_.bypass && encoder.n_jumps() > 0;  // faults pass a wire, and the control miscounts them by itself
+    if (!wire && control_.count() != encoder.count() + injector_.inserted())
+      throw std::logic_error("counts in + inserted are not counts out");
+    if (files_.vcd) files_.vcd->finish();
+    if (files_.hal) files_.hal->finish();
+    if (files_.log) {
+      log(true);
+      files_.log->close();
+      if (!*files_.log) throw InputError(fmt::format("{}: not all could be written; is the disk full?", options_.log));
+    }
+    if (!options_.hal.empty()) {
+      std::ofstream hal(options_.hal, std::ios::binary);
+      hal << output::hal_text(options_.halstream, *files_.hal, has_index_, counting_, made_by());
+      hal.close();
+      if (!hal) throw InputError(fmt::format("{}: cannot be written", options_.hal));
+    }
+    if (encoder.n_jumps() > 0)
+      fmt::print(stderr, "inject: {} jumps of both lines at once (lost edges or disturbances){}\n", encoder.n_jumps(),
+                 rules_.bypass ? "" : "; the correction waited a period behind each");
+    if (injector_.n_too_fast() > 0)
+      fmt::print(stderr, "inject: {} edges of the encoder came closer than {} rows and were held back\n",
+                 injector_.n_too_fast(), options_.separation);
+    fmt::print(stderr,
+               "inject: {} rows in, {} rows out; x4 counts: encoder {:+d}, inserted {:+d} of {:+d}, control {:+d}{}\n",
+               n_rows_, n_out_, encoder.count(), injector_.inserted(), target_, control_.count(),
+               counting_ == Counting::kX4 ? "" : fmt::format(" ({} {:+d})", options_.counts, counted_.count()));
+  }
+
+  const InjectOptions& options_;
+  InsertionRules rules_;
+  Counting counting_;
+  double row_s_;
+  CorrectionInput correction_;
+  CountConverter converter_;
+  RowInjector injector_;
+  SideFiles files_;
+  QuadratureCounter control_, counted_;
+  std::vector<Lines> out_;
+  Lines last_in_ = 0;
+  bool has_index_ = false;
+  std::int64_t n_rows_ = 0, n_out_ = 0, target_ = 0;
+  std::array<std::int64_t, 3> logged_ = {-1, -1, -1};
+};
+
+}  // namespace
+
+void inject(const InjectOptions& options) {
+  Filter(options).run();
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,231 @@
+// `driftwright inject` as a user runs it.
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "base/random.hpp"
+#include "tests/inject_filter.hpp"
+
+namespace driftwright {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string file(const std::string& name, const std::string& text) {
+  return write_file(name, text);
+}
+
+TEST(InjectVerb, InsertsCyclesBehindRowsWhereBothAreLow) {
+  const std::string c = file("two.csv", "# by hand\nrow,nose_um\n2,2\n");
+  const Filtered f = inject("two", "--period '1 um' --correction " + c, "0 0\n1 0\n1 1\n0 1\n0 0\n1 0\n");
+  EXPECT_EQ(f.exit_code, 0);
+  EXPECT_EQ(f.rows,
+            "0 0\n1 0\n1 1\n0 1\n0 0\n1 0\n1 1\n0 1\n0 0\n1 0\n");  // one cycle behind row 5; the other finds no low row
+  EXPECT_THAT(f.words, HasSubstr("encoder +5, inserted +4 of +8, control +9"));
+}
+
+// Sign by value: a tool +5 um too far, 1 um a count: 5 counts forward; at x4 with 4 um a cycle that is a cycle and a rest of one count,
+// which a quarter brings in.
+TEST(InjectVerb, UnitsAndCounts) {
+  const std::string rows = row_text(legs({400}));
+  const std::string um = file("um.csv", "row,e_um\n1,5\n"), count = file("count.csv", "row,e_count\n1,5\n");
+  const auto control = [&](const std::string& arguments) {
+    return counted(inject("units", arguments, rows).rows).count() - 400;
+  };
+  EXPECT_EQ(control("--period '4 um' --correction " + um), 4);
+  EXPECT_EQ(control("--period '4 um' --insert quarter --correction " + um), 5);
+  EXPECT_EQ(control("--period '0.004 mm' --insert quarter --correction " + um), 5);
+  EXPECT_EQ(control("--insert quarter --correction " + count), 5);
+  EXPECT_EQ(control("--counts x1 --correction " + count), 20);  // five whole cycles
+  EXPECT_EQ(control("--counts x2 --insert half --correction " + count), 10);
+}
+
+TEST(InjectVerb, ACorrectionByTimeHoldsFromItsTimeOn) {
+  // Row i stands for (i - 1) ms; rows 1, 5, ... are low. Row 42 is just past a low one, row 81 is one: neither early nor late would do.
+  // Cycles against the motion, for those with it look the same wherever they stand.
+  const std::string rows = row_text(legs({120}));
+  const std::string by_time = file("time.csv", "time_s,e_um\n0,0\n0.041,-3\n0.08,-4\n"),
+                    by_row = file("row.csv", "row,e_um\n1,0\n42,-3\n81,-4\n");
+  const Filtered a = inject("time", "--period '1 um' --row-time '1 ms' --correction " + by_time, rows);
+  const Filtered b = inject("row", "--period '1 um' --correction " + by_row, rows);
+  EXPECT_EQ(a.rows, b.rows);
+  EXPECT_EQ(counted(a.rows).count(), 120 - 16);
+}
+
+TEST(InjectVerb, BypassIsTheIdentityByteForByte) {
+  Random random(11);
+  std::string rows;
+  for (int i = 0; i < 50000; ++i) rows += random.chance(0.1) ? "0\t 1\r\n" : random.chance(0.5) ? "1 0\n" : "1 1\n";
+  rows += "0 0";  // without its line break
+  const std::string c = file("c.csv", "row,e_um\n1,50\n");
+  const Filtered f = inject("bypass", "--bypass --period '1 um' --correction " + c, rows);
+  EXPECT_EQ(f.exit_code, 0);
+  EXPECT_TRUE(f.rows == rows);
+  EXPECT_THAT(f.words, HasSubstr("jumps of both lines"));
+}
+
+// One row out for each row in: a cycle takes four rows while the encoder rests, and finds no room where it does not.
+TEST(InjectVerb, ClockedItGivesARowForARow) {
+  const std::string c = file("c.csv", "row,e_um\n1,3\n");
+  const Filtered slow = inject("slow", "--clocked --period '1 um' --correction " + c, row_text(legs({40, -40}), 6));
+  EXPECT_EQ(slow.rows.size(), 4u * 81u * 6u);
+  EXPECT_EQ(counted(slow.rows).count(), 12);
+  EXPECT_EQ(counted(slow.rows).n_jumps(), 0);
+  const Filtered fast = inject("fast", "--clocked --period '1 um' --correction " + c, row_text(legs({40, -40}), 4));
+  EXPECT_EQ(counted(fast.rows).count(), 0);
+  EXPECT_THAT(fast.words, HasSubstr("inserted +0 of +12"));
+}
+
+TEST(InjectVerb, ClockedItCompletesWhatHasBegunWhenTheInputEnds) {
+  const std::string c = file("c.csv", "row,e_um\n1,1\n");
+  const Filtered f = inject("cut", "--clocked --period '1 um' --correction " + c, row_text({0}, 7));
+  EXPECT_EQ(counted(f.rows).count(), 4);
+  EXPECT_EQ(f.rows.size(), 4u * 9u);  // begins at row 6, five rows after the first; four steps
+}
+
+TEST(InjectVerb, TheIndexColumnIsKept) {
+  const std::string c = file("c.csv", "row,e_um\n1,1\n");
+  const Filtered f = inject("index", "--period '1 um' --correction " + c, "0 1 0\n0 0 1\n1 0 0\n");
+  EXPECT_EQ(f.rows, "0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n0 0 1\n1 0 0\n");
+}
+
+TEST(InjectVerb, AFaultIsToldAndTheCorrectionWaits) {
+  std::vector<compensation::Lines> rows = legs({100});
+  rows.erase(rows.begin() + 50);
+  const std::string c = file("c.csv", "row,e_um\n1,3\n");
+  const Filtered f = inject("fault", "--period '1 um' --correction " + c, row_text(rows));
+  EXPECT_EQ(f.exit_code, 0);
+  EXPECT_THAT(f.words, AllOf(HasSubstr("1 jumps of both lines at once"), HasSubstr("encoder +100, inserted +12 of +12")));
+  EXPECT_EQ(counted(f.rows).count(), 112);
+  EXPECT_EQ(counted(f.rows).n_jumps(), 0);
+}
+
+TEST(InjectVerb, TheLogKeepsTheLedger) {
+  const std::string c = file("c.csv", "row,e_um\n1,3\n60,-2\n");
+  const Filtered f = inject("log", "--period '1 um' --log log.csv --vcd v.vcd --correction " + c, row_text(legs({90, -30})));
+  std::istringstream log(read_text(temporary_folder() / "log" / "log.csv"));
+  std::string line, last;
+  int n = 0;
+  while (std::getline(log, line)) {
+    long long row, out, in, wished, inserted, control, jumps;
+    if (std::sscanf(line.c_str(), "%lld,%lld,%lld,%lld,%lld,%lld,%lld", &row, &out, &in, &wished, &inserted, &control,
+                    &jumps) != 7)
+      continue;
+    EXPECT_EQ(in + inserted, control) << line;
+    last = line;
+    ++n;
+  }
+  EXPECT_EQ(n, 1 + 2 + 1 + 5 + 1);  // three cycles forward, the first at once; a new wish, five back; the end
+  EXPECT_THAT(last, StartsWith("121,"));
+}
+
+TEST(InjectVerb, ReadsAPipeAndAnswersEachRowAtOnce) {
+  const auto folder = fresh_folder("live");
+  const std::string fifo = (folder / "correction").string(), rows_in = (folder / "in").string(),
+                    rows_out = (folder / "out").string();
+  for (const std::string& path : {fifo, rows_in, rows_out}) ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  const std::string command = std::string(DRIFTWRIGHT_PROGRAM) + " inject --period '1 um' --correction " + fifo + " <" +
+                              rows_in + " >" + rows_out + " 2>/dev/null &";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const int in = open(rows_in.c_str(), O_WRONLY), out = open(rows_out.c_str(), O_RDONLY);
+  const auto say = [](int to, const std::string& text) {
+    return write(to, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  };
+  const auto hear = [&](std::size_t n) {
+    std::string text(n, ' ');
+    std::size_t have = 0;
+    while (have < n) {
+      const ssize_t got = read(out, text.data() + have, n - have);
+      if (got <= 0) break;
+      have += static_cast<std::size_t>(got);
+    }
+    return text.substr(0, have);
+  };
+  ASSERT_TRUE(say(in, "0 0\n"));
+  EXPECT_EQ(hear(4), "0 0\n");  // the filter waits for no more; and it has opened the pipe
+  const int correction = open(fifo.c_str(), O_WRONLY);
+  ASSERT_TRUE(say(correction, "1\n"));
+  ASSERT_TRUE(say(in, "0 0\n"));
+  EXPECT_EQ(hear(20), "0 0\n1 0\n1 1\n0 1\n0 0\n");
+  ASSERT_TRUE(say(correction, "0\n"));
+  ASSERT_TRUE(say(in, "0 0\n"));
+  EXPECT_EQ(hear(20), "0 0\n0 1\n1 1\n1 0\n0 0\n");
+  close(in);
+  EXPECT_EQ(hear(4), "");
+  close(out);
+  close(correction);
+}
+
+TEST(InjectVerb, EndsQuietlyWhenNobodyReads) {
+  const std::string c = file("c.csv", "row,e_um\n1,3\n");
+  const std::string rows = file("many.txt", row_text(legs({200000})));
+  const int status =
+      std::system(("bash -c 'set -o pipefail; " + std::string(DRIFTWRIGHT_PROGRAM) +
+                   " inject --period \"1 um\" --correction " + c + " <" + rows + " 2>/dev/null | head -1 >/dev/null'")
+                      .c_str());
+  EXPECT_EQ(status, 0);
+}
+
+struct BadCase {
+  const char* name;
+  const char* table;
+  const char* arguments;
+  const char* rows;
+  const char* words;
+};
+class BadInjection : public ::testing::TestWithParam<BadCase> {};
+
+TEST_P(BadInjection, IsRefusedWithLineAndWhatIsAllowed) {
+  const BadCase& bad = GetParam();
+  const std::string c = file(std::string(bad.name) + ".csv", bad.table);
+  const Filtered f = inject(bad.name, "--correction " + c + " " + bad.arguments, bad.rows);
+  EXPECT_EQ(f.exit_code, 2);
+  EXPECT_THAT(f.words, HasSubstr(bad.words));
+}
+
+constexpr const char* kGood = "row,e_um\n1,3\n";
+INSTANTIATE_TEST_SUITE_P(
+    InjectVerb, BadInjection,
+    ::testing::Values(BadCase{"row2", kGood, "--period '1 um'", "0 0\n0 2\n",
+                              "line 2: '0 2'; 2 columns of 0 and 1 are wanted"},
+                      BadCase{"first", kGood, "--period '1 um'", "0\n", "line 1: '0'; two or three columns"},
+                      BadCase{"columns", kGood, "--period '1 um'", "0 0 1\n0 0\n", "line 2: '0 0'; 3 columns"},
+                      BadCase{"empty_line", kGood, "--period '1 um'", "0 0\n\n0 1\n", "line 2: ''"},
+                      BadCase{"no_period", kGood, "", "0 0\n", "wants --period"},
+                      BadCase{"bad_period", kGood, "--period '1 kg'", "0 0\n", "--period '1 kg'"},
+                      BadCase{"zero_period", kGood, "--period '0 um'", "0 0\n", "more than 0"},
+                      BadCase{"no_row_time", "time_s,e_um\n0,1\n", "--period '1 um'", "0 0\n", "wants --row-time"},
+                      BadCase{"header", "when,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":1: the first column is 'when'"},
+                      BadCase{"unit", "row,e_mm\n1,1\n", "--period '1 um'", "0 0\n", ":1: the second column is 'e_mm'"},
+                      BadCase{"text", "row,e_um\n1,1\n2,x\n", "--period '1 um'", "0 0\n", ":3: '2,x': two finite numbers"},
+                      BadCase{"nan", "row,e_um\n1,nan\n", "--period '1 um'", "0 0\n", ":2: '1,nan'"},
+                      BadCase{"order", "row,e_um\n5,1\n5,2\n", "--period '1 um'", "0 0\n", ":3: 5 does not come after"},
+                      BadCase{"zero_row", "row,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":2: row 0"},
+                      BadCase{"huge", "row,e_um\n1,1e300\n", "--period '1 um'", "0 0\n", ":2: "},
+                      BadCase{"no_rows", "row,e_um\n", "--period '1 um'", "0 0\n", "no correction behind the header"},
+                      BadCase{"hal_alone", kGood, "--period '1 um' --hal h.hal", "0 0\n", "--halstream"},
+                      BadCase{"hal_x2", kGood, "--period '1 um' --counts x2 --halstream s --hal h.hal", "0 0\n", "not x2"}),
+    [](const auto& case_info) { return std::string(case_info.param.name); });
+
+TEST(InjectVerb, RefusesAMissingCorrectionAndStandardInputForIt) {
+  EXPECT_EQ(inject("none", "--correction nowhere.csv --period '1 um'", "0 0\n").exit_code, 2);
+  const Filtered dash = inject("dash", "--correction - --period '1 um'", "0 0\n");
+  EXPECT_EQ(dash.exit_code, 2);
+  EXPECT_THAT(dash.words, HasSubstr("standard input has the rows"));
+}
+
+TEST(InjectVerb, HelpHasAnExample) {
+  const CommandOutcome help = run_program("inject --help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.output, AllOf(HasSubstr("Example:"), HasSubstr("--correction"), HasSubstr("--clocked")));
+}
+
+}  // namespace
+}  // namespace driftwright
