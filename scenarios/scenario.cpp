@@ -185,6 +185,19 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
   return s;
 }
 
+/// Reads the table and gives the machine a displacement for each of its points.
+TableSettings add_table(const ConfigMap& in, MachineModel& machine, const std::vector<Cyclogram>& cyclograms) {
+  if (std::holds_alternative<LumpedMachine>(machine.mesh)) in.fail("region", "a table wants a mesh; this machine has none");
+  std::vector<std::string> sensors, names;
+  for (const Sensor& s : machine.sensors) sensors.push_back(s.name);
+  for (const Cyclogram& c : cyclograms) names.push_back(c.name);
+  TableSettings table = read_table(in, sensors, names);
+  for (DisplacementOutput& d : table_displacements(table)) machine.displacements.push_back(std::move(d));
+  for (const Eigen::Vector3d& p : table_points(table))
+    machine.written += fmt::format("table: {} {:.17g} {:.17g} {:.17g}\n", table.region, p[0], p[1], p[2]);
+  return table;
+}
+
 }  // namespace
 
 const Cyclogram& Scenario::cyclogram(const std::string& cyclogram_name) const {
@@ -267,6 +280,10 @@ Scenario read_scenario(const ConfigMap& in) {
       in.fail("schedule", "a scenario about measured records alone has no machine whose drift a program corrects");
     const double tolerance_um = scenario.study ? scenario.study->tolerance_um : Study{}.tolerance_um;
     scenario.schedule = read_schedule(*schedule, scenario.machine->displacements, tolerance_um);
+  }
+  if (const auto table = in.optional_map("table")) {
+    if (!has_machine) in.fail("table", "a table wants a machine to simulate");
+    scenario.table = add_table(*table, *scenario.machine, scenario.cyclograms);
   }
   if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");
   in.reject_unknown_keys();

@@ -17,6 +17,7 @@
 #include "scenarios/read_mesh.hpp"
 #include "scenarios/read_outputs.hpp"
 #include "scenarios/read_schedule.hpp"
+#include "scenarios/read_table.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
 
@@ -99,6 +100,7 @@ struct Scenario {
   std::optional<Study> study;
   std::optional<Programme> programme;
   std::optional<ScheduleSettings> schedule;
+  std::optional<TableSettings> table;  ///< its points stand behind the machine's own displacements
 
   /// @throws InputError  naming the cyclograms there are
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;
