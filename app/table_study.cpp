@@ -193,7 +193,13 @@ std::vector<compensation::TableFrame> control_frames(const scenarios::TableSetti
 void compare_with_readings(TableStudy& study, const scenarios::Scenario& scenario) {
   const scenarios::TableReadings& readings = *scenario.table->readings;
   TimeSeries hall{readings.time_s, readings.ambient_K};
-  study.hall_models = compensation::compare_hall_models(hall, readings.time_s, readings.x_um);
+  const auto& materials = scenario.machine->materials;
+  const auto table = std::find_if(materials.begin(), materials.end(),
+                                  [&](const scenarios::MaterialEntry& m) { return m.region == scenario.table->region; });
+  const double length_um = 1e6 * (scenario.table->high_m[0] - scenario.table->low_m[0]);
+  study.hall_models =
+      compensation::compare_hall_models(hall, readings.time_s, readings.x_um, length_um * table->material.expansion_1_K.x,
+                                        length_um * scenario.table->scale_x.expansion_1_K);
   std::vector<double> x_um;
   for (std::size_t i = 0; i < study.run.table.time_s.size(); ++i)
     x_um.push_back(study.run.table_only_x_um[i] - study.run.scale_only_x_um[i]);
@@ -223,9 +229,11 @@ TableStudy study_table(const scenarios::Scenario& scenario, const Model& model, 
   for (const scenarios::TableRing& ring : s.rings) places_m.push_back(ring.at_m);
 
   progress.begin("running models that are off");
-  std::vector<Errors> model_m;
+  std::vector<Errors> model_m, model_table_m;
   for (int k = 0; k < kRepetitions; ++k) {
-    model_m.push_back(first_rows(wrong_run(scenario, model, k).rings_m, n));
+    const TableRun wrong = wrong_run(scenario, model, k);
+    model_m.push_back(first_rows(wrong.rings_m, n));
+    model_table_m.push_back(first_rows(wrong.table.error_m, n));
     progress.update((k + 1.0) / kRepetitions);
   }
   const auto plan = [&](double every_s, int repetition) {
@@ -242,6 +250,16 @@ TableStudy study_table(const scenarios::Scenario& scenario, const Model& model, 
     return [&, every_s](int k) {
       return left(
           compensation::carried_rings(judged.time_s, rings_m, model_m[static_cast<std::size_t>(k)], plan(every_s, k)));
+    };
+  };
+  const auto over_table = [&](const Errors& believed_m) {
+    return compensation::through_frame(judged, judged.points_m, believed_m).left_m;
+  };
+  const auto by_whole_table = [&](double every_s) {
+    return [&, every_s](int k) {
+      const auto repetition = static_cast<std::size_t>(k);
+      return over_table(compensation::carried_table(judged, places_m, rings_m, model_table_m[repetition],
+                                                    model_m[repetition], plan(every_s, k)));
     };
   };
 
@@ -273,12 +291,14 @@ TableStudy study_table(const scenarios::Scenario& scenario, const Model& model, 
       repeated("model alone", [&](int k) { return left(model_m[static_cast<std::size_t>(k)]); }),
       repeated("rings", by_rings(s.every_s)),
       repeated("rings and model", by_both(s.every_s)),
+      repeated("rings and model of the whole table", by_whole_table(s.every_s)),
       repeated("exact rings at all times", [&](int) { return left(rings_m); }),
+      repeated("best frame at all times", [&](int) { return over_table(judged.error_m); }),
   };
   for (double minutes : {10, 20, 30, 45, 60, 90, 120, 180, 240, 360, 480}) {
     const double every_s = 60.0 * minutes;
     study.intervals.push_back(
-        {every_s, repeated("", by_rings(every_s)).peak.position_m, repeated("", by_both(every_s)).peak.position_m});
+        {every_s, repeated("", by_rings(every_s)).peak.position_m, repeated("", by_whole_table(every_s)).peak.position_m});
   }
   const auto last = compensation::held_rings(judged.time_s, rings_m, plan(s.every_s, 0));
   study.frame = compensation::through_frame(judged, places_m, last).frames.back();

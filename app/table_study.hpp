@@ -27,7 +27,8 @@ struct TableStrategy {
 
 struct IntervalRow {
   double every_s = 0.0;
-  double rings_m = 0.0, carried_m = 0.0;  ///< largest position error, median
+  double rings_m = 0.0;    ///< largest position error, median
+  double carried_m = 0.0;  ///< the same with the model of the whole table between measurements
 };
 
 struct TableStudy {

@@ -131,7 +131,7 @@ std::vector<double> lagged(const TimeSeries& hall, double lag, std::span<const d
 }
 
 std::vector<HallModel> compare_hall_models(const TimeSeries& hall, std::span<const double> time_s,
-                                           std::span<const double> values) {
+                                           std::span<const double> values, double table, double scale) {
   if (values.size() < 6)
     throw InputError(fmt::format("{} readings are too few to compare models of the hall; six are wanted", values.size()));
   const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -158,14 +158,11 @@ std::vector<HallModel> compare_hall_models(const TimeSeries& hall, std::span<con
   const Search two_lags = [&](int out, const auto& take) {
     for (int i = 0; i < kLags; ++i) {
       for (int k = 0; k < kLags; ++k) {
-        if (i == k) continue;
-        const std::vector<const Eigen::VectorXd*> columns = {&late[static_cast<std::size_t>(i)],
-                                                             &late[static_cast<std::size_t>(k)]};
-        Fit fit = fit_linear(columns, y, out);
-        if (fit.coefficients[1] < 0.0 || fit.coefficients[2] > 0.0) continue;  // the table adds, the scale takes away
+        const Eigen::VectorXd of = table * late[static_cast<std::size_t>(i)] - scale * late[static_cast<std::size_t>(k)];
+        Fit fit = fit_linear({}, y - of, out);
         fit.lag_1 = i;
         fit.lag_2 = k;
-        take(fit, predicted_at(fit, columns, out));
+        take(fit, predicted_at(fit, {}, out) + (out >= 0 ? of[out] : 0.0));
       }
     }
   };
@@ -183,17 +180,16 @@ std::vector<HallModel> compare_hall_models(const TimeSeries& hall, std::span<con
     return fmt::format("slope {:.1f} per K, lag {}", fit.coefficients[1], hours(fit.lag_1, lag));
   };
   const auto words_of_two = [&](const Fit& fit, double limit) {
-    Range table, scale;
+    Range of_table, of_scale;
     two_lags(-1, [&](const Fit& f, double) {
       if (f.square > limit) return;
-      table.take(lag_s(f.lag_1));
-      scale.take(lag_s(f.lag_2));
+      of_table.take(lag_s(f.lag_1));
+      of_scale.take(lag_s(f.lag_2));
     });
-    return fmt::format("table {:.1f} per K, lag {}; scale {:.1f} per K, lag {}", fit.coefficients[1],
-                       hours(fit.lag_1, table), -fit.coefficients[2], hours(fit.lag_2, scale));
+    return fmt::format("lag of the table {}, of the scale {}", hours(fit.lag_1, of_table), hours(fit.lag_2, of_scale));
   };
   return {judged("straight line", 2, line, y, words_of_line), judged("one lag", 3, one_lag, y, words_of_lag),
-          judged("table less scale, two lags", 5, two_lags, y, words_of_two)};
+          judged("table less scale, two lags", 3, two_lags, y, words_of_two)};
 }
 
 }  // namespace driftwright::compensation

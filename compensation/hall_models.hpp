@@ -22,11 +22,13 @@ struct HallModel {
   std::string parameters = {};  ///< in words, each with what 95 % of certainty leaves of it
 };
 
-/// Readings y(t) = a + b T_hall; a + b T_lag; a + b T_lag1 - c T_lag2 with b, c >= 0 (table less scale).
+/// Readings y(t) = a + b T_hall; a + b T_lag; a + table T_lag1 - scale T_lag2.
 /// Lags are searched between 0.1 h and 200 h. Intervals are where the sum of squares stays below its F quantile.
-/// @param values  e.g. in um; at least six
+/// @param values        e.g. in um; at least six
+/// @param table, scale  what both grow per K, from their expansions and length; free, they would run off with two lags that are
+///                      nearly alike
 /// @throws InputError  for fewer than six readings
 [[nodiscard]] std::vector<HallModel> compare_hall_models(const TimeSeries& hall, std::span<const double> time_s,
-                                                         std::span<const double> values);
+                                                         std::span<const double> values, double table, double scale);
 
 }  // namespace driftwright::compensation

@@ -11,11 +11,15 @@
 namespace driftwright::compensation {
 namespace {
 
-using Unknowns = Eigen::Matrix<double, 6, 1>;  // scale - 1, shift, shift y, turn, shift z, tilt
+using Unknowns = Eigen::Matrix<double, 7, 1>;  // scale - 1, shift, shift y, turn, shift z, tilt, scale y - 1
 
 TableFrame of_unknowns(const Unknowns& u) {
-  return {
-      .x = {.scale = 1.0 + u[0], .shift_m = u[1]}, .turn_rad = u[3], .tilt_rad = u[5], .shift_y_m = u[2], .shift_z_m = u[4]};
+  return {.x = {.scale = 1.0 + u[0], .shift_m = u[1]},
+          .scale_y = 1.0 + u[6],
+          .turn_rad = u[3],
+          .tilt_rad = u[5],
+          .shift_y_m = u[2],
+          .shift_z_m = u[4]};
 }
 
 Eigen::VectorXd misfits(std::span<const RingPair> rings, const Unknowns& u) {
@@ -59,7 +63,7 @@ TempFrame temp_frame(double x1_m, double x2_m, double x1_now_m, double x2_now_m)
 
 Frame TableFrame::frame() const {
   const Frame turned = frame_of({.shift_m = {0.0, shift_y_m, shift_z_m}, .rotation_rad = {0.0, tilt_rad, turn_rad}});
-  const Frame scaled = frame_of({.scale = {x.scale, 1.0, 1.0}}), shifted = frame_of({.shift_m = {x.shift_m, 0.0, 0.0}});
+  const Frame scaled = frame_of({.scale = {x.scale, scale_y, 1.0}}), shifted = frame_of({.shift_m = {x.shift_m, 0.0, 0.0}});
   return compose(turned, compose(scaled, shifted));
 }
 
@@ -76,16 +80,20 @@ TableFrame fit_table_frame(std::span<const RingPair> rings) {
   check_order(before_m, now_m);
   check_scale(now_m / before_m);
   // Gauss and Newton; the angles are microradians, so that each step leaves a millionth of the misfit.
+  const auto by_y = [](const RingPair& a, const RingPair& b) { return (*a.before_m)[1] < (*b.before_m)[1]; };
+  const auto [front, back] = std::minmax_element(rings.begin(), rings.end(), by_y);
+  const bool has_width = rings.size() > 2 && (*back->before_m)[1] - (*front->before_m)[1] >= kLeastRingDistance_m;
+  const int n_unknowns = has_width ? 7 : 6;
   Unknowns u = Unknowns::Zero();
-  for (int step = 0; step < 6; ++step) {
+  for (int step = 0; step < 4; ++step) {
     const Eigen::VectorXd misfit = misfits(rings, u);
-    Eigen::MatrixXd slope(misfit.size(), 6);
-    for (int k = 0; k < 6; ++k) {
+    Eigen::MatrixXd slope(misfit.size(), n_unknowns);
+    for (int k = 0; k < n_unknowns; ++k) {
       constexpr double kStep = 1e-4;
       slope.col(k) =
           (misfits(rings, u + kStep * Unknowns::Unit(k)) - misfits(rings, u - kStep * Unknowns::Unit(k))) / (2 * kStep);
     }
-    u -= slope.colPivHouseholderQr().solve(misfit);
+    u.head(n_unknowns) -= slope.colPivHouseholderQr().solve(misfit);
   }
   TableFrame table = of_unknowns(u);
   check_scale(table.x.scale);

@@ -36,17 +36,19 @@ struct RingPair {
 /// What rings with X, Y and Z tell: beside scale and shift along X a turn about Z, a tilt about Y, and shifts along Y and Z.
 struct TableFrame {
   TempFrame x;
+  double scale_y = 1.0;   ///< of three rings or more that differ in Y by kLeastRingDistance_m; else 1
   double turn_rad = 0.0;  ///< about Z
   double tilt_rad = 0.0;  ///< about Y; right-handed, so that Z falls along X where it is above 0
   double shift_y_m = 0.0;
   double shift_z_m = 0.0;
   double misfit_m = 0.0;  ///< largest distance of a ring from where the frame takes it; 0 for two rings
 
-  /// CTRANS(Y, shift_y, Z, shift_z) : CROT(Z, turn, Y, tilt) : CSCALE(X, scale) : CTRANS(X, shift), for $P_BFRAME.
+  /// CTRANS(Y, shift_y, Z, shift_z) : CROT(Z, turn, Y, tilt) : CSCALE(X, scale, Y, scale_y) : CTRANS(X, shift), for $P_BFRAME.
   [[nodiscard]] Frame frame() const;
 };
 
-/// Two rings exactly, more by least squares. Two rings with the same turn and tilt as before give temp_frame() along X.
+/// Two rings exactly, more by least squares. Two rings on a line along X, without turn and tilt, give temp_frame(); two that differ in
+/// Y by dy differ from it by turn dy / dx in the scale.
 /// @throws InputError  for a ring that is missing, and as temp_frame()
 [[nodiscard]] TableFrame fit_table_frame(std::span<const RingPair> rings);
 

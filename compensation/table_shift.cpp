@@ -90,6 +90,22 @@ std::vector<Eigen::Matrix3Xd> carried_rings(const std::vector<double>& time_s,
   return believed;
 }
 
+std::vector<Eigen::Matrix3Xd> carried_table(const TableErrors& table, std::span<const Eigen::Vector3d> rings_m,
+                                            const std::vector<Eigen::Matrix3Xd>& true_ring_error_m,
+                                            const std::vector<Eigen::Matrix3Xd>& model_error_m,
+                                            const std::vector<Eigen::Matrix3Xd>& model_ring_error_m, const RingPlan& plan) {
+  const auto rings = carried_rings(table.time_s, true_ring_error_m, model_ring_error_m, plan);
+  std::vector<Eigen::Matrix3Xd> believed;
+  for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+    const Frame mend = frame_of_rings(rings_m, rings[i] - model_ring_error_m[i]).frame();
+    Eigen::Matrix3Xd error_m = model_error_m[i];
+    for (std::size_t p = 0; p < table.points_m.size(); ++p)
+      error_m.col(static_cast<Eigen::Index>(p)) += mend.map(table.points_m[p]) - table.points_m[p];
+    believed.push_back(std::move(error_m));
+  }
+  return believed;
+}
+
 std::vector<Eigen::Matrix3Xd> rings_by_temperature(std::span<const double> train_K,
                                                    std::span<const Eigen::Matrix3Xd> train_error_m,
                                                    std::span<const double> temperature_K) {

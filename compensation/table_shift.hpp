@@ -51,6 +51,15 @@ struct RingPlan {
                                                           const std::vector<Eigen::Matrix3Xd>& model_ring_error_m,
                                                           const RingPlan& plan);
 
+/// Errors all over the table as a model has them, mended by what the last measurement of the rings found wrong with it (a frame). With
+/// the table's points for rings, through_frame() then makes the frame that is best for the whole table.
+/// @param model_error_m, model_ring_error_m  at the table's points and at the rings, one matrix a time each
+[[nodiscard]] std::vector<Eigen::Matrix3Xd> carried_table(const TableErrors& table, std::span<const Eigen::Vector3d> rings_m,
+                                                          const std::vector<Eigen::Matrix3Xd>& true_ring_error_m,
+                                                          const std::vector<Eigen::Matrix3Xd>& model_error_m,
+                                                          const std::vector<Eigen::Matrix3Xd>& model_ring_error_m,
+                                                          const RingPlan& plan);
+
 /// Ring errors as straight lines of one temperature, fitted to what measurements of another time found.
 /// @param train_K, train_error_m  at the measurements; at least three that differ
 /// @throws InputError  for fewer, or for temperatures that do not differ

@@ -71,7 +71,7 @@ TEST(FrameProgram, IsReadByTheInterpreterOfLinuxcnc) {
   const std::string path = write_file("thermframe.ngc", file("linuxcnc/thermframe.ngc"));
   EXPECT_EQ(std::system(("cd " + temporary_folder().string() + " && rs274 -g thermframe.ngc > rs274.out 2>&1").c_str()), 0);
   const std::string said = read_text(temporary_folder() / "rs274.out");
-  EXPECT_THAT(said, AllOf(HasSubstr("STRAIGHT_PROBE(-4794"), HasSubstr("PROGRAM_END"), HasSubstr("SET_G5X_OFFSET(1"),
+  EXPECT_THAT(said, AllOf(HasSubstr("STRAIGHT_PROBE(-4775"), HasSubstr("PROGRAM_END"), HasSubstr("SET_G5X_OFFSET(1"),
                           Not(HasSubstr("rror"))));
   std::size_t n_probes = 0;
   for (std::size_t at = said.find("STRAIGHT_PROBE"); at != std::string::npos; at = said.find("STRAIGHT_PROBE", at + 1))

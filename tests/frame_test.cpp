@@ -106,7 +106,7 @@ TEST(TableFrame, IsThePapersAlongXWhereNothingTurns) {
 TEST(TableFrame, AveragesMoreRings) {
   Random random(4);
   const Frame truth = compose(frame_of({.shift_m = {0.0, 20e-6, 0.0}, .rotation_rad = {0.0, 0.0, 5e-6}}),
-                              frame_of({.shift_m = {30e-6, 0.0, 0.0}, .scale = {1.00001, 1.0, 1.0}}));
+                              frame_of({.shift_m = {30e-6, 0.0, 0.0}, .scale = {1.00001, 1.00003, 1.0}}));
   std::vector<RingPair> rings;
   for (int i = 0; i < 12; ++i) {
     const Eigen::Vector3d at(-5.0 + i * 10.0 / 11.0, i % 2 ? -1.4 : 1.4, 0.0);
@@ -115,6 +115,7 @@ TEST(TableFrame, AveragesMoreRings) {
   const TableFrame table = fit_table_frame(rings);
   EXPECT_LT((table.frame().map({0.0, 0.0, 0.0}) - truth.map({0.0, 0.0, 0.0})).norm(), 4e-6);
   EXPECT_NEAR(table.x.scale, 1.00001, 4 * 2e-6 / 3.0 / std::sqrt(12.0));
+  EXPECT_NEAR(table.scale_y, 1.00003, 4 * 2e-6 / 1.4 / std::sqrt(12.0));
   EXPECT_GT(table.misfit_m, 1e-6);
   EXPECT_LT(table.misfit_m, 10e-6);
 }
