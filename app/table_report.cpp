@@ -55,8 +55,11 @@ Plot series_plot(const scenarios::Scenario& scenario, const TableStudy& study) {
                        {.label = "table alone, since the start", .x = t_h, .y = table_um, .style = Series::Style::kDashed},
                        {.label = "scale alone, since the start", .x = t_h, .y = scale_um, .style = Series::Style::kDashed}}};
   if (const auto& readings = scenario.table->readings)
-    plot.series.push_back(
-        {.label = "published", .x = hours(readings->time_s), .y = readings->x_um, .style = Series::Style::kPoints});
+    plot.series.push_back({.label = "published",
+                           .x = hours(readings->time_s),
+                           .y = readings->x_um,
+                           .style = Series::Style::kPoints,
+                           .width = 4.0});
   return plot;
 }
 
