@@ -20,53 +20,10 @@ constexpr int kRepetitions = 5;
 /// Expansions of a library are known to 3 %: grey iron from 10.0 to 11.7, say its standards.
 constexpr double kExpansionScatter = 0.03;
 
-/// Factors by which a model's expansions are wrong.
-struct Expansions {
-  double table = 1.0, scale_x = 1.0, scale_y = 1.0;
-};
-
 std::vector<double> kelvins(const Record& record, const std::string& sensor) {
   std::vector<double> T_K = record.at(sensor).values;
   for (double& T : T_K) T += kZeroCelsius_K;
   return T_K;
-}
-
-TableRun table_run(const scenarios::Scenario& scenario, SimulatedRun run, const Expansions& factor = {}) {
-  const scenarios::TableSettings& s = *scenario.table;
-  const std::vector<Eigen::Vector3d> points = scenarios::table_points(s);
-  const std::size_t n_grid = static_cast<std::size_t>(s.n_x) * static_cast<std::size_t>(s.n_y),
-                    n_times = run.record.n_samples();
-  const std::vector<double> scale_x_K = kelvins(run.record, s.scale_x.sensor);
-  const std::vector<double> scale_y_K = s.scale_y ? kelvins(run.record, s.scale_y->sensor) : std::vector<double>{};
-  std::vector<const std::vector<double>*> u_um;  // three a point
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    for (char axis : {'x', 'y', 'z'}) u_um.push_back(&run.record.at(fmt::format("table_{}_{}", p + 1, axis)).values);
-  }
-  TableRun result;
-  result.table.time_s = run.record.time_s;
-  result.table.points_m.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n_grid));
-  for (std::size_t i = 0; i < n_times; ++i) {
-    const auto moved_m = [&](std::size_t p, std::size_t axis) { return factor.table * 1e-6 * (*u_um[3 * p + axis])[i]; };
-    const std::size_t head = points.size() - 1;
-    const double grown_x = factor.scale_x * s.scale_x.expansion_1_K * (scale_x_K[i] - scenario.machine->reference_K);
-    const double grown_y =
-        s.scale_y ? factor.scale_y * s.scale_y->expansion_1_K * (scale_y_K[i] - scenario.machine->reference_K) : 0.0;
-    Eigen::Matrix3Xd errors(3, static_cast<Eigen::Index>(head));
-    for (std::size_t p = 0; p < head; ++p) {
-      const double y0_m = s.scale_y ? s.scale_y->fixed_at_m : 0.0;
-      errors.col(static_cast<Eigen::Index>(p))
-          << moved_m(p, 0) - moved_m(head, 0) - grown_x * (points[p][0] - s.scale_x.fixed_at_m),
-          moved_m(p, 1) - moved_m(head, 1) - grown_y * (points[p][1] - y0_m), moved_m(p, 2);
-    }
-    result.table.error_m.emplace_back(errors.leftCols(static_cast<Eigen::Index>(n_grid)));
-    result.rings_m.emplace_back(errors.rightCols(static_cast<Eigen::Index>(s.rings.size())));
-    const std::size_t row = static_cast<std::size_t>(s.n_y / 2) * static_cast<std::size_t>(s.n_x);
-    result.table_only_x_um.push_back(1e6 * (moved_m(row + static_cast<std::size_t>(s.n_x) - 1, 0) - moved_m(row, 0)));
-    result.scale_only_x_um.push_back(1e6 * grown_x * (s.high_m[0] - s.low_m[0]));
-  }
-  result.record = std::move(run.record);
-  result.trajectory = std::move(run.trajectory);
-  return result;
 }
 
 /// The same machine off by random factors in each power and coefficient.
@@ -103,7 +60,7 @@ TableRun wrong_run(const scenarios::Scenario& scenario, const Model& model, int 
   }
   run.record = scenarios::as_recorded(*scenario.machine, run.trajectory, model.outputs(), scenario.cyclogram(s.cyclogram));
   const auto factor = [&] { return std::exp(kExpansionScatter * random.normal()); };
-  const Expansions expansions{.table = factor(), .scale_x = factor(), .scale_y = factor()};
+  const ExpansionFactors expansions{.table = factor(), .scale_x = factor(), .scale_y = factor()};
   return table_run(scenario, std::move(run), expansions);
 }
 
@@ -212,6 +169,44 @@ void compare_with_readings(TableStudy& study, const scenarios::Scenario& scenari
 }
 
 }  // namespace
+
+TableRun table_run(const scenarios::Scenario& scenario, SimulatedRun run, const ExpansionFactors& factor) {
+  const scenarios::TableSettings& s = *scenario.table;
+  const std::vector<Eigen::Vector3d> points = scenarios::table_points(s);
+  const std::size_t n_grid = static_cast<std::size_t>(s.n_x) * static_cast<std::size_t>(s.n_y),
+                    n_times = run.record.n_samples();
+  const std::vector<double> scale_x_K = kelvins(run.record, s.scale_x.sensor);
+  const std::vector<double> scale_y_K = s.scale_y ? kelvins(run.record, s.scale_y->sensor) : std::vector<double>{};
+  std::vector<const std::vector<double>*> u_um;  // three a point
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    for (char axis : {'x', 'y', 'z'}) u_um.push_back(&run.record.at(fmt::format("table_{}_{}", p + 1, axis)).values);
+  }
+  TableRun result;
+  result.table.time_s = run.record.time_s;
+  result.table.points_m.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(n_grid));
+  for (std::size_t i = 0; i < n_times; ++i) {
+    const auto moved_m = [&](std::size_t p, std::size_t axis) { return factor.table * 1e-6 * (*u_um[3 * p + axis])[i]; };
+    const std::size_t head = points.size() - 1;
+    const double grown_x = factor.scale_x * s.scale_x.expansion_1_K * (scale_x_K[i] - scenario.machine->reference_K);
+    const double grown_y =
+        s.scale_y ? factor.scale_y * s.scale_y->expansion_1_K * (scale_y_K[i] - scenario.machine->reference_K) : 0.0;
+    Eigen::Matrix3Xd errors(3, static_cast<Eigen::Index>(head));
+    for (std::size_t p = 0; p < head; ++p) {
+      const double y0_m = s.scale_y ? s.scale_y->fixed_at_m : 0.0;
+      errors.col(static_cast<Eigen::Index>(p))
+          << moved_m(p, 0) - moved_m(head, 0) - grown_x * (points[p][0] - s.scale_x.fixed_at_m),
+          moved_m(p, 1) - moved_m(head, 1) - grown_y * (points[p][1] - y0_m), moved_m(p, 2);
+    }
+    result.table.error_m.emplace_back(errors.leftCols(static_cast<Eigen::Index>(n_grid)));
+    result.rings_m.emplace_back(errors.rightCols(static_cast<Eigen::Index>(s.rings.size())));
+    const std::size_t row = static_cast<std::size_t>(s.n_y / 2) * static_cast<std::size_t>(s.n_x);
+    result.table_only_x_um.push_back(1e6 * (moved_m(row + static_cast<std::size_t>(s.n_x) - 1, 0) - moved_m(row, 0)));
+    result.scale_only_x_um.push_back(1e6 * grown_x * (s.high_m[0] - s.low_m[0]));
+  }
+  result.record = std::move(run.record);
+  result.trajectory = std::move(run.trajectory);
+  return result;
+}
 
 TableStudy study_table(const scenarios::Scenario& scenario, const Model& model, Progress& progress,
                        output::FieldSeries* fields) {

@@ -17,6 +17,15 @@ struct TableRun {
   std::vector<double> table_only_x_um, scale_only_x_um;  ///< growth of table and scale from end to end of what is judged
 };
 
+/// Factors on expansions, for a model that has them wrong.
+struct ExpansionFactors {
+  double table = 1.0, scale_x = 1.0, scale_y = 1.0;
+};
+
+/// Errors over the table from a record with the displacements of its points (scenarios::table_displacements()) and its scales'
+/// thermometers, simulated or predicted; docs/table.md has the formula. @throws InputError  for a channel that is not there
+[[nodiscard]] TableRun table_run(const scenarios::Scenario& scenario, SimulatedRun run, const ExpansionFactors& factor = {});
+
 /// A correction over the judged time, repeated with other noise and another wrong model.
 struct TableStrategy {
   std::string name = {};

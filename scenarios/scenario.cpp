@@ -192,6 +192,12 @@ TableSettings add_table(const ConfigMap& in, MachineModel& machine, const std::v
   for (const Sensor& s : machine.sensors) sensors.push_back(s.name);
   for (const Cyclogram& c : cyclograms) names.push_back(c.name);
   TableSettings table = read_table(in, sensors, names);
+  const auto run = std::find(names.begin(), names.end(), table.cyclogram) - names.begin();
+  const double taught_s = cyclograms[static_cast<std::size_t>(run)].duration_s() - table.train_from_s;
+  if (!(taught_s >= 2.0 * table.every_s)) {
+    in.fail("train_from", fmt::format("{:g} h are left to learn from; three measurements, {:g} h, are wanted",
+                                      taught_s / 3600.0, table.every_s / 1800.0));
+  }
   for (DisplacementOutput& d : table_displacements(table)) machine.displacements.push_back(std::move(d));
   for (const Eigen::Vector3d& p : table_points(table))
     machine.written += fmt::format("table: {} {:.17g} {:.17g} {:.17g}\n", table.region, p[0], p[1], p[2]);

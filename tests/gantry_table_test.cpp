@@ -61,6 +61,21 @@ TEST(GantryTable, GrowsByTableLessScaleAsThePapersFirstDay) {
   }
 }
 
+// 3 x 13 points, two rings, then the head: X is table less scale, both from the head on. The record carries 7 digits.
+TEST(GantryTable, JudgesTableLessScale) {
+  const Record record = read_record_csv((outcome().folder / "record.csv").string());
+  const auto& head = record.at("table_42_x").values;
+  double most_um = 0.0;
+  for (std::size_t i = 0; i < record.n_samples() && record.time_s[i] <= 86400.0; ++i) {
+    for (int p = 0; p < 39; ++p) {
+      const double x_m = -4.95 + 9.9 * (p % 13) / 12.0, scale_um = 11.0 * (record.at("scale").values[i] - 20.0) * x_m;
+      const double error_um = record.at("table_" + std::to_string(p + 1) + "_x").values[i] - head[i] - scale_um;
+      most_um = std::max(most_um, std::abs(error_um));
+    }
+  }
+  EXPECT_NEAR(strategy("none")["x_um"].get<double>(), most_um, 1e-3);
+}
+
 // docs/table.md: 68 um without, 22.5 um with rings every three hours, 15.0 um with the model between them; no frame leaves less than 13.
 TEST(GantryTable, TheModelBetweenMeasurementsBeatsRingsAlone) {
   const double none = strategy("none")["position_um"], rings = strategy("rings")["position_um"],
@@ -111,6 +126,7 @@ TEST(GantryTable, SaysWhatIsWrongWithALine) {
   refuses("    - {name: low, at: [-4.8 m, 0 m, 0 m]}\n", "", "two are wanted");
   refuses("reference_feed: 10 mm/min", "reference_feed: 40 mm/min", "reference_feed");
   refuses("train_from: 24 h", "train_from: 12 h", "not fitted on");
+  refuses("train_from: 24 h", "train_from: 28 h", "three measurements");
   refuses("lag: [8.3 ms, 9.4 ms, 7.7 ms]", "lag: [8.3 ms, 90 ms, 7.7 ms]", "40 cycles");
   refuses("jitter: 20 us", "jiter: 20 us", "Did you mean 'jitter'");
   refuses("sensor: table_mid, update", "sensor: nowhere, update", "nowhere");
