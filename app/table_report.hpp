@@ -8,7 +8,7 @@
 
 namespace driftwright::app {
 
-/// Error of the longest wait between measurements that keeps the tolerance; none when even the shortest does not.
+/// The longest wait between measurements that keeps the tolerance, as all shorter ones do; nullptr when even the shortest does not.
 [[nodiscard]] const IntervalRow* longest_interval(const TableStudy& study, double tolerance_m, bool with_model);
 
 [[nodiscard]] std::string table_terminal(const scenarios::Scenario& scenario, const TableStudy& study);

@@ -108,7 +108,8 @@ std::vector<DisplacementOutput> table_displacements(const TableSettings& table) 
   for (std::size_t p = 0; p < points.size(); ++p) {
     for (int axis = 0; axis < 3; ++axis) {
       const PointOnRegion tool{table.region, points[p], table.where};
-      outputs.push_back({fmt::format("table_{}_{}", p + 1, "xyz"[axis]), ToolAgainstTable{.axis = axis, .tool = tool, .table = std::nullopt}});
+      outputs.push_back({fmt::format("table_{}_{}", p + 1, "xyz"[axis]),
+                         ToolAgainstTable{.axis = axis, .tool = tool, .table = std::nullopt}});
     }
   }
   return outputs;
