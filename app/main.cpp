@@ -104,6 +104,7 @@ int main(int argc, char** argv) {
   app::InjectOptions inject;
   app::RecordOptions select, validate;
   app::SweepOptions sweep;
+  app::CompensateOptions compensate;
   app::DiagnoseOptions diagnose;
   app::CalibrateOptions calibrate;
   add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
@@ -149,6 +150,21 @@ int main(int argc, char** argv) {
                   validate);
   add_records(verb, validate, true);
   verb->callback([&] { app::validate(validate); });
+  verb = add_verb(cli, "compensate", "a cyclogram with its drift corrected by a predictor through an actuator",
+                  "compensate scenarios/fp3_spindle.yaml --model results/fp3_spindle/models/regression_forward.json "
+                  "--through injector -o "
+                  "results/corrected\n  driftwright compensate scenarios/gantry_table.yaml --model observer --through frame "
+                  "-o results/table",
+                  compensate);
+  verb->add_option("--model", compensate.model,
+                   "a JSON file that `validate` has written to models/, or modes, observer; through the frame modes, "
+                   "observer, regression")
+      ->required();
+  verb->add_option("--through", compensate.through, "injector (docs/injector.md), schedule, frame (docs/table.md)")
+      ->required()
+      ->check(CLI::IsMember({"injector", "schedule", "frame"}));
+  verb->add_option("--cyclogram", compensate.cyclogram, "name in the scenario [the one that `study` judges by]");
+  verb->callback([&] { app::compensate(compensate); });
   verb = add_verb(cli, "calibrate", "the scenario's uncertain numbers, fitted to measured records, with intervals",
                   "calibrate scenarios/fp3_spindle.yaml --measured good.csv -o results/calibration", calibrate);
   verb->add_option("--measured", calibrate.measured, "record CSV (docs/record.md); may be repeated")

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/machine_study_output.hpp"
+#include "app/table_study.hpp"
 #include "app/verbs.hpp"
 #include "output/json_text.hpp"
 #include "scenarios/ways_out.hpp"
@@ -11,6 +12,7 @@ namespace driftwright::app {
 
 void run(const CommonOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  if (scenario.table) return run_table(options, scenario);
   const scenarios::MachineModel& model = require_machine(scenario, "run");
   (void)require_study(scenario, "run");
   output::ResultsFolder folder = open_results(options, scenario.name);

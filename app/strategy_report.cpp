@@ -94,10 +94,7 @@ output::Plot course(const StrategyMatrix& m, std::size_t run, const std::vector<
 }
 
 output::Table matrix_table(const StrategyMatrix& m) {
-  output::Table table{.caption = fmt::format("Largest |residual| in um with the correction in force (prediction x trust, "
-                                             "clamped, slewed), worst run of each column; fitted on {} "
-                                             "training runs that are none of these. Tolerance {:g} um.",
-                                             m.training.size(), m.settings.tolerance_um),
+  output::Table table{.caption = fmt::format("Largest |residual| [um]; tolerance {:g} um.", m.settings.tolerance_um),
                       .headers = {"strategy"},
                       .rows = {}};
   const std::vector<Column> list = columns(m);
@@ -121,10 +118,7 @@ output::Table matrix_table(const StrategyMatrix& m) {
 }
 
 output::Table worst_table(const StrategyMatrix& m) {
-  output::Table table{.caption =
-                          "Worst case of each strategy with all sensors intact. Ranges as ISO 230-3 asks of drift: of what "
-                          "is left within 60 min, and in all. "
-                          "Without fail-safe: of the bare prediction, sensors failed or not.",
+  output::Table table{.caption = "Worst case of each strategy with all sensors intact.",
                       .headers = {"strategy", "run", "peak before [um]", "peak left [um]", "removed [%]", "RMS left [um]",
                                   "range in 60 min [um]", "range in all [um]", "peak with failed sensor [um]",
                                   "the same without fail-safe [um]"},
@@ -168,6 +162,14 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
         fmt::format("It leaves the smallest share in its worst run, {:.0f} % of the peak{}. {}.", 100.0 * intact.left,
                     failed.peak ? fmt::format(", {:.0f} % with one sensor failed", 100.0 * failed.left) : "", best->why)});
   }
+  blocks.emplace_back(output::Paragraph{fmt::format(
+      "Residual: drift less the correction in force, that is the prediction times trust, clamped and slewed. The table has "
+      "the worst run of each family in "
+      "any season, then of each season{}. Left: the largest share of the peak. RMS: over all rows. 95 %: half width of the "
+      "prediction interval, from training "
+      "runs left out, and the share of rows that it covers. Fitted on {} training runs that are none of these.",
+      has_failures(m) ? ", then with each sensor of the strategy failed half-way, stuck, open or fallen off" : "",
+      m.training.size())});
   blocks.emplace_back(matrix_table(m));
   output::Table enough{
       .caption = "The simplest strategy that keeps the tolerance on every run of a family, in every season, sensors intact.",
@@ -184,6 +186,9 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
           {s.fitted.name, word(s.safety), s.why, fmt::format("{}", fmt::join(s.limits, "; ")), s.beaten_by});
   }
   blocks.emplace_back(std::move(verdicts));
+  blocks.emplace_back(
+      output::Paragraph{"Ranges are those ISO 230-3 asks of drift, here of what is left: within 60 min, and in all. Without "
+                        "fail-safe: of the bare prediction."});
   blocks.emplace_back(worst_table(m));
   output::Bars bars{.caption = "Largest share of the peak that is left in any run, sensors intact [%].", .bars = {}};
   for (const JudgedStrategy& s : m.strategies) {

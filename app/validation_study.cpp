@@ -65,7 +65,8 @@ std::string hall_channel(const Scenario& scenario, const Record& record) {
   return record.find(scenarios::kAmbient) ? scenarios::kAmbient : "";
 }
 
-/// The model as strategies get it; none where it is not a linear reduced one.
+}  // namespace
+
 std::optional<Physics> physics_of(const Scenario& scenario, const Model& model, double scatter, int seed) {
   const scenarios::ReducedMachine* reduced = model.reduced();
   if (!reduced || !reduced->system.is_linear()) return std::nullopt;
@@ -74,8 +75,6 @@ std::optional<Physics> physics_of(const Scenario& scenario, const Model& model, 
       make_ritz_predictor(reduced->system, reduced->start, kObserverModes, {.drive = {}, .hall_K = hall_K});
   return Physics{scattered(modes.system, scatter, seed), modes.start, hall_K};
 }
-
-}  // namespace
 
 std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record) {
   if (!study.candidates.empty()) return study.candidates;

@@ -17,6 +17,10 @@ namespace driftwright::app {
 [[nodiscard]] StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, const std::vector<Record>& training,
                                                  const std::vector<Record>& test);
 
+/// The model as strategies get it, off by random factors (compensation::scattered()); none where it is not a linear reduced one.
+[[nodiscard]] std::optional<Physics> physics_of(const scenarios::Scenario& scenario, const Model& model, double scatter,
+                                                int seed);
+
 /// Thermometers of a record to choose from: the study's candidates, or every temperature channel but the target and `ambient`.
 /// @throws InputError  when there is none
 [[nodiscard]] std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record);

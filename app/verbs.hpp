@@ -59,6 +59,13 @@ struct RecordOptions : CommonOptions {
 void select(const RecordOptions& options);
 void validate(const RecordOptions& options);
 
+struct CompensateOptions : CommonOptions {
+  std::string model;      ///< a model.json of `validate`, or modes, observer, regression
+  std::string through;    ///< injector, schedule, frame
+  std::string cyclogram;  ///< name; empty: the one that the study judges by
+};
+void compensate(const CompensateOptions& options);
+
 struct DiagnoseOptions : CommonOptions {
   std::vector<std::string> measured;  ///< record CSVs
   std::vector<std::string> without;   ///< catalogue keys that are not looked for

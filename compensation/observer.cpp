@@ -59,6 +59,7 @@ class Observer::Run {
   Observation go() {
     Observation seen;
     const std::vector<double>& t = run_.readings.time_s;
+    seen.outputs.resize(s_.outputs.state.cols(), static_cast<Eigen::Index>(t.size()));
     for (std::size_t i = 0; i < t.size(); ++i) {
       history_.push_back({i, belief_});
       if (history_.size() > kRowsBack) history_.pop_front();
@@ -72,6 +73,7 @@ class Observer::Run {
         for (std::size_t k = history_.front().row; k <= i; ++k) take_row(k);
         history_.clear();
       }
+      seen.outputs.col(static_cast<Eigen::Index>(i)) = s_.observe(belief_.mean.head(n_), run_.hall.at(t[i]));
       seen.drift_um.push_back(1e6 * (drift_m(t[i]) - start_drift_m_));
       const Eigen::VectorXd h = drift_gradient();
       seen.deviation_um.push_back(1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h))));

@@ -33,6 +33,7 @@ struct ObservedRun {
 struct Observation {
   std::vector<double> drift_um;         ///< per row of the readings: actual - commanded since the start of the run
   std::vector<double> deviation_um;     ///< that the filter gives it, 1 sigma
+  Eigen::MatrixXd outputs;              ///< all outputs of the model in the state believed, n_outputs x n_rows, in K, m, rad
   std::vector<std::string> distrusted;  ///< sensors that were dropped, and when
 };
 

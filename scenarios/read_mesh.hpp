@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "base/config_map.hpp"
+#include "mesh/gantry_table.hpp"
 #include "mesh/imported_mesh.hpp"
 #include "mesh/knee_mill.hpp"
 
@@ -13,7 +14,7 @@ namespace driftwright::scenarios {
 struct LumpedMachine {};
 
 /// How the mesh comes about. A new generator or reader is a new alternative.
-using MeshRecipe = std::variant<mesh::KneeMill, mesh::ImportedMesh, LumpedMachine>;
+using MeshRecipe = std::variant<mesh::KneeMill, mesh::GantryTable, mesh::ImportedMesh, LumpedMachine>;
 
 /// Reads the map `machine`: with the key `mesh` a file, relative to the scenario's folder, else a generator.
 /// @throws InputError

@@ -203,6 +203,25 @@ AxisLoopSettings read_axis_loop_of(const ConfigMap& in, const ConfigMap& axis_lo
   return read_axis_loop(axis_loop, context);
 }
 
+/// Reads the table and gives the machine a displacement for each of its points.
+TableSettings add_table(const ConfigMap& in, MachineModel& machine, const std::vector<Cyclogram>& cyclograms) {
+  if (std::holds_alternative<LumpedMachine>(machine.mesh)) in.fail("region", "a table wants a mesh; this machine has none");
+  std::vector<std::string> sensors, names;
+  for (const Sensor& s : machine.sensors) sensors.push_back(s.name);
+  for (const Cyclogram& c : cyclograms) names.push_back(c.name);
+  TableSettings table = read_table(in, sensors, names);
+  const auto run = std::find(names.begin(), names.end(), table.cyclogram) - names.begin();
+  const double taught_s = cyclograms[static_cast<std::size_t>(run)].duration_s() - table.train_from_s;
+  if (!(taught_s >= 2.0 * table.every_s)) {
+    in.fail("train_from", fmt::format("{:g} h are left to learn from; three measurements, {:g} h, are wanted",
+                                      taught_s / 3600.0, table.every_s / 1800.0));
+  }
+  for (DisplacementOutput& d : table_displacements(table)) machine.displacements.push_back(std::move(d));
+  for (const Eigen::Vector3d& p : table_points(table))
+    machine.written += fmt::format("table: {} {:.17g} {:.17g} {:.17g}\n", table.region, p[0], p[1], p[2]);
+  return table;
+}
+
 }  // namespace
 
 const Cyclogram& Scenario::cyclogram(const std::string& cyclogram_name) const {
@@ -303,6 +322,10 @@ Scenario read_scenario(const ConfigMap& in) {
     scenario.schedule = read_schedule(*schedule, scenario.machine->displacements, tolerance_um);
   }
   if (const auto axis_loop = in.optional_map("axis_loop")) scenario.axis_loop = read_axis_loop_of(in, *axis_loop, scenario);
+  if (const auto table = in.optional_map("table")) {
+    if (!has_machine) in.fail("table", "a table wants a machine to simulate");
+    scenario.table = add_table(*table, *scenario.machine, scenario.cyclograms);
+  }
   if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");
   in.reject_unknown_keys();
   return scenario;

@@ -20,6 +20,7 @@
 #include "scenarios/read_outputs.hpp"
 #include "scenarios/read_schedule.hpp"
 #include "scenarios/validation.hpp"
+#include "scenarios/read_table.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
 
@@ -107,6 +108,7 @@ struct Scenario {
   std::optional<Validation> validation;
   std::optional<ScheduleSettings> schedule;
   std::optional<AxisLoopSettings> axis_loop;
+  std::optional<TableSettings> table;  ///< its points stand behind the machine's own displacements
 
   /// @throws InputError  naming the cyclograms there are
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;

@@ -1,0 +1,224 @@
+#include "app/compensate_frame.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/table_study.hpp"
+#include "app/validation_study.hpp"
+#include "base/random.hpp"
+#include "compensation/observability.hpp"
+#include "compensation/regression.hpp"
+#include "compensation/sensor_selection.hpp"
+#include "compensation/thermometers.hpp"
+#include "output/html_report.hpp"
+#include "output/json_text.hpp"
+#include "scenarios/as_recorded.hpp"
+#include "solver/reduced_transient.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using namespace compensation;
+using scenarios::Scenario;
+using Errors = std::vector<Eigen::Matrix3Xd>;
+using Json = nlohmann::ordered_json;
+
+const std::vector<std::string> kModels = {"modes", "observer", "regression"};
+constexpr Thermometers kInstrument = {.noise_K = 0.1, .resolution_K = 0.1};
+
+std::vector<std::string> thermometers_of(const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const scenarios::Sensor& s : scenario.machine->sensors) {
+    if (!scenarios::is_on_hall(s)) names.push_back(s.name);
+  }
+  return names;
+}
+
+/// Errors at the rings over the whole run, as a predictor has them.
+struct Believed {
+  std::string words;
+  Errors rings_m;
+};
+
+Physics physics_for(const Scenario& scenario, const Model& model) {
+  const std::optional<Physics> physics = physics_of(scenario, model, scenario.table->model_scatter, scenario.table->seed);
+  if (physics) return *physics;
+  throw InputError(
+      scenario.machine->where,
+      "this predictor wants a linear reduced model: `solver: {model: reduced}`, and no law that follows temperatures");
+}
+
+Errors rings_of(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt, solver::Trajectory run) {
+  SimulatedRun simulated;
+  simulated.record = scenarios::as_recorded(*scenario.machine, run, model.outputs(), felt.cyclogram);
+  simulated.trajectory = std::move(run);
+  return table_run(scenario, std::move(simulated)).rings_m;
+}
+
+Believed by_modes(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt,
+                  const std::vector<double>& times_s) {
+  const Physics p = physics_for(scenario, model);
+  return {"thermal modes of a model that is off, from the hall alone",
+          rings_of(scenario, model, felt,
+                   solver::simulate(p.system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, p.start))};
+}
+
+Believed by_observer(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt, const Record& readings) {
+  const Physics p = physics_for(scenario, model);
+  const std::vector<std::string> sensors = thermometers_of(scenario);
+  const Observer observer(p.system, p.start, p.start_hall_K, sensors, "table_1_x", {.longest_step_s = 600.0});
+  const Observation seen = observer.follow({felt.cyclogram, felt.hall, readings});
+  solver::Trajectory run;
+  run.time_s = readings.time_s;
+  run.outputs = seen.outputs;
+  return {fmt::format("the same model corrected by {}", fmt::join(sensors, ", ")),
+          rings_of(scenario, model, felt, std::move(run))};
+}
+
+/// Each coordinate of each ring as a regression on a few thermometers, fitted to rings measured in the training time.
+Believed by_regression(const Scenario& scenario, const TableRun& truth, const Record& readings) {
+  const scenarios::TableSettings& s = *scenario.table;
+  std::vector<std::string> sensors = thermometers_of(scenario);
+  const auto n_rings = truth.rings_m.front().cols();
+  Record training{
+      .source = "rings measured from " + fmt::format("{:g} h on", s.train_from_s / 3600.0), .time_s = {}, .channels = {}};
+  for (const std::string& name : sensors) training.channels.push_back({name, "degC", {}});
+  for (Eigen::Index k = 0; k < 3 * n_rings; ++k) training.channels.push_back({fmt::format("ring_{}", k), "um", {}});
+  Random random(static_cast<std::uint64_t>(s.seed), 80);
+  double next_s = s.train_from_s;
+  for (std::size_t i = 0; i < readings.n_samples(); ++i) {
+    if (readings.time_s[i] < next_s - 1e-6) continue;
+    next_s += s.every_s;
+    training.time_s.push_back(readings.time_s[i]);
+    for (std::size_t c = 0; c < sensors.size(); ++c)
+      training.channels[c].values.push_back(readings.at(sensors[c]).values[i]);
+    for (Eigen::Index k = 0; k < 3 * n_rings; ++k)
+      training.channels[sensors.size() + static_cast<std::size_t>(k)].values.push_back(
+          1e6 * (truth.rings_m[i].reshaped()(k) + s.probe_noise_m * random.normal()));
+  }
+  // as many thermometers as the few measurements carry
+  const int n_sensors = std::max(1, static_cast<int>(training.n_samples()) / 4);
+  Believed believed{"", Errors(readings.n_samples(), Eigen::Matrix3Xd::Zero(3, n_rings))};
+  std::vector<std::string> used;
+  for (Eigen::Index k = 0; k < 3 * n_rings; ++k) {
+    const std::string target = fmt::format("ring_{}", k);
+    const Selection selection = select_by_correlation(std::span(&training, 1), sensors, target, n_sensors);
+    const std::vector<double> um = fit_regression(std::span(&training, 1), selection.sensors, target).predict(readings);
+    for (std::size_t i = 0; i < um.size(); ++i) believed.rings_m[i].reshaped()(k) = 1e-6 * um[i];
+    for (const std::string& name : selection.sensors) {
+      if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
+    }
+  }
+  believed.words =
+      fmt::format("regression on {} thermometer{} a coordinate ({}), fitted to {} measurements from {:g} h on", n_sensors,
+                  n_sensors == 1 ? "" : "s", fmt::join(used, ", "), training.n_samples(), s.train_from_s / 3600.0);
+  return believed;
+}
+
+struct Row {
+  std::string name;
+  PeakErrors peak;
+  std::vector<double> course_um;
+};
+
+Row row_of(const std::string& name, const Errors& left_m) {
+  Row row{name, peaks(left_m), {}};
+  for (const Eigen::Matrix3Xd& e : left_m) row.course_um.push_back(1e6 * e.colwise().norm().maxCoeff());
+  return row;
+}
+
+}  // namespace
+
+void compensate_through_frame(const Scenario& scenario, const CompensateOptions& options) {
+  if (!scenario.table) throw InputError(scenario.machine->where, "--through frame wants the block `table` (docs/table.md)");
+  if (std::find(kModels.begin(), kModels.end(), options.model) == kModels.end()) {
+    throw InputError(
+        fmt::format("--model {}: through the frame go {}; a table has six errors and more, and a model.json one",
+                    options.model, fmt::join(kModels, ", ")));
+  }
+  const scenarios::TableSettings& s = *scenario.table;
+  const Cyclogram& cyclogram = scenario.cyclogram(s.cyclogram);
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress;
+  const Model model = open_model(scenario, {&cyclogram}, progress, false);
+  TableRun truth =
+      table_run(scenario, std::move(simulate_cyclograms(scenario, model, {&cyclogram}, progress, 0, nullptr).front()));
+  progress.begin("correcting");
+  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
+  const Record readings = as_read(truth.record, kInstrument, static_cast<std::uint64_t>(s.seed));
+  const Believed believed = options.model == "modes"      ? by_modes(scenario, model, felt, readings.time_s)
+                            : options.model == "observer" ? by_observer(scenario, model, felt, readings)
+                                                          : by_regression(scenario, truth, readings);
+
+  const auto n = static_cast<std::size_t>(
+      std::upper_bound(truth.table.time_s.begin(), truth.table.time_s.end(), s.judge_until_s + 1e-6) -
+      truth.table.time_s.begin());
+  const auto first = [&](auto rows) {
+    rows.resize(std::min(rows.size(), n));
+    return rows;
+  };
+  const TableErrors table{first(truth.table.time_s), truth.table.points_m, first(truth.table.error_m)};
+  const Errors rings_m = first(truth.rings_m), predicted_m = first(believed.rings_m);
+  std::vector<Eigen::Vector3d> places;
+  for (const scenarios::TableRing& ring : s.rings) places.push_back(ring.at_m);
+  const RingPlan plan{.every_s = s.every_s, .noise_m = s.probe_noise_m, .seed = static_cast<std::uint64_t>(s.seed)};
+  const std::vector<Row> rows = {
+      row_of("none", table.error_m),
+      row_of(fmt::format("rings every {:g} min", s.every_s / 60.0),
+             through_frame(table, places, held_rings(table.time_s, rings_m, plan)).left_m),
+      row_of(options.model, through_frame(table, places, predicted_m).left_m),
+      row_of(fmt::format("rings, {} between", options.model),
+             through_frame(table, places, carried_rings(table.time_s, rings_m, predicted_m, plan)).left_m)};
+
+  Json summary = {{"program", "driftwright"}, {"version", folder.made_by().version}, {"scenario", folder.made_by().scenario},
+                  {"model", options.model},   {"predictor", believed.words},         {"through", "frame"}};
+  output::Table shown{
+      .caption = fmt::format("Largest errors anywhere on the table in {:g} h [um].", s.judge_until_s / 3600.0),
+      .headers = {"correction", "X [um]", "Y [um]", "Z [um]", "position [um]", "removed [%]"},
+      .rows = {}};
+  std::vector<double> t_h;
+  for (double t_s : table.time_s) t_h.push_back(t_s / 3600.0);
+  output::Plot plot{
+      .title = "Largest position error on the table", .x_label = "time [h]", .y_label = "error [um]", .series = {}};
+  std::string csv = "time_s", text;
+  for (const Row& row : rows) {
+    const double removed = 100.0 * (1.0 - row.peak.position_m / rows.front().peak.position_m);
+    summary["corrections"].push_back({{"name", row.name},
+                                      {"x_um", 1e6 * row.peak.x_m},
+                                      {"y_um", 1e6 * row.peak.y_m},
+                                      {"z_um", 1e6 * row.peak.z_m},
+                                      {"position_um", 1e6 * row.peak.position_m},
+                                      {"removed_percent", removed}});
+    shown.rows.push_back({row.name, fmt::format("{:.1f}", 1e6 * row.peak.x_m), fmt::format("{:.1f}", 1e6 * row.peak.y_m),
+                          fmt::format("{:.1f}", 1e6 * row.peak.z_m), fmt::format("{:.1f}", 1e6 * row.peak.position_m),
+                          fmt::format("{:.0f}", removed)});
+    plot.series.push_back({.label = row.name, .x = t_h, .y = row.course_um});
+    text +=
+        fmt::format("  {:<28} X {:5.1f} um, Y {:5.1f} um, Z {:5.1f} um, position {:5.1f} um, {:3.0f} % removed\n", row.name,
+                    1e6 * row.peak.x_m, 1e6 * row.peak.y_m, 1e6 * row.peak.z_m, 1e6 * row.peak.position_m, removed);
+    csv += fmt::format(",\"{}_um\"", row.name);
+  }
+  csv += "\n";
+  for (std::size_t i = 0; i < table.time_s.size(); ++i) {
+    csv += fmt::format("{:.7g}", table.time_s[i]);
+    for (const Row& row : rows) csv += fmt::format(",{:.7g}", row.course_um[i]);
+    csv += "\n";
+  }
+  output::Report page{
+      .title = fmt::format("{}: the table's frame driven by {}", scenario.name, options.model),
+      .subtitle = fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario),
+      .blocks = {output::Paragraph{believed.words + fmt::format(". Thermometers with {:g} K of noise in steps of {:g} K.",
+                                                                kInstrument.noise_K, kInstrument.resolution_K)},
+                 shown, plot}};
+  folder.write_text("corrected.csv", csv);
+  folder.write_text("summary.json", output::json_text(summary));
+  folder.write_text("report.html", output::render_html(page));
+  folder.commit();
+  progress.end();
+  fmt::print("{}\n{}report in {}\n", believed.words, text, shown_path(folder.target() / "report.html"));
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/table_report.hpp"
+#include "base/quantity.hpp"
+#include "compensation/frame_programs.hpp"
+#include "output/json_text.hpp"
+#include "scenarios/ways_out.hpp"
+
+namespace driftwright::app {
+
+namespace {
+
+compensation::FrameProgram frame_program(const scenarios::TableSettings& s, const TableStudy& study,
+                                         const output::Provenance& made_by) {
+  compensation::FrameProgram program{.frame = study.frame, .control = study.control};
+  program.rings = {{s.rings.front().name, s.rings.front().at_m}, {s.rings.back().name, s.rings.back().at_m}};
+  program.temperature_K = study.run.record.at(s.thermometer).values[study.n_judged - 1] + kZeroCelsius_K;
+  program.free_diameter_m = s.probe.free_diameter_m;
+  program.feed_mm_min = 6e4 * s.probe.feeds_m_s.front();
+  program.velocity_m_s = s.velocity_m_s;
+  program.slew = s.slew;
+  program.low_m = s.low_m[0];
+  program.high_m = s.high_m[0];
+  program.made_by = fmt::format("Driftwright {}, scenario {}", made_by.version, made_by.scenario);
+  return program;
+}
+
+}  // namespace
+
+void run_table(const CommonOptions& options, const scenarios::Scenario& scenario) {
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress;
+  const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
+  const Model machine = open_model(scenario, {}, progress, wants_fields);
+  if (const scenarios::Machine* full = machine.full())
+    scenarios::require_ways_out(full->placed.mesh, full->placed.balance, scenario.machine->where);
+  std::optional<output::FieldSeries> fields;
+  if (wants_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
+  const TableStudy study = study_table(scenario, machine, progress, fields ? &*fields : nullptr);
+  if (fields) fields->finish();
+  progress.begin("writing results");
+  const auto comments = [&](const std::string& what) { return provenance_lines(folder.made_by(), what); };
+  folder.write_text("record.csv", record_csv(study.run.record, comments("cyclogram " + scenario.table->cyclogram)));
+  folder.write_text("strategies.csv", strategies_csv(study, comments("largest position error anywhere on the table")));
+  folder.write_text("probe.csv", probe_csv(study, comments("largest error of touches")));
+  for (const compensation::ProgramFile& file :
+       compensation::frame_programs(frame_program(*scenario.table, study, folder.made_by())))
+    folder.write_text("control/" + file.name, file.text);
+  folder.write_text("summary.json", output::json_text(table_json(scenario, study, folder.made_by())));
+  folder.write_text("report.html", output::render_html(table_report(scenario, study, folder.made_by())));
+  folder.commit();
+  progress.end();
+  fmt::print("{}  {}{}\n  results in {}: report.html, {}record.csv, summary.json, control/\n{}",
+             table_terminal(scenario, study), machine.words(), machine.was_known ? " (known from disk)" : "",
+             shown_path(folder.target()), fields ? fields->file_to_open() + " (ParaView), " : "",
+             fields ? fields_note(*fields) : "");
+}
+
+}  // namespace driftwright::app

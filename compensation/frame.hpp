@@ -1,0 +1,46 @@
+#pragma once
+// The frames of a control as it chains them: translation, rotation, scale and mirror, composed and inverted.
+
+#include <Eigen/Core>
+#include <array>
+
+namespace driftwright::compensation {
+
+/// What a frame is written as on the control: CTRANS : CROT : CSCALE : CMIRROR.
+struct FrameParts {
+  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rotation_rad = Eigen::Vector3d::Zero();  ///< about X, then Y, then Z, all fixed
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  std::array<bool, 3> mirror = {false, false, false};
+};
+
+/// An affine map p -> linear p + shift from the coordinates of a program to those nearer the machine.
+struct Frame {
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+
+  [[nodiscard]] Eigen::Vector3d map(const Eigen::Vector3d& point_m) const { return linear * point_m + shift_m; }
+};
+
+/// linear = Rz Ry Rx diag(scale) diag(mirror ? -1 : 1), shift as it stands.
+/// @throws RangeError  for a scale that is not above 0, and for values that are not finite
+[[nodiscard]] Frame frame_of(const FrameParts& parts);
+
+/// The control's `outer : inner` (the source paper writes +): p -> outer(inner(p)). Associative, not commutative.
+[[nodiscard]] Frame compose(const Frame& outer, const Frame& inner);
+
+/// inverse(f) after f and f after inverse(f) leave every point where it is.
+/// @throws RangeError  for a frame that flattens space
+[[nodiscard]] Frame inverse(const Frame& frame);
+
+/// The control's frames: BKS <-$P_BFRAME- BNS <-$P_IFRAME- ENS <-$P_PFRAME- WKS.
+struct FrameChain {
+  Frame base;          ///< $P_BFRAME, where the thermal correction goes: every work offset follows
+  Frame settable;      ///< $P_IFRAME: G54 ...
+  Frame programmable;  ///< $P_PFRAME: TRANS, ROT, SCALE of the program
+};
+
+/// $P_ACTFRAME = $P_BFRAME : $P_IFRAME : $P_PFRAME, from workpiece to machine coordinates.
+[[nodiscard]] Frame active_frame(const FrameChain& chain);
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,203 @@
+// The probing program on a whole LinuxCNC, headless: its joints are simulated, its probe meets two rings that have moved, and the
+// offsets that it then has are ours. Skipped where LinuxCNC is not installed. One HAL a machine: registered with a lock.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "compensation/frame_programs.hpp"
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+constexpr double kRadius_mm = 3.0, kFeed_mm_min = 120.0;  // 2 um a servo cycle
+
+std::string axis_or_joint(const std::string& head, int travel_mm) {
+  return "[" + head + "]\nMIN_LIMIT = -" + std::to_string(travel_mm) + "\nMAX_LIMIT = " + std::to_string(travel_mm) +
+         "\nMAX_VELOCITY = 4000\nMAX_ACCELERATION = 20000\n";
+}
+
+std::string ini() {
+  std::string text = R"([EMC]
+MACHINE = table
+VERSION = 1.1
+[DISPLAY]
+DISPLAY = ./script.py
+[RS274NGC]
+PARAMETER_FILE = sim.var
+[EMCMOT]
+EMCMOT = motmod
+COMM_TIMEOUT = 1.0
+SERVO_PERIOD = 1000000
+[TASK]
+TASK = milltask
+CYCLE_TIME = 0.005
+[EMCIO]
+EMCIO = io
+CYCLE_TIME = 0.1
+TOOL_TABLE = tool.tbl
+[HAL]
+HALFILE = sim.hal
+[TRAJ]
+COORDINATES = X Y Z
+LINEAR_UNITS = mm
+ANGULAR_UNITS = degree
+MAX_LINEAR_VELOCITY = 4000
+DEFAULT_LINEAR_VELOCITY = 4000
+MAX_LINEAR_ACCELERATION = 20000
+[KINS]
+KINEMATICS = trivkins coordinates=XYZ
+JOINTS = 3
+)";
+  for (const char* letter : {"X", "Y", "Z"}) text += axis_or_joint(std::string("AXIS_") + letter, 5000);
+  for (int j = 0; j < 3; ++j) {
+    text += axis_or_joint("JOINT_" + std::to_string(j), 5000) +
+            "TYPE = LINEAR\nFERROR = 1000\nMIN_FERROR = 1000\nHOME_SEQUENCE = 0\n";
+    if (j == 0) text += "COMP_FILE = linuxcnc/joint_0.comp\nCOMP_FILE_TYPE = 1\n";
+  }
+  return text;
+}
+
+/// The probe is closed inside the table: below its face and outside the nearer ring's bore.
+std::string hal(const Eigen::Vector3d& low_mm, const Eigen::Vector3d& high_mm) {
+  std::string text = R"(loadrt trivkins coordinates=XYZ
+loadrt motmod servo_period_nsec=1000000 num_joints=3
+loadrt comp count=3
+loadrt mux2 count=3
+loadrt sum2 count=2
+loadrt hypot
+loadrt and2
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+)";
+  for (const char* f : {"comp.0", "mux2.0", "mux2.1", "mux2.2", "sum2.0", "sum2.1", "hypot.0", "comp.1", "comp.2", "and2.0"})
+    text += std::string("addf ") + f + " servo-thread\n";
+  for (int j = 0; j < 3; ++j) {
+    const std::string n = std::to_string(j);
+    text += "net m" + n + " joint." + n + ".motor-pos-cmd => joint." + n + ".motor-pos-fb\n";
+    std::ostringstream places;
+    places.precision(12);
+    places << "setp mux2." << n << ".in0 " << low_mm[j] << "\nsetp mux2." << n << ".in1 " << high_mm[j] << "\n";
+    text += places.str();
+  }
+  return text + R"(net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
+net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
+net change iocontrol.0.tool-change => iocontrol.0.tool-changed
+net x joint.0.pos-cmd => comp.0.in1 sum2.0.in0
+net y joint.1.pos-cmd => sum2.1.in0
+net z joint.2.pos-cmd => comp.2.in0
+setp comp.0.in0 0
+net high comp.0.out => mux2.0.sel mux2.1.sel mux2.2.sel
+net cx mux2.0.out => sum2.0.in1
+net cy mux2.1.out => sum2.1.in1
+net cz mux2.2.out => comp.2.in1
+setp sum2.0.gain1 -1
+setp sum2.1.gain1 -1
+net dx sum2.0.out => hypot.0.in0
+net dy sum2.1.out => hypot.0.in1
+net r hypot.0.out => comp.1.in1
+setp comp.1.in0 3.0
+net outside comp.1.out => and2.0.in0
+net below comp.2.out => and2.0.in1
+net probe and2.0.out => motion.probe-input
+)";
+}
+
+constexpr const char* kScript = R"(#!/usr/bin/python3
+import linuxcnc, subprocess, time
+c, s, e = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
+out = open("result.txt", "w")
+def say(*a):
+    print(*a, file=out, flush=True)
+def until(done, seconds):
+    end = time.time() + seconds
+    while time.time() < end:
+        s.poll()
+        m = e.poll()
+        if m: say("error", m[1])
+        if done(): return
+        time.sleep(0.02)
+    say("error timeout")
+def mdi(line):
+    c.mdi(line)
+    c.wait_complete(30)
+c.state(linuxcnc.STATE_ESTOP_RESET); c.wait_complete(10)
+c.state(linuxcnc.STATE_ON); c.wait_complete(10)
+c.teleop_enable(0); c.wait_complete(10)
+c.home(-1)
+until(lambda: all(s.homed[:3]), 20)
+c.mode(linuxcnc.MODE_AUTO); c.wait_complete(10)
+c.program_open("linuxcnc/thermframe.ngc")
+c.auto(linuxcnc.AUTO_RUN, 0)
+time.sleep(0.5)
+until(lambda: s.interp_state == linuxcnc.INTERP_IDLE, 120)
+c.mode(linuxcnc.MODE_MDI); c.wait_complete(10)
+mdi("G54")
+s.poll()
+say("x", s.g5x_offset[0]); say("y", s.g5x_offset[1]); say("z", s.g5x_offset[2]); say("turn", s.rotation_xy)
+mdi("G53 G0 Z50")
+for x in (-4800, 4800):
+    mdi("G53 G0 X%d" % x)
+    time.sleep(0.1)
+    say("motor%d" % x, subprocess.run(["halcmd", "getp", "joint.0.motor-pos-cmd"], capture_output=True, text=True).stdout.strip())
+say("done 1")
+)";
+
+TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbing) {
+  if (std::system("command -v linuxcnc >/dev/null 2>&1 && /usr/bin/python3 -c 'import linuxcnc' >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "LinuxCNC is not installed (linuxcnc-uspace)";
+  const Eigen::Vector3d low_m(-4.8, 0.1, 0.0), high_m(4.8, 0.1, 0.0);
+  const Eigen::Vector3d low_now_m = low_m + Eigen::Vector3d(-50e-6, 20e-6, 5e-6),
+                        high_now_m = high_m + Eigen::Vector3d(70e-6, 40e-6, 15e-6);
+  const std::vector<RingPair> rings = {{"low", low_m, low_now_m}, {"high", high_m, high_now_m}};
+  FrameProgram program;
+  program.rings = {{"low", low_m}, {"high", high_m}};
+  program.frame = fit_table_frame(rings);
+  program.free_diameter_m = 2e-3 * kRadius_mm;
+  program.feed_mm_min = kFeed_mm_min;
+
+  const std::filesystem::path folder = fresh_folder("linuxcnc");
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::filesystem::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name) << text;
+  };
+  for (const ProgramFile& f : frame_programs(program)) write(f.name, f.text);
+  write("sim.ini", ini());
+  write("sim.hal", hal(1e3 * low_now_m, 1e3 * high_now_m));
+  write("script.py", kScript);
+  write("tool.tbl", "T1 P1 Z0 D1\n");
+  write("sim.var", "150 0\n151 0\n5220 1\n");
+  write("fifo/empty", "");
+  using std::filesystem::perms;
+  std::filesystem::permissions(folder / "script.py", perms::all);
+  std::filesystem::permissions(folder / "fifo", perms::all);  // the realtime process gives root up and makes its pipe there
+  const std::string command = "cd " + folder.string() +
+                              " && RTAPI_UID=65534 RTAPI_FIFO_PATH=" + (folder / "fifo" / "f").string() +
+                              " timeout 150 linuxcnc -r sim.ini > log.txt 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << read_text(folder / "log.txt");
+
+  const std::string said = read_text(folder / "result.txt");
+  EXPECT_THAT(said, ::testing::Not(::testing::HasSubstr("error")));
+  std::map<std::string, double> found;
+  std::istringstream rows(said);
+  for (std::string name; rows >> name;) {
+    if (!(rows >> found[name])) break;
+  }
+  ASSERT_TRUE(found.contains("done")) << said << read_text(folder / "log.txt");
+  // Each touch stops on a servo cycle: 2 um, half of it in the middle of two touches along X and Y, up to two cycles in the one along Z.
+  EXPECT_NEAR(found["x"], 1e3 * program.frame.x.shift_m, 0.002);
+  EXPECT_NEAR(found["y"], 1e3 * program.frame.shift_y_m, 0.002);
+  EXPECT_NEAR(found["z"], 1e3 * program.frame.shift_z_m, 0.005);
+  EXPECT_NEAR(found["turn"], program.frame.turn_rad * 180.0 / M_PI, 2e-6 / 9.6 * 180.0 / M_PI);
+  // the scale, by the joint's trims: halcmd prints 7 digits, 1 um
+  for (double x_mm : {-4800.0, 4800.0}) {
+    EXPECT_NEAR(found[x_mm < 0 ? "motor-4800" : "motor4800"], program.frame.x.scale * x_mm, 0.001);
+  }
+}
+
+}  // namespace
+}  // namespace driftwright::compensation
