@@ -43,6 +43,8 @@ Case judge(const FittedStrategy& strategy, std::size_t index, const ObservedRun&
   c.before = score(drift_um);
   c.after = score(left);
   for (double off : unguarded) c.peak_unguarded_um = std::max(c.peak_unguarded_um, std::abs(off));
+  std::erase_if(unguarded, [](double off) { return std::isinf(off); });
+  c.rms_unguarded_um = score(unguarded).rmse;
   c.first_hour_um = range_until(run.readings.time_s, left, kHour_s);
   c.whole_um = range_until(run.readings.time_s, left, std::numeric_limits<double>::infinity());
   c.covered = strategy.interval_um && n > 0 ? static_cast<double>(n_inside) / n : std::numeric_limits<double>::quiet_NaN();
@@ -89,8 +91,11 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const auto harms = [&](const Case& c) { return c.after.peak_abs > std::max(tolerance, c.before.peak_abs); };
   if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
     s.safety = Safety::kSafe;
-    s.why = fmt::format("never more than {:.1f} um left of the drift; the most {}", all.peak->after.peak_abs,
-                        where_of(m, *all.peak));
+    s.why = fmt::format(
+        "never more than {:.1f} um left of the drift; the most {}{}", all.peak->after.peak_abs, where_of(m, *all.peak),
+        m.settings.fails_at
+            ? ""
+            : fmt::format("; {} run{} and no failing sensor were tried", m.runs.size(), m.runs.size() == 1 ? "" : "s"));
     return;
   }
   const auto harm = std::max_element(s.cases.begin(), s.cases.end(), [&](const Case& a, const Case& b) {

@@ -28,6 +28,7 @@ struct Case {
   std::string failed;                 ///< "t05 stuck"; empty: none
   compensation::Score before, after;  ///< of the drift; of what the correction in force leaves
   double peak_unguarded_um = 0.0;     ///< of what the bare prediction leaves; infinite where it is missing
+  double rms_unguarded_um = 0.0;      ///< the same, of the rows that it predicts
   double first_hour_um = 0.0,
          whole_um = 0.0;            ///< ranges of what is left within 60 min and in all, as ISO 230-3 asks of drift
   double covered = 0.0;             ///< share of rows whose drift is inside the prediction interval; NaN without one

@@ -259,14 +259,15 @@ std::string strategy_csv(const StrategyMatrix& m) {
   std::string csv =
       "strategy,family,season,run,failed_sensor,peak_before_um,rms_before_um,peak_left_um,rms_left_um,mean_left_um,removed_"
       "percent,range_60min_um,range_um,"
-      "peak_without_fail_safe_um,covered_percent,rows\n";
+      "peak_without_fail_safe_um,rms_without_fail_safe_um,covered_percent,rows\n";
   for (const JudgedStrategy& s : m.strategies) {
     for (const Case& c : s.cases) {
       const JudgedRunOfMachine& r = m.runs[c.run];
-      csv += fmt::format("\"{}\",{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.4f},{:.4f},{},{},{}\n",
+      csv += fmt::format("\"{}\",{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.4f},{:.4f},{},{},{},{}\n",
                          s.fitted.name, r.family, r.season, r.name, c.failed, c.before.peak_abs, c.before.rmse,
                          c.after.peak_abs, c.after.rmse, c.after.mean, 100.0 * (1.0 - c.left()), c.first_hour_um, c.whole_um,
                          std::isfinite(c.peak_unguarded_um) ? fmt::format("{:.4f}", c.peak_unguarded_um) : "",
+                         std::isfinite(c.rms_unguarded_um) ? fmt::format("{:.6f}", c.rms_unguarded_um) : "",
                          std::isfinite(c.covered) ? fmt::format("{:.2f}", 100.0 * c.covered) : "", c.after.n);
     }
   }

@@ -3,12 +3,33 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/command_line.hpp"
 
 namespace driftwright {
 namespace {
+
+/// A number of strategies.csv: the row of that strategy, the column of that name.
+double cell(const std::string& csv, const std::string& strategy, const std::string& column) {
+  std::istringstream lines(csv);
+  std::string header, line;
+  std::getline(lines, header);
+  const auto n = std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(header.find(column)), ',');
+  while (std::getline(lines, line)) {
+    const std::string quoted = "\"" + strategy + "\"";
+    if (line.rfind(quoted, 0) != 0) continue;
+    std::istringstream cells(line.substr(quoted.size()));
+    std::string text;
+    for (std::ptrdiff_t i = 0; i <= n; ++i) std::getline(cells, text, ',');
+    return std::stod(text);
+  }
+  return std::nan("");
+}
 
 TEST(Spindle22, RankingAndRegressionAgreeWithAnIndependentCalculation) {
   const std::filesystem::path data = "../shared/data/spindle_22";
@@ -23,15 +44,22 @@ TEST(Spindle22, RankingAndRegressionAgreeWithAnIndependentCalculation) {
 
   // Reference: grey relational grades (range image), regression by normal equations in exact rational arithmetic and both
   // baselines, written independently in Python. Six digits, as the summary has.
-  const auto& coefficients = summary["regression"]["coefficients"];
-  EXPECT_NEAR(summary["regression"]["intercept"].get<double>(), 0.767083, 2e-6);
-  EXPECT_NEAR(coefficients["rise_00"].get<double>(), 7.910716, 1e-5);
-  EXPECT_NEAR(coefficients["rise_13"].get<double>(), -0.438819, 1e-6);
-  EXPECT_NEAR(coefficients["rise_12"].get<double>(), -0.251247, 1e-6);
-  EXPECT_NEAR(coefficients["rise_14"].get<double>(), -6.019788, 1e-5);
-  EXPECT_NEAR(summary["judged"][0]["rmse"].get<double>(), 2.260104, 1e-5);
-  EXPECT_NEAR(summary["judged"][1]["rmse"].get<double>(), 3.316652, 1e-5);
-  EXPECT_NEAR(summary["judged"][2]["rmse"].get<double>(), 1.233022, 1e-5);
+  const auto model = nlohmann::json::parse(read_text(folder / "models" / "regression_grey_grade.json"));
+  std::map<std::string, double> coefficients;
+  for (const auto& term : model["terms"]) coefficients[term["input"]] = term["coefficient"];
+  EXPECT_NEAR(model["intercept"].get<double>(), 0.767083, 2e-6);
+  EXPECT_NEAR(coefficients["rise_00"], 7.910716, 1e-5);
+  EXPECT_NEAR(coefficients["rise_13"], -0.438819, 1e-6);
+  EXPECT_NEAR(coefficients["rise_12"], -0.251247, 1e-6);
+  EXPECT_NEAR(coefficients["rise_14"], -6.019788, 1e-5);
+  const std::string csv = read_text(folder / "strategies.csv");
+  EXPECT_NEAR(cell(csv, "regression, grey grade", "rms_without_fail_safe_um"), 2.260104, 1e-5);
+  EXPECT_NEAR(cell(csv, "mean of the training runs", "rms_without_fail_safe_um"), 3.316652, 1e-5);
+  EXPECT_NEAR(cell(csv, "training runs at the same time", "rms_without_fail_safe_um"), 1.233022, 1e-5);
+  // It keeps 10 um, but a baseline does better: that has to be said.
+  for (const auto& strategy : summary["validation"]["strategies"]) {
+    if (strategy["name"] == "regression, grey grade") EXPECT_EQ(strategy["beaten_by"], "training runs at the same time");
+  }
 
   ASSERT_EQ(run_program("select scenarios/spindle_22.yaml" + train + " -o " + folder.string()).exit_code, 0);
   const auto ranking = nlohmann::json::parse(read_text(folder / "summary.json"));
@@ -43,11 +71,12 @@ TEST(Spindle22, RankingAndRegressionAgreeWithAnIndependentCalculation) {
 TEST(MeasuredScenarios, AreReadByTheProgramWithoutTheirRecords) {
   int n = 0;
   for (const auto& file : std::filesystem::directory_iterator("scenarios/measured")) {
+    if (file.path().extension() != ".yaml") continue;
     const CommandOutcome outcome = run_program("check " + file.path().string());
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
     ++n;
   }
-  EXPECT_EQ(n, 8);
+  EXPECT_EQ(n, 9);
 }
 
 }  // namespace
