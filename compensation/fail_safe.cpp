@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/errors.hpp"
 #include "compensation/drift_model.hpp"
 #include "compensation/regression.hpp"
 
@@ -20,6 +21,8 @@ constexpr double kSlewRoom = 2.0;   // times the largest rate of the prediction,
 constexpr double kApartRoom = 2.0;  // times the largest distance on a run left out
 constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 1.5;  // below, instruments are what is seen
 constexpr std::size_t kSlewRows = 10;
+constexpr double kSoonEnough = 1e-6;  // of a period: times that are sums of steps round
+constexpr double kUntold = 1e-6;      // pivot below which only others in doubt tell of an input
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
@@ -53,6 +56,7 @@ double most_apart(std::span<const Record> training, const std::string& input, co
 /// What one guard remembers from row to row.
 struct Watch {
   double start = kMissing;  // first reading, where readings count from it
+  double base = 0.0;        // what they are written with: the first reading of the first row
   double last = kMissing, last_s = 0.0;
   double doubted_until_s = -std::numeric_limits<double>::infinity();
   bool was_doubted = false;
@@ -64,6 +68,43 @@ double expected_by_others(const FailSafe::Guard& guard, const std::vector<double
     if (guard.others_coefficient[k] != 0.0) expected += guard.others_coefficient[k] * x[k];
   }
   return expected;
+}
+
+/// Replaces those that are out by what the other inputs lead to, all at once: x_k - sum_l b_kl x_l = b_k + sum_j b_kj x_j with k and l out
+/// and j not. One that only others that are out tell of is untold and stays as it is.
+void replace(const FailSafe& safe, const std::vector<char>& is_out, std::vector<double>& x, std::vector<char>& is_untold) {
+  const std::size_t n = x.size();
+  std::vector<std::vector<double>> a(n, std::vector<double>(n + 1, 0.0));
+  for (std::size_t k = 0; k < n; ++k) {
+    is_untold[k] = 0;
+    if (!is_out[k]) continue;
+    a[k][k] = 1.0;
+    a[k][n] = safe.guards[k].others_intercept;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double b = safe.guards[k].others_coefficient[j];
+      if (is_out[j]) {
+        a[k][j] -= b;
+      } else if (b != 0.0) {
+        a[k][n] += b * x[j];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!is_out[k]) continue;
+    if (!(a[k][k] > kUntold)) {
+      is_untold[k] = 1;
+      for (std::size_t j = 0; j < n; ++j) a[k][j] = j == k ? 1.0 : 0.0;
+      a[k][n] = x[k];
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!is_out[i] || i == k) continue;
+      const double share = a[i][k] / a[k][k];
+      for (std::size_t j = k; j <= n; ++j) a[i][j] -= share * a[k][j];
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    if (is_out[k]) x[k] = a[k][n] / a[k][k];
+  }
 }
 
 }  // namespace
@@ -89,6 +130,8 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
       if (std::isfinite(over)) rate = std::max(rate, std::abs(over));
     }
   }
+  if (steps_s.empty())
+    throw InputError("training records of one row tell nothing about steps; two rows at least are needed");
   std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2), steps_s.end());
   safe.period_s = steps_s[steps_s.size() / 2];
   safe.stale_s = 5.0 * safe.period_s;
@@ -151,7 +194,8 @@ Repaired repaired(const FailSafe& safe, Record readings) {
   }
   std::vector<Watch> watches(n, Watch{.last_s = time_s.front()});
   const int most_doubted = most_replaced(n);
-  std::vector<double> x(n);
+  std::vector<double> x(n), before(n, 0.0);
+  std::vector<char> is_out(n), is_untold(n, 0);
   std::vector<std::string> why(n);
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     const double t_s = time_s[i];
@@ -159,18 +203,19 @@ Repaired repaired(const FailSafe& safe, Record readings) {
       if (why[k].empty()) why[k] = std::move(reason);
       watches[k].doubted_until_s = t_s + kBackAfter * safe.fade_s;
     };
-    const auto is_doubted = [&](std::size_t k) { return t_s < watches[k].doubted_until_s; };
+    const auto is_doubted = [&](std::size_t k) { return t_s < watches[k].doubted_until_s - kSoonEnough * safe.period_s; };
     for (std::size_t k = 0; k < n; ++k) {
       const FailSafe::Guard& g = safe.guards[k];
       Watch& w = watches[k];
       why[k].clear();
       double read = (*channel[k])[i];
       if (safe.from_start && !is_drive(g.unit)) {
-        if (std::isnan(w.start)) w.start = read;
+        if (std::isnan(w.start) && i == 0) w.base = std::isnan(read) ? 0.0 : read;
+        if (std::isnan(w.start)) w.start = read - before[k];  // one that comes late goes on from what stood for it
         read -= w.start;
       }
       if (std::isnan(read)) {
-        if (std::isnan(w.last) || t_s - w.last_s > safe.stale_s) doubt(k, "gives no reading");
+        if (std::isnan(w.last) || t_s - w.last_s > safe.stale_s + kSoonEnough * safe.period_s) doubt(k, "gives no reading");
       } else {
         const double steps = std::max(1.0, (t_s - w.last_s) / safe.period_s);
         if (std::isfinite(w.last) && std::abs(read - w.last) > steps * g.most_jump)
@@ -181,12 +226,10 @@ Repaired repaired(const FailSafe& safe, Record readings) {
       x[k] = std::isnan(w.last) ? 0.0 : w.last;
     }
     for (std::size_t pass = 0; pass <= n; ++pass) {
-      for (std::size_t k = 0; k < n; ++k) {
-        const FailSafe::Guard& g = safe.guards[k];
-        if (!is_doubted(k) || g.others_coefficient.empty()) continue;
-        x[k] = expected_by_others(g, x);
-        const bool is_back = std::abs(watches[k].last - x[k]) <= kBackWithin * g.most_apart;
-        if (pass == 0 && !is_back) doubt(k, {});
+      for (std::size_t k = 0; k < n; ++k) is_out[k] = is_doubted(k) && !safe.guards[k].others_coefficient.empty();
+      if (std::any_of(is_out.begin(), is_out.end(), [](char out) { return out; })) replace(safe, is_out, x, is_untold);
+      for (std::size_t k = 0; pass == 0 && k < n; ++k) {
+        if (is_out[k] && !(std::abs(watches[k].last - x[k]) <= kBackWithin * safe.guards[k].most_apart)) doubt(k, {});
       }
       std::size_t worst = n;
       double most = 1.0;
@@ -208,13 +251,16 @@ Repaired repaired(const FailSafe& safe, Record readings) {
     for (std::size_t k = 0; k < n; ++k) {
       const FailSafe::Guard& g = safe.guards[k];
       Watch& w = watches[k];
-      if (is_doubted(k) && (++n_doubted > most_doubted || g.others_coefficient.empty())) deserved = 0.0;
+      const bool is_rise = safe.from_start && !is_drive(g.unit);
+      if (is_rise && i == 0) x[k] = 0.0;
+      if (is_doubted(k) && (++n_doubted > most_doubted || g.others_coefficient.empty() || is_untold[k])) deserved = 0.0;
       const double outside = std::max({0.0, g.low - x[k], x[k] - g.high});
       if (outside > 0.0) deserved = std::min(deserved, std::max(0.0, 1.0 - outside / (g.high - g.low)));
       if (is_doubted(k) && !w.was_doubted)
         result.events.push_back(fmt::format("from {:.0f} min: {} {}", t_s / 60.0, g.input, why[k]));
       w.was_doubted = is_doubted(k);
-      (*channel[k])[i] = std::clamp(x[k], g.low, g.high) + (safe.from_start && !is_drive(g.unit) ? w.start : 0.0);
+      (*channel[k])[i] = std::clamp(x[k], g.low, g.high) + (is_rise ? w.base : 0.0);
+      before[k] = x[k];
     }
     result.deserved.push_back(deserved);
   }

@@ -40,7 +40,7 @@ struct FailSafe {
 /// @param inputs      channels of the model; drives (rpm) have a range alone
 /// @param predicted   by the model on each training record, per row
 /// @param from_start  temperatures count from the first row of each record
-/// @throws InputError  as complete_rows()
+/// @throws InputError  as complete_rows() and fit_regression(), and for training records of one row
 [[nodiscard]] FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std::string>& inputs,
                                        const std::vector<std::vector<double>>& predicted, bool from_start);
 
@@ -49,7 +49,8 @@ struct FailSafe {
 /// A reading is doubted that is missing for too long, that jumps, or that is too far from what the others say; of several that
 /// disagree, the one furthest beyond its bound is doubted first, and the rest is looked at anew with its replacement. It stays doubted
 /// until nothing has been wrong, and its reading near what the others say, for kBackAfter fade times. Up to a third of the inputs (one at least) are
-/// replaced and cost no trust; more, or one that nothing can replace, cost all of it.
+/// replaced, all at once by what those beyond doubt lead to, and cost no trust; more, or one that nothing can replace, cost all of it. An
+/// input that counts from its first reading and has none in the first row goes on from its replacement where it begins, and is written as a rise.
 struct Repaired {
   Record readings;                  ///< channels of the guards repaired, others as they were
   std::vector<double> deserved;     ///< trust that the readings of each row deserve, 0 to 1

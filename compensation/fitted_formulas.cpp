@@ -56,7 +56,9 @@ double held_out(const ProductSums& sums, std::span<const int> columns,
   const Eigen::MatrixXd total = sums.total();
   double squares = 0.0;
   for (const Eigen::MatrixXd& record : sums.by_record) {
-    if (record(0, 0) > 0.0) squares += residual_squares(record, columns, fit(total - record));
+    if (record(0, 0) == 0.0) continue;
+    require_enough_rows(total(0, 0) - record(0, 0), columns.size(), sums.target);
+    squares += residual_squares(record, columns, fit(total - record));
   }
   return std::sqrt(squares / total(0, 0)) * sums.deviation(sums.n_inputs());
 }
@@ -65,7 +67,7 @@ void require_two(const ProductSums& sums) {
   (void)held_out_rmse(sums, {});
 }
 
-/// Products about the means of the rows behind the sums.
+/// Products about the means of the rows behind the sums; 0 for what does not move in them.
 struct Centred {
   Eigen::MatrixXd xx;
   Eigen::VectorXd xy, mean_x;
@@ -76,7 +78,14 @@ Centred centred(const Eigen::MatrixXd& sums) {
   const double n = sums(0, 0);
   const Eigen::VectorXd sx = sums.col(0).segment(1, m);
   const double sy = sums(m + 1, 0);
-  return {sums.block(1, 1, m, m) - sx * sx.transpose() / n, sums.col(m + 1).segment(1, m) - sx * sy / n, sx / n, sy / n};
+  Centred c{sums.block(1, 1, m, m) - sx * sx.transpose() / n, sums.col(m + 1).segment(1, m) - sx * sy / n, sx / n, sy / n};
+  for (Eigen::Index j = 0; j < m; ++j) {
+    if (moves(sums, static_cast<int>(j))) continue;
+    c.xx.row(j).setZero();
+    c.xx.col(j).setZero();
+    c.xy(j) = 0.0;
+  }
+  return c;
 }
 
 ScaledFit fit_of(const Centred& c, const Eigen::VectorXd& slope) {
@@ -146,6 +155,7 @@ struct LaggedChannels {
 };
 LaggedChannels lagged_channels(std::span<const Record> records, const std::vector<DriftModel::Term>& terms,
                                const std::string& target) {
+  if (records.empty()) throw InputError("no record was given; at least one is needed");
   LaggedChannels result;
   for (std::size_t i = 0; i < terms.size(); ++i) result.names.push_back(fmt::format("column_{}", i));
   for (const Record& record : records) {

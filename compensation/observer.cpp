@@ -50,10 +50,10 @@ class Observer::Run {
     for (const std::string& name : o_.sensors_) readings_.push_back(&run.readings.at(name).values);
     if (with_drift_) {
       drift_um_ = &run.readings.at(o_.drift_).values;
-      const auto first = std::find_if(drift_um_->begin(), drift_um_->end(), [](double um) { return std::isfinite(um); });
-      if (first != drift_um_->end()) first_um_ = *first;
+      while (first_drift_ < drift_um_->size() && !std::isfinite((*drift_um_)[first_drift_])) ++first_drift_;
     }
-    start_drift_m_ = drift_m(first_s);
+    start_state_ = belief_.mean.head(n_);
+    start_hall_K_ = hall_K;
   }
 
   Observation go() {
@@ -74,7 +74,7 @@ class Observer::Run {
         history_.clear();
       }
       seen.outputs.col(static_cast<Eigen::Index>(i)) = s_.observe(belief_.mean.head(n_), run_.hall.at(t[i]));
-      seen.drift_um.push_back(1e6 * (drift_m(t[i]) - start_drift_m_));
+      seen.drift_um.push_back(1e6 * drift_m(t[i]));
       const Eigen::VectorXd h = drift_gradient();
       seen.deviation_um.push_back(1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h))));
     }
@@ -108,10 +108,12 @@ class Observer::Run {
       if (std::abs(innovation) < kOutlier * spread) correct(h, innovation, variance);
     }
     if (with_drift_ && std::isfinite((*drift_um_)[i])) {
+      // counts from the start of the run; where it is missing there, from the model's at its first value
+      if (i == first_drift_) drift_zero_m_ = 1e-6 * (*drift_um_)[i] - (i > 0 ? drift_m(t[i]) : 0.0);
       const double variance = 1e-12 * variance_of(o_.settings_.drift_um, o_.settings_.model_um, i);
       Eigen::VectorXd h = drift_gradient();
       h(zero_) = 1.0;
-      correct(h, 1e-6 * ((*drift_um_)[i] - first_um_) - (drift_m(t[i]) - start_drift_m_ + belief_.mean(zero_)), variance);
+      correct(h, 1e-6 * (*drift_um_)[i] - drift_zero_m_ - drift_m(t[i]) - belief_.mean(zero_), variance);
     }
   }
 
@@ -221,14 +223,18 @@ class Observer::Run {
     belief_.covariance -= ph * ph.transpose() / total;
   }
 
+  /// Since the start of the run: a scale of the displacement leaves alone what was there before.
   [[nodiscard]] double drift_m(double time_s) const {
-    return (1.0 + belief_.mean(scale_)) * s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_)) +
-           s_.outputs.hall(o_.drift_output_) * run_.hall.at(time_s);
+    return (1.0 + belief_.mean(scale_)) * unscaled_drift_m() +
+           s_.outputs.hall(o_.drift_output_) * (run_.hall.at(time_s) - start_hall_K_);
+  }
+  [[nodiscard]] double unscaled_drift_m() const {
+    return s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_) - start_state_);
   }
   [[nodiscard]] Eigen::VectorXd drift_gradient() const {
     Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
     h.head(n_) = (1.0 + belief_.mean(scale_)) * s_.outputs.state.col(o_.drift_output_);
-    h(scale_) = s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_));
+    h(scale_) = unscaled_drift_m();
     return h;
   }
 
@@ -239,7 +245,9 @@ class Observer::Run {
   Eigen::Index n_ = 0, n_sources_ = 0, n_exchanges_ = 0;
   Eigen::Index scale_ = 0, zero_ = 0;  // of the drift: its factor, and what the indicator showed at the start of the run
   Belief belief_;
-  double start_drift_m_ = 0.0, first_um_ = 0.0;
+  Eigen::VectorXd start_state_;
+  double start_hall_K_ = 0.0, drift_zero_m_ = 0.0;
+  std::size_t first_drift_ = 0;
   std::vector<const std::vector<double>*> readings_;
   const std::vector<double>* drift_um_ = nullptr;
   std::vector<bool> live_;

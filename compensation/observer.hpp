@@ -40,7 +40,7 @@ struct Observation {
 /// Extended Kalman filter over the reduced state z and factors on everything uncertain:
 ///
 ///     dz/dt = -K(u) z + sum_s (1 + w_s) P_s(u) b_s + f_hall(u) + sum_e v_e c_e(u) (hall g_e + o_e - G_e z),   w, v: random walks
-///     reading_i = l_i'z + hall share,   drift = (1 + g) l_d'z
+///     reading_i = l_i'z + hall share,   drift = (1 + g) l_d'(z - z_start) + hall share
 ///
 /// K(u) enters by its exponential, exact for any step; factors on exchanges act as heat over a step. Where readings keep away from what the
 /// rest expects (their mean over about ten rows by more than five deviations), the sensor is dropped for the rest of the run and the filter

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kConstant = 1.0e-12;   // deviation over largest magnitude: rounding, not movement
 constexpr double kDependent = 1.0e-10;  // of a column's square left beside those before it
+constexpr double kMoves = 1.0e-10;      // variance in some rows, of that over all
 
 }  // namespace
 
@@ -61,6 +62,11 @@ ProductSums product_sums(std::span<const Record> records, const std::vector<std:
   return sums;
 }
 
+bool moves(const Eigen::MatrixXd& sums, int column) {
+  const double n = sums(0, 0), sum = sums(column + 1, 0), squares = sums(column + 1, column + 1);
+  return squares - sum * sum / n > kMoves * std::max(n, squares);
+}
+
 ScaledFit fit_columns(const Eigen::MatrixXd& sums, std::span<const int> columns, double penalty) {
   const auto k = static_cast<Eigen::Index>(columns.size());
   const Eigen::Index y = sums.cols() - 1;
@@ -80,7 +86,7 @@ ScaledFit fit_columns(const Eigen::MatrixXd& sums, std::span<const int> columns,
   for (Eigen::Index j = 0; j < k; ++j) {
     const double whole = a(j, j);
     for (Eigen::Index p = 0; p < j; ++p) a(j, j) -= a(j, p) * a(j, p);
-    if (!(a(j, j) > kDependent * whole) || !(whole > 0.0)) {
+    if (!(a(j, j) > kDependent * whole) || !moves(sums, columns[static_cast<std::size_t>(j)])) {
       is_dependent[static_cast<std::size_t>(j)] = true;
       for (Eigen::Index i = j; i < k; ++i) a(i, j) = 0.0;
       continue;
@@ -122,6 +128,14 @@ double residual_squares(const Eigen::MatrixXd& sums, std::span<const int> column
   return std::max(total, 0.0);
 }
 
+void require_enough_rows(double n_rows, std::size_t n_columns, const std::string& target) {
+  if (n_rows >= static_cast<double>(n_columns + 1)) return;
+  throw InputError(fmt::format(
+      "with a run left out, a fit of '{}' has {} coefficients but only {:.0f} complete rows; use fewer channels or "
+      "more data",
+      target, n_columns + 1, n_rows));
+}
+
 double held_out_rmse(const ProductSums& sums, std::span<const int> columns, double penalty) {
   const Eigen::MatrixXd total = sums.total();
   double squares = 0.0, n = 0.0;
@@ -130,6 +144,7 @@ double held_out_rmse(const ProductSums& sums, std::span<const int> columns, doub
     if (record(0, 0) == 0.0) continue;
     ++n_records;
     if (record(0, 0) == total(0, 0)) break;
+    require_enough_rows(total(0, 0) - record(0, 0), columns.size(), sums.target);
     squares += residual_squares(record, columns, fit_columns(total - record, columns, penalty));
     n += record(0, 0);
   }

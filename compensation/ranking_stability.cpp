@@ -102,7 +102,7 @@ RankingStability ranking_stability(std::span<const Record> records, const std::s
     if (k == 0) continue;
     const Eigen::RowVectorXd gap =
         grades.row(static_cast<Eigen::Index>(order[k - 1])) - grades.row(static_cast<Eigen::Index>(i));
-    if (std::abs(gap.mean()) < 2.0 * deviation(gap)) result.undecided.emplace_back(name(order[k - 1]), name(i));
+    if (std::abs(gap.mean()) <= 2.0 * deviation(gap)) result.undecided.emplace_back(name(order[k - 1]), name(i));
   }
   return result;
 }

@@ -19,7 +19,7 @@ struct RankingStability {
   int n_resamples = 0;
   /// (rho, the n best in their order), where rho runs from 0.1 to 1.
   std::vector<std::pair<double, std::vector<std::string>>> by_rho;
-  /// Neighbours in the ranking whose grades differ by less than two standard deviations of that difference, "X12 and X13".
+  /// Neighbours in the ranking whose grades differ by no more than two standard deviations of that difference, "X12 and X13".
   std::vector<std::pair<std::string, std::string>> undecided;
 };
 

@@ -37,8 +37,35 @@ Json number(double x) {
   return std::isfinite(x) ? Json(x) : Json(nullptr);
 }
 
-double as_number(const Json& j, double missing) {
-  return j.is_null() ? missing : j.get<double>();
+/// The value of a key, with the key named where it is missing or of another kind.
+template <class T>
+T value(const Json& j, const char* key) {
+  if (!j.is_object() || !j.contains(key)) throw InputError(fmt::format("key `{}` is missing", key));
+  try {
+    return j.at(key).get<T>();
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(fmt::format("key `{}` is {}, which is of the wrong kind", key, j.at(key).dump()));
+  }
+}
+
+/// A finite number, or one above 0.
+double finite(const Json& j, const char* key) {
+  const auto x = value<double>(j, key);
+  if (!std::isfinite(x)) throw InputError(fmt::format("key `{}` is {}; a number is wanted", key, j.at(key).dump()));
+  return x;
+}
+double positive(const Json& j, const char* key) {
+  const double x = finite(j, key);
+  if (!(x > 0.0)) throw InputError(fmt::format("key `{}` is {}; more than 0 is wanted", key, x));
+  return x;
+}
+double number_or(const Json& j, const char* key, double missing) {
+  return j.is_object() && j.contains(key) && j.at(key).is_null() ? missing : finite(j, key);
+}
+Json list(const Json& j, const char* key) {
+  auto l = value<Json>(j, key);
+  if (!l.is_array()) throw InputError(fmt::format("key `{}` is {}; a list is wanted", key, l.dump()));
+  return l;
 }
 
 /// A name that C allows.
@@ -126,96 +153,115 @@ Json model_json(const DeployedModel& d) {
   return j;
 }
 
+namespace {
+
+DeployedModel model_of(const Json& j) {
+  if (!j.is_object() || value<std::string>(j, "format") != kFormat)
+    throw InputError(fmt::format("no drift model (key `format` must be \"{}\"); `validate` writes them", kFormat));
+  DeployedModel d;
+  DriftModel& m = d.model;
+  m.kind = value<std::string>(j, "kind");
+  m.target = value<std::string>(j, "target");
+  m.target_unit = value<std::string>(j, "target_unit");
+  m.from_start = value<bool>(j, "from_start");
+  m.intercept = finite(j, "intercept");
+  for (const Json& t : list(j, "terms")) {
+    m.terms.push_back({.input = value<std::string>(t, "input"),
+                       .unit = value<std::string>(t, "unit"),
+                       .coefficient = finite(t, "coefficient"),
+                       .power = value<int>(t, "power"),
+                       .lag_s = finite(t, "lag_s")});
+    const DriftModel::Term& term = m.terms.back();
+    if (term.lag_s < 0.0 || term.power < 1)
+      throw InputError(fmt::format("term '{}' has `lag_s` {} and `power` {}; at least 0 and 1 are wanted", term.input,
+                                   term.lag_s, term.power));
+  }
+  d.interval_um = number_or(j, "interval_95_um", std::numeric_limits<double>::quiet_NaN());
+  const auto s = value<Json>(j, "fail_safe");
+  FailSafe& safe = d.safe;
+  safe.from_start = value<bool>(s, "from_start");
+  safe.period_s = positive(s, "period_s");
+  safe.lowest_um = finite(s, "lowest_um");
+  safe.highest_um = finite(s, "highest_um");
+  safe.most_rate_um_s = finite(s, "most_rate_um_s");
+  safe.fade_s = positive(s, "fade_s");
+  safe.stale_s = finite(s, "stale_s");
+  if (safe.lowest_um > safe.highest_um)
+    throw InputError(fmt::format("`lowest_um` {} is above `highest_um` {}", safe.lowest_um, safe.highest_um));
+  if (safe.most_rate_um_s < 0.0) throw InputError(fmt::format("`most_rate_um_s` {} is below 0", safe.most_rate_um_s));
+  if (safe.from_start != m.from_start)
+    throw InputError("`from_start` of the model and of its `fail_safe` differ; they must say the same");
+  for (const Json& g : list(s, "guards")) {
+    safe.guards.push_back({.input = value<std::string>(g, "input"),
+                           .unit = value<std::string>(g, "unit"),
+                           .low = finite(g, "low"),
+                           .high = finite(g, "high"),
+                           .most_jump = number_or(g, "most_jump", std::numeric_limits<double>::infinity()),
+                           .others_intercept = finite(g, "others_intercept"),
+                           .others_coefficient = value<std::vector<double>>(g, "others_coefficient"),
+                           .most_apart = finite(g, "most_apart")});
+    const FailSafe::Guard& guard = safe.guards.back();
+    if (!(guard.low < guard.high))
+      throw InputError(fmt::format("guard '{}' has `low` {} not below `high` {}", guard.input, guard.low, guard.high));
+    if (!guard.others_coefficient.empty() && !(guard.most_apart > 0.0))
+      throw InputError(fmt::format("guard '{}' has `most_apart` {}; more than 0 is wanted", guard.input, guard.most_apart));
+  }
+  for (const FailSafe::Guard& g : safe.guards) {
+    if (!g.others_coefficient.empty() && g.others_coefficient.size() != safe.guards.size())
+      throw InputError(fmt::format("guard '{}' has {} `others_coefficient`, but there are {} guards", g.input,
+                                   g.others_coefficient.size(), safe.guards.size()));
+  }
+  for (const DriftModel::Term& t : m.terms) {
+    if (std::none_of(safe.guards.begin(), safe.guards.end(),
+                     [&](const FailSafe::Guard& g) { return g.input == t.input && g.unit == t.unit; }))
+      throw InputError(fmt::format("term '{}' in {} has no guard among `guards`", t.input, t.unit));
+  }
+  return d;
+}
+
+}  // namespace
+
 DeployedModel read_model(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: no such file; a model.json of `validate` is wanted", path));
   try {
-    const Json j = Json::parse(file);
-    if (!j.is_object() || j.value("format", "") != kFormat)
-      throw InputError(fmt::format("{}: no drift model (key `format` must be \"{}\"); `validate` writes them as model.json",
-                                   path, kFormat));
-    constexpr double kEndless = std::numeric_limits<double>::infinity();
-    DeployedModel d;
-    d.model.kind = j.at("kind");
-    d.model.target = j.at("target");
-    d.model.target_unit = j.at("target_unit");
-    d.model.from_start = j.at("from_start");
-    d.model.intercept = j.at("intercept");
-    for (const Json& t : j.at("terms")) {
-      DriftModel::Term term{.input = t.at("input"),
-                            .unit = t.at("unit"),
-                            .coefficient = t.at("coefficient"),
-                            .power = t.at("power"),
-                            .lag_s = t.at("lag_s")};
-      if (!(term.lag_s >= 0.0) || term.power < 1)
-        throw InputError(fmt::format("{}: term '{}' has lag {} s and power {}; at least 0 and 1 are wanted", path,
-                                     term.input, term.lag_s, term.power));
-      d.model.terms.push_back(std::move(term));
-    }
-    d.interval_um = as_number(j.at("interval_95_um"), std::numeric_limits<double>::quiet_NaN());
-    const Json& s = j.at("fail_safe");
-    d.safe.from_start = s.at("from_start");
-    d.safe.period_s = s.at("period_s");
-    d.safe.lowest_um = s.at("lowest_um");
-    d.safe.highest_um = s.at("highest_um");
-    d.safe.most_rate_um_s = s.at("most_rate_um_s");
-    d.safe.fade_s = s.at("fade_s");
-    d.safe.stale_s = s.at("stale_s");
-    if (!(d.safe.lowest_um <= d.safe.highest_um))
-      throw InputError(
-          fmt::format("{}: `lowest_um` {} is above `highest_um` {}", path, d.safe.lowest_um, d.safe.highest_um));
-    for (const Json& g : s.at("guards")) {
-      FailSafe::Guard guard;
-      guard.input = g.at("input");
-      guard.unit = g.at("unit");
-      guard.low = g.at("low");
-      guard.high = g.at("high");
-      guard.most_jump = as_number(g.at("most_jump"), kEndless);
-      guard.others_intercept = g.at("others_intercept");
-      guard.others_coefficient = g.at("others_coefficient").get<std::vector<double>>();
-      guard.most_apart = g.at("most_apart");
-      d.safe.guards.push_back(std::move(guard));
-    }
-    for (const FailSafe::Guard& g : d.safe.guards) {
-      if (!g.others_coefficient.empty() && g.others_coefficient.size() != d.safe.guards.size())
-        throw InputError(fmt::format("{}: guard '{}' has {} `others_coefficient`, but there are {} guards", path, g.input,
-                                     g.others_coefficient.size(), d.safe.guards.size()));
-    }
-    return d;
+    return model_of(Json::parse(file));
   } catch (const nlohmann::json::exception& e) {
+    throw InputError(fmt::format("{}: {}", path, e.what()));
+  } catch (const InputError& e) {
     throw InputError(fmt::format("{}: {}", path, e.what()));
   }
 }
 
 std::string c_function(const DeployedModel& d, const std::string& made_by) {
   const DriftModel& m = d.model;
-  const std::vector<std::string> inputs = m.inputs();
-  const std::size_t n = inputs.size(), n_terms = m.terms.size();
+  const std::size_t n = d.safe.guards.size(), n_terms = m.terms.size();
   const std::string name = c_name(m.target);
-  // guards in the order of the inputs, terms by the index of their input
+  // terms by the index of their input's guard
   std::vector<double> low, high, jump, apart, intercept, coefficient, lag, others;
-  std::vector<std::string> unit(n), of, power, drive, has_others, arguments, readings;
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto g = std::find_if(d.safe.guards.begin(), d.safe.guards.end(),
-                                [&](const FailSafe::Guard& guard) { return guard.input == inputs[i]; });
-    if (g == d.safe.guards.end()) throw std::logic_error("an input without a guard");
-    low.push_back(g->low);
-    high.push_back(g->high);
-    jump.push_back(g->most_jump);
-    apart.push_back(g->most_apart);
-    intercept.push_back(g->others_intercept);
-    for (std::size_t k = 0; k < n; ++k) others.push_back(g->others_coefficient.empty() ? 0.0 : g->others_coefficient[k]);
-    unit[i] = g->unit;
-    has_others.push_back(g->others_coefficient.empty() ? "0" : "1");
-    drive.push_back(compensation::is_drive(g->unit) ? "1" : "0");
-    arguments.push_back(fmt::format("double {}_{}", c_name(inputs[i]), g->unit));
-    readings.push_back(fmt::format("{}_{}", c_name(inputs[i]), g->unit));
+  std::vector<std::string> inputs, of, power, drive, has_others, arguments, readings;
+  for (const FailSafe::Guard& g : d.safe.guards) {
+    inputs.push_back(g.input);
+    low.push_back(g.low);
+    high.push_back(g.high);
+    jump.push_back(g.most_jump);
+    apart.push_back(g.most_apart);
+    intercept.push_back(g.others_intercept);
+    for (std::size_t k = 0; k < n; ++k) others.push_back(g.others_coefficient.empty() ? 0.0 : g.others_coefficient[k]);
+    has_others.push_back(g.others_coefficient.empty() ? "0" : "1");
+    drive.push_back(compensation::is_drive(g.unit) ? "1" : "0");
+    std::string reading = fmt::format("{}_{}", c_name(g.input), g.unit);
+    while (std::find(readings.begin(), readings.end(), reading) != readings.end()) reading += "_";  // "a b" beside "a-b"
+    readings.push_back(reading);
+    arguments.push_back("double " + reading);
   }
   for (const DriftModel::Term& t : m.terms) {
     coefficient.push_back(t.coefficient);
     lag.push_back(t.lag_s);
     power.push_back(std::to_string(t.power));
-    of.push_back(std::to_string(std::find(inputs.begin(), inputs.end(), t.input) - inputs.begin()));
+    const auto guard = std::find(inputs.begin(), inputs.end(), t.input);
+    if (guard == inputs.end()) throw std::logic_error("an input without a guard");
+    of.push_back(std::to_string(guard - inputs.begin()));
   }
   std::string comment = formula_text(d);
   for (std::size_t at = 0; (at = comment.find('\n', at)) != std::string::npos && at + 1 < comment.size(); at += 4)
@@ -235,7 +281,7 @@ typedef struct {{
   double time_s;
   double start[{NAME}_INPUTS], last[{NAME}_INPUTS], last_s[{NAME}_INPUTS], doubted_until_s[{NAME}_INPUTS];
   int has_start[{NAME}_INPUTS], has_last[{NAME}_INPUTS], is_doubted[{NAME}_INPUTS];
-  double lag[{NAME}_TERMS], before[{NAME}_TERMS];
+  double used[{NAME}_INPUTS], lag[{NAME}_TERMS], before[{NAME}_TERMS];
   double trust, correction_um;
 }} {name}_state;
 
@@ -245,6 +291,42 @@ static double {name}_by_others(double expected, const double *by, const double *
     if (by[k] != 0.0) expected += by[k] * x[k];
   }}
   return expected;
+}}
+
+/* Those that are out, all at once, by what the others lead to; one that only others that are out tell of is untold. */
+static void {name}_replace(const double *expected_0, const double *by, const int *is_out, double *x, int *is_untold) {{
+  double a[{NAME}_INPUTS][{NAME}_INPUTS + 1];
+  int i, j, k;
+  for (k = 0; k < {NAME}_INPUTS; ++k) {{
+    is_untold[k] = 0;
+    a[k][{NAME}_INPUTS] = expected_0[k];
+    for (j = 0; j < {NAME}_INPUTS; ++j) {{
+      const double b = by[k * {NAME}_INPUTS + j];
+      a[k][j] = j == k ? 1.0 : 0.0;
+      if (is_out[j]) {{
+        a[k][j] -= b;
+      }} else if (b != 0.0) {{
+        a[k][{NAME}_INPUTS] += b * x[j];
+      }}
+    }}
+  }}
+  for (k = 0; k < {NAME}_INPUTS; ++k) {{
+    if (!is_out[k]) continue;
+    if (!(a[k][k] > 1e-6)) {{
+      is_untold[k] = 1;
+      for (j = 0; j < {NAME}_INPUTS; ++j) a[k][j] = j == k ? 1.0 : 0.0;
+      a[k][{NAME}_INPUTS] = x[k];
+    }}
+    for (i = 0; i < {NAME}_INPUTS; ++i) {{
+      double share;
+      if (!is_out[i] || i == k) continue;
+      share = a[i][k] / a[k][k];
+      for (j = k; j <= {NAME}_INPUTS; ++j) a[i][j] -= share * a[k][j];
+    }}
+  }}
+  for (k = 0; k < {NAME}_INPUTS; ++k) {{
+    if (is_out[k]) x[k] = a[k][{NAME}_INPUTS] / a[k][k];
+  }}
 }}
 
 /* What to take away from the position [um]: the axis moves by its negative. Readings that are missing are NAN.
@@ -258,13 +340,13 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
   const double fade_s = {fade}, stale_s = {stale}, period_s = {period};
   double x[{NAME}_INPUTS] = {{{readings}}};
   double prediction = {model_intercept}, deserved = 1.0, step_s, wanted, most;
-  int i, k, n_doubted = 0;
+  int i, k, n_doubted = 0, is_out[{NAME}_INPUTS], is_untold[{NAME}_INPUTS] = {{0}};
   step_s = s->is_running ? dt_s : 0.0;
   s->time_s += step_s;
   for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* rises, where they are wanted */
     if (!{from_start} || is_drive[i] || isnan(x[i])) continue;
     if (!s->has_start[i]) {{
-      s->start[i] = x[i];
+      s->start[i] = x[i] - s->used[i];
       s->has_start[i] = 1;
     }}
     x[i] -= s->start[i];
@@ -272,7 +354,7 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
   for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* missing for too long, or jumping */
     int doubt = 0;
     if (isnan(x[i])) {{
-      doubt = !s->has_last[i] || s->time_s - s->last_s[i] > stale_s;
+      doubt = !s->has_last[i] || s->time_s - s->last_s[i] > stale_s + 1e-6 * period_s;
     }} else {{
       const double steps = fmax(1.0, (s->time_s - s->last_s[i]) / period_s);
       doubt = s->has_last[i] && fabs(x[i] - s->last[i]) > steps * most_jump[i];
@@ -284,16 +366,17 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
       s->doubted_until_s[i] = s->time_s + {back} * fade_s;
       s->is_doubted[i] = 1;
     }}
-    if (s->is_doubted[i] && s->time_s >= s->doubted_until_s[i]) s->is_doubted[i] = 0;
+    if (s->is_doubted[i] && s->time_s >= s->doubted_until_s[i] - 1e-6 * period_s) s->is_doubted[i] = 0;
     x[i] = s->has_last[i] ? s->last[i] : 0.0;
   }}
   for (k = 0; k <= {NAME}_INPUTS; ++k) {{ /* or too far from what the others say: replaced by that */
     int worst = -1;
     double furthest = 1.0;
-    for (i = 0; i < {NAME}_INPUTS; ++i) {{
-      if (!s->is_doubted[i] || !has_others[i]) continue;
-      x[i] = {name}_by_others(expected_0[i], &expected_by[i * {NAME}_INPUTS], x);
-      if (k == 0 && !(s->has_last[i] && fabs(s->last[i] - x[i]) <= {within} * most_apart[i]))
+    int n_out = 0;
+    for (i = 0; i < {NAME}_INPUTS; ++i) n_out += is_out[i] = s->is_doubted[i] && has_others[i];
+    if (n_out > 0) {name}_replace(expected_0, expected_by, is_out, x, is_untold);
+    for (i = 0; k == 0 && i < {NAME}_INPUTS; ++i) {{
+      if (is_out[i] && !(s->has_last[i] && fabs(s->last[i] - x[i]) <= {within} * most_apart[i]))
         s->doubted_until_s[i] = s->time_s + {back} * fade_s;
     }}
     for (i = 0; i < {NAME}_INPUTS; ++i) {{
@@ -310,9 +393,12 @@ double {name}_correction_um({name}_state *s, {arguments}, double dt_s) {{
     s->is_doubted[worst] = 1;
   }}
   for (i = 0; i < {NAME}_INPUTS; ++i) {{ /* what the readings deserve; outside its range each counts as the edge */
-    const double outside = fmax(0.0, fmax(low[i] - x[i], x[i] - high[i]));
-    if (s->is_doubted[i] && (++n_doubted > {most_replaced} || !has_others[i])) deserved = 0.0;
+    double outside;
+    if ({from_start} && !is_drive[i] && !s->is_running) x[i] = 0.0;
+    outside = fmax(0.0, fmax(low[i] - x[i], x[i] - high[i]));
+    if (s->is_doubted[i] && (++n_doubted > {most_replaced} || !has_others[i] || is_untold[i])) deserved = 0.0;
     if (outside > 0.0) deserved = fmin(deserved, fmax(0.0, 1.0 - outside / (high[i] - low[i])));
+    s->used[i] = x[i];
     x[i] = fmax(low[i], fmin(high[i], x[i]));
   }}
   for (k = 0; k < {NAME}_TERMS; ++k) {{

@@ -26,7 +26,7 @@ struct DeployedModel {
 [[nodiscard]] DeployedModel read_model(const std::string& path);
 
 /// C99 source of one function that gives the correction from readings, call by call, with fail-safe: the same numbers as
-/// guarded(safe, r, model.predict(r.readings)) of r = repaired(safe, readings), where every input is read at least once in the first row. Needs <math.h> alone; missing readings are NAN.
+/// guarded(safe, r, model.predict(r.readings)) of r = repaired(safe, readings). Needs <math.h> alone; missing readings are NAN.
 [[nodiscard]] std::string c_function(const DeployedModel& deployed, const std::string& made_by);
 
 }  // namespace driftwright::output

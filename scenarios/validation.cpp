@@ -51,6 +51,13 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
   v.seed = in.integer("seed", 0, 1000000, v.seed);
   for (const std::string& name : in.texts("train")) v.train.push_back(named(in, "train", name, known));
   if (v.train.size() < 2) in.fail("train", "two cyclograms at least: what a fit leaves open is decided on runs left out");
+  for (std::size_t i = 0; i < v.train.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (v.train[i].sections == v.train[k].sections)
+        in.fail("train", fmt::format("'{}' is the same as '{}'; fitted on twice, it is never left out", v.train[i].name,
+                                     v.train[k].name));
+    }
+  }
   const ConfigMap families = in.map("families");
   for (const std::string& name : families.keys()) {
     v.families.push_back(read_family(families, name, known, v.seed));
@@ -66,6 +73,7 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
   v.seasons.push_back({.name = "as trained"});
   if (const auto seasons = in.optional_map("seasons")) {
     for (const std::string& name : seasons->keys()) {
+      if (name == v.seasons.front().name) seasons->fail(name, "this is the scenario's own hall, which is always judged in");
       const ConfigMap season = seasons->map(name);
       v.seasons.push_back({.name = name,
                            .offset_K = season.quantity("offset", "K", -50.0, 50.0, 0.0),

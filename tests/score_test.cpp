@@ -42,6 +42,16 @@ TEST(Baselines, MeanIsThatOfAllTrainingSamples) {
   EXPECT_THAT(predicted, Each(::testing::DoubleEq(14.8)));
 }
 
+TEST(Baselines, LastIsTheLastValueOfTheLastRecordThatHasOne) {
+  EXPECT_THAT(baseline_last(kTrain, kTest, "d"), Each(30.0));
+  std::vector<Record> gaps = kTrain;
+  gaps[1].channels[0].values = {10, 14, NAN};
+  EXPECT_THAT(baseline_last(gaps, kTest, "d"), Each(14.0));
+  gaps[1].channels[0].values = {NAN, NAN, NAN};
+  EXPECT_THAT(baseline_last(gaps, kTest, "d"), Each(20.0));
+  EXPECT_THAT(baseline_last(gaps, kTest, "d"), SizeIs(5));
+}
+
 TEST(Baselines, SameTimeAveragesTheRecordsThatReachIt) {
   const std::vector<double> predicted = baseline_same_time(kTrain, kTest, "d");
   EXPECT_TRUE(std::isnan(predicted[0]));
@@ -55,6 +65,8 @@ TEST(Baselines, RefuseTrainingWithoutData) {
   const std::vector<Record> empty = {{.source = "a", .time_s = {0, 1}, .channels = {{"d", "um", {NAN, NAN}}}}};
   EXPECT_THAT([&] { (void)baseline_mean(empty, kTest, "d"); }, ThrowsMessage<InputError>(HasSubstr("no value")));
   EXPECT_THROW((void)baseline_mean({}, kTest, "d"), InputError);
+  EXPECT_THAT([&] { (void)baseline_last(empty, kTest, "d"); }, ThrowsMessage<InputError>(HasSubstr("no value")));
+  EXPECT_THROW((void)baseline_last({}, kTest, "d"), InputError);
   EXPECT_THROW((void)baseline_same_time({}, kTest, "d"), InputError);
   EXPECT_THROW((void)baseline_same_time(kTrain, kTest, "nowhere"), InputError);
 }

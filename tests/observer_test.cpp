@@ -1,0 +1,365 @@
+// The observer on a machine of three lumped parts, whose every run has a closed form or an exact propagation.
+
+#include "compensation/observer.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "base/random.hpp"
+#include "compensation/observability.hpp"
+#include "solver/propagator.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+/// Parts of heat capacity C = 4, 10, 30 kJ/K in a row: 20 and 15 W/K between them, 6 and 8 W/K from the first and last to the hall; motor heat into
+/// the first, screw heat into the second. State: temperatures times sqrt(C), so that M = 1. Outputs: T1, T2, T3 and the drift
+/// 2, 3 and 1.5 um/K of each.
+solver::ReducedSystem three_parts() {
+  const Eigen::Vector3d root(std::sqrt(4e3), std::sqrt(10e3), std::sqrt(30e3)), inverse = root.cwiseInverse();
+  const auto scaled = [&](const Eigen::Matrix3d& k) -> Eigen::MatrixXd {
+    return inverse.asDiagonal() * k * inverse.asDiagonal();
+  };
+  Eigen::Matrix3d k;
+  k << 20, -20, 0, -20, 35, -15, 0, -15, 15;
+  solver::ReducedSystem s;
+  s.mass = Eigen::Matrix3d::Identity();
+  s.conduction = scaled(k);
+  s.sources.push_back(
+      {"motor", inverse(0) * Eigen::Vector3d::UnitX(), [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
+  s.sources.push_back(
+      {"screw", inverse(1) * Eigen::Vector3d::UnitY(), [](const effects::Inputs& u) { return 0.03 * u.drive.speed_rpm; }});
+  const auto film = [&](const char* name, int part, double W_K) {
+    const Eigen::Vector3d at = Eigen::Vector3d::Unit(part);
+    solver::Exchange<Eigen::MatrixXd> e{.name = name,
+                                        .matrix = scaled(at * at.transpose()),
+                                        .to_hall = inverse(part) * at,
+                                        .hall_sum = 1.0,
+                                        .coefficient = solver::BoundLaw([W_K](const effects::Inputs&) { return W_K; })};
+    e.flow = e.to_hall;
+    s.exchanges.push_back(std::move(e));
+  };
+  film("film 1", 0, 6.0);
+  film("film 3", 2, 8.0);
+  s.outputs.name = {"T1", "T2", "T3", "drift_y"};
+  s.outputs.unit = {"K", "K", "K", "m"};
+  s.outputs.state = Eigen::MatrixXd::Zero(3, 4);
+  s.outputs.state.leftCols(3) = inverse.asDiagonal();
+  s.outputs.state.col(3) = 1e-6 * inverse.cwiseProduct(Eigen::Vector3d(2.0, 3.0, 1.5));
+  s.outputs.hall = Eigen::VectorXd::Zero(4);
+  s.ones = root;
+  return s;
+}
+
+const Cyclogram kWork{
+    .name = "work",
+    .sections = {{3600, {.speed_rpm = 2000}}, {1800, {}}, {5400, {.speed_rpm = 3000}}, {3600, {.speed_rpm = 500}}}};
+
+/// The run of a machine: readings in degC, the drift since the start in um. @param warmer_K  of hall and machine at the start
+ObservedRun run_of(const solver::ReducedSystem& machine, double period_s = 60.0, double warmer_K = 0.0, double noise_K = 0.0,
+                   std::uint64_t seed = 1, const Cyclogram& cyclogram = kWork) {
+  ObservedRun run{
+      .cyclogram = cyclogram, .hall = {{0.0}, {warmer_K}}, .readings = {.source = "run", .time_s = {}, .channels = {}}};
+  for (double t = 0.0; t <= cyclogram.duration_s(); t += period_s) run.readings.time_s.push_back(t);
+  const Eigen::MatrixXd y =
+      solver::Propagator(machine).run(run.cyclogram, run.hall, run.readings.time_s, warmer_K * machine.ones).outputs;
+  Random random(seed, 6);
+  for (Eigen::Index j = 0; j < 4; ++j) {
+    Channel c{machine.outputs.name[static_cast<std::size_t>(j)], j < 3 ? "degC" : "um", {}};
+    for (Eigen::Index i = 0; i < y.cols(); ++i)
+      c.values.push_back(j < 3 ? y(j, i) + 20.0 + noise_K * random.normal() : 1e6 * (y(j, i) - y(j, 0)));
+    run.readings.channels.push_back(std::move(c));
+  }
+  return run;
+}
+Observer observer_of(const solver::ReducedSystem& model, std::vector<std::string> sensors,
+                     const ObserverSettings& settings = {}) {
+  return Observer(model, Eigen::Vector3d::Zero(), 0.0, std::move(sensors), "drift_y", settings);
+}
+double worst_um(const std::vector<double>& drift_um, const ObservedRun& run) {
+  const std::vector<double>& truth = run.readings.at("drift_y").values;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    worst = std::max(worst, std::isfinite(drift_um[i]) ? std::abs(drift_um[i] - truth[i]) : INFINITY);
+  return worst;
+}
+solver::ReducedSystem with_motor(double factor) {
+  solver::ReducedSystem s = three_parts();
+  s.sources[0].load *= factor;
+  return s;
+}
+
+TEST(Observer, WithTheExactModelFollowsExactlyWithAndWithoutSensors) {
+  const solver::ReducedSystem s = three_parts();
+  for (const double warmer_K : {0.0, 7.0}) {
+    const ObservedRun run = run_of(s, 60.0, warmer_K);
+    EXPECT_GT(run.readings.at("drift_y").values[60], 20.0);
+    for (const std::vector<std::string>& sensors : {std::vector<std::string>{}, {"T1"}, {"T1", "T2", "T3"}}) {
+      const Observation o = observer_of(s, sensors).follow(run);
+      EXPECT_LT(worst_um(o.drift_um, run), 1e-8) << sensors.size();  // rounding of 293 K in 1e4 steps
+      EXPECT_THAT(o.distrusted, IsEmpty());
+      EXPECT_EQ(o.drift_um[0], 0.0);
+    }
+  }
+}
+
+// One part alone, C = 4e3, 6 W/K, 200 W: T = P/h (1 - exp(-h t/C)).
+TEST(Observer, FollowsTheClosedFormOfOnePart) {
+  solver::ReducedSystem s = three_parts();
+  s.conduction.setZero();
+  const ObservedRun run = run_of(s, 60.0, 0.0, 0.0, 1, {.name = "on", .sections = {{7200, {.speed_rpm = 2000}}}});
+  ObservedRun closed = run;
+  for (std::size_t i = 0; i < run.readings.n_samples(); ++i) {
+    const double t = run.readings.time_s[i];
+    closed.readings.channels[3].values[i] = 2.0 * 200.0 / 6.0 * (1.0 - std::exp(-6.0 * t / 4e3)) + 3.0 * 60.0 / 10e3 * t;
+  }
+  EXPECT_LT(worst_um(observer_of(s, {"T1"}).follow(run).drift_um, closed), 1e-8);
+}
+
+TEST(Observer, WithTheMotorOffByAFifthSensorsTakeMostOfTheErrorAway) {
+  for (const double factor : {0.8, 1.2}) {
+    const ObservedRun run = run_of(with_motor(factor), 60.0, 0.0, 0.1);
+    const double alone_um = worst_um(observer_of(three_parts(), {}).follow(run).drift_um, run);
+    const Observation o = observer_of(three_parts(), {"T1", "T3"}).follow(run);
+    EXPECT_GT(alone_um, 10.0);
+    EXPECT_LT(worst_um(o.drift_um, run), 0.15 * alone_um) << factor;
+    EXPECT_LT(std::abs(o.drift_um.back() - run.readings.at("drift_y").values.back()), 0.05 * alone_um);
+    EXPECT_THAT(o.distrusted, IsEmpty());
+  }
+}
+
+// A covariance that lost its symmetry or a sign would show as a deviation of 0 (it is cut there) or as none at all.
+TEST(Observer, ItsCovarianceStaysPositiveWithReadingsFarBetterThanTheModel) {
+  const ObservedRun run = run_of(scattered(three_parts(), 0.1, 3), 10.0);
+  ASSERT_GT(run.readings.n_samples(), 1400u);
+  for (const double walk : {0.0, 0.02}) {
+    const ObserverSettings sure{.reading_K = 1e-6, .model_K = 0.0, .drift_um = 1e-5, .factor_walk = walk};
+    Observer o = observer_of(three_parts(), {"T1", "T2", "T3"}, sure);
+    o.learn(std::vector<ObservedRun>{run, run});
+    for (const Observer::Factor& f : o.factors()) EXPECT_GT(f.deviation, 0.0) << f.name << walk;
+    const Observation seen = o.follow(run);
+    for (std::size_t i = 1; i < seen.deviation_um.size(); ++i) ASSERT_GT(seen.deviation_um[i], 0.0) << i << " " << walk;
+  }
+}
+
+// 95 of 100 within two deviations would be ideal; within three all but a few must be.
+TEST(Observer, ItsDeviationCoversItsError) {
+  int n = 0, n_outside = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const ObservedRun run = run_of(scattered(three_parts(), 0.1, static_cast<int>(seed)), 60.0, 0.0, 0.1, seed);
+    const Observation o = observer_of(three_parts(), {"T1", "T3"}).follow(run);
+    for (std::size_t i = 0; i < o.drift_um.size(); ++i) {
+      ++n;
+      EXPECT_TRUE(std::isfinite(o.deviation_um[i]) && o.deviation_um[i] >= 0.0);
+      n_outside += std::abs(o.drift_um[i] - run.readings.at("drift_y").values[i]) > 3.0 * o.deviation_um[i] + 1e-9;
+    }
+  }
+  EXPECT_LT(n_outside, n / 20);
+}
+
+TEST(Observer, LearnsTheFactorOfASourceAndTheScaleOfTheDrift) {
+  solver::ReducedSystem machine = with_motor(1.2);
+  machine.outputs.state.col(3) *= 1.06;
+  const std::vector<ObservedRun> training = {run_of(machine, 60.0, 0.0, 0.05, 1), run_of(machine, 60.0, 0.0, 0.05, 2)};
+  Observer o = observer_of(three_parts(), {"T1", "T2", "T3"}, {.drift_um = 0.2});
+  const auto before = o.factors();
+  ASSERT_THAT(before, SizeIs(5));
+  EXPECT_EQ(before[0].name, "motor");
+  EXPECT_EQ(before[2].name, "film 1");
+  EXPECT_EQ(before[4].name, "drift_y");
+  o.learn(training);
+  const auto after = o.factors();
+  EXPECT_NEAR(after[0].value, 1.2, 0.04);
+  EXPECT_NEAR(after[1].value, 1.0, 0.1);
+  EXPECT_NEAR(after[4].value, 1.06, 0.01);
+  for (std::size_t i = 0; i < after.size(); ++i) EXPECT_LT(after[i].deviation, before[i].deviation) << after[i].name;
+  // what was learnt stays where there are no sensors, and follow() changes nothing
+  const ObservedRun judged = run_of(machine, 60.0, 0.0, 0.0, 3);
+  const Observer blind = o.with_sensors({});
+  EXPECT_LT(worst_um(blind.follow(judged).drift_um, judged),
+            0.2 * worst_um(observer_of(three_parts(), {}).follow(judged).drift_um, judged));
+  EXPECT_EQ(o.follow(judged).drift_um, o.follow(judged).drift_um);
+}
+
+// The drift counts from the start: what the machine was displaced by before, warm hall or cold, is no part of it, whatever the scale.
+TEST(Observer, LearnsTheScaleOfTheDriftInAWarmHallToo) {
+  solver::ReducedSystem machine = three_parts();
+  machine.outputs.state.col(3) *= 1.06;
+  for (const double warmer_K : {10.0, -10.0}) {
+    const std::vector<ObservedRun> training = {run_of(machine, 60.0, warmer_K, 0.05, 1),
+                                               run_of(machine, 60.0, warmer_K, 0.05, 2)};
+    Observer o = observer_of(three_parts(), {"T1", "T2", "T3"});
+    o.learn(training);
+    EXPECT_NEAR(o.factors()[4].value, 1.06, 0.015) << warmer_K;
+    const ObservedRun cold = run_of(machine, 60.0, -warmer_K, 0.05, 3);
+    EXPECT_LT(worst_um(o.follow(cold).drift_um, cold), 1.5) << warmer_K;  // 6 % of 90 um unlearnt
+  }
+}
+
+TEST(Observer, DropsAndNamesASensorThatSticks) {
+  for (const int stuck : {0, 2}) {
+    const ObservedRun whole = run_of(three_parts(), 60.0, 0.0, 0.1);
+    ObservedRun run = whole;
+    std::vector<double>& x = run.readings.channels[static_cast<std::size_t>(stuck)].values;
+    for (std::size_t i = 100; i < x.size(); ++i) x[i] = x[100] + 12.0;
+    const Observation o = observer_of(three_parts(), {"T1", "T2", "T3"}).follow(run);
+    ASSERT_THAT(o.distrusted, SizeIs(1)) << stuck;
+    EXPECT_THAT(o.distrusted[0], HasSubstr(stuck == 0 ? "T1 from 1" : "T3 from 1"));
+    const Observation without = observer_of(three_parts(), {"T1", "T2", "T3"}).follow(whole);
+    EXPECT_LT(worst_um(o.drift_um, run), worst_um(without.drift_um, whole) + 1.0) << stuck;
+  }
+}
+
+TEST(Observer, DropsASensorThatStaysBehindSlowly) {
+  ObservedRun run = run_of(three_parts(), 60.0, 0.0, 0.1);
+  std::vector<double>& x = run.readings.channels[0].values;
+  for (std::size_t i = 91; i < x.size(); ++i) x[i] = x[90];  // as the motor starts again
+  const Observation o = observer_of(three_parts(), {"T1", "T2", "T3"}).follow(run);
+  ASSERT_GE(o.distrusted.size(), 1u);
+  EXPECT_THAT(o.distrusted[0], HasSubstr("T1"));
+  EXPECT_LT(std::abs(o.drift_um.back() - run.readings.at("drift_y").values.back()), 2.0);
+}
+
+TEST(Observer, MissingReadingsDoNoHarm) {
+  const solver::ReducedSystem machine = with_motor(1.2);
+  ObservedRun run = run_of(machine, 60.0, 0.0, 0.1);
+  const double whole_um = worst_um(observer_of(three_parts(), {"T1", "T2"}).follow(run).drift_um, run);
+  Random random(3);
+  for (std::size_t j = 0; j < 2; ++j) {
+    for (double& v : run.readings.channels[j].values) {
+      if (random.chance(0.3)) v = NAN;
+    }
+  }
+  run.readings.channels[0].values[0] = NAN;
+  const Observation o = observer_of(three_parts(), {"T1", "T2"}).follow(run);
+  EXPECT_THAT(o.distrusted, IsEmpty());
+  EXPECT_LT(worst_um(o.drift_um, run), 1.5 * whole_um);
+  for (Channel& c : run.readings.channels) {
+    if (c.name != "drift_y") std::fill(c.values.begin(), c.values.end(), NAN);
+  }
+  EXPECT_EQ(observer_of(three_parts(), {"T1"}).follow(run).drift_um, observer_of(three_parts(), {}).follow(run).drift_um);
+}
+
+TEST(Observer, LearnsFromARunWhoseFirstDriftIsMissing) {
+  const solver::ReducedSystem machine = with_motor(1.2);
+  std::vector<ObservedRun> training = {run_of(machine, 60.0, 0.0, 0.05)};
+  for (std::size_t i = 0; i < 3; ++i) training[0].readings.channels[3].values[i] = NAN;
+  for (double& v : training[0].readings.channels[3].values) v -= 2.5;  // and counts from somewhere else
+  Observer o = observer_of(three_parts(), {"T1", "T2", "T3"});
+  o.learn(training);
+  for (const Observer::Factor& f : o.factors()) EXPECT_TRUE(std::isfinite(f.value) && std::isfinite(f.deviation)) << f.name;
+  EXPECT_NEAR(o.factors()[0].value, 1.2, 0.05);
+}
+
+// Twice the rows are twice the readings, whose noise is taken for white; without noise the states agree but for the linearised factors.
+TEST(Observer, TwiceAsDenseRowsTellTheSame) {
+  const solver::ReducedSystem machine = with_motor(1.2);
+  const ObservedRun coarse = run_of(machine, 60.0), dense = run_of(machine, 30.0);
+  const std::vector<double> a = observer_of(three_parts(), {}).follow(coarse).drift_um,
+                            b = observer_of(three_parts(), {}).follow(dense).drift_um;
+  const std::vector<double> c = observer_of(three_parts(), {"T1", "T3"}, {.reading_K = 0.1}).follow(coarse).drift_um,
+                            d = observer_of(three_parts(), {"T1", "T3"},
+                                            {.reading_K = 0.1 * std::sqrt(2.0), .model_K = 0.1 * std::sqrt(2.0)})
+                                    .follow(dense)
+                                    .drift_um;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_NEAR(a[i], b[2 * i], 1e-9);
+    EXPECT_NEAR(c[i], d[2 * i], 0.8);  // of a drift error of 12 um without sensors
+  }
+}
+
+// With films learnt off their values, K(u) has what the model has and heat over a step the rest: first order in the step.
+TEST(Observer, FactorsOnFilmsAreOfFirstOrderInTheStep) {
+  solver::ReducedSystem machine = three_parts();
+  for (auto& e : machine.exchanges) scale(e, 1.3);
+  std::vector<ObservedRun> training = {run_of(machine, 60.0), run_of(machine, 60.0)};
+  for (const double step_s : {60.0, 30.0, 15.0}) {
+    Observer o = observer_of(
+        three_parts(), {"T1", "T2", "T3"},
+        {.reading_K = 1e-3, .model_K = 1e-3, .drift_um = 0.01, .factor = 0.3, .factor_walk = 0.0, .longest_step_s = step_s});
+    o.learn(training);
+    EXPECT_NEAR(o.factors()[2].value, 1.3, 0.02);
+    EXPECT_NEAR(o.factors()[3].value, 1.3, 0.02);
+  }
+}
+
+TEST(Observer, RefusesWhatTheModelHasNot) {
+  EXPECT_THAT([] { (void)observer_of(three_parts(), {"T9"}); }, ThrowsMessage<InputError>(HasSubstr("no output 'T9'")));
+  solver::ReducedSystem looks = three_parts();
+  looks.sources[0].power_W.probes = {0};
+  EXPECT_THROW((void)observer_of(looks, {}), std::logic_error);
+  const ObservedRun run = run_of(three_parts());
+  ObservedRun less = run;
+  less.readings.channels.erase(less.readings.channels.begin());
+  EXPECT_THROW((void)observer_of(three_parts(), {"T1"}).follow(less), InputError);
+}
+
+// Only the motor's heat is uncertain and only the drift's part 1 matters: T1 tells most. By hand, one factor f of deviation s: with
+// sensitivities y and d, what is left is s^2 d^2 r^2 / (s^2 y^2 + r^2) -> the sensor with the largest |y|.
+TEST(Observability, TakesTheSensorThatSeesWhatIsUncertain) {
+  solver::ReducedSystem s = three_parts();
+  s.sources.resize(1);
+  s.exchanges.resize(1);
+  const std::vector<ObservedRun> runs = {run_of(three_parts())};
+  const ObserverSettings settings{.reading_K = 0.3, .model_K = 0.4, .factor = 0.2};
+  const Selection first =
+      select_by_observability(s, Eigen::Vector3d::Zero(), runs, {"T3", "T2", "T1"}, "drift_y", 1, settings);
+  EXPECT_THAT(first.sensors, ElementsAre("T1"));
+  const Selection all =
+      select_by_observability(s, Eigen::Vector3d::Zero(), runs, {"T3", "T2", "T1"}, "drift_y", 9, settings);
+  EXPECT_THAT(all.sensors, SizeIs(3));
+  EXPECT_THAT([&] { (void)select_by_observability(s, Eigen::Vector3d::Zero(), runs, {"T9"}, "drift_y", 1); },
+              ThrowsMessage<InputError>(HasSubstr("'T9'")));
+  EXPECT_THAT([&] { (void)select_by_observability(s, Eigen::Vector3d::Zero(), {}, {"T1"}, "drift_y", 1); },
+              ThrowsMessage<InputError>(HasSubstr("fewer than 11 rows")));
+}
+
+// One source alone: outputs are linear in its factor, so J is s y(t) and what is left has the closed form above.
+TEST(Observability, LeavesTheVarianceOfTheClosedForm) {
+  solver::ReducedSystem s = three_parts();
+  s.sources.resize(1);
+  Eigen::MatrixXd k = s.conduction;
+  for (const auto& e : s.exchanges) k += e.coefficient({}) * e.matrix;
+  s.conduction = k;
+  s.exchanges.clear();
+  const std::vector<ObservedRun> runs = {run_of(s)};
+  const double sigma = 0.2, noise = 0.25;
+  const Record& r = runs[0].readings;
+  double alone = 0.0, with = 0.0, n = 0.0;
+  for (std::size_t i = 10; i < r.n_samples(); i += 10) {
+    const double d = sigma * r.at("drift_y").values[i], y = sigma * (r.at("T1").values[i] - 20.0);
+    alone += d * d;
+    with += d * d * noise / (y * y + noise);
+    n += 1.0;
+  }
+  const Selection one = select_by_observability(s, Eigen::Vector3d::Zero(), runs, {"T1"}, "drift_y", 1,
+                                                {.reading_K = 0.3, .model_K = 0.4, .factor = sigma});
+  EXPECT_THAT(one.reason, HasSubstr(fmt::format("{:.2f}, {:.2f} um", std::sqrt(alone / n), std::sqrt(with / n))));
+}
+
+TEST(Scattered, MultipliesHeatAndFilmsAndIsTheSameForASeed) {
+  const solver::ReducedSystem s = three_parts(), a = scattered(s, 0.1, 4), b = scattered(s, 0.1, 4),
+                              c = scattered(s, 0.1, 5), none = scattered(s, 0.0, 4);
+  EXPECT_EQ(a.sources[0].load, b.sources[0].load);
+  EXPECT_NE(a.sources[0].load, c.sources[0].load);
+  EXPECT_EQ(none.sources[0].load, s.sources[0].load);
+  for (std::size_t e = 0; e < 2; ++e) {
+    const double f = a.exchanges[e].hall_sum / s.exchanges[e].hall_sum;
+    EXPECT_NE(f, 1.0);
+    EXPECT_LT((a.exchanges[e].matrix - f * s.exchanges[e].matrix).norm(), 1e-15);
+    EXPECT_LT((a.exchanges[e].to_hall - f * s.exchanges[e].to_hall).norm(), 1e-15);
+    EXPECT_LT((a.exchanges[e].flow - f * s.exchanges[e].flow).norm(), 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace driftwright::compensation
