@@ -13,8 +13,8 @@ namespace driftwright::compensation {
 /// How much is taken for granted. Standard deviations.
 struct ObserverSettings {
   double reading_K = 0.1;         ///< of a thermometer: noise and rounding
-  double drift_um = 1.0;          ///< of the drift while it learns: white, beside what the zero of the indicator is off by
   double model_K = 0.1;           ///< by which the model may miss a reading though its factors are right
+  double drift_um = 1.0;          ///< of the drift while it learns: white, beside what the zero of the indicator is off by
   double model_um = 0.5;          ///< and the drift
   double model_holds_s = 1800.0;  ///< for so long it misses in the same way: the rows in between tell nothing new
   double factor = 0.15;  ///< of the logarithm of each heat source and each film, joint and link, before anything is known

@@ -184,6 +184,13 @@ TEST_P(FromStart, ASensorDeadFromTheFirstRowIsReplaced) {
   const std::vector<double> wanted = corrected(f, whole).correction_um;
   for (const Record* r : {&dead, &late})
     EXPECT_LT(largest_difference(corrected(f, *r).correction_um, wanted), 1.0);  // 1 um/K, six readings with 0.05 K
+  // and counts again once it has agreed for three fade times: its own steps from row to row
+  const Repaired r = repaired(f.safe, late);
+  for (std::size_t i = 200; i < 400; ++i) {
+    EXPECT_NEAR(r.readings.at("X2").values[i] - r.readings.at("X2").values[i - 1],
+                sensor(late, 2)[i] - sensor(late, 2)[i - 1], 1e-12)
+        << i;
+  }
 }
 
 TEST_P(FromStart, ShortGapsAndSinglesHoldTheLastReading) {

@@ -114,6 +114,21 @@ TEST(Lasso, TakesOrthogonalSensorsByTheirCorrelation) {
   EXPECT_THAT(select_by_lasso(records, {"e", "a", "b", "c"}, "d", 3).sensors, ElementsAre("b", "c", "a"));
 }
 
+// u and u + 0.3 v together say -3 v by coefficients of 10; the drift is -3 v + 5 w, and w alone correlates with it by 5/sqrt(34).
+TEST(Lasso, IsNotLedByLargeCoefficientsThatCancel) {
+  Record record{
+      .source = "cancel", .time_s = {}, .channels = {{"a", "K", {}}, {"b", "K", {}}, {"c", "K", {}}, {"d", "um", {}}}};
+  for (int i = 0; i < 64; ++i) {
+    record.time_s.push_back(i);
+    const double u = i & 1 ? 1 : -1, v = i & 2 ? 1 : -1, w = i & 4 ? 1 : -1;
+    record.channels[0].values.push_back(u);
+    record.channels[1].values.push_back(u + 0.3 * v);
+    record.channels[2].values.push_back(w);
+    record.channels[3].values.push_back(-3.0 * v + 5.0 * w);
+  }
+  EXPECT_THAT(select_by_lasso(std::span(&record, 1), {"a", "b", "c"}, "d", 1).sensors, ElementsAre("c"));
+}
+
 TEST(Clusters, TakeOneOfEachGroupThatMovesAlikeTheOneNearestToTheDrift) {
   // groups {X1, X4, X5}, {X2, X6}, {X3}, each about one base with noise; X4 and X6 with the least
   Record record = fixtures::sensor_record(6, 400, 6, 0.0);
