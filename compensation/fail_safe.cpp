@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/errors.hpp"
 #include "compensation/drift_model.hpp"
-#include "compensation/regression.hpp"
+#include "compensation/product_sums.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -20,6 +21,8 @@ constexpr double kJumpRoom = 2.0;   // times the largest
 constexpr double kSlewRoom = 2.0;   // times the largest rate of the prediction, over ten rows
 constexpr double kApartRoom = 2.0;  // times the largest distance on a run left out
 constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 1.5;  // below, instruments are what is seen
+constexpr double kMoved_K = 3.0, kNeverApart_K = 1e3;  // less than that is no movement to learn a relation from
+constexpr double kRidge = 0.03;                        // penalty of a relation, columns of unit deviation
 constexpr std::size_t kSlewRows = 10;
 constexpr double kSoonEnough = 1e-6;  // of a period: times that are sums of steps round
 constexpr double kUntold = 1e-6;      // pivot below which only others in doubt tell of an input
@@ -36,6 +39,43 @@ struct Range {
   [[nodiscard]] double width() const { return high - low; }
 };
 
+/// What the others say of an input: ridge regression, for what thermometers that move alike have in common holds in another hall too,
+/// and their small differences do not.
+struct Relation {
+  double intercept = 0.0;
+  std::vector<double> coefficient;  // of the others
+  [[nodiscard]] std::vector<double> predict(const Record& record, const std::vector<std::string>& others) const {
+    std::vector<double> predicted(record.n_samples(), intercept);
+    for (std::size_t j = 0; j < others.size(); ++j) {
+      const std::vector<double>& x = record.at(others[j]).values;
+      for (std::size_t i = 0; i < x.size(); ++i) predicted[i] += coefficient[j] * x[i];
+    }
+    return predicted;
+  }
+};
+Relation relation(std::span<const Record> records, const std::string& input, const std::vector<std::string>& others) {
+  const ProductSums sums = product_sums(records, others, input);
+  std::vector<int> columns(others.size());
+  std::iota(columns.begin(), columns.end(), 0);
+  const ScaledFit fit = fit_columns(sums.total(), columns, kRidge);
+  const double unit = sums.deviation(sums.n_inputs());
+  Relation r{.intercept = sums.mean(sums.n_inputs()) + unit * fit.intercept, .coefficient = {}};
+  for (std::size_t j = 0; j < others.size(); ++j) {
+    const auto k = static_cast<Eigen::Index>(j);
+    r.coefficient.push_back(unit * fit.slope(k) / sums.deviation(k));
+    r.intercept -= r.coefficient.back() * sums.mean(k);
+  }
+  return r;
+}
+
+bool moved(std::span<const Record> training, const std::string& input) {
+  Range range;
+  for (const Record& record : training) {
+    for (double x : record.at(input).values) range.take(x);
+  }
+  return range.width() > kMoved_K;
+}
+
 /// The largest distance between an input and what the others lead to, on records left out where there are two or more.
 double most_apart(std::span<const Record> training, const std::string& input, const std::vector<std::string>& others) {
   double apart = 0.0;
@@ -44,7 +84,7 @@ double most_apart(std::span<const Record> training, const std::string& input, co
     for (std::size_t r = 0; r < training.size(); ++r) {
       if (r != left_out || training.size() == 1) rest.push_back(training[r]);
     }
-    const std::vector<double> expected = fit_regression(rest, others, input).predict(training[left_out]);
+    const std::vector<double> expected = relation(rest, input, others).predict(training[left_out], others);
     const std::vector<double>& read = training[left_out].at(input).values;
     for (std::size_t i = 0; i < read.size(); ++i) {
       if (std::isfinite(read[i] - expected[i])) apart = std::max(apart, std::abs(read[i] - expected[i]));
@@ -125,8 +165,9 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
     for (std::size_t i = 0; i < d.size(); ++i) {
       drift.take(d[i]);
       if (i > 0) steps_s.push_back(t[i] - t[i - 1]);
-      if (i < kSlewRows) continue;
-      const double over = (d[i] - d[i - kSlewRows]) / (t[i] - t[i - kSlewRows]);
+      const std::size_t rows = std::min(kSlewRows, d.size() - 1);
+      if (i < rows || rows == 0) continue;
+      const double over = (d[i] - d[i - rows]) / (t[i] - t[i - rows]);
       if (std::isfinite(over)) rate = std::max(rate, std::abs(over));
     }
   }
@@ -161,17 +202,20 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
     g.most_jump = is_speed ? std::numeric_limits<double>::infinity() : std::max(kJumpRoom * jump, kLeastJump_K);
     std::vector<std::string> others;
     for (const std::string& other : inputs) {
-      if (other != input && !is_drive(training.front().at(other).unit)) others.push_back(other);
+      if (other != input && !is_drive(training.front().at(other).unit) && moved(training, other)) others.push_back(other);
     }
     if (!is_speed && !others.empty()) {
-      const Regression r = fit_regression(training, others, input);
+      // one that hardly moved in the training runs is told by its mean there, and in doubt only when it is missing or jumps
+      const bool has_moved = moved(training, input);
+      const Relation r = has_moved ? relation(training, input, others)
+                                   : Relation{0.5 * (range.low + range.high), std::vector<double>(others.size(), 0.0)};
       g.others_intercept = r.intercept;
       for (const std::string& other : inputs) {
         const auto at = std::find(others.begin(), others.end(), other);
         g.others_coefficient.push_back(at == others.end() ? 0.0
-                                                          : r.coefficients[static_cast<std::size_t>(at - others.begin())]);
+                                                          : r.coefficient[static_cast<std::size_t>(at - others.begin())]);
       }
-      g.most_apart = std::max(kApartRoom * most_apart(training, input, others), kLeastApart_K);
+      g.most_apart = has_moved ? std::max(kApartRoom * most_apart(training, input, others), kLeastApart_K) : kNeverApart_K;
     }
     safe.guards.push_back(std::move(g));
   }

@@ -58,7 +58,9 @@ TEST(Spindle22, RankingAndRegressionAgreeWithAnIndependentCalculation) {
   EXPECT_NEAR(cell(csv, "training runs at the same time", "rms_without_fail_safe_um"), 1.233022, 1e-5);
   // It keeps 10 um, but a baseline does better: that has to be said.
   for (const auto& strategy : summary["validation"]["strategies"]) {
-    if (strategy["name"] == "regression, grey grade") EXPECT_EQ(strategy["beaten_by"], "training runs at the same time");
+    if (strategy["name"] == "regression, grey grade") {
+      EXPECT_EQ(strategy["beaten_by"], "training runs at the same time");
+    }
   }
 
   ASSERT_EQ(run_program("select scenarios/spindle_22.yaml" + train + " -o " + folder.string()).exit_code, 0);
