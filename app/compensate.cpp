@@ -164,6 +164,13 @@ void compensate(const CompensateOptions& options) {
   if (options.through == "frame") return compensate_through_frame(scenario, options);
   const scenarios::Study& study = require_study(scenario, "compensate");
   const Cyclogram& cyclogram = scenario.cyclogram(options.cyclogram.empty() ? study.judge : options.cyclogram);
+  for (const std::string& name : study.train) {
+    if (scenario.cyclogram(name).sections == cyclogram.sections)
+      throw InputError(
+          study.where,
+          fmt::format("--cyclogram {}: it is what predictors are trained on ('{}'), and says nothing of how good they are",
+                      cyclogram.name, name));
+  }
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   const Model model = open_model(scenario, {&cyclogram}, progress, false);

@@ -7,6 +7,7 @@
 #include "app/record_study.hpp"
 #include "app/results.hpp"
 #include "app/validation_study.hpp"
+#include "compensation/drift_model.hpp"
 #include "compensation/ranking_stability.hpp"
 #include "compensation/regression_quality.hpp"
 #include "compensation/sensor_selection.hpp"
@@ -55,19 +56,24 @@ struct Chosen {
 void select(const RecordOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   const scenarios::Study& settings = require_study(scenario, "select");
-  const std::vector<Record> records = read_records(settings, options).train;
-  const std::vector<std::string> candidates = candidate_sensors(settings, records.front());
+  std::vector<Record> records = read_records(settings, options).train;
+  const std::vector<std::string> all = candidate_sensors(settings, records.front());
+  const std::vector<std::string> warnings = sensor_warnings(records, all), candidates = usable_sensors(records, all);
+  if (settings.count_from_start) {
+    for (Record& record : records) record = counted_from_start(std::move(record), settings.target);
+  }
   const GreyOptions how{.image = settings.image,
                         .quantity = settings.count_from_start ? Quantity::kRise : Quantity::kAsRecorded};
   const int n = settings.sensors_to_choose;
   const Ranking ranking = rank_channels(records, settings.target, candidates, how);
   const RankingStability stability = ranking_stability(records, settings.target, candidates, how, n);
-  const std::vector<std::string> warnings = sensor_warnings(records, candidates);
   std::vector<Chosen> chosen;
   for (const Selector& selector : selectors()) {
     chosen.push_back({selector.name, {}, {}});
     try {
-      chosen.back().selection = selector.select(records, candidates, settings.target, n);
+      chosen.back().selection = selector.name == "grey grade"
+                                    ? select_by_grey_grade(records, candidates, settings.target, n, how)
+                                    : selector.select(records, candidates, settings.target, n);
     } catch (const InputError& e) {
       chosen.back().failure = e.what();
     }

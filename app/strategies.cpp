@@ -53,7 +53,7 @@ FittedStrategy of_formula(DriftModel model, std::string reason, const StrategySe
   FittedStrategy f;
   model.from_start = s.count_from_start;
   for (const std::string& input : model.inputs()) {
-    if (std::find(s.candidates.begin(), s.candidates.end(), input) != s.candidates.end()) f.sensors.push_back(input);
+    if (input != s.speed) f.sensors.push_back(input);
   }
   f.reason = std::move(reason);
   f.predict = [model](const ObservedRun& run) { return model.predict(run.readings); };
@@ -109,6 +109,8 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer->factors()));
               observer = std::make_shared<Observer>(observer->with_sensors(selection.sensors));
             }
+            if (!s.hall.empty() && std::find(f.sensors.begin(), f.sensors.end(), s.hall) == f.sensors.end())
+              f.sensors.push_back(s.hall);
             f.predict = [observer](const ObservedRun& run) { return observer->follow(run).drift_um; };
             return f;
           }};
@@ -133,8 +135,17 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
   list.push_back(baseline("training runs at the same time", s, [s](const std::vector<Record>& training, const Record& run) {
     return baseline_same_time(training, run, s.target);
   }));
-  list.push_back(regression_on("one thermometer", s, by_record_selector(select_by_grey_grade, 1)));
+  const auto by_grey_grade = [s](int n) {
+    return [s, n](std::span<const ObservedRun>, const std::vector<Record>& records) {
+      return select_by_grey_grade(records, s.candidates, s.target, n, {.image = s.image});
+    };
+  };
+  list.push_back(regression_on("one thermometer", s, by_grey_grade(1)));
   for (const Selector& selector : selectors()) {
+    if (selector.name == "grey grade") {
+      list.push_back(regression_on("regression, grey grade", s, by_grey_grade(s.n_sensors)));
+      continue;
+    }
     list.push_back(regression_on("regression, " + selector.name, s, by_record_selector(selector.select, s.n_sensors)));
   }
   if (s.physics) {

@@ -7,6 +7,7 @@
 
 #include "compensation/drift_model.hpp"
 #include "compensation/fail_safe.hpp"
+#include "compensation/grey_relational.hpp"
 #include "compensation/observer.hpp"
 
 namespace driftwright::app {
@@ -25,9 +26,10 @@ struct StrategySettings {
   std::vector<std::string> candidates;  ///< thermometers to choose from
   int n_sensors = 4;
   bool count_from_start = false;
-  std::string speed, hall;  ///< channels; empty: there is none
-  double reading_K = 0.1;   ///< 1 sigma of a thermometer, for the observer
-  double drift_um = 1.0;    ///< 1 sigma of the indicator in the training runs
+  compensation::Image image = compensation::Image::kAutomatic;  ///< of grey grades
+  std::string speed, hall;                                      ///< channels; empty: there is none
+  double reading_K = 0.1;                                       ///< 1 sigma of a thermometer, for the observer
+  double drift_um = 1.0;                                        ///< 1 sigma of the indicator in the training runs
   std::optional<Physics> physics;
 };
 

@@ -8,6 +8,8 @@
 #include <exception>
 #include <limits>
 
+#include "base/errors.hpp"
+
 namespace driftwright::app {
 namespace {
 
@@ -34,6 +36,7 @@ Case judge(const FittedStrategy& strategy, std::size_t index, const ObservedRun&
   int n_inside = 0, n = 0;
   for (std::size_t i = 0; i < drift_um.size(); ++i) {
     left.push_back(drift_um[i] - correction.correction_um[i]);
+    if (std::isfinite(left.back())) c.harm_um = std::max(c.harm_um, std::abs(left.back()) - std::abs(drift_um[i]));
     const double off = drift_um[i] - predicted[i];
     if (std::isnan(drift_um[i])) continue;
     unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
@@ -59,6 +62,18 @@ struct Failure {
 constexpr Failure kFailures[] = {
     {SensorFailure::kStuck, "stuck"}, {SensorFailure::kOpen, "open"}, {SensorFailure::kDetached, "fallen off"}};
 
+/// A hall whose thermometer gives nothing new from a time on: a model takes its last reading.
+TimeSeries held_from(const TimeSeries& hall, double from_s) {
+  TimeSeries held;
+  for (std::size_t i = 0; i < hall.time_s.size() && hall.time_s[i] < from_s; ++i) {
+    held.time_s.push_back(hall.time_s[i]);
+    held.value.push_back(hall.value[i]);
+  }
+  held.time_s.push_back(from_s);
+  held.value.push_back(hall.at(from_s));
+  return held;
+}
+
 /// What to run one strategy on: the run as it is, and with each of its sensors failed in each way.
 std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings& settings, const FittedStrategy& strategy,
                                                             const JudgedRunOfMachine& judged) {
@@ -71,6 +86,7 @@ std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings
       if (failure.kind == SensorFailure::kDetached && (settings.elsewhere.empty() || settings.elsewhere == sensor)) continue;
       ObservedRun run = judged.run;
       run.readings = with_failed_sensor(std::move(run.readings), sensor, failure.kind, from_s, settings.elsewhere);
+      if (sensor == settings.strategies.hall) run.hall = held_from(run.hall, from_s);
       list.emplace_back(fmt::format("{} {}", sensor, failure.word), std::move(run));
     }
   }
@@ -88,24 +104,23 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const Worst all = worst_of(s, [](const Case&) { return true; });
   if (!all.peak) return;
   const auto keeps = [&](const Case& c) { return c.after.peak_abs <= tolerance; };
-  const auto harms = [&](const Case& c) { return c.after.peak_abs > std::max(tolerance, c.before.peak_abs); };
+  // a little more than before while the drift passes through 0 is no harm
+  const auto harms = [&](const Case& c) { return c.after.peak_abs > tolerance && c.harm_um > tolerance; };
   if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
     s.safety = Safety::kSafe;
     s.why = fmt::format(
         "never more than {:.1f} um left of the drift; the most {}{}", all.peak->after.peak_abs, where_of(m, *all.peak),
-        m.settings.fails_at
-            ? ""
-            : fmt::format("; {} run{} and no failing sensor were tried", m.runs.size(), m.runs.size() == 1 ? "" : "s"));
+        m.runs.size() > 2 ? ""
+                          : fmt::format("; only {} run{} tried", m.runs.size(), m.runs.size() == 1 ? " was" : "s were"));
     return;
   }
   const auto harm = std::max_element(s.cases.begin(), s.cases.end(), [&](const Case& a, const Case& b) {
-    return (harms(a) ? a.after.peak_abs - a.before.peak_abs : -1.0) <
-           (harms(b) ? b.after.peak_abs - b.before.peak_abs : -1.0);
+    return (harms(a) ? a.harm_um : 0.0) < (harms(b) ? b.harm_um : 0.0);
   });
   if (harms(*harm)) {
     s.safety = Safety::kUnsafe;
-    s.why = fmt::format("it makes things worse: {:.1f} um instead of {:.1f} um {}", harm->after.peak_abs,
-                        harm->before.peak_abs, where_of(m, *harm));
+    s.why = fmt::format("it makes things worse, by up to {:.1f} um at one moment ({:.1f} um left of a peak of {:.1f} um) {}",
+                        harm->harm_um, harm->after.peak_abs, harm->before.peak_abs, where_of(m, *harm));
     return;
   }
   const std::vector<std::string> seasons = seasons_of(m);
@@ -177,7 +192,8 @@ double overall_rms(const JudgedStrategy& strategy) {
 
 const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::string& family) {
   for (const JudgedStrategy& s : matrix.strategies) {
-    if (s.fitted.is_baseline && s.fitted.name != kNoCorrection) continue;
+    const bool does_nothing = s.fitted.name == kNoCorrection;
+    if (!does_nothing && (s.fitted.is_baseline || s.safety == Safety::kUnsafe)) continue;
     const Worst w = worst_of(s, [&](const Case& c) { return c.failed.empty() && matrix.runs[c.run].family == family; });
     if (w.peak && w.peak->after.peak_abs <= matrix.settings.tolerance_um) return &s;
   }
@@ -190,7 +206,8 @@ const JudgedStrategy* best_strategy(const StrategyMatrix& matrix) {
   for (const JudgedStrategy& s : matrix.strategies) {
     if (s.fitted.is_baseline) continue;
     const Worst w = worst_of(s, [](const Case& c) { return c.failed.empty(); });
-    if (w.peak && w.left < least) {
+    if (!w.peak) continue;
+    if (!best || s.safety < best->safety || (s.safety == best->safety && w.left < least)) {
       least = w.left;
       best = &s;
     }
@@ -211,6 +228,14 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
                            .at(target)
                            .values);
   }
+  for (std::size_t r = 0; r < drift_um.size(); ++r) {
+    if (score(drift_um[r]).n == 0)
+      throw InputError(fmt::format("{}: '{}' has no value in any row; there is nothing to judge by", matrix.runs[r].name,
+                                   settings.strategies.target));
+  }
+  if (std::all_of(fitted.strategies.begin(), fitted.strategies.end(), [](const FittedStrategy& f) { return f.is_baseline; }))
+    throw InputError(
+        fmt::format("no strategy could be fitted; {}: {}", matrix.left_out.front().name, matrix.left_out.front().why));
   const std::size_t n_runs = matrix.runs.size(), n_jobs = fitted.strategies.size() * n_runs;
   std::vector<std::vector<Case>> cases(n_jobs);
   std::vector<std::exception_ptr> failures(n_jobs);

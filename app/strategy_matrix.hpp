@@ -29,6 +29,7 @@ struct Case {
   compensation::Score before, after;  ///< of the drift; of what the correction in force leaves
   double peak_unguarded_um = 0.0;     ///< of what the bare prediction leaves; infinite where it is missing
   double rms_unguarded_um = 0.0;      ///< the same, of the rows that it predicts
+  double harm_um = 0.0;               ///< the most by which it leaves more than there would be without it, at one moment
   double first_hour_um = 0.0,
          whole_um = 0.0;            ///< ranges of what is left within 60 min and in all, as ISO 230-3 asks of drift
   double covered = 0.0;             ///< share of rows whose drift is inside the prediction interval; NaN without one
@@ -79,9 +80,9 @@ struct Worst {
 [[nodiscard]] std::vector<std::string> families_of(const StrategyMatrix& matrix);
 [[nodiscard]] std::vector<std::string> seasons_of(const StrategyMatrix& matrix);
 
-/// The simplest strategy, no baseline, that keeps the tolerance in a family with intact sensors in all seasons; null: none.
+/// The simplest strategy, no baseline and not unsafe, that keeps the tolerance in a family with intact sensors in all seasons; null: none.
 [[nodiscard]] const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::string& family);
-/// The one that leaves the smallest share in its worst case with intact sensors, baselines apart; null: there is none.
+/// Of those with the best verdict, the one that leaves the smallest share in its worst case with intact sensors; null: there is none.
 [[nodiscard]] const JudgedStrategy* best_strategy(const StrategyMatrix& matrix);
 
 }  // namespace driftwright::app

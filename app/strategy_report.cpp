@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "output/csv_row.hpp"
 #include "output/drift_model_files.hpp"
 
 namespace driftwright::app {
@@ -120,22 +121,23 @@ output::Table matrix_table(const StrategyMatrix& m) {
 output::Table worst_table(const StrategyMatrix& m) {
   output::Table table{.caption = "Worst case of each strategy with all sensors intact.",
                       .headers = {"strategy", "run", "peak before [um]", "peak left [um]", "removed [%]", "RMS left [um]",
-                                  "range in 60 min [um]", "range in all [um]", "peak with failed sensor [um]",
-                                  "the same without fail-safe [um]"},
+                                  "without fail-safe [um]", "range in 60 min [um]", "range in all [um]",
+                                  "peak with failed sensor [um]", "without fail-safe then [um]"},
                       .rows = {}};
   for (const JudgedStrategy& s : m.strategies) {
     const Worst w = worst_of(s, is_intact), failed = worst_of(s, [](const Case&c) { return !is_intact(c); });
     if (!w.peak) continue;
-    double bare = 0.0;
+    double bare = 0.0, bare_intact = 0.0;
     for (const Case& c : s.cases) {
-      if (!is_intact(c)) bare = std::max(bare, c.peak_unguarded_um);
+      double& worst = is_intact(c) ? bare_intact : bare;
+      worst = std::max(worst, c.peak_unguarded_um);
     }
     const Case& c = *w.peak;
     const JudgedRunOfMachine& r = m.runs[c.run];
     table.rows.push_back({s.fitted.name, r.season.empty() ? r.name : fmt::format("{}, {}", r.name, r.season),
                           um(c.before.peak_abs), um(c.after.peak_abs), fmt::format("{:.0f}", 100.0 * (1.0 - c.left())),
-                          um(c.after.rmse), um(c.first_hour_um), um(c.whole_um),
-                          failed.peak ? um(failed.peak->after.peak_abs) : "",
+                          um(c.after.rmse), std::isinf(bare_intact) ? "no value" : um(bare_intact), um(c.first_hour_um),
+                          um(c.whole_um), failed.peak ? um(failed.peak->after.peak_abs) : "",
                           failed.peak ? (std::isinf(bare) ? "no value" : um(bare)) : ""});
   }
   return table;
@@ -168,7 +170,9 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
       "any season, then of each season{}. Left: the largest share of the peak. RMS: over all rows. 95 %: half width of the "
       "prediction interval, from training "
       "runs left out, and the share of rows that it covers. Fitted on {} training runs that are none of these.",
-      has_failures(m) ? ", then with each sensor of the strategy failed half-way, stuck, open or fallen off" : "",
+      has_failures(m)
+          ? ", then with each sensor of the strategy failed half-way in the first season, stuck, open or fallen off"
+          : "",
       m.training.size())});
   blocks.emplace_back(matrix_table(m));
   output::Table enough{
@@ -190,6 +194,20 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
       output::Paragraph{"Ranges are those ISO 230-3 asks of drift, here of what is left: within 60 min, and in all. Without "
                         "fail-safe: of the bare prediction."});
   blocks.emplace_back(worst_table(m));
+  output::Table doubted{
+      .caption = "What fail-safes doubted though every sensor was intact: false alarms, which cost some of the correction.",
+      .headers = {"strategy", "runs", "first of them"},
+      .rows = {}};
+  for (const JudgedStrategy& s : m.strategies) {
+    int n = 0;
+    std::string first;
+    for (const Case& c : s.cases) {
+      if (!is_intact(c) || c.events.empty()) continue;
+      if (n++ == 0) first = fmt::format("{}: {}", m.runs[c.run].name, c.events.front());
+    }
+    if (n > 0) doubted.rows.push_back({s.fitted.name, fmt::format("{}", n), first});
+  }
+  if (!doubted.rows.empty()) blocks.emplace_back(std::move(doubted));
   output::Bars bars{.caption = "Largest share of the peak that is left in any run, sensors intact [%].", .bars = {}};
   for (const JudgedStrategy& s : m.strategies) {
     const double left = 100.0 * worst_of(s, is_intact).left;
@@ -259,16 +277,19 @@ std::string strategy_csv(const StrategyMatrix& m) {
   std::string csv =
       "strategy,family,season,run,failed_sensor,peak_before_um,rms_before_um,peak_left_um,rms_left_um,mean_left_um,removed_"
       "percent,range_60min_um,range_um,"
-      "peak_without_fail_safe_um,rms_without_fail_safe_um,covered_percent,rows\n";
+      "peak_without_fail_safe_um,rms_without_fail_safe_um,covered_percent,rows,harm_um,doubted\n";
   for (const JudgedStrategy& s : m.strategies) {
     for (const Case& c : s.cases) {
       const JudgedRunOfMachine& r = m.runs[c.run];
-      csv += fmt::format("\"{}\",{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.4f},{:.4f},{},{},{},{}\n",
-                         s.fitted.name, r.family, r.season, r.name, c.failed, c.before.peak_abs, c.before.rmse,
-                         c.after.peak_abs, c.after.rmse, c.after.mean, 100.0 * (1.0 - c.left()), c.first_hour_um, c.whole_um,
-                         std::isfinite(c.peak_unguarded_um) ? fmt::format("{:.4f}", c.peak_unguarded_um) : "",
-                         std::isfinite(c.rms_unguarded_um) ? fmt::format("{:.6f}", c.rms_unguarded_um) : "",
-                         std::isfinite(c.covered) ? fmt::format("{:.2f}", 100.0 * c.covered) : "", c.after.n);
+      csv +=
+          fmt::format("\"{}\",{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.4f},{:.4f},{},{},{},{},{:.4f},{}\n",
+                      s.fitted.name, output::csv_cell(r.family), output::csv_cell(r.season), output::csv_cell(r.name),
+                      output::csv_cell(c.failed), c.before.peak_abs, c.before.rmse, c.after.peak_abs, c.after.rmse,
+                      c.after.mean, 100.0 * (1.0 - c.left()), c.first_hour_um, c.whole_um,
+                      std::isfinite(c.peak_unguarded_um) ? fmt::format("{:.4f}", c.peak_unguarded_um) : "",
+                      std::isfinite(c.rms_unguarded_um) ? fmt::format("{:.6f}", c.rms_unguarded_um) : "",
+                      std::isfinite(c.covered) ? fmt::format("{:.2f}", 100.0 * c.covered) : "", c.after.n, c.harm_um,
+                      output::csv_cell(fmt::format("{}", fmt::join(c.events, "; "))));
     }
   }
   return csv;

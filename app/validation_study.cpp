@@ -1,6 +1,7 @@
 #include "app/validation_study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +74,7 @@ std::optional<Physics> physics_of(const Scenario& scenario, const Model& model, 
   const double hall_K = scenarios::felt_hall_at_start_K(*scenario.machine);
   const ModalPredictor modes =
       make_ritz_predictor(reduced->system, reduced->start, kObserverModes, {.drive = {}, .hall_K = hall_K});
-  return Physics{scattered(modes.system, scatter, seed), modes.start, hall_K};
+  return Physics{scattered(modes.system, scatter, seed, true), modes.start, hall_K};
 }
 
 std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record) {
@@ -85,6 +86,22 @@ std::vector<std::string> candidate_sensors(const scenarios::Study& study, const 
   }
   if (names.empty()) throw InputError(fmt::format("{}: no temperature channel (degC or K) to choose from", record.source));
   return names;
+}
+
+std::vector<std::string> usable_sensors(const std::vector<Record>& records, const std::vector<std::string>& candidates) {
+  std::vector<std::string> usable;
+  for (const std::string& name : candidates) {
+    const bool is_there = std::all_of(records.begin(), records.end(), [&](const Record& record) {
+      const std::vector<double>& x = record.at(name).values;
+      const auto n_missing = std::count_if(x.begin(), x.end(), [](double v) { return std::isnan(v); });
+      return 2 * static_cast<std::size_t>(n_missing) < x.size();
+    });
+    if (is_there) usable.push_back(name);
+  }
+  if (usable.empty())
+    throw InputError(
+        fmt::format("each of the candidates ({}) is missing in half the rows of a record", fmt::join(candidates, ", ")));
+  return usable;
 }
 
 StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model, Progress& progress) {
@@ -139,6 +156,7 @@ StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model,
   how.candidates = candidates;
   how.n_sensors = study.sensors_to_choose;
   how.count_from_start = true;
+  how.image = study.image;
   how.speed = speed_channel(runs.front().readings);
   how.hall = hall;
   how.reading_K = std::max(1e-3, std::hypot(v.noise_K, kRounding * v.resolution_K));
@@ -171,12 +189,14 @@ StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<R
   MatrixSettings settings;
   StrategySettings& how = settings.strategies;
   how.target = study.target;
-  how.candidates = candidate_sensors(study, training.front());
+  how.candidates = usable_sensors(training, candidate_sensors(study, training.front()));
   how.n_sensors = study.sensors_to_choose;
   how.count_from_start = study.count_from_start;
+  how.image = study.image;
   how.speed = speed_channel(training.front());
   how.hall = hall_channel(scenario, training.front());
   settings.tolerance_um = study.tolerance_um;
+  settings.fails_at = 0.5;
   return judge_strategies(settings, std::move(runs), std::move(judged));
 }
 

@@ -25,4 +25,8 @@ namespace driftwright::app {
 /// @throws InputError  when there is none
 [[nodiscard]] std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record);
 
+/// Those with a value in more than half of the rows of each record. @throws InputError  when there is none
+[[nodiscard]] std::vector<std::string> usable_sensors(const std::vector<Record>& records,
+                                                      const std::vector<std::string>& candidates);
+
 }  // namespace driftwright::app

@@ -45,10 +45,17 @@ void scale(solver::Exchange<Eigen::MatrixXd>& exchange, double factor) {
   exchange.offset_sum *= factor;
 }
 
-solver::ReducedSystem scattered(solver::ReducedSystem system, double sigma, int seed) {
+solver::ReducedSystem scattered(solver::ReducedSystem system, double sigma, int seed, bool with_bodies) {
   Random random(static_cast<std::uint64_t>(seed), 2);
-  for (auto& s : system.sources) s.load *= std::exp(sigma * random.normal());
-  for (auto& e : system.exchanges) scale(e, std::exp(sigma * random.normal()));
+  const auto factor = [&] { return std::exp(sigma * random.normal()); };
+  for (auto& s : system.sources) s.load *= factor();
+  for (auto& e : system.exchanges) scale(e, factor());
+  if (!with_bodies) return system;
+  system.conduction *= factor();
+  const double rates = factor();  // of a machine of less capacity: all flows grow, levels stay
+  system.conduction *= rates;
+  for (auto& s : system.sources) s.load *= rates;
+  for (auto& e : system.exchanges) scale(e, rates);
   return system;
 }
 

@@ -9,7 +9,6 @@
 #include <numeric>
 
 #include "base/errors.hpp"
-#include "compensation/grey_relational.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -17,6 +16,7 @@ namespace {
 constexpr double kMostSets = 2e6;
 constexpr int kPathSteps = 400;            // of the LASSO
 constexpr double kSmallestPenalty = 1e-5;  // of the largest
+constexpr int kMostSweeps = 300;           // per step: sensors that move as one trade their shares without end
 constexpr double kConverged = 1e-9;        // change of a scaled coefficient in a sweep
 
 /// Correlations of inputs and target (last) over all records.
@@ -58,8 +58,8 @@ std::vector<int> by_correlation(const Eigen::MatrixXd& r, std::vector<int> colum
 }  // namespace
 
 Selection select_by_grey_grade(std::span<const Record> records, const std::vector<std::string>& candidates,
-                               const std::string& target, int n) {
-  const Ranking ranking = rank_channels(records, target, candidates);
+                               const std::string& target, int n, const GreyOptions& options) {
+  const Ranking ranking = rank_channels(records, target, candidates, options);
   Selection s{.sensors = best(ranking, n), .reason = {}};
   std::vector<std::string> grades;
   for (std::size_t i = 0; i < s.sensors.size(); ++i) grades.push_back(fmt::format("{:.3f}", *ranking.channels[i].grade));
@@ -203,7 +203,7 @@ Selection select_by_lasso(std::span<const Record> records, const std::vector<std
   for (int step = 1; step <= kPathSteps && static_cast<int>(active.size()) < n; ++step) {
     penalty = largest * std::pow(kSmallestPenalty, static_cast<double>(step) / kPathSteps);
     double change = 1.0;
-    while (change > kConverged) {
+    for (int sweep = 0; sweep < kMostSweeps && change > kConverged; ++sweep) {
       change = 0.0;
       for (int j : columns) {
         const double pull = r(j, y) - r.row(j).head(y).dot(b) + b(j);
@@ -223,9 +223,14 @@ Selection select_by_lasso(std::span<const Record> records, const std::vector<std
 }
 
 const std::vector<Selector>& selectors() {
-  static const std::vector<Selector> all = {{"grey grade", select_by_grey_grade}, {"correlation", select_by_correlation},
-                                            {"clusters", select_by_clusters},     {"forward", select_forward},
-                                            {"best set", select_best_set},        {"LASSO", select_by_lasso}};
+  static const std::vector<Selector> all = {
+      {"grey grade", [](auto records, const auto& candidates, const auto& target,
+                        int n) { return select_by_grey_grade(records, candidates, target, n); }},
+      {"correlation", select_by_correlation},
+      {"clusters", select_by_clusters},
+      {"forward", select_forward},
+      {"best set", select_best_set},
+      {"LASSO", select_by_lasso}};
   return all;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compensation/grey_relational.hpp"
 #include "compensation/product_sums.hpp"
 
 namespace driftwright::compensation {
@@ -23,7 +24,7 @@ struct Selector {
 
 /// Deng's grey relational grade.
 [[nodiscard]] Selection select_by_grey_grade(std::span<const Record> records, const std::vector<std::string>& candidates,
-                                             const std::string& target, int n);
+                                             const std::string& target, int n, const GreyOptions& options = {});
 /// Largest |correlation| with the target.
 [[nodiscard]] Selection select_by_correlation(std::span<const Record> records, const std::vector<std::string>& candidates,
                                               const std::string& target, int n);

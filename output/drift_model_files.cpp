@@ -98,7 +98,10 @@ std::string formula_text(const DeployedModel& d) {
                         unit_word(m.target_unit), per, term_text(m, t));
   }
   if (std::any_of(m.terms.begin(), m.terms.end(), [](const auto& t) { return t.lag_s > 0.0; })) {
-    text += "LAG(tau, x): y += (1 - exp(-dt / tau)) * (x - y) at each call; readings settled at the start, speeds from 0.\n";
+    text +=
+        "LAG(tau, x): y += (1 - exp(-dt / tau)) * (u - y) at each call, u the speed of the call before, or the mean of this "
+        "reading and the one "
+        "before; readings settled at the start, speeds from 0.\n";
   }
   if (m.from_start) text += "Temperatures count from their first reading of the run, and so does the drift.\n";
   if (std::isfinite(d.interval_um))
