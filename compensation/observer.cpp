@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <stdexcept>
 
 #include "base/errors.hpp"
@@ -47,6 +48,7 @@ class Observer::Run {
     belief_.covariance(zero_, zero_) = std::pow(kZero * 1e-6 * o_.settings_.drift_um, 2);
     live_.assign(o_.sensors_.size(), true);
     mean_innovation_.assign(o_.sensors_.size(), 0.0);
+    last_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
     for (const std::string& name : o_.sensors_) readings_.push_back(&run.readings.at(name).values);
     if (with_drift_) {
       drift_um_ = &run.readings.at(o_.drift_).values;
@@ -70,6 +72,8 @@ class Observer::Run {
             fmt::format("{} from {:.0f} min", o_.sensors_[static_cast<std::size_t>(suspect)], t[i] / 60.0));
         belief_ = history_.front().belief;
         mean_innovation_.assign(mean_innovation_.size(), 0.0);
+        last_s_.assign(last_s_.size(), std::numeric_limits<double>::quiet_NaN());
+        last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
         for (std::size_t k = history_.front().row; k <= i; ++k) take_row(k);
         history_.clear();
       }
@@ -102,7 +106,7 @@ class Observer::Run {
       Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
       h.head(n_) = s_.outputs.state.col(output);
       const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * run_.hall.at(t[i]) + s_.reference_K - 273.15;
-      const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, i);
+      const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, t[i], last_s_[k]);
       const double innovation = read - expected_K, spread = std::sqrt(h.dot(belief_.covariance * h) + variance);
       mean_innovation_[k] = kMemory * mean_innovation_[k] + (1.0 - kMemory) * innovation / spread;
       if (std::abs(innovation) < kOutlier * spread) correct(h, innovation, variance);
@@ -110,17 +114,18 @@ class Observer::Run {
     if (with_drift_ && std::isfinite((*drift_um_)[i])) {
       // counts from the start of the run; where it is missing there, from the model's at its first value
       if (i == first_drift_) drift_zero_m_ = 1e-6 * (*drift_um_)[i] - (i > 0 ? drift_m(t[i]) : 0.0);
-      const double variance = 1e-12 * variance_of(o_.settings_.drift_um, o_.settings_.model_um, i);
+      const double variance = 1e-12 * variance_of(o_.settings_.drift_um, o_.settings_.model_um, t[i], last_drift_s_);
       Eigen::VectorXd h = drift_gradient();
       h(zero_) = 1.0;
       correct(h, 1e-6 * (*drift_um_)[i] - drift_zero_m_ - drift_m(t[i]) - belief_.mean(zero_), variance);
     }
   }
 
-  /// Of a row's white error and the model's own, which rows near each other share.
-  [[nodiscard]] double variance_of(double white, double model, std::size_t i) const {
+  /// Of a reading's white error and the model's own, which readings near each other share. @param last_s  time of the one before; NaN: none
+  [[nodiscard]] double variance_of(double white, double model, double t_s, double& last_s) const {
     const std::vector<double>& t = run_.readings.time_s;
-    const double step_s = i > 0 ? t[i] - t[i - 1] : t[1] - t[0];
+    const double step_s = std::isnan(last_s) ? t[1] - t[0] : t_s - last_s;
+    last_s = t_s;
     return white * white + model * model * std::max(1.0, o_.settings_.model_holds_s / step_s);
   }
 
@@ -252,6 +257,8 @@ class Observer::Run {
   const std::vector<double>* drift_um_ = nullptr;
   std::vector<bool> live_;
   std::vector<double> mean_innovation_;
+  std::vector<double> last_s_;  // of each sensor's readings
+  double last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
   std::deque<Snapshot> history_;
   std::map<std::vector<double>, Step> steps_;
 };

@@ -231,18 +231,25 @@ TEST(Observer, DropsASensorThatStaysBehindSlowly) {
 
 TEST(Observer, MissingReadingsDoNoHarm) {
   const solver::ReducedSystem machine = with_motor(1.2);
-  ObservedRun run = run_of(machine, 60.0, 0.0, 0.1);
-  const double whole_um = worst_um(observer_of(three_parts(), {"T1", "T2"}).follow(run).drift_um, run);
-  Random random(3);
-  for (std::size_t j = 0; j < 2; ++j) {
-    for (double& v : run.readings.channels[j].values) {
-      if (random.chance(0.3)) v = NAN;
+  const ObservedRun whole = run_of(machine, 60.0, 0.0, 0.1);
+  const double whole_um = worst_um(observer_of(three_parts(), {"T1", "T2"}).follow(whole).drift_um, whole);
+  ObservedRun run = whole;
+  double mean_um = 0.0;
+  constexpr int kDraws = 10;
+  for (int seed = 1; seed <= kDraws; ++seed) {
+    run = whole;
+    Random random(static_cast<std::uint64_t>(seed));
+    for (std::size_t j = 0; j < 2; ++j) {
+      for (double& v : run.readings.channels[j].values) {
+        if (random.chance(0.3)) v = NAN;
+      }
     }
+    run.readings.channels[0].values[0] = NAN;
+    const Observation o = observer_of(three_parts(), {"T1", "T2"}).follow(run);
+    EXPECT_THAT(o.distrusted, IsEmpty()) << seed;
+    mean_um += worst_um(o.drift_um, run) / kDraws;
   }
-  run.readings.channels[0].values[0] = NAN;
-  const Observation o = observer_of(three_parts(), {"T1", "T2"}).follow(run);
-  EXPECT_THAT(o.distrusted, IsEmpty());
-  EXPECT_LT(worst_um(o.drift_um, run), 1.5 * whole_um);
+  EXPECT_LT(mean_um, 1.5 * whole_um);  // white noise alone would make it 1 / sqrt(0.7) = 1.2
   for (Channel& c : run.readings.channels) {
     if (c.name != "drift_y") std::fill(c.values.begin(), c.values.end(), NAN);
   }
@@ -266,11 +273,9 @@ TEST(Observer, TwiceAsDenseRowsTellTheSame) {
   const ObservedRun coarse = run_of(machine, 60.0), dense = run_of(machine, 30.0);
   const std::vector<double> a = observer_of(three_parts(), {}).follow(coarse).drift_um,
                             b = observer_of(three_parts(), {}).follow(dense).drift_um;
-  const std::vector<double> c = observer_of(three_parts(), {"T1", "T3"}, {.reading_K = 0.1}).follow(coarse).drift_um,
-                            d = observer_of(three_parts(), {"T1", "T3"},
-                                            {.reading_K = 0.1 * std::sqrt(2.0), .model_K = 0.1 * std::sqrt(2.0)})
-                                    .follow(dense)
-                                    .drift_um;
+  const std::vector<double>
+      c = observer_of(three_parts(), {"T1", "T3"}, {.reading_K = 0.1}).follow(coarse).drift_um,
+      d = observer_of(three_parts(), {"T1", "T3"}, {.reading_K = 0.1 * std::sqrt(2.0)}).follow(dense).drift_um;
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_NEAR(a[i], b[2 * i], 1e-9);
     EXPECT_NEAR(c[i], d[2 * i], 0.8);  // of a drift error of 12 um without sensors
