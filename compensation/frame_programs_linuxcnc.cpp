@@ -7,10 +7,11 @@
 namespace driftwright::compensation {
 namespace {
 
-// A preview touches nothing and must not refuse: #<_task> is 0 there.
+// A preview touches nothing and must not refuse: #<_task> is 0 there. M66 waits for what is queued, which ABORT would drop.
 std::string refusal(std::size_t label, const std::string& condition, const std::string& way_out, const std::string& words) {
-  return fmt::format("o{} if [[#<_task> EQ 1] AND [{}]]\n{}G54\n(ABORT, {}; the old G59.3 stays)\nM2\no{} endif\n", label,
-                     condition, way_out, words, label);
+  return fmt::format(
+      "o{} if [[#<_task> EQ 1] AND [{}]]\n{}G54\nM66 E0 L0\n(ABORT, {}; the old G59.3 stays)\nM2\no{} endif\n", label,
+      condition, way_out, words, label);
 }
 
 // Touches into #base .. #base + 4, the middle into #base + 5 and #base + 6.
