@@ -14,10 +14,11 @@ namespace {
 
 compensation::FrameProgram frame_program(const scenarios::TableSettings& s, const TableStudy& study,
                                          const output::Provenance& made_by) {
-  compensation::FrameProgram program{.frame = study.frame, .control = study.control};
-  program.rings = {{s.rings.front().name, s.rings.front().at_m}, {s.rings.back().name, s.rings.back().at_m}};
+  compensation::FrameProgram program{.frame = study.frame, .control = study.control, .against_dk = s.against_dk};
+  for (const scenarios::TableRing& ring : s.rings) program.rings.push_back({ring.name, ring.at_m});
   program.temperature_K = study.run.record.at(s.thermometer).values[study.n_judged - 1] + kZeroCelsius_K;
   program.free_diameter_m = s.probe.free_diameter_m;
+  program.ball_diameter_m = s.ball_diameter_m;
   program.feed_mm_min = 6e4 * s.probe.feeds_m_s.front();
   program.velocity_m_s = s.velocity_m_s;
   program.slew = s.slew;
@@ -45,17 +46,22 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
   folder.write_text("record.csv", record_csv(study.run.record, comments("cyclogram " + scenario.table->cyclogram)));
   folder.write_text("strategies.csv", strategies_csv(study, comments("largest position error anywhere on the table")));
   folder.write_text("probe.csv", probe_csv(study, comments("largest error of touches")));
-  for (const compensation::ProgramFile& file :
-       compensation::frame_programs(frame_program(*scenario.table, study, folder.made_by())))
-    folder.write_text("control/" + file.name, file.text);
+  const compensation::FrameProgram program = frame_program(*scenario.table, study, folder.made_by());
+  const std::string why_no_program = compensation::why_no_program(program.rings);
+  if (why_no_program.empty()) {
+    for (const compensation::ProgramFile& file :
+         compensation::frame_programs(compensation::in_machine(program, scenario.table->origin_m)))
+      folder.write_text("control/" + file.name, file.text);
+  }
   folder.write_text("summary.json", output::json_text(table_json(scenario, study, folder.made_by())));
   folder.write_text("report.html", output::render_html(table_report(scenario, study, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}  {}{}\n  results in {}: report.html, {}record.csv, summary.json, control/\n{}",
-             table_terminal(scenario, study), machine.words(), machine.was_known ? " (known from disk)" : "",
-             shown_path(folder.target()), fields ? fields->file_to_open() + " (ParaView), " : "",
+  fmt::print("{}  {}{}\n  results in {}: report.html, {}record.csv, summary.json{}\n{}", table_terminal(scenario, study),
+             machine.words(), machine.was_known ? " (known from disk)" : "", shown_path(folder.target()),
+             fields ? fields->file_to_open() + " (ParaView), " : "", why_no_program.empty() ? ", control/" : "",
              fields ? fields_note(*fields) : "");
+  if (!why_no_program.empty()) fmt::print("warning: no programs for controls: {}\n", why_no_program);
 }
 
 }  // namespace driftwright::app

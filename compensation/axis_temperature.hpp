@@ -7,7 +7,8 @@
 
 namespace driftwright::compensation {
 
-/// dK is the axis's error actual - commanded; the axis moves by -dK. Both coefficients are linear in the temperature.
+/// dK is what the axis has to be moved by, x -> x + dK(x), as TEMP_SCALE - 1 is: above 0 along +X for a table that has grown. Some
+/// controls may want the opposite sign in their data (FrameProgram::against_dk). Both coefficients are linear in the temperature.
 struct AxisTemperature {
   double reference_K = 296.15;        ///< T0, where both vanish but for k0_m
   double k0_m = 0.0;                  ///< K0 at T0

@@ -144,8 +144,14 @@ TableSettings read_table(const ConfigMap& in, const std::vector<std::string>& se
   t.update_s = control.quantity("update", "s", 1.0, 1e6, t.update_s);
   t.velocity_m_s = control.quantity("velocity", "m/s", 1e-3, 10.0, t.velocity_m_s);
   t.slew = control.quantity("slew", "1", 1e-6, 1.0, t.slew);
+  if (control.has("origin")) t.origin_m = control.vector3("origin", "m");
+  if (!(t.origin_m.cwiseAbs().maxCoeff() <= 100.0))
+    control.fail("origin", "-100 m to 100 m are allowed: where the mesh's origin is in machine coordinates");
+  t.against_dk = control.choice("axis_moves", {"by_dk", "against_dk"}, "by_dk") == "against_dk";
   control.reject_unknown_keys();
-  t.probe = read_probe(in.map("probe"));
+  const ConfigMap probe = in.map("probe");
+  t.ball_diameter_m = probe.quantity("ball_diameter", "m", 1e-4, 0.1, t.ball_diameter_m);
+  t.probe = read_probe(probe);
   t.probe.ring_distance_m = t.rings.back().at_m[0] - t.rings.front().at_m[0];
   t.probe.seed = static_cast<std::uint64_t>(t.seed);
   if (const auto readings = in.optional_map("readings")) t.readings = read_readings(*readings);

@@ -46,6 +46,9 @@ struct TableSettings {
   double update_s = 300.0;       ///< of its setting data
   double velocity_m_s = 0.5;     ///< MD32000
   double slew = 0.01;            ///< MD32760
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< of the mesh, in the machine's coordinates
+  bool against_dk = false;                             ///< the control moves the axis by -dK
+  double ball_diameter_m = 6e-3;                       ///< of the stylus
   int seed = 1;
   compensation::ProbeStudySettings probe;
   std::optional<TableReadings> readings;

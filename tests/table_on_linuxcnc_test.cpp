@@ -1,9 +1,10 @@
-// The probing program on a whole LinuxCNC, headless: its joints are simulated, its probe meets two rings that have moved, and the
-// offsets that it then has are ours. Skipped where LinuxCNC is not installed. One HAL a machine: registered with a lock.
+// The probing program on a whole LinuxCNC, headless: its joints are simulated, its probe of 100 mm meets two rings that have moved, and
+// the offsets that it then has are the user's with ours; where it refuses, they stay. Skipped where LinuxCNC is not installed. One HAL a machine: registered with a lock.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -15,6 +16,9 @@ namespace driftwright::compensation {
 namespace {
 
 constexpr double kRadius_mm = 3.0, kFeed_mm_min = 120.0;  // 2 um a servo cycle
+constexpr double kProbe_mm = 100.0;                       // joint 2 stands so much above the tip
+const Eigen::Vector3d kUser_mm(4000.0, 50.0, -10.0);      // G54
+constexpr double kUser_deg = 30.0;
 
 std::string axis_or_joint(const std::string& head, int travel_mm) {
   return "[" + head + "]\nMIN_LIMIT = -" + std::to_string(travel_mm) + "\nMAX_LIMIT = " + std::to_string(travel_mm) +
@@ -78,10 +82,12 @@ addf motion-controller servo-thread
     text += std::string("addf ") + f + " servo-thread\n";
   for (int j = 0; j < 3; ++j) {
     const std::string n = std::to_string(j);
-    text += "net m" + n + " joint." + n + ".motor-pos-cmd => joint." + n + ".motor-pos-fb\n";
     std::ostringstream places;
     places.precision(12);
-    places << "setp mux2." << n << ".in0 " << low_mm[j] << "\nsetp mux2." << n << ".in1 " << high_mm[j] << "\n";
+    const double up_mm = j == 2 ? kProbe_mm : 0.0;
+    places << "net m" << n << " joint." << n << ".motor-pos-cmd => joint." << n << ".motor-pos-fb\n";
+    places << "setp mux2." << n << ".in0 " << low_mm[j] + up_mm << "\nsetp mux2." << n << ".in1 " << high_mm[j] + up_mm
+           << "\n";
     text += places.str();
   }
   return text + R"(net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in
@@ -130,16 +136,48 @@ c.state(linuxcnc.STATE_ON); c.wait_complete(10)
 c.teleop_enable(0); c.wait_complete(10)
 c.home(-1)
 until(lambda: all(s.homed[:3]), 20)
-c.mode(linuxcnc.MODE_AUTO); c.wait_complete(10)
-c.program_open("linuxcnc/thermframe.ngc")
-c.auto(linuxcnc.AUTO_RUN, 0)
-time.sleep(0.5)
-until(lambda: s.interp_state == linuxcnc.INTERP_IDLE, 120)
+def offsets(of):
+    c.mode(linuxcnc.MODE_MDI); c.wait_complete(10)
+    for system in ("G59.3", "G54"):            # a system that is in force already is not read anew
+        mdi(system)
+        time.sleep(0.1)
+        s.poll()
+        for axis in range(3): say(of + system + "XYZ"[axis], s.g5x_offset[axis])
+        say(of + system + "R", s.rotation_xy)
+def run(of):
+    c.mode(linuxcnc.MODE_AUTO); c.wait_complete(10)
+    c.program_open("linuxcnc/thermframe.ngc")
+    c.auto(linuxcnc.AUTO_RUN, 0)
+    time.sleep(0.5)
+    until(lambda: s.interp_state == linuxcnc.INTERP_IDLE, 120)
+    time.sleep(0.2)
+    s.poll()
+    say(of + "Left", s.g5x_index)
+    say(of + "LeftZ", s.joint_position[2])
+    offsets(of)
+def rings_rise(mm):
+    for end in ("in0", "in1"):
+        at = float(subprocess.run(["halcmd", "getp", "mux2.2." + end], capture_output=True, text=True).stdout)
+        subprocess.run(["halcmd", "setp", "mux2.2." + end, repr(at + mm)])
+def expect_refusal(of):
+    global say
+    plain, words = say, []
+    say = lambda *a: words.append(" ".join(str(x) for x in a)) if a[0] == "error" else plain(*a)
+    run(of)
+    say = plain
+    print(of, words, flush=True)
+offsets("before")
+expect_refusal("bare")                # no probe in the spindle
 c.mode(linuxcnc.MODE_MDI); c.wait_complete(10)
-mdi("G54")
-s.poll()
-say("x", s.g5x_offset[0]); say("y", s.g5x_offset[1]); say("z", s.g5x_offset[2]); say("turn", s.rotation_xy)
-mdi("G53 G0 Z50")
+mdi("M61 Q1")
+rings_rise(2)                         # a probe 2 mm shorter than its length says
+expect_refusal("high")
+rings_rise(-22)                       # no ring at all
+expect_refusal("missing")
+rings_rise(20)
+run("after")
+mdi("G49")
+mdi("G53 G0 Z150")
 for x in (-4800, 4800):
     mdi("G53 G0 X%d" % x)
     time.sleep(0.1)
@@ -147,7 +185,7 @@ for x in (-4800, 4800):
 say("done 1")
 )";
 
-TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbing) {
+TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRefuses) {
   if (std::system("command -v linuxcnc >/dev/null 2>&1 && /usr/bin/python3 -c 'import linuxcnc' >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "LinuxCNC is not installed (linuxcnc-uspace)";
   const Eigen::Vector3d low_m(-4.8, 0.1, 0.0), high_m(4.8, 0.1, 0.0);
@@ -169,8 +207,8 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbing) {
   write("sim.ini", ini());
   write("sim.hal", hal(1e3 * low_now_m, 1e3 * high_now_m));
   write("script.py", kScript);
-  write("tool.tbl", "T1 P1 Z0 D1\n");
-  write("sim.var", "150 0\n151 0\n5220 1\n");
+  write("tool.tbl", "T1 P1 Z100 D6\n");
+  write("sim.var", "150 0\n151 0\n5220 1\n5221 4000\n5222 50\n5223 -10\n5230 30\n5381 7\n5382 8\n5383 9\n5390 10\n");
   write("fifo/empty", "");
   using std::filesystem::perms;
   std::filesystem::permissions(folder / "script.py", perms::all);
@@ -188,11 +226,27 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbing) {
     if (!(rows >> found[name])) break;
   }
   ASSERT_TRUE(found.contains("done")) << said << read_text(folder / "log.txt");
+  // G54 stays whatever happens, and G59.3 where nothing was measured.
+  found["beforeLeft"] = 1.0;  // nothing has run
+  for (const std::string of : {"before", "bare", "high", "missing", "after"}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(found[of + "G54" + "XYZ"[axis]], kUser_mm[axis], 1e-6) << of;
+      const double stays_mm = found[of + "G59.3" + "XYZ"[axis]] - (7.0 + axis);
+      EXPECT_EQ(std::abs(stays_mm) < 1e-6, of != "after") << of << " " << stays_mm;
+    }
+    EXPECT_NEAR(found[of + "G54R"], kUser_deg, 1e-9) << of;
+    EXPECT_EQ(found[of + "Left"], 1.0) << of << ": G54 is left in force";
+    EXPECT_EQ(std::abs(found[of + "G59.3R"] - 10.0) < 1e-9, of != "after") << of;
+  }
+  EXPECT_NEAR(found["missingLeftZ"], kProbe_mm + 50.0, 1e-3) << "the stylus is taken out of the ring";
   // Each touch stops on a servo cycle: 2 um, half of it in the middle of two touches along X and Y, up to two cycles in the one along Z.
-  EXPECT_NEAR(found["x"], 1e3 * program.frame.x.shift_m, 0.002);
-  EXPECT_NEAR(found["y"], 1e3 * program.frame.shift_y_m, 0.002);
-  EXPECT_NEAR(found["z"], 1e3 * program.frame.shift_z_m, 0.005);
-  EXPECT_NEAR(found["turn"], program.frame.turn_rad * 180.0 / M_PI, 2e-6 / 9.6 * 180.0 / M_PI);
+  // The turn is known to 2 um on 9.6 m; it carries the user's 4 m along by 8 um, to 1 um.
+  const double turn_rad = program.frame.turn_rad;
+  const Eigen::Vector2d user_mm = Eigen::Rotation2Dd(turn_rad) * kUser_mm.head<2>();
+  EXPECT_NEAR(found["afterG59.3X"], 1e3 * program.frame.x.shift_m + user_mm[0], 0.002);
+  EXPECT_NEAR(found["afterG59.3Y"], 1e3 * program.frame.shift_y_m + user_mm[1], 0.003);
+  EXPECT_NEAR(found["afterG59.3Z"], 1e3 * program.frame.shift_z_m + kUser_mm[2], 0.005);
+  EXPECT_NEAR(found["afterG59.3R"], kUser_deg + turn_rad * 180.0 / M_PI, 2e-6 / 9.6 * 180.0 / M_PI);
   // the scale, by the joint's trims: halcmd prints 7 digits, 1 um
   for (double x_mm : {-4800.0, 4800.0}) {
     EXPECT_NEAR(found[x_mm < 0 ? "motor-4800" : "motor4800"], program.frame.x.scale * x_mm, 0.001);
