@@ -88,15 +88,18 @@ TEST(GantryTable, JudgesTableLessScale) {
   EXPECT_NEAR(strategy("none")["x_um"].get<double>(), most_um, 1e-3);
 }
 
-// docs/table.md: 68 um without, 22.5 um with rings every three hours, 15.0 um with the model between them; no frame leaves less than 13.
-TEST(GantryTable, TheModelBetweenMeasurementsBeatsRingsAlone) {
+// docs/table.md: 78 um without, 26.7 um with rings every three hours, 15.6 um with thermometers between them, 14.5 um with a model; no frame
+// leaves less than 9.2 um (the best by least squares 13.4). Wanted were 75 % less, which rings alone miss, and 90 %, which no frame reaches.
+TEST(GantryTable, WhatStandsBetweenMeasurementsBeatsRingsAlone) {
   const double none = strategy("none")["position_um"], rings = strategy("rings")["position_um"],
+               warmth = strategy("rings, thermometers between")["position_um"],
                whole = strategy("rings and model of the whole table")["position_um"],
                best = strategy("best frame (minimax) at all times")["position_um"];
   EXPECT_GT(none, 50.0);
   EXPECT_LT(rings, 0.40 * none);
-  EXPECT_LT(whole, 0.26 * none);
-  EXPECT_LT(best, whole);
+  EXPECT_LT(warmth, 0.25 * none);
+  EXPECT_LT(whole, 0.21 * none);
+  EXPECT_LT(best, 0.13 * none);
   EXPECT_LT(strategy("rings and model of the whole table")["x_um"].get<double>(),
             0.22 * strategy("none")["x_um"].get<double>());
 }
