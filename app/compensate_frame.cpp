@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "app/table_study.hpp"
+#include "app/table_strategy.hpp"
 #include "app/validation_study.hpp"
-#include "base/random.hpp"
 #include "compensation/observability.hpp"
 #include "compensation/regression.hpp"
 #include "compensation/sensor_selection.hpp"
@@ -27,7 +26,6 @@ using Errors = std::vector<Eigen::Matrix3Xd>;
 using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kModels = {"modes", "observer", "regression"};
-constexpr Thermometers kInstrument = {.noise_K = 0.1, .resolution_K = 0.1};
 
 std::vector<std::string> thermometers_of(const Scenario& scenario) {
   std::vector<std::string> names;
@@ -43,43 +41,53 @@ struct Believed {
   Errors rings_m;
 };
 
-Physics physics_for(const Scenario& scenario, const Model& model) {
-  const std::optional<Physics> physics = physics_of(scenario, model, scenario.table->model_scatter, scenario.table->seed);
-  if (physics) return *physics;
+/// The model as it is, to be made wrong as `run` makes its own.
+Physics physics_for(const Scenario& scenario, const Model& model, int repetition) {
+  std::optional<Physics> physics = physics_of(scenario, model, 0.0, 0);
+  if (physics) {
+    physics->system = wrong_system(std::move(physics->system), *scenario.table, repetition);
+    return *std::move(physics);
+  }
   throw InputError(
       scenario.machine->where,
       "this predictor wants a linear reduced model: `solver: {model: reduced}`, and no law that follows temperatures");
 }
 
-Errors rings_of(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt, solver::Trajectory run) {
+Errors rings_of(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt, solver::Trajectory run,
+                int repetition) {
   SimulatedRun simulated;
   simulated.record = scenarios::as_recorded(*scenario.machine, run, model.outputs(), felt.cyclogram);
   simulated.trajectory = std::move(run);
-  return table_run(scenario, std::move(simulated)).rings_m;
+  return table_run(scenario, std::move(simulated), wrong_expansions(*scenario.table, repetition)).rings_m;
 }
 
 Believed by_modes(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt,
-                  const std::vector<double>& times_s) {
-  const Physics p = physics_for(scenario, model);
+                  const std::vector<double>& times_s, int repetition) {
+  const Physics p = physics_for(scenario, model, repetition);
   return {"thermal modes of a model that is off, from the hall alone",
           rings_of(scenario, model, felt,
-                   solver::simulate(p.system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, p.start))};
+                   solver::simulate(p.system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, p.start),
+                   repetition)};
 }
 
-Believed by_observer(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt, const Record& readings) {
-  const Physics p = physics_for(scenario, model);
+Believed by_observer(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt, const Record& readings,
+                     int repetition) {
+  const Physics p = physics_for(scenario, model, repetition);
   const std::vector<std::string> sensors = thermometers_of(scenario);
-  const Observer observer(p.system, p.start, p.start_hall_K, sensors, "table_1_x", {.longest_step_s = 600.0});
+  const Thermometers& instrument = scenario.table->instrument;
+  const double reading_K = std::hypot(instrument.noise_K, instrument.resolution_K / std::sqrt(12.0));  // of rounding
+  const Observer observer(p.system, p.start, p.start_hall_K, sensors, "table_1_x",
+                          {.reading_K = reading_K, .longest_step_s = 600.0});
   const Observation seen = observer.follow({felt.cyclogram, felt.hall, readings});
   solver::Trajectory run;
   run.time_s = readings.time_s;
   run.outputs = seen.outputs;
   return {fmt::format("the same model corrected by {}", fmt::join(sensors, ", ")),
-          rings_of(scenario, model, felt, std::move(run))};
+          rings_of(scenario, model, felt, std::move(run), repetition)};
 }
 
 /// Each coordinate of each ring as a regression on a few thermometers, fitted to rings measured in the training time.
-Believed by_regression(const Scenario& scenario, const TableRun& truth, const Record& readings) {
+Believed by_regression(const Scenario& scenario, const TableRun& truth, const Record& readings, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
   std::vector<std::string> sensors = thermometers_of(scenario);
   const auto n_rings = truth.rings_m.front().cols();
@@ -87,17 +95,14 @@ Believed by_regression(const Scenario& scenario, const TableRun& truth, const Re
       .source = "rings measured from " + fmt::format("{:g} h on", s.train_from_s / 3600.0), .time_s = {}, .channels = {}};
   for (const std::string& name : sensors) training.channels.push_back({name, "degC", {}});
   for (Eigen::Index k = 0; k < 3 * n_rings; ++k) training.channels.push_back({fmt::format("ring_{}", k), "um", {}});
-  Random random(static_cast<std::uint64_t>(s.seed), 80);
-  double next_s = s.train_from_s;
-  for (std::size_t i = 0; i < readings.n_samples(); ++i) {
-    if (readings.time_s[i] < next_s - 1e-6) continue;
-    next_s += s.every_s;
-    training.time_s.push_back(readings.time_s[i]);
+  const TableTraining measured = train(truth, s, repetition);
+  for (std::size_t m = 0; m < measured.rows.size(); ++m) {
+    training.time_s.push_back(readings.time_s[measured.rows[m]]);
     for (std::size_t c = 0; c < sensors.size(); ++c)
-      training.channels[c].values.push_back(readings.at(sensors[c]).values[i]);
+      training.channels[c].values.push_back(readings.at(sensors[c]).values[measured.rows[m]]);
     for (Eigen::Index k = 0; k < 3 * n_rings; ++k)
-      training.channels[sensors.size() + static_cast<std::size_t>(k)].values.push_back(
-          1e6 * (truth.rings_m[i].reshaped()(k) + s.probe_noise_m * random.normal()));
+      training.channels[sensors.size() + static_cast<std::size_t>(k)].values.push_back(1e6 *
+                                                                                       measured.rings_m[m].reshaped()(k));
   }
   // as many thermometers as the few measurements carry
   const int n_sensors = std::max(1, static_cast<int>(training.n_samples()) / 4);
@@ -118,18 +123,6 @@ Believed by_regression(const Scenario& scenario, const TableRun& truth, const Re
   return believed;
 }
 
-struct Row {
-  std::string name;
-  PeakErrors peak;
-  std::vector<double> course_um;
-};
-
-Row row_of(const std::string& name, const Errors& left_m) {
-  Row row{name, peaks(left_m), {}};
-  for (const Eigen::Matrix3Xd& e : left_m) row.course_um.push_back(1e6 * e.colwise().norm().maxCoeff());
-  return row;
-}
-
 }  // namespace
 
 void compensate_through_frame(const Scenario& scenario, const CompensateOptions& options) {
@@ -148,10 +141,13 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
       table_run(scenario, std::move(simulate_cyclograms(scenario, model, {&cyclogram}, progress, 0, nullptr).front()));
   progress.begin("correcting");
   const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
-  const Record readings = as_read(truth.record, kInstrument, static_cast<std::uint64_t>(s.seed));
-  const Believed believed = options.model == "modes"      ? by_modes(scenario, model, felt, readings.time_s)
-                            : options.model == "observer" ? by_observer(scenario, model, felt, readings)
-                                                          : by_regression(scenario, truth, readings);
+  std::vector<Believed> believed;
+  for (int k = 0; k < kTableRepetitions; ++k) {
+    const Record readings = table_readings(scenario, felt, truth.record, k);
+    believed.push_back(options.model == "modes"      ? by_modes(scenario, model, felt, readings.time_s, k)
+                       : options.model == "observer" ? by_observer(scenario, model, felt, readings, k)
+                                                     : by_regression(scenario, truth, readings, k));
+  }
 
   const auto n = static_cast<std::size_t>(
       std::upper_bound(truth.table.time_s.begin(), truth.table.time_s.end(), s.judge_until_s + 1e-6) -
@@ -161,22 +157,27 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
     return rows;
   };
   const TableErrors table{first(truth.table.time_s), truth.table.points_m, first(truth.table.error_m)};
-  const Errors rings_m = first(truth.rings_m), predicted_m = first(believed.rings_m);
+  const Errors rings_m = first(truth.rings_m);
   std::vector<Eigen::Vector3d> places;
   for (const scenarios::TableRing& ring : s.rings) places.push_back(ring.at_m);
-  const RingPlan plan{.every_s = s.every_s, .noise_m = s.probe_noise_m, .seed = static_cast<std::uint64_t>(s.seed)};
-  const std::vector<Row> rows = {
-      row_of("none", table.error_m),
-      row_of(fmt::format("rings every {:g} min", s.every_s / 60.0),
-             through_frame(table, places, held_rings(table.time_s, rings_m, plan)).left_m),
-      row_of(options.model, through_frame(table, places, predicted_m).left_m),
-      row_of(fmt::format("rings, {} between", options.model),
-             through_frame(table, places, carried_rings(table.time_s, rings_m, predicted_m, plan)).left_m)};
+  const auto predicted_m = [&](int k) { return first(believed[static_cast<std::size_t>(k)].rings_m); };
+  const auto left = [&](const Errors& at_rings_m) { return through_frame(table, places, at_rings_m).left_m; };
+  const auto plan = [&](int k) { return ring_plan(s, s.every_s, k); };
+  const std::vector<TableStrategy> rows = {repeated("none", [&](int) { return table.error_m; }),
+                                           repeated(fmt::format("rings every {:g} min", s.every_s / 60.0),
+                                                    [&](int k) { return left(held_rings(table.time_s, rings_m, plan(k))); }),
+                                           repeated(options.model, [&](int k) { return left(predicted_m(k)); }),
+                                           repeated(fmt::format("rings, {} between", options.model), [&](int k) {
+                                             return left(carried_rings(table.time_s, rings_m, predicted_m(k), plan(k)));
+                                           })};
 
   Json summary = {{"program", "driftwright"}, {"version", folder.made_by().version}, {"scenario", folder.made_by().scenario},
-                  {"model", options.model},   {"predictor", believed.words},         {"through", "frame"}};
+                  {"model", options.model},   {"predictor", believed.front().words}, {"through", "frame"}};
   output::Table shown{
-      .caption = fmt::format("Largest errors anywhere on the table in {:g} h [um].", s.judge_until_s / 3600.0),
+      .caption = fmt::format(
+          "Largest errors anywhere on the table in {:g} h, median of five repetitions (other noise, another wrong "
+          "model) [um].",
+          s.judge_until_s / 3600.0),
       .headers = {"correction", "X [um]", "Y [um]", "Z [um]", "position [um]", "removed [%]"},
       .rows = {}};
   std::vector<double> t_h;
@@ -184,7 +185,7 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
   output::Plot plot{
       .title = "Largest position error on the table", .x_label = "time [h]", .y_label = "error [um]", .series = {}};
   std::string csv = "time_s", text;
-  for (const Row& row : rows) {
+  for (const TableStrategy& row : rows) {
     const double removed = 100.0 * (1.0 - row.peak.position_m / rows.front().peak.position_m);
     summary["corrections"].push_back({{"name", row.name},
                                       {"x_um", 1e6 * row.peak.x_m},
@@ -204,21 +205,19 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
   csv += "\n";
   for (std::size_t i = 0; i < table.time_s.size(); ++i) {
     csv += fmt::format("{:.7g}", table.time_s[i]);
-    for (const Row& row : rows) csv += fmt::format(",{:.7g}", row.course_um[i]);
+    for (const TableStrategy& row : rows) csv += fmt::format(",{:.7g}", row.course_um[i]);
     csv += "\n";
   }
   output::Report page{
       .title = fmt::format("{}: the table's frame driven by {}", scenario.name, options.model),
       .subtitle = fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario),
-      .blocks = {output::Paragraph{believed.words + fmt::format(". Thermometers with {:g} K of noise in steps of {:g} K.",
-                                                                kInstrument.noise_K, kInstrument.resolution_K)},
-                 shown, plot}};
+      .blocks = {output::Paragraph{believed.front().words + fmt::format(". {}", instrument_words(s))}, shown, plot}};
   folder.write_text("corrected.csv", csv);
   folder.write_text("summary.json", output::json_text(summary));
   folder.write_text("report.html", output::render_html(page));
   folder.commit();
   progress.end();
-  fmt::print("{}\n{}report in {}\n", believed.words, text, shown_path(folder.target() / "report.html"));
+  fmt::print("{}\n{}report in {}\n", believed.front().words, text, shown_path(folder.target() / "report.html"));
 }
 
 }  // namespace driftwright::app

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/run_report.hpp"
+#include "app/table_strategy.hpp"
 #include "base/quantity.hpp"
 
 namespace driftwright::app {
@@ -76,7 +77,8 @@ Plot strategies_plot(const TableStudy& study) {
   std::vector<double> t_h = hours(study.run.table.time_s);
   t_h.resize(study.n_judged);
   Plot plot{.title = "Largest position error anywhere on the table", .x_label = "time [h]", .y_label = "error [um]"};
-  for (const char* name : {"none", "hall temperature", "model alone", "rings", "rings and model of the whole table"}) {
+  for (const char* name : {"none", "hall temperature", "model alone", "rings", "rings, thermometers between",
+                           "rings and model of the whole table"}) {
     const TableStrategy& s = strategy(study, name);
     plot.series.push_back({.label = name, .x = t_h, .y = s.course_um});
   }
@@ -120,9 +122,10 @@ Table strategies_table(const TableStudy& study) {
 
 Table intervals_table(const TableStudy& study) {
   Table table{.caption = "Largest position error against the time between two measurements of the rings.",
-              .headers = {"every [min]", "rings [um]", "rings and model of the whole table [um]"}};
+              .headers = {"every [min]", "rings [um]", "rings, thermometers between [um]",
+                          "rings and model of the whole table [um]"}};
   for (const IntervalRow& row : study.intervals)
-    table.rows.push_back({fmt::format("{:.0f}", row.every_s / 60.0), um(row.rings_m), um(row.carried_m)});
+    table.rows.push_back({fmt::format("{:.0f}", row.every_s / 60.0), um(row.rings_m), um(row.warmth_m), um(row.carried_m)});
   return table;
 }
 
@@ -276,8 +279,10 @@ nlohmann::ordered_json table_json(const scenarios::Scenario& scenario, const Tab
                                   {"less_position_percent", less_percent(s.peak.position_m, none.position_m)}});
   }
   for (const IntervalRow& row : study.intervals) {
-    json["intervals"].push_back(
-        {{"every_min", row.every_s / 60.0}, {"rings_um", 1e6 * row.rings_m}, {"rings_and_model_um", 1e6 * row.carried_m}});
+    json["intervals"].push_back({{"every_min", row.every_s / 60.0},
+                                 {"rings_um", 1e6 * row.rings_m},
+                                 {"rings_and_thermometers_um", 1e6 * row.warmth_m},
+                                 {"rings_and_model_um", 1e6 * row.carried_m}});
   }
   const auto& f = study.frame;
   json["frame"] = {{"TEMP_SCALE_minus_1", f.x.scale - 1.0}, {"TEMP_SHIFT_um", 1e6 * f.x.shift_m},
@@ -333,13 +338,21 @@ output::Report table_report(const scenarios::Scenario& scenario, const TableStud
                               scenario.table->every_s / 60.0, um(scenario.table->probe_noise_m))};
   const auto add = [&](auto block) { report.blocks.emplace_back(std::move(block)); };
   const TableStrategy &none = study.strategies.front(), &rings = strategy(study, "rings"),
+                      &warmth = strategy(study, "rings, thermometers between"),
                       &both = strategy(study, "rings and model of the whole table");
   add(output::Verdict{
       .kind = output::Verdict::Kind::kNeutral,
-      .title = fmt::format("{} um of position error become {} um with rings, {} um with the model between them",
-                           um(none.peak.position_m), um(rings.peak.position_m), um(both.peak.position_m)),
+      .title = fmt::format(
+          "{} um of position error become {} um with rings, {} um with thermometers between them, {} um with the "
+          "model",
+          um(none.peak.position_m), um(rings.peak.position_m), um(warmth.peak.position_m), um(both.peak.position_m)),
       .text = interval_words(study, scenario.table->tolerance_m) + "."});
   add(strategies_table(study));
+  add(Paragraph{
+      instrument_words(*scenario.table) +
+      " Thermometers between: what table and scales would do if each were evenly warm, with expansions as wrong as the "
+      "model's and nothing fitted. They tell the scale of Y, too, which rings on one line do not. The minimax frame "
+      "knows every error; no frame leaves 1 % less."});
   add(strategies_plot(study));
   add(profile_plot(scenario, study));
   add(intervals_table(study));

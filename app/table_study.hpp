@@ -37,6 +37,7 @@ struct TableStrategy {
 struct IntervalRow {
   double every_s = 0.0;
   double rings_m = 0.0;    ///< largest position error, median
+  double warmth_m = 0.0;   ///< the same with thermometers between measurements
   double carried_m = 0.0;  ///< the same with the model of the whole table between measurements
 };
 

@@ -67,6 +67,12 @@ Frame TableFrame::frame() const {
   return compose(turned, compose(scaled, shifted));
 }
 
+bool tells_scale_y(std::span<const RingPair> rings) {
+  const auto by_y = [](const RingPair& a, const RingPair& b) { return (*a.before_m)[1] < (*b.before_m)[1]; };
+  const auto [front, back] = std::minmax_element(rings.begin(), rings.end(), by_y);
+  return rings.size() > 2 && (*back->before_m)[1] - (*front->before_m)[1] >= kLeastRingDistance_m;
+}
+
 TableFrame fit_table_frame(std::span<const RingPair> rings) {
   if (rings.size() < 2) throw InputError(fmt::format("a ring is missing: {} given, two are wanted", rings.size()));
   for (const RingPair& ring : rings) {
@@ -80,10 +86,7 @@ TableFrame fit_table_frame(std::span<const RingPair> rings) {
   check_order(before_m, now_m);
   check_scale(now_m / before_m);
   // Gauss and Newton; the angles are microradians, so that each step leaves a millionth of the misfit.
-  const auto by_y = [](const RingPair& a, const RingPair& b) { return (*a.before_m)[1] < (*b.before_m)[1]; };
-  const auto [front, back] = std::minmax_element(rings.begin(), rings.end(), by_y);
-  const bool has_width = rings.size() > 2 && (*back->before_m)[1] - (*front->before_m)[1] >= kLeastRingDistance_m;
-  const int n_unknowns = has_width ? 7 : 6;
+  const int n_unknowns = tells_scale_y(rings) ? 7 : 6;
   Unknowns u = Unknowns::Zero();
   for (int step = 0; step < 4; ++step) {
     const Eigen::VectorXd misfit = misfits(rings, u);

@@ -47,6 +47,9 @@ struct TableFrame {
   [[nodiscard]] Frame frame() const;
 };
 
+/// Whether places tell a scale of Y: three or more that differ in Y by kLeastRingDistance_m. All of them have to be there.
+[[nodiscard]] bool tells_scale_y(std::span<const RingPair> rings);
+
 /// Two rings exactly, more by least squares. Two rings on a line along X, without turn and tilt, give temp_frame(); two that differ in
 /// Y by dy differ from it by turn dy / dx in the scale.
 /// @throws InputError  for a ring that is missing, and as temp_frame()

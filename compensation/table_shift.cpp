@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
+#include "compensation/minimax_frame.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -36,11 +37,15 @@ Line fit_line(std::span<const double> x, const std::vector<double>& values) {
   return line;
 }
 
-TableFrame frame_of_rings(std::span<const Eigen::Vector3d> rings_m, const Eigen::Matrix3Xd& error_m) {
+std::vector<RingPair> pairs(std::span<const Eigen::Vector3d> places_m, const Eigen::Matrix3Xd& error_m) {
   std::vector<RingPair> rings;
-  for (std::size_t r = 0; r < rings_m.size(); ++r)
-    rings.push_back({fmt::format("{}", r + 1), rings_m[r], rings_m[r] + error_m.col(static_cast<Eigen::Index>(r))});
-  return fit_table_frame(rings);
+  for (std::size_t r = 0; r < places_m.size(); ++r)
+    rings.push_back({fmt::format("{}", r + 1), places_m[r], places_m[r] + error_m.col(static_cast<Eigen::Index>(r))});
+  return rings;
+}
+
+TableFrame frame_of_rings(std::span<const Eigen::Vector3d> rings_m, const Eigen::Matrix3Xd& error_m) {
+  return fit_table_frame(pairs(rings_m, error_m));
 }
 
 }  // namespace
@@ -62,6 +67,13 @@ FrameCourse through_frame(const TableErrors& table, std::span<const Eigen::Vecto
                           const std::vector<Eigen::Matrix3Xd>& ring_error_m) {
   std::vector<TableFrame> frames;
   for (const Eigen::Matrix3Xd& error_m : ring_error_m) frames.push_back(frame_of_rings(rings_m, error_m));
+  return through_frame(table, std::move(frames));
+}
+
+FrameCourse through_best_frame(const TableErrors& table, const std::vector<Eigen::Matrix3Xd>& believed_m) {
+  std::vector<TableFrame> frames;
+  for (const Eigen::Matrix3Xd& error_m : believed_m)
+    frames.push_back(fit_minimax_frame(pairs(table.points_m, error_m)).frame);
   return through_frame(table, std::move(frames));
 }
 

@@ -33,6 +33,10 @@ struct FrameCourse {
 [[nodiscard]] FrameCourse through_frame(const TableErrors& table, std::span<const Eigen::Vector3d> rings_m,
                                         const std::vector<Eigen::Matrix3Xd>& ring_error_m);
 
+/// What is believed of the errors at the table's points makes the frame of that time: the one that leaves the least of the largest error.
+/// @throws InputError  as fit_minimax_frame()
+[[nodiscard]] FrameCourse through_best_frame(const TableErrors& table, const std::vector<Eigen::Matrix3Xd>& believed_m);
+
 /// How rings are measured over a shift.
 struct RingPlan {
   double every_s = 10800.0;
@@ -51,8 +55,8 @@ struct RingPlan {
                                                           const std::vector<Eigen::Matrix3Xd>& model_ring_error_m,
                                                           const RingPlan& plan);
 
-/// Errors all over the table as a model has them, mended by what the last measurement of the rings found wrong with it (a frame). With
-/// the table's points for rings, through_frame() then makes the frame that is best for the whole table.
+/// Errors all over the table as a model has them, mended by what the last measurement of the rings found wrong with it (a frame).
+/// through_best_frame() then makes the frame of it.
 /// @param model_error_m, model_ring_error_m  at the table's points and at the rings, one matrix a time each
 [[nodiscard]] std::vector<Eigen::Matrix3Xd> carried_table(const TableErrors& table, std::span<const Eigen::Vector3d> rings_m,
                                                           const std::vector<Eigen::Matrix3Xd>& true_ring_error_m,

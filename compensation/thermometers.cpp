@@ -48,6 +48,25 @@ Record as_read(Record record, const Thermometers& thermometers, std::uint64_t se
   return record;
 }
 
+Record running_mean(Record record, double window_s) {
+  for (Channel& channel : record.channels) {
+    if (!is_temperature(channel) || !(window_s > 0.0)) continue;
+    const std::vector<double> read = channel.values;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      while (record.time_s[first] < record.time_s[i] - window_s - 1e-6) ++first;
+      double sum = 0.0, n = 0.0;
+      for (std::size_t k = first; k <= i; ++k) {
+        if (std::isnan(read[k])) continue;
+        sum += read[k];
+        n += 1.0;
+      }
+      channel.values[i] = n > 0.0 ? sum / n : read[i];
+    }
+  }
+  return record;
+}
+
 Record with_failed_sensor(Record record, const std::string& sensor, SensorFailure failure, double from_s,
                           const std::string& elsewhere) {
   const Channel* other = failure == SensorFailure::kDetached ? &record.at(elsewhere) : nullptr;

@@ -19,6 +19,10 @@ struct Thermometers {
 /// same readings.
 [[nodiscard]] Record as_read(Record record, const Thermometers& thermometers, std::uint64_t seed);
 
+/// The record with each temperature as the mean of its readings of the last `window_s`, its own among them; missing ones count for
+/// nothing. 0: as it was. It lags by half the window.
+[[nodiscard]] Record running_mean(Record record, double window_s);
+
 /// How a sensor fails.
 enum class SensorFailure {
   kStuck,    ///< its reading stays what it was

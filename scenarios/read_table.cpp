@@ -1,6 +1,7 @@
 #include "scenarios/read_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -16,7 +17,15 @@ namespace {
 TableScale read_scale(const ConfigMap& in, const std::vector<std::string>& sensors) {
   std::vector<std::string> materials;
   for (const auto& [name, material] : solver::material_library()) materials.push_back(name);
-  TableScale scale{.sensor = in.choice("sensor", sensors)};
+  TableScale scale;
+  if (in.has("sensor") == in.has("sensors"))
+    in.fail(in.has("sensor") ? "sensors" : "sensor", "one of `sensor` and `sensors` (a list, for their mean) is wanted");
+  scale.sensors = in.has("sensors") ? in.texts("sensors") : std::vector{in.choice("sensor", sensors)};
+  if (scale.sensors.empty()) in.fail("sensors", "the list is empty; name one thermometer at least");
+  for (const std::string& name : scale.sensors) {
+    if (std::find(sensors.begin(), sensors.end(), name) == sensors.end())
+      in.fail("sensors", fmt::format("'{}' is no sensor; there are {}", name, fmt::join(sensors, ", ")));
+  }
   scale.expansion_1_K = solver::material_library().at(in.choice("material", materials)).expansion_1_K.x;
   scale.fixed_at_m = in.quantity("fixed_at", "m", -100.0, 100.0, 0.0);
   in.reject_unknown_keys();
@@ -31,6 +40,13 @@ std::vector<TableRing> read_rings(const ConfigMap& in, const TableSettings& tabl
     for (int axis = 0; axis < 2; ++axis) {
       if (!(at_m[axis] >= table.low_m[axis] && at_m[axis] <= table.high_m[axis]))
         entry.fail("at", "the ring lies outside the corners `low` and `high` of the table");
+    }
+    for (auto other = rings.begin(); other + 1 != rings.end(); ++other) {
+      if (other->name == rings.back().name) entry.fail("name", "another ring has this name");
+      if ((other->at_m - at_m).norm() < compensation::kLeastRingDistance_m) {
+        entry.fail("at", fmt::format("identical with ring '{}': nearer than {:g} mm", other->name,
+                                     1e3 * compensation::kLeastRingDistance_m));
+      }
     }
     entry.reject_unknown_keys();
   }
@@ -55,7 +71,7 @@ compensation::ProbeStudySettings read_probe(const ConfigMap& in) {
       p.lag_s[a] = lag_s[a];
     }
   }
-  p.jitter_s = in.quantity("jitter", "s", 0.0, 1.0, p.jitter_s);
+  p.jitter_s = in.quantity("jitter", "s", 0.0, p.cycle_s, p.jitter_s);
   p.pretravel_m = in.quantity("pretravel", "m", 0.0, 1e-3, p.pretravel_m);
   p.encoder_step_m = in.quantity("encoder_step", "m", 1e-9, 1e-3, p.encoder_step_m);
   s.feeds_m_s = in.quantities("feeds", "m/s");
@@ -123,6 +139,7 @@ TableSettings read_table(const ConfigMap& in, const std::vector<std::string>& se
   t.low_m = in.vector3("low", "m");
   t.high_m = in.vector3("high", "m");
   if (!(t.low_m[0] < t.high_m[0] && t.low_m[1] < t.high_m[1])) in.fail("high", "`high` must lie beyond `low` along x and y");
+  if (t.low_m[2] != t.high_m[2]) in.fail("low", "`low` and `high` differ in z; what is judged is the plane between them");
   t.n_x = in.integer("points_x", 2, 101, t.n_x);
   t.n_y = in.integer("points_y", 2, 101, t.n_y);
   t.head_m = in.vector3("head", "m");
@@ -133,12 +150,15 @@ TableSettings read_table(const ConfigMap& in, const std::vector<std::string>& se
   t.every_s = in.quantity("measure_every", "s", 60.0, 1e7, t.every_s);
   t.probe_noise_m = in.quantity("probe_noise", "m", 0.0, 1e-3, t.probe_noise_m);
   t.tolerance_m = in.quantity("tolerance", "m", 1e-7, 1e-2, t.tolerance_m);
-  t.judge_until_s = in.quantity("judge_until", "s", 0.0, 1e8);
+  t.judge_until_s = in.quantity("judge_until", "s", 60.0, 1e8);
   t.train_from_s = in.quantity("train_from", "s", 0.0, 1e8);
   if (!(t.train_from_s >= t.judge_until_s))
     in.fail("train_from", "strategies are judged on what they were not fitted on; `train_from` comes after `judge_until`");
   t.model_scatter = in.quantity("model_scatter", "1", 0.0, 1.0, t.model_scatter);
   t.seed = in.integer("seed", 0, 1'000'000, t.seed);
+  t.instrument.noise_K = in.quantity("sensor_noise", "K", 0.0, 10.0, t.instrument.noise_K);
+  t.instrument.resolution_K = in.quantity("sensor_resolution", "K", 0.0, 10.0, t.instrument.resolution_K);
+  t.sensor_mean_s = in.quantity("sensor_mean", "s", 0.0, 86400.0, t.sensor_mean_s);
   const ConfigMap control = in.map("control");
   t.thermometer = control.choice("sensor", sensors);
   t.update_s = control.quantity("update", "s", 1.0, 1e6, t.update_s);

@@ -6,13 +6,14 @@
 
 #include "base/config_map.hpp"
 #include "compensation/probe_study.hpp"
+#include "compensation/thermometers.hpp"
 #include "scenarios/read_outputs.hpp"
 
 namespace driftwright::scenarios {
 
 /// A linear scale along an axis: what the control takes for length.
 struct TableScale {
-  std::string sensor = {};  ///< thermometer on it
+  std::vector<std::string> sensors = {};  ///< thermometers on it, or on what stretches it; their mean is its temperature
   double expansion_1_K = 0.0;
   double fixed_at_m = 0.0;  ///< where along the axis scale and table coordinates are the same
 };
@@ -43,9 +44,12 @@ struct TableSettings {
   double judge_until_s = 0.0;    ///< the shift ends here
   double model_scatter = 0.1;    ///< of the model between measurements, in each power and coefficient
   std::string thermometer = {};  ///< of the control's own compensation
-  double update_s = 300.0;       ///< of its setting data
-  double velocity_m_s = 0.5;     ///< MD32000
-  double slew = 0.01;            ///< MD32760
+  double update_s = 300.0;       ///< of its setting data, and between readings of every thermometer
+  compensation::Thermometers instrument = {.noise_K = 0.1,
+                                           .resolution_K = 0.1};  ///< of all thermometers, read every update_s
+  double sensor_mean_s = 0.0;  ///< over which readings are averaged, backwards; 0: the last one alone
+  double velocity_m_s = 0.5;   ///< MD32000
+  double slew = 0.01;          ///< MD32760
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< of the mesh, in the machine's coordinates
   bool against_dk = false;                             ///< the control moves the axis by -dK
   double ball_diameter_m = 6e-3;                       ///< of the stylus
@@ -62,7 +66,7 @@ struct TableSettings {
 [[nodiscard]] std::vector<DisplacementOutput> table_displacements(const TableSettings& table);
 
 /// @param sensors, cyclograms  of the scenario's machine, by name
-/// @throws InputError  file, line and key; also for rings that lie off the table, alike or the wrong way round
+/// @throws InputError  file, line and key; also for rings that lie off the table, alike, of one name or the wrong way round
 [[nodiscard]] TableSettings read_table(const ConfigMap& in, const std::vector<std::string>& sensors,
                                        const std::vector<std::string>& cyclograms);
 

@@ -48,16 +48,28 @@ TEST(GantryTable, WritesReportFieldsAndProgramsForTheControl) {
     EXPECT_TRUE(std::filesystem::exists(outcome().folder / name)) << name;
 }
 
-// Free steel of 9.9 m at 2.5 K would be 285 um; the paper's first day lies between 20 and 120 um.
-TEST(GantryTable, GrowsByTableLessScaleAsThePapersFirstDay) {
+/// Mean of the five thermometers of the bed, which stretches the tape.
+double tape_degC(const Record& record, std::size_t i) {
+  double sum = 0.0;
+  for (const char* name : {"bed_1", "bed_2", "bed_3", "bed_4", "bed_5"}) sum += record.at(name).values[i] / 5.0;
+  return sum;
+}
+
+// Free steel of 9.9 m at 2.5 K would be 285 um; the paper's first day lies between 20 and 120 um. At 8:00 all is as warm as the hall, and
+// what is computed is nothing but (11.5 - 11.0) um/(m K) times 9.9 m times 3 K = 14.85 um: below the paper's 20, out of its band. With
+// each expansion known to 3 % it is 15 +- 14 um. The later three lie in the band.
+TEST(GantryTable, GrowsByTableLessScaleAsThePapersFirstDayButForItsStart) {
   const Record record = read_record_csv((outcome().folder / "record.csv").string());
   const auto& first = record.at("table_14_x").values;  // middle row of 3 x 13 points
   const auto& last = record.at("table_26_x").values;
-  for (double h : {0.0, 3.0, 6.0, 9.0}) {
+  const auto x_um = [&](double h) {
     const auto i = static_cast<std::size_t>(std::lround(6.0 * h));
-    const double x_um = last[i] - first[i] - 11.0 * 9.9 * (record.at("scale").values[i] - 20.0);
-    EXPECT_GT(x_um, 10.0) << h;
-    EXPECT_LT(x_um, 120.0) << h;
+    return last[i] - first[i] - 11.0 * 9.9 * (tape_degC(record, i) - 20.0);
+  };
+  EXPECT_NEAR(x_um(0.0), 14.85, 0.05);  // springs of drives and foundation hold back a little
+  for (double h : {3.0, 6.0, 9.0}) {
+    EXPECT_GT(x_um(h), 20.0) << h;
+    EXPECT_LT(x_um(h), 120.0) << h;
   }
 }
 
@@ -68,7 +80,7 @@ TEST(GantryTable, JudgesTableLessScale) {
   double most_um = 0.0;
   for (std::size_t i = 0; i < record.n_samples() && record.time_s[i] <= 86400.0; ++i) {
     for (int p = 0; p < 39; ++p) {
-      const double x_m = -4.95 + 9.9 * (p % 13) / 12.0, scale_um = 11.0 * (record.at("scale").values[i] - 20.0) * x_m;
+      const double x_m = -4.95 + 9.9 * (p % 13) / 12.0, scale_um = 11.0 * (tape_degC(record, i) - 20.0) * x_m;
       const double error_um = record.at("table_" + std::to_string(p + 1) + "_x").values[i] - head[i] - scale_um;
       most_um = std::max(most_um, std::abs(error_um));
     }
@@ -76,17 +88,32 @@ TEST(GantryTable, JudgesTableLessScale) {
   EXPECT_NEAR(strategy("none")["x_um"].get<double>(), most_um, 1e-3);
 }
 
-// docs/table.md: 68 um without, 22.5 um with rings every three hours, 15.0 um with the model between them; no frame leaves less than 13.
-TEST(GantryTable, TheModelBetweenMeasurementsBeatsRingsAlone) {
+// docs/table.md: 78 um without, 26.7 um with rings every three hours, 15.6 um with thermometers between them, 14.5 um with a model; no frame
+// leaves less than 9.2 um (the best by least squares 13.4). Wanted were 75 % less, which rings alone miss, and 90 %, which no frame reaches.
+TEST(GantryTable, WhatStandsBetweenMeasurementsBeatsRingsAlone) {
   const double none = strategy("none")["position_um"], rings = strategy("rings")["position_um"],
+               warmth = strategy("rings, thermometers between")["position_um"],
                whole = strategy("rings and model of the whole table")["position_um"],
-               best = strategy("best frame at all times")["position_um"];
+               best = strategy("best frame (minimax) at all times")["position_um"];
   EXPECT_GT(none, 50.0);
   EXPECT_LT(rings, 0.40 * none);
-  EXPECT_LT(whole, 0.26 * none);
-  EXPECT_LT(best, whole);
+  EXPECT_LT(warmth, 0.25 * none);
+  EXPECT_LT(whole, 0.21 * none);
+  EXPECT_LT(best, 0.13 * none);
   EXPECT_LT(strategy("rings and model of the whole table")["x_um"].get<double>(),
             0.22 * strategy("none")["x_um"].get<double>());
+}
+
+// The same rings, the same wrong expansions and median as in `run`; the modes are a reduction of the same wrong model, to 1 um.
+TEST(GantryTable, ThroughFrameJudgesAsRunDoes) {
+  const auto folder = fresh_folder("gantry_modes") / "out";
+  const CommandOutcome done =
+      run_program("compensate scenarios/gantry_table.yaml --model modes --through frame -o " + folder.string());
+  ASSERT_EQ(done.exit_code, 0) << done.output;
+  const nlohmann::json rows = nlohmann::json::parse(read_text(folder / "summary.json"))["corrections"];
+  EXPECT_NEAR(rows[1]["position_um"].get<double>(), strategy("rings")["position_um"].get<double>(), 1e-3);
+  EXPECT_NEAR(rows[2]["position_um"].get<double>(), strategy("model alone")["position_um"].get<double>(), 1.0);
+  EXPECT_NEAR(rows[3]["position_um"].get<double>(), strategy("rings and model")["position_um"].get<double>(), 1.0);
 }
 
 TEST(GantryTable, ProbeKeepsThePapersBound) {
@@ -124,6 +151,18 @@ TEST(GantryTable, SaysWhatIsWrongWithALine) {
   refuses("{name: low, at: [-4.8 m, 0 m, 0 m]}", "{name: low, at: [4.9 m, 0 m, 0 m]}", "swapped");
   refuses("{name: low, at: [-4.8 m", "{name: low, at: [-5.8 m", "outside");
   refuses("    - {name: low, at: [-4.8 m, 0 m, 0 m]}\n", "", "two are wanted");
+  refuses("    - {name: high, at", "    - {name: middle, at: [-4.8 m, 0 m, 0 m]}\n    - {name: high, at",
+          "identical with ring 'low'");
+  refuses("    - {name: high, at", "    - {name: low, at: [0 m, 0 m, 0 m]}\n    - {name: high, at",
+          "another ring has this name");
+  refuses("low: [-4.95 m, -1.45 m, 0 m]", "low: [-4.95 m, -1.45 m, -7 m]", "differ in z");
+  refuses("judge_until: 24 h", "judge_until: 0 h", "judge_until");
+  refuses("jitter: 20 us", "jitter: 1 s", "jitter");
+  refuses("sensor_noise: 0.02 K", "sensor_noise: -0.02 K", "sensor_noise");
+  refuses("sensor_resolution: 0.01 K", "sensor_resolution: 1 m", "sensor_resolution");
+  refuses("sensor_mean: 30 min", "sensor_mean: 30 h", "sensor_mean");
+  refuses("bed_4, bed_5]", "bed_4, bed_6]", "'bed_6' is no sensor");
+  refuses("scale_x: {sensors:", "scale_x: {sensor: beam, sensors:", "one of `sensor` and `sensors`");
   refuses("reference_feed: 10 mm/min", "reference_feed: 40 mm/min", "reference_feed");
   refuses("train_from: 24 h", "train_from: 12 h", "not fitted on");
   refuses("train_from: 24 h", "train_from: 28 h", "three measurements");
@@ -131,6 +170,7 @@ TEST(GantryTable, SaysWhatIsWrongWithALine) {
   refuses("jitter: 20 us", "jiter: 20 us", "Did you mean 'jitter'");
   refuses("sensor: table_mid, update", "sensor: nowhere, update", "nowhere");
   refuses("at: [2.4 m, 0.4 m, 0 m]", "at: [4.4 m, 0.4 m, 0 m]", "does not lie on the table");
+  EXPECT_THAT(edited("judge_until: 24 h", "judge_until: 0 h").output, HasSubstr("scenario.yaml:93"));
   refuses("gauge: 1.8 m", "gauge: 2.8 m", "stand out");
 }
 

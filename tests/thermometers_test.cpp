@@ -32,6 +32,16 @@ TEST(Thermometers, RoundTemperaturesAndNothingElse) {
   EXPECT_EQ(r.at("drift").values, four_rows().at("drift").values);
 }
 
+// Rows every 10 s; a window of 10 s holds a reading and the one before.
+TEST(Thermometers, RunningMeanLooksBackAndLeavesOutWhatIsMissing) {
+  const Record r = running_mean(four_rows(), 10.0);
+  EXPECT_THAT(r.at("a").values,
+              ElementsAre(20.0, DoubleNear(20.52, 1e-12), DoubleNear(21.04, 1e-12), DoubleNear(23.06, 1e-12)));
+  EXPECT_THAT(r.at("b").values, ElementsAre(20.0, 20.0, 20.25, 20.5));
+  EXPECT_EQ(r.at("drift").values, four_rows().at("drift").values);
+  EXPECT_EQ(running_mean(four_rows(), 0.0).at("b").values, four_rows().at("b").values);
+}
+
 TEST(Thermometers, NoiseHasTheDeviationAskedForAndIsEachSensorsOwn) {
   Record r{.source = "still", .time_s = {}, .channels = {{"a", "degC", {}}, {"b", "K", {}}}};
   for (int i = 0; i < 20000; ++i) {
