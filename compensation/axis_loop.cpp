@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "base/errors.hpp"
 
 namespace driftwright::compensation {
 namespace {
-
-/// Time for the axis to come to rest behind a pass.
-constexpr double kSettling_s = 0.3;
 
 /// When the axis sets out, and whether it works at a time.
 struct Passes {
@@ -22,7 +20,7 @@ struct Passes {
   [[nodiscard]] bool at_rest(double t_s) const {
     if (!moves()) return true;
     const double since_s = t_s - start_s(static_cast<std::int64_t>(std::floor(t_s / motion.every_s - 0.5)));
-    return since_s > motion.stroke_um / motion.feed_um_s + kSettling_s;
+    return since_s > motion.busy_s();
   }
 };
 
@@ -37,7 +35,10 @@ ErrorStage stage(std::string cause, std::string words, const std::vector<double>
     s.peak_um = std::max(s.peak_um, std::abs(error_um[i]));
     ++n;
   }
-  s.rms_um = n > 0 ? std::sqrt(sum / n) : 0.0;
+  if (n == 0)
+    throw InputError(
+        "the axis is at rest at no sample but the first: no error could be looked at; let it rest between passes");
+  s.rms_um = std::sqrt(sum / n);
   return s;
 }
 
@@ -77,7 +78,9 @@ std::vector<double> growth_um(const AxisLoop& loop, const Record& record) {
   const std::vector<double>& temperature = record.at(loop.growing_channel).values;
   for (std::size_t i = 0; i < growth.size(); ++i) {
     const double strain = loop.expansion_1_K * (temperature[i] - temperature.front());
-    growth[i] = unseen_um(loop.feedback, {.screw = strain, .scale = strain}, loop.at_um);
+    const AxisStrain strains =
+        loop.growing_part == GrowingPart::kScrew ? AxisStrain{.screw = strain} : AxisStrain{.scale = strain};
+    growth[i] = unseen_um(loop.feedback, strains, loop.at_um);
   }
   return growth;
 }
@@ -98,6 +101,12 @@ std::int64_t CountConverter::insertions(double wish_um) {
   const double rest_um = wish_um - static_cast<double>(given_) * insertion_um_;
   if (std::abs(rest_um) > 0.5 * insertion_um_ + hysteresis_um_) given_ += std::llround(rest_um / insertion_um_);
   return given_;
+}
+
+void require_ledger(const InjectedSeries& s) {
+  if (s.control_quarters != s.encoder_quarters + s.total_quarters - s.waiting_quarters)
+    throw std::logic_error(fmt::format("counts in {} + inserted {} - waiting {} are not counts out {}", s.encoder_quarters,
+                                       s.total_quarters, s.waiting_quarters, s.control_quarters));
 }
 
 InjectedSeries drive_axis(const AxisLoop& loop, std::span<const double> time_s, std::span<const double> correction_um) {
@@ -122,10 +131,12 @@ InjectedSeries drive_axis(const AxisLoop& loop, std::span<const double> time_s, 
   }
   series.encoder_quarters = axis.injector().encoder().count();
   series.control_quarters = axis.control_quarters();
+  series.total_quarters = axis.injector().inserted();
   series.waiting_quarters = axis.injector().waiting();
   series.n_insertions = axis.injector().n_insertions();
   series.control_jumps = axis.control_jumps();
   series.faults = axis.faults();
+  require_ledger(series);
   return series;
 }
 
@@ -167,7 +178,7 @@ AxisLoopRun run_axis_loop(const AxisLoop& loop, const Record& truth, const std::
       minus(error_um, read_um));
   add("sampling", fmt::format("each correction holds for {:g} s", loop.sampling_s),
       minus(error_um, one_sample_late(read_um)));
-  add("resolution", fmt::format("whole insertions of {:g} um", loop.insertion_um()),
+  add("resolution", fmt::format("whole insertions of {:g} um, hysteresis {:g} um", loop.insertion_um(), loop.hysteresis_um),
       minus(error_um, one_sample_late(counted_um)));
   add("rate limit", fmt::format("at most {:g} um/s", loop.injector.largest_slew_um_s),
       minus(error_um, slewed(run.time_s, counted_um, loop.injector.largest_slew_um_s)));

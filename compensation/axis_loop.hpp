@@ -18,7 +18,13 @@ struct AxisMotion {
   double stroke_um = 0.0;
   double feed_um_s = 10e3;
   double every_s = 60.0;  ///< from one pass to the next, there and back in turn
+
+  /// Time from the start of a pass until the axis is at rest again: the way at its feed, and 0.3 s to settle.
+  [[nodiscard]] double busy_s() const { return stroke_um / feed_um_s + 0.3; }
 };
+
+/// Whose growth is an error of the axis if the feedback does not see it.
+enum class GrowingPart { kScrew, kScale };
 
 struct AxisLoop {
   Feedback feedback = Feedback::kMotor;
@@ -30,9 +36,11 @@ struct AxisLoop {
   Thermometers thermometers;   ///< noise and steps of the readings
   double hysteresis_um = 0.0;  ///< a correction changes once it is this much more than half an insertion off; against noise
   std::uint64_t seed = 1;      ///< of the thermometers' noise
-  /// Growth that the feedback does not see: strain = expansion (T - T at the start) of a channel of the record, at `at_um` from the
-  /// fixed bearing (screw) or the fixed end (scale). It is an error of the axis beside the displacement.
+  /// Growth of screw or scale: strain = expansion (T - T at the start) of a channel of the record, at `at_um` from the fixed bearing
+  /// (screw) or the fixed end (scale). What the feedback does not see of it is an error of the axis beside the displacement: the screw's
+  /// behind a motor encoder, the scale's behind a scale (unseen_um()).
   std::string growing_channel;
+  GrowingPart growing_part = GrowingPart::kScrew;
   double expansion_1_K = 0.0;
   double at_um = 0.0;
 
@@ -64,12 +72,17 @@ struct InjectedSeries {
   std::vector<bool> at_rest;                    ///< false: a pass is under way, or has just ended
   std::vector<std::int64_t> inserted_quarters;  ///< at that moment
   std::int64_t encoder_quarters = 0;            ///< at the end: counts in,
+  std::int64_t total_quarters = 0;              ///< inserted, as the injector has it,
+  std::int64_t waiting_quarters = 0;            ///< of both those that the output has yet to make,
   std::int64_t control_quarters = 0;            ///< and counts out, by a x4 counter of its own
-  std::int64_t waiting_quarters = 0;
   std::int64_t n_insertions = 0;
   std::int64_t control_jumps = 0;  ///< illegal transitions that the control saw; 0, or there is a bug
   AxisFaults faults;
 };
+
+/// The ledger: counts in + inserted - waiting = counts out.
+/// @throws std::logic_error  when it is not so
+void require_ledger(const InjectedSeries& series);
 
 /// @param time_s         strictly increasing
 /// @param correction_um  wished at each time
@@ -101,12 +114,12 @@ struct AxisLoopRun {
 ///
 /// Causes, each with all before it: `model` corrects at each moment by the predictor on true temperatures; `thermometers` on readings
 /// with noise and steps; `sampling` holds each correction for one period, so the error is looked at just before the next one;
-/// `resolution` rounds it to whole insertions; `rate limit` lets them change by the largest slew; `axis` is the simulation of
+/// `resolution` rounds it to whole insertions, by the hysteresis; `rate limit` lets them change by the largest slew; `axis` is the simulation of
 /// encoder, injector, counter and servo.
 ///
 /// @param truth    record with true temperatures and the displacement
 /// @param channel  displacement = error of the tool, um
-/// @throws InputError  when a channel is missing or is no number somewhere
+/// @throws InputError  when a channel is missing or is no number somewhere, or when no sample but the first is at rest
 [[nodiscard]] AxisLoopRun run_axis_loop(const AxisLoop& loop, const Record& truth, const std::string& channel,
                                         const Predictor& predictor);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/errors.hpp"
 
@@ -24,6 +25,17 @@ double positive(double value, const char* what) {
 }
 
 }  // namespace
+
+double stopping_way_um(const Servo& servo, double speed_um_s) {
+  const double v_um_s = std::abs(speed_um_s);
+  return 0.5 * v_um_s * v_um_s / servo.largest_acceleration_um_s2 + v_um_s / servo.speed_gain_1_s;
+}
+
+double least_speed_reset_s(const Servo& servo) {
+  const double k = servo.speed_gain_1_s * servo.period_s, p = servo.position_gain_1_s * servo.period_s;
+  const double most = 8.0 / (k * (2.0 + p)) - 2.0;  // of period / reset time
+  return most > 0.0 ? servo.period_s / most : std::numeric_limits<double>::infinity();
+}
 
 double InjectorSettings::separation_s() const {
   return std::max(least_separation_s, 1.0 / positive(largest_count_rate_1_s, "largest count rate [1/s]"));
@@ -46,7 +58,6 @@ InjectedAxis::InjectedAxis(const Encoder& encoder, const InjectorSettings& injec
       encoder_(encoder, 0.5 * quarter_um_),
       injector_(insertion_limits(injector, encoder)),
       counter_(0, injector.counting),
-      watch_(20.0 * count_um_),
       origin_um_(0.5 * quarter_um_),  // in the middle of the quarter where both lines are low
       x_um_(origin_um_) {
   positive(servo.period_s, "servo period [s]");
@@ -63,7 +74,6 @@ void InjectedAxis::set_correction(std::int64_t quarters) {
 void InjectedAxis::command(double to_um, double feed_um_s) {
   goal_um_ = std::round(to_um / count_um_) * count_um_;
   feed_um_s_ = positive(feed_um_s, "feed [um/s]");
-  watch_.set_way(std::max(20.0 * count_um_, feed_um_s * feed_um_s / servo_.largest_acceleration_um_s2));
   resting_ = resting_ && goal_um_ == commanded_um_;
 }
 
@@ -88,6 +98,7 @@ void InjectedAxis::tick(std::int64_t to) {
   const double wanted_um_s2 = servo_.speed_gain_1_s * (lag_um_s + integral_um_s_ + step_um_s);
   const double a_um_s2 = std::clamp(wanted_um_s2, -servo_.largest_acceleration_um_s2, servo_.largest_acceleration_um_s2);
   if (a_um_s2 == wanted_um_s2) integral_um_s_ += step_um_s;  // at the limit the integral waits
+  const double watch_um = std::max(20.0 * count_um_, 4.0 * stopping_way_um(servo_, v_um_s_));
   v_um_s_ += a_um_s2 * dt_s;
   x_um_ += v_um_s_ * dt_s;
 
@@ -101,7 +112,8 @@ void InjectedAxis::tick(std::int64_t to) {
   injector_.advance(to, out_);
   take_edges();
   t_ = to;
-  if (watch_.step(v_ref_um_s * dt_s, static_cast<double>(injector_.encoder().count() - before) * quarter_um_)) {
+  const double counted_way_um = static_cast<double>(injector_.encoder().count() - before) * quarter_um_;
+  if (watch_.step(v_ref_um_s * dt_s, counted_way_um, watch_um)) {
     injector_.freeze();
     runs_backward_ = true;
   }

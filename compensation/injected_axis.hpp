@@ -23,6 +23,24 @@ struct Servo {
   double largest_acceleration_um_s2 = 2e6;
 };
 
+/// Way [um] in which the axis stops from a speed [um/s], at most: v^2 / (2 largest_acceleration) + v / speed_gain; the second is the
+/// way where the speed controller, and no limit, brakes.
+[[nodiscard]] double stopping_way_um(const Servo& servo, double speed_um_s);
+
+/// Reset time of the speed controller [s] above which the sampled cascade is stable; infinite where none makes it so.
+///
+/// With T = period, k = speed_gain T, p = position_gain T, s = T / speed_reset and w = z - 1, a tick of the axis within its largest
+/// acceleration has the characteristic polynomial
+///
+///     w^3 + k [(1 + p)(1 + s) w^2 + (p + s + 2 p s) w + p s] = 0
+///
+/// Its zeros z lie inside the unit circle (Jury) if and only if
+///
+///     k (2 + p)(2 + s) < 8   and   1/speed_gain < T + 1/position_gain + speed_reset.
+///
+/// The second always holds where position_gain <= speed_gain; this function asks for it, and solves the first for speed_reset.
+[[nodiscard]] double least_speed_reset_s(const Servo& servo);
+
 /// The injector as it is bought: what it may do to the control and to the axis.
 struct InjectorSettings {
   InsertionRules rules = {};
@@ -45,7 +63,7 @@ struct AxisFaults {
   std::int64_t n_jumps = 0;     ///< both lines at once: lost edges
   std::int64_t n_too_fast = 0;  ///< edges of the encoder above the control's limit
   std::int64_t n_glitches = 0;  ///< there and back within the least separation
-  bool swapped = false;         ///< the encoder counts against the command, over 20 counts or twice the way to stop
+  bool swapped = false;         ///< the encoder counts against the command, over 20 counts or four times the way to stop
 };
 
 /// The running simulation. Positions are those of the encoder; what it does not see is unseen_um().

@@ -25,7 +25,8 @@ std::int64_t TimedInjector::next_insertion() const {
   if (std::abs(target_ - inserted_) < rules.quarters || rules.bypass || frozen_) return kNever;
   if (!encoder_.started() || !encoder_.trusted()) return kNever;
   if (!rules.anywhere && (encoder_.lines() & kLinesAB) != 0) return kNever;
-  const std::int64_t at = std::max(clock_, last_insertion_ + limits_.insertion_interval);
+  // Behind the last step also when one advance() makes it on its way: else the answer would depend on how often it is called.
+  const std::int64_t at = std::max({clock_, last_out_, last_insertion_ + limits_.insertion_interval});
   const std::int64_t room = limits_.room();
   if (at + room <= edge_t_ + edge_interval_) return at;
   return std::max(at, edge_t_ + std::max(edge_interval_, room));

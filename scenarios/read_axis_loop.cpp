@@ -48,6 +48,9 @@ Servo read_servo(const ConfigMap& in) {
     in.fail("speed_gain", fmt::format("at most 1 / period = {:g} 1/s, or the speed rings", 1.0 / s.period_s));
   if (!(s.position_gain_1_s <= 0.25 * s.speed_gain_1_s))
     in.fail("position_gain", fmt::format("at most a quarter of speed_gain = {:g} 1/s", 0.25 * s.speed_gain_1_s));
+  if (const double least_s = least_speed_reset_s(s); !(s.speed_reset_s > least_s))
+    in.fail("speed_reset", fmt::format("{:g} s; more than {:.3g} s, or the sampled loop is unstable at these gains",
+                                       s.speed_reset_s, least_s));
   in.reject_unknown_keys();
   return s;
 }
@@ -61,6 +64,10 @@ AxisMotion read_motion(const ConfigMap& in) {
     in.fail("every",
             fmt::format("a pass takes {:g} s; at least twice that, or there is no rest in which errors are looked at",
                         m.stroke_um / m.feed_um_s));
+  if (!(m.every_s > m.busy_s()))
+    in.fail("every",
+            fmt::format("{:g} s; more than {:g} s, the pass and the time to settle behind it, or the axis never rests",
+                        m.every_s, m.busy_s()));
   in.reject_unknown_keys();
   return m;
 }
@@ -84,6 +91,7 @@ AxisLoopSettings read_axis_loop(const ConfigMap& in, const AxisLoopContext& cont
   loop.seed = static_cast<std::uint64_t>(in.integer("seed", 0, 1'000'000'000, 1));
   loop.encoder.seed = loop.seed;
   if (const auto growth = in.optional_map("growth")) {
+    loop.growing_part = growth->choice("of", {"screw", "scale"}) == "screw" ? GrowingPart::kScrew : GrowingPart::kScale;
     loop.growing_channel = growth->choice("sensor", context.sensors);
     loop.expansion_1_K = growth->quantity("expansion", "1/K", -1e-3, 1e-3);
     loop.at_um = growth->quantity("at", "um", -1e9, 1e9);

@@ -45,7 +45,7 @@ TEST(ReadAxisLoop, TakesEveryKeyInItsUnit) {
       "  motion: {stroke: 2 mm, feed: 600 mm/min, every: 1 min}\n"
       "  servo: {period: 2 ms, position_gain: 30 1/s, speed_gain: 200 1/s, speed_reset: 10 ms, feed_forward: 0.5, "
       "largest_acceleration: 1 m/s^2}\n"
-      "  growth: {sensor: t2, expansion: 11.5e-6 1/K, at: 300 mm}\n");
+      "  growth: {of: scale, sensor: t2, expansion: 11.5e-6 1/K, at: 300 mm}\n");
   const compensation::AxisLoop& loop = s.loop;
   EXPECT_EQ(s.displacement, "nose_z");
   EXPECT_EQ(loop.feedback, Feedback::kScale);
@@ -61,6 +61,7 @@ TEST(ReadAxisLoop, TakesEveryKeyInItsUnit) {
   EXPECT_DOUBLE_EQ(loop.motion.feed_um_s, 10e3);
   EXPECT_DOUBLE_EQ(loop.servo.largest_acceleration_um_s2, 1e6);
   EXPECT_EQ(loop.growing_channel, "t2");
+  EXPECT_EQ(loop.growing_part, compensation::GrowingPart::kScale);
   EXPECT_DOUBLE_EQ(loop.at_um, 300e3);
 }
 
@@ -88,8 +89,14 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{"  motion: {stroke: 1 m, feed: 1 m/s, every: 2 s}\n", "shorter stroke"},
                       Bad{"  servo: {speed_gain: 2000 1/s}\n", "at most 1 / period"},
                       Bad{"  servo: {position_gain: 200 1/s}\n", "a quarter of speed_gain"},
-                      Bad{"  growth: {sensor: t9, expansion: 1e-5 1/K, at: 1 m}\n", "t1"},
-                      Bad{"  growth: {sensor: t1, expansion: 1e-5 1/K, at: 1 m, on: 2}\n", "unknown key 'on'"}));
+                      Bad{"  motion: {stroke: 10 um, feed: 1 mm/s, every: 0.3 s}\n", "every"},
+                      Bad{"  motion: {stroke: 10 um, feed: 1 mm/s, every: 310 ms}\n", "more than 0.31 s"},
+                      Bad{"  servo: {speed_reset: 0.1 ms}\n", "speed_reset"},
+                      Bad{"  servo: {speed_reset: 0.128 ms}\n", "more than 0.000128 s"},
+                      Bad{"  growth: {sensor: t1, expansion: 1e-5 1/K, at: 1 m}\n", "of"},
+                      Bad{"  growth: {of: nut, sensor: t1, expansion: 1e-5 1/K, at: 1 m}\n", "screw, scale"},
+                      Bad{"  growth: {of: screw, sensor: t9, expansion: 1e-5 1/K, at: 1 m}\n", "t1"},
+                      Bad{"  growth: {of: screw, sensor: t1, expansion: 1e-5 1/K, at: 1 m, on: 2}\n", "unknown key 'on'"}));
 
 }  // namespace
 }  // namespace driftwright::scenarios

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "base/errors.hpp"
 #include "base/random.hpp"
 #include "compensation/encoder.hpp"
@@ -279,6 +282,68 @@ void check_motion(std::uint64_t seed) {
 
 TEST(TimedInjector, KeepsItsPropertiesInRandomMotion) {
   for (std::uint64_t seed = 0; seed < 50000 && !::testing::Test::HasFatalFailure(); ++seed) check_motion(seed);
+}
+
+/// Edges and targets of one random case, ended long after the last of them.
+struct Errand {
+  InsertionLimits limits;
+  std::vector<Edge> edges = {{0, k00}};
+  std::vector<std::pair<std::int64_t, std::int64_t>> targets = {};  // time, quarters
+};
+
+Errand random_errand(std::uint64_t seed) {
+  Random random(seed);
+  Errand errand{.limits = {.rules = {.quarters = 1 << random.below(3), .anywhere = random.chance(0.3)},
+                           .separation = 10,
+                           .insertion_interval = 1 + random.below(100)}};
+  const bool slower_than_separation = random.chance(0.6);
+  std::int64_t t = 0, phase = 0;
+  int direction = 1;
+  for (int i = 0; i < 60; ++i) {
+    if (random.chance(0.15)) direction = -direction;
+    t += slower_than_separation ? 10 + random.below(random.chance(0.5) ? 200 : 60) : 1 + random.below(100);
+    errand.edges.push_back({t, lines_of_phase(phase += direction)});
+  }
+  for (int i = 0; i < 6; ++i) {
+    const std::int64_t at = random.below(t);
+    errand.targets.push_back({at, random.below(81) - 40});
+  }
+  std::sort(errand.targets.begin(), errand.targets.end());
+  return errand;
+}
+
+std::vector<Edge> run_errand(const Errand& errand, bool tick_by_tick) {
+  TimedInjector injector(errand.limits);
+  std::vector<Edge> out;
+  std::int64_t now = 0;
+  const auto go_to = [&](std::int64_t t) {
+    for (; tick_by_tick && now + 1 < t; ++now) injector.advance(now + 1, out);
+    now = t;
+  };
+  std::size_t edge = 0, target = 0;
+  while (edge < errand.edges.size() || target < errand.targets.size()) {
+    const bool edge_next = target == errand.targets.size() ||
+                           (edge < errand.edges.size() && errand.edges[edge].t <= errand.targets[target].first);
+    if (edge_next) {
+      go_to(errand.edges[edge].t);
+      injector.input(errand.edges[edge++], out);
+    } else {
+      go_to(errand.targets[target].first);
+      injector.set_target(now, errand.targets[target].second, out);
+      ++target;
+    }
+  }
+  const std::int64_t end = now + 2000;
+  go_to(end);
+  injector.advance(end, out);
+  return out;
+}
+
+TEST(TimedInjector, DoesNotDependOnHowOftenItIsAdvanced) {
+  for (std::uint64_t seed = 0; seed < 20000; ++seed) {
+    const Errand errand = random_errand(seed);
+    ASSERT_EQ(run_errand(errand, false), run_errand(errand, true)) << "seed " << seed;
+  }
 }
 
 TEST(EncoderEdges, PlacesAndTimesAtConstantSpeed) {
