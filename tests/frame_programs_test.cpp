@@ -169,8 +169,9 @@ TEST(FrameProgram, ReadsTheTipOfTheProbeAndNoMachineAxis) {
   EXPECT_THAT(ring,
               AllOf(HasSubstr("$AA_MW[X]"), HasSubstr("$AA_MW[Z]"), Not(HasSubstr("$AA_MM")), Not(HasSubstr("SUPA")),
                     HasSubstr("IF $P_TOOL==0 GOTOF NOLENGTH"), HasSubstr("IF ABS($AA_MW[Z]-TF_CZ)>1 GOTOF WRONGHEIGHT")));
-  EXPECT_THAT(ngc, AllOf(HasSubstr("\nG43\n"), Not(HasSubstr("G49")), HasSubstr("#5400 LE 0"),
-                         HasSubstr("ABS[#104 - 0.0000] GT 1]"), HasSubstr("ABS[#124 - 0.0000] GT 1]")));
+  EXPECT_THAT(ngc,
+              AllOf(HasSubstr("\nG43\n"), Not(HasSubstr("G49")), HasSubstr("#5400 LE 0"), HasSubstr("[#5070 EQ 0]"),
+                    Not(HasSubstr("G38.2")), HasSubstr("ABS[#104 - 0.0000] GT 1]"), HasSubstr("ABS[#124 - 0.0000] GT 1]")));
 }
 
 // X1, Y1, Z1 are machine axes, I and TURN words of the language.

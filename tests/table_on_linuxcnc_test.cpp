@@ -159,21 +159,21 @@ def rings_rise(mm):
     for end in ("in0", "in1"):
         at = float(subprocess.run(["halcmd", "getp", "mux2.2." + end], capture_output=True, text=True).stdout)
         subprocess.run(["halcmd", "setp", "mux2.2." + end, repr(at + mm)])
-def expect_refusal(of):
+def expect_refusal(of, wanted):
     global say
     plain, words = say, []
     say = lambda *a: words.append(" ".join(str(x) for x in a)) if a[0] == "error" else plain(*a)
     run(of)
     say = plain
-    print(of, words, flush=True)
+    say(of + "Words", int(any(wanted in w for w in words)))
 offsets("before")
-expect_refusal("bare")                # no probe in the spindle
+expect_refusal("bare", "no probe in the spindle")                # no M6 before
 c.mode(linuxcnc.MODE_MDI); c.wait_complete(10)
 mdi("M61 Q1")
 rings_rise(2)                         # a probe 2 mm shorter than its length says
-expect_refusal("high")
+expect_refusal("high", "height of ring low")
 rings_rise(-22)                       # no ring at all
-expect_refusal("missing")
+expect_refusal("missing", "ring low missing")
 rings_rise(20)
 run("after")
 mdi("G49")
@@ -227,6 +227,7 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRe
   }
   ASSERT_TRUE(found.contains("done")) << said << read_text(folder / "log.txt");
   // G54 stays whatever happens, and G59.3 where nothing was measured.
+  for (const std::string of : {"bare", "high", "missing"}) EXPECT_EQ(found[of + "Words"], 1.0) << of;
   found["beforeLeft"] = 1.0;  // nothing has run
   for (const std::string of : {"before", "bare", "high", "missing", "after"}) {
     for (int axis = 0; axis < 3; ++axis) {
