@@ -106,9 +106,9 @@ void require_together(const InjectOptions& options) {
   if (!options.hal.empty() && options.halstream.empty())
     throw InputError("--hal plays the file of --halstream, which is not given");
   if (!options.hal.empty() && options.counts == "x2") throw InputError("--hal: LinuxCNC's encoder counts x4 or x1, not x2");
-  if (!options.hal.empty() && options.halstream.find_first_of("'$[\n\r") != std::string::npos)
+  if (!options.hal.empty() && options.halstream.find_first_of("'\"#$[ \t\n\r") != std::string::npos)
     throw InputError(
-        fmt::format("--halstream '{}': a HAL file can name no file with ', $, [ or a line break", options.halstream));
+        fmt::format("--halstream '{}': a HAL file can name no file with a blank, a quote, #, $ or [", options.halstream));
 }
 
 /// Two names of one file? A device such as /dev/null may have several.

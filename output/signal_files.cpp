@@ -148,7 +148,7 @@ std::string hal_text(const std::string& stream_path, const HalStreamFile& stream
   text += fmt::format(
       "setp encoder.0.x4-mode {}\n"
       "start\n"
-      "loadusr -w halstreamer '{}'\n"
+      "loadusr -w halstreamer {}\n"
       "loadusr -w sleep {}\n"
       "show pin encoder.0.rawcounts\n"
       "show pin streamer.0.pin.{}\n",

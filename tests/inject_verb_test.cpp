@@ -234,13 +234,6 @@ TEST(InjectVerb, EachFileIsItsOwn) {
   EXPECT_EQ(nowhere.exit_code, 0) << nowhere.words;
 }
 
-TEST(InjectVerb, AHalFileQuotesTheNameOfItsRows) {
-  const std::string c = file("c.csv", "row,e_um\n1,3\n");
-  EXPECT_EQ(inject("quoted", "--period '1 um' --halstream 'my rows' --hal play.hal --correction " + c, "0 0\n").exit_code,
-            0);
-  EXPECT_THAT(read_text(temporary_folder() / "quoted" / "play.hal"), HasSubstr("loadusr -w halstreamer 'my rows'\n"));
-}
-
 TEST(InjectVerb, AWaveformBeyondItsTimesIsRefused) {
   const std::string c = file("c.csv", "row,e_um\n1,3\n");
   const std::string times = "--period '1 um' --vcd v.vcd --row-time '123456.789012345 s' --correction " + c;
@@ -270,31 +263,32 @@ TEST_P(BadInjection, IsRefusedWithLineAndWhatIsAllowed) {
 constexpr const char* kGood = "row,e_um\n1,3\n";
 INSTANTIATE_TEST_SUITE_P(
     InjectVerb, BadInjection,
-    ::testing::Values(BadCase{"row2", kGood, "--period '1 um'", "0 0\n0 2\n",
-                              "line 2: '0 2'; 2 columns of 0 and 1 are wanted"},
-                      BadCase{"first", kGood, "--period '1 um'", "0\n", "line 1: '0'; two or three columns"},
-                      BadCase{"columns", kGood, "--period '1 um'", "0 0 1\n0 0\n", "line 2: '0 0'; 3 columns"},
-                      BadCase{"empty_line", kGood, "--period '1 um'", "0 0\n\n0 1\n", "line 2: ''"},
-                      BadCase{"no_period", kGood, "", "0 0\n", "wants --period"},
-                      BadCase{"bad_period", kGood, "--period '1 kg'", "0 0\n", "--period '1 kg'"},
-                      BadCase{"zero_period", kGood, "--period '0 um'", "0 0\n", "more than 0"},
-                      BadCase{"no_row_time", "time_s,e_um\n0,1\n", "--period '1 um'", "0 0\n", "wants --row-time"},
-                      BadCase{"header", "when,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":1: the first column is 'when'"},
-                      BadCase{"unit", "row,e_mm\n1,1\n", "--period '1 um'", "0 0\n", ":1: the second column is 'e_mm'"},
-                      BadCase{"text", "row,e_um\n1,1\n2,x\n", "--period '1 um'", "0 0\n", ":3: '2,x': two finite numbers"},
-                      BadCase{"nan", "row,e_um\n1,nan\n", "--period '1 um'", "0 0\n", ":2: '1,nan'"},
-                      BadCase{"order", "row,e_um\n5,1\n5,2\n", "--period '1 um'", "0 0\n", ":3: 5 does not come after"},
-                      BadCase{"zero_row", "row,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":2: row 0"},
-                      BadCase{"huge", "row,e_um\n1,1e300\n", "--period '1 um'", "0 0\n", ":2: "},
-                      BadCase{"no_rows", "row,e_um\n", "--period '1 um'", "0 0\n", "no correction behind the header"},
-                      BadCase{"hal_alone", kGood, "--period '1 um' --hal h.hal", "0 0\n", "--halstream"},
-                      BadCase{"interval", kGood, "--period '1 um' --interval 5", "0 0\n", "add --clocked"},
-                      BadCase{"separation", kGood, "--period '1 um' --separation 5", "0 0\n", "add --clocked"},
-                      BadCase{"unit_of_table", kGood, "--period '1 um' --unit count", "0 0\n", "end it in _count"},
-                      BadCase{"less_than_a_count", kGood, "--period '1 um' --counts x1 --insert quarter", "0 0\n",
-                              "less than one count at x1"},
-                      BadCase{"hal_name", kGood, "--period '1 um' --halstream \"a'b\" --hal h.hal", "0 0\n", "line break"},
-                      BadCase{"hal_x2", kGood, "--period '1 um' --counts x2 --halstream s --hal h.hal", "0 0\n", "not x2"}),
+    ::testing::Values(
+        BadCase{"row2", kGood, "--period '1 um'", "0 0\n0 2\n", "line 2: '0 2'; 2 columns of 0 and 1 are wanted"},
+        BadCase{"first", kGood, "--period '1 um'", "0\n", "line 1: '0'; two or three columns"},
+        BadCase{"columns", kGood, "--period '1 um'", "0 0 1\n0 0\n", "line 2: '0 0'; 3 columns"},
+        BadCase{"empty_line", kGood, "--period '1 um'", "0 0\n\n0 1\n", "line 2: ''"},
+        BadCase{"no_period", kGood, "", "0 0\n", "wants --period"},
+        BadCase{"bad_period", kGood, "--period '1 kg'", "0 0\n", "--period '1 kg'"},
+        BadCase{"zero_period", kGood, "--period '0 um'", "0 0\n", "more than 0"},
+        BadCase{"no_row_time", "time_s,e_um\n0,1\n", "--period '1 um'", "0 0\n", "wants --row-time"},
+        BadCase{"header", "when,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":1: the first column is 'when'"},
+        BadCase{"unit", "row,e_mm\n1,1\n", "--period '1 um'", "0 0\n", ":1: the second column is 'e_mm'"},
+        BadCase{"text", "row,e_um\n1,1\n2,x\n", "--period '1 um'", "0 0\n", ":3: '2,x': two finite numbers"},
+        BadCase{"nan", "row,e_um\n1,nan\n", "--period '1 um'", "0 0\n", ":2: '1,nan'"},
+        BadCase{"order", "row,e_um\n5,1\n5,2\n", "--period '1 um'", "0 0\n", ":3: 5 does not come after"},
+        BadCase{"zero_row", "row,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":2: row 0"},
+        BadCase{"huge", "row,e_um\n1,1e300\n", "--period '1 um'", "0 0\n", ":2: "},
+        BadCase{"no_rows", "row,e_um\n", "--period '1 um'", "0 0\n", "no correction behind the header"},
+        BadCase{"hal_alone", kGood, "--period '1 um' --hal h.hal", "0 0\n", "--halstream"},
+        BadCase{"interval", kGood, "--period '1 um' --interval 5", "0 0\n", "add --clocked"},
+        BadCase{"separation", kGood, "--period '1 um' --separation 5", "0 0\n", "add --clocked"},
+        BadCase{"unit_of_table", kGood, "--period '1 um' --unit count", "0 0\n", "end it in _count"},
+        BadCase{"less_than_a_count", kGood, "--period '1 um' --counts x1 --insert quarter", "0 0\n",
+                "less than one count at x1"},
+        BadCase{"hal_name", kGood, "--period '1 um' --halstream \"a'b\" --hal h.hal", "0 0\n", "with a blank"},
+        BadCase{"hal_blank", kGood, "--period '1 um' --halstream 'my rows' --hal h.hal", "0 0\n", "with a blank"},
+        BadCase{"hal_x2", kGood, "--period '1 um' --counts x2 --halstream s --hal h.hal", "0 0\n", "not x2"}),
     [](const auto& case_info) { return std::string(case_info.param.name); });
 
 TEST(InjectVerb, RefusesAMissingCorrectionAndStandardInputForIt) {
