@@ -121,6 +121,17 @@ double largest_feed_mm_min(const AxisLoop& loop) {
                                                  loop.injector.separation_s());
 }
 
+/// What the axis met, or nothing where it was sound.
+std::string faults_told(const compensation::AxisFaults& faults) {
+  std::string text;
+  const auto add = [&](const std::string& words) { text += (text.empty() ? "" : "; ") + words; };
+  if (faults.swapped) add("the encoder counts against the command, and insertion has ended");
+  if (faults.n_jumps > 0) add(fmt::format("{} jumps of both lines at once", faults.n_jumps));
+  if (faults.n_too_fast > 0) add(fmt::format("{} edges faster than the control counts", faults.n_too_fast));
+  if (faults.n_glitches > 0) add(fmt::format("{} glitches", faults.n_glitches));
+  return text;
+}
+
 }  // namespace
 
 void add_axis_loop(output::Report& report, const scenarios::AxisLoopSettings& settings, const AxisLoopRun& run,
@@ -128,16 +139,17 @@ void add_axis_loop(output::Report& report, const scenarios::AxisLoopSettings& se
   const auto add = [&](auto block) { report.blocks.emplace_back(std::move(block)); };
   const AxisLoop& loop = settings.loop;
   add(output::Heading{fmt::format("{} through the pulse injector, edge by edge", settings.displacement)});
+  const std::string faults = faults_told(run.with.faults);
   add(Paragraph{fmt::format(
       "The regression corrects {} every {:g} s from readings with {:g} K of noise in steps of {:g} K, in insertions of {:g} "
       "um; the "
       "axis has {} encoder. {} insertions; counts in {:+d}, inserted {:+d}, out {:+d} quarter steps, {} illegal "
       "transitions. A feed "
-      "above {:.0f} mm/min leaves no room for an insertion between two edges.",
+      "above {:.0f} mm/min leaves no room for an insertion between two edges.{}",
       settings.displacement, loop.sampling_s, loop.thermometers.noise_K, loop.thermometers.resolution_K, loop.insertion_um(),
       loop.feedback == compensation::Feedback::kMotor ? "a motor" : "a linear", run.with.n_insertions,
-      run.with.encoder_quarters, run.with.control_quarters - run.with.encoder_quarters + run.with.waiting_quarters,
-      run.with.control_quarters, run.with.control_jumps, largest_feed_mm_min(loop))});
+      run.with.encoder_quarters, run.with.total_quarters, run.with.control_quarters, run.with.control_jumps,
+      largest_feed_mm_min(loop), faults.empty() ? "" : fmt::format(" Faults: {}.", faults))});
   add(cause_bars(run));
   add(cause_table(run));
   add(Plot{.title = settings.displacement + " at rest, before and after (the worst between two points)",
@@ -156,8 +168,10 @@ std::string axis_loop_line(const scenarios::AxisLoopSettings& settings, const Ax
   std::string causes;
   for (std::size_t i = 1; i < run.stages.size(); ++i)
     causes += fmt::format("{}{} {:.2f}", i == 1 ? "" : ", + ", run.stages[i].cause, run.stages[i].rms_um);
-  return fmt::format("  edge by edge, regression by injector: {} {:.2f} um RMS before, after with {} um\n",
-                     settings.displacement, run.stages.front().rms_um, causes);
+  const std::string faults = faults_told(run.with.faults);
+  return fmt::format("  edge by edge, regression by injector: {} {:.2f} um RMS before, after with {} um\n{}",
+                     settings.displacement, run.stages.front().rms_um, causes,
+                     faults.empty() ? "" : fmt::format("    faults of this axis: {}\n", faults));
 }
 
 nlohmann::ordered_json axis_loop_json(const scenarios::AxisLoopSettings& settings, const AxisLoopRun& run) {
@@ -171,12 +185,13 @@ nlohmann::ordered_json axis_loop_json(const scenarios::AxisLoopSettings& setting
     j["switched_on_in_turn"].push_back(
         {{"cause", s.cause}, {"what", s.words}, {"rms_um", s.rms_um}, {"peak_um", s.peak_um}});
   const compensation::InjectedSeries& with = run.with;
-  j["counts"] = {{"encoder_quarters", with.encoder_quarters},
-                 {"inserted_quarters", with.control_quarters - with.encoder_quarters + with.waiting_quarters},
-                 {"control_quarters", with.control_quarters},
-                 {"waiting_quarters", with.waiting_quarters},
-                 {"insertions", with.n_insertions},
-                 {"illegal_transitions", with.control_jumps}};
+  j["counts"] = {{"encoder_quarters", with.encoder_quarters}, {"inserted_quarters", with.total_quarters},
+                 {"control_quarters", with.control_quarters}, {"waiting_quarters", with.waiting_quarters},
+                 {"insertions", with.n_insertions},           {"illegal_transitions", with.control_jumps}};
+  j["faults"] = {{"jumps", with.faults.n_jumps},
+                 {"too_fast", with.faults.n_too_fast},
+                 {"glitches", with.faults.n_glitches},
+                 {"swapped", with.faults.swapped}};
   return j;
 }
 

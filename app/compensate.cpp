@@ -40,6 +40,7 @@ struct Source {
 /// What the actuator left.
 struct Outcome {
   std::vector<double> time_s = {}, drift_um = {}, predicted_um = {}, left_um = {};
+  std::vector<bool> at_rest = {};  ///< rows that are judged, where the axis moves; empty: all
   Score before = {}, after = {};
 };
 
@@ -125,9 +126,27 @@ Outcome through_injector(const Scenario& scenario, const Source& source, const R
         scenario.study->where,
         "--through injector wants the block `axis_loop`, which says encoder, injector and servo (docs/injector.md)");
   }
+  if (source.channel != scenario.axis_loop->displacement)
+    throw InputError(scenario.axis_loop->where,
+                     fmt::format("the axis corrects '{}', but the predictor tells '{}'; set `displacement: {}`, or take "
+                                 "another --model",
+                                 scenario.axis_loop->displacement, source.channel, source.channel));
   const AxisLoopRun run = run_axis_loop(scenario.axis_loop->loop, truth, source.channel, source.live);
-  Outcome o{.time_s = run.time_s, .drift_um = run.before_um, .predicted_um = run.predicted_um, .left_um = run.after_um};
-  return o;
+  return {.time_s = run.time_s,
+          .drift_um = run.before_um,
+          .predicted_um = run.predicted_um,
+          .left_um = run.after_um,
+          .at_rest = run.at_rest};
+}
+
+/// The values of rows that are judged: during a pass an axis lags behind its command, which is no thermal error.
+std::vector<double> judged(const Outcome& o, const std::vector<double>& values) {
+  if (o.at_rest.empty()) return values;
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (o.at_rest[i]) kept.push_back(values[i]);
+  }
+  return kept;
 }
 
 Outcome through_schedule(const Scenario& scenario, const Source& source, const Record& truth, const Cyclogram& cyclogram) {
@@ -150,9 +169,11 @@ Outcome through_schedule(const Scenario& scenario, const Source& source, const R
 std::string corrected_csv(const Outcome& o, const std::vector<std::string>& comments) {
   std::string csv;
   for (const std::string& c : comments) csv += "# " + c + "\n";
-  csv += "time_s,drift_um,predicted_um,left_um\n";
-  for (std::size_t i = 0; i < o.time_s.size(); ++i)
-    csv += fmt::format("{:.7g},{:.7g},{:.7g},{:.7g}\n", o.time_s[i], o.drift_um[i], o.predicted_um[i], o.left_um[i]);
+  csv += fmt::format("time_s,drift_um,predicted_um,left_um{}\n", o.at_rest.empty() ? "" : ",at_rest");
+  for (std::size_t i = 0; i < o.time_s.size(); ++i) {
+    csv += fmt::format("{:.7g},{:.7g},{:.7g},{:.7g}", o.time_s[i], o.drift_um[i], o.predicted_um[i], o.left_um[i]);
+    csv += o.at_rest.empty() ? "\n" : o.at_rest[i] ? ",1\n" : ",0\n";
+  }
   return csv;
 }
 
@@ -190,8 +211,8 @@ void compensate(const CompensateOptions& options) {
   }
   Outcome o = options.through == "injector" ? through_injector(scenario, source, truth)
                                             : through_schedule(scenario, source, truth, cyclogram);
-  o.before = score(o.drift_um);
-  o.after = score(o.left_um);
+  o.before = score(judged(o, o.drift_um));
+  o.after = score(judged(o, o.left_um));
   const double removed = 100.0 * (1.0 - o.after.peak_abs / o.before.peak_abs);
   const std::string title = fmt::format("{}: {} corrected through the {}", scenario.name, source.channel, options.through);
   const Json summary = {
@@ -201,7 +222,7 @@ void compensate(const CompensateOptions& options) {
       {"peak_left_um", o.after.peak_abs}, {"removed_percent", removed},          {"rms_before_um", o.before.rmse},
       {"rms_left_um", o.after.rmse}};
   std::vector<double> t_min;
-  for (double t_s : o.time_s) t_min.push_back(t_s / 60.0);
+  for (double t_s : judged(o, o.time_s)) t_min.push_back(t_s / 60.0);
   output::Report page{.title = title,
                       .subtitle = fmt::format("Driftwright {}, scenario {}, cyclogram {}", folder.made_by().version,
                                               folder.made_by().scenario, cyclogram.name),
@@ -215,9 +236,9 @@ void compensate(const CompensateOptions& options) {
       output::Plot{.title = source.channel,
                    .x_label = "time [min]",
                    .y_label = source.channel + " [um]",
-                   .series = {{.label = "without correction", .x = t_min, .y = o.drift_um, .width = 3.0},
-                              {.label = "predicted", .x = t_min, .y = o.predicted_um},
-                              {.label = "left", .x = t_min, .y = o.left_um}},
+                   .series = {{.label = "without correction", .x = t_min, .y = judged(o, o.drift_um), .width = 3.0},
+                              {.label = "predicted", .x = t_min, .y = judged(o, o.predicted_um)},
+                              {.label = "left", .x = t_min, .y = judged(o, o.left_um)}},
                    .bands = {{.label = "tolerance", .low = -study.tolerance_um, .high = study.tolerance_um}}});
   folder.write_text("corrected.csv", corrected_csv(o, provenance_lines(folder.made_by(), "cyclogram " + cyclogram.name)));
   folder.write_text("summary.json", output::json_text(summary));

@@ -66,6 +66,10 @@ CorrectionInput::CorrectionInput(const std::string& path, const CorrectionScale&
   if (stat(path.c_str(), &status) != 0) throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
   if (S_ISDIR(status.st_mode)) throw InputError(fmt::format("{}: is a folder; a file or a FIFO is wanted", path));
   if (S_ISREG(status.st_mode)) {
+    if (scale.unit != "um")
+      throw InputError(fmt::format(
+          "--unit {} is for numbers from a pipe; {} is a table, whose second column tells by its name: end it in _{}",
+          scale.unit, path, scale.unit));
     read_table();
     return;
   }
@@ -135,7 +139,8 @@ std::int64_t CorrectionInput::holds_until() const {
 void CorrectionInput::poll() {
   if (pipe_ < 0) return;
   std::array<char, 4096> bytes;
-  while (true) {
+  constexpr int kMostReads = 256;  // as much as the largest pipe holds; who writes faster may not stop the rows
+  for (int i = 0; i < kMostReads; ++i) {
     const ssize_t n = ::read(pipe_, bytes.data(), bytes.size());
     if (n <= 0) return;  // nothing there by now, no writer yet, or the last one has gone: the correction stays
     rest_.append(bytes.data(), static_cast<std::size_t>(n));
@@ -148,6 +153,8 @@ void CorrectionInput::poll() {
       quarters_ = checked_quarters(*value * quarters_per(scale_.unit, scale_, path_), path_, n_lines_);
     }
     rest_.erase(0, begin);
+    if (rest_.size() > bytes.size())
+      fail(path_, n_lines_ + 1, fmt::format("longer than {} characters; one number a line is wanted", bytes.size()));
   }
 }
 

@@ -33,7 +33,7 @@ class CorrectionInput {
   [[nodiscard]] double quarters_at(std::int64_t row);
   /// The last row up to which the wish stays as it is.
   [[nodiscard]] std::int64_t holds_until() const;
-  /// Reads what the pipe holds by now, without waiting. @throws InputError  when a line is no number
+  /// Reads what the pipe holds by now, 1 MiB at most, without waiting. @throws InputError  when a line is no number, or endless
   void poll();
 
  private:

@@ -1,9 +1,15 @@
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
-#include <cstdlib>
+#include <cstdio>
+#include <filesystem>
 #include <optional>
+#include <system_error>
+#include <utility>
 
 #include "app/correction_input.hpp"
 #include "app/row_pipe.hpp"
@@ -90,6 +96,60 @@ class RowInjector {
   std::vector<Edge> edges_;
 };
 
+void require_together(const InjectOptions& options) {
+  if (!options.clocked && (options.separation != 1 || options.interval != 1))
+    throw InputError("--separation and --interval count rows of a signal sampled in time; add --clocked");
+  if (quarters_of(options.insert) < quarters_per_count(counting_of(options.counts)))
+    throw InputError(fmt::format(
+        "--insert {} is less than one count at {}; the control would not see each: add --counts x4, or --insert cycle",
+        options.insert, options.counts));
+  if (!options.hal.empty() && options.halstream.empty())
+    throw InputError("--hal plays the file of --halstream, which is not given");
+  if (!options.hal.empty() && options.counts == "x2") throw InputError("--hal: LinuxCNC's encoder counts x4 or x1, not x2");
+  if (!options.hal.empty() && options.halstream.find_first_of("'\"#$[ \t\n\r") != std::string::npos)
+    throw InputError(
+        fmt::format("--halstream '{}': a HAL file can name no file with a blank, a quote, #, $ or [", options.halstream));
+}
+
+/// Two names of one file? A device such as /dev/null may have several.
+bool same_file(const std::string& a, const std::string& b) {
+  struct stat of_a, of_b;
+  const bool has_a = stat(a.c_str(), &of_a) == 0, has_b = stat(b.c_str(), &of_b) == 0;
+  if (has_a && has_b) return !S_ISCHR(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+  std::error_code error_a, error_b;
+  const auto path_a = std::filesystem::weakly_canonical(std::filesystem::absolute(a), error_a),
+             path_b = std::filesystem::weakly_canonical(std::filesystem::absolute(b), error_b);
+  return !has_a && !has_b && !error_a && !error_b && path_a == path_b;
+}
+
+void require_own_files(const InjectOptions& options) {
+  const std::array<std::pair<const char*, const std::string*>, 5> files = {{{"--correction", &options.correction},
+                                                                            {"--vcd", &options.vcd},
+                                                                            {"--halstream", &options.halstream},
+                                                                            {"--hal", &options.hal},
+                                                                            {"--log", &options.log}}};
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = i + 1; j < files.size(); ++j) {
+      if (!files[i].second->empty() && !files[j].second->empty() && same_file(*files[i].second, *files[j].second))
+        throw InputError(fmt::format("{} {} and {} {} are the same file; each wants its own", files[i].first,
+                                     *files[i].second, files[j].first, *files[j].second));
+    }
+  }
+}
+
+/// A file that is opened next would otherwise get the number of a standard stream that is closed, and its bytes.
+void require_standard_streams() {
+  if (fcntl(STDIN_FILENO, F_GETFD) < 0) throw InputError("standard input is closed; rows are read from it");
+  if (fcntl(STDOUT_FILENO, F_GETFD) < 0) throw InputError("standard output is closed; rows are written to it");
+  if (fcntl(STDERR_FILENO, F_GETFD) < 0 && open("/dev/null", O_WRONLY) != STDERR_FILENO)
+    throw InputError("standard error is closed");
+}
+
+/// To standard error. That it cannot be written is no reason to fail: the rows are what counts.
+void tell(const std::string& words) {
+  (void)std::fputs(words.c_str(), stderr);
+}
+
 /// What goes to files beside standard output.
 struct SideFiles {
   std::optional<output::VcdFile> vcd;
@@ -112,12 +172,7 @@ class Filter {
                                          .row_s = row_s_,
                                          .unit = options.unit}),
         converter_(rules_.quarters),
-        injector_(rules_, options.clocked, options.separation, options.interval) {
-    if (!options.hal.empty() && options.halstream.empty())
-      throw InputError("--hal plays the file of --halstream, which is not given");
-    if (!options.hal.empty() && counting_ == Counting::kX2)
-      throw InputError("--hal: LinuxCNC's encoder counts x4 or x1, not x2");
-  }
+        injector_(rules_, options.clocked, options.separation, options.interval) {}
 
   void run() {
     std::signal(SIGPIPE, SIG_IGN);  // write() tells
@@ -215,15 +270,14 @@ class Filter {
       if (!hal) throw InputError(fmt::format("{}: cannot be written", options_.hal));
     }
     if (encoder.n_jumps() > 0)
-      fmt::print(stderr, "inject: {} jumps of both lines at once (lost edges or disturbances){}\n", encoder.n_jumps(),
-                 rules_.bypass ? "" : "; the correction waited a period behind each");
+      tell(fmt::format("inject: {} jumps of both lines at once (lost edges or disturbances){}\n", encoder.n_jumps(),
+                       rules_.bypass ? "" : "; the correction waited a period behind each"));
     if (injector_.n_too_fast() > 0)
-      fmt::print(stderr, "inject: {} edges of the encoder came closer than {} rows and were held back\n",
-                 injector_.n_too_fast(), options_.separation);
-    fmt::print(stderr,
-               "inject: {} rows in, {} rows out; x4 counts: encoder {:+d}, inserted {:+d} of {:+d}, control {:+d}{}\n",
-               n_rows_, n_out_, encoder.count(), injector_.inserted(), target_, control_.count(),
-               counting_ == Counting::kX4 ? "" : fmt::format(" ({} {:+d})", options_.counts, counted_.count()));
+      tell(fmt::format("inject: {} edges of the encoder came closer than {} rows and were held back\n",
+                       injector_.n_too_fast(), options_.separation));
+    tell(fmt::format("inject: {} rows in, {} rows out; x4 counts: encoder {:+d}, inserted {:+d} of {:+d}, control {:+d}{}\n",
+                     n_rows_, n_out_, encoder.count(), injector_.inserted(), target_, control_.count(),
+                     counting_ == Counting::kX4 ? "" : fmt::format(" ({} {:+d})", options_.counts, counted_.count())));
   }
 
   const InjectOptions& options_;
@@ -245,6 +299,9 @@ class Filter {
 }  // namespace
 
 void inject(const InjectOptions& options) {
+  require_standard_streams();
+  require_together(options);
+  require_own_files(options);
   Filter(options).run();
 }
 

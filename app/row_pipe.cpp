@@ -6,7 +6,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <stdexcept>
 #include <string_view>
 
 #include "base/errors.hpp"
@@ -65,14 +64,18 @@ std::span<const Lines> RowReader::next() {
       if (errno == EINTR) continue;
       throw InputError(fmt::format("standard input: {}", std::strerror(errno)));
     }
+    const std::string held = rest_;
+    const char* begin = bytes.data();  // of the first line that is not taken
+    const auto keep_taken = [&] {
+      bytes_.assign(held).append(bytes.data(), static_cast<std::size_t>(begin - bytes.data()));
+    };
     try {
       if (n == 0) {
         at_end_ = true;
         if (!rest_.empty()) take_line(rest_.data(), rest_.data() + rest_.size());
+        bytes_ = rest_;
         break;
       }
-      bytes_.append(bytes.data(), static_cast<std::size_t>(n));
-      const char* begin = bytes.data();
       const char* const end = begin + n;
       while (const char* newline =
                  static_cast<const char*>(std::memchr(begin, '\n', static_cast<std::size_t>(end - begin)))) {
@@ -85,12 +88,14 @@ std::span<const Lines> RowReader::next() {
         }
         begin = newline + 1;
       }
+      keep_taken();
       rest_.append(begin, end);
       constexpr std::size_t kLongestLine = 4096;
       if (rest_.size() > kLongestLine)
         throw InputError(fmt::format("standard input, line {}: longer than {} characters", n_lines_ + 1, kLongestLine));
     } catch (const InputError&) {
       if (rows_.empty()) throw;
+      keep_taken();
       error_ = std::current_exception();
       break;
     }
@@ -106,7 +111,7 @@ bool write_bytes(int file, std::string_view bytes) {
     } else if (errno == EPIPE) {
       return false;
     } else if (errno != EINTR) {
-      throw std::runtime_error(fmt::format("standard output: {}", std::strerror(errno)));
+      throw InputError(fmt::format("standard output: {}", std::strerror(errno)));
     }
   }
   return true;

@@ -20,7 +20,7 @@ class RowReader {
   /// The rows that have arrived, at least one; none at the end. Waits until there is one. The loan lasts until the next call.
   /// @throws InputError  with line and what is allowed, once the rows before it have been handed on
   [[nodiscard]] std::span<const compensation::Lines> next();
-  /// The bytes that were read for them, as they came; of a line that has not ended, too.
+  /// The bytes of these rows' lines, as they came.
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
   [[nodiscard]] bool has_index() const { return n_columns_ == 3; }
 
@@ -39,12 +39,10 @@ class RowReader {
 
 /// Writes bytes at once.
 /// @return false  when nobody reads any more
-/// @throws std::runtime_error  when they cannot be written for another reason
+/// @throws InputError  when they cannot be written for another reason, such as a full disk
 [[nodiscard]] bool write_bytes(int file, std::string_view bytes);
 
-/// Writes rows in that form, at once.
-/// @return false  when nobody reads any more
-/// @throws std::runtime_error  when they cannot be written for another reason
+/// Writes rows in that form, at once; returns and throws as write_bytes().
 [[nodiscard]] bool write_rows(int file, std::span<const compensation::Lines> rows, bool with_index);
 
 }  // namespace driftwright::app

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/errors.hpp"
 
@@ -55,6 +56,7 @@ VcdFile::VcdFile(const std::string& path, double row_s, bool has_index, const st
     : path_(path), file_(open(path)), has_index_(has_index) {
   const Timescale scale = timescale_for(row_s);
   ticks_per_row_ = scale.ticks_per_row;
+  most_rows_ = std::numeric_limits<std::int64_t>::max() / ticks_per_row_;
   file_ << "$comment " << made_by << " $end\n$timescale " << scale.words << " $end\n$scope module injector $end\n"
         << "$var wire 1 ! a_in $end\n$var wire 1 \" b_in $end\n$var wire 1 # a_out $end\n$var wire 1 $ b_out $end\n";
   if (has_index) file_ << "$var wire 1 % z_in $end\n$var wire 1 & z_out $end\n";
@@ -65,6 +67,9 @@ void VcdFile::row(std::int64_t row, Lines in, Lines out) {
   const bool first = last_row_ < 0;
   const Lines in_changes = static_cast<Lines>(first ? 7 : in ^ last_in_);
   const Lines out_changes = static_cast<Lines>(first ? 7 : out ^ last_out_);
+  if (row >= most_rows_)
+    throw InputError(fmt::format("{}: row {} of {} ticks each is beyond a 64-bit time; take a rounder time of a row", path_,
+                                 row + 1, ticks_per_row_));
   last_row_ = row;
   if (in_changes == 0 && out_changes == 0) return;
   std::string text = fmt::format("#{}\n", row * ticks_per_row_);

@@ -20,7 +20,7 @@ class VcdFile {
   /// @throws InputError  when the file cannot be written, or a row is shorter than 1 ps
   VcdFile(const std::string& path, double row_s, bool has_index, const std::string& made_by);
 
-  /// Lines from this row on; rows may not fall.
+  /// Lines from this row on; rows may not fall. @throws InputError  when the time of the row is beyond 64 bits
   void row(std::int64_t row, Lines in, Lines out);
   /// Ends the last row. @throws InputError  when not all could be written
   void finish();
@@ -28,7 +28,7 @@ class VcdFile {
  private:
   std::string path_;
   std::ofstream file_;
-  std::int64_t ticks_per_row_;
+  std::int64_t ticks_per_row_, most_rows_;
   bool has_index_;
   std::int64_t last_row_ = -1;
   Lines last_in_ = 0, last_out_ = 0;

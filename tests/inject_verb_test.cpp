@@ -173,6 +173,76 @@ TEST(InjectVerb, EndsQuietlyWhenNobodyReads) {
   EXPECT_EQ(status, 0);
 }
 
+TEST(InjectVerb, BypassAnswersTheRowsBeforeABadOne) {
+  const std::string c = file("c.csv", "row,e_um\n1,3\n");
+  const Filtered f = inject("bypass_bad", "--bypass --period '1 um' --correction " + c, "0 0\n0\t1\r\n0 2\n1 0\n");
+  EXPECT_EQ(f.exit_code, 2);
+  EXPECT_EQ(f.rows, "0 0\n0\t1\r\n");
+  EXPECT_THAT(f.words, HasSubstr("line 3: '0 2'"));
+}
+
+/// `driftwright inject` by a shell line that says where its streams go.
+CommandOutcome inject_with(const std::string& name, const std::string& arguments) {
+  const auto folder = fresh_folder(name);
+  write_file(name + "/c.csv", "row,e_um\n1,3\n");
+  write_file(name + "/in.txt", row_text(legs({40})));
+  return run_program("--version >" + (folder / "version").string() + "; cd " + folder.string() + " && (timeout 20 " +
+                     DRIFTWRIGHT_PROGRAM + " inject --period '1 um' " + arguments + ")");
+}
+
+TEST(InjectVerb, AClosedOrFullOutputIsTold) {
+  const CommandOutcome full = inject_with("full", "--correction c.csv <in.txt 2>&1 >/dev/full");
+  EXPECT_EQ(full.exit_code, 2);
+  EXPECT_THAT(full.output, HasSubstr("standard output: No space left"));
+  const CommandOutcome closed = inject_with("closed", "--correction c.csv --log log.csv <in.txt 2>&1 >&-");
+  EXPECT_EQ(closed.exit_code, 2);
+  EXPECT_THAT(closed.output, HasSubstr("standard output is closed"));
+  const CommandOutcome no_rows = inject_with("no_rows_in", "--correction c.csv <&-");
+  EXPECT_EQ(no_rows.exit_code, 2);
+  EXPECT_THAT(no_rows.output, HasSubstr("standard input is closed"));
+  EXPECT_EQ(inject_with("mute", "--correction c.csv --log log.csv <in.txt >out.txt 2>&-; echo $? >code").exit_code, 0);
+  EXPECT_EQ(read_text(temporary_folder() / "mute" / "code"), "0\n");
+  EXPECT_THAT(read_text(temporary_folder() / "mute" / "log.csv"), ::testing::Not(HasSubstr("rows in")));
+  EXPECT_EQ(inject_with("stderr_full", "--correction c.csv <in.txt >out.txt 2>/dev/full").exit_code, 0);
+}
+
+TEST(InjectVerb, AnEndlessCorrectionIsRefused) {
+  const CommandOutcome zero = inject_with("zero", "--correction /dev/zero <in.txt");
+  EXPECT_EQ(zero.exit_code, 2);
+  EXPECT_THAT(zero.output, HasSubstr("longer than 4096 characters"));
+}
+
+// A log or dump over the correction, or over another, would destroy it.
+TEST(InjectVerb, EachFileIsItsOwn) {
+  for (const char* arguments :
+       {"--correction c.csv --log c.csv", "--correction c.csv --vcd ./c.csv", "--correction c.csv --vcd x --log x",
+        "--correction c.csv --halstream x --hal ../own/x", "--correction c.csv --halstream link --log there"}) {
+    const auto folder = fresh_folder("own");
+    write_file("own/c.csv", "row,e_um\n1,3\n");
+    write_file("own/there", "");
+    std::filesystem::remove(folder / "link");
+    std::filesystem::create_symlink("there", folder / "link");
+    const CommandOutcome f = run_program("--version >/dev/null; cd " + folder.string() + " && echo '0 0' | " +
+                                         DRIFTWRIGHT_PROGRAM + " inject --period '1 um' " + arguments);
+    EXPECT_EQ(f.exit_code, 2) << arguments;
+    EXPECT_THAT(f.output, HasSubstr("are the same file")) << arguments;
+    EXPECT_EQ(read_text(folder / "c.csv"), "row,e_um\n1,3\n") << arguments;
+  }
+  const Filtered nowhere =
+      inject("nowhere", "--period '1 um' --vcd /dev/null --log /dev/null --correction " + file("c.csv", "row,e_um\n1,3\n"),
+             "0 0\n");
+  EXPECT_EQ(nowhere.exit_code, 0) << nowhere.words;
+}
+
+TEST(InjectVerb, AWaveformBeyondItsTimesIsRefused) {
+  const std::string c = file("c.csv", "row,e_um\n1,3\n");
+  const std::string times = "--period '1 um' --vcd v.vcd --row-time '123456.789012345 s' --correction " + c;
+  EXPECT_EQ(inject("in_time", times, row_text({0}, 50)).exit_code, 0);
+  const Filtered late = inject("late", times, row_text({0}, 100));  // 2^63 / 1.2e17 = 74 rows
+  EXPECT_EQ(late.exit_code, 2);
+  EXPECT_THAT(late.words, HasSubstr("beyond a 64-bit time"));
+}
+
 struct BadCase {
   const char* name;
   const char* table;
@@ -193,25 +263,32 @@ TEST_P(BadInjection, IsRefusedWithLineAndWhatIsAllowed) {
 constexpr const char* kGood = "row,e_um\n1,3\n";
 INSTANTIATE_TEST_SUITE_P(
     InjectVerb, BadInjection,
-    ::testing::Values(BadCase{"row2", kGood, "--period '1 um'", "0 0\n0 2\n",
-                              "line 2: '0 2'; 2 columns of 0 and 1 are wanted"},
-                      BadCase{"first", kGood, "--period '1 um'", "0\n", "line 1: '0'; two or three columns"},
-                      BadCase{"columns", kGood, "--period '1 um'", "0 0 1\n0 0\n", "line 2: '0 0'; 3 columns"},
-                      BadCase{"empty_line", kGood, "--period '1 um'", "0 0\n\n0 1\n", "line 2: ''"},
-                      BadCase{"no_period", kGood, "", "0 0\n", "wants --period"},
-                      BadCase{"bad_period", kGood, "--period '1 kg'", "0 0\n", "--period '1 kg'"},
-                      BadCase{"zero_period", kGood, "--period '0 um'", "0 0\n", "more than 0"},
-                      BadCase{"no_row_time", "time_s,e_um\n0,1\n", "--period '1 um'", "0 0\n", "wants --row-time"},
-                      BadCase{"header", "when,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":1: the first column is 'when'"},
-                      BadCase{"unit", "row,e_mm\n1,1\n", "--period '1 um'", "0 0\n", ":1: the second column is 'e_mm'"},
-                      BadCase{"text", "row,e_um\n1,1\n2,x\n", "--period '1 um'", "0 0\n", ":3: '2,x': two finite numbers"},
-                      BadCase{"nan", "row,e_um\n1,nan\n", "--period '1 um'", "0 0\n", ":2: '1,nan'"},
-                      BadCase{"order", "row,e_um\n5,1\n5,2\n", "--period '1 um'", "0 0\n", ":3: 5 does not come after"},
-                      BadCase{"zero_row", "row,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":2: row 0"},
-                      BadCase{"huge", "row,e_um\n1,1e300\n", "--period '1 um'", "0 0\n", ":2: "},
-                      BadCase{"no_rows", "row,e_um\n", "--period '1 um'", "0 0\n", "no correction behind the header"},
-                      BadCase{"hal_alone", kGood, "--period '1 um' --hal h.hal", "0 0\n", "--halstream"},
-                      BadCase{"hal_x2", kGood, "--period '1 um' --counts x2 --halstream s --hal h.hal", "0 0\n", "not x2"}),
+    ::testing::Values(
+        BadCase{"row2", kGood, "--period '1 um'", "0 0\n0 2\n", "line 2: '0 2'; 2 columns of 0 and 1 are wanted"},
+        BadCase{"first", kGood, "--period '1 um'", "0\n", "line 1: '0'; two or three columns"},
+        BadCase{"columns", kGood, "--period '1 um'", "0 0 1\n0 0\n", "line 2: '0 0'; 3 columns"},
+        BadCase{"empty_line", kGood, "--period '1 um'", "0 0\n\n0 1\n", "line 2: ''"},
+        BadCase{"no_period", kGood, "", "0 0\n", "wants --period"},
+        BadCase{"bad_period", kGood, "--period '1 kg'", "0 0\n", "--period '1 kg'"},
+        BadCase{"zero_period", kGood, "--period '0 um'", "0 0\n", "more than 0"},
+        BadCase{"no_row_time", "time_s,e_um\n0,1\n", "--period '1 um'", "0 0\n", "wants --row-time"},
+        BadCase{"header", "when,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":1: the first column is 'when'"},
+        BadCase{"unit", "row,e_mm\n1,1\n", "--period '1 um'", "0 0\n", ":1: the second column is 'e_mm'"},
+        BadCase{"text", "row,e_um\n1,1\n2,x\n", "--period '1 um'", "0 0\n", ":3: '2,x': two finite numbers"},
+        BadCase{"nan", "row,e_um\n1,nan\n", "--period '1 um'", "0 0\n", ":2: '1,nan'"},
+        BadCase{"order", "row,e_um\n5,1\n5,2\n", "--period '1 um'", "0 0\n", ":3: 5 does not come after"},
+        BadCase{"zero_row", "row,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":2: row 0"},
+        BadCase{"huge", "row,e_um\n1,1e300\n", "--period '1 um'", "0 0\n", ":2: "},
+        BadCase{"no_rows", "row,e_um\n", "--period '1 um'", "0 0\n", "no correction behind the header"},
+        BadCase{"hal_alone", kGood, "--period '1 um' --hal h.hal", "0 0\n", "--halstream"},
+        BadCase{"interval", kGood, "--period '1 um' --interval 5", "0 0\n", "add --clocked"},
+        BadCase{"separation", kGood, "--period '1 um' --separation 5", "0 0\n", "add --clocked"},
+        BadCase{"unit_of_table", kGood, "--period '1 um' --unit count", "0 0\n", "end it in _count"},
+        BadCase{"less_than_a_count", kGood, "--period '1 um' --counts x1 --insert quarter", "0 0\n",
+                "less than one count at x1"},
+        BadCase{"hal_name", kGood, "--period '1 um' --halstream \"a'b\" --hal h.hal", "0 0\n", "with a blank"},
+        BadCase{"hal_blank", kGood, "--period '1 um' --halstream 'my rows' --hal h.hal", "0 0\n", "with a blank"},
+        BadCase{"hal_x2", kGood, "--period '1 um' --counts x2 --halstream s --hal h.hal", "0 0\n", "not x2"}),
     [](const auto& case_info) { return std::string(case_info.param.name); });
 
 TEST(InjectVerb, RefusesAMissingCorrectionAndStandardInputForIt) {
