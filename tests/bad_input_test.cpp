@@ -220,11 +220,24 @@ TEST(BadCommand, ACyclogramCsvMustStartAtZeroAndHaveSpeeds) {
 
 TEST(BadCommand, ARecordCannotTrainAndJudgeOrTrainTwice) {
   const std::string a = write_file("a.csv", "time_s,t_K,error_um\n0,1,0\n1,2,1\n"),
-                    b = write_file("b.csv", "time_s,t_K,error_um\n0,1,0\n1,2,1\n");
-  EXPECT_THAT(run_program("validate scenarios/spindle_22.yaml --train " + a + " --test " + a).output,
-              HasSubstr("both trained on and judged by"));
-  EXPECT_THAT(run_program("validate scenarios/spindle_22.yaml --train " + a + " --train " + a + " --test " + b).output,
-              HasSubstr("names this record twice"));
+                    copy = write_file("copy.csv", "time_s,t_K,error_um\n0,1,0\n1,2,1\n"),
+                    b = write_file("b.csv", "time_s,t_K,error_um\n0,1,0\n1,3,2\n");
+  for (const std::string& arguments :
+       {"--train " + a + " --test " + a, "--train " + a + " --train " + a + " --test " + b,
+        "--train " + a + " --test " + copy, "--train " + b + " --test " + a + " --test " + copy}) {
+    const CommandOutcome outcome = run_program("validate scenarios/spindle_22.yaml " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.output, HasSubstr("hold the same run")) << arguments;
+  }
+}
+
+TEST(BadCommand, ATargetInAnotherUnitThanMicrometresIsRefused) {
+  const std::string a = write_file("a.csv", "time_s,t_K,error_mm\n0,1,0\n1,2,1\n"),
+                    b = write_file("b.csv", "time_s,t_K,error_mm\n0,1,0\n1,3,2\n");
+  const std::string scenario = write_file("mm.yaml", "name: mm\nstudy: {target: error_mm}\n");
+  const CommandOutcome outcome = run_program("validate " + scenario + " --train " + a + " --test " + b);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("is in mm"));
 }
 
 TEST(BadCommand, AFolderWithOtherFilesIsRefusedAndKept) {
