@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "base/random.hpp"
-#include "compensation/observability.hpp"
+#include "compensation/model_scatter.hpp"
 #include "compensation/schedule.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "solver/propagator.hpp"

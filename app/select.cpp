@@ -68,12 +68,10 @@ void select(const RecordOptions& options) {
   const Ranking ranking = rank_channels(records, settings.target, candidates, how);
   const RankingStability stability = ranking_stability(records, settings.target, candidates, how, n);
   std::vector<Chosen> chosen;
-  for (const Selector& selector : selectors()) {
+  for (const Selector& selector : selectors(how)) {
     chosen.push_back({selector.name, {}, {}});
     try {
-      chosen.back().selection = selector.name == "grey grade"
-                                    ? select_by_grey_grade(records, candidates, settings.target, n, how)
-                                    : selector.select(records, candidates, settings.target, n);
+      chosen.back().selection = selector.select(records, candidates, settings.target, n);
     } catch (const InputError& e) {
       chosen.back().failure = e.what();
     }

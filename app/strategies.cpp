@@ -135,19 +135,10 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
   list.push_back(baseline("training runs at the same time", s, [s](const std::vector<Record>& training, const Record& run) {
     return baseline_same_time(training, run, s.target);
   }));
-  const auto by_grey_grade = [s](int n) {
-    return [s, n](std::span<const ObservedRun>, const std::vector<Record>& records) {
-      return select_by_grey_grade(records, s.candidates, s.target, n, {.image = s.image});
-    };
-  };
-  list.push_back(regression_on("one thermometer", s, by_grey_grade(1)));
-  for (const Selector& selector : selectors()) {
-    if (selector.name == "grey grade") {
-      list.push_back(regression_on("regression, grey grade", s, by_grey_grade(s.n_sensors)));
-      continue;
-    }
+  const std::vector<Selector> by_records = selectors({.image = s.image});
+  list.push_back(regression_on("one thermometer", s, by_record_selector(by_records.front().select, 1)));
+  for (const Selector& selector : by_records)
     list.push_back(regression_on("regression, " + selector.name, s, by_record_selector(selector.select, s.n_sensors)));
-  }
   if (s.physics) {
     list.push_back(regression_on("regression, observability", s,
                                  [s](std::span<const ObservedRun> training, const std::vector<Record>&) {

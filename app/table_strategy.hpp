@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "app/table_study.hpp"
-#include "base/random.hpp"
+#include "compensation/model_scatter.hpp"
 #include "scenarios/as_recorded.hpp"
 
 namespace driftwright::app {
@@ -24,18 +24,7 @@ inline constexpr int kTableRepetitions = 5;
 template <class System>
 [[nodiscard]] System wrong_system(System system, const scenarios::TableSettings& s, int repetition) {
   Random random(static_cast<std::uint64_t>(s.seed), 50 + static_cast<std::uint64_t>(repetition));
-  const auto factor = [&] { return std::exp(s.model_scatter * random.normal()); };
-  for (auto& source : system.sources) source.load *= factor();
-  for (auto& e : system.exchanges) {
-    const double f = factor();
-    e.matrix *= f;
-    e.to_hall *= f;
-    e.hall_sum *= f;
-    e.flow *= f;
-    e.offset *= f;
-    e.offset_sum *= f;
-  }
-  return system;
+  return compensation::scattered(std::move(system), s.model_scatter, random);
 }
 
 [[nodiscard]] compensation::RingPlan ring_plan(const scenarios::TableSettings& s, double every_s, int repetition);

@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "base/random.hpp"
-#include "compensation/observability.hpp"
+#include "compensation/model_scatter.hpp"
 #include "compensation/thermometers.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "solver/reduced_transient.hpp"

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
-#include "base/random.hpp"
+#include "compensation/model_scatter.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::compensation {
@@ -35,29 +35,6 @@ Eigen::MatrixXd outputs_of(const solver::ReducedSystem& system, const Eigen::Vec
 }
 
 }  // namespace
-
-void scale(solver::Exchange<Eigen::MatrixXd>& exchange, double factor) {
-  exchange.matrix *= factor;
-  exchange.to_hall *= factor;
-  exchange.flow *= factor;
-  exchange.offset *= factor;
-  exchange.hall_sum *= factor;
-  exchange.offset_sum *= factor;
-}
-
-solver::ReducedSystem scattered(solver::ReducedSystem system, double sigma, int seed, bool with_bodies) {
-  Random random(static_cast<std::uint64_t>(seed), 2);
-  const auto factor = [&] { return std::exp(sigma * random.normal()); };
-  for (auto& s : system.sources) s.load *= factor();
-  for (auto& e : system.exchanges) scale(e, factor());
-  if (!with_bodies) return system;
-  system.conduction *= factor();
-  const double rates = factor();  // of a machine of less capacity: all flows grow, levels stay
-  system.conduction *= rates;
-  for (auto& s : system.sources) s.load *= rates;
-  for (auto& e : system.exchanges) scale(e, rates);
-  return system;
-}
 
 Selection select_by_observability(const solver::ReducedSystem& system, const Eigen::VectorXd& start,
                                   std::span<const ObservedRun> runs, const std::vector<std::string>& candidates,

@@ -18,11 +18,4 @@ namespace driftwright::compensation {
                                                 const std::vector<std::string>& candidates, const std::string& drift, int n,
                                                 const ObserverSettings& settings = {});
 
-/// A linear model off by random factors: each heat source, and each film, joint and link, by exp(sigma N(0, 1)).
-/// @param with_bodies  also all conduction within bodies, and all heat capacities, by one factor each
-[[nodiscard]] solver::ReducedSystem scattered(solver::ReducedSystem system, double sigma, int seed,
-                                              bool with_bodies = false);
-/// One exchange times a factor.
-void scale(solver::Exchange<Eigen::MatrixXd>& exchange, double factor);
-
 }  // namespace driftwright::compensation

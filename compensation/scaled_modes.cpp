@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/observability.hpp"
+#include "compensation/model_scatter.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::compensation {

@@ -222,16 +222,12 @@ Selection select_by_lasso(std::span<const Record> records, const std::vector<std
   return {names(sums, active), fmt::format("in the LASSO's path at a penalty of {:.2g} of the largest", penalty / largest)};
 }
 
-const std::vector<Selector>& selectors() {
-  static const std::vector<Selector> all = {
-      {"grey grade", [](auto records, const auto& candidates, const auto& target,
-                        int n) { return select_by_grey_grade(records, candidates, target, n); }},
-      {"correlation", select_by_correlation},
-      {"clusters", select_by_clusters},
-      {"forward", select_forward},
-      {"best set", select_best_set},
-      {"LASSO", select_by_lasso}};
-  return all;
+std::vector<Selector> selectors(const GreyOptions& grey) {
+  const auto by_grade = [grey](std::span<const Record> records, const std::vector<std::string>& candidates,
+                               const std::string& target,
+                               int n) { return select_by_grey_grade(records, candidates, target, n, grey); };
+  return {{"grey grade", by_grade},    {"correlation", select_by_correlation}, {"clusters", select_by_clusters},
+          {"forward", select_forward}, {"best set", select_best_set},          {"LASSO", select_by_lasso}};
 }
 
 }  // namespace driftwright::compensation

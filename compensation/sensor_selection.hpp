@@ -44,8 +44,8 @@ struct Selector {
 [[nodiscard]] Selection select_by_lasso(std::span<const Record> records, const std::vector<std::string>& candidates,
                                         const std::string& target, int n);
 
-/// All of the above.
-[[nodiscard]] const std::vector<Selector>& selectors();
+/// All of the above. @param grey  how grey grades are made
+[[nodiscard]] std::vector<Selector> selectors(const GreyOptions& grey = {});
 
 /// RMS errors of left-out records for every set of n columns, in lexicographic order of the sets.
 void for_each_set(int n_columns, int n, const std::function<void(std::span<const int>)>& visit);

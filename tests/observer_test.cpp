@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
+#include "compensation/model_scatter.hpp"
 #include "compensation/observability.hpp"
 #include "solver/propagator.hpp"
 

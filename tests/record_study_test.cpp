@@ -87,5 +87,31 @@ TEST(TooFewSamples, AreNamedByEveryModel) {
               ThrowsMessage<InputError>(HasSubstr("complete rows")));
 }
 
+// Six sensors that rise by 1 to 8 K at a speed, by half as much at another; in one record two of them hold each other's readings.
+TEST(SensorWarnings, NameExchangedSensorsAndTheirRecord) {
+  const std::vector<std::string> names = {"a", "b", "c", "d", "e", "f"};
+  const std::vector<double> rise_K = {1.0, 1.6, 2.5, 4.0, 6.0, 8.0};
+  const auto record = [&](const std::string& source, double level, bool is_exchanged) {
+    Record r{.source = source, .time_s = {}, .channels = {}};
+    for (const std::string& name : names) r.channels.push_back({name, "K", {}});
+    for (int i = 0; i < 60; ++i) {
+      r.time_s.push_back(60.0 * i);
+      for (std::size_t s = 0; s < names.size(); ++s)
+        r.channels[s].values.push_back(level * rise_K[s] * (1.0 - std::exp(-i / (5.0 + static_cast<double>(s)))));
+    }
+    if (is_exchanged) std::swap(r.channels[1].values, r.channels[4].values);
+    return r;
+  };
+  const auto named = [&](const std::vector<Record>& records) {
+    std::vector<std::string> lines = sensor_warnings(records, names);
+    std::erase_if(lines, [](const std::string& line) { return line.find("exchanged") == std::string::npos; });
+    return lines;
+  };
+  EXPECT_THAT(named({record("one", 1.0, false), record("two", 0.5, false), record("three", 0.7, false)}), IsEmpty());
+  EXPECT_THAT(named({record("one", 1.0, false), record("two", 0.5, true), record("three", 0.7, false)}),
+              ElementsAre(HasSubstr("b and e look exchanged in two")));
+  EXPECT_EQ(named({record("one", 1.0, false), record("two", 0.5, true)}).size(), 1u);  // which of two cannot be told
+}
+
 }  // namespace
 }  // namespace driftwright::app
