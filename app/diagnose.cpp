@@ -23,6 +23,9 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
     for (const diagnosis::Cause& a : c.alternatives) head.push_back(fmt::format("    or {} at {}", a.effect, a.where));
   }
   for (const std::string& path : options.measured) head.push_back("  measured: " + path);
+  head.emplace_back(options.causes_only ? "  the scenario's own numbers are as they were"
+                                        : "  the scenario's own numbers are as fitted beside the causes (`calibration` in comments); "
+                                          "--causes-only leaves them");
   head.emplace_back("");
   return head;
 }
@@ -47,8 +50,11 @@ void diagnose(const DiagnoseOptions& options) {
   progress.begin("writing");
   const std::vector<diagnosis::Candidate> candidates = diagnosis::candidates(*m.twin, m.runs, m.how.without);
   std::string difference;
+  std::vector<diagnosis::StatedChange> changes;  // in the order in which the fit makes them
+  if (!options.causes_only) changes = stated_scatter(*m.twin, d);
+  for (diagnosis::StatedChange& cause : stated_causes(d)) changes.push_back(std::move(cause));
   const diagnosis::ExtendedScenario extended =
-      write_scenario("extended", m, stated_causes(*m.twin, d), head_of(d, options), folder, &difference);
+      write_scenario("extended", m, changes, head_of(d, options), folder, &difference);
   nlohmann::ordered_json json = diagnosis_json(d);
   json["extended"] = {{"written", extended.written}, {"not_written", extended.not_written}};
   folder.write_text("diagnosis.json", output::json_text(json));

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/diagnosis_summary.hpp"
 #include "base/errors.hpp"
@@ -16,7 +17,7 @@ namespace driftwright::app {
 
 using diagnosis::StatedChange;
 
-std::vector<StatedChange> stated_causes(const diagnosis::Twin& twin, const diagnosis::Diagnosis& d) {
+std::vector<StatedChange> stated_causes(const diagnosis::Diagnosis& d) {
   const diagnosis::Fit& fit = d.search.fit;
   Eigen::Index first = fit.x.size();
   for (const diagnosis::Claim& c : d.search.hypothesis) first -= static_cast<Eigen::Index>(c.knobs.size());
@@ -30,21 +31,22 @@ std::vector<StatedChange> stated_causes(const diagnosis::Twin& twin, const diagn
       numbers.push_back(fmt::format("{} {}, 95 %: {}", p.name, value_text(p), interval_text(p)));
     changes.push_back({fmt::format("{} at {}", cause.effect, cause.where),
                        fmt::format("{} at {}: {}", cause.effect, cause.where, fmt::join(numbers, "; ")),
-                       diagnosis::state_of(twin, claim, fit.x.segment(first, n))});
+                       diagnosis::change_of(claim, fit.x.segment(first, n))});
     first += n;
   }
   return changes;
 }
 
 std::vector<StatedChange> stated_scatter(const diagnosis::Twin& twin, const diagnosis::Diagnosis& d) {
+  constexpr double kUnmoved = 1e-4;  // standard deviations of the prior
   std::vector<StatedChange> changes;
   const std::vector<diagnosis::Knob> knobs = diagnosis::scatter(twin);
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     const diagnosis::Estimate& e = d.calibrated.at(i);
-    StatedChange change{e.name, fmt::format("{} {}, 95 %: {}", knobs[i].name, value_text(e), interval_text(e)),
-                        twin.as_written(), "calibration"};
-    knobs[i].set(change.state, e.value);
-    changes.push_back(std::move(change));
+    if (std::abs(e.deviation) < kUnmoved) continue;
+    changes.push_back({e.name, fmt::format("{} {}, 95 %: {}", knobs[i].name, value_text(e), interval_text(e)),
+                       [knob = knobs[i], value = e.value](diagnosis::TwinState& state) { knob.set(state, value); },
+                       "calibration"});
   }
   return changes;
 }

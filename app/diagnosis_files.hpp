@@ -8,7 +8,7 @@
 namespace driftwright::app {
 
 /// The causes of a diagnosis as changes of the scenario.
-[[nodiscard]] std::vector<diagnosis::StatedChange> stated_causes(const diagnosis::Twin& twin, const diagnosis::Diagnosis& d);
+[[nodiscard]] std::vector<diagnosis::StatedChange> stated_causes(const diagnosis::Diagnosis& d);
 /// The scenario's own numbers as fitted.
 [[nodiscard]] std::vector<diagnosis::StatedChange> stated_scatter(const diagnosis::Twin& twin,
                                                                   const diagnosis::Diagnosis& d);

@@ -177,6 +177,8 @@ int main(int argc, char** argv) {
   verb->add_option("--measured", diagnose.measured, "record CSV (docs/record.md); may be repeated")
       ->required()
       ->allow_extra_args(false);
+  verb->add_flag("--causes-only", diagnose.causes_only,
+                 "write the causes alone into extended.yaml, not the scenario's own numbers as fitted beside them");
   verb->add_option("--without", diagnose.without, "key of an effect that is not looked for; may be repeated")
       ->allow_extra_args(false);
   verb->callback([&] { app::diagnose(diagnose); });

@@ -173,7 +173,7 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
         programme.where,
         "tests and cyclograms of a programme start in balance with the hall; `start: hall` or `start: steady` is wanted");
   }
-  if (!effects::reading_chain(machine.effects).empty()) {
+  if (effects::has_reading_effects(machine.effects)) {
     throw InputError(
         programme.where,
         "a programme judges true drift; leave out the effects that change what instruments read and nothing else");

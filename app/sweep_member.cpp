@@ -7,6 +7,7 @@
 
 #include "base/quantity.hpp"
 #include "scenarios/as_recorded.hpp"
+#include "solver/bind_laws.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_transient.hpp"
 
@@ -68,7 +69,7 @@ std::vector<double> simulate_member(const scenarios::Scenario& scenario, const s
 std::vector<double> simulate_member(const scenarios::Scenario& scenario, const scenarios::ReducedMachine& machine,
                                     const std::vector<scenarios::CollectedScalar>& collect) {
   solver::ReducedSystem system = machine.system;
-  scenarios::bind_laws(system, scenarios::reducible(effects::heat_balance(scenario.machine->effects)));
+  solver::bind_laws(system, effects::with_radiation_as_films(effects::heat_balance(scenario.machine->effects)));
   std::optional<solver::Propagator> propagator;  // keeps decompositions from one cyclogram to the next
   if (system.is_linear()) propagator.emplace(system);
   return collected(

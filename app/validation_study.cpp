@@ -107,7 +107,7 @@ std::vector<std::string> usable_sensors(const std::vector<Record>& records, cons
 StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model, Progress& progress) {
   const Validation& v = *scenario.validation;
   const scenarios::Study& study = *scenario.study;
-  if (!effects::reading_chain(scenario.machine->effects).empty()) {
+  if (effects::has_reading_effects(scenario.machine->effects)) {
     throw InputError(v.where,
                      "strategies are judged by the true drift; leave out the effects that change what instruments read");
   }

@@ -69,6 +69,7 @@ void compensate(const CompensateOptions& options);
 struct DiagnoseOptions : CommonOptions {
   std::vector<std::string> measured;  ///< record CSVs
   std::vector<std::string> without;   ///< catalogue keys that are not looked for
+  bool causes_only = false;           ///< leave the scenario's own numbers in extended.yaml as they are
 };
 void diagnose(const DiagnoseOptions& options);
 

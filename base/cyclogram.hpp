@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace driftwright {
@@ -50,6 +51,7 @@ struct LinearStretch {
   double end_s = 0.0;
   Drive drive;
   bool drive_changed = false;  ///< true where the drive before start_s was another one, or at t = 0
+  std::string_view run = {};   ///< name of the cyclogram, which must outlive the stretch
 };
 
 /// Cuts a cyclogram at its changes of drive and at further knots, in order, without empty pieces.

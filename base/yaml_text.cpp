@@ -149,7 +149,8 @@ bool YamlText::append(const ConfigNode& list, const std::string& entry, const st
 }
 
 bool YamlText::comment_out(const ConfigNode& list, std::size_t entry) {
-  if (!list.is_list() || at({list.line, list.column}) != '-' || !stands_here(list)) return false;
+  if (!list.is_list() || at({list.line, list.column}) != '-' || !stands_here(list) || !stands_here(*list.items[entry]))
+    return false;
   const auto line_of = [&](std::size_t i) { return list.items[i]->line; };
   const int first = line_of(entry);
   const int end = entry + 1 < list.items.size() ? line_of(entry + 1) : next_line(*root_, first);

@@ -1,37 +1,95 @@
 #include "diagnosis/candidates.hpp"
 
 #include <algorithm>
-
-#include "diagnosis/candidate_scene.hpp"
+#include <cmath>
 
 namespace driftwright::diagnosis {
+namespace {
+
+Candidate& candidate(std::vector<Candidate>& list, const std::string& effect, const std::string& where) {
+  for (Candidate& c : list) {
+    if (c.effect == effect && c.where == where) return c;
+  }
+  list.push_back({effect, where, {}});
+  return list.back();
+}
+
+/// Another value of a number that is written, beyond what is known of it.
+Variant other_value(const Twin& twin, std::size_t effect, std::size_t parameter) {
+  const effects::Effect& e = twin.as_written()[effect];
+  const effects::Parameter& p = e.kind->parameters[parameter];
+  const bool is_shift = p.doubted == effects::Doubted::kShift;
+  const double zero = p.unit == "degC" ? 273.15 : 0.0;
+  Knob k{.effect = p.finding,
+         .where = effects::where_of(e),
+         .name = p.name,
+         .unit = p.unit,
+         .scale = is_shift ? Knob::Scale::kLinear : Knob::Scale::kLog,
+         .nominal = e.values[parameter] - zero,
+         .prior_sd = is_shift ? p.shift_sd : effects::kFactorSd,
+         .step = is_shift ? 0.1 * p.shift_sd : 0.05,
+         .low = p.low - zero,
+         .high = p.high - zero};
+  k.set = [effect, parameter, zero](TwinState& s, double value) { s[effect].values[parameter] = value + zero; };
+  return {"another " + p.name, {k}, is_shift ? 0.25 * p.shift_sd : effects::kFactorTrial};
+}
+
+}  // namespace
+
+std::vector<Knob> knobs_of(const effects::Doubt& doubt) {
+  std::vector<Knob> knobs;
+  for (const effects::DoubtedNumber& n : doubt.numbers) {
+    auto set = n.set ? n.set : [name = n.name](std::span<effects::Effect> added, double value) {
+      for (effects::Effect& e : added) e.set(name, value);
+    };
+    Knob k{.effect = doubt.finding,
+           .where = doubt.where,
+           .name = n.name,
+           .unit = n.unit,
+           .scale = n.is_log ? Knob::Scale::kLog : Knob::Scale::kLinear,
+           .nominal = n.nominal,
+           .prior_sd = n.prior_sd,
+           .step = n.step,
+           .low = n.low,
+           .high = n.high,
+           .is_time = n.is_time};
+    k.reading_only = std::all_of(doubt.added.begin(), doubt.added.end(),
+                                 [](const effects::Effect& e) { return e.kind->is_of_readings(); });
+    const std::size_t n_added = doubt.added.size();
+    if (knobs.empty()) {
+      k.set = [added = doubt.added, set, or_nothing = doubt.all_or_nothing](TwinState& s, double value) {
+        if (or_nothing && !(value > 0.5)) return;
+        s.insert(s.end(), added.begin(), added.end());
+        set(std::span(s).last(added.size()), value);
+      };
+    } else {
+      k.set = [n_added, set](TwinState& s, double value) { set(std::span(s).last(n_added), value); };
+    }
+    knobs.push_back(std::move(k));
+  }
+  return knobs;
+}
 
 std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRun>& runs,
                                   const std::set<std::string>& without) {
-  const Scene s = scene_of(twin, runs);
+  const effects::DoubtScene scene = scene_of(twin, runs);
   std::vector<Candidate> list;
-  add_heat(s, list);
-  add_friction(s, list);
-  add_exchanges(s, list);
-  add_materials(s, list);
-  add_hall(s, list);
-  add_displacements(s, list);
-  add_sensors(s, list);
-  add_drive(s, list);
-  for (Candidate& c : list) {
-    for (Variant& v : c.variants) {
-      if (v.law.ends_with(" rpm")) v.at_speed_rpm = s.typical_rpm;
+  for (const effects::EffectKind& kind : effects::catalogue()) {
+    if (!kind.doubts) continue;
+    for (const effects::Doubt& d : kind.doubts(scene)) {
+      candidate(list, d.finding, d.where)
+          .variants.push_back({d.law, knobs_of(d), d.trial, d.grid, d.at_speed_rpm, d.all_or_nothing});
+    }
+  }
+  for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {
+    const effects::Effect& e = twin.as_written()[i];
+    for (std::size_t p = 0; p < e.values.size(); ++p) {
+      const effects::Parameter& parameter = e.kind->parameters[p];
+      if (parameter.doubted == effects::Doubted::kNo || std::isnan(e.values[p]) || e.values[p] == 0.0) continue;
+      candidate(list, parameter.finding, effects::where_of(e)).variants.push_back(other_value(twin, i, p));
     }
   }
   std::erase_if(list, [&](const Candidate& c) { return without.contains(c.effect) || c.variants.empty(); });
-  for (Candidate& c : list) {
-    for (Variant& v : c.variants) {
-      for (Knob& k : v.knobs) {
-        k.effect = c.effect;
-        k.where = c.where;
-      }
-    }
-  }
   return list;
 }
 

@@ -1,17 +1,17 @@
 #pragma once
-// What could be wrong: every effect of the catalogue at every place where it can be, as knobs of the twin.
+// What could be wrong: every effect of the catalogue at every place where it can be, as knobs of the twin. What each kind may be doubted for it says
+// itself (effects/doubt.hpp); numbers of effects that are written may be others.
 
 #include <set>
 
-#include "diagnosis/knob.hpp"
-#include "diagnosis/twin.hpp"
+#include "diagnosis/scene.hpp"
 
 namespace driftwright::diagnosis {
 
 /// One law of an effect: its size first, then what shapes it.
 struct Variant {
   std::string law;                               ///< in words
-  std::vector<Knob> knobs;                       ///< knobs[0] is the size
+  std::vector<Knob> knobs;                       ///< knobs[0] is the size; turned in their order
   double trial_x = 0.1;                          ///< size at which its signature is taken
   std::vector<std::vector<double>> grid = {{}};  ///< x of knobs 1.. to try first
   double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
@@ -27,5 +27,8 @@ struct Candidate {
 /// @param without  keys of effects that are not looked for
 [[nodiscard]] std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRun>& runs,
                                                 const std::set<std::string>& without);
+
+/// The knobs of a doubt: the first one adds its effects to a state, the others turn numbers of those added last.
+[[nodiscard]] std::vector<Knob> knobs_of(const effects::Doubt& doubt);
 
 }  // namespace driftwright::diagnosis

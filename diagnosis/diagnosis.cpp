@@ -382,9 +382,9 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     const double x = d.search.fit.x[at], sd = std::sqrt(d.search.fit.covariance(at, at));
     TwinState turned = twin.as_written();
     k.set(turned, k.value(x));
-    const bool of_one =
-        !turned.bodies.empty() && !turned.bodies.back().displacement.empty();  // several sensitivities a body
-    const std::string of = of_one ? " of " + turned.bodies.back().displacement : "";
+    std::string of;  // one of several sensitivities of a body
+    if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
+      of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
     d.calibrated.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x),
                             k.value(x - 1.96 * sd), k.value(x + 1.96 * sd), x / k.prior_sd});
   }

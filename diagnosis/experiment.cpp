@@ -9,6 +9,7 @@
 
 #include "diagnosis/experiment_check.hpp"
 #include "diagnosis/experiment_family.hpp"
+#include "diagnosis/no_solution.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -120,7 +121,7 @@ std::unique_ptr<Ahead> look_ahead(const Fitter& fitter, const MeasuredRun& run,
                                   const std::vector<Explanation>& explanations) {
   auto ahead = std::make_unique<Ahead>();
   ahead->runs = {run};
-  try {
+  const bool is_solved = has_solution([&] {
     ahead->fitter = std::make_unique<Fitter>(fitter.twin(), ahead->runs, fitter.scatter(), std::vector<Prediction>{});
     ahead->fitter->set_noise(noise);
     Fit at;
@@ -128,9 +129,8 @@ std::unique_ptr<Ahead> look_ahead(const Fitter& fitter, const MeasuredRun& run,
     ahead->fitter->settle(explanations.front().hypothesis, at);
     Twin::Workspace workspace(fitter.twin());
     for (const Explanation& e : explanations) ahead->outlooks.push_back(outlook(*ahead->fitter, e, workspace));
-  } catch (const std::exception&) {
-    return nullptr;
-  }
+  });
+  if (!is_solved) return nullptr;
   return ahead;
 }
 

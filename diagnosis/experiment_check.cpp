@@ -5,6 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "diagnosis/no_solution.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -63,7 +65,7 @@ Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run, const st
       Eigen::VectorXd x = e.x;
       for (Eigen::Index i = 0; i < x.size(); ++i) x += normal(random) * lower.col(i);
       std::vector<double> evidence;
-      try {
+      const bool is_solved = has_solution([&] {
         const Prediction said = ahead.predict(e.hypothesis, x, workspace);
         for (MeasuredChannel& c : runs.back().channels) {
           c.value = said.front().row(c.output).transpose();
@@ -72,9 +74,8 @@ Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run, const st
         joint.set_noise(noise);  // looks at the readings anew
         for (const Explanation& o : explanations)
           evidence.push_back(joint.fit(o.hypothesis, o.claim_x(n_scatter), workspace).log_evidence);
-      } catch (const std::exception&) {  // numbers that no machine can have
-        continue;
-      }
+      });
+      if (!is_solved) continue;  // numbers that no machine can have
       bool is_told = true;
       for (const Pair& p : pairs) {
         if (p.first != truth && p.second != truth) continue;

@@ -9,12 +9,12 @@
 
 namespace driftwright::diagnosis {
 
-/// One thing to write: what the twin would have to be told, and why.
+/// One thing to write: what it does to the effects of the twin, and why.
 struct StatedChange {
-  std::string name;              ///< of it, for messages: "convection at nose"
-  std::string comment;           ///< stands behind each line that it changes
-  TwinState state;               ///< the twin as written, with this change alone
-  std::string by = "diagnosis";  ///< whose change it is; stands before what a number was
+  std::string name;                       ///< of it, for messages: "convection at nose"
+  std::string comment;                    ///< stands behind each line that it changes
+  std::function<void(TwinState&)> make;   ///< sets numbers of the scenario's effects, or adds effects behind them
+  std::string by = "diagnosis";           ///< whose change it is; stands before what a number was
 };
 
 struct ExtendedScenario {
@@ -23,12 +23,14 @@ struct ExtendedScenario {
   std::vector<std::string> not_written;  ///< name and reason; stands at the top of the text, too
 };
 
-/// A claim's effect on the twin. @param x  of its knobs
-[[nodiscard]] TwinState state_of(const Twin& twin, const Claim& claim, const Eigen::VectorXd& x);
+/// A claim as a change of the twin's effects. @param x  of its knobs
+[[nodiscard]] std::function<void(TwinState&)> change_of(const Claim& claim, const Eigen::VectorXd& x);
 
-/// Edits the file of a scenario: numbers in place, whatever has no number yet as a further effect. Numbers carry five digits. Files that
-/// it names are given by absolute paths. A change that happened in one of several runs is written with `in` where its effect has that
-/// key; a cyclogram of the run's name, from its record, is added where there is none.
+/// Makes all changes one after the other and edits the file of a scenario accordingly: numbers in place, further effects behind the others, as
+/// effects::yaml_of() writes them. Numbers carry seven digits. Files that it names are given by absolute paths. For a change that happened in one
+/// of several runs a cyclogram of the run's name, from its record, is added where there is none. Where the text of the file leaves no room for an
+/// edit (an alias, an entry that shares its line), the entry is replaced as a whole, and if that is impossible, the file is written anew
+/// without its comments.
 /// @param runs  that the changes were found in
 /// @param head  comment lines for the top
 /// @throws InputError  when the file has gone or changed since

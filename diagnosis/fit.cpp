@@ -1,12 +1,14 @@
 #include "diagnosis/fit.hpp"
 
-#include <omp.h>
+#include <fmt/format.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "diagnosis/no_solution.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -125,15 +127,12 @@ Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
     const double step = share * scatter_[which].step;
     Eigen::VectorXd turned = x;
     turned[static_cast<Eigen::Index>(which)] += step;
-    try {
-      Prediction difference = predict(hypothesis, turned, workspace);
-      for (std::size_t r = 0; r < runs_.size(); ++r) difference[r] = (difference[r] - base[r]) / step;
-      return difference;
-    } catch (const SolveError&) {
-      if (share == -0.1) throw;
-    }
+    Prediction difference;
+    if (!has_solution([&] { difference = predict(hypothesis, turned, workspace); })) continue;
+    for (std::size_t r = 0; r < runs_.size(); ++r) difference[r] = (difference[r] - base[r]) / step;
+    return difference;
   }
-  return {};
+  throw SolveError(fmt::format("the machine has no solution beside {} of {}", scatter_[which].name, scatter_[which].where));
 }
 
 void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x) {
@@ -143,21 +142,9 @@ void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x)
     Twin::Workspace workspace(twin_);
     base = predict(hypothesis, x, workspace);
   }
-  std::string failure;
-#pragma omp parallel
-  {
-    Twin::Workspace workspace(twin_);
-#pragma omp for schedule(dynamic)
-    for (std::size_t i = 0; i < scatter_.size(); ++i) {
-      try {
-        differences[i] = slope(hypothesis, x, base, i, workspace);
-      } catch (const std::exception& e) {
-#pragma omp critical
-        failure = e.what();
-      }
-    }
-  }
-  if (!failure.empty()) throw SolveError(failure);
+  for_each_index(
+      scatter_.size(), [&] { return Twin::Workspace(twin_); },
+      [&](std::size_t i, Twin::Workspace& workspace) { differences[i] = slope(hypothesis, x, base, i, workspace); });
   differences_ = std::move(differences);
 }
 
@@ -222,11 +209,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   Prediction responses;
   const auto look = [&](Fit& at, Prediction& kept, bool reuse) {
     at.misfit = 1e300;
-    try {
-      at.prediction = predict(hypothesis, at.x, workspace, &kept, reuse);
-    } catch (const std::exception&) {  // beyond what some law allows: a step too far
-      return;
-    }
+    if (!has_solution([&] { at.prediction = predict(hypothesis, at.x, workspace, &kept, reuse); })) return;  // a step too far
     at.residual = comparison_->measured() - comparison_->whitened(at.prediction);
     const double misfit = 0.5 * at.residual.squaredNorm() + prior(at.x);
     if (std::isfinite(misfit)) at.misfit = misfit;

@@ -1,7 +1,5 @@
 #include "diagnosis/focus.hpp"
 
-#include <omp.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -9,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "base/parallel.hpp"
+#include "diagnosis/no_solution.hpp"
 #include "solver/reduced_model.hpp"
 
 namespace driftwright::diagnosis {
@@ -65,27 +65,22 @@ Focus focus(const Twin& twin, const std::vector<MeasuredRun>& runs, const std::v
 
   std::vector<Eigen::MatrixXd> squares(kDoubts);  // summed in order: the same bytes on any number of threads
   std::vector<double> counts(kDoubts, 0.0);
-#pragma omp parallel
-  {
-    Twin::Workspace workspace(twin);
-#pragma omp for schedule(dynamic)
-    for (int i = 0; i < kDoubts; ++i) {
-      const TwinState state = i == 0 ? twin.as_written() : doubt(twin, scatter, candidates, static_cast<unsigned>(i));
-      squares[static_cast<std::size_t>(i)] = Eigen::MatrixXd::Zero(n, n);
-      for (const MeasuredRun& run : runs) {
-        try {
-          const Eigen::MatrixXd z = twin.states(state, run, workspace);
+  for_each_index(
+      kDoubts, [&] { return Twin::Workspace(twin); },
+      [&](std::size_t i, Twin::Workspace& workspace) {
+        const TwinState state = i == 0 ? twin.as_written() : doubt(twin, scatter, candidates, static_cast<unsigned>(i));
+        squares[i] = Eigen::MatrixXd::Zero(n, n);
+        for (const MeasuredRun& run : runs) {
+          Eigen::MatrixXd z;
+          if (!has_solution([&] { z = twin.states(state, run, workspace); })) continue;  // too wrong to have one
           const Eigen::Index n_kept = (z.cols() + kThin - 1) / kThin;
           Eigen::MatrixXd y(n, n_kept);
           for (Eigen::Index c = 0; c < n_kept; ++c) y.col(c) = z.col(kThin * c);
           y = (factor.matrixU() * y).eval();
-          squares[static_cast<std::size_t>(i)].noalias() += y * y.transpose();
-          counts[static_cast<std::size_t>(i)] += static_cast<double>(n_kept);
-        } catch (const std::exception&) {  // too wrong to have a solution
+          squares[i].noalias() += y * y.transpose();
+          counts[i] += static_cast<double>(n_kept);
         }
-      }
-    }
-  }
+      });
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(n, n);
   double n_snapshots = 0.0;
   for (int i = 0; i < kDoubts; ++i) {
@@ -113,14 +108,15 @@ Focus focus(const Twin& twin, const std::vector<MeasuredRun>& runs, const std::v
   for (int i = 0; i < kChecks; ++i) {
     const TwinState state = i == 0 ? twin.as_written() : doubt(twin, scatter, candidates, 1000u + static_cast<unsigned>(i));
     for (const MeasuredRun& run : runs) {
-      try {
-        const Eigen::MatrixXd miss = small.respond(state, run, small_space) - twin.respond(state, run, large_space);
-        for (const MeasuredChannel& c : run.channels) {
-          const double square = miss.row(c.output).squaredNorm();
-          (c.unit == "K" ? squares_K : squares_m) += c.unit == "rad" ? 0.01 * square : square;
-          (c.unit == "K" ? n_K : n_m) += static_cast<double>(miss.cols());
-        }
-      } catch (const std::exception&) {
+      Eigen::MatrixXd miss;
+      const bool is_solved = has_solution([&] {
+        miss = small.respond(state, run, small_space) - twin.respond(state, run, large_space);
+      });
+      if (!is_solved) continue;
+      for (const MeasuredChannel& c : run.channels) {
+        const double square = miss.row(c.output).squaredNorm();
+        (c.unit == "K" ? squares_K : squares_m) += c.unit == "rad" ? 0.01 * square : square;
+        (c.unit == "K" ? n_K : n_m) += static_cast<double>(miss.cols());
       }
     }
   }

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "base/errors.hpp"
+#include "diagnosis/no_solution.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -42,17 +42,16 @@ Eigen::VectorXd refitted(const Fitter& fitter, const Hypothesis& hypothesis, con
   }
   // What few data want may be more than the machine stands: only as far as it explains them better.
   const auto misfit = [&](const Eigen::VectorXd& x) {
-    try {
+    double sum = 1e300;
+    (void)has_solution([&] {
       const Eigen::VectorXd r =
           fitter.comparison().measured() - fitter.comparison().whitened(fitter.predict(hypothesis, x, workspace));
-      double sum = 0.5 * x.cwiseQuotient(sd).squaredNorm();
+      sum = 0.5 * x.cwiseQuotient(sd).squaredNorm();
       for (Eigen::Index i = 0; i < r.size(); ++i) {
         if (is_used[static_cast<std::size_t>(i)]) sum += 0.5 * r[i] * r[i];
       }
-      return sum;
-    } catch (const SolveError&) {
-      return 1e300;
-    }
+    });
+    return sum;
   };
   const Eigen::VectorXd whole = hessian.llt().solve(step);
   const double before = misfit(from);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/no_solution.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -38,11 +40,9 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
     } else {
       start += best.covariance.col(at) * (distance / variance);
     }
-    try {
-      return fitter.fit_others(hypothesis, start, at, workspace).misfit - best.misfit;
-    } catch (const std::exception&) {  // no solution so far out
-      return 1e300;
-    }
+    double misfit = 1e300;  // no solution so far out
+    (void)has_solution([&] { misfit = fitter.fit_others(hypothesis, start, at, workspace).misfit - best.misfit; });
+    return misfit;
   };
   const auto room = [&](double sign) { return std::max(0.0, sign > 0.0 ? high - middle : middle - low); };
   // A jump between two rows is anywhere between them; beyond a worse row there may be a better one.

@@ -5,9 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/twin_state.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::diagnosis {
+
+/// Everything that a machine may be doubted to be: the scenario's effects, numbers of which may be others, in their order, and behind them those
+/// that it has beside.
+using TwinState = std::vector<effects::Effect>;
 
 /// x = 0 is what the scenario says; the search turns x.
 struct Knob {
@@ -21,7 +25,7 @@ struct Knob {
   double low = -1e300, high = 1e300;  ///< of the value
   bool is_time = false;               ///< found by search, not by slopes
   bool reading_only = false;          ///< the machine's own response does not change
-  std::function<void(TwinState&, double value)> set;
+  std::function<void(TwinState&, double value)> set = {};
 
   /// The time of a jump in a reading has no slope: its misfit is flat between two rows.
   [[nodiscard]] bool is_jump() const { return is_time && reading_only; }

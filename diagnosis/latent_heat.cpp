@@ -1,10 +1,12 @@
 #include "diagnosis/latent_heat.hpp"
 
-#include <omp.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "base/parallel.hpp"
+#include "diagnosis/no_solution.hpp"
+#include "diagnosis/scene.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -57,12 +59,7 @@ std::pair<std::string, double> resembles(const MeasuredRun& run, const Eigen::Ve
 
 std::optional<LatentHeat> latent_heat(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit) {
   const Twin& twin = fitter.twin();
-  const effects::HeatBalance own = twin.balance(twin.as_written());
-  std::vector<effects::Body> bodies;
-  for (const auto& p : twin.machine().system.parts) {
-    const bool is_node = std::any_of(own.nodes.begin(), own.nodes.end(), [&](const auto& n) { return n.name == p.body; });
-    bodies.push_back(is_node ? effects::node(p.body) : effects::region(p.body));
-  }
+  const std::vector<effects::Body> bodies = scene_of(twin, fitter.runs()).bodies;
   struct Piece {
     std::size_t run;
     double from_s, until_s;
@@ -86,47 +83,42 @@ std::optional<LatentHeat> latent_heat(const Fitter& fitter, const Hypothesis& hy
 
   std::vector<double> explained(bodies.size(), 0.0);
   std::vector<Eigen::VectorXd> heat(bodies.size());
-#pragma omp parallel
-  {
-    Twin::Workspace workspace(twin);
-#pragma omp for schedule(dynamic)
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      Eigen::MatrixXd signatures(n, n_pieces);
-      try {
+  for_each_index(
+      bodies.size(), [&] { return Twin::Workspace(twin); },
+      [&](std::size_t b, Twin::Workspace& workspace) {
+        Eigen::MatrixXd signatures(n, n_pieces);
+        const bool is_solved = has_solution([&] {
+          for (Eigen::Index p = 0; p < n_pieces; ++p) {
+            const Piece& piece = pieces[static_cast<std::size_t>(p)];
+            const MeasuredRun& run = fitter.runs()[piece.run];
+            TwinState state = fitter.state(hypothesis, fit.x);
+            state.push_back(effects::make_effect("heat_source", bodies[b], {{"power", kTypical_W}}));
+            state.back().from_s = piece.from_s;
+            state.back().until_s = piece.until_s;
+            state.back().in = run.name;
+            Prediction prediction = fit.prediction;
+            prediction[piece.run] = twin.read(state, run, twin.respond(state, run, workspace));
+            signatures.col(p) = (fitter.comparison().whitened(prediction) - base) / kTypical_W;
+          }
+        });
+        if (!is_solved) return;  // too hot for some law
+        const Eigen::MatrixXd s = without_scatter(signatures);
+        Eigen::MatrixXd normal = signatures.transpose() * s;
         for (Eigen::Index p = 0; p < n_pieces; ++p) {
-          const Piece& piece = pieces[static_cast<std::size_t>(p)];
-          TwinState state = fitter.state(hypothesis, fit.x);
-          state.heats.push_back({.body = bodies[b],
-                                 .power_W = kTypical_W,
-                                 .from_s = piece.from_s,
-                                 .until_s = piece.until_s,
-                                 .in = fitter.runs()[piece.run].name});
-          Prediction prediction = fit.prediction;
-          prediction[piece.run] =
-              twin.read(state, fitter.runs()[piece.run], twin.respond(state, fitter.runs()[piece.run], workspace));
-          signatures.col(p) = (fitter.comparison().whitened(prediction) - base) / kTypical_W;
+          normal(p, p) += 0.05 / (kTypical_W * kTypical_W);
+          if (p == 0 || pieces[static_cast<std::size_t>(p)].run != pieces[static_cast<std::size_t>(p - 1)].run) continue;
+          const double weight = 1.0 / (kTypical_W * kTypical_W);
+          normal(p, p) += weight;
+          normal(p - 1, p - 1) += weight;
+          normal(p, p - 1) -= weight;
+          normal(p - 1, p) -= weight;
         }
-      } catch (const std::exception&) {  // too hot for some law
-        continue;
-      }
-      const Eigen::MatrixXd s = without_scatter(signatures);
-      Eigen::MatrixXd normal = signatures.transpose() * s;
-      for (Eigen::Index p = 0; p < n_pieces; ++p) {
-        normal(p, p) += 0.05 / (kTypical_W * kTypical_W);
-        if (p == 0 || pieces[static_cast<std::size_t>(p)].run != pieces[static_cast<std::size_t>(p - 1)].run) continue;
-        const double weight = 1.0 / (kTypical_W * kTypical_W);
-        normal(p, p) += weight;
-        normal(p - 1, p - 1) += weight;
-        normal(p, p - 1) -= weight;
-        normal(p - 1, p) -= weight;
-      }
-      const Eigen::VectorXd projected = signatures.transpose() * rest;
-      heat[b] = normal.ldlt().solve(projected);
-      const double before = fit.residual.dot(rest),
-                   after = before - 2.0 * heat[b].dot(projected) + heat[b].dot(signatures.transpose() * (s * heat[b]));
-      explained[b] = (before - after) / std::max(1.0, before - static_cast<double>(n));
-    }
-  }
+        const Eigen::VectorXd projected = signatures.transpose() * rest;
+        heat[b] = normal.ldlt().solve(projected);
+        const double before = fit.residual.dot(rest),
+                     after = before - 2.0 * heat[b].dot(projected) + heat[b].dot(signatures.transpose() * (s * heat[b]));
+        explained[b] = (before - after) / std::max(1.0, before - static_cast<double>(n));
+      });
   const auto best = static_cast<std::size_t>(std::max_element(explained.begin(), explained.end()) - explained.begin());
   if (bodies.empty() || heat[best].size() == 0) return std::nullopt;
   LatentHeat latent;

@@ -219,6 +219,9 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
   MeasuredRun run;
   run.path = path;
   run.name = std::filesystem::path(path).stem().string();
+  for (char& c : run.name) {  // it may become the name of a cyclogram
+    if (!is_name(std::string(1, c))) c = '_';
+  }
   const Record record = without_spikes(without_holes(whole, run.findings), run.findings);
   for (double t_s : record.time_s) run.time_s.push_back(t_s - record.time_s.front());
   run.cyclogram = cyclogram_of(record, run.time_s, path);

@@ -1,12 +1,13 @@
 #include "diagnosis/search.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/parallel.hpp"
+#include "diagnosis/no_solution.hpp"
 #include "diagnosis/projection.hpp"
 
 namespace driftwright::diagnosis {
@@ -31,18 +32,12 @@ Projection projection_of(const Fitter& fitter, const Hypothesis& hypothesis, con
 /// Fits some hypotheses side by side.
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses) {
   std::vector<Fit> fits(hypotheses.size());
-#pragma omp parallel
-  {
-    Twin::Workspace workspace(fitter.twin());
-#pragma omp for schedule(dynamic)
-    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-      try {
-        fits[i] = fitter.fit(hypotheses[i].first, hypotheses[i].second, workspace);
-      } catch (const std::exception&) {  // a state without solution is no explanation
-        fits[i] = Fit{};
-      }
-    }
-  }
+  for_each_index(
+      hypotheses.size(), [&] { return Twin::Workspace(fitter.twin()); },
+      [&](std::size_t i, Twin::Workspace& workspace) {
+        // a state without solution is no explanation
+        if (!has_solution([&] { fits[i] = fitter.fit(hypotheses[i].first, hypotheses[i].second, workspace); })) fits[i] = Fit{};
+      });
   return fits;
 }
 
@@ -145,30 +140,31 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
     Twin::Workspace workspace(fitter.twin());
     (void)fitter.predict(hypothesis, fit.x, workspace, &responses);
   }
-#pragma omp parallel
-  {
-    Twin::Workspace workspace(fitter.twin());
-    Prediction kept = responses;
-#pragma omp for schedule(dynamic)
-    for (std::size_t j = 0; j < jobs.size(); ++j) {
-      const Variant& v = candidates[jobs[j].candidate].variants[jobs[j].variant];
-      const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
-      const Hypothesis tried = with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing});
-      for (const std::vector<double>& shape : v.grid) {
-        Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
-        claim[0] = v.trial_x;
-        for (std::size_t k = 0; k < shape.size(); ++k) claim[static_cast<Eigen::Index>(k + 1)] = shape[k];
-        try {
-          const Prediction p =
-              fitter.predict(tried, joined(fit.x, claim), workspace, reading_only ? &kept : nullptr, reading_only);
+  struct Space {
+    Twin::Workspace workspace;
+    Prediction kept;
+  };
+  for_each_index(
+      jobs.size(), [&] { return Space{Twin::Workspace(fitter.twin()), responses}; },
+      [&](std::size_t j, Space& space) {
+        const Variant& v = candidates[jobs[j].candidate].variants[jobs[j].variant];
+        const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
+        const Hypothesis tried = with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing});
+        for (const std::vector<double>& shape : v.grid) {
+          Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
+          claim[0] = v.trial_x;
+          for (std::size_t k = 0; k < shape.size(); ++k) claim[static_cast<Eigen::Index>(k + 1)] = shape[k];
+          Prediction p;
+          const bool is_solved = has_solution([&] {
+            p = fitter.predict(tried, joined(fit.x, claim), space.workspace, reading_only ? &space.kept : nullptr,
+                               reading_only);
+          });
+          if (!is_solved) continue;
           Eigen::VectorXd column = (fitter.comparison().whitened(p) - base) / v.trial_x;
           if (!column.allFinite() || !(column.squaredNorm() > 1e-12)) continue;
           lists[j].push_back({jobs[j].candidate, jobs[j].variant, std::move(claim), std::move(column)});
-        } catch (const std::exception&) {  // no solution at this size
         }
-      }
-    }
-  }
+      });
   std::vector<Signature> all;
   for (auto& list : lists) {
     for (Signature& s : list) all.push_back(std::move(s));

@@ -3,15 +3,15 @@
 
 #include <memory>
 
+#include "diagnosis/knob.hpp"
 #include "diagnosis/measured_run.hpp"
-#include "diagnosis/twin_state.hpp"
 #include "scenarios/reduced_machine.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::diagnosis {
 
-/// The scenario's machine with what a diagnosis may add, dormant: heat in each region, node and surface, films where there are none, friction
-/// that looks at its body, stratified air. Its reduced model holds for all of them.
+/// The scenario's machine with the places that a diagnosis may add something at: heat in each region, node and surface, films where there are
+/// none, a medium along each body, a way from each node to the hall, stratified air. Its reduced model holds for laws at all of them.
 struct AugmentedModel {
   scenarios::MachineModel model;
   scenarios::ReductionPlan plan;
@@ -35,13 +35,14 @@ class Twin {
    private:
     friend class Twin;
     solver::ReducedSystem system_;
-    std::vector<double> factors_;                ///< of conductivities and capacities that system_ has
-    double gradient_K_m_ = 0.0, level_m_ = 0.0;  ///< of the air
+    std::vector<double> factors_;  ///< of conductivities and capacities that system_ has
+    std::vector<double> offsets_;  ///< of its exchanges: air and media
     std::unique_ptr<solver::Propagator> propagator_;
   };
 
   /// The scenario as it stands.
   [[nodiscard]] const TwinState& as_written() const { return as_written_; }
+  [[nodiscard]] std::size_t n_own_effects() const { return as_written_.size(); }
   /// Reduced states of the machine at a run's grid, size x n_grid.
   /// @throws SolveError  where a state has no solution
   [[nodiscard]] Eigen::MatrixXd states(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
@@ -58,16 +59,17 @@ class Twin {
   [[nodiscard]] const AugmentedModel& augmented() const { return augmented_; }
   /// States of each part of the machine 1 K warmer than the rest, size x n_parts; in a reduced model as near as its basis comes.
   [[nodiscard]] Eigen::MatrixXd warmer_bodies() const;
-  /// The scenario's own heat balance in a state, as the reduced model has it.
+  /// What a state does to heat, radiation as films.
   [[nodiscard]] effects::HeatBalance balance(const TwinState& state) const;
+  /// What a part of the machine is.
+  [[nodiscard]] effects::Body body_of(const std::string& part) const;
 
  private:
-  /// All laws of a state, dormant ones asleep unless called. @param source_probes  out: which probes each source's law looks at
-  [[nodiscard]] effects::HeatBalance laws(const TwinState& state, const MeasuredRun& run,
-                                          std::vector<std::vector<int>>& source_probes) const;
-  /// The scenario's own changes and the state's.
-  [[nodiscard]] effects::DriveChange drive(const TwinState& state) const;
-  [[nodiscard]] effects::ReadingChain chain(const TwinState& state) const;
+  /// Factors of a state over those as written: conductivity of each part, then heat capacity.
+  [[nodiscard]] std::vector<double> material_factors(const TwinState& state) const;
+  void set_matrices(const TwinState& state, Workspace& workspace) const;
+  void set_laws(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
+  [[nodiscard]] Eigen::VectorXd start(const MeasuredRun& run, const TimeSeries& hall, const solver::ReducedSystem& system) const;
 
   const AugmentedModel& augmented_;
   const scenarios::ReducedMachine& machine_;

@@ -1,13 +1,12 @@
 #include "diagnosis/unnamed.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
-#include "diagnosis/candidate_scene.hpp"
+#include "base/parallel.hpp"
+#include "diagnosis/no_solution.hpp"
 #include "diagnosis/projection.hpp"
+#include "diagnosis/scene.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -42,15 +41,15 @@ std::vector<Piece> pieces_of(const std::vector<MeasuredRun>& runs) {
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const double end_s = runs[r].time_s.back();
     const int n = std::clamp(static_cast<int>(std::ceil(end_s / kPiece_s)), 1, kMostPieces);
-    for (int i = 0; i < n; ++i) pieces.push_back({r, end_s * i / n, i + 1 == n ? kNever_s : end_s * (i + 1) / n});
+    for (int i = 0; i < n; ++i) pieces.push_back({r, end_s * i / n, i + 1 == n ? effects::kNever_s : end_s * (i + 1) / n});
   }
   return pieces;
 }
 
-std::vector<Place> places_of(const Scene& s, const Twin& twin) {
+std::vector<Place> places_of(const effects::DoubtScene& s, const Twin& twin) {
   std::vector<Place> places;
-  const double heat_W = std::max(20.0, 0.5 * s.heat_W);
-  for (const effects::Body& body : bodies(s)) places.push_back({Unnamed::Quantity::kHeat, body.name, body, -1, heat_W});
+  for (const effects::Body& body : s.bodies)
+    places.push_back({Unnamed::Quantity::kHeat, body.name, body, -1, s.unknown_heat_W()});
   places.push_back({Unnamed::Quantity::kHall, "hall", {}, -1, kHall_K});
   const auto& names = twin.outputs().name;
   const auto output = [&](const std::string& name) {
@@ -58,16 +57,16 @@ std::vector<Place> places_of(const Scene& s, const Twin& twin) {
   };
   for (const std::string& name : s.sensors)
     places.push_back({Unnamed::Quantity::kReading, name, {}, output(name), kReading_K});
-  for (const std::string& name : s.displacements)
-    places.push_back({Unnamed::Quantity::kReading, name, {}, output(name), kDisplacement_m});
+  for (const auto& d : s.displacements)
+    places.push_back({Unnamed::Quantity::kReading, d.name, {}, output(d.name), kDisplacement_m});
   return places;
 }
 
 /// All columns of one place: constant, n/N, (n/N)², turns, then one a piece.
 class Columns {
  public:
-  Columns(const Fitter& fitter, const Scene& scene, const TwinState& best, const std::vector<Piece>& pieces)
-      : fitter_(fitter), scene_(scene), best_(best), pieces_(pieces) {
+  Columns(const Fitter& fitter, const TwinState& best, const std::vector<Piece>& pieces)
+      : fitter_(fitter), top_rpm_(top_speed_rpm(fitter.runs())), best_(best), pieces_(pieces) {
     Twin::Workspace workspace(fitter.twin());
     base_ = read(best, workspace);
   }
@@ -103,7 +102,7 @@ class Columns {
   }
   [[nodiscard]] Eigen::VectorXd speed_course(double exponent) const {
     const Cyclogram& cyclogram = fitter_.runs()[0].cyclogram;
-    return course([&](double t_s) { return std::pow(cyclogram.speed_rpm(t_s) / scene_.top_rpm, exponent); });
+    return course([&](double t_s) { return std::pow(cyclogram.speed_rpm(t_s) / top_rpm_, exponent); });
   }
 
   /// Heat and hall go through the machine: a fifth of their size at a time, laws stay where they are.
@@ -114,10 +113,13 @@ class Columns {
       TwinState s = best_;
       const std::string in = run ? fitter_.runs()[*run].name : "";
       if (is_heat) {
-        s.heats.push_back({.body = place.body, .power_W = kTrial * place.sd, .from_s = from_s, .in = in});
+        s.push_back(effects::make_effect("heat_source", place.body, {{"power", kTrial * place.sd}}));
+        s.back().from_s = from_s;
       } else {
-        s.drive.hall.push_back({kTrial * place.sd, 0.0, from_s, in});
+        s.push_back(effects::make_effect("ambient", effects::Place::kHall, effects::kHallName,
+                                         {{"offset", kTrial * place.sd}, {"from", from_s / 60.0}}));
       }
+      s.back().in = in;
       return Eigen::VectorXd(difference(s, run, workspace) / kTrial);
     };
     std::vector<Column> columns;
@@ -126,11 +128,8 @@ class Columns {
       Eigen::VectorXd signature = Eigen::VectorXd::Zero(fitter_.comparison().n());  // a hall does not know the spindle
       if (is_heat) {
         TwinState s = best_;
-        s.heats.push_back({.body = place.body,
-                           .power_W = kTrial * place.sd,
-                           .shape = AddedHeat::Shape::kPower,
-                           .at_speed_rpm = scene_.top_rpm,
-                           .exponent = exponent});
+        s.push_back(effects::make_effect("heat_source", place.body,
+                                         {{"power", kTrial * place.sd}, {"at_speed", top_rpm_}, {"exponent", exponent}}));
         signature = difference(s, std::nullopt, workspace) / kTrial;
       }
       columns.push_back({std::move(signature), speed_course(exponent)});
@@ -164,7 +163,7 @@ class Columns {
     columns.push_back(column([](std::size_t, double) { return 1.0; }));
     for (const double exponent : {1.0, 2.0}) {
       columns.push_back(column(
-          [&](std::size_t r, double t_s) { return std::pow(runs[r].cyclogram.speed_rpm(t_s) / scene_.top_rpm, exponent); }));
+          [&](std::size_t r, double t_s) { return std::pow(runs[r].cyclogram.speed_rpm(t_s) / top_rpm_, exponent); }));
     }
     double longest_s = 1.0;
     for (const MeasuredRun& run : runs) longest_s = std::max(longest_s, run.time_s.back());
@@ -174,11 +173,12 @@ class Columns {
         turned += section.drive.speed_rpm * std::clamp(t_s - start_s, 0.0, section.duration_s);
         start_s += section.duration_s;
       }
-      return turned / (scene_.top_rpm * longest_s);
+      return turned / (top_rpm_ * longest_s);
     }));
     for (std::size_t k = 0; k < pieces_.size(); ++k) {  // a smooth course: hats on the middles of the pieces
       const auto middle_s = [&](std::size_t i) {
-        const double until_s = pieces_[i].until_s < kNever_s ? pieces_[i].until_s : runs[pieces_[i].run].time_s.back();
+        const double until_s =
+            pieces_[i].until_s < effects::kNever_s ? pieces_[i].until_s : runs[pieces_[i].run].time_s.back();
         return 0.5 * (pieces_[i].from_s + until_s);
       };
       const bool has_left = k > 0 && pieces_[k - 1].run == pieces_[k].run;
@@ -195,7 +195,7 @@ class Columns {
   }
 
   const Fitter& fitter_;
-  const Scene& scene_;
+  double top_rpm_;
   const TwinState& best_;
   const std::vector<Piece>& pieces_;
   Prediction base_;
@@ -278,61 +278,53 @@ std::vector<Subset> subsets_of(const Fitter& fitter, const std::vector<Candidate
 std::optional<Unnamed> best_unnamed(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                     const Hypothesis& hypothesis, const Fit& fit) {
   if (hypothesis.empty()) return std::nullopt;
-  const Scene scene = scene_of(fitter.twin(), fitter.runs());
-  const std::vector<Place> places = places_of(scene, fitter.twin());
+  const std::vector<Place> places = places_of(scene_of(fitter.twin(), fitter.runs()), fitter.twin());
   const std::vector<Piece> pieces = pieces_of(fitter.runs());
   const std::vector<Course> courses = courses_of(pieces);
   const std::vector<Subset> subsets = subsets_of(fitter, candidates, hypothesis, fit);
   const TwinState state = fitter.state(hypothesis, fit.x);
-  const Columns columns(fitter, scene, state, pieces);
+  const Columns columns(fitter, state, pieces);
   const double price = std::log(std::max(1.0, static_cast<double>(candidates.size()))) + std::log(kLaws);
 
   std::vector<Unnamed> best(places.size());
-#pragma omp parallel
-  {
-    Twin::Workspace workspace(fitter.twin());
-#pragma omp for schedule(dynamic)
-    for (std::size_t p = 0; p < places.size(); ++p) {
-      best[p].log_evidence_gain = -1e300;
-      std::vector<Column> at;
-      try {
-        at = columns.at(places[p], workspace);
-      } catch (const std::exception&) {  // no solution with that heat
-        continue;
-      }
-      Eigen::MatrixXd s(fitter.comparison().n(), static_cast<Eigen::Index>(at.size()));
-      for (std::size_t c = 0; c < at.size(); ++c) s.col(static_cast<Eigen::Index>(c)) = at[c].signature;
-      for (const Subset& subset : subsets) {
-        const Eigen::MatrixXd a = s.transpose() * subset.left->without(s);
-        const Eigen::VectorXd b = s.transpose() * subset.left->rest;
-        for (const Course& course : courses) {
-          const Eigen::Index n = course.root.cols();
-          const Eigen::MatrixXd ra = course.root.transpose() * a.block(course.first, course.first, n, n) * course.root;
-          const Eigen::VectorXd rb = course.root.transpose() * b.segment(course.first, n);
-          for (const double size : kSizes) {
-            Eigen::MatrixXd m = size * size * ra;
-            m.diagonal().array() += 1.0;
-            const Eigen::LLT<Eigen::MatrixXd> factor(m);
-            const Eigen::VectorXd z = factor.solve(size * rb);
-            const double gain = 0.5 * size * rb.dot(z) - factor.matrixLLT().diagonal().array().log().sum();
-            const double value = gain - price - subset.saved;
-            if (!(value > best[p].log_evidence_gain)) continue;
-            const Eigen::VectorXd amplitude = size * places[p].sd * (course.root * z);
-            Eigen::VectorXd series = Eigen::VectorXd::Zero(at[0].course.size());
-            for (Eigen::Index i = 0; i < n; ++i)
-              series += amplitude[i] * at[static_cast<std::size_t>(course.first + i)].course;
-            best[p] = {places[p].quantity,
-                       places[p].where,
-                       course.follows,
-                       subset.claims,
-                       value,
-                       fitter.runs()[0].time_s,
-                       {series.begin(), series.end()}};
+  for_each_index(
+      places.size(), [&] { return Twin::Workspace(fitter.twin()); },
+      [&](std::size_t p, Twin::Workspace& workspace) {
+        best[p].log_evidence_gain = -1e300;
+        std::vector<Column> at;
+        if (!has_solution([&] { at = columns.at(places[p], workspace); })) return;  // none with that heat
+        Eigen::MatrixXd s(fitter.comparison().n(), static_cast<Eigen::Index>(at.size()));
+        for (std::size_t c = 0; c < at.size(); ++c) s.col(static_cast<Eigen::Index>(c)) = at[c].signature;
+        for (const Subset& subset : subsets) {
+          const Eigen::MatrixXd a = s.transpose() * subset.left->without(s);
+          const Eigen::VectorXd b = s.transpose() * subset.left->rest;
+          for (const Course& course : courses) {
+            const Eigen::Index n = course.root.cols();
+            const Eigen::MatrixXd ra = course.root.transpose() * a.block(course.first, course.first, n, n) * course.root;
+            const Eigen::VectorXd rb = course.root.transpose() * b.segment(course.first, n);
+            for (const double size : kSizes) {
+              Eigen::MatrixXd m = size * size * ra;
+              m.diagonal().array() += 1.0;
+              const Eigen::LLT<Eigen::MatrixXd> factor(m);
+              const Eigen::VectorXd z = factor.solve(size * rb);
+              const double gain = 0.5 * size * rb.dot(z) - factor.matrixLLT().diagonal().array().log().sum();
+              const double value = gain - price - subset.saved;
+              if (!(value > best[p].log_evidence_gain)) continue;
+              const Eigen::VectorXd amplitude = size * places[p].sd * (course.root * z);
+              Eigen::VectorXd series = Eigen::VectorXd::Zero(at[0].course.size());
+              for (Eigen::Index i = 0; i < n; ++i)
+                series += amplitude[i] * at[static_cast<std::size_t>(course.first + i)].course;
+              best[p] = {places[p].quantity,
+                         places[p].where,
+                         course.follows,
+                         subset.claims,
+                         value,
+                         fitter.runs()[0].time_s,
+                         {series.begin(), series.end()}};
+            }
           }
         }
-      }
-    }
-  }
+      });
   const auto found = std::max_element(best.begin(), best.end(), [](const Unnamed& a, const Unnamed& b) {
     return a.log_evidence_gain < b.log_evidence_gain;
   });

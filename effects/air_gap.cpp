@@ -5,13 +5,13 @@ namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double diameter_m = e["diameter"], gap_m = e["gap"];
+  const double diameter_m = e["diameter"], gap_m = e["gap"], factor = e["factor"];
   const Air air = air_at(e["air"]);
   const auto conductance_W_m2K = [=](const Inputs& u) {
     const double taylor = taylor_number(diameter_m, gap_m, u.drive.speed_rpm, air.viscosity_m2_s);
-    return nusselt_gap(taylor) * air.conductivity_W_mK / (2.0 * gap_m);
+    return factor * nusselt_gap(taylor) * air.conductivity_W_mK / (2.0 * gap_m);
   };
-  balance.contacts.push_back({e.name(), e.place, conductance_W_m2K});
+  balance.exchanges.push_back({.name = e.name(), .body = e.body(), .coefficient = conductance_W_m2K});
 }
 
 void check(const Effect& e, const ConfigMap& in) {
@@ -30,9 +30,12 @@ EffectKind air_gap() {
       .places = {Place::kJoint},
       .parameters = {{"diameter", "m", 1e-3, 5.0, {}, "of the rotor"},
                      {"gap", "m", 1e-5, 0.1, {}, "radial"},
-                     {"air", "degC", 200.0, 500.0, 313.15, "temperature of the air in the gap"}},
+                     {"air", "degC", 200.0, 500.0, 313.15, "temperature of the air in the gap"},
+                     {"factor", "1", 0.0, 1e3, 1.0, "on the formula's conductance", 0.1, "forced_convection"}},
+      .timing = Timing::kInTime,
       .contribute = contribute,
-      .check = check};
+      .check = check,
+      .exchange_finding = "contact"};
 }
 
 }  // namespace driftwright::effects

@@ -6,7 +6,10 @@ namespace {
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.nodes.push_back({e.place, e["capacity"]});
   const double exchange_W_K = e["exchange"];
-  balance.links.push_back({e.name(), node(e.place), [=](const Inputs&) { return exchange_W_K; }});
+  balance.exchanges.push_back({.name = e.name(),
+                               .body = node(e.place),
+                               .coefficient = [=](const Inputs&) { return exchange_W_K; },
+                               .per = Per::kTotal});
 }
 
 }  // namespace
@@ -18,7 +21,8 @@ EffectKind air_node() {
           .places = {Place::kNode},
           .parameters = {{"capacity", "J/K", 1e-3, 1e9, {}, "heat capacity of the pocket of air, 1.2 kJ/K for 1 m^3"},
                          {"exchange", "W/K", 1e-6, 1e6, {}, "conductance to the hall", 0.1, "contact"}},
-          .contribute = contribute};
+          .contribute = contribute,
+          .exchange_finding = "contact"};
 }
 
 }  // namespace driftwright::effects

@@ -1,14 +1,76 @@
-#include "effects/effect.hpp"
+#include <algorithm>
+
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
+constexpr double kStep_s = 1e-3;  // that a jump of the hall takes
+
+/// Adds offset + ramp (t - from) from a time on.
+TimeSeries with_error(const TimeSeries& hall, double offset_K, double ramp_K_s, double from_s, double end_s) {
+  std::vector<double> knots = hall.time_s;
+  knots.push_back(end_s);  // where a ramp ends and the hall's own knots may have ended before
+  const bool steps = from_s > 0.0;
+  const double reached_s = steps ? from_s + kStep_s : 0.0;
+  if (steps) knots.push_back(from_s);
+  knots.push_back(reached_s);
+  std::sort(knots.begin(), knots.end());
+  knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
+  TimeSeries changed;
+  for (double t_s : knots) {
+    double error_K = 0.0;
+    if (t_s >= reached_s) {
+      error_K = offset_K + ramp_K_s * (t_s - from_s);
+    } else if (t_s > from_s) {  // a knot of the hall within the step
+      error_K = (offset_K + ramp_K_s * kStep_s) * (t_s - from_s) / kStep_s;
+    }
+    changed.time_s.push_back(t_s);
+    changed.value.push_back(hall.at(t_s) + error_K);
+  }
+  return changed;
+}
+
 void change_drive(const Effect& e, DriveChange& change) {
-  change.hall.push_back({e["offset"], e["ramp"] / 3600.0, e["from"] * 60.0});
+  change.hall.push_back([offset_K = e["offset"], ramp_K_s = e["ramp"] / 3600.0,
+                         from_s = e["from"] * 60.0](const TimeSeries& hall, double duration_s) {
+    return with_error(hall, offset_K, ramp_K_s, from_s, duration_s);
+  });
 }
 
 void check(const Effect&, const ConfigMap& in) {
   if (!in.has("offset") && !in.has("ramp")) in.fail("offset", "`offset`, `ramp` or both are wanted");
+}
+
+Doubt doubt(const std::string& law, const std::string& run, DoubtedNumber size, double trial) {
+  Effect error = make_effect("ambient", Place::kHall, kHallName);
+  error.in = run;
+  return {.finding = "ambient",
+          .where = kHallName,
+          .law = run.empty() ? law : law + ", in " + run,
+          .added = {error},
+          .numbers = {std::move(size)},
+          .trial = trial};
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  const auto offset = [] { return doubted("offset", "K", 2.0, 0.3); };
+  const auto ramp = [] { return doubted("ramp", "K/h", 0.7, 0.1); };
+  std::vector<Doubt> list = {doubt("offset", "", offset(), 0.5), doubt("ramp", "", ramp(), 0.2)};
+  for (const DoubtScene::Run& run : s.runs) {
+    DoubtedNumber step = offset();
+    step.name = "step";
+    step.set = [](std::span<Effect> added, double value) { added[0].set("offset", value); };
+    list.push_back(doubt("step", run.name, std::move(step), 0.5));
+    list.back().numbers.push_back(doubted_time("time", run.length_s, [](std::span<Effect> added, double value) {
+      added[0].set("from", value / 60.0);
+    }));
+    list.back().grid = time_grid(run.length_s, 10);
+    if (s.runs.size() < 2) continue;
+    list.push_back(doubt("offset", run.name, offset(), 0.5));
+    list.push_back(doubt("ramp", run.name, ramp(), 0.2));
+  }
+  return list;
 }
 
 }  // namespace
@@ -16,13 +78,15 @@ void check(const Effect&, const ConfigMap& in) {
 EffectKind ambient() {
   return {.key = "ambient",
           .title = "hall that is warmer or colder than recorded",
-          .law = "T_hall = recorded + offset + ramp (t - from) from a time on, in every cyclogram",
+          .law = "T_hall = recorded + offset + ramp (t - from) from a time on",
           .places = {Place::kHall},
           .parameters = {{"offset", "K", -50.0, 50.0, 0.0, "true minus recorded"},
                          {"ramp", "K/h", -50.0, 50.0, 0.0, "its growth"},
                          {"from", "min", 0.0, 1e7, 0.0, "when it begins; a step takes a millisecond"}},
+          .timing = Timing::kInRecord,
           .change_drive = change_drive,
-          .check = check};
+          .check = check,
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -33,6 +33,7 @@ EffectKind ball_screw() {
                      {"efficiency", "1", 0.1, 1.0, 0.9, "from torque to thrust"},
                      {"share", "1", 0.0, 1.0, 1.0,
                       "part of the heat that enters this body; nut and screw: about half each"}},
+      .timing = Timing::kInTime,
       .contribute = contribute,
       .choices = {axis_choice()}};
 }

@@ -64,6 +64,7 @@ EffectKind bearing_friction() {
                      {"preload_growth", "N/K", 0.0, 1e5, kNotGiven, "load gained where `inner` is warmer than `outer`", 0.1,
                       "friction_law"},
                      {"count", "1", 1.0, 20.0, 1.0, "equal bearings in this place"}},
+      .timing = Timing::kInTime,
       .contribute = contribute,
       .references = {{"oil", {BodyKind::kNode, BodyKind::kRegion}, "", "body as warm as the oil; else the bearing's place"},
                      {"inner", {BodyKind::kRegion, BodyKind::kNode}, "", "body of the inner rings"},

@@ -1,18 +1,19 @@
-#include "effects/time_window.hpp"
+#include "effects/effect.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double conductance_W_K = e["conductance"];
-  balance.links.push_back({e.name() + " - " + e.references.at("to").name, e.body(),
-                           in_window(
-                               e, [=](const Inputs&) { return conductance_W_K; }, balance),
-                           e.references.at("to").name});
+  const std::string to = e.references.at("to").name;
+  balance.exchanges.push_back({.name = e.name() + " - " + to,
+                               .body = e.body(),
+                               .coefficient = [=](const Inputs&) { return conductance_W_K; },
+                               .per = Per::kTotal,
+                               .surrounding = to});
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  check_window(e, in);
   if (e.body() == e.references.at("to")) in.fail("to", "a link joins two bodies");
 }
 
@@ -23,10 +24,12 @@ EffectKind body_link() {
           .title = "conductance between a body and a lumped node or the hall",
           .law = "Q = conductance (T - T_to), spread evenly over the region or surface",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
-          .parameters = with_window({{"conductance", "W/K", 0.0, 1e9, {}, "total conductance", 0.1, "contact"}}),
+          .parameters = {{"conductance", "W/K", 0.0, 1e9, {}, "total conductance", 0.1, "contact"}},
+          .timing = Timing::kInTime,
           .contribute = contribute,
           .references = {{"to", {BodyKind::kNode}, {}, "lumped node at the other end, or hall"}},
-          .check = check};
+          .check = check,
+          .exchange_finding = "contact"};
 }
 
 }  // namespace driftwright::effects

@@ -1,10 +1,40 @@
-#include "effects/effect.hpp"
+#include <algorithm>
+
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
+/// Readings at t that were taken at t - offset.
+Eigen::MatrixXd shifted(const Eigen::MatrixXd& outputs, const std::vector<double>& time_s, double offset_s) {
+  Eigen::MatrixXd late(outputs.rows(), outputs.cols());
+  for (Eigen::Index i = 0; i < outputs.cols(); ++i) {
+    const double taken_s = time_s[static_cast<std::size_t>(i)] - offset_s;
+    const auto next = std::upper_bound(time_s.begin(), time_s.end(), taken_s);
+    const auto after = static_cast<Eigen::Index>(next - time_s.begin());
+    if (after == 0 || after == outputs.cols()) {
+      late.col(i) = outputs.col(after == 0 ? 0 : after - 1);
+      continue;
+    }
+    const double left_s = *(next - 1), share = (taken_s - left_s) / (*next - left_s);
+    late.col(i) = outputs.col(after - 1) + share * (outputs.col(after) - outputs.col(after - 1));
+  }
+  return late;
+}
+
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.clock_offset_s += e["offset"] * 60.0;
+  if (e["offset"] == 0.0) return;
+  chain.add(ReadingStage::kClock,
+            [offset_s = e["offset"] * 60.0](Readings& r) { r.value = shifted(r.value, r.time_s, offset_s); });
+}
+
+std::vector<Doubt> doubts(const DoubtScene&) {
+  return {{.finding = "clock_offset",
+           .where = "clock",
+           .law = "readings late or early",
+           .added = {make_effect("clock_offset", Place::kClock, "clock")},
+           .numbers = {doubted("offset", "min", 5.0, 0.5)},
+           .trial = 1.0}};
 }
 
 }  // namespace
@@ -17,7 +47,9 @@ EffectKind clock_offset() {
               "in beyond the ends",
           .places = {Place::kClock},
           .parameters = {{"offset", "min", -1e4, 1e4, {}, "> 0: a reading carries a later time than it was taken at"}},
-          .change_readings = change_readings};
+          .timing = Timing::kInRecord,
+          .change_readings = change_readings,
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

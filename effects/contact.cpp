@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "effects/time_window.hpp"
+#include "effects/effect.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -9,13 +9,12 @@ constexpr const char* kTable = "conductance_over_pressure";
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double conductance_W_m2K = e.tables.contains(kTable) ? e.tables.at(kTable).at(e["pressure"]) : e["conductance"];
-  balance.contacts.push_back({e.name(), e.place,
-                              in_window(
-                                  e, [=](const Inputs&) { return conductance_W_m2K; }, balance)});
+  const double factor = e["factor"];
+  balance.exchanges.push_back(
+      {.name = e.name(), .body = e.body(), .coefficient = [=](const Inputs&) { return factor * conductance_W_m2K; }});
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  check_window(e, in);
   const bool has_table = e.tables.contains(kTable);
   if (e.has("conductance") == has_table) {
     in.fail("conductance", "one of two is wanted: `conductance`, or `conductance_over_pressure` with `pressure`");
@@ -36,13 +35,15 @@ EffectKind contact() {
           .title = "conductance of a joint, constant or at a pressure",
           .law = "q = conductance (T_a - T_b); from a table: linear between its rows",
           .places = {Place::kJoint},
-          .parameters =
-              with_window({{"conductance", "W/(m^2 K)", 0.0, 1e7, kNotGiven,
-                            "bolted and scraped: 2000 to 10000; a guideway: 500 to 3000", 0.1, "contact"},
-                           {"pressure", "Pa", 0.0, 1e10, kNotGiven, "mean pressure in the joint, where there is a table"}}),
+          .parameters = {{"conductance", "W/(m^2 K)", 0.0, 1e7, kNotGiven,
+                          "bolted and scraped: 2000 to 10000; a guideway: 500 to 3000", 0.1, "contact"},
+                         {"pressure", "Pa", 0.0, 1e10, kNotGiven, "mean pressure in the joint, where there is a table"},
+                         {"factor", "1", 0.0, 1e3, 1.0, "on the conductance, given or from the table"}},
+          .timing = Timing::kInTime,
           .contribute = contribute,
           .tables = {{kTable, "Pa", "W/(m^2 K)", 0.0, 1e7, false, "rows of [pressure, conductance]"}},
-          .check = check};
+          .check = check,
+          .exchange_finding = "contact"};
 }
 
 }  // namespace driftwright::effects

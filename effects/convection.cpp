@@ -1,13 +1,29 @@
-#include "effects/time_window.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double htc = e["film"];
-  const Law law = in_window(
-      e, [=](const Inputs&) { return htc; }, balance);
-  balance.films.push_back({e.name(), e.place, law, e.references.at("surrounding").name});
+  balance.exchanges.push_back({.name = e.name(),
+                               .body = e.body(),
+                               .coefficient = [htc = e["film"]](const Inputs&) { return htc; },
+                               .surrounding = e.references.at("surrounding").name});
+}
+
+/// Outer surfaces on which the scenario has no film.
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const std::string& name : s.surfaces) {
+    if (has_film(s.balance, name)) continue;
+    list.push_back({.finding = "convection",
+                    .where = name,
+                    .law = "a film where the scenario has none",
+                    .added = {make_effect("convection", Place::kSurface, name)},
+                    .numbers = {doubted("film", "W/(m^2 K)", 10.0, 1.0)},
+                    .trial = 3.0});
+    list.back().numbers[0].low = 0.0;
+  }
+  return list;
 }
 
 }  // namespace
@@ -17,17 +33,19 @@ EffectKind convection() {
           .title = "film on a surface, constant or for a time (a draught)",
           .law = "q = film (T - T_surrounding)",
           .places = {Place::kSurface},
-          .parameters = with_window({{"film",
-                                      "W/(m^2 K)",
-                                      0.0,
-                                      1e6,
-                                      {},
-                                      "film coefficient; free convection with radiation: 5 to 12",
-                                      0.1,
-                                      "convection"}}),
+          .parameters = {{"film",
+                          "W/(m^2 K)",
+                          0.0,
+                          1e6,
+                          {},
+                          "film coefficient; free convection with radiation: 5 to 12",
+                          0.1,
+                          "convection"}},
+          .timing = Timing::kInTime,
           .contribute = contribute,
           .references = {surrounding_reference()},
-          .check = check_window};
+          .doubts = doubts,
+          .exchange_finding = "convection"};
 }
 
 }  // namespace driftwright::effects

@@ -1,23 +1,37 @@
 #include <cmath>
 
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
+constexpr double kAmple_L_min = 100.0;           // of a circuit that is doubted: its flow takes no part in what it does
+constexpr double kColder_K = 10.0, kWarmer_K = 3.0;  // than the reference, its medium at most
+
 void contribute(const Effect& e, HeatBalance& balance) {
-  const std::string tank = e.references.at("tank").name;
   const double stream_W_K = e["flow"] / 60.0 * e["medium_heat_capacity"];  // L/s times J/(L K)
-  // Medium that enters at the tank's temperature and runs along a wall of one temperature leaves it by this much of the way.
+  // Medium that enters at its temperature and runs along a wall of one temperature leaves it by this much of the way.
   const double passage_W_K = -stream_W_K * std::expm1(-e["passage_conductance"] / stream_W_K);
   const bool with_spindle = e.words.at("runs") == "while_spindle_turns";
   const auto while_running = [=](double value) {
     return [=](const Inputs& u) { return with_spindle && !(u.drive.speed_rpm > 0.0) ? 0.0 : value; };
   };
+  Exchange passage{.name = e.name(), .body = e.body(), .coefficient = while_running(passage_W_K), .per = Per::kTotal};
+  if (!e.references.contains("tank")) {
+    passage.medium_K = e["set_point"];
+    balance.exchanges.push_back(passage);
+    return;
+  }
+  const std::string tank = e.references.at("tank").name;
+  passage.name += " - " + tank;
+  passage.surrounding = tank;
+  balance.exchanges.push_back(passage);
   const double exchange_W_K = e["tank_exchange"], cooling_W = e["cooling_power"];
   balance.nodes.push_back({tank, e["volume"] * e["medium_heat_capacity"]});
-  balance.links.push_back({e.name() + " - " + tank, e.body(), while_running(passage_W_K), tank});
-  balance.links.push_back({"coolant tank " + tank, node(tank), [=](const Inputs&) { return exchange_W_K; }});
+  balance.exchanges.push_back({.name = "coolant tank " + tank,
+                               .body = node(tank),
+                               .coefficient = [=](const Inputs&) { return exchange_W_K; },
+                               .per = Per::kTotal});
   balance.heats.push_back({"coolant pump " + tank, node(tank), while_running(e["pump_power"])});
   if (!(cooling_W > 0.0)) return;
   const double half_K = 0.5 * e["hysteresis"];
@@ -26,8 +40,49 @@ void contribute(const Effect& e, HeatBalance& balance) {
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (e.references.at("tank").name == kHallName) in.fail("tank", "a name of its own is wanted; the hall is no tank");
-  if (e.has("set_point") != (e["cooling_power"] > 0.0)) in.fail("set_point", "`set_point` and `cooling_power` go together");
+  if (e.references.contains("tank")) {
+    if (e.references.at("tank").name == kHallName) in.fail("tank", "a name of its own is wanted; the hall is no tank");
+    if (!e.has("volume")) in.fail("volume", "`tank` and `volume` go together");
+    if (e.has("set_point") != (e["cooling_power"] > 0.0)) in.fail("set_point", "`set_point` and `cooling_power` go together");
+    return;
+  }
+  if (!e.has("set_point")) in.fail("set_point", "a circuit without `tank` is held at its `set_point`");
+  for (const char* of_tank : {"volume", "tank_exchange", "pump_power", "cooling_power", "hysteresis"}) {
+    if (in.has(of_tank)) in.fail(of_tank, std::string("`") + of_tank + "` is one of a `tank`, which is not named");
+  }
+}
+
+/// Circuits that the scenario lacks: one that takes away a constant heat, and one whose medium is held at a temperature.
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W;
+  std::vector<Doubt> list;
+  for (const Body& body : s.bodies) {
+    Doubt removed{.finding = "coolant",
+                  .where = body.name,
+                  .law = "heat removed at a constant rate",
+                  .added = {make_effect("heat_source", body)},
+                  .numbers = {doubted("power", "W", sd_W, trial_W)},
+                  .trial = trial_W};
+    removed.numbers[0].low = 0.0;
+    removed.numbers[0].set = [](std::span<Effect> added, double value) { added[0].set("power", -value); };
+    list.push_back(std::move(removed));
+
+    const double sd_W_K = 0.2 * sd_W, nominal_C = s.reference_K - 273.15;
+    Doubt held{.finding = "coolant",
+               .where = body.name,
+               .law = "a circuit whose medium is held at its set point",
+               .added = {make_effect("coolant", body, {{"flow", kAmple_L_min}, {"set_point", s.reference_K}})},
+               .numbers = {doubted("passage_conductance", "W/K", sd_W_K, 0.1 * sd_W_K),
+                           doubted("set_point", "degC", 5.0, 0.5, nominal_C)},
+               .trial = 0.1 * sd_W_K,
+               .grid = {{-5.0}, {0.0}}};
+    held.numbers[0].low = 0.0;
+    held.numbers[1].low = nominal_C - kColder_K;
+    held.numbers[1].high = nominal_C + kWarmer_K;
+    held.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("set_point", value + 273.15); };
+    list.push_back(std::move(held));
+  }
+  return list;
 }
 
 }  // namespace
@@ -40,25 +95,28 @@ EffectKind coolant() {
           "Q = W (1 - exp(-passage_conductance / W)) (T - T_tank), W = flow medium_heat_capacity (stream along a wall of "
           "one "
           "temperature: Incropera & DeWitt, ch. 8.3); C_tank dT_tank/dt = Q + pump_power - tank_exchange (T_tank - T_hall) "
-          "- cooling_power from set_point + hysteresis/2 down to set_point - hysteresis/2. It makes the tank's node",
+          "- cooling_power from set_point + hysteresis/2 down to set_point - hysteresis/2. It makes the tank's node. Without `tank`, "
+          "T_tank = set_point: a chiller far stronger than the heat",
       .places = {Place::kRegion, Place::kSurface, Place::kNode},
       .parameters =
-          {{"flow", "L/min", 1e-3, 1e5, {}, "through the passage", 0.1, "coolant"},
+          {{"flow", "L/min", 1e-3, 1e5, {}, "through the passage", 0.1, "coolant", Doubted::kFactor},
            {"medium_heat_capacity", "J/(L K)", 100.0, 1e4, 3800.0,
             "per volume; water with 30 % of ethylene glycol at 20 degC: 1.046 kg/L times 3.65 kJ/(kg K) (ASHRAE Handbook "
             "Fundamentals, secondary coolants); water: 4170, mineral oil: 1650"},
-           {"passage_conductance", "W/K", 0.0, 1e7, {}, "film times area of the passage", 0.1, "coolant"},
-           {"volume", "L", 1e-3, 1e6, {}, "of the medium in the tank"},
-           {"tank_exchange", "W/K", 0.0, 1e6, 0.0, "between tank and hall", 0.1, "coolant"},
-           {"pump_power", "W", 0.0, 1e6, 0.0, "heat of the pump, while it runs", 0.1, "coolant"},
+           {"passage_conductance", "W/K", 0.0, 1e7, {}, "film times area of the passage", 0.1, "coolant", Doubted::kFactor},
+           {"volume", "L", 1e-3, 1e6, kNotGiven, "of the medium in the tank"},
+           {"tank_exchange", "W/K", 0.0, 1e6, 0.0, "between tank and hall", 0.1, "coolant", Doubted::kFactor},
+           {"pump_power", "W", 0.0, 1e6, 0.0, "heat of the pump, while it runs", 0.1, "coolant", Doubted::kFactor},
            {"cooling_power", "W", 0.0, 1e6, 0.0, "of the chiller while it is on; it obeys its thermostat alone", 0.1,
-            "coolant"},
-           {"set_point", "degC", 230.0, 400.0, kNotGiven, "of the tank"},
-           {"hysteresis", "K", 1e-3, 100.0, 1.0, "between on and off"}},
+            "coolant", Doubted::kFactor},
+           {"set_point", "degC", 230.0, 400.0, kNotGiven, "of the tank", 0.0, "coolant", Doubted::kShift, 2.0},
+           {"hysteresis", "K", 1e-3, 100.0, 1.0, "between on and off", 0.0, "coolant", Doubted::kFactor}},
+      .timing = Timing::kInTime,
       .contribute = contribute,
-      .references = {{"tank", {BodyKind::kNode}, {}, "name of the tank's node, which comes about here"}},
+      .references = {{"tank", {BodyKind::kNode}, "", "name of the tank's node, which comes about here; left out: held at the set point"}},
       .choices = {{"runs", {"always", "while_spindle_turns"}, "always", "when the pump runs"}},
-      .check = check};
+      .check = check,
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -26,6 +26,7 @@ EffectKind cutting_heat() {
                       "part of the heat that enters this body; chips keep most of it",
                       0.1,
                       "heat_source"}},
+      .timing = Timing::kInTime,
       .contribute = contribute};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // Amounts that effects add to a displacement channel, in um, or to a tilt, in urad.
 
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 
@@ -15,6 +15,16 @@ namespace driftwright::effects {
 /// In m or rad.
 [[nodiscard]] inline double amount_of(const Effect& effect, const std::string& name) {
   return 1e-6 * (effect.has("tilt") ? effect["tilt"] : effect[name]);
+}
+/// The parameter that a displacement or a tilt wants.
+[[nodiscard]] inline std::string amount_key(const DoubtScene::Displacement& of, const std::string& name) {
+  return of.is_tilt ? "tilt" : name;
+}
+/// A doubted amount in um or urad, 15 of them 1 sigma, reported by its name.
+[[nodiscard]] inline DoubtedNumber doubted_amount(const DoubtScene::Displacement& of, const std::string& name) {
+  DoubtedNumber n = doubted(name, of.unit(), 15.0, 1.0);
+  n.set = [key = amount_key(of, name)](std::span<Effect> added, double value) { added[0].set(key, value); };
+  return n;
 }
 inline void check_amount(const Effect& effect, const ConfigMap& in, const std::string& name) {
   if (effect.has(name) == effect.has("tilt")) {

@@ -18,6 +18,8 @@ const char* body_key(BodyKind kind) {
       return "surface";
     case BodyKind::kNode:
       return "node";
+    case BodyKind::kJoint:
+      return "joint";
   }
   return "";
 }
@@ -25,6 +27,27 @@ const char* body_key(BodyKind kind) {
 /// There is one of them in a shop or a machine.
 bool has_no_name(Place place) {
   return place == Place::kHall || place == Place::kClock || place == Place::kSpindle;
+}
+
+std::size_t index_of(const EffectKind& kind, const std::string& parameter) {
+  for (std::size_t i = 0; i < kind.parameters.size(); ++i) {
+    if (kind.parameters[i].name == parameter) return i;
+  }
+  throw std::logic_error("effect " + kind.key + " has no parameter " + parameter);
+}
+
+/// The laws of one effect act when it does.
+void keep_time(const Effect& effect, HeatBalance& balance) {
+  const bool begins = effect.from_s > 0.0, ends = effect.until_s < kNever_s;
+  if (begins) balance.change_times_s.push_back(effect.from_s);
+  if (ends) balance.change_times_s.push_back(effect.until_s);
+  if (!begins && !ends && effect.in.empty()) return;
+  balance.for_each_law([&](const std::string&, Law& law) {
+    law.value = [value = law.value, from_s = effect.from_s, until_s = effect.until_s, in = effect.in](const Inputs& u) {
+      const bool acts = u.time_s >= from_s && u.time_s < until_s && (in.empty() || u.run == in);
+      return acts ? value(u) : 0.0;
+    };
+  });
 }
 
 /// Exactly one of the kind's places must be named.
@@ -93,6 +116,16 @@ void read_mention(const ConfigMap& in, const Mention& m, Effect& effect) {
   if (in.has(m.name)) effect.reference_where[m.name] = in.where(m.name);
 }
 
+void read_timing(const ConfigMap& in, Effect& effect) {
+  if (effect.kind->timing == Timing::kAlways) return;
+  effect.in = in.text("in", "");
+  if (in.has("in")) effect.reference_where["in"] = in.where("in");
+  if (effect.kind->timing != Timing::kInTime) return;
+  effect.from_s = in.quantity("from", "s", 0.0, 1e9, 0.0);
+  effect.until_s = in.quantity("until", "s", 0.0, 1e9, kNever_s);
+  if (!(effect.until_s > effect.from_s)) in.fail("until", "a time behind `from` is wanted");
+}
+
 void read_table(const ConfigMap& in, const Table& t, Effect& effect) {
   if (!t.compulsory && !in.has(t.name)) return;
   TimeSeries series;
@@ -139,6 +172,8 @@ const char* place_key(Place place) {
       return "clock";
     case Place::kSpindle:
       return "spindle";
+    case Place::kLaw:
+      return "law";
   }
   return "";
 }
@@ -148,10 +183,11 @@ Reference surrounding_reference() {
 }
 
 double Effect::operator[](const std::string& parameter) const {
-  for (std::size_t i = 0; i < kind->parameters.size(); ++i) {
-    if (kind->parameters[i].name == parameter) return values[i];
-  }
-  throw std::logic_error("effect " + kind->key + " has no parameter " + parameter);
+  return values[index_of(*kind, parameter)];
+}
+
+void Effect::set(const std::string& parameter, double value) {
+  values[index_of(*kind, parameter)] = value;
 }
 
 bool Effect::has(const std::string& parameter) const {
@@ -167,6 +203,8 @@ Body Effect::body() const {
     case Place::kNode:
     case Place::kHall:
       return node(place);
+    case Place::kJoint:
+      return joint(place);
     default:
       break;
   }
@@ -189,45 +227,82 @@ Effect read_effect(const ConfigMap& in) {
   }
   for (const Table& t : kind.tables) read_table(in, t, effect);
   for (const Mention& m : kind.mentions) read_mention(in, m, effect);
+  read_timing(in, effect);
   in.reject_unknown_keys();
   if (kind.check) kind.check(effect, in);
   return effect;
 }
 
+const EffectKind& kind_of(const std::string& key) {
+  for (const EffectKind& kind : catalogue()) {
+    if (kind.key == key) return kind;
+  }
+  throw std::logic_error("there is no effect " + key);
+}
+
+Effect make_effect(const std::string& key, Place place_kind, const std::string& place,
+                   const std::vector<std::pair<std::string, double>>& values) {
+  Effect e{.kind = &kind_of(key), .place_kind = place_kind, .place = place};
+  for (const Parameter& p : e.kind->parameters) e.values.push_back(p.fallback.value_or(0.0));
+  for (const auto& [name, value] : values) e.set(name, value);
+  for (const Reference& r : e.kind->references) {
+    if (r.fallback && !r.fallback->empty()) e.references[r.name] = {r.kinds.front(), *r.fallback};
+  }
+  for (const Choice& c : e.kind->choices) e.words[c.name] = c.fallback.value_or(c.options.front());
+  for (const Mention& m : e.kind->mentions) e.words[m.name] = "";
+  return e;
+}
+
+Effect make_effect(const std::string& key, const Body& body, const std::vector<std::pair<std::string, double>>& values) {
+  constexpr Place kPlaces[] = {Place::kRegion, Place::kSurface, Place::kNode, Place::kJoint};
+  return make_effect(key, kPlaces[static_cast<int>(body.kind)], body.name, values);
+}
+
 HeatBalance heat_balance(const std::vector<Effect>& effects) {
   HeatBalance balance;
   for (const Effect& effect : effects) {
-    if (effect.kind->contribute) effect.kind->contribute(effect, balance);
+    if (!effect.kind->contribute) continue;
+    HeatBalance own;
+    effect.kind->contribute(effect, own);
+    keep_time(effect, own);
+    balance.append(std::move(own));
+  }
+  for (const Effect& effect : effects) {
+    if (effect.kind->change_laws) effect.kind->change_laws(effect, balance);
   }
   for (const MaterialFactor& factor : material_factors(effects)) {
     for (LumpedNode& n : balance.nodes) {
-      if (factor.is_node && factor.region == n.name) n.capacity_J_K *= factor.heat_capacity;
+      if (factor.body == node(n.name)) n.capacity_J_K *= factor.heat_capacity;
     }
   }
   return balance;
 }
 
-DriveChange drive_change(const std::vector<Effect>& effects) {
+DriveChange drive_change(const std::vector<Effect>& effects, const std::string& run) {
   DriveChange change;
   for (const Effect& effect : effects) {
-    if (effect.kind->change_drive) effect.kind->change_drive(effect, change);
+    if (effect.kind->change_drive && effect.acts_in(run)) effect.kind->change_drive(effect, change);
   }
   return change;
 }
 
-ReadingChain reading_chain(const std::vector<Effect>& effects) {
+ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string& run) {
   ReadingChain chain;
   for (const Effect& effect : effects) {
-    if (effect.kind->change_readings) effect.kind->change_readings(effect, chain);
+    if (effect.kind->change_readings && effect.acts_in(run)) effect.kind->change_readings(effect, chain);
   }
   return chain;
+}
+
+bool has_reading_effects(const std::vector<Effect>& effects) {
+  return std::any_of(effects.begin(), effects.end(), [](const Effect& e) { return e.kind->change_readings != nullptr; });
 }
 
 std::vector<MaterialFactor> material_factors(const std::vector<Effect>& effects) {
   std::vector<MaterialFactor> factors;
   for (const Effect& effect : effects) {
     if (!effect.kind->change_material) continue;
-    factors.push_back({.region = effect.place, .is_node = effect.place_kind == Place::kNode});
+    factors.push_back({.body = effect.body()});
     effect.kind->change_material(effect, factors.back());
   }
   return factors;

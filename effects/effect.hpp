@@ -2,6 +2,7 @@
 // One physical effect: what it is (EffectKind, a constant) and one use of it in a machine (Effect, data).
 // An effect's file defines its EffectKind and nothing else is touched; see README.md in this folder.
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,8 +17,12 @@
 namespace driftwright::effects {
 
 /// What an effect's place is the name of; its YAML key is place_key(). The hall, the clock and the spindle have no name and no key.
-enum class Place { kRegion, kSurface, kJoint, kNode, kHall, kSensor, kDisplacement, kClock, kSpindle };
+/// A law is named as in heat_flows.csv: the heat or exchange of another effect.
+enum class Place { kRegion, kSurface, kJoint, kNode, kHall, kSensor, kDisplacement, kClock, kSpindle, kLaw };
 [[nodiscard]] const char* place_key(Place place);
+
+/// How one number of an effect that is written may be wrong beyond its scatter, where not the law as a whole is doubted.
+enum class Doubted { kNo, kFactor, kShift };
 
 /// A number of an effect: how it is written, what is allowed, what it means.
 struct Parameter {
@@ -30,6 +35,8 @@ struct Parameter {
   /// How well a user knows it: standard deviation of its logarithm. 0: a condition or a dimension, taken as it stands.
   double scatter = 0.0;
   std::string finding = {};  ///< key of the effect that a value far outside its scatter is called
+  Doubted doubted = Doubted::kNo;
+  double shift_sd = 0.0;  ///< 1 sigma of a doubted shift, in `unit`
 };
 /// Value of a parameter that was left out; Effect::has() asks for it.
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
@@ -59,19 +66,26 @@ struct Table {
   std::string meaning;
 };
 
-/// A cyclogram or another sensor that an effect names; `Effect::words` holds it, "" where it is left out.
+/// Another sensor or a displacement that an effect names; `Effect::words` holds it, "" where it is left out.
 struct Mention {
-  enum class Of { kCyclogram, kSensor };
+  enum class Of { kSensor, kDisplacement };
   std::string name;
-  Of of = Of::kCyclogram;
+  Of of = Of::kSensor;
   bool compulsory = false;
   std::string meaning;
 };
-/// `in`, for what happened during one cyclogram alone.
-[[nodiscard]] inline Mention in_cyclogram() {
-  return {"in", Mention::Of::kCyclogram, false, "cyclogram during which; left out: in each"};
-}
 
+/// Whether an effect may act for a part of the time alone.
+enum class Timing {
+  kAlways,    ///< it is part of the machine
+  kInRecord,  ///< `in: CYCLOGRAM`, during that one alone
+  kInTime,    ///< and `from` and `until`: a draught, a lamp, an oven that is switched off
+};
+inline constexpr double kNever_s = std::numeric_limits<double>::infinity();
+inline constexpr double kStepsAPeriod = 16.0;  ///< of constant power that a wave is cut into: its amplitude is met to 0.6 %
+
+struct DoubtScene;
+struct Doubt;
 struct Effect;
 
 struct EffectKind {
@@ -80,8 +94,11 @@ struct EffectKind {
   std::string law;    ///< formula and source, one line
   std::vector<Place> places;
   std::vector<Parameter> parameters;
-  /// Adds what the effect does to heat. The Effect outlives no call: copy what a Law needs.
+  Timing timing = Timing::kAlways;
+  /// Adds what the effect does to heat, as if it acted at all times. The Effect outlives no call: copy what a Law needs.
   void (*contribute)(const Effect&, HeatBalance&) = nullptr;
+  /// Or changes what all others do to heat, once their laws are there.
+  void (*change_laws)(const Effect&, HeatBalance&) = nullptr;
   // Or to the drive and the hall that are recorded, to what instruments say, to a material. Null: nothing.
   void (*change_drive)(const Effect&, DriveChange&) = nullptr;
   void (*change_readings)(const Effect&, ReadingChain&) = nullptr;
@@ -92,6 +109,12 @@ struct EffectKind {
   /// What no single range says (this or that, not both). Called when all is read; fails at the key with ConfigMap::fail().
   void (*check)(const Effect&, const ConfigMap&) = nullptr;
   std::vector<Mention> mentions = {};
+  /// In which ways a machine may be wrong by such an effect, at every place of it where it can be (doubt.hpp). Null: none is looked for.
+  std::vector<Doubt> (*doubts)(const DoubtScene&) = nullptr;
+  std::string exchange_finding = {};  ///< key of the effect that another factor on its exchanges is called; "": they are not doubted as a whole
+
+  /// Whether it acts on instruments alone: the machine itself does not notice.
+  [[nodiscard]] bool is_of_readings() const { return change_readings && !contribute && !change_laws && !change_drive; }
 };
 
 /// The reference `surrounding` that films share: a lumped node, "hall" by default.
@@ -107,11 +130,17 @@ struct Effect {
   std::map<std::string, Where> reference_where = {};  ///< of those that are written, and of mentions
   std::map<std::string, std::string> words = {};
   std::map<std::string, TimeSeries> tables = {};  ///< argument in `time_s` whatever its unit; those given
+  double from_s = 0.0, until_s = kNever_s;        ///< when it acts, `until` excluded; of Timing::kInTime
+  std::string in = {};                            ///< cyclogram during which; "": in each
   Where where = {};                               ///< in the scenario, for errors that show only once the mesh is there
 
   /// Value by parameter name, in the parameter's unit. @throws std::logic_error  for a name the kind has not
   [[nodiscard]] double operator[](const std::string& parameter) const;
   [[nodiscard]] bool has(const std::string& parameter) const;
+  /// Sets a value, in the parameter's unit. @throws std::logic_error  for a name the kind has not
+  void set(const std::string& parameter, double value);
+  /// During a cyclogram of that name.
+  [[nodiscard]] bool acts_in(const std::string& run) const { return in.empty() || in == run; }
   [[nodiscard]] std::string name() const { return kind->key + " " + place; }
   /// Its place as a body. @throws std::logic_error  for a place that is none, such as a joint
   [[nodiscard]] Body body() const;
@@ -119,16 +148,34 @@ struct Effect {
 
 /// Every effect there is, in the order of the documentation.
 [[nodiscard]] const std::vector<EffectKind>& catalogue();
+/// @throws std::logic_error  for a key that is not there
+[[nodiscard]] const EffectKind& kind_of(const std::string& key);
+
+/// An effect with the fallbacks of its kind, and some values given in their parameters' units.
+[[nodiscard]] Effect make_effect(const std::string& key, Place place_kind, const std::string& place,
+                                 const std::vector<std::pair<std::string, double>>& values = {});
+/// The same at a body.
+[[nodiscard]] Effect make_effect(const std::string& key, const Body& body,
+                                 const std::vector<std::pair<std::string, double>>& values = {});
 
 /// Reads one entry of the scenario's list `effects`: type, place, parameters.
 /// @throws InputError  for an unknown type or key, a wrong unit, a value out of range
 [[nodiscard]] Effect read_effect(const ConfigMap& in);
+/// The entry that read_effect() reads back: one line, "{type: convection, surface: nose, film: 8 W/(m^2 K)}". What stands at its fallback
+/// is left out; numbers are written so that they come back to rounding.
+[[nodiscard]] std::string yaml_of(const Effect& effect);
+/// A number of one of its parameters, with its unit, as yaml_of() writes it.
+[[nodiscard]] std::string yaml_of(const Parameter& parameter, double value);
 
-/// What a list of effects does to heat, in their order; capacities of lumped nodes with their factors.
+/// What a list of effects does to heat, in their order; capacities of lumped nodes with their factors. Laws of effects that act for a time are
+/// zero outside it, and the balance tells when they jump.
 [[nodiscard]] HeatBalance heat_balance(const std::vector<Effect>& effects);
-/// What it does to the recorded drive and hall, to readings, and to materials (one entry an effect).
-[[nodiscard]] DriveChange drive_change(const std::vector<Effect>& effects);
-[[nodiscard]] ReadingChain reading_chain(const std::vector<Effect>& effects);
+/// What it does to the recorded drive and hall, and to readings, during a cyclogram. @param run  its name; "" for none
+[[nodiscard]] DriveChange drive_change(const std::vector<Effect>& effects, const std::string& run);
+[[nodiscard]] ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string& run);
+/// Whether some effect changes what instruments say, in any cyclogram.
+[[nodiscard]] bool has_reading_effects(const std::vector<Effect>& effects);
+/// And to materials (one entry an effect).
 [[nodiscard]] std::vector<MaterialFactor> material_factors(const std::vector<Effect>& effects);
 
 }  // namespace driftwright::effects

@@ -27,10 +27,11 @@ EffectKind friction_law() {
           .places = {Place::kRegion, Place::kNode},
           .parameters = {{"power", "W", -1e6, 1e6, {}, "heat at the stated speed and temperature", 0.1, "heat_source"},
                          {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
-                         {"exponent", "1", 0.0, 4.0, 1.0, "growth with speed", 0.03, "friction_law"},
+                         {"exponent", "1", -1.0, 4.0, 1.0, "growth with speed", 0.03, "friction_law"},
                          {"decay", "1/K", -0.1, 0.1, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05", 0.1,
                           "friction_law"},
                          {"at_temperature", "degC", 200.0, 500.0, 293.15, "the stated temperature"}},
+          .timing = Timing::kInTime,
           .contribute = contribute};
 }
 

@@ -32,6 +32,7 @@ EffectKind guideway_friction() {
                      {"load", "N", 0.0, 1e7, {}, "normal force, weight and preload of all carriages"},
                      {"viscous", "N s/m", 0.0, 1e7, 0.0, "drag per velocity", 0.1, "heat_source"},
                      {"share", "1", 0.0, 1.0, 1.0, "part of the heat that enters this body; the other side has the rest"}},
+      .timing = Timing::kInTime,
       .contribute = contribute,
       .choices = {axis_choice()}};
 }

@@ -3,7 +3,9 @@
 // The solver turns each entry into a matrix or a load.
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -12,9 +14,9 @@
 
 namespace driftwright::effects {
 
-enum class BodyKind { kRegion, kSurface, kNode };
+enum class BodyKind { kRegion, kSurface, kNode, kJoint };
 
-/// What heat enters, leaves, or is looked at: a region, a surface or a lumped node.
+/// What heat enters, leaves, crosses, or is looked at: a region, a surface, a lumped node or a joint. A joint has no temperature of its own.
 struct Body {
   BodyKind kind = BodyKind::kRegion;
   std::string name;
@@ -30,7 +32,13 @@ struct Body {
 [[nodiscard]] inline Body node(std::string name) {
   return {BodyKind::kNode, std::move(name)};
 }
+[[nodiscard]] inline Body joint(std::string name) {
+  return {BodyKind::kJoint, std::move(name)};
+}
 inline constexpr const char* kHallName = "hall";
+[[nodiscard]] inline Body hall() {
+  return node(kHallName);
+}
 
 /// What a law may look at.
 struct Inputs {
@@ -38,6 +46,7 @@ struct Inputs {
   double hall_K = 0.0;               ///< hall temperature minus the reference temperature
   double time_s = 0.0;               ///< within the stretch of time at hand; see HeatBalance::change_times_s
   std::vector<double> probe_K = {};  ///< temperatures [K] of the law's probes, absolute, in their order
+  std::string_view run = {};         ///< name of the cyclogram that is run; "" where it has none
 };
 
 /// A coefficient or a power that follows the drive and, if it has probes, mean temperatures of the machine.
@@ -61,21 +70,45 @@ struct HeatInput {
   Law power_W;
 };
 
-/// Film on a surface: heat out of the body q = htc (T_surface - T_surrounding) per area.
-struct Film {
-  std::string name;
-  std::string surface;
-  Law htc_W_m2K;
-  std::string surrounding = kHallName;  ///< "hall" or the name of a lumped node
+/// What a coefficient of exchange counts for.
+enum class Per {
+  kArea,   ///< [W/(m^2 K)], at every point of a surface or joint
+  kTotal,  ///< [W/K], spread evenly over a body
 };
 
-/// Conductance between a body and one temperature: Q = conductance (T_body - T_surrounding), spread evenly over the body.
-struct Link {
+/// Heat that crosses between a body and one other temperature, or between the sides of a joint: a film, a link, a contact, or radiation taken as
+/// a film. Out of the body flows q = coefficient (T - T_other), T local; across a joint from side a to side b, T_other that of side b.
+struct Exchange {
   std::string name;
-  Body body;
-  Law conductance_W_K;
-  std::string surrounding = kHallName;
+  Body body;  ///< a surface, region or node; or the joint
+  Law coefficient;
+  Per per = Per::kArea;
+  std::string surrounding = kHallName;   ///< the other temperature: the hall or a lumped node; of no meaning for a joint
+  std::optional<double> medium_K = {};   ///< instead of a surrounding: a medium of this absolute temperature
+
+  [[nodiscard]] bool is_same_place(const Exchange& other) const {
+    const bool same_end = body.kind == BodyKind::kJoint ||
+                          (surrounding == other.surrounding && medium_K.has_value() == other.medium_K.has_value());
+    return body == other.body && per == other.per && same_end;
+  }
 };
+
+[[nodiscard]] inline Exchange make_film(std::string name, std::string on, Law htc_W_m2K, std::string surrounding = kHallName) {
+  return {.name = std::move(name),
+          .body = surface(std::move(on)),
+          .coefficient = std::move(htc_W_m2K),
+          .surrounding = std::move(surrounding)};
+}
+[[nodiscard]] inline Exchange make_link(std::string name, Body body, Law conductance_W_K, std::string surrounding = kHallName) {
+  return {.name = std::move(name),
+          .body = std::move(body),
+          .coefficient = std::move(conductance_W_K),
+          .per = Per::kTotal,
+          .surrounding = std::move(surrounding)};
+}
+[[nodiscard]] inline Exchange make_contact(std::string name, std::string across, Law conductance_W_m2K) {
+  return {.name = std::move(name), .body = joint(std::move(across)), .coefficient = std::move(conductance_W_m2K)};
+}
 
 /// Grey radiation to a surrounding that encloses the body: q = emissivity σ (T^4 - T_surrounding^4) per area, T local.
 struct Radiation {
@@ -83,13 +116,6 @@ struct Radiation {
   std::string surface;
   double emissivity = 0.0;
   std::string surrounding = kHallName;
-};
-
-/// Contact across a joint: q = conductance (T_a - T_b) per area.
-struct Contact {
-  std::string name;
-  std::string joint;
-  Law conductance_W_m2K;
 };
 
 /// A body with one temperature, such as the air near the nose, an oil tank or a rotor.
@@ -122,16 +148,32 @@ struct Thermostat {
 
 struct HeatBalance {
   std::vector<HeatInput> heats;
-  std::vector<Film> films;
-  std::vector<Link> links;
+  std::vector<Exchange> exchanges;  ///< per area first, then totals, then joints
   std::vector<Radiation> radiations;
-  std::vector<Contact> contacts;
   std::vector<LumpedNode> nodes;
   std::vector<FixedTemperature> fixed;
   std::vector<Stratification> stratifications;
   std::vector<Thermostat> thermostats;
   /// Times [s] at which laws may jump by themselves (a draught begins). Between two of them a law does not change with time.
   std::vector<double> change_times_s;
+
+  /// Joins another balance; change times need not be sorted.
+  void append(HeatBalance other);
+  /// Calls work(name, law) for each heat and each exchange.
+  template <class Work>
+  void for_each_law(Work work) {
+    for (HeatInput& h : heats) work(h.name, h.power_W);
+    for (Exchange& e : exchanges) work(e.name, e.coefficient);
+  }
+  template <class Work>
+  void for_each_law(Work work) const {
+    for (const HeatInput& h : heats) work(h.name, h.power_W);
+    for (const Exchange& e : exchanges) work(e.name, e.coefficient);
+  }
 };
+
+/// Each radiation as a film whose coefficient follows the mean temperatures of both sides, emissivity σ (T² + T_s²) (T + T_s): what a reduced
+/// model holds.
+[[nodiscard]] HeatBalance with_radiation_as_films(HeatBalance balance);
 
 }  // namespace driftwright::effects

@@ -3,55 +3,122 @@
 #include <cmath>
 #include <numbers>
 
-#include "effects/time_window.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 constexpr double kMostPeriods = 10000.0;
+constexpr double kFewestWaves = 4.0;  // two or three are what any bend of a model that is wrong looks like
+constexpr double kMostWaves = 14.0;   // in the longest record; shorter ones a machine hardly shows
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double power_W = e["power"], n0_rpm = e["at_speed"], exponent = e["exponent"];
+  const bool rests = e.words.at("runs") == "while_spindle_turns" || exponent != 0.0;
   const auto steady = [=](const Inputs& u) {
-    if (exponent == 0.0) return power_W;  // constant, also at standstill
-    return power_W * std::pow(u.drive.speed_rpm / n0_rpm, exponent);
+    if (rests && u.drive.speed_rpm <= 0.0) return 0.0;
+    return exponent == 0.0 ? power_W : power_W * std::pow(u.drive.speed_rpm / n0_rpm, exponent);
   };
-  Law law(steady);
-  if (e.has("period")) {
-    const double period_s = e["period"], delay_s = e["delay"];
-    law =
-        Law([=](const Inputs& u) { return steady(u) * std::sin(2.0 * std::numbers::pi * (u.time_s - delay_s) / period_s); });
-    const double from_s = e["from"], step_s = period_s / kStepsAPeriod;
-    for (int k = 1; from_s + k * step_s < e["until"]; ++k) balance.change_times_s.push_back(from_s + k * step_s);
+  if (!e.has("period")) {
+    balance.heats.push_back({e.name(), e.body(), steady});
+    return;
   }
-  balance.heats.push_back({e.name(), e.body(), in_window(e, law, balance)});
+  const double period_s = e["period"], delay_s = e["delay"], mean_W = e["mean"], step_s = period_s / kStepsAPeriod;
+  const auto wave = [=](const Inputs& u) {
+    return mean_W + steady(u) * std::sin(2.0 * std::numbers::pi * (u.time_s - delay_s) / period_s);
+  };
+  balance.heats.push_back({e.name(), e.body(), wave});
+  for (int k = 1; e.from_s + k * step_s < e.until_s; ++k) balance.change_times_s.push_back(e.from_s + k * step_s);
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  check_window(e, in);
-  if (!e.has("period")) return;
-  if (!e.has("until")) in.fail("period", "a wave is cut into steps: `until` is wanted, when it ends");
-  if (e["until"] - e["from"] > kMostPeriods * e["period"])
-    in.fail("until", fmt::format("at most {:.0f} periods between `from` and `until` are wanted", kMostPeriods));
+  if (e.has("period")) {
+    if (e.until_s >= kNever_s) in.fail("period", "a wave is cut into steps: `until` is wanted, when it ends");
+    if (e.until_s - e.from_s > kMostPeriods * e["period"])
+      in.fail("until", fmt::format("at most {:.0f} periods between `from` and `until` are wanted", kMostPeriods));
+  } else if (e["mean"] != 0.0) {
+    in.fail("mean", "only a wave has a mean; `power` is what is wanted");
+  }
+}
+
+/// x of period and delay to try: waves that fit into the longest record 4, 5, ... times, sines and cosines.
+std::vector<std::vector<double>> waves(double longest_min, double nominal_min) {
+  std::vector<std::vector<double>> grid;
+  for (double n = kFewestWaves; n <= kMostWaves; n += 1.0) {
+    for (double quarter : {0.0, 1.0}) grid.push_back({longest_min / n - nominal_min, 0.25 * quarter * longest_min / n});
+  }
+  return grid;
+}
+
+/// A number of the first effect in another unit than the parameter's.
+DoubtedNumber in_minutes(DoubtedNumber n) {
+  n.set = [key = n.name](std::span<Effect> added, double value) { added[0].set(key, 60.0 * value); };
+  return n;
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W, longest_min = s.longest_s() / 60.0;
+  const auto power = [&] { return doubted("power", "W", sd_W, trial_W); };
+  std::vector<Doubt> list;
+  for (const Body& body : s.bodies) {
+    const auto add = [&](const std::string& law, std::vector<std::pair<std::string, double>> values) -> Doubt& {
+      list.push_back({.finding = "heat_source",
+                      .where = body.name,
+                      .law = law,
+                      .added = {make_effect("heat_source", body, values)},
+                      .numbers = {power()},
+                      .trial = trial_W});
+      list.back().numbers[0].low = 0.0;  // heat that is taken away is a coolant's; what is written too large is the law written
+      return list.back();
+    };
+    add("constant heat", {});
+    Doubt& of_speed =
+        add(fmt::format("power law of speed, at {:.0f} rpm", s.typical_rpm), {{"at_speed", s.typical_rpm}, {"exponent", 1.5}});
+    of_speed.numbers.push_back(doubted("exponent", "1", 0.7, 0.05, 1.5));
+    of_speed.numbers.back().low = -1.0;
+    of_speed.numbers.back().high = 4.0;
+    of_speed.grid = {{-0.5}, {0.0}, {0.5}};
+    of_speed.at_speed_rpm = s.typical_rpm;
+    add("constant heat while the spindle turns", {}).added[0].words["runs"] = "while_spindle_turns";
+
+    Doubt& wave = add("periodic, about a mean; negative: half a period later", {});
+    wave.numbers[0].low = -1e300;
+    wave.added[0].until_s = s.longest_s();
+    DoubtedNumber period = in_minutes(doubted("period", "min", longest_min / 8.0, 0.5, longest_min / 7.0));
+    period.low = 0.5 * longest_min / kMostWaves;
+    period.high = longest_min / kFewestWaves;
+    wave.added[0].set("period", 60.0 * period.nominal);
+    wave.grid = waves(longest_min, period.nominal);
+    wave.numbers.push_back(period);
+    wave.numbers.push_back(in_minutes(doubted("delay", "min", 0.5 * period.nominal, 0.5)));
+    wave.numbers.push_back(doubted("mean", "W", sd_W, trial_W));
+  }
+  return list;
 }
 
 }  // namespace
 
 EffectKind heat_source() {
   return {.key = "heat_source",
-          .title = "heat by a power law of speed, constant, or in a wave",
+          .title = "heat by a power law of speed, constant, on and off with the spindle, or in a wave",
           .law =
-              "P = power (n / at_speed)^exponent; exponent 0: constant, also at standstill; with a period: that times "
-              "sin(2 pi (t - delay) / period)",
+              "P = power (n / at_speed)^exponent while the spindle turns; exponent 0: constant, also at standstill unless it "
+              "runs while_spindle_turns; with a period: mean + that times sin(2 pi (t - delay) / period)",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
-          .parameters =
-              with_window({{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools", 0.1, "heat_source"},
-                           {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
-                           {"exponent", "1", 0.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"},
-                           {"period", "s", 60.0, 1e7, kNotGiven, "of a wave about zero; wants `until`"},
-                           {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through zero"}}),
+          .parameters = {{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools", 0.1, "heat_source"},
+                         {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
+                         {"exponent", "1", -1.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"},
+                         {"period", "s", 60.0, 1e7, kNotGiven, "of a wave; wants `until`"},
+                         {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
+                         {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
+          .timing = Timing::kInTime,
           .contribute = contribute,
-          .check = check};
+          .choices = {{"runs",
+                       {"always", "while_spindle_turns"},
+                       "always",
+                       "constant heat: at all times, or of a pump or hydraulics that go with the spindle"}},
+          .check = check,
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -22,10 +22,11 @@ EffectKind motor_loss() {
           .places = {Place::kRegion, Place::kNode},
           .parameters = {{"power", "W", 0.0, 1e6, {}, "part that grows with speed, at the stated speed", 0.1, "heat_source"},
                          {"at_speed", "rpm", 1.0, 1e6, {}, "the stated speed"},
-                         {"exponent", "1", 0.0, 4.0, 1.0, "growth with speed; iron and windage losses lie between 1 and 3",
+                         {"exponent", "1", -1.0, 4.0, 1.0, "growth with speed; iron and windage losses lie between 1 and 3",
                           0.03, "friction_law"},
                          {"idle", "W", 0.0, 1e6, 0.0, "magnetising loss, there at any speed but zero", 0.1, "heat_source"}},
-          .contribute = contribute};
+          .timing = Timing::kInTime,
+      .contribute = contribute};
 }
 
 }  // namespace driftwright::effects

@@ -4,11 +4,38 @@ namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.shifts.push_back({e.place, amount_of(e, "shift"), e["time"] * 60.0, e.words.at("in")});
+  chain.add(ReadingStage::kShift, [channel = e.place, amount = amount_of(e, "shift"), time_s = e["time"] * 60.0](Readings& r) {
+    const Eigen::Index row = r.displacement(channel);
+    for (Eigen::Index i = 0; i < r.n_times(); ++i) {
+      if (r.time(i) >= time_s) r.value(row, i) += amount;
+    }
+  });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
   check_amount(e, in, "shift");
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const DoubtScene::Displacement& d : s.displacements) {
+    for (const DoubtScene::Run& run : s.runs) {
+      Effect shift = make_effect("mount_shift", Place::kDisplacement, d.name, {{amount_key(d, "shift"), 0.0}});
+      shift.in = run.name;
+      list.push_back({.finding = "mount_shift",
+                      .where = d.name,
+                      .law = "step, in " + run.name,
+                      .added = {shift},
+                      .numbers = {doubted_amount(d, "shift"),
+                                  doubted_time("time", run.length_s,
+                                               [](std::span<Effect> added, double value) {
+                                                 added[0].set("time", value / 60.0);
+                                               })},
+                      .trial = 3.0,
+                      .grid = time_grid(run.length_s, 40)});
+    }
+  }
+  return list;
 }
 
 }  // namespace
@@ -19,9 +46,10 @@ EffectKind mount_shift() {
           .law = "u = u + shift from a time on",
           .places = {Place::kDisplacement},
           .parameters = amount_parameters("shift", "step", {{"time", "min", 0.0, 1e7, {}, "when it slips"}}),
+          .timing = Timing::kInRecord,
           .change_readings = change_readings,
           .check = check,
-          .mentions = {in_cyclogram()}};
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

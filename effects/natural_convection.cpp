@@ -12,13 +12,14 @@ Orientation orientation(const std::string& word) {
 }
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double length_m = e["length"];
+  const double length_m = e["length"], factor = e["factor"];
   const Orientation looks = orientation(e.words.at("orientation"));
   const std::string surrounding = e.references.at("surrounding").name;
   const auto htc = [=](const Inputs& u) {
-    return natural_convection_htc_W_m2K(looks, length_m, u.probe_K.at(0), u.probe_K.at(1));
+    return factor * natural_convection_htc_W_m2K(looks, length_m, u.probe_K.at(0), u.probe_K.at(1));
   };
-  balance.films.push_back({e.name(), e.place, Law(htc, {e.body(), node(surrounding)}), surrounding});
+  balance.exchanges.push_back(
+      {.name = e.name(), .body = e.body(), .coefficient = Law(htc, {e.body(), node(surrounding)}), .surrounding = surrounding});
 }
 
 }  // namespace
@@ -31,10 +32,13 @@ EffectKind natural_convection() {
           "Nu(Ra, Pr) of air at film temperature, 200 K to 500 K; vertical and horizontal_cylinder: Churchill & Chu 1975; "
           "up and down: McAdams 1954 (warm plates; the two change places when the plate is the colder)",
       .places = {Place::kSurface},
-      .parameters = {{"length", "m", 1e-3, 20.0, {}, "height; of a horizontal plate area / perimeter; diameter"}},
+      .parameters = {{"length", "m", 1e-3, 20.0, {}, "height; of a horizontal plate area / perimeter; diameter"},
+                     {"factor", "1", 0.0, 1e3, 1.0, "on the formula's film", 0.1, "convection"}},
+      .timing = Timing::kInTime,
       .contribute = contribute,
       .references = {surrounding_reference()},
-      .choices = {{"orientation", {"vertical", "up", "down", "horizontal_cylinder"}, {}, "where the surface looks to"}}};
+      .choices = {{"orientation", {"vertical", "up", "down", "horizontal_cylinder"}, {}, "where the surface looks to"}},
+      .exchange_finding = "convection"};
 }
 
 }  // namespace driftwright::effects

@@ -1,10 +1,25 @@
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.radiations.push_back({e.name(), e.place, e["emissivity"], e.references.at("surrounding").name});
+}
+
+/// Heat of the sun, a furnace or a cold neighbour on a surface.
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W;
+  std::vector<Doubt> list;
+  for (const std::string& name : s.surfaces) {
+    list.push_back({.finding = "radiation",
+                    .where = name,
+                    .law = "constant heat from a hot body, or to a cold one",
+                    .added = {make_effect("heat_source", Place::kSurface, name)},
+                    .numbers = {doubted("power", "W", sd_W, trial_W)},
+                    .trial = trial_W});
+  }
+  return list;
 }
 
 }  // namespace
@@ -21,9 +36,11 @@ EffectKind radiation() {
                           {},
                           "painted or oxidised: 0.8 to 0.95; bright steel: 0.1 to 0.3",
                           0.1,
-                          "radiation"}},
+                          "radiation",
+                          Doubted::kFactor}},
           .contribute = contribute,
-          .references = {surrounding_reference()}};
+          .references = {surrounding_reference()},
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

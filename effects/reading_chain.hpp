@@ -1,7 +1,9 @@
 #pragma once
-// From what the machine does to what its instruments say: displacements that no temperature makes, and errors of sensors.
+// From what the machine does to what its instruments say: displacements that no temperature makes, and errors of sensors. Each effect brings its
+// own step; the chain has them in the order in which they act.
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,66 +11,56 @@
 
 namespace driftwright::effects {
 
-/// Steps in the order in which they act.
-struct ReadingChain {
-  /// amount (n / at_speed)^exponent, reached with one lag, of which nothing has grown at t = 0; without lag at once.
-  struct Growth {
-    std::string displacement;  ///< or tilt
-    double amount = 0.0;       ///< [m] or [rad]
-    double at_speed_rpm = 1000.0, exponent = 1.0, lag_s = 0.0;
-  };
-  std::vector<Growth> growths;
-  /// factor x displacement, behind one lag that is settled at the first reading.
-  struct Scale {
-    std::string displacement;  ///< or tilt
-    double factor = 1.0, lag_s = 0.0;
-  };
-  std::vector<Scale> scales;
-  struct Shift {
-    std::string displacement;
-    double amount = 0.0;  ///< [m] or [rad]
-    double time_s = 0.0;
-    std::string in = {};  ///< name of the cyclogram; "": in each
-  };
-  std::vector<Shift> shifts;
-  /// From a time on the reading is share x air + (1 - share) x body.
-  struct Detachment {
-    std::string sensor;
-    double share = 0.0, time_s = 0.0;
-    std::string in = {};
-  };
-  std::vector<Detachment> detachments;
-  struct Lag {
-    std::string sensor;
-    double lag_s = 0.0;
-  };
-  std::vector<Lag> lags;
-  struct Error {
-    std::string sensor;
-    double bias_K = 0.0, drift_K_s = 0.0;
-  };
-  std::vector<Error> errors;
-  struct Swap {
-    std::string a, b;
-  };
-  std::vector<Swap> swaps;
-  double clock_offset_s = 0.0;  ///< > 0: a reading carries a later time than it was taken at
-
-  [[nodiscard]] bool empty() const {
-    return growths.empty() && scales.empty() && shifts.empty() && detachments.empty() && lags.empty() && errors.empty() &&
-           swaps.empty() && clock_offset_s == 0.0;
-  }
+/// When a step acts.
+enum class ReadingStage {
+  kGrowth,      ///< what a displacement has beside the machine's
+  kScale,       ///< the scale that measures it
+  kShift,       ///< its mount
+  kDetachment,  ///< what a sensor touches
+  kLag,         ///< how it follows
+  kError,       ///< what it adds
+  kSwap,        ///< whose channel it is written to
+  kClock,       ///< and when
 };
 
-/// Readings of a run.
-/// @param name, unit  of the outputs, as solver::Outputs has them: "K", "m", "rad"
-/// @param time_s      increasing, from 0; values between two of them are linear
-/// @param cyclogram   the true one
-/// @param hall        the true one [K]
-/// @param outputs     n_outputs x n_times
-/// @throws std::logic_error  for a name that is no output
-[[nodiscard]] Eigen::MatrixXd readings(const ReadingChain& chain, const std::vector<std::string>& name,
-                                       const std::vector<std::string>& unit, const std::vector<double>& time_s,
-                                       const Cyclogram& cyclogram, const TimeSeries& hall, Eigen::MatrixXd outputs);
+/// Readings of a run on their way through the chain.
+struct Readings {
+  const std::vector<std::string>& name;   ///< of the outputs, as unit: "K", "m", "rad"
+  const std::vector<std::string>& unit;
+  const std::vector<double>& time_s;      ///< increasing, from 0; values between two of them are linear
+  const Cyclogram& cyclogram;             ///< the true one
+  const TimeSeries& hall;                 ///< the true one [K]
+  Eigen::MatrixXd value;                  ///< n_outputs x n_times
+
+  /// The row of a sensor; of a displacement or tilt. @throws std::logic_error  for a name that is no such output
+  [[nodiscard]] Eigen::Index sensor(const std::string& of) const { return row(of, true); }
+  [[nodiscard]] Eigen::Index displacement(const std::string& of) const { return row(of, false); }
+  [[nodiscard]] Eigen::Index n_times() const { return value.cols(); }
+  [[nodiscard]] double time(Eigen::Index i) const { return time_s[static_cast<std::size_t>(i)]; }
+
+ private:
+  [[nodiscard]] Eigen::Index row(const std::string& of, bool is_temperature) const;
+};
+
+class ReadingChain {
+ public:
+  using Step = std::function<void(Readings&)>;
+  void add(ReadingStage stage, Step step);
+  [[nodiscard]] bool empty() const { return steps_.empty(); }
+  /// Readings of a run. @param outputs  n_outputs x n_times, as Readings has them
+  [[nodiscard]] Eigen::MatrixXd apply(const std::vector<std::string>& name, const std::vector<std::string>& unit,
+                                      const std::vector<double>& time_s, const Cyclogram& cyclogram, const TimeSeries& hall,
+                                      Eigen::MatrixXd outputs) const;
+
+ private:
+  std::vector<std::pair<ReadingStage, Step>> steps_;  ///< by stage; within one as they were added
+};
+
+/// amount (n / at_speed)^exponent at each time, at once or behind one lag: each section's exact exponential, from nothing at t = 0.
+[[nodiscard]] Eigen::RowVectorXd speed_growth(const Readings& readings, double amount, double at_speed_rpm, double exponent,
+                                              double lag_s);
+
+/// y' = (x - y) / lag for a signal x that is linear between its samples, exactly; settled at the first one.
+void lag_behind(Eigen::Ref<Eigen::RowVectorXd> signal, const std::vector<double>& time_s, double lag_s);
 
 }  // namespace driftwright::effects

@@ -5,9 +5,12 @@ namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double diameter_m = e["diameter"];
-  const auto htc = [=](const Inputs& u) { return rotating_cylinder_htc_W_m2K(diameter_m, u.drive.speed_rpm); };
-  balance.films.push_back({e.name(), e.place, htc, e.references.at("surrounding").name});
+  const double diameter_m = e["diameter"], factor = e["factor"];
+  balance.exchanges.push_back(
+      {.name = e.name(),
+       .body = e.body(),
+       .coefficient = [=](const Inputs& u) { return factor * rotating_cylinder_htc_W_m2K(diameter_m, u.drive.speed_rpm); },
+       .surrounding = e.references.at("surrounding").name});
 }
 
 }  // namespace
@@ -17,9 +20,12 @@ EffectKind rotating_cylinder() {
           .title = "film on a turning shaft, beside the film at standstill",
           .law = "Nu = 0.133 Re^(2/3) Pr^(1/3), Re = u d / nu (Becker 1963)",
           .places = {Place::kSurface},
-          .parameters = {{"diameter", "m", 1e-3, 10.0, {}, "diameter of the shaft"}},
+          .parameters = {{"diameter", "m", 1e-3, 10.0, {}, "diameter of the shaft"},
+                         {"factor", "1", 0.0, 1e3, 1.0, "on the formula's film", 0.1, "forced_convection"}},
+          .timing = Timing::kInTime,
           .contribute = contribute,
-          .references = {surrounding_reference()}};
+          .references = {surrounding_reference()},
+          .exchange_finding = "forced_convection"};
 }
 
 }  // namespace driftwright::effects

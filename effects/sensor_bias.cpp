@@ -1,10 +1,25 @@
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.errors.push_back({e.place, e["bias"], 0.0});
+  chain.add(ReadingStage::kError, [sensor = e.place, bias_K = e["bias"]](Readings& r) {
+    r.value.row(r.sensor(sensor)).array() += bias_K;
+  });
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const std::string& sensor : s.sensors) {
+    list.push_back({.finding = "sensor_bias",
+                    .where = sensor,
+                    .law = "constant error",
+                    .added = {make_effect("sensor_bias", Place::kSensor, sensor)},
+                    .numbers = {doubted("bias", "K", 1.0, 0.2)},
+                    .trial = 0.3});
+  }
+  return list;
 }
 
 }  // namespace
@@ -15,7 +30,9 @@ EffectKind sensor_bias() {
           .law = "reading = T + bias",
           .places = {Place::kSensor},
           .parameters = {{"bias", "K", -100.0, 100.0, {}, "reading minus truth"}},
-          .change_readings = change_readings};
+          .timing = Timing::kInRecord,
+          .change_readings = change_readings,
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -1,10 +1,39 @@
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.detachments.push_back({e.place, e["share"], e["time"] * 60.0, e.words.at("in")});
+  chain.add(ReadingStage::kDetachment, [sensor = e.place, share = e["share"], time_s = e["time"] * 60.0](Readings& r) {
+    const Eigen::Index row = r.sensor(sensor);
+    for (Eigen::Index i = 0; i < r.n_times(); ++i) {
+      if (r.time(i) >= time_s) r.value(row, i) += share * (r.hall.at(r.time(i)) - r.value(row, i));
+    }
+  });
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const std::string& sensor : s.sensors) {
+    for (const DoubtScene::Run& run : s.runs) {
+      Effect off = make_effect("sensor_detached", Place::kSensor, sensor);
+      off.in = run.name;
+      DoubtedNumber share = doubted("share", "1", 0.5, 0.05);
+      share.low = 0.0;
+      share.high = 1.0;
+      list.push_back({.finding = "sensor_detached",
+                      .where = sensor,
+                      .law = "from a time on, in " + run.name,
+                      .added = {off},
+                      .numbers = {share, doubted_time("time", run.length_s,
+                                                      [](std::span<Effect> added, double value) {
+                                                        added[0].set("time", value / 60.0);
+                                                      })},
+                      .trial = 0.3,
+                      .grid = time_grid(run.length_s, 24)});
+    }
+  }
+  return list;
 }
 
 }  // namespace
@@ -16,8 +45,9 @@ EffectKind sensor_detached() {
           .places = {Place::kSensor},
           .parameters = {{"share", "1", 0.0, 1.0, {}, "of air in the reading"},
                          {"time", "min", 0.0, 1e7, {}, "when it comes off"}},
+          .timing = Timing::kInRecord,
           .change_readings = change_readings,
-          .mentions = {in_cyclogram()}};
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -1,10 +1,26 @@
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.errors.push_back({e.place, 0.0, e["drift"] / 3600.0});
+  chain.add(ReadingStage::kError, [sensor = e.place, drift_K_s = e["drift"] / 3600.0](Readings& r) {
+    const Eigen::Index row = r.sensor(sensor);
+    for (Eigen::Index i = 0; i < r.n_times(); ++i) r.value(row, i) += drift_K_s * r.time(i);
+  });
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const std::string& sensor : s.sensors) {
+    list.push_back({.finding = "sensor_drift",
+                    .where = sensor,
+                    .law = "error that grows with time",
+                    .added = {make_effect("sensor_drift", Place::kSensor, sensor)},
+                    .numbers = {doubted("drift", "K/h", 0.5, 0.1)},
+                    .trial = 0.2});
+  }
+  return list;
 }
 
 }  // namespace
@@ -15,7 +31,9 @@ EffectKind sensor_drift() {
           .law = "reading = T + drift t, t from the start of each cyclogram",
           .places = {Place::kSensor},
           .parameters = {{"drift", "K/h", -100.0, 100.0, {}, "growth of reading minus truth"}},
-          .change_readings = change_readings};
+          .timing = Timing::kInRecord,
+          .change_readings = change_readings,
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -1,10 +1,28 @@
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.lags.push_back({e.place, e["lag"] * 60.0});
+  chain.add(ReadingStage::kLag, [sensor = e.place, lag_s = e["lag"] * 60.0](Readings& r) {
+    Eigen::RowVectorXd signal = r.value.row(r.sensor(sensor));
+    lag_behind(signal, r.time_s, lag_s);
+    r.value.row(r.sensor(sensor)) = signal;
+  });
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const std::string& sensor : s.sensors) {
+    list.push_back({.finding = "sensor_lag",
+                    .where = sensor,
+                    .law = "first-order lag",
+                    .added = {make_effect("sensor_lag", Place::kSensor, sensor)},
+                    .numbers = {doubted("lag", "min", 6.0, 0.5)},
+                    .trial = 2.0});
+    list.back().numbers[0].low = 0.0;
+  }
+  return list;
 }
 
 }  // namespace
@@ -15,7 +33,9 @@ EffectKind sensor_lag() {
           .law = "lag d(reading)/dt = T - reading, settled at t = 0",
           .places = {Place::kSensor},
           .parameters = {{"lag", "min", 0.0, 1e5, {}, "time constant"}},
-          .change_readings = change_readings};
+          .timing = Timing::kInRecord,
+          .change_readings = change_readings,
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

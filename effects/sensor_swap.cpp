@@ -1,14 +1,36 @@
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.swaps.push_back({e.place, e.words.at("with")});
+  chain.add(ReadingStage::kSwap, [a = e.place, b = e.words.at("with")](Readings& r) {
+    r.value.row(r.sensor(a)).swap(r.value.row(r.sensor(b)));
+  });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.words.at("with") == e.place) in.fail("with", "another sensor is wanted");
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (std::size_t i = 0; i < s.sensors.size(); ++i) {
+    for (std::size_t j = i + 1; j < s.sensors.size(); ++j) {
+      Effect swap = make_effect("sensor_swap", Place::kSensor, s.sensors[i]);
+      swap.words["with"] = s.sensors[j];
+      DoubtedNumber swapped = doubted("swapped", "1", 1.0, 1.0);
+      swapped.set = [](std::span<Effect>, double) {};
+      list.push_back({.finding = "sensor_swap",
+                      .where = s.sensors[i] + "," + s.sensors[j],
+                      .law = "wired to each other's channel",
+                      .added = {swap},
+                      .numbers = {swapped},
+                      .trial = 1.0,
+                      .all_or_nothing = true});
+    }
+  }
+  return list;
 }
 
 }  // namespace
@@ -19,9 +41,11 @@ EffectKind sensor_swap() {
           .law = "each channel carries the other's reading",
           .places = {Place::kSensor},
           .parameters = {},
+          .timing = Timing::kInRecord,
           .change_readings = change_readings,
           .check = check,
-          .mentions = {{"with", Mention::Of::kSensor, true, "the other sensor"}}};
+          .mentions = {{"with", Mention::Of::kSensor, true, "the other sensor"}},
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

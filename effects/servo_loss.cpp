@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "effects/axis.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -15,6 +16,26 @@ void contribute(const Effect& e, HeatBalance& balance) {
   balance.heats.push_back({e.name(), e.body(), law});
 }
 
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  if (!s.moves_axes) return {};
+  const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W;
+  std::vector<Doubt> list;
+  for (const Body& body : s.bodies) {
+    Doubt d{.finding = "heat_source",
+            .where = body.name,
+            .law = "in proportion to the feeds",
+            .added = {},
+            .numbers = {doubted("power", "W", sd_W, trial_W)},
+            .trial = trial_W};
+    for (const char* axis : {"x", "y", "z"}) {
+      d.added.push_back(make_effect("servo_loss", body, {{"at_feed", 0.1}}));
+      d.added.back().words["axis"] = axis;
+    }
+    list.push_back(std::move(d));
+  }
+  return list;
+}
+
 }  // namespace
 
 EffectKind servo_loss() {
@@ -22,12 +43,14 @@ EffectKind servo_loss() {
           .title = "loss of an axis' servo motor",
           .law = "P = idle + power (v / at_feed)^exponent; v: mean absolute feed. A power law fitted to measured heat",
           .places = {Place::kRegion, Place::kNode},
-          .parameters = {{"power", "W", 0.0, 1e6, {}, "part that grows with feed, at the stated feed", 0.1, "heat_source"},
+          .parameters = {{"power", "W", -1e6, 1e6, {}, "part that grows with feed, at the stated feed", 0.1, "heat_source"},
                          {"at_feed", "m/s", 1e-6, 100.0, {}, "the stated feed"},
-                         {"exponent", "1", 0.0, 4.0, 1.0, "growth with feed; friction alone: 1", 0.03, "friction_law"},
+                         {"exponent", "1", -1.0, 4.0, 1.0, "growth with feed; friction alone: 1", 0.03, "friction_law"},
                          {"idle", "W", 0.0, 1e6, 0.0, "holding current, also at standstill", 0.1, "heat_source"}},
-          .contribute = contribute,
-          .choices = {axis_choice()}};
+          .timing = Timing::kInTime,
+      .contribute = contribute,
+          .choices = {axis_choice()},
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

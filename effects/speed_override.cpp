@@ -1,10 +1,25 @@
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void change_drive(const Effect& e, DriveChange& change) {
-  change.speed_factor *= e["factor"];
+  change.drive.push_back([factor = e["factor"]](const Cyclogram& recorded) {
+    Cyclogram felt = recorded;
+    for (Cyclogram::Section& section : felt.sections) section.drive.speed_rpm *= factor;
+    return felt;
+  });
+}
+
+std::vector<Doubt> doubts(const DoubtScene&) {
+  DoubtedNumber factor = doubted_factor();
+  factor.prior_sd = 0.3;
+  return {{.finding = "speed_override",
+           .where = "spindle",
+           .law = "true speed over the recorded one",
+           .added = {make_effect("speed_override", Place::kSpindle, "spindle", {{"factor", 1.0}})},
+           .numbers = {factor},
+           .trial = 0.1}};
 }
 
 }  // namespace
@@ -15,7 +30,9 @@ EffectKind speed_override() {
           .law = "n = factor n_recorded; feeds and cutting power as recorded",
           .places = {Place::kSpindle},
           .parameters = {{"factor", "1", 0.0, 10.0, {}, "true over recorded speed"}},
-          .change_drive = change_drive};
+          .timing = Timing::kInRecord,
+          .change_drive = change_drive,
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -1,10 +1,21 @@
-#include "effects/effect.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.stratifications.push_back({e["gradient"], e["level"]});
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  if (s.surfaces.empty() || !s.balance.stratifications.empty()) return {};
+  return {{.finding = "stratification",
+           .where = kHallName,
+           .law = "warmer above; the hall's thermometer hangs at a level",
+           .added = {make_effect("stratification", Place::kHall, kHallName, {{"level", 1.0}})},
+           .numbers = {doubted("gradient", "K/m", 1.0, 0.2), doubted("level", "m", 0.6, 0.1, 1.0)},  // about where one hangs it
+           .trial = 0.5,
+           .grid = {{-0.6}, {0.2}}}};
 }
 
 }  // namespace
@@ -16,7 +27,8 @@ EffectKind stratification() {
           .places = {Place::kHall},
           .parameters = {{"gradient", "K/m", -50.0, 50.0, {}, "upwards"},
                          {"level", "m", -100.0, 100.0, 0.0, "height z of the hall's thermometer"}},
-          .contribute = contribute};
+          .contribute = contribute,
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -48,12 +48,12 @@ bool has_ambient_channel(const MachineModel& model) {
 }
 
 FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
-  const effects::DriveChange change = effects::drive_change(model.effects);
+  const effects::DriveChange change = effects::drive_change(model.effects, recorded.name);
   return {effects::true_cyclogram(change, recorded), effects::true_hall(change, model.hall, recorded)};
 }
 
 double felt_hall_at_start_K(const MachineModel& model) {
-  return effects::true_hall(effects::drive_change(model.effects), model.hall, {}).at(0.0);
+  return effects::true_hall(effects::drive_change(model.effects, ""), model.hall, {}).at(0.0);
 }
 
 Record as_recorded(const MachineModel& model, const solver::Trajectory& run, const solver::Outputs& outputs,
@@ -66,10 +66,10 @@ Record as_recorded(const MachineModel& model, const solver::Trajectory& run, con
   for (std::size_t i = 0; i < model.sensors.size(); ++i) {  // outputs begin with the sensors
     if (is_on_hall(model.sensors[i])) told.outputs.row(static_cast<Eigen::Index>(i)) = hall;
   }
-  if (const effects::ReadingChain chain = effects::reading_chain(model.effects); !chain.empty()) {
+  if (const effects::ReadingChain chain = effects::reading_chain(model.effects, recorded.name); !chain.empty()) {
     const FeltRun felt = felt_run(model, recorded);
     told.outputs =
-        effects::readings(chain, outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.hall, std::move(told.outputs));
+        chain.apply(outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.hall, std::move(told.outputs));
   }
   Record record = to_record(told, outputs, recorded, model.reference_K);
   if (!has_ambient_channel(model)) return record;
@@ -89,6 +89,10 @@ void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& 
   const std::vector<std::string> sensors = names_of(model.sensors), runs = names_of(cyclograms),
                                  tilts = names_of(model.tilts);
   std::vector<std::string> displacements = names_of(model.displacements);
+  std::vector<std::string> by_sensitivities;
+  for (const DisplacementOutput& d : model.displacements) {
+    if (d.by_sensitivity) by_sensitivities.push_back(d.name);
+  }
   displacements.insert(displacements.end(), tilts.begin(), tilts.end());
   for (const effects::Effect& e : model.effects) {
     if (e.place_kind == effects::Place::kSensor) must_be_one_of(e.where, "sensor", e.place, sensors);
@@ -100,9 +104,10 @@ void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& 
       const std::string& name = e.words.at(mention.name);
       if (name.empty()) continue;  // left out
       const bool is_sensor = mention.of == effects::Mention::Of::kSensor;
-      must_be_one_of(e.reference_where.at(mention.name), is_sensor ? "sensor" : "cyclogram", name,
-                     is_sensor ? sensors : runs);
+      must_be_one_of(e.reference_where.at(mention.name), is_sensor ? "sensor" : "displacement", name,
+                     is_sensor ? sensors : by_sensitivities);
     }
+    if (!e.in.empty()) must_be_one_of(e.reference_where.at("in"), "cyclogram", e.in, runs);
   }
 }
 

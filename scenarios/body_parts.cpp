@@ -54,6 +54,7 @@ std::vector<Part> body_parts(const MachineModel& model, const Machine& machine, 
     }
     loads.emplace_back(mesh, expanding);
   }
+  const std::vector<effects::MaterialFactor> factors = effects::material_factors(model.effects);
   for (std::size_t f = 0; f < machine.placed.functionals.size(); ++f) {
     const auto output = n_sensors + static_cast<Eigen::Index>(f);
     const DisplacementOutput* displacement = f < model.displacements.size() ? &model.displacements[f] : nullptr;
@@ -65,7 +66,7 @@ std::vector<Part> body_parts(const MachineModel& model, const Machine& machine, 
           set_matrices(parts.back(), mesh, materials, -1, nodes);
           part = parts.end() - 1;
         }
-        part->outputs.col(output) += sensitivity_m_K * solver::mean_weights(mesh, balance, body);
+        part->outputs.col(output) += effects::sensitivity_factor(factors, body, displacement->name) * sensitivity_m_K * solver::mean_weights(mesh, balance, body);
       }
     }
     if (displacement && !displacement->points) continue;

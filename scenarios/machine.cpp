@@ -99,15 +99,23 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
         return must_be_one_of(where, "surface", name, outer_surfaces(mesh));
       case effects::BodyKind::kNode:
         return must_be_one_of(where, "lumped node", name, nodes);
+      case effects::BodyKind::kJoint:
+        return must_be_one_of(where, "joint", name, joint_names(mesh));
     }
   };
+  std::vector<std::string> laws;
+  balance.for_each_law([&](const std::string& name, const effects::Law&) { laws.push_back(name); });
   for (const effects::Effect& e : model.effects) {
     if (e.place_kind == effects::Place::kSensor || e.place_kind == effects::Place::kDisplacement ||
         e.place_kind == effects::Place::kClock || e.place_kind == effects::Place::kSpindle) {
       continue;  // no part of the machine: check_instruments()
     }
-    if (e.place_kind == effects::Place::kJoint) {
-      must_be_one_of(e.where, "joint", e.place, joint_names(mesh));
+    if (e.place_kind == effects::Place::kLaw) {
+      must_be_one_of(e.where, "heat or exchange", e.place, laws);
+      const bool is_of_joint = std::any_of(balance.exchanges.begin(), balance.exchanges.end(), [&](const auto& x) {
+        return x.name == e.place && x.body.kind == effects::BodyKind::kJoint;
+      });
+      if (is_of_joint && e["decay"] != 0.0) throw InputError(e.where, "a joint has no temperature of its own; `decay` wants one");
     } else if (e.place_kind == effects::Place::kNode && e.place == effects::kHallName) {
       throw InputError(e.where, "the hall is no lumped node; nothing heats or holds it");
     } else {
@@ -126,18 +134,19 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
     const bool is_joint = e.kind->key == "contact";  // one after another is no doubt
     const bool is_single = e.kind->key == "fixed_temperature" || e.kind->key == "stratification" || is_joint;
     const auto follows = [&](const effects::Effect& a, const effects::Effect& b) {
-      return is_joint && a.has("until") && b["from"] >= a["until"];
+      return is_joint && b.from_s >= a.until_s;
     };
     const bool again =
         std::any_of(model.effects.begin(), model.effects.begin() + static_cast<std::ptrdiff_t>(i), [&](auto& other) {
-          return other.kind == e.kind && other.place_kind == e.place_kind && other.place == e.place && !follows(other, e) &&
-                 !follows(e, other);
+          const bool at_once = other.in.empty() || e.in.empty() || other.in == e.in;
+          return other.kind == e.kind && other.place_kind == e.place_kind && other.place == e.place && at_once &&
+                 !follows(other, e) && !follows(e, other);
         });
     if (is_single && again) throw InputError(e.where, fmt::format("{} stands there twice; which one is meant?", e.name()));
   }
   for (const mesh::Joint& joint : mesh.joints) {
-    const bool has_contact = std::any_of(balance.contacts.begin(), balance.contacts.end(),
-                                         [&](const effects::Contact& c) { return c.joint == joint.name; });
+    const bool has_contact = std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
+                                         [&](const effects::Exchange& e) { return e.body == effects::joint(joint.name); });
     for (const std::string& side : {joint.side_a, joint.side_b}) require_outside(mesh, side, model.where);
     if (!has_contact) {
       throw InputError(model.where,
@@ -274,8 +283,9 @@ solver::RegionMaterials region_materials(const MachineModel& model, const Mesh& 
       throw InputError(model.where, fmt::format("region '{}' has no material; add it under `materials`", mesh.regions[r]));
   }
   for (const effects::MaterialFactor& factor : effects::material_factors(model.effects)) {
-    const auto region = std::find(mesh.regions.begin(), mesh.regions.end(), factor.region);
-    if (factor.is_node || region == mesh.regions.end()) continue;  // place() says so at the effect
+    const auto region = std::find(mesh.regions.begin(), mesh.regions.end(), factor.body.name);
+    if (factor.body.kind != effects::BodyKind::kRegion || !factor.displacement.empty() || region == mesh.regions.end())
+      continue;  // place() says so at the effect
     multiply(materials[static_cast<std::size_t>(region - mesh.regions.begin())], factor);
   }
   return materials;
@@ -384,12 +394,14 @@ Machine build_with_influences(const MachineModel& model, PlacedMachine placed, c
       out.state(unknown, static_cast<Eigen::Index>(i)) += weight;
     }
   }
+  const std::vector<effects::MaterialFactor> factors = effects::material_factors(model.effects);
   for (std::size_t i = 0; i < machine.placed.functionals.size(); ++i) {
     auto output = out.state.col(static_cast<Eigen::Index>(n_sensors + i));
     if (has_points(model, i)) output.head(machine.placed.mesh.n_nodes()) = influence.col(static_cast<Eigen::Index>(i));
     if (i >= model.displacements.size() || !model.displacements[i].by_sensitivity) continue;
     for (const auto& [body, sensitivity_m_K] : model.displacements[i].by_sensitivity->terms) {
-      output += sensitivity_m_K * solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
+      output += effects::sensitivity_factor(factors, body, model.displacements[i].name) * sensitivity_m_K *
+                solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
     }
   }
   return machine;

@@ -11,10 +11,10 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr int kFormat = 2;  // of the folders; a new one makes all others unknown
+constexpr int kFormat = 3;  // of the folders; a new one makes all others unknown
 
 std::string words(const effects::Body& body) {
-  const char* kinds[] = {"region", "surface", "node"};
+  const char* kinds[] = {"region", "surface", "node", "joint"};
   return fmt::format("{} {}", kinds[static_cast<int>(body.kind)], body.name);
 }
 
@@ -33,9 +33,10 @@ std::string structure(const effects::HeatBalance& balance) {
     text += "\n";
   };
   for (const auto& h : balance.heats) add("heat", h.name, words(h.body), words(h.power_W));
-  for (const auto& f : balance.films) add("film", f.name, f.surface, f.surrounding, words(f.htc_W_m2K));
-  for (const auto& l : balance.links) add("link", l.name, words(l.body), l.surrounding, words(l.conductance_W_K));
-  for (const auto& c : balance.contacts) add("contact", c.name, c.joint, words(c.conductance_W_m2K));
+  for (const auto& e : balance.exchanges) {
+    add(e.per == effects::Per::kArea ? "per area" : "in total", e.name, words(e.body), e.surrounding, words(e.coefficient),
+        e.medium_K.value_or(0.0));
+  }
   for (const auto& r : balance.radiations) add("radiation", r.name, r.surface, r.surrounding);
   for (const auto& n : balance.nodes) add("node", n.name, n.capacity_J_K);
   for (const auto& f : balance.fixed) {
@@ -47,23 +48,21 @@ std::string structure(const effects::HeatBalance& balance) {
 }
 
 bool looks_at_temperatures(const effects::HeatBalance& balance) {
-  const auto any = [](const auto& entries, auto law) {
-    return std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return !(e.*law).probes.empty(); });
-  };
-  return any(balance.heats, &effects::HeatInput::power_W) || any(balance.films, &effects::Film::htc_W_m2K) ||
-         any(balance.links, &effects::Link::conductance_W_K) || any(balance.contacts, &effects::Contact::conductance_W_m2K);
+  bool any = false;
+  balance.for_each_law([&](const std::string&, const effects::Law& law) { any = any || !law.probes.empty(); });
+  return any;
 }
 
 std::string numbers_of_laws(const MachineModel& model) {
   std::string text;
   for (const effects::Effect& e : model.effects) {
-    if (!e.kind->contribute) continue;
+    if (!e.kind->contribute && !e.kind->change_laws) continue;
     text += fmt::format("{}: {}", e.name(), fmt::join(e.values, " "));
     for (const auto& [name, word] : e.words) text += fmt::format(" {} {}", name, word);
     for (const auto& [name, table] : e.tables) {
       text += fmt::format(" {} {} {}", name, fmt::join(table.time_s, " "), fmt::join(table.value, " "));
     }
-    text += "\n";
+    text += fmt::format(" from {} until {} in '{}'\n", e.from_s, e.until_s, e.in);
   }
   return text;
 }
@@ -72,9 +71,7 @@ std::string numbers_of_laws(const MachineModel& model) {
 std::vector<double> coefficients_at_standstill(const effects::HeatBalance& balance, double hall_K) {
   const effects::Inputs standstill{.drive = {}, .hall_K = hall_K};
   std::vector<double> values;
-  for (const auto& f : balance.films) values.push_back(f.htc_W_m2K(standstill));
-  for (const auto& l : balance.links) values.push_back(l.conductance_W_K(standstill));
-  for (const auto& c : balance.contacts) values.push_back(c.conductance_W_m2K(standstill));
+  for (const auto& e : balance.exchanges) values.push_back(e.coefficient(standstill));
   return values;
 }
 
@@ -90,8 +87,7 @@ std::string machine_text(const MachineModel& model) {
   const effects::HeatBalance balance = effects::heat_balance(model.effects);
   std::string text = model.written + structure(balance);
   for (const effects::MaterialFactor& f : effects::material_factors(model.effects)) {
-    if (f.is_node) continue;  // its capacity says so
-    text += fmt::format("factors of {}: {} {} {}\n", f.region, f.conductivity, f.heat_capacity, f.expansion);
+    text += fmt::format("factors of {}: {} {} {} {}\n", words(f.body), f.conductivity, f.heat_capacity, f.expansion, f.displacement);
   }
   if (const auto* imported = std::get_if<mesh::ImportedMesh>(&model.mesh)) {
     const std::string bytes = read_bytes(imported->path);
@@ -106,7 +102,7 @@ std::string machine_text(const MachineModel& model) {
 }
 
 std::string machine_key(const MachineModel& model, const ReductionPlan& plan, const std::string& version) {
-  const effects::HeatBalance balance = reducible(effects::heat_balance(model.effects));
+  const effects::HeatBalance balance = effects::with_radiation_as_films(effects::heat_balance(model.effects));
   std::string key = fmt::format("driftwright {} store {}\n{}\n", version, kFormat, machine_text(model));
   const bool makes_modes = plan.n_modes > 0 && balance.thermostats.empty();
   const bool freezes_laws = makes_modes && looks_at_temperatures(balance);

@@ -6,6 +6,7 @@
 
 #include "base/file_bytes.hpp"
 #include "base/npy_file.hpp"
+#include "solver/bind_laws.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -33,6 +34,13 @@ BoundLaw law_from(const Json& json) {
   law.thermostat = json.at("thermostat");
   law.frozen_K = json.at("frozen_K").get<std::vector<double>>();
   return law;
+}
+
+Json body_json(const effects::Body& body) {
+  return {{"kind", static_cast<int>(body.kind)}, {"name", body.name}};
+}
+effects::Body body_from(const Json& json) {
+  return {static_cast<effects::BodyKind>(json.at("kind").get<int>()), json.at("name")};
 }
 
 constexpr const char* kReader =
@@ -72,11 +80,12 @@ template Eigen::MatrixXf array_of<float>(const std::filesystem::path&, Eigen::In
 Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, const FileOf& file) {
   const auto r = static_cast<Eigen::Index>(system.size());
   Json json = {{"size", system.size()}, {"reference_K", system.reference_K}};
-  std::vector<Eigen::VectorXd> loads, to_hall, flow, offset, probes;
+  std::vector<Eigen::VectorXd> loads, to_hall, flow, offset, medium, probes;
   Eigen::MatrixXd matrices(r * static_cast<Eigen::Index>(system.exchanges.size()), r);
   for (const auto& s : system.sources) {
     loads.push_back(s.load);
     json["sources"].push_back(law_json(s.name, s.power_W));
+    json["sources"].back()["body"] = body_json(s.body);
   }
   for (std::size_t i = 0; i < system.exchanges.size(); ++i) {
     const auto& e = system.exchanges[i];
@@ -84,7 +93,13 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
     to_hall.push_back(e.to_hall);
     flow.push_back(e.flow);
     offset.push_back(e.offset);
+    medium.push_back(e.medium);
     Json entry = law_json(e.name, e.coefficient);
+    entry["body"] = body_json(e.place.body);
+    entry["surrounding"] = e.place.surrounding;
+    entry["per"] = static_cast<int>(e.place.per);
+    entry["medium_sum"] = e.medium_sum;
+    entry["has_medium"] = e.medium.size() > 0;
     entry["hall_sum"] = e.hall_sum;
     entry["offset_sum"] = e.offset_sum;
     entry["has_offset"] = e.offset.size() > 0;
@@ -93,9 +108,9 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
   }
   for (const auto& p : system.probes) {
     probes.push_back(p.weights);
-    json["probes"].push_back({{"hall_share", p.hall_share}, {"offset_K", p.offset_K}});
+    json["probes"].push_back(
+        {{"body", body_json(p.body)}, {"before", p.before}, {"hall_share", p.hall_share}, {"offset_K", p.offset_K}});
   }
-  for (const auto& t : system.thermostats) json["thermostat_probes"].push_back(t.probe);
   if (!system.parts.empty()) {
     const auto n_parts = static_cast<Eigen::Index>(system.parts.size()), n_outputs = system.outputs.state.cols();
     Eigen::MatrixXd conduction(r * n_parts, r), mass(r * n_parts, r), outputs(r * n_parts, n_outputs);
@@ -116,6 +131,7 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
   write_npy(file("to_hall.npy"), side_by_side(r, to_hall));
   write_npy(file("flow.npy"), side_by_side(r, flow));
   write_npy(file("offset.npy"), side_by_side(r, offset));
+  write_npy(file("medium.npy"), side_by_side(r, medium));
   write_npy(file("loads.npy"), side_by_side(r, loads));
   write_npy(file("probes.npy"), side_by_side(r, probes));
   write_npy(file("outputs.npy"), system.outputs.state);
@@ -138,14 +154,16 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   const Eigen::Index n_exchanges = n_of("exchanges");
   const Eigen::MatrixXd matrices = array_of<double>(file("exchanges.npy"), r * n_exchanges, r),
                         to_hall = array("to_hall.npy", n_exchanges), flow = array("flow.npy", n_exchanges),
-                        offset = array("offset.npy", n_exchanges), loads = array("loads.npy", n_of("sources")),
+                        offset = array("offset.npy", n_exchanges), medium = array("medium.npy", n_exchanges), loads = array("loads.npy", n_of("sources")),
                         probes = array("probes.npy", n_of("probes"));
   Eigen::Index i = 0;
-  for (const Json& s : json.value("sources", none)) system.sources.push_back({s.at("name"), loads.col(i++), law_from(s)});
+  for (const Json& s : json.value("sources", none)) 
+    system.sources.push_back({s.at("name"), body_from(s.at("body")), loads.col(i++), law_from(s)});
   i = 0;
   for (const Json& e : json.value("exchanges", none)) {
     system.exchanges.push_back(
         {.name = e.at("name"),
+         .place = {body_from(e.at("body")), e.at("surrounding"), static_cast<effects::Per>(e.at("per").get<int>())},
          .matrix = matrices.middleRows(r * i, r),
          .to_hall = to_hall.col(i),
          .hall_sum = e.at("hall_sum"),
@@ -153,15 +171,14 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
          .flow = flow.col(i),
          .offset = e.at("has_offset").get<bool>() ? Eigen::VectorXd(offset.col(i)) : Eigen::VectorXd(),
          .offset_sum = e.at("offset_sum"),
+         .medium = e.at("has_medium").get<bool>() ? Eigen::VectorXd(medium.col(i)) : Eigen::VectorXd(),
+         .medium_sum = e.at("medium_sum"),
          .prescribes = e.at("prescribes")});
     ++i;
   }
   i = 0;
   for (const Json& p : json.value("probes", none)) {
-    system.probes.push_back({probes.col(i++), p.at("hall_share"), p.at("offset_K")});
-  }
-  for (const Json& probe : json.value("thermostat_probes", none)) {
-    system.thermostats.push_back({.name = {}, .probe = probe});
+    system.probes.push_back({body_from(p.at("body")), p.at("before"), probes.col(i++), p.at("hall_share"), p.at("offset_K")});
   }
   system.outputs.name = json.at("outputs").at("name").get<std::vector<std::string>>();
   system.outputs.unit = json.at("outputs").at("unit").get<std::vector<std::string>>();
@@ -181,7 +198,7 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   }
   system.ones = array("ones.npy", 1);
   start = array("start.npy", 1);
-  bind_laws(system, reducible(balance));
+  solver::bind_laws(system, effects::with_radiation_as_films(balance));
   return system;
 }
 

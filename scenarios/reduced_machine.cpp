@@ -15,8 +15,6 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr double kStefanBoltzmann_W_m2K4 = 5.670374419e-8;  // CODATA 2018
-
 bool has_curves(const solver::RegionMaterials& materials) {
   return std::any_of(materials.begin(), materials.end(), [](const solver::Material& m) {
     return !m.conductivity_curve.empty() || !m.heat_capacity_curve.empty();
@@ -118,14 +116,15 @@ std::optional<compensation::ModalPredictors> modal_predictors(const solver::Full
 
 ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms) {
   const MachineModel& model = *scenario.machine;
-  const effects::HeatBalance balance = reducible(effects::heat_balance(model.effects));
+  const effects::HeatBalance balance = effects::with_radiation_as_films(effects::heat_balance(model.effects));
   std::vector<FeltRun> felt;
   for (const Cyclogram* cyclogram : cyclograms) felt.push_back(felt_run(model, *cyclogram));
   std::vector<const Cyclogram*> driven;
   for (const FeltRun& run : felt) driven.push_back(&run.cyclogram);
   ReductionPlan plan;
   plan.demand = solver::reduction_demand(balance, driven, model.hall, model.reference_K);
-  if (!effects::drive_change(model.effects).hall.empty()) {  // each run may have a hall of its own
+  const bool moves_hall = std::any_of(model.effects.begin(), model.effects.end(), [](const auto& e) { return e.kind->change_drive; });
+  if (moves_hall) {  // each run may have a hall of its own
     for (const FeltRun& run : felt) {
       plan.demand.include(solver::reduction_demand(balance, {&run.cyclogram}, run.hall, model.reference_K));
     }
@@ -154,45 +153,8 @@ Eigen::Matrix3Xd ReducedMachine::node_displacement_m(const Eigen::VectorXd& stat
   return Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
 }
 
-effects::HeatBalance reducible(effects::HeatBalance balance) {
-  for (const effects::Radiation& r : balance.radiations) {
-    const auto coefficient_W_m2K = [emissivity = r.emissivity](const effects::Inputs& u) {
-      const double t_K = u.probe_K[0], around_K = u.probe_K[1];
-      return kStefanBoltzmann_W_m2K4 * emissivity * (t_K * t_K + around_K * around_K) * (t_K + around_K);
-    };
-    balance.films.push_back({r.name, r.surface,
-                             effects::Law(coefficient_W_m2K, {effects::surface(r.surface), effects::node(r.surrounding)}),
-                             r.surrounding});
-  }
-  balance.radiations.clear();
-  return balance;
-}
-
-void bind_laws(solver::ReducedSystem& system, const effects::HeatBalance& balance) {
-  std::vector<const effects::Law*> exchanges;
-  for (const effects::Film& f : balance.films) exchanges.push_back(&f.htc_W_m2K);
-  for (const effects::Link& l : balance.links) exchanges.push_back(&l.conductance_W_K);
-  for (const effects::Contact& c : balance.contacts) exchanges.push_back(&c.conductance_W_m2K);
-  const auto n_of_laws = std::count_if(system.exchanges.begin(), system.exchanges.end(),
-                                       [](const auto& e) { return !e.prescribes; });  // the others come last
-  if (system.sources.size() != balance.heats.size() || static_cast<std::size_t>(n_of_laws) != exchanges.size() ||
-      system.thermostats.size() != balance.thermostats.size()) {
-    throw std::logic_error("bind_laws: a reduced system of another balance");
-  }
-  for (std::size_t s = 0; s < system.sources.size(); ++s) system.sources[s].power_W.law = balance.heats[s].power_W;
-  const effects::Law one([](const effects::Inputs&) { return 1.0; });  // of prescribed temperatures
-  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
-    system.exchanges[e].coefficient.law = e < exchanges.size() ? *exchanges[e] : one;
-  }
-  for (std::size_t t = 0; t < system.thermostats.size(); ++t) {
-    const effects::Thermostat& law = balance.thermostats[t];
-    system.thermostats[t] = {law.name, system.thermostats[t].probe, law.on_above_K, law.off_below_K};
-  }
-  system.change_times_s = balance.change_times_s;
-}
-
 ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan) {
-  const effects::HeatBalance balance = reducible(machine.placed.balance);
+  const effects::HeatBalance balance = effects::with_radiation_as_films(machine.placed.balance);
   solver::RegionMaterials materials = machine.placed.materials;
   solver::FullSystem system = reducible_system(model, machine, balance, plan.demand, materials);
   if (plan.with_parts) system.parts = body_parts(model, machine, materials, balance);

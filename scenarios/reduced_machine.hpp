@@ -35,19 +35,10 @@ struct ReducedMachine {
   [[nodiscard]] Eigen::Matrix3Xd node_displacement_m(const Eigen::VectorXd& state) const;
 };
 
-/// Balance and laws as a reduced model holds them: each radiation becomes a film whose coefficient follows the mean temperatures of
-/// both sides, σ ε (T² + T_s²) (T + T_s).
-[[nodiscard]] effects::HeatBalance reducible(effects::HeatBalance balance);
-
 /// Reduces a machine. Conductivities and heat capacities over temperature are frozen at each region's mean temperature in the
 /// steady state of half the demanded power.
 /// @throws InputError  for a temperature prescribed over time, which no reduced model follows
 /// @throws SolveError  as solver::reduce()
 [[nodiscard]] ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan);
-
-/// Gives a reduced system, whose laws may be missing or another scenario's, the laws, switches and times of this balance.
-/// @param balance  as reducible() made it
-/// @throws std::logic_error  for a system of a balance of another structure
-void bind_laws(solver::ReducedSystem& system, const effects::HeatBalance& balance);
 
 }  // namespace driftwright::scenarios

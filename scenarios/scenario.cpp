@@ -245,15 +245,12 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
   for (const effects::Effect& effect : scenario.machine->effects) {
     const effects::HeatBalance balance = effects::heat_balance({effect});
     for (const Cyclogram::Section& section : felt.sections) {
-      const effects::Inputs at{.drive = section.drive};
+      effects::Inputs at{.drive = section.drive};
+      at.run = cyclogram.name;
       try {
-        const auto try_law = [&](const effects::Law& law) {  // those that look at temperatures are tried as the run goes
-          if (law.probes.empty()) (void)law(at);
-        };
-        for (const auto& heat : balance.heats) try_law(heat.power_W);
-        for (const auto& film : balance.films) try_law(film.htc_W_m2K);
-        for (const auto& link : balance.links) try_law(link.conductance_W_K);
-        for (const auto& contact : balance.contacts) try_law(contact.conductance_W_m2K);
+        balance.for_each_law([&](const std::string&, const effects::Law& law) {
+          if (law.probes.empty()) (void)law(at);  // those that look at temperatures are tried as the run goes
+        });
       } catch (const RangeError& e) {
         throw InputError(effect.where, fmt::format("{} at the {:g} rpm of cyclogram '{}': {}", effect.name(),
                                                    section.drive.speed_rpm, cyclogram.name, e.what()));

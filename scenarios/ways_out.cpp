@@ -72,20 +72,19 @@ bool is_open(const effects::Law& law) {
   return !law.probes.empty() || !law.thermostat.empty() || law(effects::Inputs{}) != 0.0;
 }
 
-/// Films, links, radiation and contacts whose law counts as open, and prescribed temperatures.
+/// Exchanges whose law counts as open, radiation, and prescribed temperatures.
 template <class IsOpen>
 void add_exchanges(Paths& paths, const mesh::Mesh& mesh, const effects::HeatBalance& balance, IsOpen open) {
-  for (const auto& film : balance.films) {
-    if (open(film.htc_W_m2K)) paths.connect(effects::surface(film.surface), paths.of_surrounding(film.surrounding));
-  }
-  for (const auto& link : balance.links) {
-    if (open(link.conductance_W_K)) paths.connect(link.body, paths.of_surrounding(link.surrounding));
+  for (const effects::Exchange& e : balance.exchanges) {
+    if (!open(e.coefficient)) continue;
+    if (e.body.kind == effects::BodyKind::kJoint) {
+      paths.connect_joint(*mesh.joint(e.body.name));
+    } else {
+      paths.connect(e.body, e.medium_K ? paths.outside() : paths.of_surrounding(e.surrounding));
+    }
   }
   for (const auto& radiation : balance.radiations) {
     paths.connect(effects::surface(radiation.surface), paths.of_surrounding(radiation.surrounding));
-  }
-  for (const auto& contact : balance.contacts) {
-    if (open(contact.conductance_W_m2K)) paths.connect_joint(*mesh.joint(contact.joint));
   }
   for (const auto& fixed : balance.fixed) paths.connect(fixed.body, paths.outside());
 }

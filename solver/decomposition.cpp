@@ -70,7 +70,7 @@ std::vector<HeatFlow> flows_of(const ReducedSystem& system) {
   for (const HeatSource& s : system.sources) flows.push_back({s.name, FlowKind::kSource});
   for (const auto& e : system.exchanges) {
     flows.push_back({e.name, e.prescribes       ? FlowKind::kPrescribed
-                             : e.reaches_hall() ? FlowKind::kSurrounding
+                             : e.leaves_machine() ? FlowKind::kSurrounding
                                                 : FlowKind::kInternal});
   }
   return flows;

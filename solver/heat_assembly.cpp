@@ -111,13 +111,14 @@ SparseRow body_matrix(const Places& places, const Body& body, int surrounding) {
   return from_entries(places.n_unknowns(), entries);
 }
 
-/// Exchange between a body and its surrounding. `size` divides the matrix: 1 for a coefficient per area, the body's size for
-/// a total conductance.
-Exchange<SparseRow> to_surrounding(const Places& places, const std::string& name, const Body& body,
-                                   const std::string& surrounding, bool total, BoundLaw coefficient,
-                                   const std::vector<effects::Stratification>& air) {
-  const int unknown = places.unknown_of_surrounding(surrounding);
-  Exchange<SparseRow> e{.name = name,
+/// Exchange between a body and its surrounding.
+Exchange<SparseRow> to_surrounding(const Places& places, const effects::Exchange& exchange, BoundLaw coefficient,
+                                   const std::vector<effects::Stratification>& air, double reference_K) {
+  const Body& body = exchange.body;
+  const bool total = exchange.per == effects::Per::kTotal;
+  const int unknown = exchange.medium_K ? -1 : places.unknown_of_surrounding(exchange.surrounding);
+  Exchange<SparseRow> e{.name = exchange.name,
+                        .place = place_of(exchange),
                         .matrix = body_matrix(places, body, unknown),
                         .to_hall = {},
                         .coefficient = std::move(coefficient),
@@ -138,6 +139,13 @@ Exchange<SparseRow> to_surrounding(const Places& places, const std::string& name
     return e;
   }
   e.to_hall = e.matrix * Eigen::VectorXd::Ones(e.matrix.cols());
+  if (exchange.medium_K) {
+    e.medium = std::move(e.to_hall);
+    e.medium_sum = e.medium.sum();
+    e.to_hall = Eigen::VectorXd::Zero(places.n_unknowns());
+    e.hold_medium(*exchange.medium_K - reference_K);
+    return e;
+  }
   e.hall_sum = e.to_hall.sum();
   if (!air.empty() && body.kind == BodyKind::kSurface) {
     e.offset = Eigen::VectorXd::Zero(places.n_unknowns());
@@ -151,10 +159,11 @@ Exchange<SparseRow> to_surrounding(const Places& places, const std::string& name
   return e;
 }
 
-Exchange<SparseRow> across_joint(const Mesh& mesh, const Places& places, const mesh::Joint& joint, const std::string& name,
-                                 BoundLaw coefficient) {
+Exchange<SparseRow> across_joint(const Mesh& mesh, const Places& places, const mesh::Joint& joint,
+                                 const effects::Exchange& exchange, BoundLaw coefficient) {
   const int n = places.n_unknowns();
-  Exchange<SparseRow> e{.name = name,
+  Exchange<SparseRow> e{.name = exchange.name,
+                        .place = place_of(exchange),
                         .matrix = {},
                         .to_hall = Eigen::VectorXd::Zero(n),
                         .coefficient = std::move(coefficient),
@@ -200,9 +209,9 @@ class Binder {
     }
     bodies_.push_back(body);
     if (body == effects::node(effects::kHallName)) {
-      system_.probes.push_back({Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0});
+      system_.probes.push_back({body, {}, Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0});
     } else {
-      system_.probes.push_back({places_.mean_weights(body), 0.0});
+      system_.probes.push_back({body, {}, places_.mean_weights(body), 0.0});
     }
     return static_cast<int>(bodies_.size()) - 1;
   }
@@ -215,7 +224,8 @@ class Binder {
       area_m2 += point_m2;
     });
     bodies_.push_back({});  // none that probe() could be asked for
-    system_.probes.push_back({Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0, offset_K_m2 / area_m2});
+    system_.probes.push_back(
+        {effects::hall(), surface.name, Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0, offset_K_m2 / area_m2});
     return static_cast<int>(bodies_.size()) - 1;
   }
 
@@ -226,22 +236,18 @@ class Binder {
 };
 
 std::vector<Exchange<SparseRow>> make_exchanges(const Mesh& mesh, const Places& places, const effects::HeatBalance& balance,
-                                                Binder& binder) {
+                                                Binder& binder, double reference_K) {
   std::vector<Exchange<SparseRow>> exchanges;
-  const auto& air = balance.stratifications;
-  for (const effects::Film& film : balance.films) {
-    const Body surface = effects::surface(film.surface);
-    exchanges.push_back(
-        to_surrounding(places, film.name, surface, film.surrounding, false, binder.bind(film.htc_W_m2K, &surface), air));
-  }
-  for (const effects::Link& link : balance.links) {
-    exchanges.push_back(
-        to_surrounding(places, link.name, link.body, link.surrounding, true, binder.bind(link.conductance_W_K), air));
-  }
-  for (const effects::Contact& contact : balance.contacts) {
-    const mesh::Joint* joint = mesh.joint(contact.joint);
-    must_exist(joint ? 0 : -1, contact.joint);
-    exchanges.push_back(across_joint(mesh, places, *joint, contact.name, binder.bind(contact.conductance_W_m2K)));
+  for (const effects::Exchange& e : balance.exchanges) {
+    if (e.body.kind == BodyKind::kJoint) {
+      const mesh::Joint* joint = mesh.joint(e.body.name);
+      must_exist(joint ? 0 : -1, e.body.name);
+      exchanges.push_back(across_joint(mesh, places, *joint, e, binder.bind(e.coefficient)));
+    } else {
+      const Body* before = e.body.kind == BodyKind::kSurface && e.per == effects::Per::kArea ? &e.body : nullptr;
+      exchanges.push_back(
+          to_surrounding(places, e, binder.bind(e.coefficient, before), balance.stratifications, reference_K));
+    }
   }
   return exchanges;
 }
@@ -266,6 +272,11 @@ double at_reference(double constant, const PropertyCurve& curve, double referenc
 
 }  // namespace
 
+ExchangePlace place_of(const effects::Exchange& exchange) {
+  const bool has_surrounding = exchange.body.kind != BodyKind::kJoint && !exchange.medium_K;
+  return {exchange.body, has_surrounding ? exchange.surrounding : "", exchange.per};
+}
+
 Eigen::VectorXd mean_weights(const Mesh& mesh, const effects::HeatBalance& balance, const Body& body) {
   return Places(mesh, balance).mean_weights(body);
 }
@@ -277,9 +288,9 @@ FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, con
   FullSystem system;
   system.reference_K = reference_K;
   Binder binder(places, balance, system);
-  system.exchanges = make_exchanges(mesh, places, balance, binder);
+  system.exchanges = make_exchanges(mesh, places, balance, binder, reference_K);
   for (const effects::HeatInput& heat : balance.heats) {
-    system.sources.push_back({heat.name, places.mean_weights(heat.body), binder.bind(heat.power_W)});
+    system.sources.push_back({heat.name, heat.body, places.mean_weights(heat.body), binder.bind(heat.power_W)});
   }
   for (const effects::Thermostat& t : balance.thermostats) {
     system.thermostats.push_back({t.name, binder.probe(t.probe), t.on_above_K, t.off_below_K});

@@ -59,7 +59,7 @@ HeatRate::HeatRate(const FullSystem& system)
   }
   for (const auto& e : system.exchanges) {
     crossings_.push_back({Sparse(e.flow), Sparse(e.to_hall), Sparse(e.offset), slots_of(e.matrix, system.conduction)});
-    flows_.push_back({e.name, e.reaches_hall() ? FlowKind::kSurrounding : FlowKind::kInternal});
+    flows_.push_back({e.name, e.leaves_machine() ? FlowKind::kSurrounding : FlowKind::kInternal});
     looks_at_state_ |= e.coefficient.looks_at_state();
   }
   for (const auto& term : system.nonlinear) {
@@ -75,7 +75,8 @@ double HeatRate::value_of(const BoundLaw& law) const {
   return law.law(inputs);
 }
 
-bool HeatRate::set(const Drive& drive, double time_s) {
+bool HeatRate::set(const Drive& drive, double time_s, std::string_view run) {
+  inputs_.run = run;
   inputs_.drive = drive;
   inputs_.time_s = time_s;
   bool changed = !is_set_;
@@ -157,7 +158,7 @@ void HeatRate::flows_W(const double* theta, double hall_K, double* flows_W) cons
     const Exchange<SparseRow>& exchange = system_.exchanges[e];
     const double crossing_W =
         crossings_[e].coefficient * (crossings_[e].flow.dot(theta) - exchange.hall_sum * hall_K - exchange.offset_sum);
-    *flows_W++ = exchange.reaches_hall() ? -crossing_W : crossing_W;
+    *flows_W++ = exchange.leaves_machine() ? -crossing_W : crossing_W;
   }
   for (const auto& term : system_.nonlinear) {
     if (!term->is_flow()) continue;
@@ -170,7 +171,7 @@ void HeatRate::flows_along(const double* dtheta, double* dflows_W) const {
   for (std::size_t s = 0; s < sources_.size(); ++s) *dflows_W++ = 0.0;
   for (std::size_t e = 0; e < crossings_.size(); ++e) {
     const double crossing_W = crossings_[e].coefficient * crossings_[e].flow.dot(dtheta);
-    *dflows_W++ = system_.exchanges[e].reaches_hall() ? -crossing_W : crossing_W;
+    *dflows_W++ = system_.exchanges[e].leaves_machine() ? -crossing_W : crossing_W;
   }
   for (const auto& term : system_.nonlinear) {
     if (term->is_flow()) *dflows_W++ = 0.0;

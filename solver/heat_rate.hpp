@@ -16,7 +16,7 @@ class HeatRate {
   /// Takes over drive and time of a stretch in which laws change with temperatures alone.
   /// @param time_s  within the stretch, not at its ends
   /// @return true when a power or a coefficient that does not look at the state is another one than before
-  bool set(const Drive& drive, double time_s);
+  bool set(const Drive& drive, double time_s, std::string_view run = {});
 
   /// Net heat into each unknown [W], n long, at θ.
   void evaluate(const double* theta, double hall_K, double* heat_W);

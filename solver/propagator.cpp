@@ -94,6 +94,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
     const double length_s = stretch.end_s - stretch.start_s, hall_K = hall.at(stretch.start_s),
                  hall_slope = (hall.at(stretch.end_s) - hall_K) / length_s;
     effects::Inputs at{.drive = stretch.drive, .hall_K = hall_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
+    at.run = stretch.run;
     for (Eigen::Index i = 0; i < n_exchanges; ++i) {
       coefficient[i] = system_.exchanges[static_cast<std::size_t>(i)].coefficient(at);
     }

@@ -51,11 +51,14 @@ ReducedSystem projected(const ThermalSystem<Matrix>& system, const Eigen::Matrix
   reduced.thermostats = system.thermostats;
   reduced.mass = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
   reduced.conduction = reduce(system.conduction);
-  for (const Probe& p : system.probes) reduced.probes.push_back({basis.transpose() * p.weights, p.hall_share, p.offset_K});
-  for (const HeatSource& s : system.sources) reduced.sources.push_back({s.name, basis.transpose() * s.load, s.power_W});
+  for (const Probe& p : system.probes) 
+    reduced.probes.push_back({p.body, p.before, basis.transpose() * p.weights, p.hall_share, p.offset_K});
+  for (const HeatSource& s : system.sources) 
+    reduced.sources.push_back({s.name, s.body, basis.transpose() * s.load, s.power_W});
   for (const auto& e : system.exchanges) {
     reduced.exchanges.push_back(
         {.name = e.name,
+         .place = e.place,
          .matrix = reduce(e.matrix),
          .to_hall = basis.transpose() * e.to_hall,
          .hall_sum = e.hall_sum,
@@ -63,6 +66,8 @@ ReducedSystem projected(const ThermalSystem<Matrix>& system, const Eigen::Matrix
          .flow = basis.transpose() * e.flow,
          .offset = e.offset.size() > 0 ? Eigen::VectorXd(basis.transpose() * e.offset) : Eigen::VectorXd(),
          .offset_sum = e.offset_sum,
+         .medium = e.medium.size() > 0 ? Eigen::VectorXd(basis.transpose() * e.medium) : Eigen::VectorXd(),
+         .medium_sum = e.medium_sum,
          .prescribes = e.prescribes});
   }
   for (const auto& p : system.parts) {
@@ -102,6 +107,7 @@ ReducedSystem with_unit_mass(const ReducedSystem& system, Eigen::VectorXd& start
     vector(e.to_hall);
     vector(e.flow);
     vector(e.offset);
+    vector(e.medium);
   }
   for (auto& s : unit.sources) vector(s.load);
   for (auto& p : unit.probes) vector(p.weights);

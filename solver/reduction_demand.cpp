@@ -65,23 +65,22 @@ ReductionDemand reduction_demand(const effects::HeatBalance& balance, const std:
                                  const TimeSeries& hall, double reference_K) {
   std::vector<const effects::Law*> sources, exchanges;
   for (const effects::HeatInput& h : balance.heats) sources.push_back(&h.power_W);
-  for (const effects::Film& f : balance.films) exchanges.push_back(&f.htc_W_m2K);
-  for (const effects::Link& l : balance.links) exchanges.push_back(&l.conductance_W_K);
-  for (const effects::Contact& c : balance.contacts) exchanges.push_back(&c.conductance_W_m2K);
+  for (const effects::Exchange& e : balance.exchanges) exchanges.push_back(&e.coefficient);
   std::vector<Range> of_source(sources.size()), of_exchange(exchanges.size());
 
   double duration_s = 3600.0, hall_K = 1.0;
-  std::vector<Drive> drives = {Drive{}};
+  std::vector<std::pair<Drive, std::string_view>> drives = {{Drive{}, {}}};  // and the run that it belongs to
   for (const Cyclogram* c : cyclograms) {
     duration_s = std::max(duration_s, c->duration_s());
-    for (const auto& section : c->sections) drives.push_back(section.drive);
+    for (const auto& section : c->sections) drives.emplace_back(section.drive, c->name);
   }
   for (double value_K : hall.value) hall_K = std::max(hall_K, std::abs(value_K));
   std::vector<double> times_s = {0.0};  // one in each interval between changes
   for (double t_s : balance.change_times_s) times_s.push_back(t_s * (1.0 + 1e-9));
-  for (const Drive& drive : drives) {
+  for (const auto& [drive, run] : drives) {
     for (double t_s : times_s) {
-      const effects::Inputs at{.drive = drive, .hall_K = hall.at(t_s), .time_s = t_s};
+      effects::Inputs at{.drive = drive, .hall_K = hall.at(t_s), .time_s = t_s};
+      at.run = run;
       for (std::size_t s = 0; s < sources.size(); ++s) look(*sources[s], at, reference_K, of_source[s]);
       for (std::size_t e = 0; e < exchanges.size(); ++e) look(*exchanges[e], at, reference_K, of_exchange[e]);
     }

@@ -55,7 +55,7 @@ Eigen::VectorXd steady_state(const FullSystem& system, const effects::Inputs& at
     const int t = static_cast<int>(i);
     rate.set_thermostat(t, rate.thermostat_probe_K(t, start.data(), at.hall_K) > system.thermostats[i].on_above_K);
   }
-  rate.set(at.drive, at.time_s);
+  rate.set(at.drive, at.time_s, at.run);
   std::vector<char> is_fixed(system.size(), 0);
   for (const FixedUnknowns& f : system.fixed) {
     for (int i : f.unknowns) {
@@ -129,12 +129,12 @@ void hold_by_exchanges(FullSystem& system) {
       entries.emplace_back(i, i, stiff_W_K);
       members[i] = stiff_W_K;
     }
-    Exchange<SparseRow> e{.name = f.name,
-                          .matrix = SparseRow(n, n),
-                          .to_hall = Eigen::VectorXd::Zero(n),
-                          .coefficient = one,
-                          .flow = members,
-                          .offset = {}};
+    Exchange<SparseRow> e;
+    e.name = f.name;
+    e.matrix = SparseRow(n, n);
+    e.to_hall = Eigen::VectorXd::Zero(n);
+    e.coefficient = one;
+    e.flow = members;
     e.matrix.setFromTriplets(entries.begin(), entries.end());
     if (f.follows_hall) {
       e.to_hall = members;
@@ -156,12 +156,12 @@ FullSystem linearised(const FullSystem& system, const effects::Inputs& at, const
   const effects::Law one([](const effects::Inputs&) { return 1.0; });
   const int n = system.size();
   for (const auto& term : system.nonlinear) {  // r(θ) ≈ r0 + J (θ - θ0) + dr/dθ_hall (θ_hall - θ_hall0)
-    Exchange<SparseRow> e{.name = term->name,
-                          .matrix = system.conduction,
-                          .to_hall = Eigen::VectorXd::Zero(n),
-                          .coefficient = one,
-                          .flow = Eigen::VectorXd::Zero(n),
-                          .offset = {}};
+    Exchange<SparseRow> e;
+    e.name = term->name;
+    e.matrix = system.conduction;
+    e.to_hall = Eigen::VectorXd::Zero(n);
+    e.coefficient = one;
+    e.flow = Eigen::VectorXd::Zero(n);
     std::fill(e.matrix.valuePtr(), e.matrix.valuePtr() + e.matrix.nonZeros(), 0.0);
     term->add_tangent(theta.data(), at.hall_K, e.matrix);
     Eigen::VectorXd heat_out = Eigen::VectorXd::Zero(n);

@@ -41,14 +41,25 @@ struct BoundLaw {
 /// Heat P(u) [W] spread over the unknowns by b (sums to one in the finite-element model).
 struct HeatSource {
   std::string name;
+  effects::Body body = {};
   Eigen::VectorXd load;
   BoundLaw power_W;
 };
+
+/// Where an exchange is, in words of the machine.
+struct ExchangePlace {
+  effects::Body body;
+  std::string surrounding;  ///< hall or lumped node; "" for a joint and for a medium of a temperature of its own
+  effects::Per per = effects::Per::kArea;
+  bool operator==(const ExchangePlace&) const = default;
+};
+[[nodiscard]] ExchangePlace place_of(const effects::Exchange& exchange);
 
 /// Heat flow c(u) G θ between unknowns, or from them to the hall where G 1 != 0.
 template <class Matrix>
 struct Exchange {
   std::string name;
+  ExchangePlace place = {};
   Matrix matrix;            ///< G, symmetric, in [m^2] for films and joints and [1] for links
   Eigen::VectorXd to_hall;  ///< g = G 1 of the finite-element model (projected in a reduced one)
   double hall_sum = 0.0;    ///< 1'G 1: surface exposed to the hall [m^2]
@@ -57,13 +68,24 @@ struct Exchange {
   Eigen::VectorXd flow = {};
   Eigen::VectorXd offset = {};  ///< o: ∫ N_i (T_air(z) - T_hall) dA where the hall is stratified, else empty [m^2 K]
   double offset_sum = 0.0;      ///< 1'o of the finite-element model
+  Eigen::VectorXd medium = {};  ///< of an exchange with a medium: G 1, whose multiple by the medium's temperature is o; else empty
+  double medium_sum = 0.0;      ///< 1'G 1
   bool prescribes = false;      ///< it stands for a prescribed temperature (hold_by_exchanges())
 
   [[nodiscard]] bool reaches_hall() const { return hall_sum != 0.0; }
+  /// To the hall or to a medium that is held at its temperature.
+  [[nodiscard]] bool leaves_machine() const { return hall_sum != 0.0 || medium_sum != 0.0; }
+  /// Of an exchange with a medium: the temperature that the medium is held at, over the reference [K].
+  void hold_medium(double theta_K) {
+    offset = theta_K * medium;
+    offset_sum = theta_K * medium_sum;
+  }
 };
 
 /// Mean temperature that laws and thermostats look at: weights'θ + hall_share θ_hall + offset + the reference temperature.
 struct Probe {
+  effects::Body body = {};
+  std::string before = {};  ///< surface whose air it is, where the hall is stratified; else ""
   Eigen::VectorXd weights;
   double hall_share = 0.0;
   double offset_K = 0.0;  ///< of stratified air before a surface above that at the hall's thermometer, mean

@@ -20,10 +20,11 @@ effects::HeatBalance balance() {
   effects::HeatBalance b;
   const auto constant = [](double value) { return effects::Law([value](const effects::Inputs&) { return value; }); };
   b.heats = {{"bearing_friction a", effects::node("a"), constant(10.0)}, {"spare a", effects::node("a"), constant(0.0)}};
-  b.films = {
-      {"convection s", "s", constant(8.0)}, {"forced_convection s", "s", constant(5.0)}, {"spare s", "s", constant(0.0)}};
-  b.links = {{"link a - hall", effects::node("a"), constant(4.0)}};
-  b.contacts = {{"contact a/b", "a/b", constant(2000.0)}};
+  b.exchanges.push_back(effects::make_film("convection s", "s", constant(8.0)));
+  b.exchanges.push_back(effects::make_film("forced_convection s", "s", constant(5.0)));
+  b.exchanges.push_back(effects::make_film("spare s", "s", constant(0.0)));
+  b.exchanges.push_back(effects::make_link("link a - hall", effects::node("a"), constant(4.0)));
+  b.exchanges.push_back(effects::make_contact("contact a/b", "a/b", constant(2000.0)));
   return b;
 }
 
@@ -59,20 +60,20 @@ TEST(BlindHeat, FrictionByExponentAndByTemperature) {
 
 TEST(BlindHeat, FilmsJointsAndLinks) {
   const double ln2 = std::log(2.0);
-  EXPECT_NEAR(with({.what = Hide::kFilmFactor, .where = "s", .size = ln2}).films[0].htc_W_m2K(at(0.0)), 16.0, 1e-12);
-  EXPECT_NEAR(with({.what = Hide::kForcedFactor, .where = "s", .size = -ln2}).films[1].htc_W_m2K(at(0.0)), 2.5, 1e-12);
-  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a/b", .size = ln2}).contacts[0].conductance_W_m2K(at(0.0)),
+  EXPECT_NEAR(with({.what = Hide::kFilmFactor, .where = "s", .size = ln2}).exchanges[0].coefficient(at(0.0)), 16.0, 1e-12);
+  EXPECT_NEAR(with({.what = Hide::kForcedFactor, .where = "s", .size = -ln2}).exchanges[1].coefficient(at(0.0)), 2.5, 1e-12);
+  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a/b", .size = ln2}).exchanges[0].coefficient(at(0.0)),
               4000.0, 1e-9);
-  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a,hall", .size = ln2}).links[0].conductance_W_K(at(0.0)), 8.0,
+  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a,hall", .size = ln2}).exchanges[0].coefficient(at(0.0)), 8.0,
               1e-12);
   const auto loosens = with({.what = Hide::kContactLater, .where = "a,hall", .size = -ln2, .time_s = 600.0});
-  EXPECT_DOUBLE_EQ(loosens.links[0].conductance_W_K(at(0.0, 599.0)), 4.0);
-  EXPECT_NEAR(loosens.links[0].conductance_W_K(at(0.0, 600.0)), 2.0, 1e-12);
+  EXPECT_DOUBLE_EQ(loosens.exchanges[0].coefficient(at(0.0, 599.0)), 4.0);
+  EXPECT_NEAR(loosens.exchanges[0].coefficient(at(0.0, 600.0)), 2.0, 1e-12);
   const auto draught = with({.what = Hide::kDraught, .where = "s", .size = 20.0, .time_s = 600.0});
-  EXPECT_DOUBLE_EQ(draught.films[2].htc_W_m2K(at(0.0, 599.0)), 0.0);
-  EXPECT_DOUBLE_EQ(draught.films[2].htc_W_m2K(at(0.0, 600.0)), 20.0);
+  EXPECT_DOUBLE_EQ(draught.exchanges[2].coefficient(at(0.0, 599.0)), 0.0);
+  EXPECT_DOUBLE_EQ(draught.exchanges[2].coefficient(at(0.0, 600.0)), 20.0);
   const auto grows = with({.what = Hide::kForcedNew, .where = "s", .size = 30.0, .at_speed_rpm = 4000.0, .exponent = 0.5});
-  EXPECT_DOUBLE_EQ(grows.films[2].htc_W_m2K(at(1000.0)), 15.0);  // 30 x (1/4)^0.5
+  EXPECT_DOUBLE_EQ(grows.exchanges[2].coefficient(at(1000.0)), 15.0);  // 30 x (1/4)^0.5
   EXPECT_DOUBLE_EQ(with({.what = Hide::kStratification, .where = "hall", .size = 1.5}).stratifications.at(0).gradient_K_m,
                    1.5);
 }

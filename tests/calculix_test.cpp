@@ -43,7 +43,7 @@ FullSystem system_of(const mesh::Mesh& mesh, const std::vector<std::string>& fil
   effects::HeatBalance balance;
   balance.heats.push_back({"heat", effects::region("head"),
                            [](const effects::Inputs& u) { return u.drive.speed_rpm > 0.0 ? kHeadPower_W : 0.0; }});
-  for (const std::string& surface : filmed) balance.films.push_back(fixtures::film(surface, kHtc_W_m2K));
+  for (const std::string& surface : filmed) balance.exchanges.push_back(fixtures::film(surface, kHtc_W_m2K));
   balance.fixed.push_back(fixtures::fixed_at(effects::surface("bed_z0"), 293.15));
   return assemble_heat(mesh, materials(), balance);
 }

@@ -70,7 +70,7 @@ constexpr std::array kFourier = {0.1, 0.3, 1.0};
 template <class Exact>
 double cooling_error_K(const mesh::Mesh& mesh, Exact exact_K) {
   effects::HeatBalance balance;
-  balance.films.push_back(film("skin", kHtc_W_m2K));
+  balance.exchanges.push_back(film("skin", kHtc_W_m2K));
   FullSystem system = assemble_heat(mesh, steel_for(mesh), balance);
   fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0, 0, 0}), fixtures::node_at(mesh, {kRadius_m, 0, 0})});
   std::vector<double> times_s;
@@ -170,7 +170,8 @@ TEST_P(HollowCylinder, BetweenTwoFilmsConvergesToTheLogarithm) {
     mesh::Mesh mesh;
     fixtures::add_quarter_ring(mesh, r_i, r_o, 0.03 / n, n, 2 * n, 1, GetParam().shape, "body", "");
     effects::HeatBalance balance;
-    balance.films = {film("inner", h_i, "oil"), film("outer", h_o)};
+    balance.exchanges.push_back(film("inner", h_i, "oil"));
+  balance.exchanges.push_back(film("outer", h_o));
     balance.nodes.push_back({"oil", 1.0});
     balance.fixed.push_back(fixed_at(effects::node("oil"), 293.15 + 60.0));
     const FullSystem system = assemble_heat(mesh, steel_for(mesh), balance);
@@ -208,8 +209,8 @@ TEST_P(Sleeve, PassesOnAllHeatAndJumpsByTheClosedForm) {
     fixtures::add_quarter_ring(mesh, r_i, r_o, height_m, 2 * n, 3 * n, 1, GetParam().shape, "sleeve", "sleeve_");
     mesh.joints.push_back({"fit", "shaft_skin", "sleeve_inner"});
     effects::HeatBalance balance;
-    balance.contacts.push_back({"contact", "fit", fixtures::constant(contact_W_m2K)});
-    balance.films.push_back(film("sleeve_outer", h_o));
+    balance.exchanges.push_back(effects::make_contact("contact", "fit", fixtures::constant(contact_W_m2K)));
+    balance.exchanges.push_back(film("sleeve_outer", h_o));
     FullSystem system = assemble_heat(mesh, steel_for(mesh), balance);
     Eigen::VectorXd in_shaft = Eigen::VectorXd::Zero(system.size());
     in_shaft.head(n_shaft) = fixtures::volume_load(mesh, [](const auto&) { return 1.0; }).head(n_shaft);

@@ -25,9 +25,9 @@ TEST(Coolant, PassageFollowsItsNumberOfTransferUnits) {
   // 6 L/min of 3800 J/(L K) carry 380 W/K; a passage of 380 W/K has one transfer unit: 380 (1 - 1/e) = 240.206 W/K.
   const effects::HeatBalance b = fixtures::balance_of(
       {"{type: coolant, region: spindle, tank: tank, flow: 6 L/min, passage_conductance: 380 W/K, volume: 20 L}"});
-  EXPECT_NEAR(b.links.at(0).conductance_W_K({}), 380.0 * (1.0 - std::exp(-1.0)), 1e-9);
-  EXPECT_EQ(b.links.at(0).body, effects::region("spindle"));
-  EXPECT_EQ(b.links.at(0).surrounding, "tank");
+  EXPECT_NEAR(b.exchanges.at(0).coefficient({}), 380.0 * (1.0 - std::exp(-1.0)), 1e-9);
+  EXPECT_EQ(b.exchanges.at(0).body, effects::region("spindle"));
+  EXPECT_EQ(b.exchanges.at(0).surrounding, "tank");
   EXPECT_NEAR(b.nodes.at(0).capacity_J_K, 76e3, 1e-9);
   EXPECT_TRUE(b.thermostats.empty());  // no chiller
 }
@@ -49,11 +49,11 @@ TEST(Coolant, RestsWithTheSpindleWhereToldButTheTankGoesOnLosing) {
       {"{type: coolant, region: s, tank: t, flow: 6 L/min, passage_conductance: 380 W/K, volume: 20 L, pump_power: 100 W, "
        "tank_exchange: 5 W/K, runs: while_spindle_turns}"});
   const effects::Inputs turning{.drive = {.speed_rpm = 1.0}};
-  EXPECT_EQ(b.links.at(0).conductance_W_K({}), 0.0);
-  EXPECT_GT(b.links.at(0).conductance_W_K(turning), 240.0);
+  EXPECT_EQ(b.exchanges.at(0).coefficient({}), 0.0);
+  EXPECT_GT(b.exchanges.at(0).coefficient(turning), 240.0);
   EXPECT_EQ(b.heats.at(0).power_W({}), 0.0);
   EXPECT_EQ(b.heats.at(0).power_W(turning), 100.0);
-  EXPECT_EQ(b.links.at(1).conductance_W_K({}), 5.0);
+  EXPECT_EQ(b.exchanges.at(1).coefficient({}), 5.0);
 }
 
 /// 38 kJ/K of coolant, heated by 500 W, cooled by 1500 W from 26 degC down to 24 degC; it starts at 20 degC.

@@ -149,12 +149,12 @@ TEST(Cutting, GivesItsShare) {
 // --- films, joints, windows -------------------------------------------------------------------------------------
 
 TEST(NaturalConvection, LooksAtTheSurfaceAndItsSurrounding) {
-  const Film film =
+  const Exchange film =
       balance_of("{type: natural_convection, surface: s, orientation: vertical, length: 710 mm, surrounding: air}")
-          .films.at(0);
-  ASSERT_EQ(film.htc_W_m2K.probes, (std::vector<Body>{surface("s"), node("air")}));
+          .exchanges.at(0);
+  ASSERT_EQ(film.coefficient.probes, (std::vector<Body>{surface("s"), node("air")}));
   EXPECT_EQ(film.surrounding, "air");
-  EXPECT_NEAR(film.htc_W_m2K({.drive = {}, .probe_K = {505.15, 296.15}}), 7.0,
+  EXPECT_NEAR(film.coefficient({.drive = {}, .probe_K = {505.15, 296.15}}), 7.0,
               0.07);  // as film_formulas_test: the textbook's rounding
 }
 
@@ -163,17 +163,17 @@ TEST(Joints, ConductanceOverPressureIsLinearBetweenRows) {
       "{type: contact, joint: a/b, conductance_over_pressure: [[0 MPa, 500 W/(m^2 K)], [1 MPa, 3000 W/(m^2 K)], [4 MPa, "
       "6000 "
       "W/(m^2 K)]], pressure: ";
-  EXPECT_NEAR(balance_of(joint + "0.5 MPa}").contacts.at(0).conductance_W_m2K({}), 1750.0, 1e-9);
-  EXPECT_NEAR(balance_of(joint + "2 MPa}").contacts.at(0).conductance_W_m2K({}), 4000.0, 1e-9);
-  EXPECT_NEAR(balance_of(joint + "4 MPa}").contacts.at(0).conductance_W_m2K({}), 6000.0, 1e-9);
+  EXPECT_NEAR(balance_of(joint + "0.5 MPa}").exchanges.at(0).coefficient({}), 1750.0, 1e-9);
+  EXPECT_NEAR(balance_of(joint + "2 MPa}").exchanges.at(0).coefficient({}), 4000.0, 1e-9);
+  EXPECT_NEAR(balance_of(joint + "4 MPa}").exchanges.at(0).coefficient({}), 6000.0, 1e-9);
 }
 
 TEST(Joints, AirGapConductsAtRestAndMoreWithSpeed) {
   // Air at 300 K: k = 26.3e-3, nu = 15.89e-6. At rest k / gap = 26.3 W/(m^2 K). 3000 rpm: Ta = 98696 * 0.0505 * 1e-9 /
   // (15.89e-6)^2 = 19739.9; Nu = 0.409 * 19739.9^0.241 = 4.4351; h = 4.4351 * 26.3e-3 / 2e-3 = 58.32 W/(m^2 K).
   const Law h = balance_of("{type: air_gap, joint: rotor/stator, diameter: 100 mm, gap: 1 mm, air: 300 K}")
-                    .contacts.at(0)
-                    .conductance_W_m2K;
+                    .exchanges.at(0)
+                    .coefficient;
   EXPECT_NEAR(h({}), 26.3, 1e-10);
   EXPECT_NEAR(h({.drive = {.speed_rpm = 3000.0}}), 58.32, 0.01);
   EXPECT_THROW((void)h({.drive = {.speed_rpm = 1e5}}), RangeError);  // Ta = 2.2e7
@@ -182,7 +182,7 @@ TEST(Joints, AirGapConductsAtRestAndMoreWithSpeed) {
 TEST(Windows, BeginInclusivelyEndExclusivelyAndStopTheIntegrator) {
   const HeatBalance b = balance_of("{type: convection, surface: door, film: 40 W/(m^2 K), from: 10 min, until: 0.5 h}");
   EXPECT_EQ(b.change_times_s, (std::vector<double>{600.0, 1800.0}));
-  const Law& htc = b.films.at(0).htc_W_m2K;
+  const Law& htc = b.exchanges.at(0).coefficient;
   EXPECT_EQ(htc({.drive = {}, .time_s = 599.0}), 0.0);
   EXPECT_EQ(htc({.drive = {}, .time_s = 600.0}), 40.0);
   EXPECT_EQ(htc({.drive = {}, .time_s = 1799.0}), 40.0);
@@ -195,10 +195,10 @@ TEST(Windows, BeginInclusivelyEndExclusivelyAndStopTheIntegrator) {
 
 TEST(Windows, JointsAndLinksHaveThem) {
   const Law joint =
-      balance_of("{type: contact, joint: a/b, conductance: 2000 W/(m^2 K), until: 60 s}").contacts.at(0).conductance_W_m2K;
+      balance_of("{type: contact, joint: a/b, conductance: 2000 W/(m^2 K), until: 60 s}").exchanges.at(0).coefficient;
   EXPECT_EQ(joint({.drive = {}, .time_s = 59.0}), 2000.0);
   EXPECT_EQ(joint({.drive = {}, .time_s = 60.0}), 0.0);
-  const Law link = balance_of("{type: link, node: n, to: hall, conductance: 3 W/K, from: 60 s}").links.at(0).conductance_W_K;
+  const Law link = balance_of("{type: link, node: n, to: hall, conductance: 3 W/K, from: 60 s}").exchanges.at(0).coefficient;
   EXPECT_EQ(link({.drive = {}, .time_s = 59.0}), 0.0);
   EXPECT_EQ(link({.drive = {}, .time_s = 60.0}), 3.0);
 }

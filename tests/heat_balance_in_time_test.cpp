@@ -30,11 +30,14 @@ effects::HeatBalance everything_linear() {
   balance.heats.push_back(
       {"feed", effects::region("b"), [](const effects::Inputs& u) { return 500.0 * u.drive.feed_m_s[1]; }});
   const auto grows = [](const effects::Inputs& u) { return 5.0 + 0.02 * u.drive.speed_rpm; };
-  balance.films = {
-      {"nose", "a.z0", grows, "air"}, {"side", "a.y1", grows, "hall"}, film("b.y1", 30.0), film("b.y0", 40.0, "oil")};
-  balance.contacts.push_back({"contact", "a/b", constant(1500.0)});
+  balance.exchanges.push_back(effects::make_film("nose", "a.z0", grows, "air"));
+  balance.exchanges.push_back(effects::make_film("side", "a.y1", grows, "hall"));
+  balance.exchanges.push_back(film("b.y1", 30.0));
+  balance.exchanges.push_back(film("b.y0", 40.0, "oil"));
+  balance.exchanges.push_back(effects::make_contact("contact", "a/b", constant(1500.0)));
   balance.nodes = {{"air", 300.0}, {"oil", 5000.0}};
-  balance.links = {{"air", effects::node("air"), constant(2.0)}, {"duct", effects::region("b"), constant(0.7), "air"}};
+  balance.exchanges.push_back(effects::make_link("air", effects::node("air"), constant(2.0)));
+  balance.exchanges.push_back(effects::make_link("duct", effects::region("b"), constant(0.7), "air"));
   balance.fixed = {{"foot", effects::surface("b.x1"), {{0, 3000, 6000}, {293.15, 295.15, 290.15}}, false},
                    {"oil", effects::node("oil"), {{0, 500, 501, 7000}, {293.15, 293.15, 303.15, 299.15}}, false},
                    {"frame", effects::surface("a.x0"), {}, true}};
@@ -130,7 +133,7 @@ TEST(Pulses, OfAPrescribedTemperatureWithinHoursOfRestAreFollowed) {
   // C T' = G (T_oil - T). Response to a ramp of slope s: r(t) = s (t - tau + tau e^(-t/tau)), tau = 200 s.
   effects::HeatBalance balance;
   balance.nodes = {{"oil", 1.0}, {"lump", 2000.0}};
-  balance.links.push_back({"pipe", effects::node("lump"), constant(10.0), "oil"});
+  balance.exchanges.push_back(effects::make_link("pipe", effects::node("lump"), constant(10.0), "oil"));
   balance.fixed.push_back({"oil",
                            effects::node("oil"),
                            {{0, kHalf_s, kHalf_s + 1, kHalf_s + 29, kHalf_s + 30, 2 * kHalf_s},

@@ -38,9 +38,9 @@ inline constexpr std::array kAllShapes = {mesh::CellShape::kTet4,  mesh::CellSha
   }
 }
 
-[[nodiscard]] inline effects::Film film(const std::string& surface, double htc_W_m2K,
+[[nodiscard]] inline effects::Exchange film(const std::string& surface, double htc_W_m2K,
                                         const std::string& surrounding = effects::kHallName) {
-  return {"film " + surface, surface, constant(htc_W_m2K), surrounding};
+  return effects::make_film("film " + surface, surface, constant(htc_W_m2K), surrounding);
 }
 
 /// A surface or node at a constant absolute temperature.

@@ -19,8 +19,8 @@ using std::numbers::pi;
 
 const TimeSeries kStillHall{{0.0}, {0.0}};
 
-effects::Film film(const std::string& surface, double htc_W_m2K, const std::string& surrounding = "hall") {
-  return {"film " + surface, surface, fixtures::constant(htc_W_m2K), surrounding};
+effects::Exchange film(const std::string& surface, double htc_W_m2K, const std::string& surrounding = "hall") {
+  return effects::make_film("film " + surface, surface, fixtures::constant(htc_W_m2K), surrounding);
 }
 
 /// Runs at standstill and returns the outputs at the end.
@@ -38,7 +38,7 @@ TEST(SteadySlab, HeatedEvenlyIsAParabola) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.2, 0.05, 0.05}, .n = {4, 1, 1}});
   effects::HeatBalance balance;
   balance.heats.push_back({"heat", effects::region("body"), fixtures::constant(5e4 * 0.2 * 0.05 * 0.05)});
-  balance.films.push_back(film("x1", 25.0));
+  balance.exchanges.push_back(film("x1", 25.0));
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   const Eigen::VectorXd t = fixtures::steady(system, {.drive = {.speed_rpm = 0.0}, .hall_K = 3.0});
   const double k = fixtures::steel().conductivity_W_mK;
@@ -59,7 +59,7 @@ double manufactured_error_K(const mesh::Mesh& mesh, const std::vector<std::strin
     return 20.0 * std::cos(mu * x[0]) * std::cos(pi * x[1]) * std::cos(pi * x[2]);
   };
   effects::HeatBalance balance;
-  for (const std::string& surface : film_surfaces) balance.films.push_back(film(surface, kBiot * k));
+  for (const std::string& surface : film_surfaces) balance.exchanges.push_back(film(surface, kBiot * k));
   FullSystem system = assemble_heat(mesh, RegionMaterials(mesh.regions.size(), fixtures::steel()), balance);
   const auto source = [&](const Eigen::Vector3d& x) { return k * (mu * mu + 2 * pi * pi) * exact(x); };
   system.sources.push_back({"manufactured", fixtures::volume_load(mesh, source), fixtures::constant(1.0)});
@@ -174,7 +174,7 @@ double decay_error(CellShape shape, int n) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {1, 1.0 / n, 1.0 / n}, .n = {n, 1, 1}, .shape = shape});
   const Material steel = fixtures::steel();
   effects::HeatBalance balance;
-  balance.films.push_back(film("x1", kBiot * steel.conductivity_W_mK));
+  balance.exchanges.push_back(film("x1", kBiot * steel.conductivity_W_mK));
   const FullSystem system = assemble_heat(mesh, {steel}, balance);
   const double mu = fixtures::slab_root(kBiot, 0);
   const double rate_1_s = steel.conductivity_W_mK / (steel.density_kg_m3 * steel.heat_capacity_J_kgK) * mu * mu;
@@ -217,7 +217,7 @@ TEST(TransientPlate, HolmanExample45) {
 
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {half_m, 0.002, 0.002}, .n = {16, 1, 1}});
   effects::HeatBalance balance;
-  balance.films.push_back(film("x1", htc));
+  balance.exchanges.push_back(film("x1", htc));
   FullSystem system = assemble_heat(mesh, {{2700, k, 900, 70e9, 0.3, 23e-6, "Holman"}}, balance);
   fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {x_m, 0, 0})});
   const Eigen::VectorXd t = after(system, time_s, Eigen::VectorXd::Constant(system.size(), 130.0), 1e-6);
@@ -251,8 +251,9 @@ TEST(TwoLumps, ExchangeHeatLikeTwoCoupledExponentials) {
                                               {{0.1, 0, 0}, {0.2, 0.1, 0.1}, {1, 1, 1}, CellShape::kTet10}, "a.x1", "b.x0");
   effects::HeatBalance balance;
   balance.heats.push_back({"heat", effects::region("a"), fixtures::constant(5.0)});
-  balance.contacts.push_back({"contact", "a/b", fixtures::constant(10.0)});
-  balance.films = {film("a.x0", 3.0), film("b.x1", 8.0)};
+  balance.exchanges.push_back(effects::make_contact("contact", "a/b", fixtures::constant(10.0)));
+  balance.exchanges.push_back(film("a.x0", 3.0));
+  balance.exchanges.push_back(film("b.x1", 8.0));
   FullSystem system = assemble_heat(mesh, {fixtures::lump(), fixtures::lump()}, balance);
   fixtures::observe_unknowns(system, {0, mesh.n_nodes() - 1});
   Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
@@ -273,9 +274,10 @@ TEST(AirNode, IsABodyBetweenFilmAndHall) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {1, 1, 1}});
   effects::HeatBalance balance;
   balance.heats.push_back({"heat", effects::region("body"), fixtures::constant(1.0)});
-  balance.films = {film("x1", 5.0, "air"), film("y0", 2.0)};
+  balance.exchanges.push_back(film("x1", 5.0, "air"));
+  balance.exchanges.push_back(film("y0", 2.0));
   balance.nodes.push_back({"air", 500.0});
-  balance.links.push_back({"air_node " + std::string("air"), effects::node("air"), fixtures::constant(0.04)});
+  balance.exchanges.push_back(effects::make_link("air_node " + std::string("air"), effects::node("air"), fixtures::constant(0.04)));
   FullSystem system = assemble_heat(mesh, {fixtures::lump()}, balance);
   ASSERT_EQ(system.size(), mesh.n_nodes() + 1);
   fixtures::observe_unknowns(system, {0, mesh.n_nodes()});
@@ -295,7 +297,7 @@ TEST(HeatMatrices, UniformTemperatureDrivesNoHeatAndMassIsTheHeatCapacity) {
        {CellShape::kTet4, CellShape::kTet10, CellShape::kHex8, CellShape::kHex20, CellShape::kWedge6, CellShape::kWedge15}) {
     const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.2, 0.3, 0.1}, .n = {2, 3, 2}, .shape = shape});
     effects::HeatBalance balance;
-    balance.films.push_back(film("z1", 25.0));
+    balance.exchanges.push_back(film("z1", 25.0));
     balance.heats.push_back({"heat", effects::region("body"), fixtures::constant(1.0)});
     const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
     const Eigen::VectorXd flow = system.conduction * system.ones;
@@ -310,12 +312,12 @@ TEST(HeatMatrices, UniformTemperatureDrivesNoHeatAndMassIsTheHeatCapacity) {
 TEST(AssembleHeat, RefusesNamesThatTheMeshHasNot) {
   const mesh::Mesh mesh = fixtures::box_mesh({});
   effects::HeatBalance balance;
-  balance.films.push_back(film("nowhere", 1.0));
+  balance.exchanges.push_back(film("nowhere", 1.0));
   EXPECT_THROW((void)assemble_heat(mesh, {fixtures::steel()}, balance), std::logic_error);
-  balance.films = {film("x0", 1.0, "no such node")};
+  balance.exchanges.push_back(film("x0", 1.0, "no such node"));
   EXPECT_THROW((void)assemble_heat(mesh, {fixtures::steel()}, balance), std::logic_error);
-  balance.films.clear();
-  balance.contacts.push_back({"c", "a/b", fixtures::constant(1.0)});
+  balance.exchanges.clear();
+  balance.exchanges.push_back(effects::make_contact("c", "a/b", fixtures::constant(1.0)));
   EXPECT_THROW((void)assemble_heat(mesh, {fixtures::steel()}, balance), std::logic_error);
 }
 

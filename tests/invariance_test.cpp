@@ -40,10 +40,12 @@ effects::HeatBalance load(bool radiates) {
   balance.heats.push_back(
       {"spindle", effects::region("b"), [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
   balance.heats.push_back({"motor", effects::surface("b.z1"), constant(40.0)});
-  balance.films = {film("a.x0", 10.0), film("b.x1", 25.0, "air"), film("b.y0", 8.0)};
-  balance.contacts.push_back({"contact", "a/b", constant(1500.0)});
+  balance.exchanges.push_back(film("a.x0", 10.0));
+  balance.exchanges.push_back(film("b.x1", 25.0, "air"));
+  balance.exchanges.push_back(film("b.y0", 8.0));
+  balance.exchanges.push_back(effects::make_contact("contact", "a/b", constant(1500.0)));
   balance.nodes.push_back({"air", 100.0});
-  balance.links.push_back({"air", effects::node("air"), constant(1.0)});
+  balance.exchanges.push_back(effects::make_link("air", effects::node("air"), constant(1.0)));
   balance.fixed.push_back({"foot", effects::surface("a.z0"), {{0, 500}, {293.15, 295.15}}, false});
   if (radiates) balance.radiations.push_back({"radiation", "b.y1", 0.9});
   return balance;
@@ -165,7 +167,8 @@ TEST_P(EachCell, SymmetricBodyUnderSymmetricLoadHasMirroredTemperaturesAndDispla
 
   effects::HeatBalance balance;
   balance.heats = {{"top", effects::surface("z1"), constant(120.0)}};
-  balance.films = {film("x1", 20.0), film("y0", 5.0)};  // x1: both outer sides
+  balance.exchanges.push_back(film("x1", 20.0));
+  balance.exchanges.push_back(film("y0", 5.0));  // x1: both outer sides
   balance.radiations = {{"front", "y1", 0.8}};
   balance.fixed = {fixtures::fixed_at(effects::surface("z0"), 294.15)};
   const RegionMaterials materials(1, fixtures::steel());

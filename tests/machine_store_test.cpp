@@ -295,7 +295,7 @@ TEST(MachineStore, GivesAMachineTheLawsOfWhoAsks) {
   const auto found = load_machine(store, key_of(other), balance_of(other));
   ASSERT_TRUE(found);
   ReducedMachine bound = kept;
-  bind_laws(bound.system, reducible(balance_of(other)));
+  solver::bind_laws(bound.system, effects::with_radiation_as_films(balance_of(other)));
   expect_same(run(other, *found), run(other, bound));
   EXPECT_NE(run(other, *found).outputs, run(s, kept).outputs);
 }

@@ -215,7 +215,8 @@ T4 t4_solution(CellShape shape, int n_per_0_2_m) {
   m.conductivity_W_mK = kT4Conductivity_W_mK;
   effects::HeatBalance balance;
   balance.fixed.push_back(fixed_at(effects::surface("y0"), 373.15));
-  balance.films = {film("x1", kT4Film_W_m2K), film("y1", kT4Film_W_m2K)};
+  balance.exchanges.push_back(film("x1", kT4Film_W_m2K));
+  balance.exchanges.push_back(film("y1", kT4Film_W_m2K));
   const FullSystem system = assemble_heat(mesh, {m}, balance, 273.15);
   Eigen::VectorXd t_C = steady_state(system, {}, Eigen::VectorXd::Zero(system.size()));
   return {std::move(mesh), std::move(t_C)};

@@ -53,7 +53,7 @@ TEST_P(NonObtuse, LinearMeshesOfCubesKeepTheBoundsInSteadyState) {
     return m;
   }();
   effects::HeatBalance balance;
-  balance.films.push_back(film("y1", 25.0));
+  balance.exchanges.push_back(film("y1", 25.0));
   balance.fixed = {fixed_at(effects::surface("z0"), 293.15)};
   const FullSystem cold = assemble_heat(mesh, {fixtures::steel()}, balance);
   for (int row = 0; row < cold.size(); ++row) {

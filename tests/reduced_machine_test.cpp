@@ -114,20 +114,20 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Reducible, MakesOfRadiationTheFilmThatIsExactAtOneTemperature) {
   effects::HeatBalance balance;
-  balance.films.push_back(fixtures::film("side", 10.0));
+  balance.exchanges.push_back(fixtures::film("side", 10.0));
   balance.radiations.push_back({"glow", "front", 0.8, "oven"});
-  const effects::HeatBalance with = reducible(balance);
+  const effects::HeatBalance with = effects::with_radiation_as_films(balance);
   EXPECT_TRUE(with.radiations.empty());
-  ASSERT_EQ(with.films.size(), 2u);
-  const effects::Film& film = with.films[1];  // after the others, as the full model counts them
+  ASSERT_EQ(with.exchanges.size(), 2u);
+  const effects::Exchange& film = with.exchanges[1];  // after the others, as the full model counts them
   EXPECT_EQ(film.name, "glow");
-  EXPECT_EQ(film.surface, "front");
+  EXPECT_EQ(film.body, effects::surface("front"));
   EXPECT_EQ(film.surrounding, "oven");
-  ASSERT_EQ(film.htc_W_m2K.probes.size(), 2u);
-  EXPECT_EQ(film.htc_W_m2K.probes[0], effects::surface("front"));
-  EXPECT_EQ(film.htc_W_m2K.probes[1], effects::node("oven"));
+  ASSERT_EQ(film.coefficient.probes.size(), 2u);
+  EXPECT_EQ(film.coefficient.probes[0], effects::surface("front"));
+  EXPECT_EQ(film.coefficient.probes[1], effects::node("oven"));
   for (const auto& [t_K, around_K] : std::vector<std::pair<double, double>>{{400, 300}, {250, 320}, {293.15, 293.16}}) {
-    const double flux = film.htc_W_m2K({.drive = {}, .probe_K = {t_K, around_K}}) * (t_K - around_K);
+    const double flux = film.coefficient({.drive = {}, .probe_K = {t_K, around_K}}) * (t_K - around_K);
     const double exact = 0.8 * 5.670374419e-8 * (std::pow(t_K, 4) - std::pow(around_K, 4));
     EXPECT_NEAR(flux, exact, 1e-9 * std::abs(exact) + 1e-10);  // rounding of T^4
   }
@@ -217,7 +217,7 @@ TEST(ReducedMachine, SpansLawsOfOtherNumbersWithinItsDemand) {
                                        with_numbers(9.3, 7.1, 55, 2345), with_numbers(14, 6, 40, 1300)}) {
     const Scenario s = read(numbers);
     solver::ReducedSystem bound = reduced.system;
-    bind_laws(bound, reducible(effects::heat_balance(s.machine->effects)));
+    solver::bind_laws(bound, effects::with_radiation_as_films(effects::heat_balance(s.machine->effects)));
     const Machine machine = machine_of(s);
     const double missed = difference_K(run_full(s, machine), run_small(s, bound, reduced.start), machine.system.outputs);
     RecordProperty("missed_K_" + numbers.effects[1], fixtures::text(missed));
@@ -238,14 +238,14 @@ TEST(BindLaws, GivesLawsSwitchesAndTimesAndRefusesAnotherBalance) {
   Both of = both(with(10, 20));
   EXPECT_EQ(of.reduced.system.change_times_s, (std::vector<double>{600.0, 1200.0}));
   const Scenario other = read(with(30, 50));
-  bind_laws(of.reduced.system, reducible(effects::heat_balance(other.machine->effects)));
+  solver::bind_laws(of.reduced.system, effects::with_radiation_as_films(effects::heat_balance(other.machine->effects)));
   EXPECT_EQ(of.reduced.system.change_times_s, (std::vector<double>{1800.0, 3000.0}));
   const Machine machine = machine_of(other);
   EXPECT_LE(
       difference_K(run_full(other, machine), run_small(other, of.reduced.system, of.reduced.start), machine.system.outputs),
       0.005);
   const Scenario fewer = read({});
-  EXPECT_THROW(bind_laws(of.reduced.system, reducible(effects::heat_balance(fewer.machine->effects))), std::logic_error);
+  EXPECT_THROW(solver::bind_laws(of.reduced.system, effects::with_radiation_as_films(effects::heat_balance(fewer.machine->effects))), std::logic_error);
 }
 
 TEST(ReducedMachine, HasTheFieldsOfTheFullModel) {

@@ -18,7 +18,7 @@ TEST(ThermalModes, OfASlabHaveTheTimeConstantsOfTheTranscendentalRoots) {
   const double length_m = 0.4, htc = 150.0;
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {length_m, 0.01, 0.01}, .n = {40, 1, 1}});
   effects::HeatBalance balance;
-  balance.films.push_back({"film", "x1", fixtures::constant(htc), "hall"});
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(htc), "hall"));
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   const ThermalModes modes = thermal_modes(system, {}, 5);
   ASSERT_EQ(modes.time_constant_s.size(), 5u);
@@ -57,11 +57,11 @@ TEST(ThermalModes, WithoutAWayOutForHeatAreRefused) {
 TEST(ThermalModes, WithOneInsulatedPartAreRefused) {
   const mesh::Mesh mesh = fixtures::two_boxes({}, {.low = {1, 0, 0}}, "a.x1", "b.x0");
   effects::HeatBalance balance;
-  balance.films.push_back({"film", "a.x0", fixtures::constant(10.0), "hall"});
-  balance.contacts.push_back({"contact", "a/b", fixtures::constant(0.0)});
+  balance.exchanges.push_back(effects::make_film("film", "a.x0", fixtures::constant(10.0), "hall"));
+  balance.exchanges.push_back(effects::make_contact("contact", "a/b", fixtures::constant(0.0)));
   const RegionMaterials materials = {fixtures::steel(), fixtures::steel()};
   EXPECT_THROW((void)steady_responses(assemble_heat(mesh, materials, balance), {}), SolveError);
-  balance.contacts[0].conductance_W_m2K = fixtures::constant(1.0);
+  balance.exchanges[0].coefficient = fixtures::constant(1.0);
   EXPECT_NO_THROW((void)steady_responses(assemble_heat(mesh, materials, balance), {}));
 }
 

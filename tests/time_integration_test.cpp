@@ -51,7 +51,7 @@ class PiecewiseLinearBar {
     effects::HeatBalance balance;
     balance.heats.push_back(
         {"pulses", effects::region("body"), [](const effects::Inputs& u) { return 0.05 * u.drive.speed_rpm; }});
-    balance.films.push_back(film("x1", 100.0));
+    balance.exchanges.push_back(film("x1", 100.0));
     balance.fixed.push_back(
         {"ramp", effects::surface("x0"), {{0, 1000, 3000, 4000}, {293.15, 303.15, 303.15, 288.15}}, false});
     system = assemble_heat(mesh, {fixtures::steel()}, balance);
@@ -135,7 +135,7 @@ TEST(LinearSystem, ErrorFollowsTheToleranceUnderRampsPulsesAndPrescribedTemperat
 TEST(LinearSystem, ErrorOfAnEigenmodeFollowsTheTolerance) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.2, 0.05, 0.05}, .n = {6, 1, 1}});
   effects::HeatBalance balance;
-  balance.films.push_back(film("x1", 200.0));
+  balance.exchanges.push_back(film("x1", 200.0));
   FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(fixtures::stiffness(system)),
                                                                         Eigen::MatrixXd(system.mass));

@@ -29,12 +29,12 @@ FullSystem machine(int n) {
       {"bearing", effects::region("a"), [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
   balance.heats.push_back({"pump", effects::region("b"), fixtures::constant(20.0)});
   const auto grows = [](const effects::Inputs& u) { return 5.0 + 0.02 * u.drive.speed_rpm; };
-  balance.films.push_back({"nose", "a.x0", grows, "air"});
-  balance.films.push_back({"side", "a.y1", grows, "hall"});
-  balance.films.push_back({"back", "b.x1", fixtures::constant(30.0), "hall"});
-  balance.contacts.push_back({"contact", "a/b", fixtures::constant(1500.0)});
+  balance.exchanges.push_back(effects::make_film("nose", "a.x0", grows, "air"));
+  balance.exchanges.push_back(effects::make_film("side", "a.y1", grows, "hall"));
+  balance.exchanges.push_back(effects::make_film("back", "b.x1", fixtures::constant(30.0), "hall"));
+  balance.exchanges.push_back(effects::make_contact("contact", "a/b", fixtures::constant(1500.0)));
   balance.nodes.push_back({"air", 300.0});
-  balance.links.push_back({"air_node " + std::string("air"), effects::node("air"), fixtures::constant(2.0)});
+  balance.exchanges.push_back(effects::make_link("air_node " + std::string("air"), effects::node("air"), fixtures::constant(2.0)));
   FullSystem system = assemble_heat(mesh, {fixtures::steel(), fixtures::steel()}, balance);
   fixtures::observe_unknowns(system, {0, mesh.n_nodes() - 1, mesh.n_nodes()});
   return system;
@@ -88,7 +88,7 @@ TEST(Multigrid, OfTheLongStepsGivesWhatTheDiagonalGivesInFewerIterations) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {18, 18, 18}, .shape = CellShape::kTet4});
   effects::HeatBalance balance;
   balance.heats.push_back({"motor", effects::surface("x0"), [](const effects::Inputs& u) { return u.drive.speed_rpm; }});
-  balance.films.push_back({"film", "x1", fixtures::constant(20.0), "hall"});
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "hall"));
   balance.fixed.push_back({"bed", effects::surface("z0"), {{0.0}, {0.0}}, true});
   FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   fixtures::observe_unknowns(system, {0, mesh.n_nodes() / 2, mesh.n_nodes() - 1});
@@ -137,7 +137,7 @@ TEST(Changes, AShortKnickOfTheHallIsNotSteppedOver) {
   // hA * integral = 900 J = 0.225 K less 1 % by the loss on the way; then it cools with tau = 4000 s.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {1, 1, 1}});
   effects::HeatBalance balance;
-  balance.films.push_back({"film", "x1", fixtures::constant(100.0), "hall"});
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(100.0), "hall"));
   FullSystem system = assemble_heat(mesh, {fixtures::lump()}, balance);
   fixtures::observe_unknowns(system, {0});
   const TimeSeries hall{{0, 14400, 14430, 14460, 28800}, {0, 0, 30, 0, 0}};
@@ -156,7 +156,7 @@ TEST(Changes, AShortKnickOfTheHallIsNotSteppedOver) {
 double error_K(double tolerance) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.2, 0.1, 0.1}, .n = {3, 1, 1}});
   effects::HeatBalance balance;
-  balance.films.push_back({"film", "x1", fixtures::constant(200.0), "hall"});
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(200.0), "hall"));
   FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   std::vector<int> all(system.size());
   for (int i = 0; i < system.size(); ++i) all[i] = i;

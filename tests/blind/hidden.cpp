@@ -254,28 +254,28 @@ void hide_in_heat(const Hidden& h, const Subject& s, const Cyclogram& drive, Hea
       return;
     }
     case Hide::kFilmFactor:
-      multiply(named(balance.films, "convection " + h.where).htc_W_m2K, std::exp(size));
+      multiply(named(balance.exchanges, "convection " + h.where).coefficient, std::exp(size));
       return;
     case Hide::kForcedFactor:
-      multiply(named(balance.films, "forced_convection " + h.where).htc_W_m2K, std::exp(size));
+      multiply(named(balance.exchanges, "forced_convection " + h.where).coefficient, std::exp(size));
       return;
     case Hide::kDraught:
-      named(balance.films, "spare " + h.where).htc_W_m2K =
+      named(balance.exchanges, "spare " + h.where).coefficient =
           Law([=](const Inputs& u) { return u.time_s >= from_s ? size : 0.0; });
       return;
     case Hide::kForcedNew:
-      named(balance.films, "spare " + h.where).htc_W_m2K =
+      named(balance.exchanges, "spare " + h.where).coefficient =
           Law([=](const Inputs& u) { return size * std::pow(u.drive.speed_rpm / n0, e); });
       return;
     case Hide::kContactFactor:
       if (h.where.find(',') == std::string::npos) {
-        multiply(named(balance.contacts, "contact " + h.where).conductance_W_m2K, std::exp(size));
+        multiply(named(balance.exchanges, "contact " + h.where).coefficient, std::exp(size));
       } else {
-        multiply(named(balance.links, link_name(h.where)).conductance_W_K, std::exp(size));
+        multiply(named(balance.exchanges, link_name(h.where)).coefficient, std::exp(size));
       }
       return;
     case Hide::kContactLater: {
-      Law& law = named(balance.links, link_name(h.where)).conductance_W_K;
+      Law& law = named(balance.exchanges, link_name(h.where)).coefficient;
       law.value = [inner = law.value, size, from_s](const Inputs& u) {
         return u.time_s >= from_s ? std::exp(size) * inner(u) : inner(u);
       };

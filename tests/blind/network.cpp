@@ -160,9 +160,7 @@ class Stepper {
 Laws laws_of(const effects::HeatBalance& balance) {
   Laws laws;
   for (const effects::HeatInput& h : balance.heats) laws.powers_W.push_back(h.power_W);
-  for (const effects::Film& f : balance.films) laws.coefficients.push_back(f.htc_W_m2K);
-  for (const effects::Link& l : balance.links) laws.coefficients.push_back(l.conductance_W_K);
-  for (const effects::Contact& c : balance.contacts) laws.coefficients.push_back(c.conductance_W_m2K);
+  for (const effects::Exchange& e : balance.exchanges) laws.coefficients.push_back(e.coefficient);
   for (const effects::Stratification& s : balance.stratifications) laws.gradient_K_m += s.gradient_K_m;
   return laws;
 }

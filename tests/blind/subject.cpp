@@ -173,8 +173,8 @@ Eigen::MatrixXd answers(const Subject& s, const FullNetwork& net, const effects:
     if (exchange.offset.size() > 0) inputs.push_back(exchange.offset);
   }
   const solver::FullSystem system = solver::assemble_heat(s.placed.mesh, s.placed.materials, balance, s.model.reference_K);
-  for (std::size_t e = balance.films.size() + balance.links.size(); e < system.exchanges.size(); ++e) {
-    inputs.push_back(system.exchanges[e].flow);
+  for (const auto& e : system.exchanges) {
+    if (e.place.body.kind == effects::BodyKind::kJoint) inputs.push_back(e.flow);
   }
   const std::vector<double> shifts_1_s = {1e-5, 1e-4, 4e-4, 1.5e-3, 6e-3, 3e-2};
   Eigen::MatrixXd columns(net.size(), static_cast<Eigen::Index>(inputs.size() * shifts_1_s.size()));
@@ -315,7 +315,9 @@ effects::HeatBalance balance_of(const Subject& s, const Values& values) {
   for (const std::string& name : s.placed.mesh.surfaces) {
     if (name.find('@') != std::string::npos) continue;  // a side of a joint
     balance.heats.push_back({"spare " + name, effects::surface(name), nothing});
-    balance.films.push_back({"spare " + name, name, nothing});
+    effects::HeatBalance spare;
+    spare.exchanges.push_back(effects::make_film("spare " + name, name, nothing));
+    balance.append(std::move(spare));
   }
   return balance;
 }

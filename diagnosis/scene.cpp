@@ -1,0 +1,85 @@
+#include "diagnosis/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftwright::diagnosis {
+namespace {
+
+/// What a part is made of: what scatters and may be wrong about it.
+effects::DoubtScene::Material material_of(const Twin& twin, const solver::BodyPart<Eigen::MatrixXd>& part) {
+  const scenarios::MachineModel& model = twin.augmented().model;
+  effects::DoubtScene::Material m;
+  m.body = twin.body_of(part.body);
+  m.conducts = part.conduction.cwiseAbs().maxCoeff() > 0.0;
+  m.stores = part.mass.cwiseAbs().maxCoeff() > 0.0;
+  for (std::size_t o = model.sensors.size(); o < static_cast<std::size_t>(part.outputs.cols()); ++o) {
+    if (!(part.outputs.col(static_cast<Eigen::Index>(o)).cwiseAbs().maxCoeff() > 0.0)) continue;
+    const std::size_t d = o - model.sensors.size();
+    // A sensitivity is a number of its own, but for a region that bends the mesh as well: that is one expansion.
+    const bool bends = m.body.kind == effects::BodyKind::kRegion &&
+                       (d >= model.displacements.size() || model.displacements[d].points);
+    if (bends) {
+      m.expands = true;
+    } else {
+      m.sensitivities.push_back(model.displacements[d].name);
+    }
+  }
+  return m;
+}
+
+}  // namespace
+
+double top_speed_rpm(const std::vector<MeasuredRun>& runs) {
+  double top_rpm = 1.0;
+  for (const MeasuredRun& run : runs) {
+    for (const auto& section : run.cyclogram.sections) top_rpm = std::max(top_rpm, section.drive.speed_rpm);
+  }
+  return top_rpm;
+}
+
+effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& runs) {
+  effects::DoubtScene s;
+  s.reference_K = twin.reference_K();
+  s.own = twin.as_written();
+  s.balance = twin.balance(s.own);
+  double turning_s = 0.0, turned = 0.0;
+  for (const MeasuredRun& run : runs) {
+    s.runs.push_back({run.name, run.time_s.back()});
+    for (const auto& section : run.cyclogram.sections) {
+      if (section.drive.speed_rpm > 0.0) turning_s += section.duration_s;
+      turned += section.duration_s * section.drive.speed_rpm;
+      for (double f : section.drive.feed_m_s) s.moves_axes = s.moves_axes || f > 0.0;
+    }
+    for (const MeasuredChannel& c : run.channels) {
+      if (c.unit == "K") {
+        if (std::find(s.sensors.begin(), s.sensors.end(), c.name) == s.sensors.end()) s.sensors.push_back(c.name);
+      } else if (std::none_of(s.displacements.begin(), s.displacements.end(),
+                              [&](const auto& d) { return d.name == c.name; })) {
+        s.displacements.push_back({c.name, c.unit == "rad"});
+      }
+    }
+  }
+  if (turning_s > 0.0) {  // a round number near the mean speed: where laws of speed are stated
+    const double mean_rpm = turned / turning_s, decade = std::pow(10.0, std::floor(std::log10(mean_rpm)));
+    s.typical_rpm = std::max(1.0, std::round(mean_rpm / decade)) * decade;
+  }
+  s.heat_W = 0.0;
+  const effects::Inputs top{.drive = {.speed_rpm = top_speed_rpm(runs)}};
+  for (const auto& h : s.balance.heats) {
+    if (h.power_W.probes.empty()) s.heat_W += std::abs(h.power_W(top));
+  }
+  const auto& system = twin.machine().system;
+  for (const auto& part : system.parts) {
+    const effects::Body body = twin.body_of(part.body);
+    s.materials.push_back(material_of(twin, part));
+    if (body.kind != effects::BodyKind::kSurface) s.bodies.push_back(body);
+  }
+  for (const auto& source : system.sources) {
+    const bool is_listed = std::find(s.surfaces.begin(), s.surfaces.end(), source.body.name) != s.surfaces.end();
+    if (source.body.kind == effects::BodyKind::kSurface && !is_listed) s.surfaces.push_back(source.body.name);
+  }
+  return s;
+}
+
+}  // namespace driftwright::diagnosis

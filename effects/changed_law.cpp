@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/doubt.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void change(const Effect& e, const Body& body, Law& law) {
+  const double factor = e["factor"], exponent = e["exponent"], n0_rpm = e["at_speed"];
+  const double decay_1_K = e["decay"], t0_K = e["at_temperature"];
+  const bool thins = decay_1_K != 0.0;
+  if (thins) law.probes.push_back(body);
+  law.value = [=, value = law.value, from_s = e.from_s, until_s = e.until_s, in = e.in](const Inputs& u) {
+    Inputs own;
+    const Inputs* inputs = &u;
+    if (thins) {  // the last probe is this one's
+      own = u;
+      own.probe_K.pop_back();
+      inputs = &own;
+    }
+    const double as_written = value(*inputs);
+    if (u.time_s < from_s || u.time_s >= until_s || !(in.empty() || u.run == in)) return as_written;
+    const double n = u.drive.speed_rpm / n0_rpm;
+    const double growth = n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0;
+    return factor * growth * as_written * (thins ? std::exp(-decay_1_K * (u.probe_K.back() - t0_K)) : 1.0);
+  };
+}
+
+void change_laws(const Effect& e, HeatBalance& balance) {
+  for (HeatInput& h : balance.heats) {
+    if (h.name == e.place) change(e, h.body, h.power_W);
+  }
+  for (Exchange& x : balance.exchanges) {
+    if (x.name == e.place) change(e, x.body, x.coefficient);
+  }
+  if (e.from_s > 0.0) balance.change_times_s.push_back(e.from_s);
+  if (e.until_s < kNever_s) balance.change_times_s.push_back(e.until_s);
+}
+
+Effect changed(const std::string& law) {
+  return make_effect("changed_law", Place::kLaw, law);
+}
+
+/// Another heat, growth with speed or decay of what heats a body.
+void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) {
+  std::vector<Effect> of_all, of_known;  // laws of the body; those that follow from the drive alone
+  double written_W = 0.0, low_W = 0.0, high_W = 0.0;
+  const auto power_W = [&](const HeatInput& h, double rpm) {
+    return h.power_W(Inputs{.drive = {.speed_rpm = rpm},
+                            .probe_K = std::vector<double>(h.power_W.probes.size(), s.reference_K + 10.0)});
+  };
+  const auto add = [](std::vector<Effect>& to, const std::string& law) {
+    if (std::none_of(to.begin(), to.end(), [&](const Effect& e) { return e.place == law; })) to.push_back(changed(law));
+  };
+  for (const HeatInput& h : s.balance.heats) {
+    if (!(h.body == body) || !h.power_W.thermostat.empty()) continue;
+    add(of_all, h.name);
+    low_W += power_W(h, 0.97 * s.typical_rpm);
+    high_W += power_W(h, 1.03 * s.typical_rpm);
+    if (!h.power_W.probes.empty()) continue;
+    add(of_known, h.name);
+    written_W += power_W(h, s.typical_rpm);
+  }
+  if (of_all.empty()) return;
+  if (written_W > 0.0) {
+    DoubtedNumber more = doubted("power", "W", s.unknown_heat_W(), 0.1 * s.unknown_heat_W());
+    more.low = -0.95 * written_W;
+    more.set = [written_W](std::span<Effect> added, double value) {
+      for (Effect& e : added) e.set("factor", 1.0 + value / written_W);
+    };
+    list.push_back({.finding = "heat_source",
+                    .where = body.name,
+                    .law = fmt::format("the law written, at {:.0f} rpm", s.typical_rpm),
+                    .added = of_known,
+                    .numbers = {more},
+                    .trial = more.step,
+                    .at_speed_rpm = s.typical_rpm});
+  }
+  for (Effect& e : of_all) {
+    e.set("at_speed", s.typical_rpm);
+    e.set("at_temperature", s.reference_K);
+  }
+  const double written = low_W > 0.0 && high_W > 0.0 ? std::log(high_W / low_W) / std::log(1.03 / 0.97) : 0.0;
+  Doubt friction{.finding = "friction_law", .where = body.name, .law = {}, .added = of_all, .numbers = {}};
+  if (written > 0.05) {
+    DoubtedNumber exponent = doubted("exponent", "1", 0.5, 0.05, written);
+    exponent.set = [written](std::span<Effect> added, double value) {
+      for (Effect& e : added) e.set("exponent", value - written);
+    };
+    friction.at_speed_rpm = s.typical_rpm;
+    friction.law = fmt::format("another growth with speed, the same at {:.0f} rpm", s.typical_rpm);
+    friction.numbers = {exponent};
+    list.push_back(friction);
+    friction.law = fmt::format("another heat and another growth with speed, at {:.0f} rpm", s.typical_rpm);
+    friction.numbers = {doubted_factor(), exponent};
+    friction.grid = {{0.0}, {0.4}, {-0.4}};
+    list.push_back(friction);
+  }
+  friction.law = "heat that falls as its body warms";
+  friction.at_speed_rpm = 0.0;
+  friction.numbers = {doubted("decay", "1/K", 0.02, 0.002)};
+  friction.trial = 0.01;
+  friction.grid = {{}};
+  list.push_back(friction);
+}
+
+/// Another coefficient of an exchange, in all records or in one from a time on.
+void doubt_exchange(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
+  const bool is_growth = finding == "forced_convection";
+  const std::string what = is_growth                                     ? "another growth of the film"
+                           : exchange.body.kind == BodyKind::kSurface ? "another film"
+                                                                       : "another conductance";
+  Doubt other{.finding = finding,
+              .where = where_of(exchange),
+              .law = what,
+              .added = {changed(exchange.name)},
+              .numbers = {doubted_factor()}};
+  list.push_back(other);
+  if (is_growth) return;
+  for (const DoubtScene::Run& run : s.runs) {
+    Doubt late = other;
+    late.law = what + " from a time on, in " + run.name;
+    late.added[0].in = run.name;
+    late.numbers.push_back(doubted_time("time", run.length_s, [](std::span<Effect> added, double value) {
+      added[0].from_s = std::max(1.0, value);
+    }));
+    late.trial = 0.3;
+    late.grid = time_grid(run.length_s, 8);
+    list.push_back(std::move(late));
+  }
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const Body& body : s.bodies) doubt_heat(s, body, list);
+  for (const Effect& e : s.own) {
+    if (e.kind->exchange_finding.empty()) continue;
+    for (const Exchange& x : heat_balance({e}).exchanges) doubt_exchange(s, e.kind->exchange_finding, x, list);
+  }
+  return list;
+}
+
+void check(const Effect& e, const ConfigMap& in) {
+  if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["decay"] == 0.0)
+    in.fail("factor", "nothing is changed; one of `factor`, `exponent`, `decay` is wanted");
+}
+
+}  // namespace
+
+EffectKind changed_law() {
+  return {.key = "changed_law",
+          .title = "another size, growth with speed or decay of what another effect does",
+          .law =
+              "c' = factor (n / at_speed)^exponent exp(-decay (T - at_temperature)) c, c: a power or a coefficient of another "
+              "effect, T of its own body; at standstill the exponent does nothing",
+          .places = {Place::kLaw},
+          .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
+                         {"exponent", "1", -5.0, 5.0, 0.0, "further growth with speed, beside the law's own"},
+                         {"at_speed", "rpm", 1.0, 1e6, 1000.0, "where that growth changes nothing"},
+                         {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
+                         {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"}},
+          .timing = Timing::kInTime,
+          .change_laws = change_laws,
+          .check = check,
+          .doubts = doubts};
+}
+
+}  // namespace driftwright::effects
