@@ -56,9 +56,12 @@ void scale(Exchange<Matrix>& exchange, double factor) {
 template <class Matrix>
 ThermalSystem<Matrix> with_factors(ThermalSystem<Matrix> system, const ModelFactors& factors) {
   check(system, factors);
-  for (std::size_t s = 0; s < system.sources.size(); ++s) system.sources[s].load *= at(factors.source, s) * factors.rate;
-  for (std::size_t e = 0; e < system.exchanges.size(); ++e)
-    scale(system.exchanges[e], at(factors.exchange, e) * factors.rate);
+  // `rate` comes last and by itself: fits print digits that hang on the last bit
+  for (std::size_t s = 0; s < system.sources.size(); ++s) (system.sources[s].load *= at(factors.source, s)) *= factors.rate;
+  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
+    scale(system.exchanges[e], at(factors.exchange, e));
+    scale(system.exchanges[e], factors.rate);
+  }
   for (std::size_t p = 0; p < system.parts.size(); ++p) {
     BodyPart<Matrix>& part = system.parts[p];
     const double conductivity = at(factors.conductivity, p), heat_capacity = at(factors.heat_capacity, p);
@@ -72,7 +75,7 @@ ThermalSystem<Matrix> with_factors(ThermalSystem<Matrix> system, const ModelFact
       part.outputs.col(o) *= expansion * at(factors.output, static_cast<std::size_t>(o));
     }
   }
-  system.conduction *= factors.conduction * factors.rate;
+  (system.conduction *= factors.conduction) *= factors.rate;
   for (std::size_t o = 0; o < factors.output.size(); ++o) {
     system.outputs.state.col(static_cast<Eigen::Index>(o)) *= factors.output[o];
     system.outputs.hall[static_cast<Eigen::Index>(o)] *= factors.output[o];
