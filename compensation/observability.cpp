@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
-#include "compensation/model_scatter.hpp"
+#include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::compensation {
@@ -48,13 +48,11 @@ Selection select_by_observability(const solver::ReducedSystem& system, const Eig
   if (nominal.cols() == 0)
     throw InputError(fmt::format("runs of fewer than {} rows tell nothing about sensors", kEvery + 1));
   std::vector<Eigen::MatrixXd> by_factor;  // each n_outputs x n_rows, per standard deviation of the factor
-  for (std::size_t f = 0; f < system.sources.size() + system.exchanges.size(); ++f) {
-    solver::ReducedSystem changed = system;
-    if (f < system.sources.size()) {
-      changed.sources[f].load *= 1.0 + kStep;
-    } else {
-      scale(changed.exchanges[f - system.sources.size()], 1.0 + kStep);
-    }
+  std::vector<double> factor(system.sources.size() + system.exchanges.size(), 1.0);
+  for (double& f : factor) {
+    f = 1.0 + kStep;
+    const solver::ReducedSystem changed = solver::with_factors(system, solver::flow_factors(system, factor));
+    f = 1.0;
     by_factor.push_back((outputs_of(changed, start, runs) - nominal) * (settings.factor / kStep));
   }
   std::vector<Eigen::Index> rows;  // candidates, then the drift

@@ -36,7 +36,7 @@ class Observer::Run {
     n_ = s_.size();
     n_sources_ = static_cast<Eigen::Index>(s_.sources.size());
     n_exchanges_ = static_cast<Eigen::Index>(s_.exchanges.size());
-    const Eigen::Index n_factors = n_sources_ + n_exchanges_ + 1, n_all = n_ + n_factors + 1;
+    const Eigen::Index n_factors = o_.factors_.mean.size(), n_all = n_ + n_factors + 1;
     scale_ = n_all - 2;
     zero_ = n_all - 1;
     const double first_s = run.readings.time_s.front(), hall_K = run.hall.at(first_s);
@@ -86,7 +86,7 @@ class Observer::Run {
   }
 
   [[nodiscard]] Belief factors() const {
-    const Eigen::Index n_factors = n_sources_ + n_exchanges_ + 1;
+    const Eigen::Index n_factors = o_.factors_.mean.size();
     return {belief_.mean.segment(n_, n_factors), belief_.covariance.block(n_, n_, n_factors, n_factors)};
   }
 
@@ -279,7 +279,7 @@ Observer::Observer(solver::ReducedSystem system, Eigen::VectorXd start, double s
   };
   for (const std::string& sensor : sensors_) sensor_output_.push_back(output(sensor));
   drift_output_ = output(drift_);
-  const auto n = static_cast<Eigen::Index>(system_.sources.size() + system_.exchanges.size());
+  const auto n = static_cast<Eigen::Index>(solver::flow_names(system_).size());
   factors_ = {Eigen::VectorXd::Zero(n + 1), Eigen::MatrixXd::Zero(n + 1, n + 1)};
   factors_.covariance.diagonal().head(n).setConstant(settings_.factor * settings_.factor);
   factors_.covariance(n, n) = settings_.scale * settings_.scale;
@@ -304,15 +304,22 @@ Observation Observer::follow(const ObservedRun& run) const {
 }
 
 std::vector<Observer::Factor> Observer::factors() const {
+  std::vector<std::string> names = solver::flow_names(system_);
+  names.push_back(drift_);
   std::vector<Factor> result;
-  const auto add = [&](const std::string& name) {
-    const auto i = static_cast<Eigen::Index>(result.size());
-    result.push_back({name, 1.0 + factors_.mean(i), std::sqrt(std::max(0.0, factors_.covariance(i, i)))});
-  };
-  for (const auto& s : system_.sources) add(s.name);
-  for (const auto& e : system_.exchanges) add(e.name);
-  add(drift_);
+  for (Eigen::Index i = 0; i < factors_.mean.size(); ++i) {
+    const double deviation = std::sqrt(std::max(0.0, factors_.covariance(i, i)));
+    result.push_back({std::move(names[static_cast<std::size_t>(i)]), 1.0 + factors_.mean(i), deviation});
+  }
   return result;
+}
+
+solver::ModelFactors Observer::model_factors() const {
+  const Eigen::VectorXd value = 1.0 + factors_.mean.array();
+  solver::ModelFactors f = solver::flow_factors(system_, {value.data(), value.data() + value.size() - 1});
+  f.output.assign(system_.outputs.name.size(), 1.0);
+  f.output[static_cast<std::size_t>(drift_output_)] = value(value.size() - 1);
+  return f;
 }
 
 }  // namespace driftwright::compensation

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "base/record.hpp"
-#include "solver/thermal_system.hpp"
+#include "solver/model_factors.hpp"
 
 namespace driftwright::compensation {
 
@@ -64,12 +64,14 @@ class Observer {
   /// The same, with what it has learned, reading other sensors.
   [[nodiscard]] Observer with_sensors(std::vector<std::string> sensors) const;
 
-  /// Factors on heat sources, exchanges, and the displacement's scale, with their standard deviations.
+  /// Factors on the model's heat flows (solver::flow_names()), then on the drift, with their standard deviations.
   struct Factor {
     std::string name;
     double value = 1.0, deviation = 0.0;
   };
   [[nodiscard]] std::vector<Factor> factors() const;
+  /// Their values as factors on the model: solver::with_factors() makes the machine that the filter believes in.
+  [[nodiscard]] solver::ModelFactors model_factors() const;
   [[nodiscard]] const std::vector<std::string>& sensors() const { return sensors_; }
 
  private:

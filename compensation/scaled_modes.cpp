@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/model_scatter.hpp"
+#include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::compensation {
@@ -16,27 +16,16 @@ namespace {
 constexpr double kPrior = 0.3;  // 1 sigma of a factor's logarithm: tests decide
 constexpr double kRowsEvery_s = 300.0;
 
-/// The model with factors: sources, hall, joints, rates, then displacements.
-solver::ReducedSystem scaled(const solver::ReducedSystem& model, const double* log_factor) {
-  solver::ReducedSystem s = model;
-  std::size_t next = 0;
-  for (auto& source : s.sources) source.load *= std::exp(log_factor[next++]);
-  const double hall = std::exp(log_factor[next++]), joints = std::exp(log_factor[next++]),
-               rates = std::exp(log_factor[next++]);
-  for (auto& e : s.exchanges) {
-    scale(e, e.reaches_hall() ? hall : joints);
-  }
-  // a faster machine is one of less capacity: all flows grow, levels stay
-  s.conduction *= rates;
-  for (auto& source : s.sources) source.load *= rates;
-  for (auto& e : s.exchanges) scale(e, rates);
-  for (Eigen::Index o = 0; o < s.outputs.state.cols(); ++o) {
-    if (s.outputs.unit[static_cast<std::size_t>(o)] == "K") continue;
-    const double f = std::exp(log_factor[next++]);
-    s.outputs.state.col(o) *= f;
-    s.outputs.hall[o] *= f;
-  }
-  return s;
+/// Factors from their logarithms: sources, hall, joints, rates, then displacements.
+solver::ModelFactors factors_of(const solver::ReducedSystem& model, const double* log_factor) {
+  const auto next = [&] { return std::exp(*log_factor++); };
+  solver::ModelFactors f;
+  for (std::size_t s = 0; s < model.sources.size(); ++s) f.source.push_back(next());
+  const double hall = next(), joints = next();
+  for (const auto& e : model.exchanges) f.exchange.push_back(e.reaches_hall() ? hall : joints);
+  f.rate = next();
+  for (const std::string& unit : model.outputs.unit) f.output.push_back(unit == "K" ? 1.0 : next());
+  return f;
 }
 
 }  // namespace
@@ -70,7 +59,7 @@ ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::Ve
   int n_residuals = n;
   for (const ThermalTest& t : rows) n_residuals += static_cast<int>(t.readings.size());
   const auto residual = [&](double const* const* parameters, double* out) {
-    const solver::ReducedSystem s = scaled(model, parameters[0]);
+    const solver::ReducedSystem s = solver::with_factors(model, factors_of(model, parameters[0]));
     const Eigen::VectorXd at_start = s.observe(start, hall_K);
     solver::Propagator propagator(s);
     Eigen::Index at = 0;
@@ -121,7 +110,7 @@ ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::Ve
     m.factors[k].low = std::exp(x[k] - 1.96 * sd);
     m.factors[k].high = std::exp(x[k] + 1.96 * sd);
   }
-  m.system = scaled(model, x.data());
+  m.system = solver::with_factors(model, factors_of(model, x.data()));
   m.start = start;
   return m;
 }

@@ -94,9 +94,7 @@ double worst_um(const std::vector<double>& drift_um, const ObservedRun& run) {
   return worst;
 }
 solver::ReducedSystem with_motor(double factor) {
-  solver::ReducedSystem s = three_parts();
-  s.sources[0].load *= factor;
-  return s;
+  return solver::with_factors(three_parts(), {.source = {factor, 1.0}});
 }
 
 TEST(Observer, WithTheExactModelFollowsExactlyWithAndWithoutSensors) {
@@ -285,8 +283,7 @@ TEST(Observer, TwiceAsDenseRowsTellTheSame) {
 
 // With films learnt off their values, K(u) has what the model has and heat over a step the rest: first order in the step.
 TEST(Observer, FactorsOnFilmsAreOfFirstOrderInTheStep) {
-  solver::ReducedSystem machine = three_parts();
-  for (auto& e : machine.exchanges) scale(e, 1.3);
+  const solver::ReducedSystem machine = solver::with_factors(three_parts(), {.exchange = {1.3, 1.3}});
   std::vector<ObservedRun> training = {run_of(machine, 60.0), run_of(machine, 60.0)};
   for (const double step_s : {60.0, 30.0, 15.0}) {
     Observer o = observer_of(
@@ -296,6 +293,31 @@ TEST(Observer, FactorsOnFilmsAreOfFirstOrderInTheStep) {
     EXPECT_NEAR(o.factors()[2].value, 1.3, 0.02);
     EXPECT_NEAR(o.factors()[3].value, 1.3, 0.02);
   }
+}
+
+// What the filter has learnt is a machine of its own: without sensors both run alike, but for films that act as heat over a step.
+TEST(Observer, BelievesInTheMachineThatItsFactorsMake) {
+  const solver::ReducedSystem machine =
+      solver::with_factors(three_parts(), {.source = {1.2, 0.9}, .exchange = {1.3, 0.8}, .output = {1.0, 1.0, 1.0, 1.1}});
+  std::vector<double> off_by_step_um;
+  for (const double step_s : {60.0, 30.0}) {
+    Observer o = observer_of(three_parts(), {"T1", "T2", "T3"},
+                             {.drift_um = 0.1, .model_um = 0.1, .factor_walk = 0.0, .longest_step_s = step_s});
+    o.learn(std::vector<ObservedRun>{run_of(machine), run_of(machine)});
+    std::vector<std::string> names;
+    for (const Observer::Factor& f : o.factors()) {
+      names.push_back(f.name);
+      EXPECT_GT(std::abs(f.value - 1.0), 0.03) << f.name;
+    }
+    EXPECT_THAT(names, ElementsAre("motor", "screw", "film 1", "film 3", "drift_y"));
+    const solver::ReducedSystem believed = solver::with_factors(three_parts(), o.model_factors());
+    const ObservedRun run = run_of(believed, 60.0, 7.0);
+    EXPECT_GT(worst_um(observer_of(three_parts(), {}).follow(run).drift_um, run), 5.0);
+    const double off_um = worst_um(o.with_sensors({}).follow(run).drift_um, run);
+    EXPECT_LT(off_um, 0.5);
+    off_by_step_um.push_back(off_um);
+  }
+  EXPECT_NEAR(off_by_step_um[1] / off_by_step_um[0], 0.5, 0.1);  // of first order in the step
 }
 
 TEST(Observer, RefusesWhatTheModelHasNot) {
@@ -350,6 +372,22 @@ TEST(Observability, LeavesTheVarianceOfTheClosedForm) {
   const Selection one = select_by_observability(s, Eigen::Vector3d::Zero(), runs, {"T1"}, "drift_y", 1,
                                                 {.reading_K = 0.3, .model_K = 0.4, .factor = sigma});
   EXPECT_THAT(one.reason, HasSubstr(fmt::format("{:.2f}, {:.2f} um", std::sqrt(alone / n), std::sqrt(with / n))));
+}
+
+// Results of studies hang on the order of the draws.
+TEST(Scattered, DrawsSourcesThenExchangesThenConductionThenRates) {
+  const solver::ReducedSystem s = three_parts(), a = scattered(s, 0.1, 4, true);
+  Random random(4, 2);
+  std::vector<double> factor;
+  for (int i = 0; i < 6; ++i) factor.push_back(std::exp(0.1 * random.normal()));
+  const solver::ReducedSystem expected = solver::with_factors(
+      s, {.source = {factor[0], factor[1]}, .exchange = {factor[2], factor[3]}, .conduction = factor[4], .rate = factor[5]});
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(a.sources[i].load, expected.sources[i].load);
+    EXPECT_EQ(a.exchanges[i].matrix, expected.exchanges[i].matrix);
+  }
+  EXPECT_EQ(a.conduction, expected.conduction);
+  EXPECT_EQ(a.mass, s.mass);
 }
 
 TEST(Scattered, MultipliesHeatAndFilmsAndIsTheSameForASeed) {

@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
+#include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::compensation {
@@ -85,6 +86,15 @@ TEST(ScaledModes, FindTheFactorsOfExactTests) {
   EXPECT_NEAR(factor(modes, "films and links to the hall").value, kFilms, 5e-3);
   EXPECT_NEAR(factor(modes, "rates of change").value, 1.0, 5e-3);
   EXPECT_NEAR(factor(modes, "displacement drift").value, 1.0, 5e-3);
+}
+
+TEST(ScaledModes, FindAMachineOfLessCapacityAndOtherSensitivity) {
+  const solver::ModelFactors truth{.output = {1.0, 1.0, 0.9}, .rate = 1.15};
+  const ScaledModes modes = fitted(tests_of(solver::with_factors(two_nodes(1.0, 1.0), truth), 0.0, 1));
+  EXPECT_NEAR(factor(modes, "rates of change").value, truth.rate, 5e-3);  // the prior, as above
+  EXPECT_NEAR(factor(modes, "displacement drift").value, 0.9, 5e-3);
+  EXPECT_NEAR(factor(modes, "heat of a").value, 1.0, 5e-3);
+  EXPECT_NEAR(factor(modes, "films and links to the hall").value, 1.0, 5e-3);
 }
 
 TEST(ScaledModes, OfNoisyTestsHoldTheTruthInTheirIntervals) {
