@@ -41,7 +41,7 @@ void calibrate(const CalibrateOptions& options) {
   progress.end();
   fmt::print("{}\n", numbers_text(d));
   if (!warning.empty()) fmt::print("warning: {}\n", warning);
-  fmt::print("{}results in {}: report.html, calibration.json, calibrated.yaml, calibrated.diff\n",
+  fmt::print("{}{}results in {}: report.html, calibration.json, calibrated.yaml, calibrated.diff\n", one_mesh_text(m),
              not_written_text("calibrated.yaml", calibrated), shown_path(folder.target()));
 }
 

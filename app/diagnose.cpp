@@ -63,7 +63,7 @@ void diagnose(const DiagnoseOptions& options) {
   folder.write_text("report.html", output::render_html(diagnosis_report(page, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}{}", summary_text(d), not_written_text("extended.yaml", extended));
+  fmt::print("{}{}{}", summary_text(d), one_mesh_text(m), not_written_text("extended.yaml", extended));
   fmt::print("results in {}: report.html, diagnosis.json, extended.yaml, extended.diff{}\n", shown_path(folder.target()),
              has_mesh ? ", residual_source.vtu" : "");
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "app/other_mesh.hpp"
 #include "app/results.hpp"
 #include "base/errors.hpp"
 #include "diagnosis/scatter.hpp"
@@ -15,23 +16,6 @@ namespace {
 
 /// Sizes, over the machine's own, of the mesh that tells what the mesh itself does. Not every size can be meshed: the first that can.
 constexpr double kOtherSizes[] = {1.4, 1.25, 1.6, 1.15, 0.85};
-
-/// The machine on another mesh, or none where there is no mesh of ours to change.
-std::optional<scenarios::Scenario> remeshed(const scenarios::Scenario& scenario, double size) {
-  scenarios::Scenario other = scenario;
-  if (auto* mill = std::get_if<mesh::KneeMill>(&other.machine->mesh)) {
-    mill->coarse_m *= size;
-    mill->fine_m *= size;
-  } else if (auto* imported = std::get_if<mesh::ImportedMesh>(&other.machine->mesh);
-             imported && imported->mesh_size_m > 0.0) {
-    imported->mesh_size_m *= size;  // a drawing
-    for (auto& [region, size_m] : imported->mesh_size_of_region_m) size_m *= size;
-  } else {
-    return std::nullopt;
-  }
-  other.machine->written += fmt::format("\nmesh size times {}\n", size);
-  return other;
-}
 
 /// Whether two files hold one record.
 bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun& b) {
@@ -88,11 +72,22 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
       diagnosis::focus(whole, m.runs, diagnosis::scatter(whole), diagnosis::candidates(whole, m.runs, {})));
   m.twin.emplace(m.fine->augmented, m.focus->machine, tolerances);
   for (double size : kOtherSizes) {
-    const auto other = remeshed(scenario, size);
-    if (!other) break;
+    OtherMesh mesh = other_mesh(scenario.machine->mesh, size);
+    m.why_one_mesh = mesh.why_none;
+    if (!mesh.recipe) break;
+    scenarios::Scenario other = scenario;
+    other.machine->mesh = std::move(*mesh.recipe);
+    other.machine->written += fmt::format("\nmesh size times {}\n", size);
+    const auto failed = [&](const std::exception& e) {
+      m.why_one_mesh = fmt::format("no other size can be meshed; of the last one tried: {}", e.what());
+    };
     try {
-      m.other = open(*other);
-    } catch (const SolveError&) {  // no mesh of that size
+      m.other = open(other);
+    } catch (const SolveError& e) {
+      failed(e);
+      continue;
+    } catch (const InputError& e) {  // too many cells
+      failed(e);
       continue;
     }
     m.on_other_mesh.emplace(m.other->augmented, m.other->machine, tolerances);
@@ -102,6 +97,11 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   m.how.floor_K = std::max(m.how.floor_K, m.focus->error_K);
   m.how.floor_m = std::max(m.how.floor_m, m.focus->error_m);
   return m;
+}
+
+std::string one_mesh_text(const MeasuredTwin& m) {
+  if (m.on_other_mesh || m.mesh.n_nodes() == 0) return "";
+  return fmt::format("note: there is no second mesh: {}; an error of the mesh can pass for a cause\n", m.why_one_mesh);
 }
 
 }  // namespace driftwright::app

@@ -23,13 +23,17 @@ struct MeasuredTwin {
   std::unique_ptr<TwinParts> fine, other;
   std::unique_ptr<diagnosis::Focus> focus;  ///< what the twin runs on
   std::optional<diagnosis::Twin> twin, on_other_mesh;
+  std::string why_one_mesh;         ///< where there is no other mesh
   diagnosis::DiagnosisOptions how;  ///< with the errors of the mesh and of the reduced model
 };
 
-/// Reads the records, meshes and reduces; a generated machine on a second mesh, too.
+/// Reads the records, meshes and reduces; a machine whose mesh has a size on a second mesh, too.
 /// @param measured  record CSVs
 /// @throws InputError  for what cannot be read or compared
 [[nodiscard]] MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
                                               const std::vector<std::string>& measured, Progress& progress);
+
+/// A line for the terminal where what the mesh does could not be told; else empty.
+[[nodiscard]] std::string one_mesh_text(const MeasuredTwin& m);
 
 }  // namespace driftwright::app

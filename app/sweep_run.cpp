@@ -44,8 +44,8 @@ struct Structure {
   std::unique_ptr<const Machine> machine;  ///< where they share all of it
 };
 
-/// Gmsh and METIS serve one caller at a time.
-std::mutex& meshing() {
+/// The factor of an elastic stiffness may take half of the memory (solver/elasticity.cpp): two at once would not fit.
+std::mutex& large_factor() {
   static std::mutex one_at_a_time;
   return one_at_a_time;
 }
@@ -65,9 +65,9 @@ class ReducedMachines {
 
   /// Of a member. Where no basis holds for all of them (one cannot lose its heat), each gets one of its own.
   std::shared_ptr<const scenarios::ReducedMachine> of(const Scenario& scenario) {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(mutex_);  // of one's own, too: members of one machine keep it in one folder
     Asked& asked = by_machine_.at(scenarios::machine_text(*scenario.machine));
-    const std::lock_guard alone(meshing());
+    const std::lock_guard large(large_factor());
     Progress quiet;
     if (!asked.machine && !asked.failed) {
       try {
@@ -116,7 +116,6 @@ class ReducedMachines {
 /// From the first member that can be read and placed; where none can, each will say why itself.
 Structure build_structure(const SweepPlan& plan, ReducedMachines& reduced, std::span<const std::size_t> members,
                           bool with_machine) {
-  const std::lock_guard lock(meshing());
   Structure shared;
   if (!reduced.some_are_full()) return shared;
   bool is_meshed = false;
@@ -132,7 +131,10 @@ Structure build_structure(const SweepPlan& plan, ReducedMachines& reduced, std::
     std::optional<scenarios::PlacedMachine> placed;
     catching(passed_over, [&] { placed = scenarios::place(model, shared.mesh); });
     if (!placed) continue;
-    shared.influence = scenarios::influences(model, *placed);
+    {
+      const std::lock_guard large(large_factor());
+      shared.influence = scenarios::influences(model, *placed);
+    }
     if (with_machine)
       shared.machine =
           std::make_unique<const Machine>(scenarios::build_with_influences(model, std::move(*placed), shared.influence));

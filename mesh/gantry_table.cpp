@@ -83,6 +83,11 @@ GantryTable read_gantry_table(const ConfigMap& in) {
   return t;
 }
 
+GantryTable with_mesh_size_times(GantryTable table, double factor) {
+  table.mesh_size_m *= factor;
+  return table;
+}
+
 Mesh build_gantry_table(const GantryTable& t) {
   const GmshSession session;
   return with_gmsh_errors([&] {

@@ -31,6 +31,9 @@ struct GantryTable {
 /// Reads the map `machine` of a scenario. @throws InputError  also for parts that do not fit onto each other
 [[nodiscard]] GantryTable read_gantry_table(const ConfigMap& in);
 
+/// The same table, its mesh size times `factor` > 0.
+[[nodiscard]] GantryTable with_mesh_size_times(GantryTable table, double factor);
+
 /// @throws SolveError  when Gmsh fails
 [[nodiscard]] Mesh build_gantry_table(const GantryTable& table);
 

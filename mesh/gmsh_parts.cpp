@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "base/c_random.hpp"
 #include "base/errors.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/topology.hpp"
@@ -149,7 +150,7 @@ void add_elements(Cells& cells, NodeTable& table, int part, int entity, GmshShap
 
 }  // namespace
 
-GmshSession::GmshSession() : n_threads_(omp_get_max_threads()) {
+GmshSession::GmshSession() : alone_(alone_with_c_random()), n_threads_(omp_get_max_threads()) {
   gmsh::initialize();
   gmsh::option::setNumber("General.Terminal", 0);
   gmsh::option::setNumber("General.NumThreads", 1);

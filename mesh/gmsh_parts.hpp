@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@
 
 namespace driftwright::mesh {
 
-/// An open Gmsh session, quiet, single-threaded and therefore repeatable. One at a time.
+/// An open Gmsh session, quiet, single-threaded and therefore repeatable. Gmsh has one model a process: other threads that want a
+/// session wait until this one ends, and so does METIS. Gmsh is called while a session lives and not otherwise; never two in one thread.
 class GmshSession {
  public:
   GmshSession();
@@ -21,7 +23,8 @@ class GmshSession {
   GmshSession& operator=(const GmshSession&) = delete;
 
  private:
-  int n_threads_;  ///< of OpenMP, before Gmsh
+  std::unique_lock<std::mutex> alone_;  ///< first, so that it is given back last
+  int n_threads_;                       ///< of OpenMP, before Gmsh
 };
 
 /// Runs work that calls Gmsh. Its C++ interface throws a std::string, which no handler of ours would catch.

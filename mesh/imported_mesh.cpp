@@ -101,6 +101,13 @@ ImportedMesh read_imported_mesh(const ConfigMap& in, const std::string& folder) 
   return recipe;
 }
 
+std::optional<ImportedMesh> with_mesh_size_times(ImportedMesh recipe, double factor) {
+  if (format_of(recipe.path, recipe.where) != Format::kStep) return std::nullopt;
+  recipe.mesh_size_m *= factor;
+  for (auto& [region, size_m] : recipe.mesh_size_of_region_m) size_m *= factor;
+  return recipe;
+}
+
 Mesh import_mesh(const ImportedMesh& recipe) {
   Mesh mesh;
   switch (format_of(recipe.path, recipe.where)) {

@@ -63,6 +63,9 @@ struct ImportedMesh {
 /// @throws InputError
 [[nodiscard]] ImportedMesh read_imported_mesh(const ConfigMap& in, const std::string& folder);
 
+/// A drawing with all its mesh sizes times `factor` > 0; none for a file that gives nodes, which has no size to change.
+[[nodiscard]] std::optional<ImportedMesh> with_mesh_size_times(ImportedMesh recipe, double factor);
+
 /// Reads the file by its extension, picks surfaces, makes joints.
 /// @throws InputError  for a file, element or name that cannot be right
 /// @throws SolveError  when Gmsh cannot mesh a STEP file

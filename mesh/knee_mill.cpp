@@ -197,6 +197,12 @@ KneeMill read_knee_mill(const ConfigMap& in) {
   return m;
 }
 
+KneeMill with_mesh_size_times(KneeMill mill, double factor) {
+  mill.coarse_m *= factor;
+  mill.fine_m *= factor;
+  return mill;
+}
+
 Mesh build_knee_mill(const KneeMill& mill) {
   const GmshSession session;
   return with_gmsh_errors([&] {

@@ -46,6 +46,9 @@ struct KneeMill {
 /// Reads the map `machine` of a scenario. @throws InputError  also for parts that do not fit into each other
 [[nodiscard]] KneeMill read_knee_mill(const ConfigMap& in);
 
+/// The same machine, both mesh sizes times `factor` > 0.
+[[nodiscard]] KneeMill with_mesh_size_times(KneeMill mill, double factor);
+
 /// @throws SolveError  when Gmsh fails
 [[nodiscard]] Mesh build_knee_mill(const KneeMill& mill);
 

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <optional>
 
 #include "base/errors.hpp"
@@ -105,9 +106,13 @@ RawMesh read_vtu(const std::string& path) {
   reader->SetReaderErrorObserver(on_error);
   reader->SetParserErrorObserver(on_error);
   reader->SetFileName(path.c_str());
-  vtkObject::GlobalWarningDisplayOff();  // VTK would print what goes into our message
-  reader->Update();
-  vtkObject::GlobalWarningDisplayOn();
+  {
+    static std::mutex one_at_a_time;  // the switch is the whole process's
+    const std::lock_guard alone(one_at_a_time);
+    vtkObject::GlobalWarningDisplayOff();  // VTK would print what goes into our message
+    reader->Update();
+    vtkObject::GlobalWarningDisplayOn();
+  }
   vtkUnstructuredGrid* grid = reader->GetOutput();
   if (!errors.empty()) fail("VTK cannot read it: " + errors.substr(0, errors.find('\n')));
   if (grid->GetNumberOfCells() == 0) fail("VTK finds no unstructured grid with cells in it");

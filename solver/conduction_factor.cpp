@@ -5,6 +5,7 @@
 #include <Eigen/CholmodSupport>
 #include <cmath>
 
+#include "base/c_random.hpp"
 #include "base/errors.hpp"
 #include "solver/one_thread.hpp"
 
@@ -56,7 +57,10 @@ ConductionFactor::ConductionFactor(const SparseRow& k) : parts_(std::make_unique
   settings.print = 0;
   settings.nmethods = 1;
   settings.method[0].ordering = CHOLMOD_METIS;
-  parts_->llt.analyzePattern(in_columns(k));
+  {
+    const auto alone = alone_with_c_random();  // METIS
+    parts_->llt.analyzePattern(in_columns(k));
+  }
   refactor(k);
 }
 
@@ -72,6 +76,7 @@ void ConductionFactor::refactor(const SparseRow& k) {
 ConductionFactor::~ConductionFactor() = default;
 
 Eigen::MatrixXd ConductionFactor::solve(const Eigen::MatrixXd& b) const {
+  const OneThread serial;
   return parts_->llt.solve(b);
 }
 

@@ -3,6 +3,7 @@
 #include <cholmod.h>
 #include <fmt/format.h>
 
+#include "base/c_random.hpp"
 #include "base/errors.hpp"
 #include "solver/one_thread.hpp"
 
@@ -52,7 +53,10 @@ struct StiffnessFactor::Parts {
     }
     start[nodes.n_rows] = slot;
     std::vector<Index> order(nodes.n_rows);
-    const bool ordered = cholmod_l_metis(graph, nullptr, 0, 1, order.data(), &common) != 0;
+    const bool ordered = [&] {
+      const auto alone = alone_with_c_random();
+      return cholmod_l_metis(graph, nullptr, 0, 1, order.data(), &common) != 0;
+    }();
     cholmod_l_free_sparse(&graph, &common);
     if (!ordered) throw SolveError("METIS found no order for the elastic stiffness: not enough memory; take a coarser mesh");
     return order;
@@ -119,6 +123,7 @@ Eigen::VectorXd StiffnessFactor::solve(const Eigen::VectorXd& force) const {
   Eigen::VectorXd copy = force;  // CHOLMOD takes no pointer to const
   const auto n = static_cast<std::size_t>(copy.size());
   cholmod_dense b{n, 1, n, n, copy.data(), nullptr, CHOLMOD_REAL, CHOLMOD_DOUBLE};
+  const OneThread serial;
   cholmod_dense* u = cholmod_l_solve(CHOLMOD_A, p.factor, &b, &p.common);
   if (!u) throw SolveError("not enough memory for an elastic solve");
   const Eigen::VectorXd result = Eigen::Map<const Eigen::VectorXd>(static_cast<const double*>(u->x), copy.size());

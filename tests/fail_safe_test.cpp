@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "base/errors.hpp"
@@ -96,24 +97,33 @@ struct Failure {
   const char* name;
   const char* word;
   void (*break_it)(std::vector<double>& x, std::size_t from);
+  std::array<double, 3> unguarded_um;  ///< what it does to the prediction at worst where nothing replaces X1, X3, X5
 };
 const Failure kFailures[] = {
-    {"stuck", "from what the others say",
+    {"stuck",
+     "from what the others say",
      [](std::vector<double>& x, std::size_t from) {
        for (std::size_t i = from; i < x.size(); ++i) x[i] = x[from];
-     }},
-    {"open", "gives no reading",
+     },
+     {2.601, 4.866, 4.321}},  // how far each moves after
+    {"open",
+     "gives no reading",
      [](std::vector<double>& x, std::size_t from) {
        for (std::size_t i = from; i < x.size(); ++i) x[i] = NAN;
-     }},
-    {"fallen_off", "jumps by",
+     },
+     {INFINITY, INFINITY, INFINITY}},
+    {"fallen_off",
+     "jumps by",
      [](std::vector<double>& x, std::size_t from) {
        for (std::size_t i = from; i < x.size(); ++i) x[i] = 12.0;
-     }},
-    {"drifting", "from what the others say",
+     },
+     {12.818, 17.168, 16.186}},  // the warmest less 12
+    {"drifting",
+     "from what the others say",
      [](std::vector<double>& x, std::size_t from) {
        for (std::size_t i = from; i < x.size(); ++i) x[i] += 0.05 * static_cast<double>(i - from);
-     }},
+     },
+     {16.95, 16.95, 16.95}},  // 339 rows
 };
 
 TEST_P(FromStart, EachFailureIsNamedAndReplacedSoThatTheCorrectionHolds) {
@@ -132,9 +142,22 @@ TEST_P(FromStart, EachFailureIsNamedAndReplacedSoThatTheCorrectionHolds) {
       EXPECT_THAT(r.deserved, ::testing::Each(1.0)) << failure.name << j;
       // until it is found a failure costs at most what the others may be apart, and the slew limit follows; 1 um/K
       const double bound_um = 1.05 * f.safe.guards[static_cast<std::size_t>(j - 1)].most_apart + 0.5;
-      EXPECT_LT(largest_difference(corrected(f, broken).correction_um, corrected(f, whole).correction_um), bound_um)
-          << failure.name << j;
-      EXPECT_GT(largest_difference(f.model.predict(broken), f.model.predict(whole)), 1.2 * bound_um) << failure.name << j;
+      const double costs_um = largest_difference(corrected(f, broken).correction_um, corrected(f, whole).correction_um);
+      EXPECT_LT(costs_um, bound_um) << failure.name << j;
+      EXPECT_GT(costs_um, 0.1) << failure.name << j;  // measured 0.25 to 1.70: what stands for a sensor has its own noise
+      const double unguarded_um = largest_difference(f.model.predict(broken), f.model.predict(whole));
+      if (std::isfinite(failure.unguarded_um[j / 2])) {
+        EXPECT_NEAR(unguarded_um, failure.unguarded_um[j / 2], 0.005) << failure.name << j;
+      } else {
+        EXPECT_EQ(unguarded_um, INFINITY);
+      }
+      // Twice the bound at least (2.08 to 8.27 times), but for X1 stuck: from where it stops X1 moves by 2.60 K, and two sensors count
+      // as told apart from 1.5 K on, below which differences between instruments are what is seen.
+      if (j == 1 && failure.name == std::string("stuck")) {
+        EXPECT_NEAR(unguarded_um / bound_um, 1.253, 0.005);
+      } else {
+        EXPECT_GT(unguarded_um, 2.0 * bound_um) << failure.name << j;
+      }
     }
   }
 }

@@ -99,7 +99,8 @@ TEST(CarriedTable, FindsTheBestFrameThroughAModelThatIsOffByAFrame) {
   const auto believed = carried_table(table, kRings, rings, model, model_rings, plan);
   for (std::size_t i = 0; i < believed.size(); ++i) EXPECT_LT((believed[i] - table.error_m[i]).cwiseAbs().maxCoeff(), 1e-10);
   const double best_m = peaks(through_frame(table, table.points_m, believed).left_m).z_m;
-  EXPECT_LT(best_m, 0.75 * peaks(through_frame(table, kRings, rings).left_m).z_m);
+  // Measured 0.5425: the best frame lies between the sag's ends and its middle, the rings' leaves all of it on one side.
+  EXPECT_NEAR(best_m / peaks(through_frame(table, kRings, rings).left_m).z_m, 0.5425, 0.002);
 }
 
 // Least squares of x^2 / 25 on 21 points has its largest error at the ends, 0.62; half the sag at ends and middle is the least: 0.5. 1 %
@@ -255,19 +256,36 @@ TEST(HallModels, EightReadingsDoNotCarryTwoLags) {
   EXPECT_NEAR(models[0].r_squared, 0.44, 0.005);
   EXPECT_GT(models[0].rms_left_out, models[0].rms);
   EXPECT_GT(models[2].rms_left_out, models[2].rms);
+  // Two lags with the table's and the scale's own growth fit no better than one lag with a free slope, nor than the line: 24.3, 22.9 and
+  // 24.2 um, and 41.4, 35.8 and 31.6 um for readings left out. (They did while both slopes were free: two parameters more.)
+  EXPECT_NEAR(models[2].rms / models[1].rms, 1.063, 0.005);
+  EXPECT_NEAR(models[2].rms / models[0].rms, 1.005, 0.005);
+  EXPECT_NEAR(models[2].rms_left_out / models[0].rms_left_out, 1.310, 0.005);
   EXPECT_THROW((void)compare_hall_models(kHall, std::span(kReadAt_s).first(5), std::span(dx_um).first(5), 1.0, 1.0),
                InputError);
 }
 
-TEST(HallModels, FindLagsThatAreThere) {
+/// Two lags found in 40 readings of a table that has them.
+HallModel found(double table_lag_s, double scale_lag_s) {
   std::vector<double> t, y;
   for (int i = 0; i < 40; ++i) t.push_back(3600.0 * i);
-  const std::vector<double> table = lagged(kHall, 6 * 3600.0, t), scale = lagged(kHall, 3600.0, t);
+  const std::vector<double> table = lagged(kHall, table_lag_s, t), scale = lagged(kHall, scale_lag_s, t);
   for (std::size_t i = 0; i < t.size(); ++i) y.push_back(5.0 + 100.0 * table[i] - 60.0 * scale[i]);
-  const HallModel two = compare_hall_models(kHall, t, y, 100.0, 60.0)[2];
-  EXPECT_LT(two.rms_left_out, 3.0);  // lags are searched in steps of 12 %
-  EXPECT_GT(two.r_squared, 0.99);
-  EXPECT_THAT(two.parameters, HasSubstr("table"));
+  return compare_hall_models(kHall, t, y, 100.0, 60.0)[2];
+}
+
+// Lags are searched from 0.1 h in 66 steps of 12.2 % to 200 h: those on a step are found exactly. 6 h lie between 5.6 and 6.3 h, 1 h
+// beside 1.0 h; what that costs is measured: 2.66 um for readings left out, R^2 0.9966. With slopes given nothing can make up for it.
+TEST(HallModels, FindLagsThatAreThere) {
+  const auto step_s = [](int i) { return 360.0 * std::pow(2000.0, i / 66.0); };
+  const HallModel exact = found(step_s(36), step_s(20));
+  EXPECT_LT(exact.rms_left_out, 1e-9);
+  EXPECT_GT(exact.r_squared, 1.0 - 1e-12);
+  EXPECT_THAT(exact.parameters, HasSubstr("lag of the table 6.3 h (6.3 to 6.3 h), of the scale 1.0 h (1.0 to 1.0 h)"));
+  const HallModel between = found(6 * 3600.0, 3600.0);
+  EXPECT_NEAR(between.rms_left_out, 2.66, 0.02);
+  EXPECT_NEAR(between.r_squared, 0.9966, 0.0002);
+  EXPECT_THAT(between.parameters, HasSubstr("lag of the table 6.3 h (6.3 to 6.3 h), of the scale 1.0 h (1.0 to 1.1 h)"));
 }
 
 }  // namespace
