@@ -97,7 +97,8 @@ class Writer {
     e = rounded(std::move(e));
     if (!e.in.empty()) add_cyclogram(e.in);
     const std::string text = effects::yaml_of(e);
-    if (!yaml_.append(*effects_, text, change_->by == "diagnosis" ? change_->comment : change_->by + ": " + change_->comment))
+    if (!yaml_.append(*effects_, text,
+                      change_->by == "diagnosis" ? change_->comment : change_->by + ": " + change_->comment))
       in_one_piece_ = true;
     list_.push_back(std::move(e));
     done_.push_back("added " + text);
@@ -127,14 +128,16 @@ class Writer {
     char* unit = nullptr;
     const double number = std::strtod(text.c_str(), &unit);
     const bool keeps_unit = parameter.unit != "degC" && unit != text.c_str() && was != 0.0 && number != 0.0;
-    const std::string other = keeps_unit ? fmt::format("{:.7g}{}", number * now / was, unit) : effects::yaml_of(parameter, now);
+    const std::string other =
+        keeps_unit ? fmt::format("{:.7g}{}", number * now / was, unit) : effects::yaml_of(parameter, now);
     notes_[scalar->line].push_back(fmt::format("{} was {}", parameter.name, text));
     return yaml_.replace(*scalar, other);
   }
 
   /// The whole entry, behind the others; the old one becomes a comment.
   void replace(std::size_t i) {
-    if (is_in_file(i) && yaml_.comment_out(*effects_, i) && yaml_.append(*effects_, effects::yaml_of(list_[i]), change_->comment)) {
+    if (is_in_file(i) && yaml_.comment_out(*effects_, i) &&
+        yaml_.append(*effects_, effects::yaml_of(list_[i]), change_->comment)) {
       replaced_.insert(i);
       return;
     }

@@ -11,10 +11,10 @@ namespace driftwright::diagnosis {
 
 /// One thing to write: what it does to the effects of the twin, and why.
 struct StatedChange {
-  std::string name;                       ///< of it, for messages: "convection at nose"
-  std::string comment;                    ///< stands behind each line that it changes
-  std::function<void(TwinState&)> make;   ///< sets numbers of the scenario's effects, or adds effects behind them
-  std::string by = "diagnosis";           ///< whose change it is; stands before what a number was
+  std::string name;                      ///< of it, for messages: "convection at nose"
+  std::string comment;                   ///< stands behind each line that it changes
+  std::function<void(TwinState&)> make;  ///< sets numbers of the scenario's effects, or adds effects behind them
+  std::string by = "diagnosis";          ///< whose change it is; stands before what a number was
 };
 
 struct ExtendedScenario {

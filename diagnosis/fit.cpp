@@ -209,7 +209,8 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   Prediction responses;
   const auto look = [&](Fit& at, Prediction& kept, bool reuse) {
     at.misfit = 1e300;
-    if (!has_solution([&] { at.prediction = predict(hypothesis, at.x, workspace, &kept, reuse); })) return;  // a step too far
+    if (!has_solution([&] { at.prediction = predict(hypothesis, at.x, workspace, &kept, reuse); }))
+      return;  // a step too far
     at.residual = comparison_->measured() - comparison_->whitened(at.prediction);
     const double misfit = 0.5 * at.residual.squaredNorm() + prior(at.x);
     if (std::isfinite(misfit)) at.misfit = misfit;

@@ -109,9 +109,8 @@ Focus focus(const Twin& twin, const std::vector<MeasuredRun>& runs, const std::v
     const TwinState state = i == 0 ? twin.as_written() : doubt(twin, scatter, candidates, 1000u + static_cast<unsigned>(i));
     for (const MeasuredRun& run : runs) {
       Eigen::MatrixXd miss;
-      const bool is_solved = has_solution([&] {
-        miss = small.respond(state, run, small_space) - twin.respond(state, run, large_space);
-      });
+      const bool is_solved =
+          has_solution([&] { miss = small.respond(state, run, small_space) - twin.respond(state, run, large_space); });
       if (!is_solved) continue;
       for (const MeasuredChannel& c : run.channels) {
         const double square = miss.row(c.output).squaredNorm();

@@ -17,8 +17,8 @@ effects::DoubtScene::Material material_of(const Twin& twin, const solver::BodyPa
     if (!(part.outputs.col(static_cast<Eigen::Index>(o)).cwiseAbs().maxCoeff() > 0.0)) continue;
     const std::size_t d = o - model.sensors.size();
     // A sensitivity is a number of its own, but for a region that bends the mesh as well: that is one expansion.
-    const bool bends = m.body.kind == effects::BodyKind::kRegion &&
-                       (d >= model.displacements.size() || model.displacements[d].points);
+    const bool bends =
+        m.body.kind == effects::BodyKind::kRegion && (d >= model.displacements.size() || model.displacements[d].points);
     if (bends) {
       m.expands = true;
     } else {

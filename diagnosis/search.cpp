@@ -36,7 +36,8 @@ std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypot
       hypotheses.size(), [&] { return Twin::Workspace(fitter.twin()); },
       [&](std::size_t i, Twin::Workspace& workspace) {
         // a state without solution is no explanation
-        if (!has_solution([&] { fits[i] = fitter.fit(hypotheses[i].first, hypotheses[i].second, workspace); })) fits[i] = Fit{};
+        if (!has_solution([&] { fits[i] = fitter.fit(hypotheses[i].first, hypotheses[i].second, workspace); }))
+          fits[i] = Fit{};
       });
   return fits;
 }
@@ -145,7 +146,10 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
     Prediction kept;
   };
   for_each_index(
-      jobs.size(), [&] { return Space{Twin::Workspace(fitter.twin()), responses}; },
+      jobs.size(),
+      [&] {
+        return Space{Twin::Workspace(fitter.twin()), responses};
+      },
       [&](std::size_t j, Space& space) {
         const Variant& v = candidates[jobs[j].candidate].variants[jobs[j].variant];
         const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });

@@ -250,8 +250,8 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
   const solver::ReducedSystem* small = &system;
   solver::ReducedSystem unit;
   const auto n_parts = static_cast<std::ptrdiff_t>(machine_.system.parts.size());
-  const bool has_other_mass = std::any_of(workspace.factors_.begin() + n_parts, workspace.factors_.end(),
-                                          [](double f) { return f != 1.0; });
+  const bool has_other_mass =
+      std::any_of(workspace.factors_.begin() + n_parts, workspace.factors_.end(), [](double f) { return f != 1.0; });
   if (has_other_mass) {
     unit = solver::with_unit_mass(system, from);
     small = &unit;
@@ -277,8 +277,7 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
     const effects::Body body = body_of(part.body);
     for (Eigen::Index o = 0; o < part.outputs.cols(); ++o) {
       const std::string& name = outputs_.name[static_cast<std::size_t>(o)];
-      const double factor =
-          effects::sensitivity_factor(now, body, name) / effects::sensitivity_factor(written, body, name);
+      const double factor = effects::sensitivity_factor(now, body, name) / effects::sensitivity_factor(written, body, name);
       if (factor != 1.0) weights.col(o) += (factor - 1.0) * part.outputs.col(o);
     }
   }

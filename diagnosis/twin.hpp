@@ -69,7 +69,8 @@ class Twin {
   [[nodiscard]] std::vector<double> material_factors(const TwinState& state) const;
   void set_matrices(const TwinState& state, Workspace& workspace) const;
   void set_laws(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
-  [[nodiscard]] Eigen::VectorXd start(const MeasuredRun& run, const TimeSeries& hall, const solver::ReducedSystem& system) const;
+  [[nodiscard]] Eigen::VectorXd start(const MeasuredRun& run, const TimeSeries& hall,
+                                      const solver::ReducedSystem& system) const;
 
   const AugmentedModel& augmented_;
   const scenarios::ReducedMachine& machine_;

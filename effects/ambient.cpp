@@ -32,10 +32,9 @@ TimeSeries with_error(const TimeSeries& hall, double offset_K, double ramp_K_s, 
 }
 
 void change_drive(const Effect& e, DriveChange& change) {
-  change.hall.push_back([offset_K = e["offset"], ramp_K_s = e["ramp"] / 3600.0,
-                         from_s = e["from"] * 60.0](const TimeSeries& hall, double duration_s) {
-    return with_error(hall, offset_K, ramp_K_s, from_s, duration_s);
-  });
+  change.hall.push_back(
+      [offset_K = e["offset"], ramp_K_s = e["ramp"] / 3600.0, from_s = e["from"] * 60.0](
+          const TimeSeries& hall, double duration_s) { return with_error(hall, offset_K, ramp_K_s, from_s, duration_s); });
 }
 
 void check(const Effect&, const ConfigMap& in) {
@@ -62,9 +61,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     step.name = "step";
     step.set = [](std::span<Effect> added, double value) { added[0].set("offset", value); };
     list.push_back(doubt("step", run.name, std::move(step), 0.5));
-    list.back().numbers.push_back(doubted_time("time", run.length_s, [](std::span<Effect> added, double value) {
-      added[0].set("from", value / 60.0);
-    }));
+    list.back().numbers.push_back(doubted_time(
+        "time", run.length_s, [](std::span<Effect> added, double value) { added[0].set("from", value / 60.0); }));
     list.back().grid = time_grid(run.length_s, 10);
     if (s.runs.size() < 2) continue;
     list.push_back(doubt("offset", run.name, offset(), 0.5));

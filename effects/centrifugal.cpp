@@ -6,9 +6,10 @@ namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.add(ReadingStage::kGrowth, [channel = e.place, amount = amount_of(e, "growth"), n0_rpm = e["at_speed"]](Readings& r) {
-    r.value.row(r.displacement(channel)) += speed_growth(r, amount, n0_rpm, 2.0, 0.0);
-  });
+  chain.add(ReadingStage::kGrowth,
+            [channel = e.place, amount = amount_of(e, "growth"), n0_rpm = e["at_speed"]](Readings& r) {
+              r.value.row(r.displacement(channel)) += speed_growth(r, amount, n0_rpm, 2.0, 0.0);
+            });
 }
 
 void check(const Effect& e, const ConfigMap& in) {

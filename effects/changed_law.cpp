@@ -49,8 +49,8 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
   std::vector<Effect> of_all, of_known;  // laws of the body; those that follow from the drive alone
   double written_W = 0.0, low_W = 0.0, high_W = 0.0;
   const auto power_W = [&](const HeatInput& h, double rpm) {
-    return h.power_W(Inputs{.drive = {.speed_rpm = rpm},
-                            .probe_K = std::vector<double>(h.power_W.probes.size(), s.reference_K + 10.0)});
+    return h.power_W(
+        Inputs{.drive = {.speed_rpm = rpm}, .probe_K = std::vector<double>(h.power_W.probes.size(), s.reference_K + 10.0)});
   };
   const auto add = [](std::vector<Effect>& to, const std::string& law) {
     if (std::none_of(to.begin(), to.end(), [&](const Effect& e) { return e.place == law; })) to.push_back(changed(law));
@@ -110,9 +110,9 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
 /// Another coefficient of an exchange, in all records or in one from a time on.
 void doubt_exchange(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
   const bool is_growth = finding == "forced_convection";
-  const std::string what = is_growth                                     ? "another growth of the film"
+  const std::string what = is_growth                                  ? "another growth of the film"
                            : exchange.body.kind == BodyKind::kSurface ? "another film"
-                                                                       : "another conductance";
+                                                                      : "another conductance";
   Doubt other{.finding = finding,
               .where = where_of(exchange),
               .law = what,
@@ -124,9 +124,8 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
     Doubt late = other;
     late.law = what + " from a time on, in " + run.name;
     late.added[0].in = run.name;
-    late.numbers.push_back(doubted_time("time", run.length_s, [](std::span<Effect> added, double value) {
-      added[0].from_s = std::max(1.0, value);
-    }));
+    late.numbers.push_back(doubted_time(
+        "time", run.length_s, [](std::span<Effect> added, double value) { added[0].from_s = std::max(1.0, value); }));
     late.trial = 0.3;
     late.grid = time_grid(run.length_s, 8);
     list.push_back(std::move(late));
@@ -151,21 +150,22 @@ void check(const Effect& e, const ConfigMap& in) {
 }  // namespace
 
 EffectKind changed_law() {
-  return {.key = "changed_law",
-          .title = "another size, growth with speed or decay of what another effect does",
-          .law =
-              "c' = factor (n / at_speed)^exponent exp(-decay (T - at_temperature)) c, c: a power or a coefficient of another "
-              "effect, T of its own body; at standstill the exponent does nothing",
-          .places = {Place::kLaw},
-          .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
-                         {"exponent", "1", -5.0, 5.0, 0.0, "further growth with speed, beside the law's own"},
-                         {"at_speed", "rpm", 1.0, 1e6, 1000.0, "where that growth changes nothing"},
-                         {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
-                         {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"}},
-          .timing = Timing::kInTime,
-          .change_laws = change_laws,
-          .check = check,
-          .doubts = doubts};
+  return {
+      .key = "changed_law",
+      .title = "another size, growth with speed or decay of what another effect does",
+      .law =
+          "c' = factor (n / at_speed)^exponent exp(-decay (T - at_temperature)) c, c: a power or a coefficient of another "
+          "effect, T of its own body; at standstill the exponent does nothing",
+      .places = {Place::kLaw},
+      .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
+                     {"exponent", "1", -5.0, 5.0, 0.0, "further growth with speed, beside the law's own"},
+                     {"at_speed", "rpm", 1.0, 1e6, 1000.0, "where that growth changes nothing"},
+                     {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
+                     {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"}},
+      .timing = Timing::kInTime,
+      .change_laws = change_laws,
+      .check = check,
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -5,7 +5,7 @@
 namespace driftwright::effects {
 namespace {
 
-constexpr double kAmple_L_min = 100.0;           // of a circuit that is doubted: its flow takes no part in what it does
+constexpr double kAmple_L_min = 100.0;               // of a circuit that is doubted: its flow takes no part in what it does
 constexpr double kColder_K = 10.0, kWarmer_K = 3.0;  // than the reference, its medium at most
 
 void contribute(const Effect& e, HeatBalance& balance) {
@@ -43,7 +43,8 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e.references.contains("tank")) {
     if (e.references.at("tank").name == kHallName) in.fail("tank", "a name of its own is wanted; the hall is no tank");
     if (!e.has("volume")) in.fail("volume", "`tank` and `volume` go together");
-    if (e.has("set_point") != (e["cooling_power"] > 0.0)) in.fail("set_point", "`set_point` and `cooling_power` go together");
+    if (e.has("set_point") != (e["cooling_power"] > 0.0))
+      in.fail("set_point", "`set_point` and `cooling_power` go together");
     return;
   }
   if (!e.has("set_point")) in.fail("set_point", "a circuit without `tank` is held at its `set_point`");
@@ -95,7 +96,8 @@ EffectKind coolant() {
           "Q = W (1 - exp(-passage_conductance / W)) (T - T_tank), W = flow medium_heat_capacity (stream along a wall of "
           "one "
           "temperature: Incropera & DeWitt, ch. 8.3); C_tank dT_tank/dt = Q + pump_power - tank_exchange (T_tank - T_hall) "
-          "- cooling_power from set_point + hysteresis/2 down to set_point - hysteresis/2. It makes the tank's node. Without `tank`, "
+          "- cooling_power from set_point + hysteresis/2 down to set_point - hysteresis/2. It makes the tank's node. "
+          "Without `tank`, "
           "T_tank = set_point: a chiller far stronger than the heat",
       .places = {Place::kRegion, Place::kSurface, Place::kNode},
       .parameters =
@@ -113,7 +115,10 @@ EffectKind coolant() {
            {"hysteresis", "K", 1e-3, 100.0, 1.0, "between on and off", 0.0, "coolant", Doubted::kFactor}},
       .timing = Timing::kInTime,
       .contribute = contribute,
-      .references = {{"tank", {BodyKind::kNode}, "", "name of the tank's node, which comes about here; left out: held at the set point"}},
+      .references = {{"tank",
+                      {BodyKind::kNode},
+                      "",
+                      "name of the tank's node, which comes about here; left out: held at the set point"}},
       .choices = {{"runs", {"always", "while_spindle_turns"}, "always", "when the pump runs"}},
       .check = check,
       .doubts = doubts};

@@ -8,7 +8,7 @@
 
 namespace driftwright::effects {
 
-inline constexpr double kFactorSd = 0.7;    ///< 1 sigma of the logarithm of a factor that is an effect
+inline constexpr double kFactorSd = 0.7;  ///< 1 sigma of the logarithm of a factor that is an effect
 inline constexpr double kFactorTrial = 0.2;
 
 /// What a kind may look at when it is asked where it could be.
@@ -50,8 +50,8 @@ struct DoubtScene {
 struct DoubtedNumber {
   std::string name, unit;  ///< as it is reported; set() is given it so. A time: in s
   double nominal = 0.0;
-  double prior_sd = 1.0, step = 0.1;   ///< of x; a step is what differences are taken over
-  double low = -1e300, high = 1e300;   ///< of the value
+  double prior_sd = 1.0, step = 0.1;  ///< of x; a step is what differences are taken over
+  double low = -1e300, high = 1e300;  ///< of the value
   bool is_log = false;
   bool is_time = false;  ///< found by search beside slopes
   /// Writes the value into the effects that Doubt::added was copied to. Empty: the parameter of that name of each of them.
@@ -60,15 +60,15 @@ struct DoubtedNumber {
 
 /// One law by which the machine may differ from what is written: effects to add, and their numbers.
 struct Doubt {
-  std::string finding, where;        ///< key of the effect and place, as diagnosis.json says them
-  std::string law;                   ///< in words
-  std::vector<Effect> added;         ///< they do nothing while the first number is nominal
-  std::vector<DoubtedNumber> numbers;  ///< the size first, then what shapes it
-  double trial = kFactorTrial;         ///< x of the size at which its signature is taken
+  std::string finding, where;                    ///< key of the effect and place, as diagnosis.json says them
+  std::string law;                               ///< in words
+  std::vector<Effect> added;                     ///< they do nothing while the first number is nominal
+  std::vector<DoubtedNumber> numbers;            ///< the size first, then what shapes it
+  double trial = kFactorTrial;                   ///< x of the size at which its signature is taken
   std::vector<std::vector<double>> grid = {{}};  ///< x of numbers 1.. to try first
   double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is the trial
-  bool scatters = false;  ///< its size is one of those that no scenario knows better than to 10 %
+  bool scatters = false;                         ///< its size is one of those that no scenario knows better than to 10 %
 };
 
 /// A number about zero, or another nominal value, in its unit. @param prior_sd, step  of the value

@@ -111,7 +111,8 @@ struct EffectKind {
   std::vector<Mention> mentions = {};
   /// In which ways a machine may be wrong by such an effect, at every place of it where it can be (doubt.hpp). Null: none is looked for.
   std::vector<Doubt> (*doubts)(const DoubtScene&) = nullptr;
-  std::string exchange_finding = {};  ///< key of the effect that another factor on its exchanges is called; "": they are not doubted as a whole
+  std::string exchange_finding =
+      {};  ///< key of the effect that another factor on its exchanges is called; "": they are not doubted as a whole
 
   /// Whether it acts on instruments alone: the machine itself does not notice.
   [[nodiscard]] bool is_of_readings() const { return change_readings && !contribute && !change_laws && !change_drive; }

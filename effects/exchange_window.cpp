@@ -25,17 +25,18 @@ void contribute(const Effect& e, HeatBalance& balance) {
   const auto windows = windows_of(e);
   const double coefficient = e.place_kind == Place::kNode || e.place_kind == Place::kRegion ? e["conductance"] : e["film"];
   const std::string to = e.references.contains("surrounding") ? e.references.at("surrounding").name : kHallName;
-  balance.exchanges.push_back({.name = e.name(),
-                               .body = e.body(),
-                               .coefficient =
-                                   [=](const Inputs& u) {
-                                     for (const auto& [begin_s, end_s] : windows) {
-                                       if (u.time_s >= begin_s && u.time_s < end_s) return coefficient;
-                                     }
-                                     return 0.0;
-                                   },
-                               .per = e.place_kind == Place::kNode || e.place_kind == Place::kRegion ? Per::kTotal : Per::kArea,
-                               .surrounding = to});
+  balance.exchanges.push_back(
+      {.name = e.name(),
+       .body = e.body(),
+       .coefficient =
+           [=](const Inputs& u) {
+             for (const auto& [begin_s, end_s] : windows) {
+               if (u.time_s >= begin_s && u.time_s < end_s) return coefficient;
+             }
+             return 0.0;
+           },
+       .per = e.place_kind == Place::kNode || e.place_kind == Place::kRegion ? Per::kTotal : Per::kArea,
+       .surrounding = to});
   for (const auto& [begin_s, end_s] : windows) {
     if (begin_s > 0.0) balance.change_times_s.push_back(begin_s);
     balance.change_times_s.push_back(end_s);
@@ -45,7 +46,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
 void check(const Effect& e, const ConfigMap& in) {
   const bool is_total = e.place_kind == Place::kNode || e.place_kind == Place::kRegion;
   if (e.has("conductance") != is_total || e.has("film") == is_total) {
-    in.fail(is_total ? "conductance" : "film", "a region or node wants `conductance`, in W/K; a surface or joint `film`, in W/(m^2 K)");
+    in.fail(is_total ? "conductance" : "film",
+            "a region or node wants `conductance`, in W/K; a surface or joint `film`, in W/(m^2 K)");
   }
   const TimeSeries& rows = e.tables.at(kWindows);
   for (std::size_t i = 0; i < rows.time_s.size(); ++i) {
@@ -54,8 +56,10 @@ void check(const Effect& e, const ConfigMap& in) {
   }
   if (e.has("every") != e.has("until_time")) in.fail("every", "`every` and `until_time` go together");
   if (!e.has("every")) return;
-  if (!(e["every"] >= rows.value.back() - rows.time_s.front())) in.fail("every", "the next turn would begin before this one ends");
-  if (e["until_time"] > kMostWindows * e["every"]) in.fail("every", fmt::format("at most {:.0f} turns are wanted", kMostWindows));
+  if (!(e["every"] >= rows.value.back() - rows.time_s.front()))
+    in.fail("every", "the next turn would begin before this one ends");
+  if (e["until_time"] > kMostWindows * e["every"])
+    in.fail("every", fmt::format("at most {:.0f} turns are wanted", kMostWindows));
 }
 
 Doubt doubt(const DoubtScene::Run& run, Effect window, DoubtedNumber size, double trial) {

@@ -10,7 +10,8 @@ void change_material(const Effect& e, MaterialFactor& factor) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.place_kind != Place::kRegion && e.words.at("displacement").empty())
-    in.fail("displacement", "only a region has a material that expands; elsewhere the displacement is wanted whose sensitivity it is about");
+    in.fail("displacement",
+            "only a region has a material that expands; elsewhere the displacement is wanted whose sensitivity it is about");
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {

@@ -83,8 +83,8 @@ struct Exchange {
   Body body;  ///< a surface, region or node; or the joint
   Law coefficient;
   Per per = Per::kArea;
-  std::string surrounding = kHallName;   ///< the other temperature: the hall or a lumped node; of no meaning for a joint
-  std::optional<double> medium_K = {};   ///< instead of a surrounding: a medium of this absolute temperature
+  std::string surrounding = kHallName;  ///< the other temperature: the hall or a lumped node; of no meaning for a joint
+  std::optional<double> medium_K = {};  ///< instead of a surrounding: a medium of this absolute temperature
 
   [[nodiscard]] bool is_same_place(const Exchange& other) const {
     const bool same_end = body.kind == BodyKind::kJoint ||
@@ -93,13 +93,15 @@ struct Exchange {
   }
 };
 
-[[nodiscard]] inline Exchange make_film(std::string name, std::string on, Law htc_W_m2K, std::string surrounding = kHallName) {
+[[nodiscard]] inline Exchange make_film(std::string name, std::string on, Law htc_W_m2K,
+                                        std::string surrounding = kHallName) {
   return {.name = std::move(name),
           .body = surface(std::move(on)),
           .coefficient = std::move(htc_W_m2K),
           .surrounding = std::move(surrounding)};
 }
-[[nodiscard]] inline Exchange make_link(std::string name, Body body, Law conductance_W_K, std::string surrounding = kHallName) {
+[[nodiscard]] inline Exchange make_link(std::string name, Body body, Law conductance_W_K,
+                                        std::string surrounding = kHallName) {
   return {.name = std::move(name),
           .body = std::move(body),
           .coefficient = std::move(conductance_W_K),

@@ -68,12 +68,13 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .added = {make_effect("heat_source", body, values)},
                       .numbers = {power()},
                       .trial = trial_W});
-      list.back().numbers[0].low = 0.0;  // heat that is taken away is a coolant's; what is written too large is the law written
+      list.back().numbers[0].low =
+          0.0;  // heat that is taken away is a coolant's; what is written too large is the law written
       return list.back();
     };
     add("constant heat", {});
-    Doubt& of_speed =
-        add(fmt::format("power law of speed, at {:.0f} rpm", s.typical_rpm), {{"at_speed", s.typical_rpm}, {"exponent", 1.5}});
+    Doubt& of_speed = add(fmt::format("power law of speed, at {:.0f} rpm", s.typical_rpm),
+                          {{"at_speed", s.typical_rpm}, {"exponent", 1.5}});
     of_speed.numbers.push_back(doubted("exponent", "1", 0.7, 0.05, 1.5));
     of_speed.numbers.back().low = -1.0;
     of_speed.numbers.back().high = 4.0;
@@ -99,26 +100,27 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 }  // namespace
 
 EffectKind heat_source() {
-  return {.key = "heat_source",
-          .title = "heat by a power law of speed, constant, on and off with the spindle, or in a wave",
-          .law =
-              "P = power (n / at_speed)^exponent while the spindle turns; exponent 0: constant, also at standstill unless it "
-              "runs while_spindle_turns; with a period: mean + that times sin(2 pi (t - delay) / period)",
-          .places = {Place::kRegion, Place::kSurface, Place::kNode},
-          .parameters = {{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools", 0.1, "heat_source"},
-                         {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
-                         {"exponent", "1", -1.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"},
-                         {"period", "s", 60.0, 1e7, kNotGiven, "of a wave; wants `until`"},
-                         {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
-                         {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
-          .timing = Timing::kInTime,
-          .contribute = contribute,
-          .choices = {{"runs",
-                       {"always", "while_spindle_turns"},
-                       "always",
-                       "constant heat: at all times, or of a pump or hydraulics that go with the spindle"}},
-          .check = check,
-          .doubts = doubts};
+  return {
+      .key = "heat_source",
+      .title = "heat by a power law of speed, constant, on and off with the spindle, or in a wave",
+      .law =
+          "P = power (n / at_speed)^exponent while the spindle turns; exponent 0: constant, also at standstill unless it "
+          "runs while_spindle_turns; with a period: mean + that times sin(2 pi (t - delay) / period)",
+      .places = {Place::kRegion, Place::kSurface, Place::kNode},
+      .parameters = {{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools", 0.1, "heat_source"},
+                     {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
+                     {"exponent", "1", -1.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"},
+                     {"period", "s", 60.0, 1e7, kNotGiven, "of a wave; wants `until`"},
+                     {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
+                     {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
+      .timing = Timing::kInTime,
+      .contribute = contribute,
+      .choices = {{"runs",
+                   {"always", "while_spindle_turns"},
+                   "always",
+                   "constant heat: at all times, or of a pump or hydraulics that go with the spindle"}},
+      .check = check,
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

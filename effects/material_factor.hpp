@@ -13,7 +13,8 @@ namespace driftwright::effects {
 struct MaterialFactor {
   Body body;
   double conductivity = 1.0, heat_capacity = 1.0, expansion = 1.0;
-  std::string displacement = {};  ///< the only one whose sensitivity the expansion is about; "": the material's, and all of them
+  std::string displacement =
+      {};  ///< the only one whose sensitivity the expansion is about; "": the material's, and all of them
 };
 
 /// What all of them together make of the sensitivity of a displacement to a body's temperature.

@@ -26,7 +26,7 @@ EffectKind motor_loss() {
                           0.03, "friction_law"},
                          {"idle", "W", 0.0, 1e6, 0.0, "magnetising loss, there at any speed but zero", 0.1, "heat_source"}},
           .timing = Timing::kInTime,
-      .contribute = contribute};
+          .contribute = contribute};
 }
 
 }  // namespace driftwright::effects

@@ -4,12 +4,13 @@ namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.add(ReadingStage::kShift, [channel = e.place, amount = amount_of(e, "shift"), time_s = e["time"] * 60.0](Readings& r) {
-    const Eigen::Index row = r.displacement(channel);
-    for (Eigen::Index i = 0; i < r.n_times(); ++i) {
-      if (r.time(i) >= time_s) r.value(row, i) += amount;
-    }
-  });
+  chain.add(ReadingStage::kShift,
+            [channel = e.place, amount = amount_of(e, "shift"), time_s = e["time"] * 60.0](Readings& r) {
+              const Eigen::Index row = r.displacement(channel);
+              for (Eigen::Index i = 0; i < r.n_times(); ++i) {
+                if (r.time(i) >= time_s) r.value(row, i) += amount;
+              }
+            });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
@@ -26,11 +27,10 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .where = d.name,
                       .law = "step, in " + run.name,
                       .added = {shift},
-                      .numbers = {doubted_amount(d, "shift"),
-                                  doubted_time("time", run.length_s,
-                                               [](std::span<Effect> added, double value) {
-                                                 added[0].set("time", value / 60.0);
-                                               })},
+                      .numbers = {doubted_amount(d, "shift"), doubted_time("time", run.length_s,
+                                                                           [](std::span<Effect> added, double value) {
+                                                                             added[0].set("time", value / 60.0);
+                                                                           })},
                       .trial = 3.0,
                       .grid = time_grid(run.length_s, 40)});
     }

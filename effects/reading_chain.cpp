@@ -14,8 +14,7 @@ Eigen::Index Readings::row(const std::string& of, bool is_temperature) const {
 }
 
 void ReadingChain::add(ReadingStage stage, Step step) {
-  const auto behind =
-      std::find_if(steps_.begin(), steps_.end(), [&](const auto& s) { return s.first > stage; });
+  const auto behind = std::find_if(steps_.begin(), steps_.end(), [&](const auto& s) { return s.first > stage; });
   steps_.insert(behind, {stage, std::move(step)});
 }
 
@@ -44,8 +43,7 @@ Eigen::RowVectorXd speed_growth(const Readings& readings, double amount, double 
     return at_start + (end - at_start) * -std::expm1(-passed_s / lag_s);
   };
   for (Eigen::Index i = 0; i < n; ++i) {
-    while (section + 1 < cyclogram.sections.size() &&
-           readings.time(i) >= start_s + cyclogram.sections[section].duration_s) {
+    while (section + 1 < cyclogram.sections.size() && readings.time(i) >= start_s + cyclogram.sections[section].duration_s) {
       at_start = after(cyclogram.sections[section].duration_s);
       start_s += cyclogram.sections[section].duration_s;
       ++section;

@@ -25,12 +25,12 @@ enum class ReadingStage {
 
 /// Readings of a run on their way through the chain.
 struct Readings {
-  const std::vector<std::string>& name;   ///< of the outputs, as unit: "K", "m", "rad"
+  const std::vector<std::string>& name;  ///< of the outputs, as unit: "K", "m", "rad"
   const std::vector<std::string>& unit;
-  const std::vector<double>& time_s;      ///< increasing, from 0; values between two of them are linear
-  const Cyclogram& cyclogram;             ///< the true one
-  const TimeSeries& hall;                 ///< the true one [K]
-  Eigen::MatrixXd value;                  ///< n_outputs x n_times
+  const std::vector<double>& time_s;  ///< increasing, from 0; values between two of them are linear
+  const Cyclogram& cyclogram;         ///< the true one
+  const TimeSeries& hall;             ///< the true one [K]
+  Eigen::MatrixXd value;              ///< n_outputs x n_times
 
   /// The row of a sensor; of a displacement or tilt. @throws std::logic_error  for a name that is no such output
   [[nodiscard]] Eigen::Index sensor(const std::string& of) const { return row(of, true); }

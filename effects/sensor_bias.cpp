@@ -4,9 +4,8 @@ namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.add(ReadingStage::kError, [sensor = e.place, bias_K = e["bias"]](Readings& r) {
-    r.value.row(r.sensor(sensor)).array() += bias_K;
-  });
+  chain.add(ReadingStage::kError,
+            [sensor = e.place, bias_K = e["bias"]](Readings& r) { r.value.row(r.sensor(sensor)).array() += bias_K; });
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {

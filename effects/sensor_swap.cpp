@@ -4,9 +4,8 @@ namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.add(ReadingStage::kSwap, [a = e.place, b = e.words.at("with")](Readings& r) {
-    r.value.row(r.sensor(a)).swap(r.value.row(r.sensor(b)));
-  });
+  chain.add(ReadingStage::kSwap,
+            [a = e.place, b = e.words.at("with")](Readings& r) { r.value.row(r.sensor(a)).swap(r.value.row(r.sensor(b))); });
 }
 
 void check(const Effect& e, const ConfigMap& in) {

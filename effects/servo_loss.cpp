@@ -48,7 +48,7 @@ EffectKind servo_loss() {
                          {"exponent", "1", -1.0, 4.0, 1.0, "growth with feed; friction alone: 1", 0.03, "friction_law"},
                          {"idle", "W", 0.0, 1e6, 0.0, "holding current, also at standstill", 0.1, "heat_source"}},
           .timing = Timing::kInTime,
-      .contribute = contribute,
+          .contribute = contribute,
           .choices = {axis_choice()},
           .doubts = doubts};
 }

@@ -9,13 +9,14 @@ void contribute(const Effect& e, HeatBalance& balance) {
 
 std::vector<Doubt> doubts(const DoubtScene& s) {
   if (s.surfaces.empty() || !s.balance.stratifications.empty()) return {};
-  return {{.finding = "stratification",
-           .where = kHallName,
-           .law = "warmer above; the hall's thermometer hangs at a level",
-           .added = {make_effect("stratification", Place::kHall, kHallName, {{"level", 1.0}})},
-           .numbers = {doubted("gradient", "K/m", 1.0, 0.2), doubted("level", "m", 0.6, 0.1, 1.0)},  // about where one hangs it
-           .trial = 0.5,
-           .grid = {{-0.6}, {0.2}}}};
+  return {
+      {.finding = "stratification",
+       .where = kHallName,
+       .law = "warmer above; the hall's thermometer hangs at a level",
+       .added = {make_effect("stratification", Place::kHall, kHallName, {{"level", 1.0}})},
+       .numbers = {doubted("gradient", "K/m", 1.0, 0.2), doubted("level", "m", 0.6, 0.1, 1.0)},  // about where one hangs it
+       .trial = 0.5,
+       .grid = {{-0.6}, {0.2}}}};
 }
 
 }  // namespace

@@ -68,8 +68,7 @@ Record as_recorded(const MachineModel& model, const solver::Trajectory& run, con
   }
   if (const effects::ReadingChain chain = effects::reading_chain(model.effects, recorded.name); !chain.empty()) {
     const FeltRun felt = felt_run(model, recorded);
-    told.outputs =
-        chain.apply(outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.hall, std::move(told.outputs));
+    told.outputs = chain.apply(outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.hall, std::move(told.outputs));
   }
   Record record = to_record(told, outputs, recorded, model.reference_K);
   if (!has_ambient_channel(model)) return record;

@@ -66,7 +66,8 @@ std::vector<Part> body_parts(const MachineModel& model, const Machine& machine, 
           set_matrices(parts.back(), mesh, materials, -1, nodes);
           part = parts.end() - 1;
         }
-        part->outputs.col(output) += effects::sensitivity_factor(factors, body, displacement->name) * sensitivity_m_K * solver::mean_weights(mesh, balance, body);
+        part->outputs.col(output) += effects::sensitivity_factor(factors, body, displacement->name) * sensitivity_m_K *
+                                     solver::mean_weights(mesh, balance, body);
       }
     }
     if (displacement && !displacement->points) continue;

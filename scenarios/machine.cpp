@@ -115,7 +115,8 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
       const bool is_of_joint = std::any_of(balance.exchanges.begin(), balance.exchanges.end(), [&](const auto& x) {
         return x.name == e.place && x.body.kind == effects::BodyKind::kJoint;
       });
-      if (is_of_joint && e["decay"] != 0.0) throw InputError(e.where, "a joint has no temperature of its own; `decay` wants one");
+      if (is_of_joint && e["decay"] != 0.0)
+        throw InputError(e.where, "a joint has no temperature of its own; `decay` wants one");
     } else if (e.place_kind == effects::Place::kNode && e.place == effects::kHallName) {
       throw InputError(e.where, "the hall is no lumped node; nothing heats or holds it");
     } else {

@@ -87,7 +87,8 @@ std::string machine_text(const MachineModel& model) {
   const effects::HeatBalance balance = effects::heat_balance(model.effects);
   std::string text = model.written + structure(balance);
   for (const effects::MaterialFactor& f : effects::material_factors(model.effects)) {
-    text += fmt::format("factors of {}: {} {} {} {}\n", words(f.body), f.conductivity, f.heat_capacity, f.expansion, f.displacement);
+    text += fmt::format("factors of {}: {} {} {} {}\n", words(f.body), f.conductivity, f.heat_capacity, f.expansion,
+                        f.displacement);
   }
   if (const auto* imported = std::get_if<mesh::ImportedMesh>(&model.mesh)) {
     const std::string bytes = read_bytes(imported->path);

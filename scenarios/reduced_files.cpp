@@ -154,10 +154,10 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   const Eigen::Index n_exchanges = n_of("exchanges");
   const Eigen::MatrixXd matrices = array_of<double>(file("exchanges.npy"), r * n_exchanges, r),
                         to_hall = array("to_hall.npy", n_exchanges), flow = array("flow.npy", n_exchanges),
-                        offset = array("offset.npy", n_exchanges), medium = array("medium.npy", n_exchanges), loads = array("loads.npy", n_of("sources")),
-                        probes = array("probes.npy", n_of("probes"));
+                        offset = array("offset.npy", n_exchanges), medium = array("medium.npy", n_exchanges),
+                        loads = array("loads.npy", n_of("sources")), probes = array("probes.npy", n_of("probes"));
   Eigen::Index i = 0;
-  for (const Json& s : json.value("sources", none)) 
+  for (const Json& s : json.value("sources", none))
     system.sources.push_back({s.at("name"), body_from(s.at("body")), loads.col(i++), law_from(s)});
   i = 0;
   for (const Json& e : json.value("exchanges", none)) {
@@ -178,7 +178,8 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   }
   i = 0;
   for (const Json& p : json.value("probes", none)) {
-    system.probes.push_back({body_from(p.at("body")), p.at("before"), probes.col(i++), p.at("hall_share"), p.at("offset_K")});
+    system.probes.push_back(
+        {body_from(p.at("body")), p.at("before"), probes.col(i++), p.at("hall_share"), p.at("offset_K")});
   }
   system.outputs.name = json.at("outputs").at("name").get<std::vector<std::string>>();
   system.outputs.unit = json.at("outputs").at("unit").get<std::vector<std::string>>();

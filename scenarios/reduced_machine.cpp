@@ -123,7 +123,8 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
   for (const FeltRun& run : felt) driven.push_back(&run.cyclogram);
   ReductionPlan plan;
   plan.demand = solver::reduction_demand(balance, driven, model.hall, model.reference_K);
-  const bool moves_hall = std::any_of(model.effects.begin(), model.effects.end(), [](const auto& e) { return e.kind->change_drive; });
+  const bool moves_hall =
+      std::any_of(model.effects.begin(), model.effects.end(), [](const auto& e) { return e.kind->change_drive; });
   if (moves_hall) {  // each run may have a hall of its own
     for (const FeltRun& run : felt) {
       plan.demand.include(solver::reduction_demand(balance, {&run.cyclogram}, run.hall, model.reference_K));

@@ -102,9 +102,10 @@ class Finder {
       further.weights = Eigen::VectorXd::Zero(system_.size());
       further.hall_share = 1.0;
     } else {  // heat enters a body where its mean temperature is read
-      const auto source = std::find_if(system_.sources.begin(), system_.sources.end(),
-                                       [&](const HeatSource& s) { return s.body == body; });
-      if (source == system_.sources.end()) throw std::logic_error("bind_laws: the temperature of " + body.name + " is not known");
+      const auto source =
+          std::find_if(system_.sources.begin(), system_.sources.end(), [&](const HeatSource& s) { return s.body == body; });
+      if (source == system_.sources.end())
+        throw std::logic_error("bind_laws: the temperature of " + body.name + " is not known");
       further.weights = source->load;
     }
     system_.probes.push_back(std::move(further));
@@ -122,9 +123,8 @@ void bind_laws(ReducedSystem& system, const effects::HeatBalance& balance) {
   if (!balance.radiations.empty()) throw std::logic_error("bind_laws: radiation is wanted as films");
   Finder find(system, balance);
   std::vector<std::vector<const Law*>> laws(system.sources.size());
-  const auto of_heat = entries_of(system.sources, balance.heats, [](const HeatSource& s, const auto& h) {
-    return s.body == h.body;
-  });
+  const auto of_heat =
+      entries_of(system.sources, balance.heats, [](const HeatSource& s, const auto& h) { return s.body == h.body; });
   for (std::size_t h = 0; h < balance.heats.size(); ++h) laws[of_heat[h]].push_back(&balance.heats[h].power_W);
   for (std::size_t s = 0; s < system.sources.size(); ++s) find.bind(system.sources[s].power_W, sum_of(laws[s]), "");
 

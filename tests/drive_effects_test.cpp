@@ -17,8 +17,8 @@ using ::testing::ThrowsMessage;
 Effect read(const std::string& text) {
   return read_effect(ConfigMap::read_file(write_file("drive_effects_test.yaml", text)));
 }
-DriveChange change_of(const std::string& text) {
-  return drive_change({read(text)});
+DriveChange change_of(const std::string& text, const std::string& run = "shift") {
+  return drive_change({read(text)}, run);
 }
 
 Cyclogram::Section turning(double duration_s, double speed_rpm) {
@@ -50,7 +50,7 @@ TEST(TrueCyclogram, OverrideScalesTheSpindleAlone) {
 
 TEST(TrueCyclogram, OverridesMultiply) {
   const DriveChange twice =
-      drive_change({read("{type: speed_override, factor: 1.25}"), read("{type: speed_override, factor: 2}")});
+      drive_change({read("{type: speed_override, factor: 1.25}"), read("{type: speed_override, factor: 2}")}, "shift");
   EXPECT_THAT(speeds_rpm(true_cyclogram(twice, kRecorded)), ElementsAre(2500, 7500, 0));
 }
 
@@ -77,20 +77,19 @@ TEST(TrueCyclogram, EndsWhenTheRecordedOneDoesToTheLastBit) {
   // Output at the end of the record must not lie behind the last section of what is run.
   const Cyclogram uneven{.name = "uneven", .sections = {turning(1000.0 / 7.0, 1000.0), turning(1000.0 / 3.0, 2000.0)}};
   for (int i = 1; i < 1200; ++i) {
-    DriveChange change;
-    change.stops.push_back({0.37 * i, 0.7, {}});
-    const Cyclogram felt = true_cyclogram(change, uneven);
+    Effect stop = make_effect("missing_stop", Place::kSpindle, "spindle");
+    stop.set("start", 0.37 * i / 60.0);
+    stop.set("length", 0.7 / 60.0);
+    const Cyclogram felt = true_cyclogram(drive_change({stop}, "uneven"), uneven);
     EXPECT_GT(felt.sections.size(), 3u);
     EXPECT_EQ(felt.duration_s(), uneven.duration_s()) << i;
   }
 }
 
 TEST(TrueCyclogram, AStopOfOneCyclogramSparesTheOthers) {
-  const DriveChange change = change_of("{type: missing_stop, start: 8 min, length: 1 min, in: other}");
-  EXPECT_EQ(true_cyclogram(change, kRecorded).sections, kRecorded.sections);
-  Cyclogram other = kRecorded;
-  other.name = "other";
-  EXPECT_THAT(speeds_rpm(true_cyclogram(change, other)), ElementsAre(1000, 0, 1000, 3000, 0));
+  const std::string stop = "{type: missing_stop, start: 8 min, length: 1 min, in: other}";
+  EXPECT_EQ(true_cyclogram(change_of(stop), kRecorded).sections, kRecorded.sections);
+  EXPECT_THAT(speeds_rpm(true_cyclogram(change_of(stop, "other"), kRecorded)), ElementsAre(1000, 0, 1000, 3000, 0));
 }
 
 // A hall that warms by 3 K in 20 min, during a cyclogram of 25 min.
@@ -113,14 +112,13 @@ TEST(TrueHall, StepTakesAMillisecondAndRampGoesOnToTheEnd) {
 }
 
 TEST(TrueHall, ErrorsAddUp) {
-  const DriveChange both = drive_change({read("{type: ambient, offset: 1 K}"), read("{type: ambient, offset: 2 K}")});
+  const DriveChange both = drive_change({read("{type: ambient, offset: 1 K}"), read("{type: ambient, offset: 2 K}")}, "shift");
   EXPECT_DOUBLE_EQ(true_hall(both, kHall, kRecorded).at(600), 5.5);
 }
 
 TEST(TrueHall, AnErrorOfOneCyclogramSparesTheOthers) {
-  DriveChange change;
-  change.hall.push_back({1.0, 0.0, 0.0, "other"});
-  EXPECT_EQ(true_hall(change, kHall, kRecorded).value, kHall.value);
+  EXPECT_EQ(true_hall(change_of("{type: ambient, offset: 1 K, in: other}"), kHall, kRecorded).value, kHall.value);
+  EXPECT_NE(true_hall(change_of("{type: ambient, offset: 1 K, in: other}", "other"), kHall, kRecorded).value, kHall.value);
 }
 
 struct Bad {

@@ -234,7 +234,8 @@ const std::vector<Case> kCases = {
     {"a_loose_sensor", false, added({"{type: sensor_detached, sensor: t_shaft, share: 0.4, time: 25 min, in: cycle}"})},
     {"a_late_sensor", false, added({"{type: sensor_lag, sensor: t_shaft, lag: 5 min}"})},
     {"a_wrong_sensor", false,
-     added({"{type: sensor_bias, sensor: t_shaft, bias: 0.7 K, in: cycle}", "{type: sensor_drift, sensor: t_shaft, drift: 1 K/h}"})},
+     added({"{type: sensor_bias, sensor: t_shaft, bias: 0.7 K, in: cycle}",
+            "{type: sensor_drift, sensor: t_shaft, drift: 1 K/h}"})},
     {"swapped", false, added({"{type: sensor_swap, sensor: t_shaft, with: t_housing}"})},
     {"a_late_clock", false, added({"{type: clock_offset, offset: 4 min}"})},
 };
@@ -242,11 +243,11 @@ INSTANTIATE_TEST_SUITE_P(All, AFinding, ::testing::ValuesIn(kCases), [](const au
 
 TEST(AnotherRun, WhatHappenedInItDoesNothingHere) {
   const Eigen::MatrixXd before = by_twin(spindle(), [](TwinState&) {});
-  for (const char* text : {"{type: heat_source, node: shaft, power: 40 W, in: tuesday}", "{type: ambient, offset: 2 K, in: tuesday}",
-                           "{type: sensor_bias, sensor: t_shaft, bias: 1 K, in: tuesday}",
-                           "{type: speed_override, factor: 2, in: tuesday}",
-                           "{type: changed_law, law: link housing - hall, factor: 3, in: tuesday}",
-                           "{type: exchange_window, node: shaft, conductance: 9 W/K, windows: [[0 min, 90 min]], in: tuesday}"}) {
+  for (const char* text :
+       {"{type: heat_source, node: shaft, power: 40 W, in: tuesday}", "{type: ambient, offset: 2 K, in: tuesday}",
+        "{type: sensor_bias, sensor: t_shaft, bias: 1 K, in: tuesday}", "{type: speed_override, factor: 2, in: tuesday}",
+        "{type: changed_law, law: link housing - hall, factor: 3, in: tuesday}",
+        "{type: exchange_window, node: shaft, conductance: 9 W/K, windows: [[0 min, 90 min]], in: tuesday}"}) {
     EXPECT_EQ(by_twin(spindle(), added({text})), before) << text;
   }
 }
@@ -269,8 +270,8 @@ const Bench& semi_closed() {
 }
 
 TEST(SemiClosedAxis, FindingsOfScrewAndColumnRunAsTheTwinPredicted) {
-  expect_runs_as_predicted(semi_closed(),
-                           {"a_longer_screw", true, added({"{type: expansion, node: screw, factor: 1.4, displacement: z}"})});
+  expect_runs_as_predicted(
+      semi_closed(), {"a_longer_screw", true, added({"{type: expansion, node: screw, factor: 1.4, displacement: z}"})});
   expect_runs_as_predicted(semi_closed(),
                            {"a_growing_column", true, added({"{type: expansion, region: column, factor: 1.6}"})});
 }

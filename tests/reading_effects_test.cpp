@@ -34,12 +34,12 @@ Eigen::MatrixXd truth() {
   return outputs;
 }
 Eigen::MatrixXd told(const ReadingChain& chain, const Cyclogram& cyclogram = kCyclogram) {
-  return readings(chain, {"a", "b", "z", "tilt"}, {"K", "K", "m", "rad"}, kTime_s, cyclogram, kHall, truth());
+  return chain.apply({"a", "b", "z", "tilt"}, {"K", "K", "m", "rad"}, kTime_s, cyclogram, kHall, truth());
 }
 Eigen::MatrixXd told(const std::vector<std::string>& entries, const Cyclogram& cyclogram = kCyclogram) {
   std::vector<Effect> effects;
   for (const std::string& text : entries) effects.push_back(read(text));
-  return told(reading_chain(effects), cyclogram);
+  return told(reading_chain(effects, cyclogram.name), cyclogram);
 }
 constexpr int kA = 0, kB = 1, kZ = 2, kTilt = 3;
 

@@ -1,0 +1,12 @@
+#pragma once
+// The catalogue as a table for people: docs/effects.md is made of it, and so is what `driftwright list` prints.
+
+#include <string>
+
+namespace driftwright::effects {
+
+/// Markdown: one row an effect with its YAML type, what it is, its places, its numbers with units and ranges, its law, and whether a diagnosis looks
+/// for it.
+[[nodiscard]] std::string catalogue_table();
+
+}  // namespace driftwright::effects

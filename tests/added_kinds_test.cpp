@@ -1,0 +1,166 @@
+// Five kinds of effects, one of each sort, of which the program knows nothing but their files in tests/added_kinds and their names in a list: each is
+// simulated, fitted, found in records that it was hidden in, written into the scenario, and listed among the effects.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/random.hpp"
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/extended_scenario.hpp"
+#include "diagnosis/scatter.hpp"
+#include "effects/catalogue_table.hpp"
+#include "scenarios/as_recorded.hpp"
+#include "scenarios/machine.hpp"
+#include "solver/transient.hpp"
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr const char* kMachine = R"(name: two_nodes
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: head, capacity: 6 kJ/K}
+  - {type: node, node: column, capacity: 40 kJ/K}
+  - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
+  - {type: link, node: head, to: column, conductance: 12 W/K}
+  - {type: link, node: column, to: hall, conductance: 14 W/K}
+hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+sensors:
+  - {name: t_head, node: head}
+  - {name: t_column, node: column}
+displacements:
+  - name: nose
+    sensitivities:
+      - {node: head, sensitivity: 3 um/K}
+cyclograms:
+  monday: [[60 min, 600 rpm], [60 min, 1900 rpm], [40 min, 0 rpm], [80 min, 1000 rpm], [60 min, 1400 rpm]]
+  tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
+solver: {output_interval: 1 min}
+)";
+constexpr double kNoise_K = 0.03, kNoise_um = 0.2;
+
+struct Added {
+  const char* key;
+  const char* entry;  ///< of the truth
+  const char* where;
+  const char* number;
+  double value;      ///< of the number
+  double tolerance;  ///< relative: some two of its standard deviations
+};
+
+/// The scenario, with one more effect.
+std::string scenario_with(const std::string& entry) {
+  std::string text = kMachine;
+  if (!entry.empty()) text.insert(text.find("hall: [["), "  - " + entry + "\n");
+  return text;
+}
+
+/// Records of a scenario by the full model, with noise, as files.
+std::vector<std::string> record(const std::string& path, const std::string& folder) {
+  const scenarios::Scenario s = scenarios::read_scenario(path);
+  const scenarios::MachineModel& model = *s.machine;
+  const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
+  Random random(3, 0);
+  std::vector<std::string> paths;
+  for (const Cyclogram& c : s.cyclograms) {
+    const scenarios::FeltRun felt = scenarios::felt_run(model, c);
+    Record r = scenarios::as_recorded(
+        model,
+        solver::simulate(machine.system, felt.cyclogram, felt.hall, scenarios::output_times_s(c, 60.0),
+                         {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7}, scenarios::start_state(model, machine)),
+        machine.system.outputs, c);
+    for (Channel& channel : r.channels) {
+      const double noise = channel.unit == "degC" && channel.name != "ambient" ? kNoise_K
+                           : channel.unit == "um"                              ? kNoise_um
+                                                                               : 0.0;
+      for (double& v : channel.values) v += noise * random.normal();
+    }
+    paths.push_back(write_file(folder + "_" + c.name + ".csv", record_csv(r)));
+  }
+  return paths;
+}
+
+/// A twin of a scenario beside records.
+struct Beside {
+  scenarios::Scenario scenario;
+  std::vector<MeasuredRun> runs;
+  AugmentedModel augmented;
+  scenarios::ReducedMachine machine;
+  std::optional<Twin> twin;
+
+  Beside(const std::string& path, const std::vector<std::string>& records) : scenario(scenarios::read_scenario(path)) {
+    const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
+    const solver::Outputs names = scenarios::output_names(*scenario.machine, placed);
+    for (const std::string& r : records) runs.push_back(read_measured(r, *scenario.machine, names));
+    augmented = augment(scenario, placed.mesh, runs);
+    const scenarios::MachineModel& model = augmented.model;
+    machine = scenarios::reduce(model, scenarios::build(model, scenarios::place(model)), augmented.plan);
+    twin.emplace(augmented, machine, solver::TransientOptions{.relative_tolerance = 1e-5, .absolute_tolerance_K = 1e-4});
+  }
+  [[nodiscard]] Diagnosis diagnosed(int most_effects) const {
+    return diagnose(*twin, nullptr, runs, {.most_effects = most_effects}, [](const std::string&) {});
+  }
+};
+
+class AnAddedKind : public testing::TestWithParam<Added> {};
+
+TEST_P(AnAddedKind, IsSimulatedFoundWrittenAndListed) {
+  const Added& added = GetParam();
+  const std::string plain = write_file("plain.yaml", scenario_with("")),
+                    truth = write_file("truth.yaml", scenario_with(added.entry));
+  const Beside beside(plain, record(truth, added.key));
+  const Diagnosis d = beside.diagnosed(3);
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, added.key);
+  EXPECT_EQ(d.causes[0].where, added.where);
+  EXPECT_THAT(d.causes[0].alternatives, IsEmpty());
+  EXPECT_NEAR(d.causes[0].parameters[0].value, added.value, added.tolerance * std::abs(added.value));
+
+  const Claim& claim = d.search.hypothesis[0];
+  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
+  const ExtendedScenario extended =
+      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
+  EXPECT_THAT(extended.not_written, IsEmpty());
+  EXPECT_THAT(extended.text, HasSubstr(std::string("- {type: ") + added.key));
+  const Beside again(write_file("extended_again.yaml", extended.text), record(truth, added.key));
+  EXPECT_EQ(again.diagnosed(3).verdict, Verdict::kConsistent);
+
+  EXPECT_THAT(effects::catalogue_table(), HasSubstr(std::string("| `") + added.key + "` |"));
+}
+
+TEST_P(AnAddedKind, IsOneOfTheUncertainNumbersOfAScenarioThatHasIt) {
+  const Added& added = GetParam();
+  std::string off = added.entry;  // its number a tenth too small
+  const std::string digits = fmt::format("{:g}", added.value);
+  ASSERT_NE(off.find(digits), std::string::npos);
+  off.replace(off.find(digits), digits.size(), fmt::format("{:g}", 0.9 * added.value));
+  const Beside beside(write_file("off.yaml", scenario_with(off)),
+                      record(write_file("truth.yaml", scenario_with(added.entry)), added.key));
+  const Diagnosis d = beside.diagnosed(0);
+  double fitted = 0.0;
+  for (const Estimate& e : d.calibrated) {
+    if (e.name.starts_with(std::string(added.key) + " ")) fitted = e.value;
+  }
+  EXPECT_NEAR(fitted, added.value, 0.5 * 0.1 * std::abs(added.value)) << "went less than half the way";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfEachSort, AnAddedKind,
+    ::testing::Values(
+        Added{"humming_heat", "{type: humming_heat, node: head, power: 60 W}", "head", "power", 60.0, 0.1},
+        Added{"fanned_exchange", "{type: fanned_exchange, node: head, conductance: 7 W/K}", "head", "conductance", 7.0,
+              0.15},
+        Added{"creeping_glue", "{type: creeping_glue, displacement: nose, creep: 6 um}", "nose", "creep", 6.0, 0.1},
+        Added{"sensor_gain", "{type: sensor_gain, sensor: t_column, gain: 1.4}", "t_column", "gain", 1.4, 0.05},
+        Added{"slipping_belt", "{type: slipping_belt, slip: 150 rpm}", "spindle", "slip", 150.0, 0.15}),
+    [](const auto& one) { return std::string(one.param.key); });
+
+}  // namespace
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,38 @@
+#include "base/parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+
+namespace driftwright {
+namespace {
+
+TEST(ForEachIndex, DoesEachOnceAndThrowsTheFirstFailureByIndex) {
+  for (int again = 0; again < 50; ++again) {
+    std::vector<std::atomic<int>> done(40);
+    std::string what;
+    try {
+      for_each_index(
+          done.size(), [] { return 0; },
+          [&](std::size_t i, int&) {
+            ++done[i];
+            if (i == 7 || i == 8 || i == 33) throw std::runtime_error("failed at " + std::to_string(i));
+          });
+    } catch (const std::runtime_error& e) {
+      what = e.what();
+    }
+    EXPECT_EQ(what, "failed at 7");
+    for (const auto& n : done) EXPECT_EQ(n, 1);
+  }
+}
+
+TEST(ForEachIndex, CarriesAFailureToMakeTheSpace) {
+  EXPECT_THROW(for_each_index(
+                   3, []() -> int { throw std::logic_error("no space"); }, [](std::size_t, int&) {}),
+               std::logic_error);
+}
+
+}  // namespace
+}  // namespace driftwright
