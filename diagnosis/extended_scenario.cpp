@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/errors.hpp"
+#include "base/quantity.hpp"
 #include "base/yaml_text.hpp"
 
 namespace driftwright::diagnosis {
@@ -19,12 +20,17 @@ namespace {
 using effects::Effect;
 
 double rounded(double value) {
-  return std::isfinite(value) ? std::strtod(fmt::format("{:.7g}", value).c_str(), nullptr) : value;
+  return std::isfinite(value) ? std::strtod(fmt::format("{:.8g}", value).c_str(), nullptr) : value;
 }
 
-/// Seven digits are enough for a thousandth of a kelvin, and can be read.
+double rounded(double value, const effects::Parameter& parameter) {
+  const double zero = parameter.unit == "degC" ? kZeroCelsius_K : 0.0;
+  return rounded(value - zero) + zero;
+}
+
+/// Eight digits are enough for a thousandth of a kelvin, and can be read.
 Effect rounded(Effect e) {
-  for (double& value : e.values) value = rounded(value);
+  for (std::size_t p = 0; p < e.values.size(); ++p) e.values[p] = rounded(e.values[p], e.kind->parameters[p]);
   for (auto& [name, table] : e.tables) {
     for (double& argument : table.time_s) argument = rounded(argument);
     for (double& value : table.value) value = rounded(value);
@@ -107,12 +113,12 @@ class Writer {
   /// Changed numbers of an effect.
   void values(std::size_t i, const Effect& next) {
     for (std::size_t p = 0; p < next.values.size(); ++p) {
-      const double was = list_[i].values[p], now = rounded(next.values[p]);
+      const double was = list_[i].values[p], now = rounded(next.values[p], next.kind->parameters[p]);
       if (std::isnan(next.values[p]) || next.values[p] == was) continue;
       list_[i].values[p] = now;
       const effects::Parameter& parameter = next.kind->parameters[p];
-      done_.push_back(fmt::format("{}: {} {} -> {}", next.name(), parameter.name, effects::yaml_of(parameter, rounded(was)),
-                                  effects::yaml_of(parameter, now)));
+      done_.push_back(fmt::format("{}: {} {} -> {}", next.name(), parameter.name,
+                                  effects::yaml_of(parameter, rounded(was, parameter)), effects::yaml_of(parameter, now)));
       if (is_in_file(i) ? !in_place(i, parameter, was, now) : true) replace(i);
     }
   }
@@ -129,7 +135,7 @@ class Writer {
     const double number = std::strtod(text.c_str(), &unit);
     const bool keeps_unit = parameter.unit != "degC" && unit != text.c_str() && was != 0.0 && number != 0.0;
     const std::string other =
-        keeps_unit ? fmt::format("{:.7g}{}", number * now / was, unit) : effects::yaml_of(parameter, now);
+        keeps_unit ? fmt::format("{:.8g}{}", number * now / was, unit) : effects::yaml_of(parameter, now);
     notes_[scalar->line].push_back(fmt::format("{} was {}", parameter.name, text));
     return yaml_.replace(*scalar, other);
   }

@@ -27,7 +27,7 @@ struct ExtendedScenario {
 [[nodiscard]] std::function<void(TwinState&)> change_of(const Claim& claim, const Eigen::VectorXd& x);
 
 /// Makes all changes one after the other and edits the file of a scenario accordingly: numbers in place, further effects behind the others, as
-/// effects::yaml_of() writes them. Numbers carry seven digits. Files that it names are given by absolute paths. For a change that happened in one
+/// effects::yaml_of() writes them. Numbers carry eight digits. Files that it names are given by absolute paths. For a change that happened in one
 /// of several runs a cyclogram of the run's name, from its record, is added where there is none. Where the text of the file leaves no room for an
 /// edit (an alias, an entry that shares its line), the entry is replaced as a whole, and if that is impossible, the file is written anew
 /// without its comments.

@@ -6,6 +6,7 @@
 namespace driftwright::effects {
 namespace {
 
+constexpr double kShortest_min = 1e-3;
 constexpr double kRounding = 1e-9;  // of the time: a stop at the end of a section cuts nothing off
 
 /// A cut on a grid of four times the rounding of the section's end: so durations of its pieces add up to that end to the last bit,
@@ -51,7 +52,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     Effect stop = make_effect("missing_stop", Place::kSpindle, "spindle");
     stop.in = run.name;
     DoubtedNumber length = doubted("length", "min", 15.0, 1.0);
-    length.low = 0.0;
+    length.low = kShortest_min;
     list.push_back({.finding = "missing_stop",
                     .where = "spindle",
                     .law = "in " + run.name,
@@ -73,7 +74,7 @@ EffectKind missing_stop() {
           .title = "stop of the spindle that the record does not have",
           .law = "n = 0 from start to start + length; feeds and cutting power as recorded",
           .places = {Place::kSpindle},
-          .parameters = {{"start", "min", 0.0, 1e7, {}, "when it stops"}, {"length", "min", 0.0, 1e7, {}, "for how long"}},
+          .parameters = {{"start", "min", 0.0, 1e7, {}, "when it stops"}, {"length", "min", kShortest_min, 1e7, {}, "for how long"}},
           .timing = Timing::kInRecord,
           .change_drive = change_drive,
           .doubts = doubts};

@@ -54,7 +54,7 @@ TEST(BindLaws, TheOrderOfTheListDoesNotMatter) {
 TEST(BindLaws, WhatHasNoEntryOfItsNameAddsUpAtItsPlace) {
   std::vector<std::string> more = kMachine;
   more.insert(more.end(),
-              {"{type: friction_law, node: head, power: 30 W, at_speed: 1000 rpm, decay: 0}",
+              {"{type: friction_law, node: head, power: 30 W, at_speed: 1000 rpm}",
                "{type: exchange_window, node: column, conductance: 5 W/K, windows: [[10 min, 20 min]], in: monday}"});
   ReducedSystem bound = reduced(kMachine);
   bind_laws(bound, fixtures::balance_of(more));

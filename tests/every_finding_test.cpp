@@ -56,7 +56,7 @@ TEST_P(EveryFinding, IsWrittenAndReadBackAsTheTwinHadIt) {
   const AugmentedModel augmented = augment(scenario, placed.mesh, runs);
   const scenarios::ReducedMachine machine = scenarios::reduce(
       augmented.model, scenarios::build(augmented.model, scenarios::place(augmented.model, placed.mesh)), augmented.plan);
-  const Twin twin(augmented, machine, {.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-5});
+  const Twin twin(augmented, machine, {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-6});
 
   struct Job {
     std::string name;

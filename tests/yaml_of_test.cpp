@@ -61,6 +61,10 @@ Effect drawn(const EffectKind& kind, Place place, Random& random) {
   for (const Table& t : kind.tables) {
     if (!t.compulsory && random.chance(0.5)) continue;
     const double high = std::min(t.high, 1e6);
+    if (t.argument_unit == t.value_unit) {  // windows
+      e.tables[t.name] = {{10.0, 70.5}, {20.25, 90.0}};
+      continue;
+    }
     e.tables[t.name] = {{10.0, 70.5}, {t.low + 0.3 * (high - t.low), t.low + 0.7 * (high - t.low)}};
   }
   for (const Mention& m : kind.mentions) {
