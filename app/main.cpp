@@ -107,6 +107,7 @@ int main(int argc, char** argv) {
   app::CompensateOptions compensate;
   app::DiagnoseOptions diagnose;
   app::CalibrateOptions calibrate;
+  app::ListOptions list;
   add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
@@ -189,6 +190,13 @@ int main(int argc, char** argv) {
   verb->add_option("--shard", sweep.shard, "i/n: simulate the i-th of n parts alone, as a task of a job array does");
   verb->add_flag("--merge", sweep.merge, "put together what all shards have simulated");
   verb->callback([&] { app::sweep(sweep); });
+  verb = cli.add_subcommand("list", "the catalogue of effects, or the library of materials");
+  verb->add_option("what", list.what, "effects or materials")
+      ->check(CLI::IsMember({"effects", "materials"}))
+      ->capture_default_str();
+  verb->add_flag("--markdown", list.markdown, "effects with their places, keys, units and laws, as a table");
+  verb->footer("Example:\n  driftwright list effects --markdown");
+  verb->callback([&] { app::list(list); });
 
   try {
     reject_unknown_verb(cli, argc > 1 ? argv[1] : "");

@@ -73,6 +73,13 @@ struct DiagnoseOptions : CommonOptions {
 };
 void diagnose(const DiagnoseOptions& options);
 
+struct ListOptions {
+  std::string what = "effects";  ///< or "materials"
+  bool markdown = false;         ///< effects with places, keys and laws, as docs/effects.md has them
+};
+/// Prints the catalogue of effects or the library of materials.
+void list(const ListOptions& options);
+
 struct CalibrateOptions : CommonOptions {
   std::vector<std::string> measured;  ///< record CSVs
 };

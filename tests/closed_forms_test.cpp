@@ -171,7 +171,7 @@ TEST_P(HollowCylinder, BetweenTwoFilmsConvergesToTheLogarithm) {
     fixtures::add_quarter_ring(mesh, r_i, r_o, 0.03 / n, n, 2 * n, 1, GetParam().shape, "body", "");
     effects::HeatBalance balance;
     balance.exchanges.push_back(film("inner", h_i, "oil"));
-  balance.exchanges.push_back(film("outer", h_o));
+    balance.exchanges.push_back(film("outer", h_o));
     balance.nodes.push_back({"oil", 1.0});
     balance.fixed.push_back(fixed_at(effects::node("oil"), 293.15 + 60.0));
     const FullSystem system = assemble_heat(mesh, steel_for(mesh), balance);
@@ -214,7 +214,7 @@ TEST_P(Sleeve, PassesOnAllHeatAndJumpsByTheClosedForm) {
     FullSystem system = assemble_heat(mesh, steel_for(mesh), balance);
     Eigen::VectorXd in_shaft = Eigen::VectorXd::Zero(system.size());
     in_shaft.head(n_shaft) = fixtures::volume_load(mesh, [](const auto&) { return 1.0; }).head(n_shaft);
-    system.sources.push_back({"heat", in_shaft, fixtures::constant(heat_W_m3)});
+    system.sources.push_back({"heat", {}, in_shaft, fixtures::constant(heat_W_m3)});
     const Eigen::VectorXd t = steady_state(system, {}, Eigen::VectorXd::Zero(system.size()));
 
     const Exchange<SparseRow>& contact = system.exchanges.at(1);  // after the film

@@ -112,7 +112,8 @@ TEST(TrueHall, StepTakesAMillisecondAndRampGoesOnToTheEnd) {
 }
 
 TEST(TrueHall, ErrorsAddUp) {
-  const DriveChange both = drive_change({read("{type: ambient, offset: 1 K}"), read("{type: ambient, offset: 2 K}")}, "shift");
+  const DriveChange both =
+      drive_change({read("{type: ambient, offset: 1 K}"), read("{type: ambient, offset: 2 K}")}, "shift");
   EXPECT_DOUBLE_EQ(true_hall(both, kHall, kRecorded).at(600), 5.5);
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "effects/bearing_formulas.hpp"
+#include "effects/catalogue_table.hpp"
 #include "effects/effect.hpp"
 #include "tests/temporary_file.hpp"
 
@@ -216,18 +217,110 @@ TEST(HeatSource, InAWaveRisesThroughZeroAtItsDelayAndIsCutIntoSteps) {
 
 // --- documentation and errors -----------------------------------------------------------------------------------
 
-TEST(Documentation, ListsEveryEffectOfTheCatalogueInItsOrder) {
-  std::ifstream file("docs/scenario.md");
-  std::vector<std::string> listed;
-  bool in_table = false;
-  for (std::string line; std::getline(file, line);) {
-    in_table |= line.starts_with("| type |");
-    if (in_table && line.starts_with("| `")) listed.push_back(line.substr(3, line.find('`', 3) - 3));
-    if (in_table && line.empty()) break;
-  }
-  std::vector<std::string> keys;
-  for (const EffectKind& kind : catalogue()) keys.push_back(kind.key);
-  EXPECT_EQ(listed, keys);
+TEST(Documentation, HoldsTheTableThatTheCatalogueMakes) {
+  // after a change of the catalogue: driftwright list effects --markdown, put into docs/effects.md in place of the table there
+  std::ifstream file("docs/effects.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(text.find("\n\n" + catalogue_table()), std::string::npos);
+}
+
+// --- what one law does to another, and when -------------------------------------------------------------------------
+
+/// The first heat of a list of effects, or its first exchange.
+Law law_of(const std::vector<std::string>& entries) {
+  std::vector<Effect> effects;
+  for (const std::string& text : entries) effects.push_back(read(text));
+  const HeatBalance b = heat_balance(effects);
+  return b.heats.empty() ? b.exchanges.at(0).coefficient : b.heats[0].power_W;
+}
+Inputs at(double speed_rpm, double time_s = 0.0, std::string_view run = {}, std::vector<double> probe_K = {}) {
+  Inputs u{.drive = {.speed_rpm = speed_rpm}, .hall_K = 0.0, .time_s = time_s, .probe_K = std::move(probe_K)};
+  u.run = run;
+  return u;
+}
+
+TEST(ChangedLaw, MultipliesByAFactorAPowerOfSpeedAndADecay) {
+  const std::string motor = "{type: motor_loss, region: m, power: 100 W, at_speed: 1000 rpm, exponent: 1, idle: 20 W}";
+  const Law law = law_of({motor,
+                          "{type: changed_law, law: motor_loss m, factor: 1.5, exponent: 2, at_speed: 500 rpm, decay: 0.02 "
+                          "1/K, at_temperature: 20 degC}"});
+  ASSERT_EQ(law.probes, std::vector<Body>{region("m")});
+  // 1000 rpm: 120 W x 1.5 x (1000/500)^2 x exp(-0.02 x 10)
+  EXPECT_NEAR(law(at(1000.0, 0.0, "", {303.15})), 120.0 * 1.5 * 4.0 * std::exp(-0.2), 1e-9);
+  EXPECT_EQ(law(at(0.0, 0.0, "", {303.15})), 0.0);
+}
+
+TEST(ChangedLaw, LeavesALawThatLooksAtTemperaturesItsOwnProbes) {
+  const Law law = law_of({"{type: friction_law, node: a, power: 80 W, decay: 0.01 1/K, at_temperature: 20 degC}",
+                          "{type: changed_law, law: friction_law a, factor: 2, decay: 0.03 1/K, at_temperature: 20 degC}"});
+  ASSERT_EQ(law.probes.size(), 2u);
+  EXPECT_NEAR(law(at(1000.0, 0.0, "", {303.15, 303.15})), 160.0 * std::exp(-0.1) * std::exp(-0.3), 1e-9);
+}
+
+TEST(ChangedLaw, HoldsForAWhileAndInOneRunAndTellsWhenItJumps) {
+  const std::vector<std::string> entries = {
+      "{type: link, node: a, to: hall, conductance: 10 W/K}",
+      "{type: changed_law, law: link a - hall, factor: 0.2, from: 10 min, until: 20 min, in: monday}"};
+  const Law law = law_of(entries);
+  EXPECT_EQ(law(at(0.0, 599.0, "monday")), 10.0);
+  EXPECT_EQ(law(at(0.0, 600.0, "monday")), 2.0);
+  EXPECT_EQ(law(at(0.0, 1200.0, "monday")), 10.0);
+  EXPECT_EQ(law(at(0.0, 700.0, "tuesday")), 10.0);
+  EXPECT_EQ(law(at(0.0, 700.0)), 10.0);
+  const HeatBalance b = heat_balance({read(entries[0]), read(entries[1])});
+  EXPECT_EQ(b.change_times_s, (std::vector<double>{600.0, 1200.0}));
+}
+
+TEST(InOneRun, AnEffectActsDuringItAlone) {
+  const Law law = law_of({"{type: heat_source, node: a, power: 50 W, from: 1 min, in: monday}"});
+  EXPECT_EQ(law(at(0.0, 59.0, "monday")), 0.0);
+  EXPECT_EQ(law(at(0.0, 60.0, "monday")), 50.0);
+  EXPECT_EQ(law(at(0.0, 60.0, "tuesday")), 0.0);
+  EXPECT_EQ(law(at(0.0, 60.0)), 0.0);
+}
+
+TEST(HeatSource, GoesWithTheSpindleOrFallsWithSpeed) {
+  const Law pump = law_of({"{type: heat_source, node: a, power: 50 W, runs: while_spindle_turns}"});
+  EXPECT_EQ(pump(at(0.0)), 0.0);
+  EXPECT_EQ(pump(at(10.0)), 50.0);
+  EXPECT_EQ(pump(at(9000.0)), 50.0);
+  const Law falls = law_of({"{type: heat_source, node: a, power: 50 W, at_speed: 1000 rpm, exponent: -0.5}"});
+  EXPECT_EQ(falls(at(0.0)), 0.0);  // not infinite
+  EXPECT_NEAR(falls(at(4000.0)), 25.0, 1e-12);
+  const Law wave = law_of({"{type: heat_source, node: a, power: 10 W, mean: 30 W, period: 400 s, until: 2000 s}"});
+  EXPECT_NEAR(wave(at(0.0, 100.0)), 40.0, 1e-9);
+  EXPECT_NEAR(wave(at(0.0, 300.0)), 20.0, 1e-9);
+}
+
+TEST(ExchangeWindow, OpensAndClosesOnceOrAgainAndAgain) {
+  const Law once = law_of({"{type: exchange_window, node: a, conductance: 8 W/K, windows: [[10 s, 20 s], [50 s, 60 s]]}"});
+  for (const auto& [t_s, c_W_K] :
+       std::vector<std::pair<double, double>>{{9, 0}, {10, 8}, {19, 8}, {20, 0}, {55, 8}, {60, 0}, {1010, 0}})
+    EXPECT_EQ(once(at(0.0, t_s)), c_W_K) << t_s;
+  const std::string again =
+      "{type: exchange_window, surface: s, film: 8 W/(m^2 K), windows: [[10 s, 20 s]], every: 100 s, until_time: 250 s}";
+  const Law many = law_of({again});
+  for (const auto& [t_s, film] :
+       std::vector<std::pair<double, double>>{{15, 8}, {30, 0}, {110, 8}, {120, 0}, {215, 8}, {310, 0}})
+    EXPECT_EQ(many(at(0.0, t_s)), film) << t_s;
+  const HeatBalance b = heat_balance({read(again)});
+  EXPECT_EQ(b.change_times_s, (std::vector<double>{10, 20, 110, 120, 210, 220}));
+}
+
+TEST(Coolant, WithoutATankIsHeldAtItsSetPoint) {
+  const HeatBalance b = heat_balance(
+      {read("{type: coolant, region: r, flow: 6 L/min, medium_heat_capacity: 4000 J/(L K), passage_conductance: 400 W/K, "
+            "set_point: 18 degC}")});
+  ASSERT_EQ(b.exchanges.size(), 1u);
+  EXPECT_TRUE(b.nodes.empty() && b.heats.empty() && b.thermostats.empty());
+  EXPECT_NEAR(*b.exchanges[0].medium_K, 291.15, 1e-12);
+  EXPECT_EQ(b.exchanges[0].per, Per::kTotal);
+  EXPECT_NEAR(b.exchanges[0].coefficient(at(0.0)), 400.0 * (1.0 - std::exp(-1.0)), 1e-9);  // W = 0.1 L/s x 4000 J/(L K)
+}
+
+TEST(FilmsByFormula, TakeAFactor) {
+  const std::string air = "{type: rotating_cylinder, surface: s, diameter: 100 mm";
+  EXPECT_NEAR(law_of({air + ", factor: 1.7}"})(at(2000.0)), 1.7 * law_of({air + "}"})(at(2000.0)), 1e-12);
 }
 
 struct Bad {

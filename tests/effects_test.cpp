@@ -228,9 +228,10 @@ TEST(Laws, ContactAndAirNodeCarryTheirNumbers) {
 TEST(Laws, SurroundingIsTheHallUnlessNamed) {
   EXPECT_EQ(heat_balance({read("{type: convection, surface: s, film: 8 W/(m^2 K)}")}).exchanges.at(0).surrounding,
             effects::kHallName);
-  EXPECT_EQ(
-      heat_balance({read("{type: convection, surface: s, film: 8 W/(m^2 K), surrounding: air}")}).exchanges.at(0).surrounding,
-      "air");
+  EXPECT_EQ(heat_balance({read("{type: convection, surface: s, film: 8 W/(m^2 K), surrounding: air}")})
+                .exchanges.at(0)
+                .surrounding,
+            "air");
 }
 
 struct Bad {

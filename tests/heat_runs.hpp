@@ -39,7 +39,7 @@ inline constexpr std::array kAllShapes = {mesh::CellShape::kTet4,  mesh::CellSha
 }
 
 [[nodiscard]] inline effects::Exchange film(const std::string& surface, double htc_W_m2K,
-                                        const std::string& surrounding = effects::kHallName) {
+                                            const std::string& surrounding = effects::kHallName) {
   return effects::make_film("film " + surface, surface, constant(htc_W_m2K), surrounding);
 }
 

@@ -62,7 +62,7 @@ double manufactured_error_K(const mesh::Mesh& mesh, const std::vector<std::strin
   for (const std::string& surface : film_surfaces) balance.exchanges.push_back(film(surface, kBiot * k));
   FullSystem system = assemble_heat(mesh, RegionMaterials(mesh.regions.size(), fixtures::steel()), balance);
   const auto source = [&](const Eigen::Vector3d& x) { return k * (mu * mu + 2 * pi * pi) * exact(x); };
-  system.sources.push_back({"manufactured", fixtures::volume_load(mesh, source), fixtures::constant(1.0)});
+  system.sources.push_back({"manufactured", {}, fixtures::volume_load(mesh, source), fixtures::constant(1.0)});
   return fixtures::l2_error(mesh, fixtures::steady(system), exact);
 }
 
@@ -237,7 +237,7 @@ TEST(TransientHalfSpace, HolmanExample42) {
 
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.2, 0.002, 0.002}, .n = {80, 1, 1}});
   FullSystem system = assemble_heat(mesh, {{7800, k, k / (a_m2_s * 7800), 2e11, 0.3, 1e-5, "Holman"}}, {});
-  system.sources.push_back({"flux", fixtures::surface_load(mesh, "x0"), fixtures::constant(q_W_m2)});
+  system.sources.push_back({"flux", {}, fixtures::surface_load(mesh, "x0"), fixtures::constant(q_W_m2)});
   fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {x_m, 0, 0})});
   const Eigen::VectorXd t = after(system, time_s, Eigen::VectorXd::Zero(system.size()), 1e-6);
   RecordProperty("temperature_degC", std::to_string(35.0 + t[0]));
@@ -277,7 +277,8 @@ TEST(AirNode, IsABodyBetweenFilmAndHall) {
   balance.exchanges.push_back(film("x1", 5.0, "air"));
   balance.exchanges.push_back(film("y0", 2.0));
   balance.nodes.push_back({"air", 500.0});
-  balance.exchanges.push_back(effects::make_link("air_node " + std::string("air"), effects::node("air"), fixtures::constant(0.04)));
+  balance.exchanges.push_back(
+      effects::make_link("air_node " + std::string("air"), effects::node("air"), fixtures::constant(0.04)));
   FullSystem system = assemble_heat(mesh, {fixtures::lump()}, balance);
   ASSERT_EQ(system.size(), mesh.n_nodes() + 1);
   fixtures::observe_unknowns(system, {0, mesh.n_nodes()});

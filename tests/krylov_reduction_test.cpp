@@ -92,9 +92,10 @@ TEST(KrylovReduction, BasisIsOrthonormalInMass) {
 TEST(ReductionDemand, SpansDrivesAndTemperaturesRoundedOutwards) {
   effects::HeatBalance balance = fixtures::two_blocks_balance();
   // A link that grows with the temperature of block a over the hall: 1 W/K per K.
-  balance.exchanges.push_back(effects::make_link("growing", effects::region("a"),
-                           effects::Law([](const effects::Inputs& u) { return u.probe_K[0] - u.probe_K[1]; },
-                                        {effects::region("a"), effects::node("hall")})));
+  balance.exchanges.push_back(
+      effects::make_link("growing", effects::region("a"),
+                         effects::Law([](const effects::Inputs& u) { return u.probe_K[0] - u.probe_K[1]; },
+                                      {effects::region("a"), effects::node("hall")})));
   const ReductionDemand demand = reduction_demand(balance, {&kCycle}, {{0}, {0}}, 293.15);
   EXPECT_DOUBLE_EQ(demand.power_W[0], 512.0);  // 300 W
   EXPECT_DOUBLE_EQ(demand.duration_s, 8192.0);
@@ -124,8 +125,10 @@ TEST(ReductionDemand, IsTheSameForCyclogramsThatAskNearlyTheSame) {
 TEST(ReductionDemand, LooksAtBothSidesOfEachChangeAndOfEachThermostat) {
   effects::HeatBalance balance;
   balance.change_times_s = {600.0, 1200.0};
-  balance.exchanges.push_back(effects::make_film("draught", "a", [](const effects::Inputs& u) { return u.time_s > 600.0 && u.time_s < 1200.0 ? 16.0 : 4.0; }));
-  balance.exchanges.push_back(effects::make_film("chiller", "a", effects::Law([](const effects::Inputs&) { return 32.0; }, {}, "t")));
+  balance.exchanges.push_back(effects::make_film(
+      "draught", "a", [](const effects::Inputs& u) { return u.time_s > 600.0 && u.time_s < 1200.0 ? 16.0 : 4.0; }));
+  balance.exchanges.push_back(
+      effects::make_film("chiller", "a", effects::Law([](const effects::Inputs&) { return 32.0; }, {}, "t")));
   const ReductionDemand demand = reduction_demand(balance, {}, {{0}, {0}}, 293.15);
   EXPECT_DOUBLE_EQ(demand.low[0], 4.0);
   EXPECT_DOUBLE_EQ(demand.high[0], 16.0);

@@ -13,6 +13,7 @@
 #include "base/npy_file.hpp"
 #include "scenarios/machine_key.hpp"
 #include "scenarios/reduced_files.hpp"
+#include "solver/bind_laws.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/column_and_head.hpp"
 #include "tests/numpy.hpp"

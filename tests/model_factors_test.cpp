@@ -43,8 +43,8 @@ ThermalSystem<Matrix> head_and_bed() {
   ThermalSystem<Matrix> s;
   s.mass = as<Matrix>(Eigen::Vector3d(4e3, 5e3, 10e3).asDiagonal().toDenseMatrix());
   s.conduction = as<Matrix>(20.0 * across * across.transpose());
-  s.sources = {{"motor", unit(0), BoundLaw([](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; })},
-               {"screw", unit(1), BoundLaw([](const effects::Inputs& u) { return 0.03 * u.drive.speed_rpm; })}};
+  s.sources = {{"motor", {}, unit(0), BoundLaw([](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; })},
+               {"screw", {}, unit(1), BoundLaw([](const effects::Inputs& u) { return 0.03 * u.drive.speed_rpm; })}};
   const auto exchange = [&](const char* name, const Eigen::VectorXd& from, double hall_sum, double W_K) {
     s.exchanges.push_back({.name = name,
                            .matrix = as<Matrix>(from * from.transpose()),
@@ -84,7 +84,7 @@ ReducedSystem one_node() {
   const Eigen::VectorXd on = Eigen::VectorXd::Ones(1);
   s.mass = 4e3 * one;
   s.conduction = 0.0 * one;
-  s.sources = {{"motor", on, BoundLaw([](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; })}};
+  s.sources = {{"motor", {}, on, BoundLaw([](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; })}};
   s.exchanges.push_back({.name = "film",
                          .matrix = one,
                          .to_hall = on,

@@ -35,10 +35,12 @@ solver::ReducedSystem three_parts() {
   solver::ReducedSystem s;
   s.mass = Eigen::Matrix3d::Identity();
   s.conduction = scaled(k);
-  s.sources.push_back(
-      {"motor", inverse(0) * Eigen::Vector3d::UnitX(), [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
-  s.sources.push_back(
-      {"screw", inverse(1) * Eigen::Vector3d::UnitY(), [](const effects::Inputs& u) { return 0.03 * u.drive.speed_rpm; }});
+  s.sources.push_back({"motor", {}, inverse(0) * Eigen::Vector3d::UnitX(), [](const effects::Inputs& u) {
+                         return 0.1 * u.drive.speed_rpm;
+                       }});
+  s.sources.push_back({"screw", {}, inverse(1) * Eigen::Vector3d::UnitY(), [](const effects::Inputs& u) {
+                         return 0.03 * u.drive.speed_rpm;
+                       }});
   const auto film = [&](const char* name, int part, double W_K) {
     const Eigen::Vector3d at = Eigen::Vector3d::Unit(part);
     solver::Exchange<Eigen::MatrixXd> e{.name = name,

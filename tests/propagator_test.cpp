@@ -94,7 +94,7 @@ ReducedSystem one_body(double capacity_J_K, double loss_W_K) {
   s.mass = Eigen::MatrixXd::Ones(1, 1);
   s.conduction = Eigen::MatrixXd::Zero(1, 1);
   const Eigen::VectorXd scaled = Eigen::VectorXd::Constant(1, 1.0 / root);
-  s.sources.push_back({"heat", scaled, [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
+  s.sources.push_back({"heat", {}, scaled, [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
   s.exchanges.push_back({.name = "film",
                          .matrix = scaled * scaled.transpose(),
                          .to_hall = scaled,

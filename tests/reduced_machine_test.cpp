@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "solver/bind_laws.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"
@@ -244,8 +245,11 @@ TEST(BindLaws, GivesLawsSwitchesAndTimesAndRefusesAnotherBalance) {
   EXPECT_LE(
       difference_K(run_full(other, machine), run_small(other, of.reduced.system, of.reduced.start), machine.system.outputs),
       0.005);
-  const Scenario fewer = read({});
-  EXPECT_THROW(solver::bind_laws(of.reduced.system, effects::with_radiation_as_films(effects::heat_balance(fewer.machine->effects))), std::logic_error);
+  const Scenario elsewhere = read({.effects = {ColumnAndHead::kHeat, ColumnAndHead::kFilm, ColumnAndHead::kContact,
+                                               "{type: heat_source, surface: front, power: 1 W}"}});
+  EXPECT_THROW(solver::bind_laws(of.reduced.system,
+                                 effects::with_radiation_as_films(effects::heat_balance(elsewhere.machine->effects))),
+               std::logic_error);
 }
 
 TEST(ReducedMachine, HasTheFieldsOfTheFullModel) {

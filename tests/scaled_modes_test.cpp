@@ -24,8 +24,8 @@ solver::ReducedSystem two_nodes(double heat_of_a, double films) {
   s.mass = Eigen::Matrix2d::Identity();
   s.conduction = (Eigen::Matrix2d() << 1, -1, -1, 1).finished() / 4000.0;
   s.sources = {
-      {"a", unit(0), solver::BoundLaw([=](const effects::Inputs& u) { return heat_of_a * 2e-6 * u.drive.speed_rpm; })},
-      {"b", unit(1), solver::BoundLaw([](const effects::Inputs& u) { return u.drive.speed_rpm > 0 ? 6e-4 : 0.0; })}};
+      {"a", {}, unit(0), solver::BoundLaw([=](const effects::Inputs& u) { return heat_of_a * 2e-6 * u.drive.speed_rpm; })},
+      {"b", {}, unit(1), solver::BoundLaw([](const effects::Inputs& u) { return u.drive.speed_rpm > 0 ? 6e-4 : 0.0; })}};
   for (int i = 0; i < 2; ++i) {
     solver::Exchange<Eigen::MatrixXd> e;
     e.name = i == 0 ? "film of a" : "film of b";

@@ -56,7 +56,7 @@ Task stiffness_of(int n) {
 Task conduction_of(int n) {
   return [n] {
     effects::HeatBalance balance;
-    balance.films.push_back({"film", "x1", fixtures::constant(10.0), "hall"});
+    balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(10.0)));
     const auto system = solver::assemble_heat(block(n), {fixtures::steel()}, balance);
     const solver::SparseRow k = fixtures::stiffness(system);
     return numbers(solver::ConductionFactor(k).solve(Eigen::VectorXd::LinSpaced(k.rows(), -1.0, 2.0)));

@@ -91,6 +91,7 @@ const char* class_name(CaseClass of) {
 
 CaseClass class_of(std::uint64_t seed) {
   // o: one, t: two, n: none, x: outside, c: confounded
+  if (seed >= kFirstOfLater) return CaseClass::kOne;
   constexpr const char* kOrder = "otnoxtnocotntonxtonotcnotxnotonxtoncotxn";
   switch (kOrder[seed % 40]) {
     case 'o':
@@ -107,6 +108,7 @@ CaseClass class_of(std::uint64_t seed) {
 }
 
 std::size_t subject_of(std::uint64_t seed) {
+  if (seed >= kFirstOfLater) return 2 * (seed % 4);  // lumped machines
   return static_cast<std::size_t>((seed + seed / 40) % subject_names().size());
 }
 
@@ -194,6 +196,7 @@ Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
     keys.push_back({Hide::kConductivity});
     keys.push_back({Hide::kExpansion});
   }
+  if (plan.seed >= kFirstOfLater) keys = {{Hide::kProbeLag}, {Hide::kCoolantHeld}, {Hide::kDoorOpen}};
   Hidden h;
   h.what = random.one_of(random.one_of(keys));
   const auto sized = [&](const std::vector<std::string>& places, double low, double high, double sign) {
@@ -281,6 +284,18 @@ Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
     case Hide::kMountShift:
       sized(displacements, 0.3, 60.0, sign);
       at_a_time();
+      break;
+    case Hide::kProbeLag:
+      sized(displacements, 0.3, 60.0, sign);
+      break;
+    case Hide::kCoolantHeld:
+      sized(bodies, 0.2, 0.2 * all_W, 1.0);
+      h.lag_s = random.uniform(0.0, 8.0);
+      break;
+    case Hide::kDoorOpen:
+      sized(places_of(s, "node"), 0.2, 0.4 * all_W, 1.0);
+      at_a_time();
+      h.lag_s = 60.0 * std::round(random.uniform(15.0, 60.0));
       break;
     case Hide::kSensorBias:
       sized(sensors, 0.05, 5.0, sign);

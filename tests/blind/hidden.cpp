@@ -117,6 +117,12 @@ std::string key_of(Hide what) {
     case Hide::kTravelCreep:
     case Hide::kAcceleratingHeat:
       return "";
+    case Hide::kProbeLag:
+      return "probe_lag";
+    case Hide::kCoolantHeld:
+      return "coolant";
+    case Hide::kDoorOpen:
+      return "exchange_window";
   }
   throw std::logic_error("key_of: no such kind");
 }
@@ -128,7 +134,7 @@ const char* law_name(Hide what) {
       "stratification",  "radiation",         "coolant",           "conductivity",   "heat capacity", "expansion",
       "spindle growth",  "centrifugal",       "mount shift",       "sensor bias",    "sensor lag",    "sensor drift",
       "sensor detached", "sensor swap",       "clock offset",      "speed override", "missing stop",  "oscillating heat",
-      "travel creep",    "accelerating heat", "contact later"};
+      "travel creep",    "accelerating heat", "contact later",     "probe lag",      "coolant held",  "door open"};
   return kNames.at(static_cast<std::size_t>(what));
 }
 
@@ -196,6 +202,12 @@ std::vector<TruthParameter> parameters_of(const Hidden& h) {
       return {{"creep", "um/h", h.size}};
     case Hide::kAcceleratingHeat:
       return {{"energy", "J/rpm", h.size}};
+    case Hide::kProbeLag:
+      return {{"shift", "um", h.size}};
+    case Hide::kCoolantHeld:
+      return {{"passage_conductance", "W/K", h.size}, {"below_reference", "K", h.lag_s}};
+    case Hide::kDoorOpen:
+      return {{"conductance", "W/K", h.size}, {"begin", "min", h.time_s / 60.0}, {"length", "min", h.lag_s / 60.0}};
     default:
       return {};
   }
@@ -279,6 +291,23 @@ void hide_in_heat(const Hidden& h, const Subject& s, const Cyclogram& drive, Hea
       law.value = [inner = law.value, size, from_s](const Inputs& u) {
         return u.time_s >= from_s ? std::exp(size) * inner(u) : inner(u);
       };
+      return;
+    }
+    case Hide::kCoolantHeld: {
+      auto& heat = named(balance.heats, "spare " + h.where);
+      heat.power_W =
+          Law([size, medium_K = s.model.reference_K - h.lag_s](const Inputs& u) { return size * (medium_K - u.probe_K[0]); },
+              {heat.body});
+      return;
+    }
+    case Hide::kDoorOpen: {
+      auto& heat = named(balance.heats, "spare " + h.where);
+      heat.power_W = Law(
+          [=, reference_K = s.model.reference_K](const Inputs& u) {
+            const bool open = u.time_s >= from_s && u.time_s < from_s + period_s;
+            return open ? size * (reference_K + u.hall_K - u.probe_K[0]) : 0.0;
+          },
+          {heat.body});
       return;
     }
     case Hide::kStratification:
@@ -367,6 +396,9 @@ void hide_in_readings(const Hidden& h, const Cyclogram& drive, double top_speed_
       for (Eigen::Index k = 1; k < n; ++k) r.value(r.row(h.where), k) += (travelled += rate[k] * r.step_s);
       return;
     }
+    case Hide::kProbeLag:
+      r.value.row(r.row(h.where)).array() += 1e-6 * h.size;
+      return;
     case Hide::kMountShift:
       at_from([&](Eigen::Index k) { r.value(r.row(h.where), k) += 1e-6 * h.size; });
       return;

@@ -45,6 +45,9 @@ enum class Hide {
   kTravelCreep,       ///< in no catalogue: size um per hour at top speed, with the revolutions made so far
   kAcceleratingHeat,  ///< in no catalogue: size J per rpm of each change of speed, released over a minute
   kContactLater,      ///< link times exp(size) from time_s on
+  kProbeLag,          ///< size um more in a displacement, in all records: a probe that triggers late
+  kCoolantHeld,       ///< size W/K between a body and a medium lag_s kelvins below the reference temperature
+  kDoorOpen,          ///< size W/K between a node and the hall, from time_s on for lag_s
 };
 
 struct Hidden {
