@@ -10,7 +10,6 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kDraws = 4;            // of each explanation
 constexpr double kCannotTell = 3.0;  // nats, as the search has it
 
 /// Standard normal numbers by Box and Muller: the standard library fixes its engines, not its distributions.
@@ -40,7 +39,7 @@ std::vector<Prediction> with_nothing_in(const std::vector<Prediction>& linear, s
 }  // namespace
 
 Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run, const std::map<std::string, NoiseModel>& noise,
-                          const std::vector<Explanation>& explanations, const std::vector<Pair>& pairs) {
+                          const std::vector<Explanation>& explanations, const std::vector<Pair>& pairs, int n_draws) {
   std::vector<MeasuredRun> runs = fitter.runs();
   runs.push_back(run);
   const std::vector<MeasuredRun> alone = {run};
@@ -61,7 +60,7 @@ Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run, const st
   for (std::size_t truth = 0; truth < explanations.size(); ++truth) {
     const Explanation& e = explanations[truth];
     const Eigen::MatrixXd lower = Eigen::LLT<Eigen::MatrixXd>(e.covariance).matrixL();
-    for (int draw = 0; draw < kDraws; ++draw) {
+    for (int draw = 0; draw < n_draws; ++draw) {
       Eigen::VectorXd x = e.x;
       for (Eigen::Index i = 0; i < x.size(); ++i) x += normal(random) * lower.col(i);
       std::vector<double> evidence;

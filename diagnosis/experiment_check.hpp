@@ -19,8 +19,10 @@ struct Check {
 /// @param fitter  of the records so far
 /// @param run     to come, with the channels it will have
 /// @param noise   of these and of those so far
+/// @param n_draws  of each explanation
 [[nodiscard]] Check check_by_simulation(const Fitter& fitter, const MeasuredRun& run,
                                         const std::map<std::string, NoiseModel>& noise,
-                                        const std::vector<Explanation>& explanations, const std::vector<Pair>& pairs);
+                                        const std::vector<Explanation>& explanations, const std::vector<Pair>& pairs,
+                                        int n_draws = 4);
 
 }  // namespace driftwright::diagnosis

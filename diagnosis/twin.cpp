@@ -196,7 +196,7 @@ void Twin::set_laws(const TwinState& state, const MeasuredRun& run, Workspace& w
       gradient_K_m += s.gradient_K_m;
       level_K += s.gradient_K_m * s.level_m;
     }
-    for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
+    for (std::size_t e = 0; e < machine_.system.exchanges.size(); ++e) {
       const auto& unit = machine_.system.exchanges[e];
       if (unit.offset.size() == 0 || unit.medium.size() > 0) continue;
       system.exchanges[e].offset = gradient_K_m * unit.offset - level_K * unit.to_hall;

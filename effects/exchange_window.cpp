@@ -79,9 +79,7 @@ Doubt doubt(const DoubtScene::Run& run, Effect window, DoubtedNumber size, doubl
   };
   size.low = 0.0;
   std::vector<std::vector<double>> grid;
-  for (const auto& at : time_grid(run.length_s, 8)) {
-    for (double longer_min : {-0.5, 0.5}) grid.push_back({at[0], longer_min * length.nominal});
-  }
+  for (const auto& at : time_grid(run.length_s, 8)) grid.push_back({at[0], 0.0});
   return {.finding = "exchange_window",
           .where = window.place,
           .law = "a lid or door that opens for a while, in " + run.name,

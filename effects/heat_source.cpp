@@ -110,7 +110,7 @@ EffectKind heat_source() {
       .parameters = {{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools", 0.1, "heat_source"},
                      {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
                      {"exponent", "1", -1.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"},
-                     {"period", "s", 60.0, 1e7, kNotGiven, "of a wave; wants `until`"},
+                     {"period", "s", 1.0, 1e7, kNotGiven, "of a wave; wants `until`"},
                      {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
                      {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
       .timing = Timing::kInTime,

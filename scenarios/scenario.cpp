@@ -274,7 +274,6 @@ Scenario read_scenario(const ConfigMap& in) {
     for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
     if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
     if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);
-    check_instruments(*scenario.machine, scenario.cyclograms);
     for (const Cyclogram& c : scenario.cyclograms) check_cyclogram(scenario, c);
     const bool has_fields = scenario.solver.stresses || !scenario.solver.fields_at_s.empty();
     if (has_fields && std::holds_alternative<LumpedMachine>(scenario.machine->mesh)) {
@@ -323,6 +322,7 @@ Scenario read_scenario(const ConfigMap& in) {
     if (!has_machine) in.fail("table", "a table wants a machine to simulate");
     scenario.table = add_table(*table, *scenario.machine, scenario.cyclograms);
   }
+  if (has_machine) check_instruments(*scenario.machine, scenario.cyclograms);  // points of a table are displacements, too
   if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");
   in.reject_unknown_keys();
   return scenario;

@@ -134,12 +134,14 @@ void bind_laws(ReducedSystem& system, const effects::HeatBalance& balance) {
   });
   for (std::size_t x = 0; x < balance.exchanges.size(); ++x) {
     const effects::Exchange& asked = balance.exchanges[x];
-    auto& entry = system.exchanges[of_exchange[x]];
-    if (asked.medium_K) {
-      if (!laws[of_exchange[x]].empty()) throw std::logic_error("bind_laws: one place with two media, " + asked.name);
-      entry.hold_medium(*asked.medium_K - system.reference_K);
+    std::size_t entry = of_exchange[x];
+    if (asked.medium_K && !laws[entry].empty()) {  // two media at one place: one more entry there
+      system.exchanges.push_back(system.exchanges[entry]);
+      laws.emplace_back();
+      entry = laws.size() - 1;
     }
-    laws[of_exchange[x]].push_back(&asked.coefficient);
+    if (asked.medium_K) system.exchanges[entry].hold_medium(*asked.medium_K - system.reference_K);
+    laws[entry].push_back(&asked.coefficient);
   }
   const Law one([](const Inputs&) { return 1.0; });
   for (std::size_t e = 0; e < system.exchanges.size(); ++e) {

@@ -78,6 +78,17 @@ TEST(BindLaws, AMediumTakesTheTemperatureOfTheBalance) {
   EXPECT_LT((end(bound) - end(reduced(colder))).cwiseAbs().maxCoeff(), 1e-12 * end(bound).cwiseAbs().maxCoeff());
 }
 
+TEST(BindLaws, TwoMediaAtOnePlaceEachKeepTheirTemperature) {
+  std::vector<std::string> two = kMachine;
+  two.emplace_back(
+      "{type: coolant, node: head, flow: 10 L/min, passage_conductance: 5 W/K, set_point: 12 degC, from: 20 min}");
+  ReducedSystem bound = reduced(kMachine);
+  bind_laws(bound, fixtures::balance_of(two));
+  EXPECT_LT((end(bound) - end(reduced(two))).cwiseAbs().maxCoeff(), 1e-9 * end(bound).cwiseAbs().maxCoeff());
+  bind_laws(bound, fixtures::balance_of(kMachine));  // and what one of them no longer comes to rests
+  EXPECT_LT((end(bound) - end(reduced(kMachine))).cwiseAbs().maxCoeff(), 1e-9 * end(bound).cwiseAbs().maxCoeff());
+}
+
 TEST(BindLaws, ALawFindsTheBodyThatNothingLookedAt) {
   ReducedSystem bound = reduced(kMachine);
   ASSERT_TRUE(bound.probes.empty());

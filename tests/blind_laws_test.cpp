@@ -62,13 +62,13 @@ TEST(BlindHeat, FilmsJointsAndLinks) {
   const double ln2 = std::log(2.0);
   EXPECT_NEAR(with({.what = Hide::kFilmFactor, .where = "s", .size = ln2}).exchanges[0].coefficient(at(0.0)), 16.0, 1e-12);
   EXPECT_NEAR(with({.what = Hide::kForcedFactor, .where = "s", .size = -ln2}).exchanges[1].coefficient(at(0.0)), 2.5, 1e-12);
-  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a/b", .size = ln2}).exchanges[0].coefficient(at(0.0)), 4000.0,
+  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a/b", .size = ln2}).exchanges[4].coefficient(at(0.0)), 4000.0,
               1e-9);
-  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a,hall", .size = ln2}).exchanges[0].coefficient(at(0.0)), 8.0,
+  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a,hall", .size = ln2}).exchanges[3].coefficient(at(0.0)), 8.0,
               1e-12);
   const auto loosens = with({.what = Hide::kContactLater, .where = "a,hall", .size = -ln2, .time_s = 600.0});
-  EXPECT_DOUBLE_EQ(loosens.exchanges[0].coefficient(at(0.0, 599.0)), 4.0);
-  EXPECT_NEAR(loosens.exchanges[0].coefficient(at(0.0, 600.0)), 2.0, 1e-12);
+  EXPECT_DOUBLE_EQ(loosens.exchanges[3].coefficient(at(0.0, 599.0)), 4.0);
+  EXPECT_NEAR(loosens.exchanges[3].coefficient(at(0.0, 600.0)), 2.0, 1e-12);
   const auto draught = with({.what = Hide::kDraught, .where = "s", .size = 20.0, .time_s = 600.0});
   EXPECT_DOUBLE_EQ(draught.exchanges[2].coefficient(at(0.0, 599.0)), 0.0);
   EXPECT_DOUBLE_EQ(draught.exchanges[2].coefficient(at(0.0, 600.0)), 20.0);

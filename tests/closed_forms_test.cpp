@@ -209,8 +209,8 @@ TEST_P(Sleeve, PassesOnAllHeatAndJumpsByTheClosedForm) {
     fixtures::add_quarter_ring(mesh, r_i, r_o, height_m, 2 * n, 3 * n, 1, GetParam().shape, "sleeve", "sleeve_");
     mesh.joints.push_back({"fit", "shaft_skin", "sleeve_inner"});
     effects::HeatBalance balance;
-    balance.exchanges.push_back(effects::make_contact("contact", "fit", fixtures::constant(contact_W_m2K)));
     balance.exchanges.push_back(film("sleeve_outer", h_o));
+    balance.exchanges.push_back(effects::make_contact("contact", "fit", fixtures::constant(contact_W_m2K)));
     FullSystem system = assemble_heat(mesh, steel_for(mesh), balance);
     Eigen::VectorXd in_shaft = Eigen::VectorXd::Zero(system.size());
     in_shaft.head(n_shaft) = fixtures::volume_load(mesh, [](const auto&) { return 1.0; }).head(n_shaft);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "diagnosis/discrimination.hpp"
+#include "diagnosis/experiment_check.hpp"
 #include "diagnosis/experiment_family.hpp"
 #include "diagnosis/scatter.hpp"
 #include "scenarios/machine.hpp"
@@ -94,6 +95,21 @@ class OneSpeed : public testing::Test {
     result.findings.push_back(finding);
     return result;
   }
+  /// Records of a cyclogram simulated under each of two explanations, and which they speak for.
+  Check checked(const SearchResult& result, const Cyclogram& cyclogram, int n_draws) const {
+    MeasuredRun run = runs_.front();
+    run.name = cyclogram.name;
+    run.cyclogram = cyclogram;
+    run.time_s.clear();
+    for (double t_s = 0.0; t_s <= cyclogram.duration_s(); t_s += 60.0) run.time_s.push_back(t_s);
+    set_grid(run);
+    for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(run.time_s.size()));
+    const Finding::Alternative& other = result.findings[0].alternatives[0];
+    return check_by_simulation(
+        *fitter_, run, fitter_->noise(),
+        {{result.hypothesis, result.fit.x, result.fit.covariance}, {{other.claim}, other.fit.x, other.fit.covariance}},
+        {{0, 1}}, n_draws);
+  }
   SearchResult constant_or_of_speed() {
     return two_ways(claim("heat_source", "head", "constant heat"), Eigen::VectorXd::Constant(1, 60.0),
                     claim("heat_source", "head", "the law written"), Eigen::VectorXd::Constant(1, 60.0));
@@ -120,8 +136,14 @@ TEST_F(OneSpeed, CannotTellConstantHeatFromHeatOfSpeedButAChangeOfSpeedDoes) {
   ASSERT_TRUE(e);
   EXPECT_FALSE(e->by_sensor);
   EXPECT_GT(e->discrimination, 5.0);
-  EXPECT_EQ(e->n_simulated, 8);  // four under each
-  EXPECT_GE(e->n_told, 7);       // one whose 60 W were drawn as few may be open
+  EXPECT_EQ(e->n_simulated, 8);  // four under each; twenty of each:
+  const Check check = checked(result, e->cyclogram, 20);
+  EXPECT_EQ(check.n, 40);
+  // 30 of 40, at d' 6.8, which bounds the mean over all that the numbers may be: at one speed the size of the heat is not known beside its way out,
+  // and of the machines drawn some have so little of it that the two are one machine and stay open.
+  RecordProperty("told_of_40", check.n_told);
+  EXPECT_GE(check.n_told, 27);
+  EXPECT_LE(check.n_told, 34);
   double turned_s = 0.0, other_s = 0.0;
   for (const auto& s : e->cyclogram.sections) (s.drive.speed_rpm == 2000.0 ? turned_s : other_s) += s.duration_s;
   EXPECT_GT(other_s, 0.0) << e->cyclogram.name;
@@ -197,7 +219,10 @@ TEST_F(OneSpeed, WhatSaysLittleIsTriedByWhatTheOtherOneIsSureOf) {
   const auto e = propose_experiment(*fitter_, result);
   ASSERT_TRUE(e);
   EXPECT_GT(e->discrimination, 2.0);
-  EXPECT_GE(e->n_told, 7);
+  const Check check = checked(result, e->cyclogram, 20);
+  RecordProperty("told_of_40", check.n_told);
+  EXPECT_GE(check.n_told, 29);  // 32 of 40
+  EXPECT_LE(check.n_told, 36);  // some draws of the free exponent are close to no exponent at all: those stay open
 }
 
 TEST_F(OneSpeed, NoSteadyRecordTellsMoreThanItsNoiseAndPriorsLet) {
@@ -229,7 +254,9 @@ TEST_F(OneSpeed, NoisierChannelsTellLess) {
   fitter_->set_noise({{"t_head", {60.0, 30.0, 240.0}}, {"nose", {4e-4, 0.0, 0.0}}});
   const auto blunt = propose_experiment(*fitter_, result);
   ASSERT_TRUE(sharp && blunt);
-  EXPECT_LT(blunt->discrimination, 0.95 * sharp->discrimination);  // 1000 times the noise
+  const double ratio = blunt->discrimination / sharp->discrimination;
+  RecordProperty("ratio", std::to_string(ratio));
+  EXPECT_LT(ratio, 0.5);  // 1000 times the noise
 }
 
 TEST(ExperimentFamily, StaysWithinWhatTheRunsHad) {

@@ -38,8 +38,8 @@ class JointOf : public ::testing::TestWithParam<Pair> {
   [[nodiscard]] FullSystem system() const {  // 80 W in a; a film of 200 W/(m^2 K) behind b
     effects::HeatBalance balance;
     balance.heats.push_back({"heat", effects::region("a"), fixtures::constant(80.0)});
-    balance.exchanges.push_back(effects::make_contact("contact", "a/b", fixtures::constant(kConductance_W_m2K)));
     balance.exchanges.push_back(effects::make_film("film", "b.x1", fixtures::constant(200.0), "hall"));
+    balance.exchanges.push_back(effects::make_contact("contact", "a/b", fixtures::constant(kConductance_W_m2K)));
     return assemble_heat(mesh_, {fixtures::steel(), fixtures::steel()}, balance);
   }
 };

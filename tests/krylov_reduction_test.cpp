@@ -103,9 +103,9 @@ TEST(ReductionDemand, SpansDrivesAndTemperaturesRoundedOutwards) {
   EXPECT_DOUBLE_EQ(demand.high[0], 128.0);  // and at 3000 rpm: 65
   EXPECT_DOUBLE_EQ(demand.low[1], 30.0);    // never moves: not rounded
   EXPECT_DOUBLE_EQ(demand.high[1], 30.0);
-  EXPECT_DOUBLE_EQ(demand.low[2], 2.0);  // links after films, before contacts
-  EXPECT_DOUBLE_EQ(demand.high[2], 64.0);
-  EXPECT_DOUBLE_EQ(demand.low[3], 1500.0);
+  EXPECT_DOUBLE_EQ(demand.low[2], 1500.0);
+  EXPECT_DOUBLE_EQ(demand.low[3], 2.0);
+  EXPECT_DOUBLE_EQ(demand.high[3], 64.0);
   EXPECT_EQ(demand.points().size(), 3u);
   EXPECT_DOUBLE_EQ(demand.points()[0][0], 66.0);
 }

@@ -61,7 +61,7 @@ TEST(ThermalModes, WithOneInsulatedPartAreRefused) {
   balance.exchanges.push_back(effects::make_contact("contact", "a/b", fixtures::constant(0.0)));
   const RegionMaterials materials = {fixtures::steel(), fixtures::steel()};
   EXPECT_THROW((void)steady_responses(assemble_heat(mesh, materials, balance), {}), SolveError);
-  balance.exchanges[0].coefficient = fixtures::constant(1.0);
+  balance.exchanges[1].coefficient = fixtures::constant(1.0);
   EXPECT_NO_THROW((void)steady_responses(assemble_heat(mesh, materials, balance), {}));
 }
 

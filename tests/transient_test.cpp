@@ -32,10 +32,10 @@ FullSystem machine(int n) {
   balance.exchanges.push_back(effects::make_film("nose", "a.x0", grows, "air"));
   balance.exchanges.push_back(effects::make_film("side", "a.y1", grows, "hall"));
   balance.exchanges.push_back(effects::make_film("back", "b.x1", fixtures::constant(30.0), "hall"));
-  balance.exchanges.push_back(effects::make_contact("contact", "a/b", fixtures::constant(1500.0)));
   balance.nodes.push_back({"air", 300.0});
   balance.exchanges.push_back(
       effects::make_link("air_node " + std::string("air"), effects::node("air"), fixtures::constant(2.0)));
+  balance.exchanges.push_back(effects::make_contact("contact", "a/b", fixtures::constant(1500.0)));
   FullSystem system = assemble_heat(mesh, {fixtures::steel(), fixtures::steel()}, balance);
   fixtures::observe_unknowns(system, {0, mesh.n_nodes() - 1, mesh.n_nodes()});
   return system;
