@@ -11,11 +11,29 @@ constexpr std::size_t kMostKept = 64;  // sections of a few usual cyclograms
 
 Decompositions::Decompositions(const ReducedSystem& system) : system_(system), unit_mass_(system.mass.isIdentity(1e-8)) {
   kept_.reserve(kMostKept);
+  loads_.resize(system.size(), static_cast<Eigen::Index>(system.sources.size()));
+  for (std::size_t s = 0; s < system.sources.size(); ++s) loads_.col(static_cast<Eigen::Index>(s)) = system.sources[s].load;
 }
 
-const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient) {
-  for (const Decomposition& d : kept_) {
-    if (d.coefficient == coefficient) return d;
+void Decompositions::add_flows(Decomposition& d) const {
+  const Eigen::Index n_exchanges = d.coefficient.size();
+  d.flows.resize(n_exchanges, system_.size());
+  d.hall_W_K.resize(n_exchanges);
+  d.offset_W.resize(n_exchanges);
+  for (Eigen::Index i = 0; i < n_exchanges; ++i) {
+    const Exchange<Eigen::MatrixXd>& e = system_.exchanges[static_cast<std::size_t>(i)];
+    d.flows.row(i) = d.coefficient[i] * e.flow.transpose();
+    d.hall_W_K[i] = d.coefficient[i] * e.hall_sum;
+    d.offset_W[i] = d.coefficient[i] * e.offset_sum;
+  }
+  d.flows = d.flows * d.vectors;
+}
+
+const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient, bool with_flows) {
+  for (Decomposition& d : kept_) {
+    if (d.coefficient != coefficient) continue;
+    if (with_flows && d.flows.size() == 0) add_flows(d);
+    return d;
   }
   if (kept_.size() < kMostKept) {
     kept_.emplace_back();
@@ -29,18 +47,14 @@ const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient) {
   const auto n = static_cast<Eigen::Index>(system_.size()), n_exchanges = coefficient.size();
   Eigen::MatrixXd k = system_.conduction;
   Eigen::VectorXd to_hall = Eigen::VectorXd::Zero(n), offset = to_hall;
-  d.flows.resize(n_exchanges, n);
-  d.hall_W_K.resize(n_exchanges);
-  d.offset_W.resize(n_exchanges);
+  d.flows.resize(0, 0);
   for (Eigen::Index i = 0; i < n_exchanges; ++i) {
     const Exchange<Eigen::MatrixXd>& e = system_.exchanges[static_cast<std::size_t>(i)];
     const double c = coefficient[i];
+    if (c == 0.0) continue;
     k += c * e.matrix;
     to_hall += c * e.to_hall;
     if (e.offset.size() > 0) offset += c * e.offset;
-    d.flows.row(i) = c * e.flow.transpose();
-    d.hall_W_K[i] = c * e.hall_sum;
-    d.offset_W[i] = c * e.offset_sum;
   }
   if (unit_mass_) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
@@ -54,13 +68,10 @@ const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient) {
     d.to_modes.noalias() = d.vectors.transpose() * system_.mass;
   }
   d.outputs.noalias() = system_.outputs.state.transpose() * d.vectors;
-  d.loads.resize(n, static_cast<Eigen::Index>(system_.sources.size()));
-  for (std::size_t s = 0; s < system_.sources.size(); ++s) {
-    d.loads.col(static_cast<Eigen::Index>(s)).noalias() = d.vectors.transpose() * system_.sources[s].load;
-  }
+  d.loads.noalias() = d.vectors.transpose() * loads_;
   d.to_hall.noalias() = d.vectors.transpose() * to_hall;
   d.offset.noalias() = d.vectors.transpose() * offset;
-  d.flows = d.flows * d.vectors;
+  if (with_flows) add_flows(d);
   d.stored_J_K.noalias() = system_.ones.transpose() * d.vectors;
   return d;
 }

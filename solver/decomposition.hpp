@@ -25,13 +25,16 @@ class Decompositions {
   /// @param system  borrowed
   explicit Decompositions(const ReducedSystem& system);
 
-  /// Valid until the next call.
-  const Decomposition& at(const Eigen::VectorXd& coefficient);
+  /// Valid until the next call. @param with_flows  else `flows`, `hall_W_K` and `offset_W` may be empty
+  const Decomposition& at(const Eigen::VectorXd& coefficient, bool with_flows = true);
   [[nodiscard]] int n_made() const { return n_made_; }
 
  private:
+  void add_flows(Decomposition& d) const;
+
   const ReducedSystem& system_;
   bool unit_mass_;
+  Eigen::MatrixXd loads_;            ///< of all sources, size x n_sources
   std::vector<Decomposition> kept_;  ///< the oldest is replaced
   std::size_t oldest_ = 0;
   int n_made_ = 0;

@@ -99,7 +99,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
       coefficient[i] = system_.exchanges[static_cast<std::size_t>(i)].coefficient(at);
     }
     for (Eigen::Index s = 0; s < n_sources; ++s) power_W[s] = system_.sources[static_cast<std::size_t>(s)].power_W(at);
-    const Decomposition& d = decompositions_.at(coefficient);
+    const Decomposition& d = decompositions_.at(coefficient, with_heat);
     const Solution solution(d.lambda_1_s, d.to_modes * state, d.loads * power_W + hall_K * d.to_hall + d.offset,
                             hall_slope * d.to_hall, length_s);
 
