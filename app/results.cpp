@@ -143,10 +143,12 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
         scenarios::output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
     try {
       const scenarios::FeltRun felt = scenarios::felt_run(machine, cyclogram);
+      const Eigen::VectorXd from = start + scenarios::warmer_start_K(machine, cyclogram) *
+                                               (reduced ? reduced->system.ones : model.full()->system.ones);
       runs[i].trajectory = reduced ? solver::simulate(reduced->system, felt.cyclogram, felt.hall, times_s,
-                                                      settings.transient, start, at_output)
+                                                      settings.transient, from, at_output)
                                    : solver::simulate(model.full()->system, felt.cyclogram, felt.hall, times_s,
-                                                      settings.transient, start, at_output);
+                                                      settings.transient, from, at_output);
       runs[i].record = scenarios::as_recorded(machine, runs[i].trajectory, model.outputs(), cyclogram);
     } catch (...) {
       failures[i] = std::current_exception();  // none may leave the parallel loop

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <sstream>
+
+#include "base/config_text.hpp"
 
 namespace driftwright {
 namespace {
@@ -122,10 +125,15 @@ Where ConfigNode::where(const std::string& key) const {
 ConfigNodePtr read_config_tree(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: the file cannot be opened; is the path right?", path));
+  return read_config_text({std::istreambuf_iterator<char>(file), {}}, path);
+}
+
+ConfigNodePtr read_config_text(const std::string& whole, const std::string& path) {
   auto source = std::make_shared<ConfigSource>();
   source->path = path;
   std::string text, line;
-  while (std::getline(file, line)) {
+  std::istringstream lines(whole);
+  while (std::getline(lines, line)) {
     text += line + "\n";
     source->lines.push_back(line);
   }

@@ -22,7 +22,7 @@ bool contains(const ConfigNode& tree, const ConfigNode& node) {
 
 bool says_nothing(const std::string& line) {
   const std::size_t first = line.find_first_not_of(" \t\r");
-  return first == std::string::npos || line[first] == '#';
+  return first == std::string::npos || line[first] == '#' || line.starts_with("...") || line.starts_with("---");
 }
 
 }  // namespace
@@ -46,6 +46,17 @@ char YamlText::at(Spot spot) const {
   const std::string& line = lines_[static_cast<std::size_t>(spot.line) - 1];
   const auto column = static_cast<std::size_t>(spot.column) - 1;
   return spot.column >= 1 && column < line.size() ? line[column] : '\0';
+}
+
+bool YamlText::follows_comma(Spot bracket) const {
+  for (int line = bracket.line; line >= 1; --line) {
+    std::string before = lines_[static_cast<std::size_t>(line) - 1];
+    if (line == bracket.line) before.resize(static_cast<std::size_t>(bracket.column) - 1);
+    if (const std::size_t comment = before.find(" #"); comment != std::string::npos) before.resize(comment);
+    if (says_nothing(before)) continue;
+    return before[before.find_last_not_of(" \t")] == ',';
+  }
+  return false;
 }
 
 YamlText::Spot YamlText::closing(Spot open) const {
@@ -137,7 +148,7 @@ bool YamlText::append(const ConfigNode& list, const std::string& entry, const st
     Replacement& r = replacements_[close];
     const std::string bracket(1, at(close));
     if (r.text.empty()) r = {1, bracket};
-    const bool is_first = list.items.empty() && r.text == bracket;
+    const bool is_first = (list.items.empty() || follows_comma(close)) && r.text == bracket;
     r.text.insert(r.text.size() - 1,
                   (is_first ? "\n  " : ",\n  ") + entry + (comment.empty() ? "\n" : "   # " + comment + "\n"));
     return true;

@@ -49,6 +49,8 @@ class YamlText {
   [[nodiscard]] char at(Spot spot) const;
   /// The bracket that closes the one at `open`, or line 0.
   [[nodiscard]] Spot closing(Spot open) const;
+  /// Whether the last thing before a bracket that closes is a comma.
+  [[nodiscard]] bool follows_comma(Spot bracket) const;
   /// Last line of a block node with something other than comments, whose parent's next key or entry begins at `end_line`.
   [[nodiscard]] int last_line(int end_line) const;
   /// Line at which what follows a node begins; one behind the file where nothing does.

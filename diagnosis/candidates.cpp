@@ -53,6 +53,14 @@ std::vector<Knob> knobs_of(const effects::Doubt& doubt) {
            .low = n.low,
            .high = n.high,
            .is_time = n.is_time};
+    if (!n.set) {  // no search goes where no scenario can follow
+      const effects::EffectKind& kind = *doubt.added.front().kind;
+      for (const effects::Parameter& p : kind.parameters) {
+        if (p.name != n.name) continue;
+        k.low = std::max(k.low, p.low);
+        k.high = std::min(k.high, p.high);
+      }
+    }
     k.reading_only = std::all_of(doubt.added.begin(), doubt.added.end(),
                                  [](const effects::Effect& e) { return e.kind->is_of_readings(); });
     const std::size_t n_added = doubt.added.size();

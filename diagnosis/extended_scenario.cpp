@@ -10,6 +10,8 @@
 #include <map>
 #include <set>
 
+#include "base/config_map.hpp"
+#include "base/config_text.hpp"
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
 #include "base/yaml_text.hpp"
@@ -38,6 +40,16 @@ Effect rounded(Effect e) {
   e.from_s = rounded(e.from_s);
   e.until_s = rounded(e.until_s);
   return e;
+}
+
+bool is_near(double a, double b) {
+  return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= 1e-6 * std::max(std::abs(a), std::abs(b));
+}
+
+bool is_same(const Effect& a, const Effect& b) {
+  return a.kind == b.kind && a.place_kind == b.place_kind && a.place == b.place && a.references == b.references &&
+         a.words == b.words && a.in == b.in && is_near(a.from_s, b.from_s) && is_near(a.until_s, b.until_s) &&
+         std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(), is_near);
 }
 
 bool is_path_key(const std::string& key) {
@@ -72,8 +84,9 @@ class Writer {
     return done_;
   }
 
+  /// The edited text; where it does not say what it should, that of a file written anew.
   [[nodiscard]] std::string text(std::vector<std::string> head) const {
-    if (!in_one_piece_) return yaml_.text(head);
+    if (const std::string edited = yaml_.text(head); !in_one_piece_ && says_what_it_should(edited)) return edited;
     head.emplace_back("written anew: the text of the scenario could not be edited in place");
     std::string out;
     for (const std::string& line : head) out += fmt::format("# {}\n", line);
@@ -96,6 +109,21 @@ class Writer {
   }
 
  private:
+  /// Whether the effects of a text are those of the list; entries that were replaced stand elsewhere.
+  [[nodiscard]] bool says_what_it_should(const std::string& edited) const {
+    TwinState read;
+    try {
+      const ConfigMap root = ConfigMap::of_tree(read_config_text(edited, yaml_.root().source->path));
+      for (const ConfigMap& one : root.maps("effects")) read.push_back(effects::read_effect(one));
+    } catch (const InputError&) {  // no YAML any more, or an effect that is none
+      return false;
+    }
+    if (read.size() != list_.size()) return false;
+    return std::all_of(list_.begin(), list_.end(), [&](const Effect& wanted) {
+      return std::any_of(read.begin(), read.end(), [&](const Effect& e) { return is_same(e, wanted); });
+    });
+  }
+
   [[nodiscard]] const ConfigNode& entry(std::size_t i) const { return *effects_->items[i]; }
   [[nodiscard]] bool is_in_file(std::size_t i) const { return i < effects_->items.size() && !replaced_.contains(i); }
 

@@ -219,8 +219,7 @@ Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& hall, cons
   const double hall_at_start_K = hall.at(0.0);
   if (augmented_.model.start == scenarios::Start::kHall) start = hall_at_start_K * machine_.system.ones;
   if (augmented_.model.start == scenarios::Start::kSteady && system.is_linear()) {
-    effects::Inputs standstill{.drive = {}, .hall_K = hall_at_start_K};
-    standstill.run = run.name;
+    const effects::Inputs standstill{.drive = {}, .hall_K = hall_at_start_K};  // before the run: what happened in it acts not yet
     Eigen::MatrixXd k = system.conduction;
     for (const auto& e : system.exchanges) k += e.coefficient(standstill) * e.matrix;
     start = k.llt().solve(system.load(standstill));

@@ -8,6 +8,8 @@
 namespace driftwright::effects {
 namespace {
 
+constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // of speed, of all laws together
+
 void change(const Effect& e, const Body& body, Law& law) {
   const double factor = e["factor"], exponent = e["exponent"], n0_rpm = e["at_speed"];
   const double decay_1_K = e["decay"], t0_K = e["at_temperature"];
@@ -87,6 +89,8 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
   Doubt friction{.finding = "friction_law", .where = body.name, .law = {}, .added = of_all, .numbers = {}};
   if (written > 0.05) {
     DoubtedNumber exponent = doubted("exponent", "1", 0.5, 0.05, written);
+    exponent.low = kLowestExponent;
+    exponent.high = kHighestExponent;
     exponent.set = [written](std::span<Effect> added, double value) {
       for (Effect& e : added) e.set("exponent", value - written);
     };
@@ -113,6 +117,11 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
   const std::string what = is_growth                                  ? "another growth of the film"
                            : exchange.body.kind == BodyKind::kSurface ? "another film"
                                                                       : "another conductance";
+  const bool is_listed =
+      std::any_of(list.begin(), list.end(), [&](const Doubt& d) {  // exchanges of one name change together
+        return d.finding == finding && d.added.front().place == exchange.name;
+      });
+  if (is_listed) return;
   Doubt other{.finding = finding,
               .where = where_of(exchange),
               .law = what,

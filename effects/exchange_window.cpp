@@ -96,7 +96,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     for (const std::string& name : s.surfaces) {
       Effect window = make_effect("exchange_window", Place::kSurface, name);
       for (const Exchange& e : s.balance.exchanges) {
-        if (e.body == surface(name) && e.per == Per::kArea && e.coefficient.probes.empty()) {
+        if (e.body == surface(name) && e.per == Per::kArea) {
           window.references["surrounding"] = node(e.surrounding);
           break;
         }

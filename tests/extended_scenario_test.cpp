@@ -351,5 +351,38 @@ TEST(ExtendedScenario, WritesWhereANumberIsAnAlias) {
   expect_written_all_the_same("aliased", "  - {type: link, node: housing, to: hall, conductance: *way}\n", "&way ");
 }
 
+TEST(ExtendedScenario, WritesIntoAListInBracketsThatEndsWithACommaAndBeforeTheEndOfTheDocument) {
+  const std::string text = R"(name: flow
+reference_temperature: 20 degC
+machine: {generator: lumped}
+hall: [[0 min, 20 degC], [90 min, 22 degC]]
+sensors: [{name: t, node: a}]
+cyclograms: {cycle: [[40 min, 1000 rpm], [20 min, 0 rpm]]}
+solver: {output_interval: 2 min}
+)";
+  const std::string effects = "{type: node, node: a, capacity: 5 kJ/K}, {type: link, node: a, to: hall, conductance: 9 W/K}";
+  for (const std::string& list :
+       {"effects: [" + effects + ",   # the last\n]\n", "effects: [" + effects + "]\n",
+        "effects:\n  - {type: node, node: a, capacity: 5 kJ/K}\n  - {type: link, node: a, to: hall, "
+        "conductance: 9 W/K}\n...\n"}) {
+    const auto b = bench(write_file("flow.yaml", text + list));
+    expect_runs_as_predicted(*b, {"flow", false, added({"{type: heat_source, node: a, power: 40 W}"})});
+  }
+}
+
+TEST(ExtendedScenario, StartsInTheHallThatTheRunReallyHad) {
+  std::string text = kSpindle;
+  text.insert(text.find("hall: [["), "start: hall\n");
+  const auto b = bench(write_file("in_the_hall.yaml", text));
+  const Change change = added({"{type: ambient, offset: 3 K, in: cycle}"});
+  const ExtendedScenario e = extend(*b, change);
+  const scenarios::Scenario s = scenarios::read_scenario(write_file("in_the_hall_extended.yaml", e.text));
+  EXPECT_NEAR(scenarios::warmer_start_K(*s.machine, s.cyclograms.front()), 3.0, 1e-12);
+  Cyclogram another = s.cyclograms.front();
+  another.name = "another";
+  EXPECT_EQ(scenarios::warmer_start_K(*s.machine, another), 0.0);
+  EXPECT_NEAR(by_twin(*b, change)(0, 0), 3.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace driftwright::diagnosis
