@@ -361,10 +361,10 @@ cyclograms: {cycle: [[40 min, 1000 rpm], [20 min, 0 rpm]]}
 solver: {output_interval: 2 min}
 )";
   const std::string effects = "{type: node, node: a, capacity: 5 kJ/K}, {type: link, node: a, to: hall, conductance: 9 W/K}";
-  for (const std::string& list :
-       {"effects: [" + effects + ",   # the last\n]\n", "effects: [" + effects + "]\n",
-        "effects:\n  - {type: node, node: a, capacity: 5 kJ/K}\n  - {type: link, node: a, to: hall, "
-        "conductance: 9 W/K}\n...\n"}) {
+  const std::vector<std::string> lists = {"effects: [" + effects + ",   # the last\n]\n", "effects: [" + effects + "]\n",
+                                          "effects:\n  - {type: node, node: a, capacity: 5 kJ/K}\n  - {type: link, node: a, "
+                                          "to: hall, conductance: 9 W/K}\n...\n"};
+  for (const std::string& list : lists) {
     const auto b = bench(write_file("flow.yaml", text + list));
     expect_runs_as_predicted(*b, {"flow", false, added({"{type: heat_source, node: a, power: 40 W}"})});
   }
