@@ -11,7 +11,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
     const double taylor = taylor_number(diameter_m, gap_m, u.drive.speed_rpm, air.viscosity_m2_s);
     return factor * nusselt_gap(taylor) * air.conductivity_W_mK / (2.0 * gap_m);
   };
-  balance.exchanges.push_back({.name = e.name(), .body = e.body(), .coefficient = conductance_W_m2K});
+  balance.exchanges.push_back(make_contact(e.name(), e.place, conductance_W_m2K));
 }
 
 void check(const Effect& e, const ConfigMap& in) {

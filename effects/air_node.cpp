@@ -6,10 +6,7 @@ namespace {
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.nodes.push_back({e.place, e["capacity"]});
   const double exchange_W_K = e["exchange"];
-  balance.exchanges.push_back({.name = e.name(),
-                               .body = node(e.place),
-                               .coefficient = [=](const Inputs&) { return exchange_W_K; },
-                               .per = Per::kTotal});
+  balance.exchanges.push_back(make_link(e.name(), node(e.place), [=](const Inputs&) { return exchange_W_K; }));
 }
 
 }  // namespace

@@ -6,11 +6,8 @@ namespace {
 void contribute(const Effect& e, HeatBalance& balance) {
   const double conductance_W_K = e["conductance"];
   const std::string to = e.references.at("to").name;
-  balance.exchanges.push_back({.name = e.name() + " - " + to,
-                               .body = e.body(),
-                               .coefficient = [=](const Inputs&) { return conductance_W_K; },
-                               .per = Per::kTotal,
-                               .surrounding = to});
+  balance.exchanges.push_back(make_link(
+      e.name() + " - " + to, e.body(), [=](const Inputs&) { return conductance_W_K; }, to));
 }
 
 void check(const Effect& e, const ConfigMap& in) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/quantity.hpp"
 #include "effects/effect.hpp"
 
 namespace driftwright::effects {
@@ -20,7 +21,7 @@ std::string key_of(const Parameter& p) {
   const std::string unit = p.unit == "1" ? "" : " [" + p.unit + "]";
   if (!p.fallback) return fmt::format("**{}**{}: {}", p.name, unit, p.meaning);
   if (std::isnan(*p.fallback)) return fmt::format("{}{}: {}", p.name, unit, p.meaning);
-  const double shown = p.unit == "degC" ? *p.fallback - 273.15 : *p.fallback;
+  const double shown = p.unit == "degC" ? *p.fallback - kZeroCelsius_K : *p.fallback;
   return fmt::format("{}{} = {:g}: {}", p.name, unit, shown, p.meaning);
 }
 

@@ -10,8 +10,7 @@ constexpr const char* kTable = "conductance_over_pressure";
 void contribute(const Effect& e, HeatBalance& balance) {
   const double conductance_W_m2K = e.tables.contains(kTable) ? e.tables.at(kTable).at(e["pressure"]) : e["conductance"];
   const double factor = e["factor"];
-  balance.exchanges.push_back(
-      {.name = e.name(), .body = e.body(), .coefficient = [=](const Inputs&) { return factor * conductance_W_m2K; }});
+  balance.exchanges.push_back(make_contact(e.name(), e.place, [=](const Inputs&) { return factor * conductance_W_m2K; }));
 }
 
 void check(const Effect& e, const ConfigMap& in) {

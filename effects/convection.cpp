@@ -4,10 +4,8 @@ namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  balance.exchanges.push_back({.name = e.name(),
-                               .body = e.body(),
-                               .coefficient = [htc = e["film"]](const Inputs&) { return htc; },
-                               .surrounding = e.references.at("surrounding").name});
+  balance.exchanges.push_back(make_film(
+      e.name(), e.place, [htc = e["film"]](const Inputs&) { return htc; }, e.references.at("surrounding").name));
 }
 
 /// Outer surfaces on which the scenario has no film.

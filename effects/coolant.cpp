@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "base/quantity.hpp"
 #include "effects/doubt.hpp"
 
 namespace driftwright::effects {
@@ -68,7 +69,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     removed.numbers[0].set = [](std::span<Effect> added, double value) { added[0].set("power", -value); };
     list.push_back(std::move(removed));
 
-    const double sd_W_K = 0.2 * sd_W, nominal_C = s.reference_K - 273.15;
+    const double sd_W_K = 0.2 * sd_W, nominal_C = s.reference_K - kZeroCelsius_K;
     Doubt held{.finding = "coolant",
                .where = body.name,
                .law = "a circuit whose medium is held at its set point",
@@ -80,7 +81,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     held.numbers[0].low = 0.0;
     held.numbers[1].low = nominal_C - kColder_K;
     held.numbers[1].high = nominal_C + kWarmer_K;
-    held.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("set_point", value + 273.15); };
+    held.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("set_point", value + kZeroCelsius_K); };
     list.push_back(std::move(held));
   }
   return list;

@@ -19,14 +19,9 @@ DoubtedNumber doubted(std::string name, std::string unit, double prior_sd, doubl
   return {.name = std::move(name), .unit = std::move(unit), .nominal = nominal, .prior_sd = prior_sd, .step = step};
 }
 
-DoubtedNumber doubted_factor(std::string parameter) {
+DoubtedNumber doubted_factor() {
   DoubtedNumber n = doubted("factor", "1", kFactorSd, 0.05, 1.0);
   n.is_log = true;
-  if (parameter != n.name) {
-    n.set = [parameter = std::move(parameter)](std::span<Effect> added, double value) {
-      for (Effect& e : added) e.set(parameter, value);
-    };
-  }
   return n;
 }
 

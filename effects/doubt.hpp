@@ -73,8 +73,8 @@ struct Doubt {
 
 /// A number about zero, or another nominal value, in its unit. @param prior_sd, step  of the value
 [[nodiscard]] DoubtedNumber doubted(std::string name, std::string unit, double prior_sd, double step, double nominal = 0.0);
-/// A factor about one: of the parameter of that name.
-[[nodiscard]] DoubtedNumber doubted_factor(std::string parameter = "factor");
+/// A factor about one: of the parameter `factor`.
+[[nodiscard]] DoubtedNumber doubted_factor();
 /// When something began, in s within a run; and x where to look first, n - 1 of them.
 [[nodiscard]] DoubtedNumber doubted_time(std::string name, double run_length_s,
                                          std::function<void(std::span<Effect>, double)> set = {});

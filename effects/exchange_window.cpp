@@ -8,6 +8,11 @@ namespace {
 constexpr const char* kWindows = "windows";
 constexpr double kMostWindows = 10000.0;
 
+/// A region or node takes a conductance of its own, a surface or joint one per area.
+bool is_total(const Effect& e) {
+  return e.place_kind == Place::kNode || e.place_kind == Place::kRegion;
+}
+
 /// Beginnings and ends [s], repeated where they repeat.
 std::vector<std::pair<double, double>> windows_of(const Effect& e) {
   const TimeSeries& rows = e.tables.at(kWindows);
@@ -23,20 +28,19 @@ std::vector<std::pair<double, double>> windows_of(const Effect& e) {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const auto windows = windows_of(e);
-  const double coefficient = e.place_kind == Place::kNode || e.place_kind == Place::kRegion ? e["conductance"] : e["film"];
+  const double coefficient = is_total(e) ? e["conductance"] : e["film"];
   const std::string to = e.references.contains("surrounding") ? e.references.at("surrounding").name : kHallName;
-  balance.exchanges.push_back(
-      {.name = e.name(),
-       .body = e.body(),
-       .coefficient =
-           [=](const Inputs& u) {
-             for (const auto& [begin_s, end_s] : windows) {
-               if (u.time_s >= begin_s && u.time_s < end_s) return coefficient;
-             }
-             return 0.0;
-           },
-       .per = e.place_kind == Place::kNode || e.place_kind == Place::kRegion ? Per::kTotal : Per::kArea,
-       .surrounding = to});
+  balance.exchanges.push_back({.name = e.name(),
+                               .body = e.body(),
+                               .coefficient =
+                                   [=](const Inputs& u) {
+                                     for (const auto& [begin_s, end_s] : windows) {
+                                       if (u.time_s >= begin_s && u.time_s < end_s) return coefficient;
+                                     }
+                                     return 0.0;
+                                   },
+                               .per = is_total(e) ? Per::kTotal : Per::kArea,
+                               .surrounding = to});
   for (const auto& [begin_s, end_s] : windows) {
     if (begin_s > 0.0) balance.change_times_s.push_back(begin_s);
     balance.change_times_s.push_back(end_s);
@@ -44,9 +48,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  const bool is_total = e.place_kind == Place::kNode || e.place_kind == Place::kRegion;
-  if (e.has("conductance") != is_total || e.has("film") == is_total) {
-    in.fail(is_total ? "conductance" : "film",
+  if (e.has("conductance") != is_total(e) || e.has("film") == is_total(e)) {
+    in.fail(is_total(e) ? "conductance" : "film",
             "a region or node wants `conductance`, in W/K; a surface or joint `film`, in W/(m^2 K)");
   }
   const TimeSeries& rows = e.tables.at(kWindows);

@@ -10,11 +10,9 @@ namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double growth = e["growth"], n0_rpm = e["at_speed"], exponent = e["exponent"];
-  balance.exchanges.push_back(
-      {.name = e.name(),
-       .body = e.body(),
-       .coefficient = [=](const Inputs& u) { return growth * std::pow(u.drive.speed_rpm / n0_rpm, exponent); },
-       .surrounding = e.references.at("surrounding").name});
+  balance.exchanges.push_back(make_film(
+      e.name(), e.place, [=](const Inputs& u) { return growth * std::pow(u.drive.speed_rpm / n0_rpm, exponent); },
+      e.references.at("surrounding").name));
 }
 
 bool grows(const Exchange& film, double rpm) {

@@ -18,10 +18,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   const auto htc = [=](const Inputs& u) {
     return factor * natural_convection_htc_W_m2K(looks, length_m, u.probe_K.at(0), u.probe_K.at(1));
   };
-  balance.exchanges.push_back({.name = e.name(),
-                               .body = e.body(),
-                               .coefficient = Law(htc, {e.body(), node(surrounding)}),
-                               .surrounding = surrounding});
+  balance.exchanges.push_back(make_film(e.name(), e.place, Law(htc, {e.body(), node(surrounding)}), surrounding));
 }
 
 }  // namespace

@@ -6,11 +6,10 @@ namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double diameter_m = e["diameter"], factor = e["factor"];
-  balance.exchanges.push_back(
-      {.name = e.name(),
-       .body = e.body(),
-       .coefficient = [=](const Inputs& u) { return factor * rotating_cylinder_htc_W_m2K(diameter_m, u.drive.speed_rpm); },
-       .surrounding = e.references.at("surrounding").name});
+  balance.exchanges.push_back(make_film(
+      e.name(), e.place,
+      [=](const Inputs& u) { return factor * rotating_cylinder_htc_W_m2K(diameter_m, u.drive.speed_rpm); },
+      e.references.at("surrounding").name));
 }
 
 }  // namespace
