@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantity.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -19,7 +21,7 @@ Variant other_value(const Twin& twin, std::size_t effect, std::size_t parameter)
   const effects::Effect& e = twin.as_written()[effect];
   const effects::Parameter& p = e.kind->parameters[parameter];
   const bool is_shift = p.doubted == effects::Doubted::kShift;
-  const double zero = p.unit == "degC" ? 273.15 : 0.0;
+  const double zero = p.unit == "degC" ? kZeroCelsius_K : 0.0;
   Knob k{.effect = p.finding,
          .where = effects::where_of(e),
          .name = p.name,
