@@ -46,10 +46,17 @@ bool is_near(double a, double b) {
   return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= 1e-6 * std::max(std::abs(a), std::abs(b));
 }
 
+bool is_near(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return is_near(x, y); });
+}
+
 bool is_same(const Effect& a, const Effect& b) {
   return a.kind == b.kind && a.place_kind == b.place_kind && a.place == b.place && a.references == b.references &&
          a.words == b.words && a.in == b.in && is_near(a.from_s, b.from_s) && is_near(a.until_s, b.until_s) &&
-         std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(), is_near);
+         is_near(a.values, b.values) &&
+         std::equal(a.tables.begin(), a.tables.end(), b.tables.begin(), b.tables.end(), [](const auto& x, const auto& y) {
+           return x.first == y.first && is_near(x.second.time_s, y.second.time_s) && is_near(x.second.value, y.second.value);
+         });
 }
 
 bool is_path_key(const std::string& key) {
@@ -147,7 +154,7 @@ class Writer {
       const effects::Parameter& parameter = next.kind->parameters[p];
       done_.push_back(fmt::format("{}: {} {} -> {}", next.name(), parameter.name,
                                   effects::yaml_of(parameter, rounded(was, parameter)), effects::yaml_of(parameter, now)));
-      if (is_in_file(i) ? !in_place(i, parameter, was, now) : true) replace(i);
+      if (!is_in_file(i) || !in_place(i, parameter, was, now)) replace(i);
     }
   }
 
@@ -155,8 +162,9 @@ class Writer {
   bool in_place(std::size_t i, const effects::Parameter& parameter, double was, double now) {
     const ConfigNode* scalar = entry(i).find(parameter.name);
     if (!scalar) {
+      if (!yaml_.add_pair(entry(i), parameter.name, effects::yaml_of(parameter, now))) return false;
       notes_[entry(i).line].push_back(parameter.name + " is new");
-      return yaml_.add_pair(entry(i), parameter.name, effects::yaml_of(parameter, now));
+      return true;
     }
     const std::string text = yaml_.current(*scalar);
     char* unit = nullptr;
@@ -164,8 +172,9 @@ class Writer {
     const bool keeps_unit = parameter.unit != "degC" && unit != text.c_str() && was != 0.0 && number != 0.0;
     const std::string other =
         keeps_unit ? fmt::format("{:.8g}{}", number * now / was, unit) : effects::yaml_of(parameter, now);
+    if (!yaml_.replace(*scalar, other)) return false;
     notes_[scalar->line].push_back(fmt::format("{} was {}", parameter.name, text));
-    return yaml_.replace(*scalar, other);
+    return true;
   }
 
   /// The whole entry, behind the others; the old one becomes a comment.

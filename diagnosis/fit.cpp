@@ -112,23 +112,46 @@ Prediction Fitter::predict(const Hypothesis& hypothesis, const Eigen::VectorXd& 
       if (responses->size() <= r) responses->resize(r + 1);
       (*responses)[r] = response;
     }
-    prediction.push_back(twin_.read(s, runs_[r], std::move(response)));
-    for (std::size_t l = 0; l < linear_.size(); ++l) {
-      const double amplitude = x[static_cast<Eigen::Index>(scatter_.size() + l)];
-      if (amplitude != 0.0) prediction.back() += amplitude * linear_[l][r];
-    }
+    prediction.push_back(readings(s, r, x, std::move(response)));
   }
   return prediction;
 }
 
-Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base, std::size_t which,
-                         Twin::Workspace& workspace) const {
+Eigen::MatrixXd Fitter::readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
+                                 Eigen::MatrixXd response) const {
+  Eigen::MatrixXd readings = twin_.read(state, runs_[run], std::move(response));
+  for (std::size_t l = 0; l < linear_.size(); ++l) {
+    const double amplitude = x[static_cast<Eigen::Index>(scatter_.size() + l)];
+    if (amplitude != 0.0) readings += amplitude * linear_[l][run];
+  }
+  return readings;
+}
+
+Prediction Fitter::predict_near(const Courses& about, const Hypothesis& hypothesis, const Eigen::VectorXd& x,
+                                Twin::Workspace& workspace) const {
+  const TwinState s = state(hypothesis, x);
+  Prediction prediction;
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const solver::Course* near = about[r] ? &*about[r] : nullptr;
+    prediction.push_back(readings(s, r, x, twin_.respond(s, runs_[r], workspace, near)));
+  }
+  return prediction;
+}
+
+Fitter::Courses Fitter::courses(const TwinState& state, Twin::Workspace& workspace) const {
+  Courses all;
+  for (const MeasuredRun& run : runs_) all.push_back(twin_.course(state, run, workspace));
+  return all;
+}
+
+Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
+                         const Courses& about, std::size_t which, Twin::Workspace& workspace) const {
   for (double share : {1.0, -1.0, 0.1, -0.1}) {  // a machine that is about to run away has a solution on one side only
     const double step = share * scatter_[which].step;
     Eigen::VectorXd turned = x;
     turned[static_cast<Eigen::Index>(which)] += step;
     Prediction difference;
-    if (!has_solution([&] { difference = predict(hypothesis, turned, workspace); })) continue;
+    if (!has_solution([&] { difference = predict_near(about, hypothesis, turned, workspace); })) continue;
     for (std::size_t r = 0; r < runs_.size(); ++r) difference[r] = (difference[r] - base[r]) / step;
     return difference;
   }
@@ -138,13 +161,15 @@ Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
 void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x) {
   std::vector<Prediction> differences(scatter_.size());
   Prediction base;
+  Courses about;
   {
     Twin::Workspace workspace(twin_);
     base = predict(hypothesis, x, workspace);
+    about = courses(state(hypothesis, x), workspace);
   }
   for_each_index(
       scatter_.size(), [&] { return Twin::Workspace(twin_); },
-      [&](std::size_t i, Twin::Workspace& workspace) { differences[i] = slope(hypothesis, x, base, i, workspace); });
+      [&](std::size_t i, Twin::Workspace& workspace) { differences[i] = slope(hypothesis, x, base, about, i, workspace); });
   differences_ = std::move(differences);
 }
 
@@ -172,8 +197,10 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
 
 Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const {
   Eigen::MatrixXd slopes = slopes_;
+  const Courses about = courses(state(hypothesis, at.x), workspace);
   for (std::size_t i = 0; i < scatter_.size(); ++i) {
-    slopes.col(static_cast<Eigen::Index>(i)) = comparison_->whitened(slope(hypothesis, at.x, at.prediction, i, workspace));
+    slopes.col(static_cast<Eigen::Index>(i)) =
+        comparison_->whitened(slope(hypothesis, at.x, at.prediction, about, i, workspace));
   }
   return slopes;
 }

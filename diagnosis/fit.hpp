@@ -80,12 +80,22 @@ class Fitter {
   [[nodiscard]] Prediction predict(const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace,
                                    Prediction* responses = nullptr, bool reuse = false) const;
 
+  /// One run each, empty where the machine is not linear: what slopes are taken about.
+  using Courses = std::vector<std::optional<solver::Course>>;
+
  private:
   [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held,
                           Twin::Workspace& workspace) const;
-  /// Slope of the readings by one of scatter's numbers. @param base  at x
+  [[nodiscard]] Courses courses(const TwinState& state, Twin::Workspace& workspace) const;
+  /// Readings to first order in how x differs from where the courses were taken.
+  [[nodiscard]] Prediction predict_near(const Courses& about, const Hypothesis& hypothesis, const Eigen::VectorXd& x,
+                                        Twin::Workspace& workspace) const;
+  /// Readings of a state, whose responses are those of the machine.
+  [[nodiscard]] Eigen::MatrixXd readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
+                                         Eigen::MatrixXd response) const;
+  /// Slope of the readings by one of scatter's numbers. @param base, about  at x
   [[nodiscard]] Prediction slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
-                                 std::size_t which, Twin::Workspace& workspace) const;
+                                 const Courses& about, std::size_t which, Twin::Workspace& workspace) const;
   void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x);
   /// W f's slopes by scatter and linear columns at an x far from where scatter was settled.
   [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const;

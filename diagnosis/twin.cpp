@@ -219,7 +219,8 @@ Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& hall, cons
   const double hall_at_start_K = hall.at(0.0);
   if (augmented_.model.start == scenarios::Start::kHall) start = hall_at_start_K * machine_.system.ones;
   if (augmented_.model.start == scenarios::Start::kSteady && system.is_linear()) {
-    const effects::Inputs standstill{.drive = {}, .hall_K = hall_at_start_K};  // before the run: what happened in it acts not yet
+    const effects::Inputs standstill{.drive = {},
+                                     .hall_K = hall_at_start_K};  // before the run: what happened in it acts not yet
     Eigen::MatrixXd k = system.conduction;
     for (const auto& e : system.exchanges) k += e.coefficient(standstill) * e.matrix;
     start = k.llt().solve(system.load(standstill));
@@ -230,20 +231,34 @@ Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& hall, cons
   return start;
 }
 
-Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
   set_matrices(state, workspace);
   set_laws(state, run, workspace);
-  solver::ReducedSystem& system = workspace.system_;
   const effects::DriveChange change = effects::drive_change(state, run.name);
-  Cyclogram felt = effects::true_cyclogram(change, run.cyclogram);
-  felt.name = run.name;
-  const TimeSeries hall = effects::true_hall(change, run.hall, run.cyclogram);
-  Eigen::VectorXd from = start(run, hall, system);
+  Driven d{.cyclogram = effects::true_cyclogram(change, run.cyclogram),
+           .hall = effects::true_hall(change, run.hall, run.cyclogram),
+           .start = {}};
+  d.cyclogram.name = run.name;
+  d.start = start(run, d.hall, workspace.system_);
+  return d;
+}
 
+std::optional<solver::Course> Twin::course(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+  const Driven d = drive(state, run, workspace);
+  if (!workspace.system_.is_linear()) return std::nullopt;
+  return workspace.propagator().course(d.cyclogram, d.hall, run.grid_s, d.start);
+}
+
+Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
+                             const solver::Course* near) const {
+  auto [felt, hall, from] = drive(state, run, workspace);
+  solver::ReducedSystem& system = workspace.system_;
+  if (near) {
+    if (auto close = near->states_of(system, felt, hall, from)) return *std::move(close);
+  }
   Eigen::MatrixXd states;
   if (system.is_linear()) {
-    if (!workspace.propagator_) workspace.propagator_ = std::make_unique<solver::Propagator>(system);
-    (void)workspace.propagator_->run(felt, hall, run.grid_s, from, false, &states);
+    (void)workspace.propagator().run(felt, hall, run.grid_s, from, false, &states);
     return states;
   }
   const solver::ReducedSystem* small = &system;
@@ -266,8 +281,9 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
   return states;
 }
 
-Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
-  const Eigen::MatrixXd z = states(state, run, workspace);
+Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
+                              const solver::Course* near) const {
+  const Eigen::MatrixXd z = states(state, run, workspace, near);
   const TimeSeries hall = effects::true_hall(effects::drive_change(state, run.name), run.hall, run.cyclogram);
   Eigen::MatrixXd weights = outputs_.state;
   const auto now = effects::material_factors(state), written = effects::material_factors(as_written_);

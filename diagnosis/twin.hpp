@@ -34,6 +34,10 @@ class Twin {
 
    private:
     friend class Twin;
+    solver::Propagator& propagator() {
+      if (!propagator_) propagator_ = std::make_unique<solver::Propagator>(system_);
+      return *propagator_;
+    }
     solver::ReducedSystem system_;
     std::vector<double> factors_;  ///< of conductivities and capacities that system_ has
     std::vector<double> offsets_;  ///< of its exchanges: air and media
@@ -45,11 +49,17 @@ class Twin {
   [[nodiscard]] std::size_t n_own_effects() const { return as_written_.size(); }
   /// Reduced states of the machine at a run's grid, size x n_grid.
   /// @throws SolveError  where a state has no solution
-  [[nodiscard]] Eigen::MatrixXd states(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
+  [[nodiscard]] Eigen::MatrixXd states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
+                                       const solver::Course* near = nullptr) const;
   /// Outputs of the machine at a run's grid, n_outputs x n_grid [K over the reference, m, rad]: the model's own, then the mean temperatures
   /// of its regions and nodes.
+  /// @param near  unless null, course() of a state close by: a response to first order in how the two differ is enough
   /// @throws SolveError  where a state has no solution
-  [[nodiscard]] Eigen::MatrixXd respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
+  [[nodiscard]] Eigen::MatrixXd respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
+                                        const solver::Course* near = nullptr) const;
+  /// What states near this one are answered from; nothing where the machine is not linear.
+  [[nodiscard]] std::optional<solver::Course> course(const TwinState& state, const MeasuredRun& run,
+                                                     Workspace& workspace) const;
   /// What its instruments say of them at the run's rows, n_outputs x n_times.
   [[nodiscard]] Eigen::MatrixXd read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const;
 
@@ -69,6 +79,13 @@ class Twin {
   [[nodiscard]] std::vector<double> material_factors(const TwinState& state) const;
   void set_matrices(const TwinState& state, Workspace& workspace) const;
   void set_laws(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
+  /// What drives a state in a run: its system in the workspace, what it is told, where it starts.
+  struct Driven {
+    Cyclogram cyclogram;
+    TimeSeries hall;
+    Eigen::VectorXd start;
+  };
+  [[nodiscard]] Driven drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
   [[nodiscard]] Eigen::VectorXd start(const MeasuredRun& run, const TimeSeries& hall,
                                       const solver::ReducedSystem& system) const;
 

@@ -253,9 +253,13 @@ Effect make_effect(const std::string& key, Place place_kind, const std::string& 
   return e;
 }
 
-Effect make_effect(const std::string& key, const Body& body, const std::vector<std::pair<std::string, double>>& values) {
+Place place_kind(BodyKind kind) {
   constexpr Place kPlaces[] = {Place::kRegion, Place::kSurface, Place::kNode, Place::kJoint};
-  return make_effect(key, kPlaces[static_cast<int>(body.kind)], body.name, values);
+  return kPlaces[static_cast<int>(kind)];
+}
+
+Effect make_effect(const std::string& key, const Body& body, const std::vector<std::pair<std::string, double>>& values) {
+  return make_effect(key, place_kind(body.kind), body.name, values);
 }
 
 HeatBalance heat_balance(const std::vector<Effect>& effects) {

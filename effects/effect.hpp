@@ -152,6 +152,9 @@ struct Effect {
 /// @throws std::logic_error  for a key that is not there
 [[nodiscard]] const EffectKind& kind_of(const std::string& key);
 
+/// The place that a body is.
+[[nodiscard]] Place place_kind(BodyKind kind);
+
 /// An effect with the fallbacks of its kind, and some values given in their parameters' units.
 [[nodiscard]] Effect make_effect(const std::string& key, Place place_kind, const std::string& place,
                                  const std::vector<std::pair<std::string, double>>& values = {});

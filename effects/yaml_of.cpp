@@ -57,9 +57,7 @@ std::string yaml_of(const Effect& e) {
     const Body& body = found->second;
     const bool is_first = body.kind == r.kinds.front();
     if (is_first && r.fallback && *r.fallback == body.name) continue;
-    constexpr Place kPlaces[] = {Place::kRegion, Place::kSurface, Place::kNode, Place::kJoint};
-    add(r.name, is_first ? word(body.name)
-                         : fmt::format("{{{}: {}}}", place_key(kPlaces[static_cast<int>(body.kind)]), word(body.name)));
+    add(r.name, is_first ? word(body.name) : fmt::format("{{{}: {}}}", place_key(place_kind(body.kind)), word(body.name)));
   }
   for (const Choice& c : e.kind->choices) {
     if (!c.fallback || e.words.at(c.name) != *c.fallback) add(c.name, e.words.at(c.name));

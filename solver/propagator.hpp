@@ -3,7 +3,7 @@
 // sum of exponentials, so nothing is stepped and nothing but rounding is lost.
 
 #include "base/cyclogram.hpp"
-#include "solver/decomposition.hpp"
+#include "solver/course.hpp"
 
 namespace driftwright::solver {
 
@@ -27,6 +27,12 @@ class Propagator {
   /// @param states     unless null, the reduced states at the outputs, size x n_times
   [[nodiscard]] Trajectory run(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
                                const Eigen::VectorXd& start, bool with_heat = false, Eigen::MatrixXd* states = nullptr);
+
+  /// The same run, kept, for what systems close by would do.
+  [[nodiscard]] Course course(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
+                              const Eigen::VectorXd& start) {
+    return {system_, decompositions_, cyclogram, hall, output_s, start};
+  }
 
   [[nodiscard]] int n_decompositions() const { return decompositions_.n_made(); }
 
