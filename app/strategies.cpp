@@ -259,6 +259,8 @@ FittedStrategies fit_strategies(const StrategySettings& settings, std::span<cons
       result.left_out.push_back({list[i].name, why[i]});
     }
   }
+  if (!settings.physics && !settings.without_physics.empty())
+    result.left_out.push_back({"thermal modes, fitted model and observer", settings.without_physics});
   return result;
 }
 

@@ -31,6 +31,7 @@ struct StrategySettings {
   double reading_K = 0.1;                                       ///< 1 sigma of a thermometer, for the observer
   double drift_um = 1.0;                                        ///< 1 sigma of the indicator in the training runs
   std::optional<Physics> physics;
+  std::string without_physics = {};  ///< why there is none; empty: nobody asked for it
 };
 
 /// A strategy fitted on training runs.

@@ -62,8 +62,9 @@ struct Failure {
 constexpr Failure kFailures[] = {
     {SensorFailure::kStuck, "stuck"}, {SensorFailure::kOpen, "open"}, {SensorFailure::kDetached, "fallen off"}};
 
-/// A hall whose thermometer gives nothing new from a time on: a model takes its last reading.
+/// A hall whose thermometer gives nothing new from a time on: a model takes its last reading. One that nobody knows stays unknown.
 TimeSeries held_from(const TimeSeries& hall, double from_s) {
+  if (hall.time_s.empty()) return hall;
   TimeSeries held;
   for (std::size_t i = 0; i < hall.time_s.size() && hall.time_s[i] < from_s; ++i) {
     held.time_s.push_back(hall.time_s[i]);

@@ -57,6 +57,7 @@ struct StrategyMatrix {
   std::vector<JudgedStrategy> strategies;
   std::vector<LeftOut> left_out;
   MatrixSettings settings;
+  std::vector<std::string> findings = {};  ///< about the records themselves, a sentence each
 };
 
 /// Fits on `training`, judges on `runs`. Cases go side by side on all cores; the result is the same on any number of them.

@@ -89,10 +89,13 @@ void validate(const RecordOptions& options) {
   }
   const scenarios::Study& settings = require_study(scenario, "validate");
   const StudyRecords records = read_records(settings, options);
-  const std::vector<std::string> warnings =
+  std::vector<std::string> warnings =
       sensor_warnings(records.train, candidate_sensors(settings, records.train.front()));
-  const StrategyMatrix matrix = validate_on_records(scenario, records.train, records.test);
   output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress;
+  const StrategyMatrix matrix = validate_on_records(scenario, records.train, records.test, progress);
+  progress.end();
+  warnings.insert(warnings.end(), matrix.findings.begin(), matrix.findings.end());
   Json summary = provenance(folder.made_by());
   summary["validation"] = strategy_json(matrix);
   summary["warnings"] = warnings;

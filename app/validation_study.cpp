@@ -12,6 +12,7 @@
 #include "compensation/model_scatter.hpp"
 #include "compensation/thermometers.hpp"
 #include "scenarios/as_recorded.hpp"
+#include "scenarios/recorded_run.hpp"
 #include "solver/reduced_transient.hpp"
 
 namespace driftwright::app {
@@ -56,14 +57,64 @@ std::string speed_channel(const Record& record) {
   return *high > *low || *high > 0.0 ? "speed" : "";
 }
 
-/// The hall among the channels: a sensor on it, or `ambient`.
-std::string hall_channel(const Scenario& scenario, const Record& record) {
-  if (scenario.machine) {
-    for (const scenarios::Sensor& s : scenario.machine->sensors) {
-      if (scenarios::is_on_hall(s)) return s.name;
-    }
+/// Channels that read the hall: sensors on it.
+std::vector<std::string> hall_sensors(const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const scenarios::Sensor& s : scenario.machine ? scenario.machine->sensors : std::vector<scenarios::Sensor>{}) {
+    if (scenarios::is_on_hall(s)) names.push_back(s.name);
   }
-  return record.find(scenarios::kAmbient) ? scenarios::kAmbient : "";
+  return names;
+}
+
+/// The hall among the channels of a record: a sensor on it, or `ambient`; "" where neither has a reading.
+std::string hall_channel(const Scenario& scenario, const Record& record) {
+  std::vector<std::string> names = hall_sensors(scenario);
+  names.emplace_back(scenarios::kAmbient);
+  for (const std::string& name : names) {
+    const Channel* channel = record.find(name);
+    if (channel && std::any_of(channel->values.begin(), channel->values.end(), [](double v) { return !std::isnan(v); }))
+      return name;
+  }
+  return "";
+}
+
+/// What strategies may know of the machine behind records, or why nothing.
+struct RecordedPhysics {
+  std::optional<Physics> physics;
+  std::string why_none;
+};
+RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<ObservedRun>& training,
+                                    const std::vector<JudgedRunOfMachine>& judged, const StrategySettings& how,
+                                    Progress& progress) {
+  if (!scenario.machine) return {std::nullopt, "the scenario has no machine"};
+  if (!how.count_from_start)
+    return {std::nullopt, "a model knows drift since the start of a run; `study: {count_from_start: true}` is needed"};
+  std::vector<const Cyclogram*> cyclograms;
+  for (const ObservedRun& run : training) cyclograms.push_back(&run.cyclogram);
+  for (const JudgedRunOfMachine& j : judged) cyclograms.push_back(&j.run.cyclogram);
+  for (const Cyclogram* c : cyclograms) {
+    if (c->sections.empty())
+      return {std::nullopt, fmt::format("{} does not say what drove the machine (speed_rpm)", c->name)};
+  }
+  Scenario reduced = scenario;
+  const bool is_lumped = std::holds_alternative<scenarios::LumpedMachine>(scenario.machine->mesh);
+  if (is_lumped) reduced.solver.model = scenarios::ModelKind::kReduced;
+  if (reduced.solver.model != scenarios::ModelKind::kReduced)
+    return {std::nullopt, "`solver: {model: reduced}` is needed"};
+  const Model model = open_model(reduced, cyclograms, progress, false);
+  std::optional<Physics> physics;
+  try {
+    physics = physics_of(reduced, model, 0.0, 1);
+  } catch (const SolveError& e) {  // such as heat without a way out
+    return {std::nullopt, e.what()};
+  }
+  if (!physics) return {std::nullopt, "in the scenario's machine films, heat or thermostats follow temperatures"};
+  const auto& outputs = model.outputs().name;
+  for (const std::string& name : how.candidates) {
+    if (std::find(outputs.begin(), outputs.end(), name) == outputs.end())
+      return {std::nullopt, fmt::format("the scenario's machine has no sensor '{}'", name)};
+  }
+  return {std::move(physics), ""};
 }
 
 }  // namespace
@@ -178,9 +229,20 @@ StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model,
 }
 
 StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<Record>& training,
-                                   const std::vector<Record>& test) {
+                                   const std::vector<Record>& test, Progress& progress) {
   const scenarios::Study& study = *scenario.study;
-  const auto as_run = [](const Record& record) { return ObservedRun{.cyclogram = {}, .hall = {}, .readings = record}; };
+  const scenarios::MachineModel* machine = scenario.machine ? &*scenario.machine : nullptr;
+  std::vector<std::string> findings;
+  const auto as_run = [&](const Record& record) {
+    scenarios::RecordedRun run = scenarios::run_of(record, machine, hall_sensors(scenario), scenarios::Reading::kLenient);
+    for (const scenarios::DataFinding& f : run.findings) {
+      if (std::find(findings.begin(), findings.end(), f.what) == findings.end()) findings.push_back(f.what);
+    }
+    ObservedRun seen{.cyclogram = std::move(run.cyclogram), .hall = std::move(run.hall), .readings = record};
+    seen.readings.time_s = std::move(run.time_s);
+    seen.cyclogram.name = record.source;
+    return seen;
+  };
   std::vector<ObservedRun> runs;
   for (const Record& record : training) runs.push_back(as_run(record));
   std::vector<JudgedRunOfMachine> judged;
@@ -195,9 +257,15 @@ StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<R
   how.image = study.image;
   how.speed = speed_channel(training.front());
   how.hall = hall_channel(scenario, training.front());
+  const RecordedPhysics physics = physics_for_records(scenario, runs, judged, how, progress);
+  how.physics = physics.physics;
+  how.without_physics = physics.why_none;
   settings.tolerance_um = study.tolerance_um;
   settings.fails_at = 0.5;
-  return judge_strategies(settings, std::move(runs), std::move(judged));
+  progress.begin(fmt::format("fitting and judging strategies on {} records", judged.size()));
+  StrategyMatrix matrix = judge_strategies(settings, std::move(runs), std::move(judged));
+  matrix.findings = std::move(findings);
+  return matrix;
 }
 
 }  // namespace driftwright::app

@@ -13,9 +13,10 @@ namespace driftwright::app {
 [[nodiscard]] StrategyMatrix validate_strategies(const scenarios::Scenario& scenario, const Model& model,
                                                  Progress& progress);
 
-/// Strategies on measured records; those with physics are left out.
+/// Strategies on measured records. Those with physics take part where the scenario has a machine that is linear, drift counts from the start
+/// of each record, and the records say what drove it.
 [[nodiscard]] StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, const std::vector<Record>& training,
-                                                 const std::vector<Record>& test);
+                                                 const std::vector<Record>& test, Progress& progress);
 
 /// The model as strategies get it, off by random factors (compensation::scattered()); none where it is not a linear reduced one.
 [[nodiscard]] std::optional<Physics> physics_of(const scenarios::Scenario& scenario, const Model& model, double scatter,

@@ -42,6 +42,7 @@ Drive mean_drive(const std::vector<const Cyclogram*>& cyclograms) {
 }
 
 double TimeSeries::at(double t_s) const {
+  if (time_s.empty()) throw std::logic_error("a time series without knots has no value");
   if (t_s <= time_s.front()) return value.front();
   if (t_s >= time_s.back()) return value.back();
   const auto after = std::upper_bound(time_s.begin(), time_s.end(), t_s);

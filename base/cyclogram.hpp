@@ -42,7 +42,7 @@ struct TimeSeries {
   std::vector<double> time_s;  ///< strictly increasing
   std::vector<double> value;   ///< same length
 
-  [[nodiscard]] double at(double t_s) const;
+  [[nodiscard]] double at(double t_s) const;  ///< @throws std::logic_error  without knots
 };
 
 /// A stretch of time in which the drive is constant and everything else that drives the machine is linear.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -11,108 +10,12 @@
 #include "base/quantity.hpp"
 #include "diagnosis/record_faults.hpp"
 #include "diagnosis/stuck_sensor.hpp"
-#include "diagnosis/unit_check.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHallKnots_s = 600.0;      // films pass on nothing faster
-constexpr double kJitter = 0.01;            // of the top speed: no change of the drive
 constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
 constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
-
-/// Piecewise linear least squares on knots; keeps a recorded hall's slow course and drops its noise.
-TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
-  std::vector<double> t, v;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    if (!std::isnan(value[i])) {
-      t.push_back(time_s[i]);
-      v.push_back(value[i]);
-    }
-  }
-  const double length_s = t.back() - t.front();
-  const int n_pieces = std::max(1, std::min(static_cast<int>(length_s / kHallKnots_s), static_cast<int>(t.size()) / 3));
-  const double width_s = length_s / n_pieces;
-  Eigen::MatrixXd hats = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(t.size()) + n_pieces - 1, n_pieces + 1);
-  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(hats.rows());
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const double x = width_s > 0.0 ? (t[i] - t.front()) / width_s : 0.0;
-    const int k = std::clamp(static_cast<int>(x), 0, n_pieces - 1);
-    hats(static_cast<Eigen::Index>(i), k) = 1.0 - (x - k);
-    hats(static_cast<Eigen::Index>(i), k + 1) = x - k;
-    rhs[static_cast<Eigen::Index>(i)] = v[i];
-  }
-  for (int k = 1; k < n_pieces; ++k) {  // a light hand on curvature bridges gaps
-    const auto row = static_cast<Eigen::Index>(t.size()) + k - 1;
-    hats(row, k - 1) = hats(row, k + 1) = 0.05;
-    hats(row, k) = -0.1;
-  }
-  const Eigen::VectorXd knots = hats.colPivHouseholderQr().solve(rhs);
-  TimeSeries series;
-  for (int k = 0; k <= n_pieces; ++k) {
-    series.time_s.push_back(t.front() + k * width_s);
-    series.value.push_back(knots[k]);
-  }
-  if (series.time_s.size() > 1 && !(series.time_s[1] > series.time_s[0])) return {{t.front()}, {knots[0]}};
-  return series;
-}
-
-/// Sections of constant drive, each row's from its time on.
-Cyclogram cyclogram_of(const Record& record, const std::vector<double>& time_s, const std::string& path) {
-  const Channel* speed = record.find("speed");
-  if (!speed) {
-    throw InputError(
-        fmt::format("{}: no channel speed_rpm; a diagnosis wants to know what drove the machine. Channels: {}", path, [&] {
-          std::vector<std::string> names;
-          for (const Channel& c : record.channels) names.push_back(c.header());
-          return fmt::format("{}", fmt::join(names, ", "));
-        }()));
-  }
-  if (speed->unit != "rpm") throw InputError(fmt::format("{}: channel speed is in {}; rpm is wanted", path, speed->unit));
-  const Channel* feeds[] = {record.find("feed_x"), record.find("feed_y"), record.find("feed_z")};
-  const Channel* cutting = record.find("cutting_power");
-  Cyclogram cyclogram;
-  double top_rpm = 0.0;
-  for (double rpm : speed->values) top_rpm = std::isnan(rpm) ? top_rpm : std::max(top_rpm, rpm);
-  const auto known = std::find_if(speed->values.begin(), speed->values.end(), [](double rpm) { return !std::isnan(rpm); });
-  if (known == speed->values.end()) throw InputError(fmt::format("{}: channel speed_rpm is empty", path));
-  double last_rpm = *known;  // before its first reading as at it
-  for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
-    Drive drive;
-    if (!std::isnan(speed->values[i])) last_rpm = speed->values[i];
-    if (!(last_rpm >= 0.0)) {
-      throw InputError(fmt::format("{}: speed {:g} rpm at {:g} s; speeds are positive, whatever the direction", path,
-                                   last_rpm, time_s[i]));
-    }
-    const double held_rpm = cyclogram.sections.empty() ? last_rpm : cyclogram.sections.back().drive.speed_rpm;
-    const bool is_jitter = held_rpm > 0.0 && last_rpm > 0.0 && std::abs(last_rpm - held_rpm) <= kJitter * top_rpm;
-    drive.speed_rpm = is_jitter ? held_rpm : last_rpm;
-    for (int a = 0; a < 3; ++a) {
-      if (feeds[a] && !std::isnan(feeds[a]->values[i]))
-        drive.feed_m_s[static_cast<std::size_t>(a)] = feeds[a]->values[i] / 60e3;
-    }
-    if (cutting && !std::isnan(cutting->values[i])) drive.cutting_power_W = cutting->values[i];
-    const double length_s = time_s[i + 1] - time_s[i];
-    if (!cyclogram.sections.empty() && cyclogram.sections.back().drive == drive) {
-      cyclogram.sections.back().duration_s += length_s;
-    } else {
-      cyclogram.sections.push_back({length_s, drive});
-    }
-  }
-  return cyclogram;
-}
-
-/// The hall drives the machine: in the wrong unit it spoils every channel.
-void refuse_foreign_hall(const Channel& ambient, const TimeSeries& hall, double reference_C, const std::string& path) {
-  const auto [low, high] = std::minmax_element(hall.value.begin(), hall.value.end());
-  const auto unit = foreign_temperature(ambient.values, reference_C + *low, reference_C + *high);
-  if (!unit) return;
-  const auto first = std::find_if(ambient.values.begin(), ambient.values.end(), [](double v) { return !std::isnan(v); });
-  throw InputError(
-      fmt::format("{}: {} looks like {}: it begins with {:g}, and the scenario's hall is {:g} to {:g} degC; "
-                  "write it in degC",
-                  path, ambient.header(), *unit, *first, reference_C + *low, reference_C + *high));
-}
 
 /// Most rows in a row at a value.
 int run_at(const std::vector<double>& values, double value) {
@@ -223,33 +126,19 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
     if (!is_name(std::string(1, c))) c = '_';
   }
   const Record record = without_spikes(without_holes(whole, run.findings), run.findings);
-  for (double t_s : record.time_s) run.time_s.push_back(t_s - record.time_s.front());
-  run.cyclogram = cyclogram_of(record, run.time_s, path);
+  std::vector<std::string> on_hall;  // a thermometer in the hall does as well
+  for (std::size_t o = 0; o < outputs.name.size(); ++o) {
+    if (outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) on_hall.push_back(outputs.name[o]);
+  }
+  scenarios::RecordedRun recorded_run = scenarios::run_of(record, &model, on_hall, scenarios::Reading::kStrict);
+  run.time_s = std::move(recorded_run.time_s);
+  run.cyclogram = std::move(recorded_run.cyclogram);
   run.cyclogram.name = run.name;
+  run.hall = std::move(recorded_run.hall);
+  run.has_ambient = recorded_run.has_ambient;
+  std::move(recorded_run.findings.begin(), recorded_run.findings.end(), std::back_inserter(run.findings));
   set_grid(run);
-  run.hall = model.hall;
   const double reference_C = model.reference_K - kZeroCelsius_K;
-  const Channel* ambient = record.find("ambient");
-  for (std::size_t o = 0; !ambient && o < outputs.name.size(); ++o) {  // a thermometer in the hall does as well
-    if (outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) ambient = record.find(outputs.name[o]);
-  }
-  if (ambient) {
-    const auto n_readings =
-        std::count_if(ambient->values.begin(), ambient->values.end(), [](double v) { return !std::isnan(v); });
-    if (ambient->unit != "degC") {
-      throw InputError(fmt::format("{}: channel {} is in {}; degC is wanted", path, ambient->name, ambient->unit));
-    }
-    if (n_readings > 0) {
-      refuse_foreign_hall(*ambient, model.hall, reference_C, path);
-      std::vector<double> hall_K;
-      for (double v : ambient->values) hall_K.push_back(v - reference_C);
-      run.hall = smoothed(run.time_s, hall_K);
-      run.has_ambient = true;
-    }
-  }
-  if (!run.has_ambient) {
-    run.findings.push_back({"ambient", "the record has no hall temperature (ambient_degC); the scenario's is taken", false});
-  }
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
     const Channel* recorded = record.find(outputs.name[o]);
     if (!recorded) continue;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/record.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/recorded_run.hpp"
 #include "solver/thermal_system.hpp"
 
 namespace driftwright::diagnosis {
@@ -21,12 +21,7 @@ struct MeasuredChannel {
   std::string recorded_unit = {};  ///< of the record's header
 };
 
-/// Something wrong with the data themselves.
-struct DataFinding {
-  std::string channel;
-  std::string what;         ///< a sentence
-  bool leaves_out = false;  ///< the channel is not compared
-};
+using scenarios::DataFinding;
 
 struct MeasuredRun {
   std::string name;  ///< of the file, without folder and ending

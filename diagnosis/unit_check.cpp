@@ -6,23 +6,14 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "base/quantity.hpp"
+#include "base/foreign_temperature.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kBeside_K = 25.0;      // a model that is so far off over a whole record is no model of the machine
-constexpr double kFarBetter = 5.0;      // is what is left after the conversion
 constexpr double kWithin = 5.0;         // of a thousand
 constexpr double kFollows = 0.6;        // correlation of readings with the twin
 constexpr double kLeastMoved_m = 1e-6;  // of the twin: where it stands still nothing can be said
-
-/// Readings of another scale, and what they are in degC.
-struct Scale {
-  const char* unit;
-  double zero, per_K;
-};
-constexpr Scale kScales[] = {{"degF", 32.0, 1.8}, {"kelvin", kZeroCelsius_K, 1.0}};
 
 struct Pairs {
   Eigen::ArrayXd read, model;  // of rows that have a reading
@@ -50,10 +41,10 @@ std::optional<std::string> temperature_finding(const MeasuredChannel& c, const P
   const Eigen::ArrayXd model_C = p.model + reference_C;
   // Kelvin counted from zero under a header that wants differences to the reference.
   const double as_read_K = rms(c.recorded_unit == "degC" ? read_C - model_C : p.read - p.model);
-  for (const Scale& s : kScales) {
+  for (const TemperatureScale& s : kForeignScales) {
     if (c.recorded_unit == "K" && s.per_K != 1.0) continue;  // rises may be large
     const Eigen::ArrayXd meant_C = (read_C - s.zero) / s.per_K;
-    if (!(as_read_K > kBeside_K && kFarBetter * rms(meant_C - model_C) < as_read_K)) continue;
+    if (!(as_read_K > kFarBeside_K && kFarBetter * rms(meant_C - model_C) < as_read_K)) continue;
     return fmt::format(
         "{}_{} looks like {}: it reads {:.1f} to {:.1f} where the scenario has {:.1f} to {:.1f} degC, and in {} "
         "that is {:.1f} to {:.1f} degC; it is left out until its header or its numbers are mended",
@@ -86,22 +77,6 @@ std::optional<std::string> displacement_finding(const MeasuredChannel& c, const 
 }
 
 }  // namespace
-
-std::optional<std::string> foreign_temperature(const std::vector<double>& readings, double low_C, double high_C) {
-  std::vector<double> there;
-  for (double v : readings) {
-    if (!std::isnan(v)) there.push_back(v);
-  }
-  if (there.empty()) return std::nullopt;
-  const auto middle = there.begin() + static_cast<std::ptrdiff_t>(there.size() / 2);
-  std::nth_element(there.begin(), middle, there.end());
-  const auto beside_K = [&](double t_C) { return std::max({0.0, low_C - t_C, t_C - high_C}); };
-  const double as_read_K = beside_K(*middle);
-  for (const Scale& s : kScales) {
-    if (as_read_K > kBeside_K && kFarBetter * beside_K((*middle - s.zero) / s.per_K) < as_read_K) return s.unit;
-  }
-  return std::nullopt;
-}
 
 void leave_out_foreign_units(std::vector<MeasuredRun>& runs, const Twin& twin) {
   const double reference_C = twin.reference_K() - kZeroCelsius_K;

@@ -1,0 +1,43 @@
+#pragma once
+// The one door for records: what drove the machine, what surrounded it and what was read, whoever made the record.
+
+#include <string>
+#include <vector>
+
+#include "base/cyclogram.hpp"
+#include "base/record.hpp"
+#include "scenarios/scenario.hpp"
+
+namespace driftwright::scenarios {
+
+/// Something wrong with the data themselves.
+struct DataFinding {
+  std::string channel;
+  std::string what;         ///< a sentence
+  bool leaves_out = false;  ///< the channel is not used
+};
+
+/// How much a reader of records bears.
+enum class Reading {
+  kStrict,   ///< a record must say what drove the machine
+  kLenient,  ///< what is missing or unfit is a finding, and the rest is used
+};
+
+/// A record as a run of the machine. Its readings stay as they were recorded.
+struct RecordedRun {
+  std::vector<double> time_s;  ///< of the rows, from 0
+  Cyclogram cyclogram;         ///< the drive: each row's from its time on; no section where no speed was recorded
+  TimeSeries hall;             ///< recorded and smoothed, else the machine's, minus the reference [K]; no knot where neither is known
+  bool has_ambient = false;    ///< the hall was recorded
+  std::vector<DataFinding> findings;
+};
+
+/// @param record   two rows at least; its source names it in messages
+/// @param machine  of the scenario; null: there is none, and the reference is 20 degC
+/// @param on_hall  channels that read the hall as well as `ambient` does
+/// @throws InputError  strict: without a speed, with a negative one, with units that fit no drive or hall, with a hall in another unit than
+///                     its header says. Lenient: never
+[[nodiscard]] RecordedRun run_of(const Record& record, const MachineModel* machine, const std::vector<std::string>& on_hall,
+                                 Reading reading);
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,105 @@
+#include "scenarios/recorded_run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::DoubleNear;
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+/// Rows a minute apart, from 300 s on: two minutes of 1000 rpm, one of a jitter about it, rest.
+Record record() {
+  Record r{.source = "monday.csv", .time_s = {}, .channels = {{"speed", "rpm", {1000, 1000, 1004, 0, 0}}}};
+  for (int i = 0; i < 5; ++i) r.time_s.push_back(300.0 + 60.0 * i);
+  return r;
+}
+Record with(Record r, Channel channel) {
+  r.channels.push_back(std::move(channel));
+  return r;
+}
+const double kMissing = std::nan("");
+
+TEST(RecordedRun, IsDrivenFromEachRowOnAndCountsFromTheFirst) {
+  const RecordedRun run = run_of(record(), nullptr, {}, Reading::kStrict);
+  EXPECT_EQ(run.time_s, (std::vector<double>{0, 60, 120, 180, 240}));
+  ASSERT_THAT(run.cyclogram.sections, SizeIs(2));  // 0.4 % of the top speed is no other speed
+  EXPECT_EQ(run.cyclogram.sections[0].duration_s, 180.0);
+  EXPECT_EQ(run.cyclogram.sections[0].drive.speed_rpm, 1000.0);
+  EXPECT_EQ(run.cyclogram.sections[1].drive.speed_rpm, 0.0);
+}
+
+TEST(RecordedRun, TakesFeedsAndCuttingPowerWhereTheyAreRecorded) {
+  const Record r = with(with(record(), {"feed_y", "mm_min", {600, 600, 600, 0, 0}}),
+                        {"cutting_power", "W", {0, 0, 0, 250, 250}});
+  const RecordedRun run = run_of(r, nullptr, {}, Reading::kStrict);
+  ASSERT_THAT(run.cyclogram.sections, SizeIs(2));
+  EXPECT_DOUBLE_EQ(run.cyclogram.sections[0].drive.feed_m_s[1], 0.01);
+  EXPECT_EQ(run.cyclogram.sections[1].drive.cutting_power_W, 250.0);
+}
+
+TEST(RecordedRun, KnowsTheHallFromAmbientFromASensorOnItOrFromTheMachine) {
+  MachineModel machine;
+  machine.hall = {{0.0}, {3.0}};
+  const Channel ambient{"ambient", "degC", {22, 22, kMissing, 22, 22}};
+  const Channel sensor{"t_air", "degC", {24, 24, 24, 24, 24}};
+  const RecordedRun by_ambient = run_of(with(with(record(), sensor), ambient), &machine, {"t_air"}, Reading::kStrict);
+  EXPECT_TRUE(by_ambient.has_ambient);
+  EXPECT_THAT(by_ambient.hall.value, Each(DoubleNear(2.0, 1e-9)));  // over 20 degC
+  EXPECT_THAT(run_of(with(record(), sensor), &machine, {"t_air"}, Reading::kStrict).hall.value, Each(DoubleNear(4.0, 1e-9)));
+  const RecordedRun without = run_of(record(), &machine, {}, Reading::kStrict);
+  EXPECT_FALSE(without.has_ambient);
+  EXPECT_EQ(without.hall.value, machine.hall.value);
+  // nobody knows it: no knot, and nobody may ask
+  const RecordedRun unknown = run_of(record(), nullptr, {}, Reading::kStrict);
+  EXPECT_THAT(unknown.hall.time_s, IsEmpty());
+  EXPECT_THROW((void)unknown.hall.at(0.0), std::logic_error);
+}
+
+TEST(RecordedRun, AnEmptyAmbientIsNone) {
+  const Channel ambient{"ambient", "degC", std::vector<double>(5, kMissing)};
+  const RecordedRun run = run_of(with(record(), ambient), nullptr, {}, Reading::kStrict);
+  EXPECT_FALSE(run.has_ambient);
+  ASSERT_THAT(run.findings, SizeIs(1));
+  EXPECT_THAT(run.findings[0].what, HasSubstr("no hall temperature"));
+}
+
+TEST(RecordedRun, RefusesStrictlyWhatItSaysLeniently) {
+  MachineModel machine;
+  machine.hall = {{0.0}, {0.0}};
+  Record no_speed = record();
+  no_speed.channels[0].name = "torque";
+  Record reversed = record();
+  reversed.channels[0].values[1] = -500.0;
+  Record empty = record();
+  empty.channels[0].values.assign(5, kMissing);
+  Record in_percent = record();
+  in_percent.channels[0].unit = "percent";
+  const Record kelvin = with(record(), {"ambient", "degC", std::vector<double>(5, 293.0)});
+  const Record volts = with(record(), {"ambient", "V", std::vector<double>(5, 0.2)});
+  const std::pair<Record, const char*> cases[] = {
+      {no_speed, "no channel speed_rpm"}, {reversed, "speeds are positive"}, {empty, "speed_rpm is empty"},
+      {in_percent, "rpm is wanted"},      {kelvin, "looks like kelvin"},     {volts, "degC is wanted"}};
+  for (const auto& [bad, words] : cases) {
+    EXPECT_THAT([&] { (void)run_of(bad, &machine, {}, Reading::kStrict); },
+                ThrowsMessage<InputError>(AllOf(HasSubstr("monday.csv"), HasSubstr(words))));
+    const RecordedRun run = run_of(bad, &machine, {}, Reading::kLenient);
+    ASSERT_FALSE(run.findings.empty()) << words;
+    EXPECT_THAT(run.findings[0].what, HasSubstr(words));
+    EXPECT_TRUE(run.findings[0].leaves_out);
+  }
+  EXPECT_THAT(run_of(no_speed, &machine, {}, Reading::kLenient).cyclogram.sections, IsEmpty());
+}
+
+}  // namespace
+}  // namespace driftwright::scenarios
