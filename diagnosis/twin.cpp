@@ -153,30 +153,45 @@ Eigen::MatrixXd Twin::warmer_bodies() const {
   return machine_.system.mass.llt().solve(heat);
 }
 
-std::vector<double> Twin::material_factors(const TwinState& state) const {
+solver::ModelFactors Twin::material_factors(const TwinState& state) const {
   const auto now = effects::material_factors(state), written = effects::material_factors(as_written_);
-  std::vector<double> factors;
-  for (const auto member : {&effects::MaterialFactor::conductivity, &effects::MaterialFactor::heat_capacity}) {
-    for (const auto& part : machine_.system.parts) {
-      const effects::Body body = now.empty() ? effects::Body{} : body_of(part.body);
-      factors.push_back(factor_of(now, body, member) / factor_of(written, body, member));
+  solver::ModelFactors factors;
+  for (const auto& part : machine_.system.parts) {
+    const effects::Body body = now.empty() ? effects::Body{} : body_of(part.body);
+    const auto of = [&](double effects::MaterialFactor::*member) {
+      return factor_of(now, body, member) / factor_of(written, body, member);
+    };
+    factors.conductivity.push_back(of(&effects::MaterialFactor::conductivity));
+    factors.heat_capacity.push_back(of(&effects::MaterialFactor::heat_capacity));
+  }
+  return factors;
+}
+
+Eigen::MatrixXd Twin::expansion_factors(const TwinState& state) const {
+  const auto now = effects::material_factors(state), written = effects::material_factors(as_written_);
+  if (now.empty()) return {};
+  const auto& parts = machine_.system.parts;
+  Eigen::MatrixXd factors =
+      Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(parts.size()), machine_.system.outputs.state.cols());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const effects::Body body = body_of(parts[p].body);
+    for (Eigen::Index o = 0; o < factors.cols(); ++o) {
+      const std::string& name = outputs_.name[static_cast<std::size_t>(o)];
+      factors(static_cast<Eigen::Index>(p), o) =
+          effects::sensitivity_factor(now, body, name) / effects::sensitivity_factor(written, body, name);
     }
   }
   return factors;
 }
 
 void Twin::set_matrices(const TwinState& state, Workspace& workspace) const {
-  const auto& parts = machine_.system.parts;
-  std::vector<double> factors = material_factors(state);
-  if (factors == workspace.factors_) return;
+  solver::ModelFactors factors = material_factors(state);
+  if (factors.conductivity == workspace.factors_.conductivity && factors.heat_capacity == workspace.factors_.heat_capacity)
+    return;
   solver::ReducedSystem& system = workspace.system_;
   system.conduction = machine_.system.conduction;
   system.mass = machine_.system.mass;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const double conductivity = factors[p], capacity = factors[parts.size() + p];
-    if (conductivity != 1.0) system.conduction += (conductivity - 1.0) * parts[p].conduction;
-    if (capacity != 1.0) system.mass += (capacity - 1.0) * parts[p].mass;
-  }
+  solver::scale_matrices(system.conduction, system.mass, machine_.system.parts, factors.conductivity, factors.heat_capacity);
   workspace.factors_ = std::move(factors);
   workspace.propagator_.reset();
 }
@@ -263,9 +278,8 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
   }
   const solver::ReducedSystem* small = &system;
   solver::ReducedSystem unit;
-  const auto n_parts = static_cast<std::ptrdiff_t>(machine_.system.parts.size());
-  const bool has_other_mass =
-      std::any_of(workspace.factors_.begin() + n_parts, workspace.factors_.end(), [](double f) { return f != 1.0; });
+  const auto& capacity = workspace.factors_.heat_capacity;
+  const bool has_other_mass = std::any_of(capacity.begin(), capacity.end(), [](double f) { return f != 1.0; });
   if (has_other_mass) {
     unit = solver::with_unit_mass(system, from);
     small = &unit;
@@ -286,16 +300,7 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
   const Eigen::MatrixXd z = states(state, run, workspace, near);
   const TimeSeries hall = effects::true_hall(effects::drive_change(state, run.name), run.hall, run.cyclogram);
   Eigen::MatrixXd weights = outputs_.state;
-  const auto now = effects::material_factors(state), written = effects::material_factors(as_written_);
-  for (const auto& part : machine_.system.parts) {
-    if (now.empty()) break;
-    const effects::Body body = body_of(part.body);
-    for (Eigen::Index o = 0; o < part.outputs.cols(); ++o) {
-      const std::string& name = outputs_.name[static_cast<std::size_t>(o)];
-      const double factor = effects::sensitivity_factor(now, body, name) / effects::sensitivity_factor(written, body, name);
-      if (factor != 1.0) weights.col(o) += (factor - 1.0) * part.outputs.col(o);
-    }
-  }
+  solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));
   Eigen::MatrixXd outputs = weights.transpose() * z;
   for (std::size_t k = 0; k < run.grid_s.size(); ++k) {
     outputs.col(static_cast<Eigen::Index>(k)) += hall.at(run.grid_s[k]) * outputs_.hall;

@@ -6,6 +6,7 @@
 #include "diagnosis/knob.hpp"
 #include "diagnosis/measured_run.hpp"
 #include "scenarios/reduced_machine.hpp"
+#include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::diagnosis {
@@ -39,8 +40,8 @@ class Twin {
       return *propagator_;
     }
     solver::ReducedSystem system_;
-    std::vector<double> factors_;  ///< of conductivities and capacities that system_ has
-    std::vector<double> offsets_;  ///< of its exchanges: air and media
+    solver::ModelFactors factors_;  ///< of conductivities and capacities that system_ has
+    std::vector<double> offsets_;   ///< of its exchanges: air and media
     std::unique_ptr<solver::Propagator> propagator_;
   };
 
@@ -75,8 +76,10 @@ class Twin {
   [[nodiscard]] effects::Body body_of(const std::string& part) const;
 
  private:
-  /// Factors of a state over those as written: conductivity of each part, then heat capacity.
-  [[nodiscard]] std::vector<double> material_factors(const TwinState& state) const;
+  /// Factors of a state over those as written, on conductivity and heat capacity of each part.
+  [[nodiscard]] solver::ModelFactors material_factors(const TwinState& state) const;
+  /// And on what each part's expansion has of each of the model's own outputs; 0 x 0 for ones.
+  [[nodiscard]] Eigen::MatrixXd expansion_factors(const TwinState& state) const;
   void set_matrices(const TwinState& state, Workspace& workspace) const;
   void set_laws(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
   /// What drives a state in a run: its system in the workspace, what it is told, where it starts.

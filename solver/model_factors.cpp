@@ -54,6 +54,28 @@ void scale(Exchange<Matrix>& exchange, double factor) {
 }  // namespace
 
 template <class Matrix>
+void scale_matrices(Matrix& conduction, Matrix& mass, const std::vector<BodyPart<Matrix>>& parts,
+                    const std::vector<double>& conductivity, const std::vector<double>& heat_capacity) {
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const double k = at(conductivity, p), m = at(heat_capacity, p);
+    if (k != 1.0) conduction += (k - 1.0) * parts[p].conduction;
+    if (m != 1.0) mass += (m - 1.0) * parts[p].mass;
+  }
+}
+
+template <class Matrix>
+void scale_expansion(Eigen::MatrixXd& outputs, const std::vector<BodyPart<Matrix>>& parts,
+                     const Eigen::MatrixXd& expansion) {
+  if (expansion.size() == 0) return;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    for (Eigen::Index o = 0; o < parts[p].outputs.cols(); ++o) {
+      const double x = expansion(static_cast<Eigen::Index>(p), o);
+      if (x != 1.0) outputs.col(o) += (x - 1.0) * parts[p].outputs.col(o);
+    }
+  }
+}
+
+template <class Matrix>
 ThermalSystem<Matrix> with_factors(ThermalSystem<Matrix> system, const ModelFactors& factors) {
   check(system, factors);
   // `rate` comes last and by itself: fits print digits that hang on the last bit
@@ -62,16 +84,14 @@ ThermalSystem<Matrix> with_factors(ThermalSystem<Matrix> system, const ModelFact
     scale(system.exchanges[e], at(factors.exchange, e));
     scale(system.exchanges[e], factors.rate);
   }
-  for (std::size_t p = 0; p < system.parts.size(); ++p) {
+  scale_matrices(system.conduction, system.mass, system.parts, factors.conductivity, factors.heat_capacity);
+  scale_expansion(system.outputs.state, system.parts, factors.expansion);
+  for (std::size_t p = 0; p < system.parts.size(); ++p) {  // they remain what the sums consist of
     BodyPart<Matrix>& part = system.parts[p];
-    const double conductivity = at(factors.conductivity, p), heat_capacity = at(factors.heat_capacity, p);
-    if (conductivity != 1.0) system.conduction += (conductivity - 1.0) * part.conduction;
-    if (heat_capacity != 1.0) system.mass += (heat_capacity - 1.0) * part.mass;
-    part.conduction *= conductivity * factors.conduction * factors.rate;
-    part.mass *= heat_capacity;
+    part.conduction *= at(factors.conductivity, p) * factors.conduction * factors.rate;
+    part.mass *= at(factors.heat_capacity, p);
     for (Eigen::Index o = 0; o < part.outputs.cols(); ++o) {
       const double expansion = factors.expansion.size() > 0 ? factors.expansion(static_cast<Eigen::Index>(p), o) : 1.0;
-      if (expansion != 1.0) system.outputs.state.col(o) += (expansion - 1.0) * part.outputs.col(o);
       part.outputs.col(o) *= expansion * at(factors.output, static_cast<std::size_t>(o));
     }
   }
@@ -99,6 +119,12 @@ ModelFactors flow_factors(const ThermalSystem<Matrix>& system, std::span<const d
           .exchange = {factor.begin() + static_cast<std::ptrdiff_t>(n_sources), factor.end()}};
 }
 
+template void scale_matrices(SparseRow&, SparseRow&, const std::vector<BodyPart<SparseRow>>&, const std::vector<double>&,
+                             const std::vector<double>&);
+template void scale_matrices(Eigen::MatrixXd&, Eigen::MatrixXd&, const std::vector<BodyPart<Eigen::MatrixXd>>&,
+                             const std::vector<double>&, const std::vector<double>&);
+template void scale_expansion(Eigen::MatrixXd&, const std::vector<BodyPart<SparseRow>>&, const Eigen::MatrixXd&);
+template void scale_expansion(Eigen::MatrixXd&, const std::vector<BodyPart<Eigen::MatrixXd>>&, const Eigen::MatrixXd&);
 template FullSystem with_factors(FullSystem, const ModelFactors&);
 template ReducedSystem with_factors(ReducedSystem, const ModelFactors&);
 template std::vector<std::string> flow_names(const FullSystem&);

@@ -38,6 +38,15 @@ struct ModelFactors {
 template <class Matrix>
 [[nodiscard]] ThermalSystem<Matrix> with_factors(ThermalSystem<Matrix> system, const ModelFactors& factors);
 
+/// The part of it that is about materials, for those who keep what does not change: K0 += Σ_p (k_p - 1) K_p, M += Σ_p (m_p - 1) M_p.
+/// @param conductivity, heat_capacity  per part; empty means ones
+template <class Matrix>
+void scale_matrices(Matrix& conduction, Matrix& mass, const std::vector<BodyPart<Matrix>>& parts,
+                    const std::vector<double>& conductivity, const std::vector<double>& heat_capacity);
+/// And about expansion: L_o += Σ_p (x_po - 1) L_po. @param outputs  n_unknowns x at least the outputs of the parts
+template <class Matrix>
+void scale_expansion(Eigen::MatrixXd& outputs, const std::vector<BodyPart<Matrix>>& parts, const Eigen::MatrixXd& expansion);
+
 /// Names of a model's heat flows in the order in which studies count what it has wrong: heat sources, then films, joints and links.
 template <class Matrix>
 [[nodiscard]] std::vector<std::string> flow_names(const ThermalSystem<Matrix>& system);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "base/foreign_temperature.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/unit_check.hpp"

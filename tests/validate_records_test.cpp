@@ -41,7 +41,7 @@ cyclograms:
   to_and_fro: [[40 min, 2500 rpm], [40 min, 0 rpm], [40 min, 1500 rpm], [40 min, 0 rpm], [40 min, 3000 rpm]]
 )";
 constexpr const char* kStudy = R"(study:
-  target: tip_z_um
+  target: tip_z
   sensors_to_choose: 2
   count_from_start: true
   tolerance: 3 um
@@ -51,12 +51,15 @@ class ValidateRecords : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = fresh_folder("validate_records");
-    machine_ = write_file("two_bodies.yaml", std::string(kMachine) + kStudy);
+    machine_ = write_file("two_bodies.yaml", std::string(kMachine) + kStudy + "  train: [warm_up, steps]\n  judge: to_and_fro\n");
     records_only_ = write_file("records_only.yaml", std::string("name: records_only\n") + kStudy);
-    const CommandOutcome run = run_program("simulate " + machine_ + " -o " + (folder_ / "sim").string());
-    ASSERT_EQ(run.exit_code, 0) << run.output;
+    for (const char* name : {"warm_up", "steps", "to_and_fro"}) {
+      const CommandOutcome run =
+          run_program("simulate " + machine_ + " --cyclogram " + name + " -o " + (folder_ / name).string());
+      ASSERT_EQ(run.exit_code, 0) << run.output;
+    }
   }
-  static std::string record(const std::string& name) { return (folder_ / "sim" / (name + ".csv")).string(); }
+  static std::string record(const std::string& name) { return (folder_ / name / "record.csv").string(); }
   /// The part `validation` of the summary.
   static Json validate(const std::string& scenario, const std::string& test_record) {
     const auto out = fresh_folder("validated") / "out";
