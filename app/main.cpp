@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 
 #include "app/verbs.hpp"
@@ -88,25 +87,9 @@ void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
                                near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
 }
 
-/// False on a processor older than the one that the program was built for (cmake/processor.cmake).
-bool runs_on_this_processor() {
-#ifdef __AVX2__
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#else
-  return true;
-#endif
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (!runs_on_this_processor()) {
-    std::fputs(
-        "error: this program was built on a processor with AVX2, and this one has none; build it here, in a folder of its "
-        "own, or with -DDRIFTWRIGHT_PROCESSOR=baseline\n",
-        stderr);
-    return kWrongInput;
-  }
   CLI::App cli{"Driftwright: digital twin of a machine tool's thermal behaviour"};
   cli.set_version_flag("--version", app::kVersion);
   cli.require_subcommand(1);

@@ -246,6 +246,8 @@ FittedStrategies fit_strategies(const StrategySettings& settings, std::span<cons
       fitted[i] = fit_one(list[i], settings, training);
     } catch (const InputError& e) {
       why[i] = e.what();
+    } catch (const SolveError& e) {  // a model that has no solution there
+      why[i] = e.what();
     } catch (...) {
       failures[i] = std::current_exception();  // none may leave the parallel loop
     }

@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "base/quantity.hpp"
 #include "base/random.hpp"
 #include "compensation/model_scatter.hpp"
 #include "compensation/thermometers.hpp"
@@ -66,14 +67,23 @@ std::vector<std::string> hall_sensors(const Scenario& scenario) {
   return names;
 }
 
-/// The hall among the channels of a record: a sensor on it, or `ambient`; "" where neither has a reading.
+/// The hall among the channels of a simulated record: a sensor on it, or `ambient`.
 std::string hall_channel(const Scenario& scenario, const Record& record) {
-  std::vector<std::string> names = hall_sensors(scenario);
-  names.emplace_back(scenarios::kAmbient);
-  for (const std::string& name : names) {
-    const Channel* channel = record.find(name);
-    if (channel && std::any_of(channel->values.begin(), channel->values.end(), [](double v) { return !std::isnan(v); }))
-      return name;
+  const std::vector<std::string> sensors = hall_sensors(scenario);
+  if (!sensors.empty()) return sensors.front();
+  return record.find(scenarios::kAmbient) ? scenarios::kAmbient : "";
+}
+
+constexpr double kWarm_K = 4.0;  // beside the hall, that a model starts as warm as
+
+/// Why a run does not begin in balance with its hall, going by its first readings; "" where it does.
+std::string why_not_in_balance(const scenarios::MachineModel& machine, const ObservedRun& run) {
+  const double hall_C = run.hall.at(0.0) + machine.reference_K - kZeroCelsius_K;
+  for (const scenarios::Sensor& s : machine.sensors) {
+    const Channel* c = run.readings.find(s.name);
+    if (!c || scenarios::is_on_hall(s) || !(std::abs(c->values.front() - hall_C) > kWarm_K)) continue;
+    return fmt::format("{} begins with {} at {:.1f} degC in a hall of {:.1f} degC, and a model starts as warm as the hall",
+                       run.readings.source, s.name, c->values.front(), hall_C);
   }
   return "";
 }
@@ -83,38 +93,49 @@ struct RecordedPhysics {
   std::optional<Physics> physics;
   std::string why_none;
 };
-RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<ObservedRun>& training,
-                                    const std::vector<JudgedRunOfMachine>& judged, const StrategySettings& how,
-                                    Progress& progress) {
+/// @param runs  for training and judging
+RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<const ObservedRun*>& runs,
+                                    const StrategySettings& how, Progress& progress) {
   if (!scenario.machine) return {std::nullopt, "the scenario has no machine"};
+  const scenarios::MachineModel& machine = *scenario.machine;
   if (!how.count_from_start)
     return {std::nullopt, "a model knows drift since the start of a run; `study: {count_from_start: true}` is needed"};
+  if (effects::has_reading_effects(machine.effects))
+    return {std::nullopt, "the scenario's effects change what instruments read, and a model tells what is true"};
+  if (machine.start != scenarios::Start::kHall)
+    return {std::nullopt, "every record begins in a hall of its own; `start: hall` is needed"};
   std::vector<const Cyclogram*> cyclograms;
-  for (const ObservedRun& run : training) cyclograms.push_back(&run.cyclogram);
-  for (const JudgedRunOfMachine& j : judged) cyclograms.push_back(&j.run.cyclogram);
-  for (const Cyclogram* c : cyclograms) {
-    if (c->sections.empty())
-      return {std::nullopt, fmt::format("{} does not say what drove the machine (speed_rpm)", c->name)};
+  for (const ObservedRun* run : runs) {
+    if (run->cyclogram.sections.empty())
+      return {std::nullopt, fmt::format("{} does not say what drove the machine", run->readings.source)};
+    if (const std::string why = why_not_in_balance(machine, *run); !why.empty()) return {std::nullopt, why};
+    cyclograms.push_back(&run->cyclogram);
   }
   Scenario reduced = scenario;
-  const bool is_lumped = std::holds_alternative<scenarios::LumpedMachine>(scenario.machine->mesh);
-  if (is_lumped) reduced.solver.model = scenarios::ModelKind::kReduced;
-  if (reduced.solver.model != scenarios::ModelKind::kReduced)
-    return {std::nullopt, "`solver: {model: reduced}` is needed"};
-  const Model model = open_model(reduced, cyclograms, progress, false);
-  std::optional<Physics> physics;
+  for (const ObservedRun* run : runs) {  // what the model is asked for: halls as warm as recorded
+    TimeSeries& hall = reduced.machine->hall;
+    for (double v : run->hall.value) {
+      hall.time_s.push_back(hall.time_s.back() + 1.0);
+      hall.value.push_back(v);
+    }
+  }
+  if (std::holds_alternative<scenarios::LumpedMachine>(machine.mesh)) reduced.solver.model = scenarios::ModelKind::kReduced;
+  if (reduced.solver.model != scenarios::ModelKind::kReduced) return {std::nullopt, "`solver: {model: reduced}` is needed"};
   try {
-    physics = physics_of(reduced, model, 0.0, 1);
+    const Model model = open_model(reduced, cyclograms, progress, false);
+    const auto& outputs = model.outputs().name;
+    for (const std::string& name : how.candidates) {
+      if (std::find(outputs.begin(), outputs.end(), name) == outputs.end())
+        return {std::nullopt, fmt::format("the scenario's machine has no sensor '{}'", name)};
+    }
+    std::optional<Physics> physics = physics_of(scenario, model, 0.0, 1);
+    if (!physics) return {std::nullopt, "in the scenario's machine films, heat or thermostats follow temperatures"};
+    return {std::move(physics), ""};
+  } catch (const InputError& e) {  // a machine that no reduced model follows
+    return {std::nullopt, e.what()};
   } catch (const SolveError& e) {  // such as heat without a way out
     return {std::nullopt, e.what()};
   }
-  if (!physics) return {std::nullopt, "in the scenario's machine films, heat or thermostats follow temperatures"};
-  const auto& outputs = model.outputs().name;
-  for (const std::string& name : how.candidates) {
-    if (std::find(outputs.begin(), outputs.end(), name) == outputs.end())
-      return {std::nullopt, fmt::format("the scenario's machine has no sensor '{}'", name)};
-  }
-  return {std::move(physics), ""};
 }
 
 }  // namespace
@@ -232,22 +253,39 @@ StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<R
                                    const std::vector<Record>& test, Progress& progress) {
   const scenarios::Study& study = *scenario.study;
   const scenarios::MachineModel* machine = scenario.machine ? &*scenario.machine : nullptr;
+  std::vector<const Record*> records;
+  for (const std::vector<Record>* list : {&training, &test}) {
+    for (const Record& record : *list) records.push_back(&record);
+  }
+  std::vector<scenarios::RecordedRun> recorded;
   std::vector<std::string> findings;
-  const auto as_run = [&](const Record& record) {
-    scenarios::RecordedRun run = scenarios::run_of(record, machine, hall_sensors(scenario), scenarios::Reading::kLenient);
-    for (const scenarios::DataFinding& f : run.findings) {
+  for (const Record* record : records) {
+    recorded.push_back(scenarios::run_of(*record, machine, hall_sensors(scenario), scenarios::Reading::kLenient));
+    for (const scenarios::DataFinding& f : recorded.back().findings) {
       if (std::find(findings.begin(), findings.end(), f.what) == findings.end()) findings.push_back(f.what);
     }
-    ObservedRun seen{.cyclogram = std::move(run.cyclogram), .hall = std::move(run.hall), .readings = record};
-    seen.readings.time_s = std::move(run.time_s);
-    seen.cyclogram.name = record.source;
-    return seen;
-  };
-  std::vector<ObservedRun> runs;
-  for (const Record& record : training) runs.push_back(as_run(record));
-  std::vector<JudgedRunOfMachine> judged;
-  for (const Record& record : test)
-    judged.push_back({"measured", "", std::filesystem::path(record.source).filename().string(), as_run(record)});
+  }
+  // the hall is an input where every record has it, in the same channel
+  const std::string hall = recorded.front().hall_channel;
+  const bool has_hall =
+      std::all_of(recorded.begin(), recorded.end(), [&](const auto& run) { return run.hall_channel == hall; });
+  if (!has_hall)
+    findings.emplace_back("not every record has the hall's temperature in the same channel; it is used from none");
+  std::vector<ObservedRun> seen;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    ObservedRun run{
+        .cyclogram = std::move(recorded[r].cyclogram), .hall = std::move(recorded[r].hall), .readings = *records[r]};
+    run.readings.time_s = std::move(recorded[r].time_s);
+    if (machine) {  // drive and hall as the scenario's effects say that they were
+      scenarios::MachineModel there = *machine;
+      if (has_hall) there.hall = run.hall;
+      scenarios::FeltRun felt = scenarios::felt_run(there, run.cyclogram);
+      felt.cyclogram.name = run.cyclogram.name;
+      run.cyclogram = std::move(felt.cyclogram);
+      run.hall = std::move(felt.hall);
+    }
+    seen.push_back(std::move(run));
+  }
   MatrixSettings settings;
   StrategySettings& how = settings.strategies;
   how.target = study.target;
@@ -256,14 +294,20 @@ StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<R
   how.count_from_start = study.count_from_start;
   how.image = study.image;
   how.speed = speed_channel(training.front());
-  how.hall = hall_channel(scenario, training.front());
-  const RecordedPhysics physics = physics_for_records(scenario, runs, judged, how, progress);
-  how.physics = physics.physics;
-  how.without_physics = physics.why_none;
+  how.hall = has_hall ? hall : "";
+  std::vector<const ObservedRun*> all;
+  for (const ObservedRun& run : seen) all.push_back(&run);
+  RecordedPhysics physics = physics_for_records(scenario, all, how, progress);
+  how.physics = std::move(physics.physics);
+  how.without_physics = std::move(physics.why_none);
+  std::vector<JudgedRunOfMachine> judged;
+  for (std::size_t r = training.size(); r < seen.size(); ++r)
+    judged.push_back({"measured", "", std::filesystem::path(records[r]->source).filename().string(), std::move(seen[r])});
+  seen.resize(training.size());
   settings.tolerance_um = study.tolerance_um;
   settings.fails_at = 0.5;
   progress.begin(fmt::format("fitting and judging strategies on {} records", judged.size()));
-  StrategyMatrix matrix = judge_strategies(settings, std::move(runs), std::move(judged));
+  StrategyMatrix matrix = judge_strategies(settings, std::move(seen), std::move(judged));
   matrix.findings = std::move(findings);
   return matrix;
 }

@@ -187,7 +187,9 @@ class Observer::Run {
   }
 
   void step(const Drive& drive, double hall_K, double at_s, double h_s) {
-    const Step& now = step_of({.drive = drive, .hall_K = hall_K, .time_s = at_s}, h_s);
+    effects::Inputs at{.drive = drive, .hall_K = hall_K, .time_s = at_s};
+    at.run = run_.cyclogram.name;
+    const Step& now = step_of(at, h_s);
     const Eigen::VectorXd z = belief_.mean.head(n_);
     Eigen::VectorXd load = Eigen::VectorXd::Zero(n_);
     Eigen::MatrixXd by_factor(n_, n_sources_ + n_exchanges_);  // heat per unit of each factor

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,8 +15,45 @@
 namespace driftwright::diagnosis {
 namespace {
 
+constexpr double kHallKnots_s = 600.0;      // films pass on nothing faster
 constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
 constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
+
+/// Piecewise linear least squares on knots; keeps a recorded hall's slow course and drops its noise. One reading at least.
+TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
+  std::vector<double> t, v;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!std::isnan(value[i])) {
+      t.push_back(time_s[i]);
+      v.push_back(value[i]);
+    }
+  }
+  const double length_s = t.back() - t.front();
+  const int n_pieces = std::max(1, std::min(static_cast<int>(length_s / kHallKnots_s), static_cast<int>(t.size()) / 3));
+  const double width_s = length_s / n_pieces;
+  Eigen::MatrixXd hats = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(t.size()) + n_pieces - 1, n_pieces + 1);
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(hats.rows());
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double x = width_s > 0.0 ? (t[i] - t.front()) / width_s : 0.0;
+    const int k = std::clamp(static_cast<int>(x), 0, n_pieces - 1);
+    hats(static_cast<Eigen::Index>(i), k) = 1.0 - (x - k);
+    hats(static_cast<Eigen::Index>(i), k + 1) = x - k;
+    rhs[static_cast<Eigen::Index>(i)] = v[i];
+  }
+  for (int k = 1; k < n_pieces; ++k) {  // a light hand on curvature bridges gaps
+    const auto row = static_cast<Eigen::Index>(t.size()) + k - 1;
+    hats(row, k - 1) = hats(row, k + 1) = 0.05;
+    hats(row, k) = -0.1;
+  }
+  const Eigen::VectorXd knots = hats.colPivHouseholderQr().solve(rhs);
+  TimeSeries series;
+  for (int k = 0; k <= n_pieces; ++k) {
+    series.time_s.push_back(t.front() + k * width_s);
+    series.value.push_back(knots[k]);
+  }
+  if (series.time_s.size() > 1 && !(series.time_s[1] > series.time_s[0])) return {{t.front()}, {knots[0]}};
+  return series;
+}
 
 /// Most rows in a row at a value.
 int run_at(const std::vector<double>& values, double value) {
@@ -121,10 +159,6 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
   }
   MeasuredRun run;
   run.path = path;
-  run.name = std::filesystem::path(path).stem().string();
-  for (char& c : run.name) {  // it may become the name of a cyclogram
-    if (!is_name(std::string(1, c))) c = '_';
-  }
   const Record record = without_spikes(without_holes(whole, run.findings), run.findings);
   std::vector<std::string> on_hall;  // a thermometer in the hall does as well
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
@@ -133,9 +167,14 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
   scenarios::RecordedRun recorded_run = scenarios::run_of(record, &model, on_hall, scenarios::Reading::kStrict);
   run.time_s = std::move(recorded_run.time_s);
   run.cyclogram = std::move(recorded_run.cyclogram);
-  run.cyclogram.name = run.name;
+  run.name = run.cyclogram.name;
   run.hall = std::move(recorded_run.hall);
-  run.has_ambient = recorded_run.has_ambient;
+  run.has_ambient = recorded_run.has_ambient();
+  if (run.has_ambient) {
+    std::vector<double> hall_K;
+    for (double v : record.at(recorded_run.hall_channel).values) hall_K.push_back(v + kZeroCelsius_K - model.reference_K);
+    run.hall = smoothed(run.time_s, hall_K);
+  }
   std::move(recorded_run.findings.begin(), recorded_run.findings.end(), std::back_inserter(run.findings));
   set_grid(run);
   const double reference_C = model.reference_K - kZeroCelsius_K;

@@ -26,16 +26,17 @@ enum class Reading {
 /// A record as a run of the machine. Its readings stay as they were recorded.
 struct RecordedRun {
   std::vector<double> time_s;  ///< of the rows, from 0
-  Cyclogram cyclogram;         ///< the drive: each row's from its time on; no section where no speed was recorded
-  TimeSeries hall;             ///< recorded and smoothed, else the machine's, minus the reference [K]; no knot where neither is known
-  bool has_ambient = false;    ///< the hall was recorded
+  Cyclogram cyclogram;  ///< the drive: each row's from its time on; no section where no speed was recorded. Named as the file
+  TimeSeries hall;      ///< as read, its last reading held; else the machine's; minus the reference [K]; no knot where neither is known
+  std::string hall_channel;  ///< that was read for it: `ambient`, else a sensor on the hall; "" where none has a reading
   std::vector<DataFinding> findings;
+  [[nodiscard]] bool has_ambient() const { return !hall_channel.empty(); }
 };
 
 /// @param record   two rows at least; its source names it in messages
 /// @param machine  of the scenario; null: there is none, and the reference is 20 degC
 /// @param on_hall  channels that read the hall as well as `ambient` does
-/// @throws InputError  strict: without a speed, with a negative one, with units that fit no drive or hall, with a hall in another unit than
+/// @throws InputError  strict: without a speed, with values below 0 or units that fit no drive or hall, with a hall in another unit than
 ///                     its header says. Lenient: never
 [[nodiscard]] RecordedRun run_of(const Record& record, const MachineModel* machine, const std::vector<std::string>& on_hall,
                                  Reading reading);

@@ -83,11 +83,13 @@ Course::Exponentials Course::exponentials(const Eigen::VectorXd& lambda_1_s, con
   return x;
 }
 
-Course::Course(const ReducedSystem& system, Decompositions& decompositions, const Cyclogram& cyclogram,
-               const TimeSeries& hall, const std::vector<double>& output_s, const Eigen::VectorXd& start)
-    : conduction_(system.conduction), mass_(system.mass), start_(start) {
-  const Eigen::Index n = system.size();
-  states_.resize(n, static_cast<Eigen::Index>(output_s.size()));
+std::optional<Course> Course::of(const ReducedSystem& system, Decompositions& decompositions, const Cyclogram& cyclogram,
+                                 const TimeSeries& hall, const std::vector<double>& output_s, const Eigen::VectorXd& start) {
+  Course c;
+  c.conduction_ = system.conduction;
+  c.mass_ = system.mass;
+  c.start_ = start;
+  c.states_.resize(system.size(), static_cast<Eigen::Index>(output_s.size()));
   Eigen::VectorXd state = start;
   std::size_t next = 0;
   for (const LinearStretch& stretch : stretches_of(system, cyclogram, hall)) {
@@ -96,11 +98,14 @@ Course::Course(const ReducedSystem& system, Decompositions& decompositions, cons
     s.start_s = stretch.start_s;
     s.end_s = stretch.end_s;
     s.first = static_cast<Eigen::Index>(next);
-    const auto known = std::find_if(decompositions_.begin(), decompositions_.end(),
+    const auto known = std::find_if(c.decompositions_.begin(), c.decompositions_.end(),
                                     [&](const Decomposition& d) { return d.coefficient == loads.coefficient; });
-    s.decomposition = static_cast<std::size_t>(known - decompositions_.begin());
-    if (known == decompositions_.end()) decompositions_.push_back(decompositions.at(loads.coefficient, false));
-    const Decomposition& d = decompositions_[s.decomposition];
+    s.decomposition = static_cast<std::size_t>(known - c.decompositions_.begin());
+    if (known == c.decompositions_.end()) {
+      if (c.decompositions_.size() == kMostSets) return std::nullopt;
+      c.decompositions_.push_back(decompositions.at(loads.coefficient, false));
+    }
+    const Decomposition& d = c.decompositions_[s.decomposition];
     s.y0 = d.to_modes * state;
     s.f0 = d.vectors.transpose() * loads.constant;
     s.f1 = d.vectors.transpose() * loads.slope;
@@ -111,10 +116,11 @@ Course::Course(const ReducedSystem& system, Decompositions& decompositions, cons
     s.at = exponentials(d.lambda_1_s, times_s);
     s.y = s.at.e.colwise() * s.y0.array() + s.at.p.colwise() * s.f0.array() + s.at.q.colwise() * s.f1.array();
     const Eigen::MatrixXd z = d.vectors * s.y;
-    states_.middleCols(s.first, z.cols() - 1) = z.leftCols(z.cols() - 1);
+    c.states_.middleCols(s.first, z.cols() - 1) = z.leftCols(z.cols() - 1);
     state = z.rightCols<1>();
-    stretches_.push_back(std::move(s));
+    c.stretches_.push_back(std::move(s));
   }
+  return c;
 }
 
 std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, const Cyclogram& cyclogram,

@@ -19,10 +19,13 @@ namespace driftwright::solver {
 /// Source: derivative of the matrix exponential, Najfeld & Havel, Adv. Appl. Math. 16 (1995) 321-375.
 class Course {
  public:
-  /// As Propagator::course() makes it. Nothing is borrowed.
-  /// @param decompositions  of the system
-  Course(const ReducedSystem& system, Decompositions& decompositions, const Cyclogram& cyclogram, const TimeSeries& hall,
-         const std::vector<double>& output_s, const Eigen::VectorXd& start);
+  /// As Propagator::course() asks for it. Nothing is borrowed.
+  /// @param decompositions  of the system, which is linear
+  /// @returns nothing for a run through more than kMostSets sets of coefficients, each of which is a decomposition to keep
+  [[nodiscard]] static std::optional<Course> of(const ReducedSystem& system, Decompositions& decompositions,
+                                                const Cyclogram& cyclogram, const TimeSeries& hall,
+                                                const std::vector<double>& output_s, const Eigen::VectorXd& start);
+  static constexpr std::size_t kMostSets = 64;
 
   /// Reduced states at the outputs, size x n_times.
   [[nodiscard]] const Eigen::MatrixXd& states() const { return states_; }
@@ -33,6 +36,8 @@ class Course {
                                                          const TimeSeries& hall, const Eigen::VectorXd& start) const;
 
  private:
+  Course() = default;
+
   /// e^{-λt} and its integrals at some times, n x n_times: p = ∫ e, q = ∫ p; those of e^{-λ(t-s)} over 1, p and q: te, r = ∫ p, s = ∫ q.
   struct Exponentials {
     Eigen::ArrayXXd e, p, q, te, r, s;

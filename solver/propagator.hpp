@@ -28,10 +28,10 @@ class Propagator {
   [[nodiscard]] Trajectory run(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
                                const Eigen::VectorXd& start, bool with_heat = false, Eigen::MatrixXd* states = nullptr);
 
-  /// The same run, kept, for what systems close by would do.
-  [[nodiscard]] Course course(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
-                              const Eigen::VectorXd& start) {
-    return {system_, decompositions_, cyclogram, hall, output_s, start};
+  /// The same run, kept, for what systems close by would do; nothing where that were too much to keep.
+  [[nodiscard]] std::optional<Course> course(const Cyclogram& cyclogram, const TimeSeries& hall,
+                                             const std::vector<double>& output_s, const Eigen::VectorXd& start) {
+    return Course::of(system_, decompositions_, cyclogram, hall, output_s, start);
   }
 
   [[nodiscard]] int n_decompositions() const { return decompositions_.n_made(); }

@@ -43,7 +43,7 @@ double miss(const Driven& base, const Change& change) {
     return d;
   };
   const Driven there = changed(1.0);
-  const Course course = Propagator(base.system).course(kCycle, base.hall, times_s(), base.start);
+  const Course course = Propagator(base.system).course(kCycle, base.hall, times_s(), base.start).value();
   const auto first_order = course.states_of(there.system, kCycle, there.hall, there.start);
   if (!first_order) return INFINITY;
   const Eigen::MatrixXd slope = *first_order - course.states(),
@@ -62,7 +62,7 @@ Driven two_blocks() {
 
 TEST(Course, RunsAsThePropagatorDoes) {
   const Driven d = two_blocks();
-  const Course course = Propagator(d.system).course(kCycle, d.hall, times_s(), d.start);
+  const Course course = Propagator(d.system).course(kCycle, d.hall, times_s(), d.start).value();
   const Eigen::MatrixXd expected = states(d);
   EXPECT_LT((course.states() - expected).cwiseAbs().maxCoeff(), 1e-10 * expected.cwiseAbs().maxCoeff());
 }
@@ -142,7 +142,7 @@ TEST(Course, HoldsForEqualBodiesAndForThoseWithoutLosses) {
 
 TEST(Course, LeavesToARunOfItsOwnWhatIsDrivenAtOtherTimes) {
   const Driven d = two_blocks();
-  const Course course = Propagator(d.system).course(kCycle, d.hall, times_s(), d.start);
+  const Course course = Propagator(d.system).course(kCycle, d.hall, times_s(), d.start).value();
   Cyclogram later = kCycle;
   later.sections[0].duration_s += 60.0;
   EXPECT_FALSE(course.states_of(d.system, later, d.hall, d.start));
@@ -152,6 +152,16 @@ TEST(Course, LeavesToARunOfItsOwnWhatIsDrivenAtOtherTimes) {
   ReducedSystem watched = d.system;
   watched.thermostats.push_back({"cooler", 0, 300.0, 299.0});
   EXPECT_FALSE(course.states_of(watched, kCycle, d.hall, d.start));
+}
+
+TEST(Course, IsNotKeptThroughMoreSetsOfCoefficientsThanItHolds) {
+  const Driven d = two_blocks();
+  Cyclogram many{.name = "many", .sections = {}};
+  for (std::size_t i = 0; i <= Course::kMostSets; ++i)
+    many.sections.push_back({60.0, {.speed_rpm = 10.0 * static_cast<double>(i)}});
+  EXPECT_FALSE(Propagator(d.system).course(many, d.hall, {600.0}, d.start));
+  many.sections.pop_back();
+  EXPECT_TRUE(Propagator(d.system).course(many, d.hall, {600.0}, d.start));
 }
 
 }  // namespace

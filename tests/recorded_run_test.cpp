@@ -40,8 +40,8 @@ TEST(RecordedRun, IsDrivenFromEachRowOnAndCountsFromTheFirst) {
 }
 
 TEST(RecordedRun, TakesFeedsAndCuttingPowerWhereTheyAreRecorded) {
-  const Record r = with(with(record(), {"feed_y", "mm_min", {600, 600, 600, 0, 0}}),
-                        {"cutting_power", "W", {0, 0, 0, 250, 250}});
+  const Record r =
+      with(with(record(), {"feed_y", "mm_min", {600, 600, 600, 0, 0}}), {"cutting_power", "W", {0, 0, 0, 250, 250}});
   const RecordedRun run = run_of(r, nullptr, {}, Reading::kStrict);
   ASSERT_THAT(run.cyclogram.sections, SizeIs(2));
   EXPECT_DOUBLE_EQ(run.cyclogram.sections[0].drive.feed_m_s[1], 0.01);
@@ -54,11 +54,11 @@ TEST(RecordedRun, KnowsTheHallFromAmbientFromASensorOnItOrFromTheMachine) {
   const Channel ambient{"ambient", "degC", {22, 22, kMissing, 22, 22}};
   const Channel sensor{"t_air", "degC", {24, 24, 24, 24, 24}};
   const RecordedRun by_ambient = run_of(with(with(record(), sensor), ambient), &machine, {"t_air"}, Reading::kStrict);
-  EXPECT_TRUE(by_ambient.has_ambient);
+  EXPECT_TRUE(by_ambient.has_ambient());
   EXPECT_THAT(by_ambient.hall.value, Each(DoubleNear(2.0, 1e-9)));  // over 20 degC
   EXPECT_THAT(run_of(with(record(), sensor), &machine, {"t_air"}, Reading::kStrict).hall.value, Each(DoubleNear(4.0, 1e-9)));
   const RecordedRun without = run_of(record(), &machine, {}, Reading::kStrict);
-  EXPECT_FALSE(without.has_ambient);
+  EXPECT_FALSE(without.has_ambient());
   EXPECT_EQ(without.hall.value, machine.hall.value);
   // nobody knows it: no knot, and nobody may ask
   const RecordedRun unknown = run_of(record(), nullptr, {}, Reading::kStrict);
@@ -66,10 +66,38 @@ TEST(RecordedRun, KnowsTheHallFromAmbientFromASensorOnItOrFromTheMachine) {
   EXPECT_THROW((void)unknown.hall.at(0.0), std::logic_error);
 }
 
+// What a control cannot know is not made up: a gap holds the last reading, whatever comes after it.
+TEST(RecordedRun, HoldsTheHallOverGapsAtTheRowsOwnTimes) {
+  const Channel ambient{"ambient", "degC", {20.5, 21, kMissing, kMissing, 25}};
+  const RecordedRun run = run_of(with(record(), ambient), nullptr, {}, Reading::kStrict);
+  EXPECT_NEAR(run.hall.at(30.0), 0.75, 1e-9);  // from 0, not from the record's 300 s
+  EXPECT_NEAR(run.hall.at(180.0), 1.0, 1e-9);
+  EXPECT_NEAR(run.hall.at(240.0), 5.0, 1e-9);
+  ASSERT_THAT(run.findings, SizeIs(1));
+  EXPECT_THAT(run.findings[0].what, HasSubstr("no reading in 40 % of the rows"));
+}
+
+TEST(RecordedRun, TakesASensorOnTheHallWhereAmbientIsEmpty) {
+  const Record r = with(with(record(), {"ambient", "degC", std::vector<double>(5, kMissing)}),
+                        {"t_air", "degC", std::vector<double>(5, 21.0)});
+  EXPECT_EQ(run_of(r, nullptr, {"t_air"}, Reading::kStrict).hall_channel, "t_air");
+}
+
+TEST(RecordedRun, HoldsFeedsThatAreMissingAndRefusesForeignOnes) {
+  const RecordedRun held =
+      run_of(with(record(), {"feed_x", "mm_min", {600, kMissing, 600, kMissing, 600}}), nullptr, {}, Reading::kStrict);
+  ASSERT_THAT(held.cyclogram.sections, SizeIs(2));
+  EXPECT_DOUBLE_EQ(held.cyclogram.sections[1].drive.feed_m_s[0], 0.01);
+  for (const Channel& foreign : {Channel{"feed_x", "percent", std::vector<double>(5, 60.0)},
+                                 Channel{"cutting_power", "percent", std::vector<double>(5, 60.0)},
+                                 Channel{"feed_z", "mm_min", {600, -600, 600, -600, 600}}})
+    EXPECT_THROW((void)run_of(with(record(), foreign), nullptr, {}, Reading::kStrict), InputError) << foreign.header();
+}
+
 TEST(RecordedRun, AnEmptyAmbientIsNone) {
   const Channel ambient{"ambient", "degC", std::vector<double>(5, kMissing)};
   const RecordedRun run = run_of(with(record(), ambient), nullptr, {}, Reading::kStrict);
-  EXPECT_FALSE(run.has_ambient);
+  EXPECT_FALSE(run.has_ambient());
   ASSERT_THAT(run.findings, SizeIs(1));
   EXPECT_THAT(run.findings[0].what, HasSubstr("no hall temperature"));
 }
@@ -87,9 +115,9 @@ TEST(RecordedRun, RefusesStrictlyWhatItSaysLeniently) {
   in_percent.channels[0].unit = "percent";
   const Record kelvin = with(record(), {"ambient", "degC", std::vector<double>(5, 293.0)});
   const Record volts = with(record(), {"ambient", "V", std::vector<double>(5, 0.2)});
-  const std::pair<Record, const char*> cases[] = {
-      {no_speed, "no channel speed_rpm"}, {reversed, "speeds are positive"}, {empty, "speed_rpm is empty"},
-      {in_percent, "rpm is wanted"},      {kelvin, "looks like kelvin"},     {volts, "degC is wanted"}};
+  const std::pair<Record, const char*> cases[] = {{no_speed, "no channel speed_rpm"}, {reversed, "speeds are positive"},
+                                                  {empty, "speed_rpm is empty"},      {in_percent, "rpm is wanted"},
+                                                  {kelvin, "looks like kelvin"},      {volts, "degC is wanted"}};
   for (const auto& [bad, words] : cases) {
     EXPECT_THAT([&] { (void)run_of(bad, &machine, {}, Reading::kStrict); },
                 ThrowsMessage<InputError>(AllOf(HasSubstr("monday.csv"), HasSubstr(words))));

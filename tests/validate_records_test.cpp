@@ -4,13 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/command_line.hpp"
 
 namespace driftwright {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
@@ -51,20 +56,53 @@ class ValidateRecords : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = fresh_folder("validate_records");
-    machine_ = write_file("two_bodies.yaml", std::string(kMachine) + kStudy + "  train: [warm_up, steps]\n  judge: to_and_fro\n");
+    machine_ = scenario("two_bodies", [](std::string&) {});
     records_only_ = write_file("records_only.yaml", std::string("name: records_only\n") + kStudy);
-    for (const char* name : {"warm_up", "steps", "to_and_fro"}) {
-      const CommandOutcome run =
-          run_program("simulate " + machine_ + " --cyclogram " + name + " -o " + (folder_ / name).string());
-      ASSERT_EQ(run.exit_code, 0) << run.output;
-    }
+    for (const char* name : {"warm_up", "steps", "to_and_fro"}) simulate(machine_, name, name);
+  }
+  /// The machine, edited.
+  static std::string scenario(const std::string& name, const std::function<void(std::string&)>& edit) {
+    std::string text = std::string(kMachine) + kStudy + "  train: [warm_up, steps]\n  judge: to_and_fro\n";
+    edit(text);
+    return write_file(name + ".yaml", text);
+  }
+  static void replace(std::string& text, const std::string& what, const std::string& by) {
+    ASSERT_NE(text.find(what), std::string::npos) << what;
+    text.replace(text.find(what), what.size(), by);
+  }
+  static void simulate(const std::string& scenario, const std::string& cyclogram, const std::string& into) {
+    const CommandOutcome run =
+        run_program("simulate " + scenario + " --cyclogram " + cyclogram + " -o " + (folder_ / into).string());
+    ASSERT_EQ(run.exit_code, 0) << run.output;
   }
   static std::string record(const std::string& name) { return (folder_ / name / "record.csv").string(); }
-  /// The part `validation` of the summary.
-  static Json validate(const std::string& scenario, const std::string& test_record) {
+  /// A record whose rows are edited, the header left: cells of a row, and its index.
+  static std::string edited(const std::string& name, const std::string& file,
+                            const std::function<bool(std::vector<std::string>&, const std::vector<std::string>&)>& keep) {
+    std::istringstream lines(read_text(record(name)));
+    std::string line, text;
+    std::vector<std::string> header;
+    while (std::getline(lines, line)) {
+      if (line.starts_with("#")) continue;
+      std::vector<std::string> cells;
+      std::istringstream row(line);
+      for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+      if (header.empty()) {
+        header = cells;
+      } else if (!keep(cells, header)) {
+        continue;
+      }
+      for (std::size_t i = 0; i < cells.size(); ++i) text += (i ? "," : "") + cells[i];
+      text += "\n";
+    }
+    std::filesystem::create_directories(folder_ / file);
+    std::ofstream(folder_ / file / "record.csv") << text;
+    return file;
+  }
+  static Json validate(const std::string& scenario, const std::string& judged) {
     const auto out = fresh_folder("validated") / "out";
     const CommandOutcome run = run_program("validate " + scenario + " --train " + record("warm_up") + " --train " +
-                                           record("steps") + " --test " + test_record + " -o " + out.string());
+                                           record("steps") + " --test " + record(judged) + " -o " + out.string());
     EXPECT_EQ(run.exit_code, 0) << run.output;
     return run.exit_code == 0 ? Json::parse(read_text(out / "summary.json")) : Json{};
   }
@@ -74,47 +112,95 @@ class ValidateRecords : public ::testing::Test {
     }
     return nullptr;
   }
+  /// The model is the machine itself: what it leaves are the seven digits of the record, and the hall between its rows.
+  static void expect_exact(const Json& summary) {
+    for (const char* name : {"thermal modes of the model", "model fitted to the training runs", "observer"}) {
+      const Json* s = strategy(summary, name);
+      ASSERT_TRUE(s) << name << summary["validation"]["left_out"];
+      EXPECT_LT((*s)["worst_peak_um"].get<double>(), 0.05) << name << s->dump();
+    }
+  }
+  static void expect_left_out(const Json& summary, const std::string& why) {
+    EXPECT_FALSE(strategy(summary, "observer"));
+    EXPECT_TRUE(strategy(summary, "ridge, all sensors"));
+    EXPECT_THAT(summary["validation"]["left_out"].dump(), HasSubstr(why));
+  }
   static inline std::filesystem::path folder_;
   static inline std::string machine_, records_only_;
 };
 
 TEST_F(ValidateRecords, PhysicsIsJudgedOnRecordsOfAMachine) {
-  const Json summary = validate(machine_, record("to_and_fro"));
-  for (const char* name : {"thermal modes of the model", "model fitted to the training runs", "observer"}) {
-    const Json* s = strategy(summary, name);
-    ASSERT_TRUE(s) << name;
-    // the model is the machine itself: what it leaves are the seven digits of the record
-    EXPECT_LT((*s)["worst_peak_um"].get<double>(), 0.05) << name << s->dump();
-  }
+  expect_exact(validate(machine_, "to_and_fro"));
 }
 
-TEST_F(ValidateRecords, AmbientAloneIsNoReasonToFail) {
-  const Json summary = validate(records_only_, record("to_and_fro"));
-  EXPECT_TRUE(strategy(summary, "transfer functions from speed"));
-  EXPECT_FALSE(strategy(summary, "observer"));
-  EXPECT_THAT(summary["validation"]["left_out"].dump(), HasSubstr("the scenario has no machine"));
+// The recorded hall drives the model, not the scenario's; and a record's clock may start anywhere.
+TEST_F(ValidateRecords, InAnotherHallAndFromAnotherTimeOn) {
+  simulate(
+      scenario("warm_hall",
+               [](std::string& t) { replace(t, "[[0 h, 20 degC], [5 h, 22 degC]]", "[[0 h, 27 degC], [2 h, 25 degC]]"); }),
+      "to_and_fro", "in_summer");
+  edited("in_summer", "later", [](std::vector<std::string>& cells, const std::vector<std::string>&) {
+    cells[0] = std::to_string(std::stod(cells[0]) + 5000.0);
+    return true;
+  });
+  expect_exact(validate(machine_, "later"));
+}
+
+// What the scenario's effects say of drive, hall and single runs holds for records of that name, too.
+TEST_F(ValidateRecords, EffectsOnDriveHallAndSingleRunsAct) {
+  const std::string doubted = scenario("doubted", [](std::string& t) {
+    replace(t, "hall: [[",
+            "  - {type: heat_source, node: column, power: 20 W, in: doubtful}\n  - {type: speed_override, factor: 1.2, in: "
+            "doubtful}\n"
+            "  - {type: ambient, offset: 1 K, in: doubtful}\nhall: [[");
+    replace(t, "  to_and_fro:", "  doubtful: [[60 min, 2500 rpm], [60 min, 1000 rpm]]\n  to_and_fro:");
+  });
+  simulate(doubted, "doubtful", "simulated");
+  std::filesystem::create_directories(folder_ / "d");
+  std::filesystem::copy_file(record("simulated"), folder_ / "d" / "doubtful.csv");
+  const auto out = fresh_folder("validated") / "out";
+  const CommandOutcome run =
+      run_program("validate " + doubted + " --train " + record("warm_up") + " --train " + record("steps") + " --test " +
+                  (folder_ / "d" / "doubtful.csv").string() + " -o " + out.string());
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  expect_exact(Json::parse(read_text(out / "summary.json")));
+}
+
+TEST_F(ValidateRecords, WhatAModelCannotKnowLeavesItOutWithTheReason) {
+  expect_left_out(validate(records_only_, "to_and_fro"), "the scenario has no machine");
+  const auto with = [](const std::string& name, const std::string& what, const std::string& by) {
+    return scenario(name, [&](std::string& t) { replace(t, what, by); });
+  };
+  expect_left_out(validate(with("reference", "start: hall\n", ""), "to_and_fro"), "start: hall");
+  expect_left_out(
+      validate(with("biased", "hall: [[", "  - {type: sensor_bias, sensor: t_column, bias: 2 K}\nhall: [["), "to_and_fro"),
+      "what instruments read");
+  expect_left_out(validate(with("renamed", "name: t_column", "name: t_back"), "to_and_fro"), "no sensor 't_column'");
+  expect_left_out(
+      validate(with("thermostat", "hall: [[",
+                    "  - {type: fixed_temperature, node: column, temperature: [[0 h, 20 degC], [5 h, 25 degC]]}\nhall: [["),
+               "to_and_fro"),
+      "");
+  int row = 0;
+  edited("to_and_fro", "warm", [&](std::vector<std::string>&, const std::vector<std::string>&) { return ++row > 50; });
+  expect_left_out(validate(machine_, "warm"), "begins with t_spindle at");
+  edited("to_and_fro", "reversed", [](std::vector<std::string>& cells, const std::vector<std::string>& header) {
+    cells[static_cast<std::size_t>(std::find(header.begin(), header.end(), "speed_rpm") - header.begin())] = "-10";
+    return true;
+  });
+  expect_left_out(validate(machine_, "reversed"), "does not say what drove the machine");
 }
 
 TEST_F(ValidateRecords, AHallThermometerThatNeverReadIsSaid) {
-  std::string text = read_text(record("to_and_fro"));
-  std::istringstream lines(text);
-  std::string line, emptied;
-  std::ptrdiff_t column = -1;
-  while (std::getline(lines, line)) {
-    if (line.starts_with("#")) continue;
-    std::vector<std::string> cells;
-    std::istringstream row(line);
-    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
-    if (column < 0) {
-      column = std::find(cells.begin(), cells.end(), "ambient_degC") - cells.begin();
-    } else {
-      cells.at(static_cast<std::size_t>(column)).clear();
-    }
-    for (std::size_t i = 0; i < cells.size(); ++i) emptied += (i ? "," : "") + cells[i];
-    emptied += "\n";
+  edited("to_and_fro", "no_hall", [](std::vector<std::string>& cells, const std::vector<std::string>& header) {
+    cells[static_cast<std::size_t>(std::find(header.begin(), header.end(), "ambient_degC") - header.begin())].clear();
+    return true;
+  });
+  for (const std::string& scenario : {records_only_, machine_}) {
+    const Json summary = validate(scenario, "no_hall");
+    EXPECT_THAT(summary["warnings"].dump(), AllOf(HasSubstr("no hall temperature"), HasSubstr("used from none")));
+    EXPECT_TRUE(strategy(summary, "transfer functions from speed"));
   }
-  const Json summary = validate(records_only_, write_file("no_hall.csv", emptied));
-  EXPECT_THAT(summary["warnings"].dump(), HasSubstr("no hall temperature"));
 }
 
 }  // namespace
