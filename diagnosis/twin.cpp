@@ -34,7 +34,7 @@ std::vector<effects::Effect> places(const mesh::Mesh& mesh, const effects::HeatB
   for (const std::string& r : mesh.regions) bodies.push_back(effects::region(r));
   for (const effects::LumpedNode& n : own.nodes) bodies.push_back(effects::node(n.name));
   const auto has_exchange = [&](const effects::Effect& e) {
-    const effects::Exchange& asked = effects::heat_balance({e}).exchanges.front();
+    const effects::Exchange asked = effects::heat_balance({e}).exchanges.front();
     return std::any_of(own.exchanges.begin(), own.exchanges.end(), [&](const auto& x) { return x.is_same_place(asked); });
   };
   for (const effects::Body& b : bodies) {
