@@ -305,7 +305,12 @@ class Reducer {
   /// Keeps the directions that the step tests use most, as few as the other half of the tolerance allows.
   void compress(Reduction& result, const std::vector<Eigen::MatrixXd>& reference) const {
     const Eigen::Index n = basis_.size();
-    Eigen::MatrixXd kept(n, 1 + (inputs_[0].start >= 0 ? 1 : 0));  // 1 and the start stay
+    const Eigen::Index n_kept = 1 + (inputs_[0].start >= 0 ? 1 : 0);  // 1 and the start stay
+    if (n <= n_kept) {  // of a machine of one node there is nothing to leave out
+      result.basis = basis_.vectors();
+      return;
+    }
+    Eigen::MatrixXd kept(n, n_kept);
     kept.col(0) = basis_.m_vectors().transpose() * system_.ones;
     if (inputs_[0].start >= 0) kept.col(1) = basis_.m_vectors().transpose() * start_;
     const Eigen::MatrixXd held =
