@@ -14,8 +14,7 @@ namespace driftwright::solver {
 ///     δy_i = e_i (δy0 + C y0)_i + p_i (h0 + C f0)_i + q_i (h1 + C f1)_i - (C y)_i,   C_ij = G_ij / (λ_j - λ_i)
 ///     e = e^{-λt},  p = ∫ e,  q = ∫ p,   h = V'(δf - δM V (V'f))
 ///
-/// with V of the decomposition and y0, f0, f1 in it. Pairs of equal λ have the limit of this. A decomposition of 100 unknowns costs as
-/// much as some thirty of these products.
+/// with V of the decomposition and y0, f0, f1 in it. Pairs of equal λ have the limit of this: products of matrices, and no decomposition.
 /// Source: derivative of the matrix exponential, Najfeld & Havel, Adv. Appl. Math. 16 (1995) 321-375.
 class Course {
  public:
