@@ -1,8 +1,8 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -11,11 +11,11 @@
 #include "app/validation_study.hpp"
 #include "compensation/axis_loop.hpp"
 #include "compensation/correction.hpp"
-#include "compensation/interpolate.hpp"
-#include "compensation/observability.hpp"
-#include "output/drift_model_files.hpp"
+#include "compensation/formula_predictor.hpp"
+#include "compensation/past_drift.hpp"
 #include "output/html_report.hpp"
 #include "output/json_text.hpp"
+#include "output/predictor_file.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "scenarios/ways_out.hpp"
 
@@ -25,17 +25,6 @@ namespace {
 using namespace compensation;
 using scenarios::Scenario;
 using Json = nlohmann::ordered_json;
-
-/// A predictor on its way to an actuator.
-struct Source {
-  std::string words;
-  std::string channel;  ///< that it predicts
-  Predictor live;       ///< from readings, as the run goes on
-  /// Before the run; empty for one that has to read during it.
-  std::vector<double> ahead_um;
-  double margin_um = 0.0;  ///< half width of its 95 % interval
-  bool from_start = false;
-};
 
 /// What the actuator left.
 struct Outcome {
@@ -53,90 +42,67 @@ Record modal_record(const Scenario& scenario, const Model& model, const Cyclogra
                                 cyclogram);
 }
 
-Source formula(const std::string& path, const Scenario& scenario, const Model& model, const Cyclogram& cyclogram,
-               const Record& truth) {
-  auto deployed = std::make_shared<output::DeployedModel>(output::read_model(path));
-  Source s{.words = deployed->model.kind,
-           .channel = deployed->model.target,
-           .live = {},
-           .ahead_um = {},
-           .from_start = deployed->model.from_start};
-  if (!truth.find(s.channel))
-    throw InputError(fmt::format("{}: its target '{}' is no displacement of {}", path, s.channel, scenario.path));
-  s.live = [deployed](const Record& readings) {
-    const Repaired r = repaired(deployed->safe, readings);
-    return guarded(deployed->safe, r, deployed->model.predict(r.readings)).correction_um;
-  };
-  // what may be known of the temperatures before the run is the model's prediction of them
-  s.ahead_um = deployed->model.predict(modal_record(scenario, model, cyclogram, truth.time_s));
-  s.margin_um = std::isfinite(deployed->interval_um) ? deployed->interval_um : 0.0;
-  return s;
+/// What the model's thermal modes tell of a cyclogram before it is run, as a predictor.
+DeployedPredictor by_modes(const Scenario& scenario, const Record& foretold) {
+  DeployedPredictor d;
+  d.name = "thermal modes of the model";
+  d.target = scenario.study->target;
+  d.predictor = std::make_shared<EarlierRunsPredictor>(std::span(&foretold, 1), d.target);
+  return d;
 }
 
-Source modes(const Scenario& scenario, const Model& model, const Cyclogram& cyclogram, const Record& truth) {
-  Source s{.words = "thermal modes of the model", .channel = scenario.study->target, .live = {}, .ahead_um = {}};
-  s.ahead_um = modal_record(scenario, model, cyclogram, truth.time_s).at(s.channel).values;
-  s.live = [ahead = s.ahead_um, time_s = truth.time_s](const Record& readings) {
-    std::vector<double> predicted;
-    for (double t_s : readings.time_s) predicted.push_back(interpolate(time_s, ahead, t_s));
-    return predicted;
-  };
-  return s;
-}
-
-Source observing(const Scenario& scenario, const Model& model, const Cyclogram& cyclogram, Progress& progress) {
-  const scenarios::Study& study = *scenario.study;
-  const double scatter = scenario.validation ? scenario.validation->model_scatter : scenarios::Validation{}.model_scatter;
-  const std::optional<Physics> physics =
-      physics_of(scenario, model, scatter, scenario.validation ? scenario.validation->seed : 1);
-  if (!physics)
+DeployedPredictor from_file(const Scenario& scenario, const std::string& path) {
+  if (path == "observer") {
     throw InputError(
-        scenario.machine->where,
-        "an observer wants a linear reduced model: `solver: {model: reduced}`, and no law that follows temperatures");
-  std::vector<const Cyclogram*> training;
-  for (const std::string& name : study.train) training.push_back(&scenario.cyclogram(name));
-  std::vector<ObservedRun> runs;
-  for (SimulatedRun& run : simulate_cyclograms(scenario, model, training, progress, 0, nullptr)) {
-    const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram(run.record.source));
-    runs.push_back(
-        {felt.cyclogram, felt.hall, as_read(std::move(run.record), {.resolution_K = study.sensor_resolution_K}, 1)});
+        "--model observer: an observer is fitted and judged by `validate`, which writes it to models/observer.json; take "
+        "that file");
   }
-  progress.begin("teaching the observer");
-  const std::vector<std::string> candidates = candidate_sensors(study, runs.front().readings);
-  Observer all(physics->system, physics->start, physics->start_hall_K, candidates, study.target);
-  all.learn(runs);
-  const Selection selection =
-      select_by_observability(physics->system, physics->start, runs, candidates, study.target, study.sensors_to_choose);
-  auto observer = std::make_shared<Observer>(all.with_sensors(selection.sensors));
-  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
-  Source s{.words = fmt::format("observer, {}", fmt::join(selection.sensors, ", ")),
-           .channel = study.target,
-           .live = {},
-           .ahead_um = {},
-           .from_start = true};
-  s.live = [observer, felt](const Record& readings) {
-    return observer->follow({felt.cyclogram, felt.hall, readings}).drift_um;
-  };
-  return s;
+  DeployedPredictor d = output::read_predictor(path).predictor;
+  for (const scenarios::DisplacementOutput& output :
+       scenario.machine ? scenario.machine->displacements : std::vector<scenarios::DisplacementOutput>{}) {
+    if (output.name == d.target) return d;
+  }
+  if (scenario.machine)
+    throw InputError(fmt::format("{}: its target '{}' is no displacement of {}", path, d.target, scenario.path));
+  return d;
 }
 
-Outcome through_injector(const Scenario& scenario, const Source& source, const Record& truth) {
+/// The drift before the run: of a formula by temperatures that the model's modes foretell, of anything else by drive and hall alone.
+std::vector<double> foretold_um(const DeployedPredictor& d, const ObservedRun& run,
+                                const std::function<Record()>& foretold) {
+  if (as_formula(*d.predictor)) return live(*d.predictor, {run.cyclogram, run.hall, foretold()});
+  std::vector<double> drift_um =
+      ahead(*d.predictor, {run.cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}});
+  return drift_um;
+}
+
+/// The correction itself, as `validate` judges it.
+Outcome through_none(const DeployedPredictor& d, const ObservedRun& run) {
+  const std::vector<double>& drift_um = run.readings.at(d.target).values;
+  Outcome o{.time_s = run.readings.time_s, .drift_um = drift_um, .predicted_um = correct(d, run).correction_um};
+  for (std::size_t i = 0; i < drift_um.size(); ++i) o.left_um.push_back(drift_um[i] - o.predicted_um[i]);
+  return o;
+}
+
+Outcome through_injector(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run) {
   if (!scenario.axis_loop) {
     throw InputError(
         scenario.study->where,
         "--through injector wants the block `axis_loop`, which says encoder, injector and servo (docs/injector.md)");
   }
-  if (source.channel != scenario.axis_loop->displacement)
+  if (d.target != scenario.axis_loop->displacement)
     throw InputError(scenario.axis_loop->where,
                      fmt::format("the axis corrects '{}', but the predictor tells '{}'; set `displacement: {}`, or take "
                                  "another --model",
-                                 scenario.axis_loop->displacement, source.channel, source.channel));
-  const AxisLoopRun run = run_axis_loop(scenario.axis_loop->loop, truth, source.channel, source.live);
-  return {.time_s = run.time_s,
-          .drift_um = run.before_um,
-          .predicted_um = run.predicted_um,
-          .left_um = run.after_um,
-          .at_rest = run.at_rest};
+                                 scenario.axis_loop->displacement, d.target, d.target));
+  const AxisLoopRun loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
+    return correct(d, {run.cyclogram, run.hall, readings}).correction_um;
+  });
+  return {.time_s = loop.time_s,
+          .drift_um = loop.before_um,
+          .predicted_um = loop.predicted_um,
+          .left_um = loop.after_um,
+          .at_rest = loop.at_rest};
 }
 
 /// The values of rows that are judged: during a pass an axis lags behind its command, which is no thermal error.
@@ -149,21 +115,33 @@ std::vector<double> judged(const Outcome& o, const std::vector<double>& values) 
   return kept;
 }
 
-Outcome through_schedule(const Scenario& scenario, const Source& source, const Record& truth, const Cyclogram& cyclogram) {
-  if (source.ahead_um.empty())
-    throw InputError(
-        "a schedule is written before the run, and an observer reads during it; take --through injector, or another "
-        "--model");
+Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
+                         const std::vector<double>& ahead_um) {
+  if (std::any_of(ahead_um.begin(), ahead_um.end(), [](double v) { return std::isnan(v); }))
+    throw InputError(fmt::format(
+        "a schedule is written before the run, and '{}' has to read during it; take --through injector, or another --model",
+        d.name));
   std::vector<double> durations_s;
-  for (const auto& section : cyclogram.sections) durations_s.push_back(section.duration_s);
+  for (const auto& section : run.cyclogram.sections) durations_s.push_back(section.duration_s);
   const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
-  const CorrectedRun run =
-      correct_by_schedule({truth.time_s, truth.at(source.channel).values, boundaries_s, scenario.study->tolerance_um},
-                          source.ahead_um, source.margin_um);
-  return {.time_s = truth.time_s,
-          .drift_um = truth.at(source.channel).values,
-          .predicted_um = source.ahead_um,
-          .left_um = run.residual_um};
+  const std::vector<double>& drift_um = run.readings.at(d.target).values;
+  const CorrectedRun corrected = correct_by_schedule(
+      {run.readings.time_s, drift_um, boundaries_s, scenario.study->tolerance_um}, ahead_um, d.interval_um.value_or(0.0));
+  return {.time_s = run.readings.time_s, .drift_um = drift_um, .predicted_um = ahead_um, .left_um = corrected.residual_um};
+}
+
+/// The cyclogram to correct, which is none that predictors are fitted on.
+const Cyclogram& judged_cyclogram(const Scenario& scenario, const std::string& name) {
+  const scenarios::Study& study = *scenario.study;
+  const Cyclogram& cyclogram = scenario.cyclogram(name.empty() ? study.judge : name);
+  for (const std::string& trained : study.train) {
+    if (scenario.cyclogram(trained).sections == cyclogram.sections)
+      throw InputError(
+          study.where,
+          fmt::format("--cyclogram {}: it is what predictors are trained on ('{}'), and says nothing of how good they are",
+                      cyclogram.name, trained));
+  }
+  return cyclogram;
 }
 
 std::string corrected_csv(const Outcome& o, const std::vector<std::string>& comments) {
@@ -181,75 +159,97 @@ std::string corrected_csv(const Outcome& o, const std::vector<std::string>& comm
 
 void compensate(const CompensateOptions& options) {
   const Scenario scenario = scenarios::read_scenario(options.scenario);
-  (void)require_machine(scenario, "compensate");
-  if (options.through == "frame") return compensate_through_frame(scenario, options);
-  const scenarios::Study& study = require_study(scenario, "compensate");
-  const Cyclogram& cyclogram = scenario.cyclogram(options.cyclogram.empty() ? study.judge : options.cyclogram);
-  for (const std::string& name : study.train) {
-    if (scenario.cyclogram(name).sections == cyclogram.sections)
-      throw InputError(
-          study.where,
-          fmt::format("--cyclogram {}: it is what predictors are trained on ('{}'), and says nothing of how good they are",
-                      cyclogram.name, name));
+  if (options.through == "frame") {
+    (void)require_machine(scenario, "compensate");
+    return compensate_through_frame(scenario, options);
   }
+  const scenarios::Study& study = require_study(scenario, "compensate");
+  const bool is_measured = !options.measured.empty();
+  if (is_measured && (options.through != "none" || !options.cyclogram.empty() || options.model == "modes"))
+    throw InputError(
+        "--measured goes with --through none and a predictor's file, and without --cyclogram: a record says what happened");
+  if (!is_measured) (void)require_machine(scenario, "compensate");
+  std::optional<DeployedPredictor> predictor;
+  if (options.model != "modes") predictor = from_file(scenario, options.model);
+  const Cyclogram* cyclogram = nullptr;
+  if (!is_measured) cyclogram = &judged_cyclogram(scenario, options.cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const Model model = open_model(scenario, {&cyclogram}, progress, false);
-  if (const scenarios::Machine* full = model.full())
-    scenarios::require_ways_out(full->placed.mesh, full->placed.balance, scenario.machine->where);
-  Record truth = std::move(simulate_cyclograms(scenario, model, {&cyclogram}, progress, 0, nullptr).front().record);
-  Source source = options.model == "modes"      ? modes(scenario, model, cyclogram, truth)
-                  : options.model == "observer" ? observing(scenario, model, cyclogram, progress)
-                                                : formula(options.model, scenario, model, cyclogram, truth);
-  progress.begin("correcting");
-  if (source.from_start) {
-    const std::vector<double> counted =
-        counted_from_start({.source = {}, .time_s = truth.time_s, .channels = {truth.at(source.channel)}}, source.channel)
-            .channels.front()
-            .values;
-    truth.channels[static_cast<std::size_t>(&truth.at(source.channel) - truth.channels.data())].values = counted;
+  ObservedRun run;
+  std::vector<double> ahead_um;
+  if (is_measured) {
+    run = observed_run(scenario, read_record_csv(options.measured), predictor->hall);
+  } else {
+    const Model model = open_model(scenario, {cyclogram}, progress, false);
+    if (const scenarios::Machine* full = model.full())
+      scenarios::require_ways_out(full->placed.mesh, full->placed.balance, scenario.machine->where);
+    scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, *cyclogram);
+    run = {std::move(felt.cyclogram), std::move(felt.hall),
+           std::move(simulate_cyclograms(scenario, model, {cyclogram}, progress, 0, nullptr).front().record)};
+    const auto foretold = [&] { return modal_record(scenario, model, *cyclogram, run.readings.time_s); };
+    if (!predictor) predictor = by_modes(scenario, foretold());
+    if (options.through == "schedule") ahead_um = foretold_um(*predictor, run, foretold);
   }
-  Outcome o = options.through == "injector" ? through_injector(scenario, source, truth)
-                                            : through_schedule(scenario, source, truth, cyclogram);
+  const DeployedPredictor& d = *predictor;
+  progress.begin("correcting");
+  if (d.from_start) {
+    Channel& target =
+        run.readings.channels[static_cast<std::size_t>(&run.readings.at(d.target) - run.readings.channels.data())];
+    target = counted_from_start({.source = {}, .time_s = run.readings.time_s, .channels = {target}}, target.name)
+                 .channels.front();
+  }
+  Outcome o = options.through == "none"       ? through_none(d, run)
+              : options.through == "injector" ? through_injector(scenario, d, run)
+                                              : through_schedule(scenario, d, run, ahead_um);
+  const std::string what = is_measured ? run.readings.source : cyclogram->name;
   o.before = score(judged(o, o.drift_um));
   o.after = score(judged(o, o.left_um));
   const double removed = 100.0 * (1.0 - o.after.peak_abs / o.before.peak_abs);
-  const std::string title = fmt::format("{}: {} corrected through the {}", scenario.name, source.channel, options.through);
-  const Json summary = {
-      {"program", "driftwright"},         {"version", folder.made_by().version}, {"scenario", folder.made_by().scenario},
-      {"model", options.model},           {"predictor", source.words},           {"through", options.through},
-      {"cyclogram", cyclogram.name},      {"channel", source.channel},           {"peak_before_um", o.before.peak_abs},
-      {"peak_left_um", o.after.peak_abs}, {"removed_percent", removed},          {"rms_before_um", o.before.rmse},
-      {"rms_left_um", o.after.rmse}};
+  const std::string way = options.through == "none" ? "without an actuator" : "through the " + options.through;
+  const std::string title = fmt::format("{}: {} corrected {}", scenario.name, d.target, way);
+  const Json summary = {{"program", "driftwright"},
+                        {"version", folder.made_by().version},
+                        {"scenario", folder.made_by().scenario},
+                        {"model", options.model},
+                        {"predictor", d.name},
+                        {"through", options.through},
+                        {"cyclogram", what},
+                        {"channel", d.target},
+                        {"peak_before_um", o.before.peak_abs},
+                        {"peak_left_um", o.after.peak_abs},
+                        {"removed_percent", removed},
+                        {"rms_before_um", o.before.rmse},
+                        {"rms_left_um", o.after.rmse}};
   std::vector<double> t_min;
   for (double t_s : judged(o, o.time_s)) t_min.push_back(t_s / 60.0);
   output::Report page{.title = title,
                       .subtitle = fmt::format("Driftwright {}, scenario {}, cyclogram {}", folder.made_by().version,
-                                              folder.made_by().scenario, cyclogram.name),
+                                              folder.made_by().scenario, what),
                       .blocks = {}};
   page.blocks.emplace_back(
       output::Verdict{o.after.peak_abs <= study.tolerance_um ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
                       fmt::format("{:.1f} um of {:.1f} um are left", o.after.peak_abs, o.before.peak_abs),
-                      fmt::format("{}; tolerance {:g} um. RMS {:.2f} um instead of {:.2f} um.", source.words,
-                                  study.tolerance_um, o.after.rmse, o.before.rmse)});
+                      fmt::format("{}; tolerance {:g} um. RMS {:.2f} um instead of {:.2f} um.", d.name, study.tolerance_um,
+                                  o.after.rmse, o.before.rmse)});
   page.blocks.emplace_back(
-      output::Plot{.title = source.channel,
+      output::Plot{.title = d.target,
                    .x_label = "time [min]",
-                   .y_label = source.channel + " [um]",
+                   .y_label = d.target + " [um]",
                    .series = {{.label = "without correction", .x = t_min, .y = judged(o, o.drift_um), .width = 3.0},
                               {.label = "predicted", .x = t_min, .y = judged(o, o.predicted_um)},
                               {.label = "left", .x = t_min, .y = judged(o, o.left_um)}},
                    .bands = {{.label = "tolerance", .low = -study.tolerance_um, .high = study.tolerance_um}}});
-  folder.write_text("corrected.csv", corrected_csv(o, provenance_lines(folder.made_by(), "cyclogram " + cyclogram.name)));
+  folder.write_text("corrected.csv",
+                    corrected_csv(o, provenance_lines(folder.made_by(), (is_measured ? "record " : "cyclogram ") + what)));
   folder.write_text("summary.json", output::json_text(summary));
   folder.write_text("report.html", output::render_html(page));
   folder.commit();
   progress.end();
   fmt::print(
-      "{} by {} through the {}: peak {:.1f} um left of {:.1f} um ({:.0f} % removed), RMS {:.2f} of {:.2f} um\nreport in "
+      "{} by {} {}: peak {:.1f} um left of {:.1f} um ({:.0f} % removed), RMS {:.2f} of {:.2f} um\nreport in "
       "{}\n",
-      source.channel, source.words, options.through, o.after.peak_abs, o.before.peak_abs, removed, o.after.rmse,
-      o.before.rmse, shown_path(folder.target() / "report.html"));
+      d.target, d.name, way, o.after.peak_abs, o.before.peak_abs, removed, o.after.rmse, o.before.rmse,
+      shown_path(folder.target() / "report.html"));
 }
 
 }  // namespace driftwright::app

@@ -76,9 +76,10 @@ Believed by_observer(const Scenario& scenario, const Model& model, const scenari
   const std::vector<std::string> sensors = thermometers_of(scenario);
   const Thermometers& instrument = scenario.table->instrument;
   const double reading_K = std::hypot(instrument.noise_K, instrument.resolution_K / std::sqrt(12.0));  // of rounding
-  const Observer observer(p.system, p.start, p.start_hall_K, sensors, "table_1_x",
-                          {.reading_K = reading_K, .longest_step_s = 600.0});
-  const Observation seen = observer.follow({felt.cyclogram, felt.hall, readings});
+  const Observer observer(
+      p.system, p.start, p.start_hall_K, sensors, "table_1_x",
+      {.reading_K = reading_K, .longest_step_s = 600.0, .period_s = readings.time_s.at(1) - readings.time_s.at(0)});
+  const Observation seen = observer.observe({felt.cyclogram, felt.hall, readings});
   solver::Trajectory run;
   run.time_s = readings.time_s;
   run.outputs = seen.outputs;

@@ -158,13 +158,17 @@ int main(int argc, char** argv) {
                   "-o results/table",
                   compensate);
   verb->add_option("--model", compensate.model,
-                   "a JSON file that `validate` has written to models/, or modes, observer; through the frame modes, "
-                   "observer, regression")
+                   "a file models/NAME.json that `validate` has written, or modes; through the frame modes, observer, "
+                   "regression")
       ->required();
-  verb->add_option("--through", compensate.through, "injector (docs/injector.md), schedule, frame (docs/table.md)")
+  verb->add_option(
+          "--through", compensate.through,
+          "injector (docs/injector.md), schedule, frame (docs/table.md), or none: the correction as `validate` judges it")
       ->required()
-      ->check(CLI::IsMember({"injector", "schedule", "frame"}));
+      ->check(CLI::IsMember({"none", "injector", "schedule", "frame"}));
   verb->add_option("--cyclogram", compensate.cyclogram, "name in the scenario [the one that `study` judges by]");
+  verb->add_option("--measured", compensate.measured,
+                   "record CSV with readings and drift, in place of a simulation; with --through none");
   verb->callback([&] { app::compensate(compensate); });
   verb = add_verb(cli, "calibrate", "the scenario's uncertain numbers, fitted to measured records, with intervals",
                   "calibrate scenarios/fp3_spindle.yaml --measured good.csv -o results/calibration", calibrate);

@@ -11,7 +11,9 @@
 
 #include "base/errors.hpp"
 #include "compensation/fitted_formulas.hpp"
+#include "compensation/formula_predictor.hpp"
 #include "compensation/observability.hpp"
+#include "compensation/past_drift.hpp"
 #include "compensation/score.hpp"
 #include "compensation/sensor_selection.hpp"
 #include "solver/propagator.hpp"
@@ -27,7 +29,7 @@ constexpr double kInterval = 0.95;
 struct Strategy {
   std::string name;
   bool is_baseline = false;
-  std::function<FittedStrategy(std::span<const ObservedRun>)> fit;
+  std::function<DeployedPredictor(std::span<const ObservedRun>)> fit;
 };
 
 std::vector<Record> records_of(std::span<const ObservedRun> runs, const StrategySettings& s) {
@@ -37,28 +39,29 @@ std::vector<Record> records_of(std::span<const ObservedRun> runs, const Strategy
   return records;
 }
 
+DeployedPredictor deployed(std::shared_ptr<const Predictor> predictor, const StrategySettings& s) {
+  DeployedPredictor d;
+  d.target = s.target;
+  d.from_start = s.count_from_start;
+  d.predictor = std::move(predictor);
+  return d;
+}
+
 Strategy baseline(const std::string& name, const StrategySettings& s,
-                  std::function<std::vector<double>(const std::vector<Record>&, const Record&)> predict) {
-  return {name, true, [s, predict](std::span<const ObservedRun> training) {
-            FittedStrategy f;
-            f.predict = [predict, records = records_of(training, s)](const ObservedRun& run) {
-              return predict(records, run.readings);
-            };
-            return f;
-          }};
+                  std::function<std::shared_ptr<const Predictor>(const std::vector<Record>&)> make) {
+  return {name, true,
+          [s, make](std::span<const ObservedRun> training) { return deployed(make(records_of(training, s)), s); }};
 }
 
 /// A formula of channels.
-FittedStrategy of_formula(DriftModel model, std::string reason, const StrategySettings& s) {
-  FittedStrategy f;
+DeployedPredictor of_formula(DriftModel model, std::string reason, const StrategySettings& s) {
   model.from_start = s.count_from_start;
-  for (const std::string& input : model.inputs()) {
-    if (input != s.speed) f.sensors.push_back(input);
-  }
-  f.reason = std::move(reason);
-  f.predict = [model](const ObservedRun& run) { return model.predict(run.readings); };
-  f.model = std::move(model);
-  return f;
+  std::vector<std::string> sensors = model.inputs();
+  std::erase(sensors, s.speed);
+  DeployedPredictor d = deployed(std::make_shared<FormulaPredictor>(std::move(model)), s);
+  d.sensors = std::move(sensors);
+  d.reason = std::move(reason);
+  return d;
 }
 
 Strategy regression_on(const std::string& name, const StrategySettings& s,
@@ -95,23 +98,24 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
   return {name, false, [s, with_sensors, learns](std::span<const ObservedRun> training) {
             const Physics& p = *s.physics;
             const ObserverSettings how{.reading_K = s.reading_K, .drift_um = s.drift_um};
-            FittedStrategy f;
+            DeployedPredictor f;
             Selection selection;
             if (with_sensors) {
               selection = select_by_observability(p.system, p.start, training, s.candidates, s.target, s.n_sensors, how);
-              f.sensors = selection.sensors;
               f.reason = fmt::format("{}: {}", fmt::join(selection.sensors, ", "), selection.reason);
             }
-            auto observer = std::make_shared<Observer>(p.system, p.start, p.start_hall_K,
-                                                       learns ? s.candidates : selection.sensors, s.target, how);
+            Observer observer(p.system, p.start, p.start_hall_K, learns ? s.candidates : selection.sensors, s.target, how);
             if (learns) {
-              observer->learn(training);
-              f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer->factors()));
-              observer = std::make_shared<Observer>(observer->with_sensors(selection.sensors));
+              observer.learn(training);
+              f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
+              observer = observer.with_sensors(selection.sensors);
             }
+            f.target = s.target;
+            f.from_start = true;
+            f.predictor = std::make_shared<Observer>(std::move(observer));
+            f.sensors = selection.sensors;
             if (!s.hall.empty() && std::find(f.sensors.begin(), f.sensors.end(), s.hall) == f.sensors.end())
               f.sensors.push_back(s.hall);
-            f.predict = [observer](const ObservedRun& run) { return observer->follow(run).drift_um; };
             return f;
           }};
 }
@@ -123,17 +127,17 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
     };
   };
   std::vector<Strategy> list;
-  list.push_back(baseline(kNoCorrection, s, [](const std::vector<Record>&, const Record& run) {
-    return std::vector<double>(run.n_samples(), 0.0);
+  const Record moment{.source = {}, .time_s = {0.0}, .channels = {}};
+  list.push_back(
+      baseline(kNoCorrection, s, [](const std::vector<Record>&) { return std::make_shared<ConstantPredictor>(0.0); }));
+  list.push_back(baseline("mean of the training runs", s, [s, moment](const std::vector<Record>& training) {
+    return std::make_shared<ConstantPredictor>(baseline_mean(training, moment, s.target).front());
   }));
-  list.push_back(baseline("mean of the training runs", s, [s](const std::vector<Record>& training, const Record& run) {
-    return baseline_mean(training, run, s.target);
+  list.push_back(baseline("last value of the training runs", s, [s, moment](const std::vector<Record>& training) {
+    return std::make_shared<ConstantPredictor>(baseline_last(training, moment, s.target).front());
   }));
-  list.push_back(baseline("last value of the training runs", s, [s](const std::vector<Record>& training, const Record& run) {
-    return baseline_last(training, run, s.target);
-  }));
-  list.push_back(baseline("training runs at the same time", s, [s](const std::vector<Record>& training, const Record& run) {
-    return baseline_same_time(training, run, s.target);
+  list.push_back(baseline("training runs at the same time", s, [s](const std::vector<Record>& training) {
+    return std::make_shared<EarlierRunsPredictor>(training, s.target);
   }));
   const std::vector<Selector> by_records = selectors({.image = s.image});
   list.push_back(regression_on("one thermometer", s, by_record_selector(by_records.front().select, 1)));
@@ -177,8 +181,8 @@ double quantile(std::vector<double> x, double share) {
 }
 
 /// Magnitudes of measured - predicted of a run, without missing ones.
-std::vector<double> misses(const FittedStrategy& f, const ObservedRun& run, const StrategySettings& s) {
-  const std::vector<double> predicted = f.predict(run);
+std::vector<double> misses(const DeployedPredictor& f, const ObservedRun& run, const StrategySettings& s) {
+  const std::vector<double> predicted = live(*f.predictor, run);
   const Record& readings = s.count_from_start ? counted_from_start(run.readings, s.target) : run.readings;
   const std::vector<double>& measured = readings.at(s.target).values;
   std::vector<double> result;
@@ -206,38 +210,29 @@ std::optional<double> interval(const Strategy& strategy, const StrategySettings&
   return half;
 }
 
-FittedStrategy fit_one(const Strategy& strategy, const StrategySettings& s, std::span<const ObservedRun> training) {
-  FittedStrategy f = strategy.fit(training);
+DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, std::span<const ObservedRun> training) {
+  DeployedPredictor f = strategy.fit(training);
   f.name = strategy.name;
   f.is_baseline = strategy.is_baseline;
+  f.hall = s.hall;
   f.interval_um = interval(strategy, s, training);
   if (f.is_baseline) return f;
   std::vector<std::vector<double>> predicted;
-  for (const ObservedRun& run : training) predicted.push_back(f.predict(run));
+  for (const ObservedRun& run : training) predicted.push_back(live(*f.predictor, run));
   // an observer looks after its sensors itself
+  std::vector<std::string> guarded;
+  if (const DriftModel* formula = as_formula(*f.predictor)) guarded = formula->inputs();
   std::vector<Record> readings;
   for (const ObservedRun& run : training) readings.push_back(run.readings);
-  f.fail_safe =
-      learn_fail_safe(readings, f.model ? f.model->inputs() : std::vector<std::string>{}, predicted, s.count_from_start);
+  f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start);
   return f;
 }
 
 }  // namespace
 
-GuardedCorrection FittedStrategy::correct(const ObservedRun& run) const {
-  if (fail_safe) {
-    const Repaired readings = repaired(*fail_safe, run.readings);
-    return guarded(*fail_safe, readings, predict({run.cyclogram, run.hall, readings.readings}));
-  }
-  GuardedCorrection c{
-      .correction_um = predict(run), .trust = std::vector<double>(run.readings.n_samples(), 1.0), .events = {}};
-  for (double& v : c.correction_um) v = std::isfinite(v) ? v : 0.0;
-  return c;
-}
-
 FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const ObservedRun> training) {
   const std::vector<Strategy> list = strategies(settings);
-  std::vector<std::optional<FittedStrategy>> fitted(list.size());
+  std::vector<std::optional<DeployedPredictor>> fitted(list.size());
   std::vector<std::string> why(list.size());
   std::vector<std::exception_ptr> failures(list.size());
 #pragma omp parallel for schedule(dynamic, 1)

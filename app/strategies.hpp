@@ -1,17 +1,16 @@
 #pragma once
 // The strategies that are judged side by side: what each is fitted on, what it predicts from, and what keeps it safe.
 
-#include <functional>
 #include <optional>
 #include <span>
 
-#include "compensation/drift_model.hpp"
-#include "compensation/fail_safe.hpp"
+#include "compensation/deployed_predictor.hpp"
 #include "compensation/grey_relational.hpp"
 #include "compensation/observer.hpp"
 
 namespace driftwright::app {
 
+using compensation::DeployedPredictor;
 using compensation::ObservedRun;
 
 /// A linear model of the machine that strategies may use. It need not be right.
@@ -34,31 +33,13 @@ struct StrategySettings {
   std::string without_physics = {};  ///< why there is none; empty: nobody asked for it
 };
 
-/// A strategy fitted on training runs.
-struct FittedStrategy {
-  std::string name;
-  bool is_baseline = false;          ///< what a strategy has to beat; it has no fail-safe
-  std::vector<std::string> sensors;  ///< thermometers it reads
-  std::string reason;                ///< what the fit decided, one sentence; may be empty
-  /// Drift [um] per row of the run's readings; NaN where it cannot say.
-  std::function<std::vector<double>(const ObservedRun&)> predict;
-  std::optional<compensation::DriftModel> model;  ///< where it is a formula
-  std::optional<compensation::FailSafe> fail_safe;
-  /// Half width of the 95 % prediction interval [um]: of each training run left out in turn the error that 95 % of its rows keep, the
-  /// largest of those. None where only one run was given.
-  std::optional<double> interval_um;
-
-  /// The correction as it goes to an axis: of repaired readings, guarded. Without a fail-safe the prediction, 0 where it says nothing.
-  [[nodiscard]] compensation::GuardedCorrection correct(const ObservedRun& run) const;
-};
-
 /// One that could not be fitted, and why.
 struct LeftOut {
   std::string name, why;
 };
 
 struct FittedStrategies {
-  std::vector<FittedStrategy> strategies;  ///< from the simplest to the most elaborate; baselines first
+  std::vector<DeployedPredictor> strategies;  ///< from the simplest to the most elaborate; baselines first
   std::vector<LeftOut> left_out;
 };
 

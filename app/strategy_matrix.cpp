@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
+#include "compensation/drift_model.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -25,34 +26,6 @@ double range_until(const std::vector<double>& time_s, const std::vector<double>&
     high = std::max(high, x[i]);
   }
   return high >= low ? high - low : std::numeric_limits<double>::quiet_NaN();
-}
-
-Case judge(const FittedStrategy& strategy, std::size_t index, const ObservedRun& run, const std::vector<double>& drift_um) {
-  Case c;
-  c.run = index;
-  const std::vector<double> predicted = strategy.predict(run);
-  const GuardedCorrection correction = strategy.correct(run);
-  std::vector<double> left, unguarded;
-  int n_inside = 0, n = 0;
-  for (std::size_t i = 0; i < drift_um.size(); ++i) {
-    left.push_back(drift_um[i] - correction.correction_um[i]);
-    if (std::isfinite(left.back())) c.harm_um = std::max(c.harm_um, std::abs(left.back()) - std::abs(drift_um[i]));
-    const double off = drift_um[i] - predicted[i];
-    if (std::isnan(drift_um[i])) continue;
-    unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
-    ++n;
-    if (strategy.interval_um && std::abs(off) <= *strategy.interval_um) ++n_inside;
-  }
-  c.before = score(drift_um);
-  c.after = score(left);
-  for (double off : unguarded) c.peak_unguarded_um = std::max(c.peak_unguarded_um, std::abs(off));
-  std::erase_if(unguarded, [](double off) { return std::isinf(off); });
-  c.rms_unguarded_um = score(unguarded).rmse;
-  c.first_hour_um = range_until(run.readings.time_s, left, kHour_s);
-  c.whole_um = range_until(run.readings.time_s, left, std::numeric_limits<double>::infinity());
-  c.covered = strategy.interval_um && n > 0 ? static_cast<double>(n_inside) / n : std::numeric_limits<double>::quiet_NaN();
-  c.events = correction.events;
-  return c;
 }
 
 struct Failure {
@@ -76,7 +49,8 @@ TimeSeries held_from(const TimeSeries& hall, double from_s) {
 }
 
 /// What to run one strategy on: the run as it is, and with each of its sensors failed in each way.
-std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings& settings, const FittedStrategy& strategy,
+std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings& settings,
+                                                            const DeployedPredictor& strategy,
                                                             const JudgedRunOfMachine& judged) {
   std::vector<std::pair<std::string, ObservedRun>> list = {{"", judged.run}};
   if (!settings.fails_at || judged.season != settings.fails_in) return list;
@@ -216,6 +190,33 @@ const JudgedStrategy* best_strategy(const StrategyMatrix& matrix) {
   return best;
 }
 
+Case judge(const DeployedPredictor& strategy, const ObservedRun& run, const std::vector<double>& drift_um) {
+  Case c;
+  const std::vector<double> predicted = live(*strategy.predictor, run);
+  const GuardedCorrection correction = correct(strategy, run);
+  std::vector<double> left, unguarded;
+  int n_inside = 0, n = 0;
+  for (std::size_t i = 0; i < drift_um.size(); ++i) {
+    left.push_back(drift_um[i] - correction.correction_um[i]);
+    if (std::isfinite(left.back())) c.harm_um = std::max(c.harm_um, std::abs(left.back()) - std::abs(drift_um[i]));
+    const double off = drift_um[i] - predicted[i];
+    if (std::isnan(drift_um[i])) continue;
+    unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
+    ++n;
+    if (strategy.interval_um && std::abs(off) <= *strategy.interval_um) ++n_inside;
+  }
+  c.before = score(drift_um);
+  c.after = score(left);
+  for (double off : unguarded) c.peak_unguarded_um = std::max(c.peak_unguarded_um, std::abs(off));
+  std::erase_if(unguarded, [](double off) { return std::isinf(off); });
+  c.rms_unguarded_um = score(unguarded).rmse;
+  c.first_hour_um = range_until(run.readings.time_s, left, kHour_s);
+  c.whole_um = range_until(run.readings.time_s, left, std::numeric_limits<double>::infinity());
+  c.covered = strategy.interval_um && n > 0 ? static_cast<double>(n_inside) / n : std::numeric_limits<double>::quiet_NaN();
+  c.events = correction.events;
+  return c;
+}
+
 StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
                                 std::vector<JudgedRunOfMachine> runs) {
   StrategyMatrix matrix{
@@ -234,7 +235,8 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
       throw InputError(fmt::format("{}: '{}' has no value in any row; there is nothing to judge by", matrix.runs[r].name,
                                    settings.strategies.target));
   }
-  if (std::all_of(fitted.strategies.begin(), fitted.strategies.end(), [](const FittedStrategy& f) { return f.is_baseline; }))
+  if (std::all_of(fitted.strategies.begin(), fitted.strategies.end(),
+                  [](const DeployedPredictor& f) { return f.is_baseline; }))
     throw InputError(
         fmt::format("no strategy could be fitted; {}: {}", matrix.left_out.front().name, matrix.left_out.front().why));
   const std::size_t n_runs = matrix.runs.size(), n_jobs = fitted.strategies.size() * n_runs;
@@ -242,11 +244,12 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
   std::vector<std::exception_ptr> failures(n_jobs);
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t job = 0; job < n_jobs; ++job) {
-    const FittedStrategy& strategy = fitted.strategies[job / n_runs];
+    const DeployedPredictor& strategy = fitted.strategies[job / n_runs];
     const std::size_t r = job % n_runs;
     try {
       for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
-        cases[job].push_back(judge(strategy, r, run, drift_um[r]));
+        cases[job].push_back(judge(strategy, run, drift_um[r]));
+        cases[job].back().run = r;
         cases[job].back().failed = failed;
       }
     } catch (...) {

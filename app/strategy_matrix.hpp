@@ -42,7 +42,7 @@ enum class Safety { kSafe, kWithinLimits, kUnsafe };
 
 /// All cases of one strategy.
 struct JudgedStrategy {
-  FittedStrategy fitted;
+  DeployedPredictor fitted;
   std::vector<Case> cases;
   Safety safety = Safety::kUnsafe;
   std::string why;        ///< one sentence
@@ -59,6 +59,9 @@ struct StrategyMatrix {
   MatrixSettings settings;
   std::vector<std::string> findings = {};  ///< about the records themselves, a sentence each
 };
+
+/// What one predictor leaves of the drift of one run. @param drift_um  per row of the run's readings, true; from the start, where it counts so
+[[nodiscard]] Case judge(const DeployedPredictor& strategy, const ObservedRun& run, const std::vector<double>& drift_um);
 
 /// Fits on `training`, judges on `runs`. Cases go side by side on all cores; the result is the same on any number of them.
 [[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,

@@ -8,8 +8,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "compensation/formula_predictor.hpp"
 #include "output/csv_row.hpp"
 #include "output/drift_model_files.hpp"
+#include "output/predictor_file.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -30,6 +32,14 @@ std::string percent(double share) {
 
 bool is_intact(const Case& c) {
   return c.failed.empty();
+}
+
+/// A strategy that is a formula, as text and C have it.
+std::optional<output::DeployedModel> formula_of(const JudgedStrategy& s) {
+  const DriftModel* model = as_formula(*s.fitted.predictor);
+  if (!model || !s.fitted.fail_safe) return std::nullopt;
+  return output::DeployedModel{*model, *s.fitted.fail_safe,
+                               s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN())};
 }
 
 bool has_failures(const StrategyMatrix& m) {
@@ -90,7 +100,7 @@ output::Plot course(const StrategyMatrix& m, std::size_t run, const std::vector<
       .series = {
           {.label = r.season.empty() ? "measured" : "true", .x = t_min, .y = counted.at(target).values, .width = 3.0}}};
   for (const JudgedStrategy* s : shown)
-    plot.series.push_back({.label = s->fitted.name, .x = t_min, .y = s->fitted.predict(r.run)});
+    plot.series.push_back({.label = s->fitted.name, .x = t_min, .y = live(*s->fitted.predictor, r.run)});
   return plot;
 }
 
@@ -229,42 +239,58 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
   for (const LeftOut& l : m.left_out) fits.rows.push_back({l.name, "left out: " + l.why});
   blocks.emplace_back(std::move(fits));
   for (const JudgedStrategy& s : m.strategies) {
-    if (s.fitted.model && s.fitted.fail_safe && s.fitted.name == "regression, forward") {
+    if (const std::optional<output::DeployedModel> d = formula_of(s); d && s.fitted.name == "regression, forward") {
       blocks.emplace_back(output::Heading{"The formula of '" + s.fitted.name + "'"});
-      blocks.emplace_back(output::Preformatted{
-          output::formula_text({*s.fitted.model, *s.fitted.fail_safe, s.fitted.interval_um.value_or(NAN)})});
+      blocks.emplace_back(output::Preformatted{output::formula_text(*d)});
     }
   }
   return blocks;
 }
 
-Json strategy_json(const StrategyMatrix& m) {
+namespace {
+
+/// What a strategy was found to be, on the runs of the matrix.
+Json verdict_json(const JudgedStrategy& s) {
+  const Worst intact = worst_of(s, is_intact), failed = worst_of(s, [](const Case&c) { return !is_intact(c); });
+  Json entry = Json::object();
+  if (!s.fitted.is_baseline) {
+    entry["verdict"] = word(s.safety);
+    entry["why"] = s.why;
+    entry["keeps_tolerance_in"] = s.limits;
+    entry["beaten_by"] = s.beaten_by;
+  }
+  entry["worst_left_percent"] = 100.0 * intact.left;
+  entry["worst_peak_um"] = intact.peak ? intact.peak->after.peak_abs : NAN;
+  entry["largest_rms_um"] = intact.rms_um;
+  entry["overall_rms_um"] = overall_rms(s);
+  if (failed.peak) {
+    entry["failed_sensor_worst_left_percent"] = 100.0 * failed.left;
+    entry["failed_sensor_worst_peak_um"] = failed.peak->after.peak_abs;
+  }
+  entry["interval_95_um"] = s.fitted.interval_um ? Json(*s.fitted.interval_um) : Json(nullptr);
+  entry["covered_percent"] = s.fitted.interval_um ? Json(100.0 * intact.mean_covered) : Json(nullptr);
+  return entry;
+}
+
+/// The conditions that all of them were judged under.
+Json conditions_json(const StrategyMatrix& m) {
   Json j = {{"target", m.settings.strategies.target},
             {"tolerance_um", m.settings.tolerance_um},
             {"count_from_start", m.settings.strategies.count_from_start}};
   for (const ObservedRun& r : m.training) j["trained_on"].push_back(r.readings.source);
+  return j;
+}
+
+}  // namespace
+
+Json strategy_json(const StrategyMatrix& m) {
+  Json j = conditions_json(m);
   for (const JudgedStrategy& s : m.strategies) {
-    const Worst intact = worst_of(s, is_intact), failed = worst_of(s, [](const Case&c) { return !is_intact(c); });
     Json entry = {{"name", s.fitted.name},
                   {"baseline", s.fitted.is_baseline},
                   {"sensors", s.fitted.sensors},
                   {"decided", s.fitted.reason}};
-    if (!s.fitted.is_baseline) {
-      entry["verdict"] = word(s.safety);
-      entry["why"] = s.why;
-      entry["keeps_tolerance_in"] = s.limits;
-      entry["beaten_by"] = s.beaten_by;
-    }
-    entry["worst_left_percent"] = 100.0 * intact.left;
-    entry["worst_peak_um"] = intact.peak ? intact.peak->after.peak_abs : NAN;
-    entry["largest_rms_um"] = intact.rms_um;
-    entry["overall_rms_um"] = overall_rms(s);
-    if (failed.peak) {
-      entry["failed_sensor_worst_left_percent"] = 100.0 * failed.left;
-      entry["failed_sensor_worst_peak_um"] = failed.peak->after.peak_abs;
-    }
-    entry["interval_95_um"] = s.fitted.interval_um ? Json(*s.fitted.interval_um) : Json(nullptr);
-    entry["covered_percent"] = s.fitted.interval_um ? Json(100.0 * intact.mean_covered) : Json(nullptr);
+    entry.update(verdict_json(s));
     j["strategies"].push_back(std::move(entry));
   }
   for (const std::string& family : families_of(m)) j["simplest_enough"][family] = enough_text(m, family);
@@ -321,11 +347,9 @@ std::string strategy_text(const StrategyMatrix& m) {
   return text;
 }
 
-void write_models(const StrategyMatrix& m, output::ResultsFolder& folder) {
+void write_models(const StrategyMatrix& m, const std::vector<effects::Effect>& effects, output::ResultsFolder& folder) {
   for (const JudgedStrategy& s : m.strategies) {
-    if (!s.fitted.model || !s.fitted.fail_safe) continue;
-    const output::DeployedModel d{*s.fitted.model, *s.fitted.fail_safe,
-                                  s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN())};
+    if (s.fitted.is_baseline) continue;
     std::string name;
     for (char ch : s.fitted.name) {
       if (std::isalnum(static_cast<unsigned char>(ch))) {
@@ -334,11 +358,19 @@ void write_models(const StrategyMatrix& m, output::ResultsFolder& folder) {
         name += '_';
       }
     }
-    folder.write_text(fmt::format("models/{}.json", name), output::model_json(d).dump(2) + "\n");
-    folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(d));
+    Json judged = conditions_json(m);
+    for (const JudgedRunOfMachine& r : m.runs)
+      judged["judged_on"].push_back({{"run", r.name}, {"family", r.family}, {"season", r.season}});
+    judged["with_failed_sensors"] = has_failures(m);
+    judged.update(verdict_json(s));
+    folder.write_text(fmt::format("models/{}.json", name),
+                      output::predictor_json({s.fitted, std::move(judged)}, effects, folder.made_by()).dump(1) + "\n");
+    const std::optional<output::DeployedModel> formula = formula_of(s);
+    if (!formula) continue;
+    folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(*formula));
     folder.write_text(fmt::format("models/{}.c", name),
-                      output::c_function(d, fmt::format("Driftwright {}, scenario {}", folder.made_by().version,
-                                                        folder.made_by().scenario)));
+                      output::c_function(*formula, fmt::format("Driftwright {}, scenario {}", folder.made_by().version,
+                                                               folder.made_by().scenario)));
   }
 }
 

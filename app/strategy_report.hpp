@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/strategy_matrix.hpp"
+#include "effects/effect.hpp"
 #include "output/html_report.hpp"
 #include "output/results_folder.hpp"
 
@@ -15,7 +16,8 @@ namespace driftwright::app {
 [[nodiscard]] std::string strategy_csv(const StrategyMatrix& matrix);
 [[nodiscard]] std::string strategy_text(const StrategyMatrix& matrix);
 
-/// models/<strategy>.json, .txt and .c of each strategy that is a formula.
-void write_models(const StrategyMatrix& matrix, output::ResultsFolder& folder);
+/// models/<strategy>.json of each strategy but the baselines, with its verdict and the conditions it was judged under; .txt and .c of those that
+/// are formulas. @param effects  of the scenario's machine
+void write_models(const StrategyMatrix& matrix, const std::vector<effects::Effect>& effects, output::ResultsFolder& folder);
 
 }  // namespace driftwright::app

@@ -48,7 +48,7 @@ void validate_machine(const scenarios::Scenario& scenario, const CommonOptions& 
     summary["validation"] = strategy_json(matrix);
     page.blocks = strategy_blocks(matrix);
     folder.write_text("strategies.csv", strategy_csv(matrix));
-    write_models(matrix, folder);
+    write_models(matrix, scenario.machine->effects, folder);
     text += strategy_text(matrix);
   }
   if (scenario.programme) {
@@ -89,8 +89,7 @@ void validate(const RecordOptions& options) {
   }
   const scenarios::Study& settings = require_study(scenario, "validate");
   const StudyRecords records = read_records(settings, options);
-  std::vector<std::string> warnings =
-      sensor_warnings(records.train, candidate_sensors(settings, records.train.front()));
+  std::vector<std::string> warnings = sensor_warnings(records.train, candidate_sensors(settings, records.train.front()));
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   const StrategyMatrix matrix = validate_on_records(scenario, records.train, records.test, progress);
@@ -106,7 +105,7 @@ void validate(const RecordOptions& options) {
   for (const std::string& warning : warnings) page.blocks.emplace_back(output::Paragraph{"Warning: " + warning + "."});
   folder.write_text("summary.json", output::json_text(summary));
   folder.write_text("strategies.csv", strategy_csv(matrix));
-  write_models(matrix, folder);
+  write_models(matrix, scenario.machine ? scenario.machine->effects : std::vector<effects::Effect>{}, folder);
   folder.write_text("report.html", output::render_html(page));
   folder.commit();
   fmt::print("{}", strategy_text(matrix));

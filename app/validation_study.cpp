@@ -88,6 +88,21 @@ std::string why_not_in_balance(const scenarios::MachineModel& machine, const Obs
   return "";
 }
 
+/// A record as predictors see it: drive and hall as the scenario's effects say that they were.
+/// @param has_hall  whether the hall is taken from the record; otherwise from the scenario
+ObservedRun observed_run(const Scenario& scenario, const Record& record, scenarios::RecordedRun recorded, bool has_hall) {
+  ObservedRun run{.cyclogram = std::move(recorded.cyclogram), .hall = std::move(recorded.hall), .readings = record};
+  run.readings.time_s = std::move(recorded.time_s);
+  if (!scenario.machine) return run;
+  scenarios::MachineModel there = *scenario.machine;
+  if (has_hall) there.hall = run.hall;
+  scenarios::FeltRun felt = scenarios::felt_run(there, run.cyclogram);
+  felt.cyclogram.name = run.cyclogram.name;
+  run.cyclogram = std::move(felt.cyclogram);
+  run.hall = std::move(felt.hall);
+  return run;
+}
+
 /// What strategies may know of the machine behind records, or why nothing.
 struct RecordedPhysics {
   std::optional<Physics> physics;
@@ -147,6 +162,13 @@ std::optional<Physics> physics_of(const Scenario& scenario, const Model& model, 
   const ModalPredictor modes =
       make_ritz_predictor(reduced->system, reduced->start, kObserverModes, {.drive = {}, .hall_K = hall_K});
   return Physics{scattered(modes.system, scatter, seed, true), modes.start, hall_K};
+}
+
+ObservedRun observed_run(const Scenario& scenario, const Record& record, const std::string& hall) {
+  scenarios::RecordedRun recorded = scenarios::run_of(record, scenario.machine ? &*scenario.machine : nullptr,
+                                                      hall_sensors(scenario), scenarios::Reading::kLenient);
+  const bool has_hall = !hall.empty() && recorded.hall_channel == hall;
+  return observed_run(scenario, record, std::move(recorded), has_hall);
 }
 
 std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record) {
@@ -272,20 +294,8 @@ StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<R
   if (!has_hall)
     findings.emplace_back("not every record has the hall's temperature in the same channel; it is used from none");
   std::vector<ObservedRun> seen;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    ObservedRun run{
-        .cyclogram = std::move(recorded[r].cyclogram), .hall = std::move(recorded[r].hall), .readings = *records[r]};
-    run.readings.time_s = std::move(recorded[r].time_s);
-    if (machine) {  // drive and hall as the scenario's effects say that they were
-      scenarios::MachineModel there = *machine;
-      if (has_hall) there.hall = run.hall;
-      scenarios::FeltRun felt = scenarios::felt_run(there, run.cyclogram);
-      felt.cyclogram.name = run.cyclogram.name;
-      run.cyclogram = std::move(felt.cyclogram);
-      run.hall = std::move(felt.hall);
-    }
-    seen.push_back(std::move(run));
-  }
+  for (std::size_t r = 0; r < records.size(); ++r)
+    seen.push_back(observed_run(scenario, *records[r], std::move(recorded[r]), has_hall));
   MatrixSettings settings;
   StrategySettings& how = settings.strategies;
   how.target = study.target;

@@ -18,6 +18,10 @@ namespace driftwright::app {
 [[nodiscard]] StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, const std::vector<Record>& training,
                                                  const std::vector<Record>& test, Progress& progress);
 
+/// A measured record as a predictor sees it that was fitted on records of the same scenario.
+/// @param hall  channel that the hall was read from in the training records; "" for none
+[[nodiscard]] ObservedRun observed_run(const scenarios::Scenario& scenario, const Record& record, const std::string& hall);
+
 /// The model as strategies get it, off by random factors (compensation::scattered()); none where it is not a linear reduced one.
 [[nodiscard]] std::optional<Physics> physics_of(const scenarios::Scenario& scenario, const Model& model, double scatter,
                                                 int seed);

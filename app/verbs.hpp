@@ -60,9 +60,10 @@ void select(const RecordOptions& options);
 void validate(const RecordOptions& options);
 
 struct CompensateOptions : CommonOptions {
-  std::string model;      ///< a model.json of `validate`, or modes, observer, regression
-  std::string through;    ///< injector, schedule, frame
+  std::string model;      ///< a predictor's file of `validate`, or modes; through the frame modes, observer, regression
+  std::string through;    ///< none, injector, schedule, frame
   std::string cyclogram;  ///< name; empty: the one that the study judges by
+  std::string measured;   ///< a record CSV in place of a simulation; empty: simulate
 };
 void compensate(const CompensateOptions& options);
 

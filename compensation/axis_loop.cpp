@@ -141,7 +141,7 @@ InjectedSeries drive_axis(const AxisLoop& loop, std::span<const double> time_s, 
 }
 
 AxisLoopRun run_axis_loop(const AxisLoop& loop, const Record& truth, const std::string& channel,
-                          const Predictor& predictor) {
+                          const PredictedFromReadings& predicted) {
   const Record exact = sampled(truth, loop.sampling_s);
   AxisLoopRun run;
   run.time_s = exact.time_s;
@@ -152,8 +152,8 @@ AxisLoopRun run_axis_loop(const AxisLoop& loop, const Record& truth, const std::
     error_um[i] = drift_um[i] + growth[i];
     if (!std::isfinite(error_um[i])) throw InputError(fmt::format("'{}' is missing at {} s", channel, exact.time_s[i]));
   }
-  const std::vector<double> ideal_um = kept_where_missing(predictor(exact));
-  run.predicted_um = predictor(as_read(exact, loop.thermometers, loop.seed));
+  const std::vector<double> ideal_um = kept_where_missing(predicted(exact));
+  run.predicted_um = predicted(as_read(exact, loop.thermometers, loop.seed));
   const std::vector<double> read_um = kept_where_missing(run.predicted_um);
   const std::vector<double> counted_um = in_insertions(loop, read_um);
 

@@ -49,7 +49,7 @@ struct AxisLoop {
 };
 
 /// Predicted error [um] for each row of the readings, in their order; NaN where there is none: the correction then stays.
-using Predictor = std::function<std::vector<double>(const Record& readings)>;
+using PredictedFromReadings = std::function<std::vector<double>(const Record& readings)>;
 
 /// Whole insertions for a wished correction, the rest carried: between two calls the sum of what was given and the wish differ by half
 /// an insertion at most, plus the hysteresis.
@@ -121,6 +121,6 @@ struct AxisLoopRun {
 /// @param channel  displacement = error of the tool, um
 /// @throws InputError  when a channel is missing or is no number somewhere, or when no sample but the first is at rest
 [[nodiscard]] AxisLoopRun run_axis_loop(const AxisLoop& loop, const Record& truth, const std::string& channel,
-                                        const Predictor& predictor);
+                                        const PredictedFromReadings& predicted);
 
 }  // namespace driftwright::compensation

@@ -19,7 +19,8 @@ constexpr double kOutlier = 6.0;       // deviations of one innovation: that rea
 constexpr double kMemory = 0.9;        // of the mean innovation from row to row
 constexpr std::size_t kRowsBack = 30;  // to which the filter returns when a sensor is dropped
 constexpr double kZero = 2.0;          // of an indicator's deviation: what its zero may be off by
-constexpr double kStart_K = 0.1;       // by which all of the machine may be warmer than the start says
+constexpr std::size_t kStepsKept = 512;
+constexpr double kStart_K = 0.1;  // by which all of the machine may be warmer than the start says
 
 }  // namespace
 
@@ -29,19 +30,16 @@ struct Observer::Step {
   std::vector<double> power_W, coefficient;
 };
 
-class Observer::Run {
+class Observer::Run final : public Follower {
  public:
-  Run(const Observer& observer, const ObservedRun& run, bool with_drift)
-      : o_(observer), s_(observer.system_), run_(run), with_drift_(with_drift) {
+  Run(const Observer& observer, bool with_drift) : o_(observer), s_(observer.system_), with_drift_(with_drift) {
     n_ = s_.size();
     n_sources_ = static_cast<Eigen::Index>(s_.sources.size());
     n_exchanges_ = static_cast<Eigen::Index>(s_.exchanges.size());
     const Eigen::Index n_factors = o_.factors_.mean.size(), n_all = n_ + n_factors + 1;
     scale_ = n_all - 2;
     zero_ = n_all - 1;
-    const double first_s = run.readings.time_s.front(), hall_K = run.hall.at(first_s);
     belief_ = {Eigen::VectorXd::Zero(n_all), Eigen::MatrixXd::Zero(n_all, n_all)};
-    belief_.mean.head(n_) = o_.start_ + (hall_K - o_.start_hall_K_) * s_.ones;
     belief_.covariance.topLeftCorner(n_, n_) = kStart_K * kStart_K * s_.ones * s_.ones.transpose();
     belief_.mean.segment(n_, n_factors) = o_.factors_.mean;
     belief_.covariance.block(n_, n_, n_factors, n_factors) = o_.factors_.covariance;
@@ -49,41 +47,26 @@ class Observer::Run {
     live_.assign(o_.sensors_.size(), true);
     mean_innovation_.assign(o_.sensors_.size(), 0.0);
     last_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
-    for (const std::string& name : o_.sensors_) readings_.push_back(&run.readings.at(name).values);
-    if (with_drift_) {
-      drift_um_ = &run.readings.at(o_.drift_).values;
-      while (first_drift_ < drift_um_->size() && !std::isfinite((*drift_um_)[first_drift_])) ++first_drift_;
-    }
-    start_state_ = belief_.mean.head(n_);
-    start_hall_K_ = hall_K;
   }
 
-  Observation go() {
-    Observation seen;
-    const std::vector<double>& t = run_.readings.time_s;
-    seen.outputs.resize(s_.outputs.state.cols(), static_cast<Eigen::Index>(t.size()));
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      history_.push_back({i, belief_});
-      if (history_.size() > kRowsBack) history_.pop_front();
-      take_row(i);
-      if (const int suspect = worst_suspect(i); suspect >= 0) {
-        live_[static_cast<std::size_t>(suspect)] = false;
-        seen.distrusted.push_back(
-            fmt::format("{} from {:.0f} min", o_.sensors_[static_cast<std::size_t>(suspect)], t[i] / 60.0));
-        belief_ = history_.front().belief;
-        mean_innovation_.assign(mean_innovation_.size(), 0.0);
-        last_s_.assign(last_s_.size(), std::numeric_limits<double>::quiet_NaN());
-        last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
-        for (std::size_t k = history_.front().row; k <= i; ++k) take_row(k);
-        history_.clear();
-      }
-      seen.outputs.col(static_cast<Eigen::Index>(i)) = s_.observe(belief_.mean.head(n_), run_.hall.at(t[i]));
-      seen.drift_um.push_back(1e6 * drift_m(t[i]));
-      const Eigen::VectorXd h = drift_gradient();
-      seen.deviation_um.push_back(1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h))));
-    }
-    return seen;
+  double next(const ObservedRun& run) override {
+    if (row_ == 0) begin(run);
+    history_.push_back({row_, belief_});
+    if (history_.size() > kRowsBack) history_.pop_front();
+    take_row(run, row_);
+    if (const int suspect = worst_suspect(row_); suspect >= 0) drop(run, static_cast<std::size_t>(suspect));
+    return 1e6 * drift_m(run, run.readings.time_s[row_++]);
   }
+
+  /// Of the rows taken so far, the last.
+  [[nodiscard]] double deviation_um() const {
+    const Eigen::VectorXd h = drift_gradient();
+    return 1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h)));
+  }
+  [[nodiscard]] Eigen::VectorXd outputs(const ObservedRun& run) const {
+    return s_.observe(belief_.mean.head(n_), run.hall.at(run.readings.time_s[row_ - 1]));
+  }
+  [[nodiscard]] const std::vector<std::string>& distrusted() const { return distrusted_; }
 
   [[nodiscard]] Belief factors() const {
     const Eigen::Index n_factors = o_.factors_.mean.size();
@@ -96,35 +79,62 @@ class Observer::Run {
     Belief belief;  // before that row's step and readings
   };
 
-  void take_row(std::size_t i) {
-    const std::vector<double>& t = run_.readings.time_s;
-    if (i > 0) advance(t[i - 1], t[i]);
-    for (std::size_t k = 0; k < readings_.size(); ++k) {
-      const double read = (*readings_[k])[i];
+  void begin(const ObservedRun& run) {
+    const auto channel = [&](const std::string& name) {
+      return static_cast<std::size_t>(&run.readings.at(name) - run.readings.channels.data());
+    };
+    for (const std::string& name : o_.sensors_) sensor_channel_.push_back(channel(name));
+    if (with_drift_) drift_channel_ = channel(o_.drift_);
+    start_hall_K_ = run.hall.at(run.readings.time_s.front());
+    belief_.mean.head(n_) = o_.start_ + (start_hall_K_ - o_.start_hall_K_) * s_.ones;
+    start_state_ = belief_.mean.head(n_);
+  }
+
+  /// Goes back to before its mean innovation began to grow, and follows the rows since then without it.
+  void drop(const ObservedRun& run, std::size_t sensor) {
+    live_[sensor] = false;
+    distrusted_.push_back(fmt::format("{} from {:.0f} min", o_.sensors_[sensor], run.readings.time_s[row_] / 60.0));
+    belief_ = history_.front().belief;
+    mean_innovation_.assign(mean_innovation_.size(), 0.0);
+    last_s_.assign(last_s_.size(), std::numeric_limits<double>::quiet_NaN());
+    last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t k = history_.front().row; k <= row_; ++k) take_row(run, k);
+    history_.clear();
+  }
+
+  void take_row(const ObservedRun& run, std::size_t i) {
+    const std::vector<double>& t = run.readings.time_s;
+    const double hall_K = run.hall.at(t[i]);
+    if (i > 0) advance(run, t[i - 1], t[i]);
+    for (std::size_t k = 0; k < sensor_channel_.size(); ++k) {
+      const double read = run.readings.channels[sensor_channel_[k]].values[i];
       if (!live_[k] || std::isnan(read)) continue;
       const Eigen::Index output = o_.sensor_output_[k];
       Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
       h.head(n_) = s_.outputs.state.col(output);
-      const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * run_.hall.at(t[i]) + s_.reference_K - 273.15;
+      const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * hall_K + s_.reference_K - 273.15;
       const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, t[i], last_s_[k]);
       const double innovation = read - expected_K, spread = std::sqrt(h.dot(belief_.covariance * h) + variance);
       mean_innovation_[k] = kMemory * mean_innovation_[k] + (1.0 - kMemory) * innovation / spread;
       if (std::abs(innovation) < kOutlier * spread) correct(h, innovation, variance);
     }
-    if (with_drift_ && std::isfinite((*drift_um_)[i])) {
+    const double drift_um = with_drift_ ? run.readings.channels[drift_channel_].values[i] : std::nan("");
+    if (std::isfinite(drift_um)) {
       // counts from the start of the run; where it is missing there, from the model's at its first value
-      if (i == first_drift_) drift_zero_m_ = 1e-6 * (*drift_um_)[i] - (i > 0 ? drift_m(t[i]) : 0.0);
+      if (first_drift_ >= i) {
+        first_drift_ = i;
+        drift_zero_m_ = 1e-6 * drift_um - (i > 0 ? drift_m(run, t[i]) : 0.0);
+      }
       const double variance = 1e-12 * variance_of(o_.settings_.drift_um, o_.settings_.model_um, t[i], last_drift_s_);
       Eigen::VectorXd h = drift_gradient();
       h(zero_) = 1.0;
-      correct(h, 1e-6 * (*drift_um_)[i] - drift_zero_m_ - drift_m(t[i]) - belief_.mean(zero_), variance);
+      correct(h, 1e-6 * drift_um - drift_zero_m_ - drift_m(run, t[i]) - belief_.mean(zero_), variance);
     }
   }
 
   /// Of a reading's white error and the model's own, which readings near each other share. @param last_s  time of the one before; NaN: none
   [[nodiscard]] double variance_of(double white, double model, double t_s, double& last_s) const {
-    const std::vector<double>& t = run_.readings.time_s;
-    const double step_s = std::isnan(last_s) ? t[1] - t[0] : t_s - last_s;
+    const double step_s = std::isnan(last_s) ? o_.settings_.period_s : t_s - last_s;
     last_s = t_s;
     return white * white + model * model * std::max(1.0, o_.settings_.model_holds_s / step_s);
   }
@@ -145,16 +155,19 @@ class Observer::Run {
     return worst;
   }
 
-  void advance(double from_s, double to_s) {
+  void advance(const ObservedRun& run, double from_s, double to_s) {
     double section_end_s = 0.0;
-    for (std::size_t c = 0; c < run_.cyclogram.sections.size() && from_s < to_s; ++c) {
-      const bool is_last = c + 1 == run_.cyclogram.sections.size();
-      section_end_s += run_.cyclogram.sections[c].duration_s;
+    for (std::size_t c = 0; c < run.cyclogram.sections.size() && from_s < to_s; ++c) {
+      const bool is_last = c + 1 == run.cyclogram.sections.size();
+      section_end_s += run.cyclogram.sections[c].duration_s;
       const double until_s = is_last ? to_s : std::min(to_s, section_end_s);
       while (from_s < until_s - 1e-9) {
         const auto n_left = std::ceil((until_s - from_s) / o_.settings_.longest_step_s - 1e-9);
         const double h_s = (until_s - from_s) / n_left;
-        step(run_.cyclogram.sections[c].drive, run_.hall.at(from_s + 0.5 * h_s), from_s, h_s);
+        effects::Inputs at{
+            .drive = run.cyclogram.sections[c].drive, .hall_K = run.hall.at(from_s + 0.5 * h_s), .time_s = from_s};
+        at.run = run.cyclogram.name;
+        step(at, h_s);
         from_s += h_s;
       }
       from_s = std::max(from_s, std::min(until_s, to_s));
@@ -168,6 +181,7 @@ class Observer::Run {
     std::vector<double> key = now.coefficient;
     key.push_back(h_s);
     key.insert(key.end(), now.power_W.begin(), now.power_W.end());
+    if (steps_.size() >= kStepsKept) steps_.clear();  // periods that are never the same twice
     const auto [at, is_new] = steps_.try_emplace(std::move(key), Step{});
     if (!is_new) return at->second;
     Eigen::MatrixXd k = s_.conduction;
@@ -186,9 +200,8 @@ class Observer::Run {
     return at->second;
   }
 
-  void step(const Drive& drive, double hall_K, double at_s, double h_s) {
-    effects::Inputs at{.drive = drive, .hall_K = hall_K, .time_s = at_s};
-    at.run = run_.cyclogram.name;
+  void step(const effects::Inputs& at, double h_s) {
+    const double hall_K = at.hall_K;
     const Step& now = step_of(at, h_s);
     const Eigen::VectorXd z = belief_.mean.head(n_);
     Eigen::VectorXd load = Eigen::VectorXd::Zero(n_);
@@ -231,9 +244,9 @@ class Observer::Run {
   }
 
   /// Since the start of the run: a scale of the displacement leaves alone what was there before.
-  [[nodiscard]] double drift_m(double time_s) const {
+  [[nodiscard]] double drift_m(const ObservedRun& run, double time_s) const {
     return (1.0 + belief_.mean(scale_)) * unscaled_drift_m() +
-           s_.outputs.hall(o_.drift_output_) * (run_.hall.at(time_s) - start_hall_K_);
+           s_.outputs.hall(o_.drift_output_) * (run.hall.at(time_s) - start_hall_K_);
   }
   [[nodiscard]] double unscaled_drift_m() const {
     return s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_) - start_state_);
@@ -247,17 +260,17 @@ class Observer::Run {
 
   const Observer& o_;
   const solver::ReducedSystem& s_;
-  const ObservedRun& run_;
   bool with_drift_;
   Eigen::Index n_ = 0, n_sources_ = 0, n_exchanges_ = 0;
   Eigen::Index scale_ = 0, zero_ = 0;  // of the drift: its factor, and what the indicator showed at the start of the run
   Belief belief_;
   Eigen::VectorXd start_state_;
   double start_hall_K_ = 0.0, drift_zero_m_ = 0.0;
-  std::size_t first_drift_ = 0;
-  std::vector<const std::vector<double>*> readings_;
-  const std::vector<double>* drift_um_ = nullptr;
+  std::size_t row_ = 0, first_drift_ = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> sensor_channel_;
+  std::size_t drift_channel_ = 0;
   std::vector<bool> live_;
+  std::vector<std::string> distrusted_;
   std::vector<double> mean_innovation_;
   std::vector<double> last_s_;  // of each sensor's readings
   double last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
@@ -288,9 +301,10 @@ Observer::Observer(solver::ReducedSystem system, Eigen::VectorXd start, double s
 }
 
 void Observer::learn(std::span<const ObservedRun> runs) {
+  if (!runs.empty()) settings_.period_s = runs.front().readings.time_s.at(1) - runs.front().readings.time_s.at(0);
   for (const ObservedRun& run : runs) {
-    Run pass(*this, run, true);
-    (void)pass.go();
+    Run pass(*this, true);
+    for (std::size_t i = 0; i < run.readings.n_samples(); ++i) (void)pass.next(run);
     factors_ = pass.factors();
   }
 }
@@ -301,8 +315,43 @@ Observer Observer::with_sensors(std::vector<std::string> sensors) const {
   return other;
 }
 
-Observation Observer::follow(const ObservedRun& run) const {
-  return Run(*this, run, false).go();
+Observation Observer::observe(const ObservedRun& run) const {
+  Run pass(*this, false);
+  const std::size_t n = run.readings.n_samples();
+  Observation seen;
+  seen.outputs.resize(system_.outputs.state.cols(), static_cast<Eigen::Index>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    seen.drift_um.push_back(pass.next(run));
+    seen.deviation_um.push_back(pass.deviation_um());
+    seen.outputs.col(static_cast<Eigen::Index>(i)) = pass.outputs(run);
+  }
+  seen.distrusted = pass.distrusted();
+  return seen;
+}
+
+std::vector<Input> Observer::inputs() const {
+  std::vector<Input> inputs;
+  for (const std::string& sensor : sensors_) inputs.push_back({sensor, "degC"});
+  return inputs;
+}
+
+std::unique_ptr<Follower> Observer::follow() const {
+  return std::make_unique<Run>(*this, false);
+}
+
+Observer::State Observer::state() const {
+  return {system_, start_, start_hall_K_, sensors_, drift_, settings_, factors_};
+}
+
+Observer Observer::of_state(State state) {
+  Observer observer(std::move(state.system), std::move(state.start), state.start_hall_K, std::move(state.sensors),
+                    std::move(state.drift), state.settings);
+  if (state.factors.mean.size() != observer.factors_.mean.size() ||
+      state.factors.covariance.rows() != observer.factors_.covariance.rows() ||
+      state.factors.covariance.cols() != observer.factors_.covariance.cols())
+    throw std::logic_error("an observer has a factor on each heat flow and one on the drift");
+  observer.factors_ = std::move(state.factors);
+  return observer;
 }
 
 std::vector<Observer::Factor> Observer::factors() const {

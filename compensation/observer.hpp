@@ -5,7 +5,7 @@
 #include <map>
 #include <span>
 
-#include "base/record.hpp"
+#include "compensation/predictor.hpp"
 #include "solver/model_factors.hpp"
 
 namespace driftwright::compensation {
@@ -21,13 +21,7 @@ struct ObserverSettings {
   double factor_walk = 0.02;     ///< by which a factor may wander in an hour
   double scale = 0.05;           ///< of each displacement
   double longest_step_s = 60.0;  ///< of the filter between readings
-};
-
-/// One run of the machine as the observer sees it.
-struct ObservedRun {
-  Cyclogram cyclogram;
-  TimeSeries hall;  ///< minus the reference temperature [K]
-  Record readings;  ///< channels named as the model's outputs; temperatures in degC, displacements in um
+  double period_s = 60.0;        ///< that the first readings of a run stand for; learn() takes it from its first run
 };
 
 struct Observation {
@@ -45,7 +39,7 @@ struct Observation {
 /// K(u) enters by its exponential, exact for any step; factors on exchanges act as heat over a step. Where readings keep away from what the
 /// rest expects (their mean over about ten rows by more than five deviations), the sensor is dropped for the rest of the run and the filter
 /// goes back to before it began. Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
-class Observer {
+class Observer final : public Predictor {
  public:
   /// @param system   linear, M = 1; copied
   /// @param start    its state at the start of every run at the hall temperature `start_hall_K`; a run that starts in another hall starts
@@ -58,8 +52,13 @@ class Observer {
 
   /// Follows runs in which the drift was measured too; what it learns of the factors stays.
   void learn(std::span<const ObservedRun> runs);
-  /// Follows a run by its sensors alone; afterwards the observer is what it was.
-  [[nodiscard]] Observation follow(const ObservedRun& run) const;
+  /// Follows a whole run by its sensors alone; afterwards the observer is what it was.
+  [[nodiscard]] Observation observe(const ObservedRun& run) const;
+
+  /// Its sensors, in degC.
+  [[nodiscard]] std::vector<Input> inputs() const override;
+  /// Row by row what observe() gives of the whole run.
+  [[nodiscard]] std::unique_ptr<Follower> follow() const override;
 
   /// The same, with what it has learned, reading other sensors.
   [[nodiscard]] Observer with_sensors(std::vector<std::string> sensors) const;
@@ -74,11 +73,26 @@ class Observer {
   [[nodiscard]] solver::ModelFactors model_factors() const;
   [[nodiscard]] const std::vector<std::string>& sensors() const { return sensors_; }
 
- private:
+  /// What is believed: normally distributed.
   struct Belief {
     Eigen::VectorXd mean;
     Eigen::MatrixXd covariance;
   };
+  /// All that makes an observer, such as goes into a file.
+  struct State {
+    solver::ReducedSystem system;
+    Eigen::VectorXd start;
+    double start_hall_K = 0.0;
+    std::vector<std::string> sensors;
+    std::string drift;
+    ObserverSettings settings;
+    Belief factors;  ///< of flow_names() minus 1, then of the drift minus 1
+  };
+  [[nodiscard]] State state() const;
+  /// The observer of that state. @throws std::logic_error, InputError  as the constructor, and for factors of another number
+  [[nodiscard]] static Observer of_state(State state);
+
+ private:
   struct Step;  // what one drive does to the state over one step
   class Run;
 

@@ -1,7 +1,6 @@
 #pragma once
-// A formula for the drift as a person, a program and a controller read it: text, JSON, a C function. Each with its fail-safe.
+// A formula for the drift as a person and a controller read it: text, a C function. Each with its fail-safe.
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "compensation/drift_model.hpp"
@@ -18,12 +17,6 @@ struct DeployedModel {
 
 /// A formula that can be typed into a controller, with units and validity ranges.
 [[nodiscard]] std::string formula_text(const DeployedModel& deployed);
-
-/// Everything, to the last digit.
-[[nodiscard]] nlohmann::ordered_json model_json(const DeployedModel& deployed);
-/// @param path  of a JSON file as model_json() makes it
-/// @throws InputError  for a file that is none, naming the key
-[[nodiscard]] DeployedModel read_model(const std::string& path);
 
 /// C99 source of one function that gives the correction from readings, call by call, with fail-safe: the same numbers as
 /// guarded(safe, r, model.predict(r.readings)) of r = repaired(safe, readings). Needs <math.h> alone; missing readings are NAN.

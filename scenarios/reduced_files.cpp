@@ -76,8 +76,18 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> array_of(const std::filesy
 template Eigen::MatrixXd array_of<double>(const std::filesystem::path&, Eigen::Index, Eigen::Index);
 template Eigen::MatrixXf array_of<float>(const std::filesystem::path&, Eigen::Index, Eigen::Index);
 
-/// Arrays of a reduced system as .npy files; returns the names and numbers beside them.
-Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, const FileOf& file) {
+WriteArray into_npy(FileOf file) {
+  return [file = std::move(file)](const std::string& name, const Eigen::MatrixXd& values) {
+    write_npy(file(name + ".npy"), values);
+  };
+}
+
+ReadArray from_npy(FileOf file) {
+  return
+      [file = std::move(file)](const std::string& name) -> Eigen::MatrixXd { return read_npy<double>(file(name + ".npy")); };
+}
+
+Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, const WriteArray& write) {
   const auto r = static_cast<Eigen::Index>(system.size());
   Json json = {{"size", system.size()}, {"reference_K", system.reference_K}};
   std::vector<Eigen::VectorXd> loads, to_hall, flow, offset, medium, probes;
@@ -121,41 +131,47 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
       outputs.middleRows(r * i, r) = part.outputs;
       json["parts"].push_back(part.body);
     }
-    write_npy(file("parts_conduction.npy"), conduction);
-    write_npy(file("parts_mass.npy"), mass);
-    write_npy(file("parts_outputs.npy"), outputs);
+    write("parts_conduction", conduction);
+    write("parts_mass", mass);
+    write("parts_outputs", outputs);
   }
   json["outputs"] = {{"name", system.outputs.name}, {"unit", system.outputs.unit}};
-  write_npy(file("conduction.npy"), system.conduction);
-  write_npy(file("exchanges.npy"), matrices);
-  write_npy(file("to_hall.npy"), side_by_side(r, to_hall));
-  write_npy(file("flow.npy"), side_by_side(r, flow));
-  write_npy(file("offset.npy"), side_by_side(r, offset));
-  write_npy(file("medium.npy"), side_by_side(r, medium));
-  write_npy(file("loads.npy"), side_by_side(r, loads));
-  write_npy(file("probes.npy"), side_by_side(r, probes));
-  write_npy(file("outputs.npy"), system.outputs.state);
-  write_npy(file("outputs_hall.npy"), system.outputs.hall);
-  write_npy(file("ones.npy"), system.ones);
-  write_npy(file("start.npy"), start);
+  write("conduction", system.conduction);
+  write("exchanges", matrices);
+  write("to_hall", side_by_side(r, to_hall));
+  write("flow", side_by_side(r, flow));
+  write("offset", side_by_side(r, offset));
+  write("medium", side_by_side(r, medium));
+  write("loads", side_by_side(r, loads));
+  write("probes", side_by_side(r, probes));
+  write("outputs", system.outputs.state);
+  write("outputs_hall", system.outputs.hall);
+  write("ones", system.ones);
+  write("start", start);
   return json;
 }
 
-ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance, const FileOf& file,
+ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance, const ReadArray& read,
                           Eigen::VectorXd& start) {
   ReducedSystem system;
   const Eigen::Index r = json.at("size");
   const Json none = Json::array();
   const auto n_of = [&](const char* key) { return static_cast<Eigen::Index>(json.value(key, none).size()); };
-  const auto array = [&](const char* name, Eigen::Index columns) { return array_of<double>(file(name), r, columns); };
+  const auto sized = [&](const char* name, Eigen::Index rows, Eigen::Index columns) {
+    Eigen::MatrixXd values = read(name);
+    if (values.rows() != rows || values.cols() != columns)
+      throw InputError(fmt::format("array '{}' is {} x {}, not {} x {}", name, values.rows(), values.cols(), rows, columns));
+    return values;
+  };
+  const auto array = [&](const char* name, Eigen::Index columns) { return sized(name, r, columns); };
   system.reference_K = json.at("reference_K");
   system.mass = Eigen::MatrixXd::Identity(r, r);
-  system.conduction = array("conduction.npy", r);
+  system.conduction = array("conduction", r);
   const Eigen::Index n_exchanges = n_of("exchanges");
-  const Eigen::MatrixXd matrices = array_of<double>(file("exchanges.npy"), r * n_exchanges, r),
-                        to_hall = array("to_hall.npy", n_exchanges), flow = array("flow.npy", n_exchanges),
-                        offset = array("offset.npy", n_exchanges), medium = array("medium.npy", n_exchanges),
-                        loads = array("loads.npy", n_of("sources")), probes = array("probes.npy", n_of("probes"));
+  const Eigen::MatrixXd matrices = sized("exchanges", r * n_exchanges, r), to_hall = array("to_hall", n_exchanges),
+                        flow = array("flow", n_exchanges), offset = array("offset", n_exchanges),
+                        medium = array("medium", n_exchanges), loads = array("loads", n_of("sources")),
+                        probes = array("probes", n_of("probes"));
   Eigen::Index i = 0;
   for (const Json& s : json.value("sources", none))
     system.sources.push_back({s.at("name"), body_from(s.at("body")), loads.col(i++), law_from(s)});
@@ -184,28 +200,26 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   system.outputs.name = json.at("outputs").at("name").get<std::vector<std::string>>();
   system.outputs.unit = json.at("outputs").at("unit").get<std::vector<std::string>>();
   const auto n_outputs = static_cast<Eigen::Index>(system.outputs.name.size());
-  system.outputs.state = array("outputs.npy", n_outputs);
-  system.outputs.hall = array_of<double>(file("outputs_hall.npy"), n_outputs, 1);
+  system.outputs.state = array("outputs", n_outputs);
+  system.outputs.hall = sized("outputs_hall", n_outputs, 1);
   if (const Eigen::Index n_parts = n_of("parts"); n_parts > 0) {
-    const auto parts_of = [&](const char* name, Eigen::Index columns) {
-      return array_of<double>(file(name), r * n_parts, columns);
-    };
-    const Eigen::MatrixXd conduction = parts_of("parts_conduction.npy", r), mass = parts_of("parts_mass.npy", r),
-                          outputs = parts_of("parts_outputs.npy", n_outputs);
+    const auto parts_of = [&](const char* name, Eigen::Index columns) { return sized(name, r * n_parts, columns); };
+    const Eigen::MatrixXd conduction = parts_of("parts_conduction", r), mass = parts_of("parts_mass", r),
+                          outputs = parts_of("parts_outputs", n_outputs);
     for (Eigen::Index p = 0; p < n_parts; ++p) {
       system.parts.push_back({json.at("parts")[static_cast<std::size_t>(p)], conduction.middleRows(r * p, r),
                               mass.middleRows(r * p, r), outputs.middleRows(r * p, r)});
     }
   }
-  system.ones = array("ones.npy", 1);
-  start = array("start.npy", 1);
+  system.ones = array("ones", 1);
+  start = array("start", 1);
   solver::bind_laws(system, effects::with_radiation_as_films(balance));
   return system;
 }
 
 void export_reduced(const ReducedSystem& system, const Eigen::VectorXd& start, const solver::ReductionError& error,
                     const std::vector<Drive>& drives, const FileOf& file) {
-  Json json = write_system(system, start, file);
+  Json json = write_system(system, start, into_npy(file));
   json["error"] = {
       {"temperature_K", error.temperature_K}, {"displacement_m", error.displacement_m}, {"angle_rad", error.angle_rad}};
   for (const Drive& drive : drives) {

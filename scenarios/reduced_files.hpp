@@ -12,14 +12,22 @@ namespace driftwright::scenarios {
 /// Where the file of a name goes or lies.
 using FileOf = std::function<std::filesystem::path(const std::string&)>;
 
-/// Writes the arrays. @return the names and numbers beside them. @throws InputError  when a file cannot be written
+/// Keeps an array under a name, or gives back the one that was kept.
+using WriteArray = std::function<void(const std::string& name, const Eigen::MatrixXd& values)>;
+using ReadArray = std::function<Eigen::MatrixXd(const std::string& name)>;
+/// Arrays as files NAME.npy. @throws InputError  as write_npy() and read_npy()
+[[nodiscard]] WriteArray into_npy(FileOf file);
+[[nodiscard]] ReadArray from_npy(FileOf file);
+
+/// Writes the arrays. @return the names and numbers beside them. @throws what `write` throws
 [[nodiscard]] nlohmann::ordered_json write_system(const solver::ReducedSystem& system, const Eigen::VectorXd& start,
-                                                  const FileOf& file);
+                                                  const WriteArray& write);
 /// What write_system() has written, with the laws of a balance, as effects::heat_balance() gives it.
-/// @throws InputError  for a file that is missing, cut short or of another size
+/// @throws InputError  for an array of another size, and what `read` throws
 /// @throws nlohmann::json::exception  for a name or number that is missing
+/// @throws std::logic_error  as solver::bind_laws(), for the balance of another machine
 [[nodiscard]] solver::ReducedSystem read_system(const nlohmann::ordered_json& json, const effects::HeatBalance& balance,
-                                                const FileOf& file, Eigen::VectorXd& start);
+                                                const ReadArray& read, Eigen::VectorXd& start);
 
 /// An array of known size. @throws InputError  as read_npy(), and for another size
 template <class Scalar>

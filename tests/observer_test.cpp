@@ -105,7 +105,7 @@ TEST(Observer, WithTheExactModelFollowsExactlyWithAndWithoutSensors) {
     const ObservedRun run = run_of(s, 60.0, warmer_K);
     EXPECT_GT(run.readings.at("drift_y").values[60], 20.0);
     for (const std::vector<std::string>& sensors : {std::vector<std::string>{}, {"T1"}, {"T1", "T2", "T3"}}) {
-      const Observation o = observer_of(s, sensors).follow(run);
+      const Observation o = observer_of(s, sensors).observe(run);
       EXPECT_LT(worst_um(o.drift_um, run), 1e-8) << sensors.size();  // rounding of 293 K in 1e4 steps
       EXPECT_THAT(o.distrusted, IsEmpty());
       EXPECT_EQ(o.drift_um[0], 0.0);
@@ -123,14 +123,14 @@ TEST(Observer, FollowsTheClosedFormOfOnePart) {
     const double t = run.readings.time_s[i];
     closed.readings.channels[3].values[i] = 2.0 * 200.0 / 6.0 * (1.0 - std::exp(-6.0 * t / 4e3)) + 3.0 * 60.0 / 10e3 * t;
   }
-  EXPECT_LT(worst_um(observer_of(s, {"T1"}).follow(run).drift_um, closed), 1e-8);
+  EXPECT_LT(worst_um(observer_of(s, {"T1"}).observe(run).drift_um, closed), 1e-8);
 }
 
 TEST(Observer, WithTheMotorOffByAFifthSensorsTakeMostOfTheErrorAway) {
   for (const double factor : {0.8, 1.2}) {
     const ObservedRun run = run_of(with_motor(factor), 60.0, 0.0, 0.1);
-    const double alone_um = worst_um(observer_of(three_parts(), {}).follow(run).drift_um, run);
-    const Observation o = observer_of(three_parts(), {"T1", "T3"}).follow(run);
+    const double alone_um = worst_um(observer_of(three_parts(), {}).observe(run).drift_um, run);
+    const Observation o = observer_of(three_parts(), {"T1", "T3"}).observe(run);
     EXPECT_GT(alone_um, 10.0);
     EXPECT_LT(worst_um(o.drift_um, run), 0.15 * alone_um) << factor;
     EXPECT_LT(std::abs(o.drift_um.back() - run.readings.at("drift_y").values.back()), 0.05 * alone_um);
@@ -147,7 +147,7 @@ TEST(Observer, ItsCovarianceStaysPositiveWithReadingsFarBetterThanTheModel) {
     Observer o = observer_of(three_parts(), {"T1", "T2", "T3"}, sure);
     o.learn(std::vector<ObservedRun>{run, run});
     for (const Observer::Factor& f : o.factors()) EXPECT_GT(f.deviation, 0.0) << f.name << walk;
-    const Observation seen = o.follow(run);
+    const Observation seen = o.observe(run);
     for (std::size_t i = 1; i < seen.deviation_um.size(); ++i) ASSERT_GT(seen.deviation_um[i], 0.0) << i << " " << walk;
   }
 }
@@ -157,7 +157,7 @@ TEST(Observer, ItsDeviationCoversItsError) {
   int n = 0, n_outside = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const ObservedRun run = run_of(scattered(three_parts(), 0.1, static_cast<int>(seed)), 60.0, 0.0, 0.1, seed);
-    const Observation o = observer_of(three_parts(), {"T1", "T3"}).follow(run);
+    const Observation o = observer_of(three_parts(), {"T1", "T3"}).observe(run);
     for (std::size_t i = 0; i < o.drift_um.size(); ++i) {
       ++n;
       EXPECT_TRUE(std::isfinite(o.deviation_um[i]) && o.deviation_um[i] >= 0.0);
@@ -186,9 +186,9 @@ TEST(Observer, LearnsTheFactorOfASourceAndTheScaleOfTheDrift) {
   // what was learnt stays where there are no sensors, and follow() changes nothing
   const ObservedRun judged = run_of(machine, 60.0, 0.0, 0.0, 3);
   const Observer blind = o.with_sensors({});
-  EXPECT_LT(worst_um(blind.follow(judged).drift_um, judged),
-            0.2 * worst_um(observer_of(three_parts(), {}).follow(judged).drift_um, judged));
-  EXPECT_EQ(o.follow(judged).drift_um, o.follow(judged).drift_um);
+  EXPECT_LT(worst_um(blind.observe(judged).drift_um, judged),
+            0.2 * worst_um(observer_of(three_parts(), {}).observe(judged).drift_um, judged));
+  EXPECT_EQ(o.observe(judged).drift_um, o.observe(judged).drift_um);
 }
 
 // The drift counts from the start: what the machine was displaced by before, warm hall or cold, is no part of it, whatever the scale.
@@ -202,7 +202,7 @@ TEST(Observer, LearnsTheScaleOfTheDriftInAWarmHallToo) {
     o.learn(training);
     EXPECT_NEAR(o.factors()[4].value, 1.06, 0.015) << warmer_K;
     const ObservedRun cold = run_of(machine, 60.0, -warmer_K, 0.05, 3);
-    EXPECT_LT(worst_um(o.follow(cold).drift_um, cold), 1.5) << warmer_K;  // 6 % of 90 um unlearnt
+    EXPECT_LT(worst_um(o.observe(cold).drift_um, cold), 1.5) << warmer_K;  // 6 % of 90 um unlearnt
   }
 }
 
@@ -212,10 +212,10 @@ TEST(Observer, DropsAndNamesASensorThatSticks) {
     ObservedRun run = whole;
     std::vector<double>& x = run.readings.channels[static_cast<std::size_t>(stuck)].values;
     for (std::size_t i = 100; i < x.size(); ++i) x[i] = x[100] + 12.0;
-    const Observation o = observer_of(three_parts(), {"T1", "T2", "T3"}).follow(run);
+    const Observation o = observer_of(three_parts(), {"T1", "T2", "T3"}).observe(run);
     ASSERT_THAT(o.distrusted, SizeIs(1)) << stuck;
     EXPECT_THAT(o.distrusted[0], HasSubstr(stuck == 0 ? "T1 from 1" : "T3 from 1"));
-    const Observation without = observer_of(three_parts(), {"T1", "T2", "T3"}).follow(whole);
+    const Observation without = observer_of(three_parts(), {"T1", "T2", "T3"}).observe(whole);
     EXPECT_LT(worst_um(o.drift_um, run), worst_um(without.drift_um, whole) + 1.0) << stuck;
   }
 }
@@ -224,7 +224,7 @@ TEST(Observer, DropsASensorThatStaysBehindSlowly) {
   ObservedRun run = run_of(three_parts(), 60.0, 0.0, 0.1);
   std::vector<double>& x = run.readings.channels[0].values;
   for (std::size_t i = 91; i < x.size(); ++i) x[i] = x[90];  // as the motor starts again
-  const Observation o = observer_of(three_parts(), {"T1", "T2", "T3"}).follow(run);
+  const Observation o = observer_of(three_parts(), {"T1", "T2", "T3"}).observe(run);
   ASSERT_GE(o.distrusted.size(), 1u);
   EXPECT_THAT(o.distrusted[0], HasSubstr("T1"));
   EXPECT_LT(std::abs(o.drift_um.back() - run.readings.at("drift_y").values.back()), 2.0);
@@ -233,7 +233,7 @@ TEST(Observer, DropsASensorThatStaysBehindSlowly) {
 TEST(Observer, MissingReadingsDoNoHarm) {
   const solver::ReducedSystem machine = with_motor(1.2);
   const ObservedRun whole = run_of(machine, 60.0, 0.0, 0.1);
-  const double alone_um = worst_um(observer_of(three_parts(), {}).follow(whole).drift_um, whole);
+  const double alone_um = worst_um(observer_of(three_parts(), {}).observe(whole).drift_um, whole);
   ObservedRun run = whole;
   double mean_um = 0.0;
   constexpr int kDraws = 10;
@@ -246,7 +246,7 @@ TEST(Observer, MissingReadingsDoNoHarm) {
       }
     }
     run.readings.channels[0].values[0] = NAN;
-    const Observation o = observer_of(three_parts(), {"T1", "T2"}).follow(run);
+    const Observation o = observer_of(three_parts(), {"T1", "T2"}).observe(run);
     EXPECT_THAT(o.distrusted, IsEmpty()) << seed;
     mean_um += worst_um(o.drift_um, run) / kDraws;
   }
@@ -254,7 +254,7 @@ TEST(Observer, MissingReadingsDoNoHarm) {
   for (Channel& c : run.readings.channels) {
     if (c.name != "drift_y") std::fill(c.values.begin(), c.values.end(), NAN);
   }
-  EXPECT_EQ(observer_of(three_parts(), {"T1"}).follow(run).drift_um, observer_of(three_parts(), {}).follow(run).drift_um);
+  EXPECT_EQ(observer_of(three_parts(), {"T1"}).observe(run).drift_um, observer_of(three_parts(), {}).observe(run).drift_um);
 }
 
 TEST(Observer, LearnsFromARunWhoseFirstDriftIsMissing) {
@@ -268,15 +268,41 @@ TEST(Observer, LearnsFromARunWhoseFirstDriftIsMissing) {
   EXPECT_NEAR(o.factors()[0].value, 1.2, 0.05);
 }
 
+// What it says of a row is what it would have said had the run ended there, sensors dropped on the way included.
+TEST(Observer, RowByRowSaysTheSameAsOfTheWholeRun) {
+  ObservedRun run = run_of(with_motor(1.2), 60.0, 0.0, 0.05);
+  for (std::size_t i = 90; i < run.readings.n_samples(); ++i) run.readings.channels[0].values[i] += 15.0;  // fell off
+  const Observer o = observer_of(three_parts(), {"T1", "T3"});
+  const Observation whole = o.observe(run);
+  ASSERT_THAT(whole.distrusted, SizeIs(1));
+  EXPECT_EQ(live(o, run), whole.drift_um);
+  for (const std::size_t n : {2, 50, 95, 120}) {
+    ObservedRun cut = run;
+    cut.readings.time_s.resize(n);
+    for (Channel& c : cut.readings.channels) c.values.resize(n);
+    const std::vector<double> so_far = live(o, cut);
+    EXPECT_EQ(so_far, std::vector<double>(whole.drift_um.begin(), whole.drift_um.begin() + static_cast<std::ptrdiff_t>(n)));
+  }
+}
+
+// Before the run there are no readings: the model with what it has learnt.
+TEST(Observer, AheadItIsTheModelWithItsFactors) {
+  const ObservedRun run = run_of(with_motor(1.2));
+  Observer o = observer_of(three_parts(), {"T1", "T3"});
+  o.learn(std::vector<ObservedRun>{run, run});
+  EXPECT_EQ(ahead(o, {run.cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}}),
+            o.with_sensors({}).observe(run).drift_um);
+}
+
 // Twice the rows are twice the readings, whose noise is taken for white; without noise the states agree but for the linearised factors.
 TEST(Observer, TwiceAsDenseRowsTellTheSame) {
   const solver::ReducedSystem machine = with_motor(1.2);
   const ObservedRun coarse = run_of(machine, 60.0), dense = run_of(machine, 30.0);
-  const std::vector<double> a = observer_of(three_parts(), {}).follow(coarse).drift_um,
-                            b = observer_of(three_parts(), {}).follow(dense).drift_um;
+  const std::vector<double> a = observer_of(three_parts(), {}).observe(coarse).drift_um,
+                            b = observer_of(three_parts(), {}).observe(dense).drift_um;
   const std::vector<double>
-      c = observer_of(three_parts(), {"T1", "T3"}, {.reading_K = 0.1}).follow(coarse).drift_um,
-      d = observer_of(three_parts(), {"T1", "T3"}, {.reading_K = 0.1 * std::sqrt(2.0)}).follow(dense).drift_um;
+      c = observer_of(three_parts(), {"T1", "T3"}, {.reading_K = 0.1}).observe(coarse).drift_um,
+      d = observer_of(three_parts(), {"T1", "T3"}, {.reading_K = 0.1 * std::sqrt(2.0)}).observe(dense).drift_um;
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_NEAR(a[i], b[2 * i], 1e-9);
     EXPECT_NEAR(c[i], d[2 * i], 0.8);  // of a drift error of 12 um without sensors
@@ -314,8 +340,8 @@ TEST(Observer, BelievesInTheMachineThatItsFactorsMake) {
     EXPECT_THAT(names, ElementsAre("motor", "screw", "film 1", "film 3", "drift_y"));
     const solver::ReducedSystem believed = solver::with_factors(three_parts(), o.model_factors());
     const ObservedRun run = run_of(believed, 60.0, 7.0);
-    EXPECT_GT(worst_um(observer_of(three_parts(), {}).follow(run).drift_um, run), 5.0);
-    const double off_um = worst_um(o.with_sensors({}).follow(run).drift_um, run);
+    EXPECT_GT(worst_um(observer_of(three_parts(), {}).observe(run).drift_um, run), 5.0);
+    const double off_um = worst_um(o.with_sensors({}).observe(run).drift_um, run);
     EXPECT_LT(off_um, 0.5);
     off_by_step_um.push_back(off_um);
   }
@@ -330,7 +356,7 @@ TEST(Observer, RefusesWhatTheModelHasNot) {
   const ObservedRun run = run_of(three_parts());
   ObservedRun less = run;
   less.readings.channels.erase(less.readings.channels.begin());
-  EXPECT_THROW((void)observer_of(three_parts(), {"T1"}).follow(less), InputError);
+  EXPECT_THROW((void)observer_of(three_parts(), {"T1"}).observe(less), InputError);
 }
 
 // Only the motor's heat is uncertain and only the drift's part 1 matters: T1 tells most. By hand, one factor f of deviation s: with

@@ -133,6 +133,37 @@ TEST_F(ValidateRecords, PhysicsIsJudgedOnRecordsOfAMachine) {
   expect_exact(validate(machine_, "to_and_fro"));
 }
 
+// What is judged is what is deployed: each predictor's file corrects the judged record as `validate` said, to its last digit.
+TEST_F(ValidateRecords, AFileCorrectsAsItWasJudged) {
+  const auto out = fresh_folder("judged") / "out", corrected = fresh_folder("corrected") / "out";
+  for (const std::string& scenario : {machine_, records_only_}) {
+    const CommandOutcome judged = run_program("validate " + scenario + " --train " + record("warm_up") + " --train " +
+                                              record("steps") + " --test " + record("to_and_fro") + " -o " + out.string());
+    ASSERT_EQ(judged.exit_code, 0) << judged.output;
+    const Json summary = Json::parse(read_text(out / "summary.json"));
+    int n = 0;
+    for (const auto& file : std::filesystem::directory_iterator(out / "models")) {
+      if (file.path().extension() != ".json") continue;
+      ++n;
+      const Json predictor = Json::parse(read_text(file.path()));
+      const CommandOutcome run =
+          run_program("compensate " + scenario + " --model " + file.path().string() + " --through none --measured " +
+                      record("to_and_fro") + " -o " + corrected.string());
+      ASSERT_EQ(run.exit_code, 0) << run.output;
+      const Json left = Json::parse(read_text(corrected / "summary.json"));
+      const Json* s = strategy(summary, predictor["name"]);
+      ASSERT_TRUE(s) << predictor["name"];
+      EXPECT_EQ(left["peak_left_um"], (*s)["worst_peak_um"]) << predictor["name"];
+      EXPECT_EQ(left["rms_left_um"], (*s)["overall_rms_um"]) << predictor["name"];
+      EXPECT_EQ(predictor["judged"]["verdict"], (*s)["verdict"]) << predictor["name"];
+    }
+    const auto n_baselines =
+        std::count_if(summary["validation"]["strategies"].begin(), summary["validation"]["strategies"].end(),
+                      [](const Json& s) { return s["baseline"] == true; });
+    EXPECT_EQ(n, static_cast<int>(summary["validation"]["strategies"].size() - static_cast<std::size_t>(n_baselines)));
+  }
+}
+
 // The recorded hall drives the model, not the scenario's; and a record's clock may start anywhere.
 TEST_F(ValidateRecords, InAnotherHallAndFromAnotherTimeOn) {
   simulate(

@@ -1,0 +1,54 @@
+#pragma once
+// What tells the drift of a machine, whatever it is made of: a formula, a model, a model that reads thermometers, or what was measured
+// before. One object is fitted, judged, kept in a file and followed row by row.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/cyclogram.hpp"
+#include "base/record.hpp"
+
+namespace driftwright::compensation {
+
+/// One run of the machine: what drove it, what surrounded it, and what was read.
+struct ObservedRun {
+  Cyclogram cyclogram;
+  TimeSeries hall;  ///< minus the reference temperature [K]
+  Record readings;  ///< channels named as the model's outputs; temperatures in degC, displacements in um
+};
+
+/// A predictor on its way through one run.
+class Follower {
+ public:
+  virtual ~Follower() = default;
+  /// Takes the next row: the first call the first one. @return the drift there [um]; NaN where nothing can be said
+  /// @param run  the same at every call, up to that row at least. Nothing is read that lies behind it: a run may grow between calls
+  virtual double next(const ObservedRun& run) = 0;
+};
+
+/// A channel of the readings.
+struct Input {
+  std::string name, unit;
+  bool operator==(const Input&) const = default;
+};
+
+class Predictor {
+ public:
+  virtual ~Predictor() = default;
+  /// What it reads, each once. Drive and hall of the run, which a model looks at, are no channels.
+  [[nodiscard]] virtual std::vector<Input> inputs() const = 0;
+  /// At the start of a run. The follower outlives no predictor.
+  [[nodiscard]] virtual std::unique_ptr<Follower> follow() const = 0;
+};
+
+/// The drift of a run [um], row by row: what the machine would be told while it runs. NaN where nothing can be said.
+/// @throws InputError  for readings that lack an input or have it in another unit
+[[nodiscard]] std::vector<double> live(const Predictor& predictor, const ObservedRun& run);
+
+/// The drift before the run [um]: by drive and hall alone, with no reading but those of channels that are known ahead. All NaN for a predictor
+/// that cannot do without its thermometers.
+/// @param known  its readings hold the times, and channels such as `speed` that follow from the cyclogram
+[[nodiscard]] std::vector<double> ahead(const Predictor& predictor, ObservedRun known);
+
+}  // namespace driftwright::compensation

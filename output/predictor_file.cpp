@@ -1,0 +1,149 @@
+#include "output/predictor_file.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+
+#include "compensation/formula_predictor.hpp"
+#include "compensation/past_drift.hpp"
+#include "output/formula_json.hpp"
+#include "output/json_value.hpp"
+#include "output/observer_json.hpp"
+
+namespace driftwright::output {
+namespace {
+
+using namespace compensation;
+
+constexpr const char* kFormat = "driftwright predictor 1";
+
+Json earlier_runs_json(const EarlierRunsPredictor& p) {
+  Json runs = Json::array();
+  for (const Record& run : p.runs()) {
+    Json drift = Json::array();
+    for (double v : run.channels.front().values) drift.push_back(number(v));
+    runs.push_back({{"name", run.source}, {"time_s", run.time_s}, {"drift_um", std::move(drift)}});
+  }
+  return {{"runs", std::move(runs)}};
+}
+
+std::shared_ptr<const Predictor> earlier_runs_of(const Json& j, const std::string& target) {
+  std::vector<Record> runs;
+  for (const Json& run : list(j, "runs")) {
+    Record r{.source = value<std::string>(run, "name"),
+             .time_s = value<std::vector<double>>(run, "time_s"),
+             .channels = {{target, "um", {}}}};
+    for (const Json& v : list(run, "drift_um")) r.channels[0].values.push_back(v.is_number() ? v.get<double>() : NAN);
+    if (r.time_s.empty() || r.time_s.size() != r.channels[0].values.size() ||
+        std::adjacent_find(r.time_s.begin(), r.time_s.end(), std::greater_equal<>()) != r.time_s.end())
+      throw InputError(fmt::format("run '{}' wants as many `drift_um` as `time_s`, which rise", r.source));
+    runs.push_back(std::move(r));
+  }
+  if (runs.empty()) throw InputError("`runs` is empty; a run at least is wanted");
+  return std::make_shared<EarlierRunsPredictor>(runs, target);
+}
+
+/// What the predictor itself is made of, under the name of its kind.
+std::pair<std::string, Json> made_of(const Predictor& p, const std::vector<effects::Effect>& effects) {
+  if (const DriftModel* formula = as_formula(p)) return {"formula", formula_json(*formula)};
+  if (const auto* observer = dynamic_cast<const Observer*>(&p)) return {"observer", observer_json(*observer, effects)};
+  if (const auto* constant = dynamic_cast<const ConstantPredictor*>(&p))
+    return {"constant", {{"drift_um", constant->drift_um()}}};
+  if (const auto* runs = dynamic_cast<const EarlierRunsPredictor*>(&p)) return {"earlier_runs", earlier_runs_json(*runs)};
+  throw std::logic_error("a predictor of a kind that no file holds");
+}
+
+/// @param file  which holds what the predictor is made of under its kind
+std::shared_ptr<const Predictor> predictor_of(const Json& file, const DeployedPredictor& d) {
+  const std::vector<std::string> kinds = {"formula", "observer", "constant", "earlier_runs"};
+  const auto kind = value<std::string>(file, "predictor");
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+    throw InputError(fmt::format("key `predictor` is '{}'; {} are known", kind, fmt::join(kinds, ", ")));
+  const auto j = value<Json>(file, kind.c_str());
+  if (kind == "formula") {
+    DriftModel model = formula_of(j);
+    model.target = d.target;
+    model.target_unit = "um";
+    model.from_start = d.from_start;
+    return std::make_shared<FormulaPredictor>(std::move(model));
+  }
+  if (kind == "observer") return std::make_shared<Observer>(observer_of(j));
+  if (kind == "constant") return std::make_shared<ConstantPredictor>(finite(j, "drift_um"));
+  return earlier_runs_of(j, d.target);
+}
+
+/// A formula reads what its fail-safe has looked at.
+void require_guards(const DeployedPredictor& d) {
+  if (!d.fail_safe) return;
+  if (d.fail_safe->from_start != d.from_start)
+    throw InputError("`from_start` of the predictor and of its `fail_safe` differ; they must say the same");
+  if (!as_formula(*d.predictor)) return;
+  for (const Input& input : d.predictor->inputs()) {
+    if (std::none_of(d.fail_safe->guards.begin(), d.fail_safe->guards.end(),
+                     [&](const FailSafe::Guard& g) { return g.input == input.name && g.unit == input.unit; }))
+      throw InputError(fmt::format("term '{}' in {} has no guard among `guards`", input.name, input.unit));
+  }
+}
+
+PredictorFile file_of(const Json& j) {
+  if (!j.is_object() || value<std::string>(j, "format") != kFormat)
+    throw InputError(fmt::format("no predictor (key `format` must be \"{}\"); `validate` writes them", kFormat));
+  PredictorFile file;
+  DeployedPredictor& d = file.predictor;
+  d.name = value<std::string>(j, "name");
+  d.target = value<std::string>(j, "target");
+  if (value<std::string>(j, "target_unit") != "um")
+    throw InputError(fmt::format("key `target_unit` is {}; drift is told in um", j.at("target_unit").dump()));
+  d.from_start = value<bool>(j, "from_start");
+  d.is_baseline = value<bool>(j, "baseline");
+  d.sensors = value<std::vector<std::string>>(j, "sensors");
+  d.hall = value<std::string>(j, "hall");
+  d.reason = value<std::string>(j, "decided");
+  if (const double half = number_or(j, "interval_95_um", NAN); std::isfinite(half)) d.interval_um = half;
+  d.predictor = predictor_of(j, d);
+  if (const auto safe = value<Json>(j, "fail_safe"); !safe.is_null()) d.fail_safe = fail_safe_of(safe);
+  require_guards(d);
+  file.judged = value<Json>(j, "judged");
+  return file;
+}
+
+}  // namespace
+
+Json predictor_json(const PredictorFile& file, const std::vector<effects::Effect>& effects, const Provenance& made_by) {
+  const DeployedPredictor& d = file.predictor;
+  auto [kind, made] = made_of(*d.predictor, effects);
+  Json j = {{"format", kFormat},
+            {"program", "driftwright"},
+            {"version", made_by.version},
+            {"scenario", made_by.scenario},
+            {"name", d.name},
+            {"target", d.target},
+            {"target_unit", "um"},
+            {"from_start", d.from_start},
+            {"baseline", d.is_baseline},
+            {"sensors", d.sensors},
+            {"hall", d.hall},
+            {"decided", d.reason},
+            {"interval_95_um", d.interval_um ? Json(*d.interval_um) : Json(nullptr)},
+            {"judged", file.judged},
+            {"fail_safe", d.fail_safe ? fail_safe_json(*d.fail_safe) : Json(nullptr)},
+            {"predictor", kind}};
+  j[kind] = std::move(made);
+  return j;
+}
+
+PredictorFile read_predictor(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: no such file; a predictor of `validate` is wanted, models/NAME.json", path));
+  try {
+    return file_of(Json::parse(file));
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(fmt::format("{}: {}", path, e.what()));
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}", path, e.what()));
+  }
+}
+
+}  // namespace driftwright::output
