@@ -32,20 +32,42 @@ struct Failure {
   SensorFailure kind;
   const char* word;
 };
-constexpr Failure kFailures[] = {
-    {SensorFailure::kStuck, "stuck"}, {SensorFailure::kOpen, "open"}, {SensorFailure::kDetached, "fallen off"}};
+constexpr Failure kFailures[] = {{SensorFailure::kStuck, "stuck"},
+                                 {SensorFailure::kOpen, "open"},
+                                 {SensorFailure::kDetached, "fallen off"},
+                                 {SensorFailure::kDrifting, "drifting"}};
 
-/// A hall whose thermometer gives nothing new from a time on: a model takes its last reading. One that nobody knows stays unknown.
-TimeSeries held_from(const TimeSeries& hall, double from_s) {
+/// The hall as a thermometer tells it that fails at a time. One that gives nothing new leaves its last reading; any other tells what it read then,
+/// and from there on as much more as its channel does. One that nobody knows stays unknown.
+/// @param read  its channel after the failure
+TimeSeries failed_hall(const TimeSeries& hall, SensorFailure failure, double from_s, const Record& readings,
+                       const std::string& channel) {
   if (hall.time_s.empty()) return hall;
-  TimeSeries held;
-  for (std::size_t i = 0; i < hall.time_s.size() && hall.time_s[i] < from_s; ++i) {
-    held.time_s.push_back(hall.time_s[i]);
-    held.value.push_back(hall.value[i]);
+  TimeSeries told;
+  const auto add = [&](double t_s, double value) {
+    told.time_s.push_back(t_s);
+    told.value.push_back(value);
+  };
+  for (std::size_t i = 0; i < hall.time_s.size() && hall.time_s[i] < from_s; ++i) add(hall.time_s[i], hall.value[i]);
+  add(from_s, hall.at(from_s));
+  if (failure == SensorFailure::kStuck || failure == SensorFailure::kOpen) return told;
+  if (failure == SensorFailure::kDrifting) {
+    for (double t_s : readings.time_s) {
+      if (t_s > from_s) add(t_s, hall.at(t_s) + kSensorDrift_K_h * (t_s - from_s) / 3600.0);
+    }
+    return told;
   }
-  held.time_s.push_back(from_s);
-  held.value.push_back(hall.at(from_s));
-  return held;
+  const std::vector<double>& read = readings.at(channel).values;  // of another place
+  double first = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const double t_s = readings.time_s[i];
+    if (t_s < from_s) {
+      if (std::isfinite(read[i])) first = read[i];
+    } else if (t_s > from_s && std::isfinite(read[i] - first)) {
+      add(t_s, hall.at(from_s) + read[i] - first);
+    }
+  }
+  return told;
 }
 
 /// What to run one strategy on: the run as it is, and with each of its sensors failed in each way.
@@ -56,16 +78,43 @@ std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings
   if (!settings.fails_at || judged.season != settings.fails_in) return list;
   const std::vector<double>& t = judged.run.readings.time_s;
   const double from_s = t.front() + *settings.fails_at * (t.back() - t.front());
-  for (const std::string& sensor : strategy.sensors) {
-    for (const Failure& failure : kFailures) {
-      if (failure.kind == SensorFailure::kDetached && (settings.elsewhere.empty() || settings.elsewhere == sensor)) continue;
-      ObservedRun run = judged.run;
-      run.readings = with_failed_sensor(std::move(run.readings), sensor, failure.kind, from_s, settings.elsewhere);
-      if (sensor == settings.strategies.hall) run.hall = held_from(run.hall, from_s);
-      list.emplace_back(fmt::format("{} {}", sensor, failure.word), std::move(run));
+  const auto add = [&](const std::string& words, const std::string& sensor, SensorFailure kind,
+                       const std::string& elsewhere) {
+    ObservedRun run = judged.run;
+    run.readings = with_failed_sensor(std::move(run.readings), sensor, kind, from_s, elsewhere);
+    for (const std::string& failed : {sensor, kind == SensorFailure::kSwapped ? elsewhere : sensor}) {
+      if (failed != settings.strategies.hall) continue;
+      run.hall = failed_hall(judged.run.hall, kind, from_s, run.readings, failed);
+      break;
     }
+    list.emplace_back(words, std::move(run));
+  };
+  const std::vector<std::string>& sensors = strategy.sensors;
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    for (const Failure& failure : kFailures) {
+      if (failure.kind == SensorFailure::kDetached && (settings.elsewhere.empty() || settings.elsewhere == sensors[s]))
+        continue;
+      add(fmt::format("{} {}", sensors[s], failure.word), sensors[s], failure.kind, settings.elsewhere);
+    }
+    if (s + 1 < sensors.size() && judged.run.readings.at(sensors[s]).unit == judged.run.readings.at(sensors[s + 1]).unit)
+      add(fmt::format("{} and {} exchanged", sensors[s], sensors[s + 1]), sensors[s], SensorFailure::kSwapped,
+          sensors[s + 1]);
   }
   return list;
+}
+
+/// More than without correction, by RMS or by peak.
+bool is_worse_than_nothing(const Case& c) {
+  return c.after.rmse > c.before.rmse || c.after.peak_abs > c.before.peak_abs;
+}
+
+/// Of the cases that leave more than no correction would, the one with the largest peak; null: none does.
+const Case* worst_beside_nothing(const JudgedStrategy& s) {
+  const Case* worst = nullptr;
+  for (const Case& c : s.cases) {
+    if (is_worse_than_nothing(c) && (!worst || c.after.peak_abs > worst->after.peak_abs)) worst = &c;
+  }
+  return worst;
 }
 
 std::string where_of(const StrategyMatrix& m, const Case& c) {
@@ -81,12 +130,26 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const auto keeps = [&](const Case& c) { return c.after.peak_abs <= tolerance; };
   // a little more than before while the drift passes through 0 is no harm
   const auto harms = [&](const Case& c) { return c.after.peak_abs > tolerance && c.harm_um > tolerance; };
+  const Case* worse = worst_beside_nothing(s);
+  const auto beside_nothing = [&](const Case& c) {
+    return fmt::format(
+        "more is left than without any correction, {:.1f} um instead of a peak of {:.1f} um, RMS {:.1f} instead of {:.1f} "
+        "um, {}",
+        c.after.peak_abs, c.before.peak_abs, c.after.rmse, c.before.rmse, where_of(m, c));
+  };
   if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
     s.safety = Safety::kSafe;
     s.why = fmt::format(
-        "never more than {:.1f} um left of the drift; the most {}{}", all.peak->after.peak_abs, where_of(m, *all.peak),
+        "{}never more than {:.1f} um left of the drift; the most {}{}",
+        worse ? fmt::format("where the drift is small {}; inside the tolerance, though: ", beside_nothing(*worse)) : "",
+        all.peak->after.peak_abs, where_of(m, *all.peak),
         m.runs.size() > 2 ? ""
                           : fmt::format("; only {} run{} tried", m.runs.size(), m.runs.size() == 1 ? " was" : "s were"));
+    return;
+  }
+  if (worse && worse->after.peak_abs > tolerance) {
+    s.safety = Safety::kUnsafe;
+    s.why = beside_nothing(*worse);
     return;
   }
   const auto harm = std::max_element(s.cases.begin(), s.cases.end(), [&](const Case& a, const Case& b) {
@@ -118,6 +181,7 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
                                         all.peak->before.peak_abs, where_of(m, *all.peak));
   s.safety = s.limits.empty() ? Safety::kUnsafe : Safety::kWithinLimits;
   s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst : worst;
+  if (worse) s.why = fmt::format("where the drift is small {}; {}", beside_nothing(*worse), s.why);
 }
 
 template <class F>

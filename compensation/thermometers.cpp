@@ -69,7 +69,8 @@ Record running_mean(Record record, double window_s) {
 
 Record with_failed_sensor(Record record, const std::string& sensor, SensorFailure failure, double from_s,
                           const std::string& elsewhere) {
-  const Channel* other = failure == SensorFailure::kDetached ? &record.at(elsewhere) : nullptr;
+  const bool has_other = failure == SensorFailure::kDetached || failure == SensorFailure::kSwapped;
+  Channel* other = has_other ? &find(record, elsewhere) : nullptr;
   Channel& failed = find(record, sensor);
   if (other && other->unit != failed.unit) {
     throw InputError(fmt::format("'{}' in {} cannot read '{}' in {}", sensor, failed.unit, elsewhere, other->unit));
@@ -90,6 +91,12 @@ Record with_failed_sensor(Record record, const std::string& sensor, SensorFailur
         break;
       case SensorFailure::kDetached:
         failed.values[i] = other->values[i];
+        break;
+      case SensorFailure::kSwapped:
+        std::swap(failed.values[i], other->values[i]);
+        break;
+      case SensorFailure::kDrifting:
+        failed.values[i] += kSensorDrift_K_h * (record.time_s[i] - from_s) / 3600.0;
         break;
     }
   }

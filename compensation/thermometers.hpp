@@ -27,11 +27,15 @@ struct Thermometers {
 enum class SensorFailure {
   kStuck,    ///< its reading stays what it was
   kOpen,     ///< no reading any more
-  kDetached  ///< it fell off: from then on it reads `elsewhere`
+  kDetached,  ///< it fell off: from then on it reads `elsewhere`
+  kSwapped,   ///< its plug and that of `elsewhere` are exchanged: from then on each reads the other's place
+  kDrifting,  ///< it reads ever more, by kSensorDrift_K_h
 };
+/// A thermometer that ages within a run: a platinum resistor whose insulation gives way, a junction that corrodes [K/h].
+inline constexpr double kSensorDrift_K_h = 2.0;
 
 /// The record with one sensor failed from a time on (at the first row with time >= from_s).
-/// @param elsewhere  channel that a detached sensor reads, in the sensor's unit; else unused
+/// @param elsewhere  channel that a detached sensor reads, or that a swapped one is exchanged with, in the sensor's unit; else unused
 /// @throws InputError  when the record has no such channels, or they differ in unit
 [[nodiscard]] Record with_failed_sensor(Record record, const std::string& sensor, SensorFailure failure, double from_s,
                                         const std::string& elsewhere = {});
