@@ -8,7 +8,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "compensation/control/control_files.hpp"
 #include "output/csv_row.hpp"
+#include "output/drift_model_c.hpp"
 #include "output/drift_model_files.hpp"
 
 namespace driftwright::app {
@@ -322,6 +324,7 @@ std::string strategy_text(const StrategyMatrix& m) {
 }
 
 void write_models(const StrategyMatrix& m, output::ResultsFolder& folder) {
+  bool has_models = false;
   for (const JudgedStrategy& s : m.strategies) {
     if (!s.fitted.model || !s.fitted.fail_safe) continue;
     const output::DeployedModel d{*s.fitted.model, *s.fitted.fail_safe,
@@ -336,9 +339,15 @@ void write_models(const StrategyMatrix& m, output::ResultsFolder& folder) {
     }
     folder.write_text(fmt::format("models/{}.json", name), output::model_json(d).dump(2) + "\n");
     folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(d));
-    folder.write_text(fmt::format("models/{}.c", name),
-                      output::c_function(d, fmt::format("Driftwright {}, scenario {}", folder.made_by().version,
-                                                        folder.made_by().scenario)));
+    const std::string made_by =
+        fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario);
+    folder.write_text(fmt::format("models/{}.c", name), output::c_function(d, made_by));
+    folder.write_text(fmt::format("models/{}_axis.comp", name),
+                      output::linuxcnc_component(d, name + "_axis", name + ".c", made_by));
+    has_models = true;
+  }
+  for (const ControlFile& file : control_files()) {
+    if (has_models) folder.write_text("models/" + file.name, file.text);
   }
 }
 

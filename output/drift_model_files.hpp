@@ -1,5 +1,5 @@
 #pragma once
-// A formula for the drift as a person, a program and a controller read it: text, JSON, a C function. Each with its fail-safe.
+// A formula for the drift as a person and a program read it: text and JSON. Each with its fail-safe. (drift_model_c: as C.)
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -24,9 +24,5 @@ struct DeployedModel {
 /// @param path  of a JSON file as model_json() makes it
 /// @throws InputError  for a file that is none, naming the key
 [[nodiscard]] DeployedModel read_model(const std::string& path);
-
-/// C99 source of one function that gives the correction from readings, call by call, with fail-safe: the same numbers as
-/// guarded(safe, r, model.predict(r.readings)) of r = repaired(safe, readings). Needs <math.h> alone; missing readings are NAN.
-[[nodiscard]] std::string c_function(const DeployedModel& deployed, const std::string& made_by);
 
 }  // namespace driftwright::output
