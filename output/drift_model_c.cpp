@@ -98,7 +98,7 @@ std::string table(const std::string& type, const std::string& name, std::vector<
 }  // namespace
 
 std::string c_function(const DeployedModel& d, const std::string& made_by) {
-  const std::string name = c_name(d.model.target), NAME = upper(name);
+  const std::string name = c_name(d.model.target), capitals = upper(name);
   const std::vector<std::string> readings = reading_names(d.safe);
   const std::size_t n = d.safe.guards.size();
   std::vector<std::string> inputs, arguments, guards, terms;
@@ -121,7 +121,7 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
       " * compiled to give the numbers that were judged, to the last bit: cc -std=c99 -ffp-contract=off THIS.c "
       "drift_correction.c -lm */\n"
       "#include \"drift_correction.h\"\n\n#include <math.h>\n\n";
-  text += fmt::format("#define {}_INPUTS {}\n#define {}_TERMS {}\n\n", NAME, n, NAME, formula.terms.size());
+  text += fmt::format("#define {}_INPUTS {}\n#define {}_TERMS {}\n\n", capitals, n, capitals, formula.terms.size());
 
   for (std::size_t k = 0; k < n; ++k) {
     const drift_guard& g = safe.guards[k];
@@ -147,12 +147,12 @@ std::string c_function(const DeployedModel& d, const std::string& made_by) {
       "  {1}_INPUTS, {0}_guards, /* most_replaced */ {2}, /* period_s */ {3}, /* stale_s */ {4}, /* fade_s */ {5},\n"
       "  /* back_after_s */ {6}, /* back_within */ {7}, /* lowest_um */ {8}, /* highest_um */ {9},\n"
       "  /* most_rate_um_s */ {10}\n}};\n",
-      name, NAME, safe.most_replaced, c_number(safe.period_s), c_number(safe.stale_s), c_number(safe.fade_s),
+      name, capitals, safe.most_replaced, c_number(safe.period_s), c_number(safe.stale_s), c_number(safe.fade_s),
       c_number(safe.back_after_s), c_number(safe.back_within), c_number(safe.lowest_um), c_number(safe.highest_um),
       c_number(safe.most_rate_um_s));
   text += "/* input, is_rise, holds, is_running, power, coefficient, lag_s */\n";
   text += table("drift_term", name + "_terms", terms);
-  text += fmt::format("static const drift_formula {0}_formula = {{{2}, {1}_TERMS, {0}_terms}};\n\n", name, NAME,
+  text += fmt::format("static const drift_formula {0}_formula = {{{2}, {1}_TERMS, {0}_terms}};\n\n", name, capitals,
                       c_number(formula.formula.intercept_um));
 
   const std::size_t room = std::max<std::size_t>(1, n), n_terms = std::max<std::size_t>(1, formula.terms.size());
@@ -211,8 +211,6 @@ For the axis L, with [AXIS_L]OFFSET_AV_RATIO in the INI file:
 
 LinuxCNC adds up changes of the counts, drops them before all joints are homed, and forgets them when the machine is switched off.
 machine-is-on must therefore be the and of motion.motion-enabled and motion.is-all-homed.
-
-On processors other than x86-64 add -ffp-contract=off to the compiler's flags, or the last bits may differ.
 """;
 {pins}pin in bit enable = 0 "the offset follows the correction; else it goes back to 0 at the slew limit";
 pin in bit machine_is_on = 0 "while it is off, counts and offset are 0 at once";

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/errors.hpp"
 #include "compensation/drift_model.hpp"
 #include "compensation/fail_safe.hpp"
 
@@ -187,6 +188,11 @@ TEST(DriftCorrectionStep, IsItsThreeStages) {
   EXPECT_EQ(repaired, 121.0);
   EXPECT_NEAR(state.deserved, 0.71, 1e-14);
   EXPECT_NEAR(state.trust, 1.0 - 0.29 * (1.0 - std::exp(-0.04)), 1e-14);
+}
+
+TEST(Repaired, OfARecordWithoutAnInputIsRefused) {
+  const FailSafe safe{.guards = {{.input = "T", .unit = "degC", .low = 0, .high = 50, .others_coefficient = {}}}};
+  EXPECT_THROW((void)repaired(safe, {.source = "r", .time_s = {0}, .channels = {{"U", "degC", {20}}}}), InputError);
 }
 
 // Readings that are infinite are as good as none, through the program's own functions, too.

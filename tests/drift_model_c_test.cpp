@@ -144,10 +144,14 @@ INSTANTIATE_TEST_SUITE_P(All, CFunction,
                          ::testing::Values(Built{false, 60.0, kAsTold}, Built{true, 60.0, kAsTold},
                                            Built{false, 0.1, kAsTold}, Built{true, 0.1, kAsTold}, Built{false, 7.3, kAsTold},
                                            Built{true, 7.3, kAsTold}, Built{true, 7.3, "gcc -std=c99 -O0"},
-                                           Built{true, 7.3, "gcc -std=gnu99 -O3 -march=native"}));
+                                           Built{true, 7.3, "gcc -std=gnu99 -O3 -march=native"},
+                                           Built{true, 7.3, "clang -std=gnu99 -O3 -march=native"}));
 
 TEST_P(CFunction, GivesTheBitsOfTheProgramCallByCall) {
   const auto [from_start, period_s, compiler] = GetParam();
+  const std::string program = std::string(compiler).substr(0, std::string(compiler).find(' '));
+  if (std::system(fmt::format("command -v {} >/dev/null 2>&1", program).c_str()) != 0)
+    GTEST_SKIP() << "no " << program << " here";
   const DeployedModel d = deployed(from_start, period_s);
   const Exported exported(d, compiler);
   for (const Wrong& wrong : wrongs()) {
@@ -233,6 +237,12 @@ TEST(CFunction, WithNamesThatCDoesNotKnowCompiles) {
   const std::vector<Row> got = Exported(d, "gcc -std=c99 -O2").run(r);
   ASSERT_EQ(got.size(), 2u);
   for (const Row& row : got) EXPECT_EQ(row.correction_um, 83.0);
+}
+
+TEST(CFunction, OfATermWithoutAGuardIsOurOwnMistake) {
+  DeployedModel d = deployed(false, 60.0);
+  d.model.terms[0].input = "nowhere";
+  EXPECT_THROW((void)c_function(d, "a test"), std::logic_error);
 }
 
 TEST(CFunction, OfAConstantCompilesThoughCKnowsNoEmptyTables) {
