@@ -54,11 +54,14 @@ std::string c_name(const std::string& name) {
   return result;
 }
 
+/// HAL's names have 47 characters at most, of which "doubt-" and what the component is loaded as take their share.
+constexpr std::size_t kLongestPin = 28;
+
 /// What the readings are called, in the order of the guards.
-std::vector<std::string> reading_names(const FailSafe& safe) {
+std::vector<std::string> reading_names(const FailSafe& safe, std::size_t longest = std::string::npos) {
   std::vector<std::string> names, taken = kTaken;
   for (const FailSafe::Guard& g : safe.guards) {
-    const std::string plain = c_name(fmt::format("{}_{}", g.input, g.unit));
+    const std::string plain = c_name(fmt::format("{}_{}", g.input, g.unit)).substr(0, longest);
     std::string name = plain;
     for (int k = 2; std::find(taken.begin(), taken.end(), name) != taken.end(); ++k)  // "a b" beside "a-b"
       name = fmt::format("{}_{}", plain, k);
@@ -181,7 +184,7 @@ std::string linuxcnc_component(const DeployedModel& d, const std::string& name, 
                                const std::string& made_by) {
   if (name + ".c" == c_file) throw std::logic_error("halcompile would write over the model's own file");
   const std::string target = c_name(d.model.target);
-  const std::vector<std::string> readings = reading_names(d.safe);
+  const std::vector<std::string> readings = reading_names(d.safe, kLongestPin);
   std::string pins, doubts, values, set_doubts;
   for (std::size_t k = 0; k < readings.size(); ++k) {
     pins += fmt::format("pin in float {} \"{} in {}; not a number while there is none\";\n", readings[k],

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <regex>
+#include <set>
 
 #include "compensation/control/control_files.hpp"
 #include "output/drift_model_c.hpp"
@@ -75,6 +76,12 @@ class Component {
               0);
   }
 
+  /// Pins and parameters, as C has them.
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> all = ins_;
+    all.insert(all.end(), outs_.begin(), outs_.end());
+    return all;
+  }
   /// A value of an input or parameter from now on.
   void set(const std::string& name, double value) {
     ASSERT_TRUE(values_.contains(name)) << name;
@@ -277,6 +284,25 @@ TEST(LinuxcncComponent, StepsTheModelAsFarApartAsItWasJudgedOn) {
     ASSERT_EQ(out[i + 1].at("model_trust"), wanted.trust[i]) << i;
   }
   EXPECT_EQ(out[80].at("doubt_X3_degC"), 1.0);
+}
+
+// HAL takes 47 characters, of which "thermal." are eight.
+TEST(LinuxcncComponent, HasPinsThatHalCanName) {
+  DeployedModel d = two_um_per_K();
+  d.model.terms.clear();
+  d.safe.guards.clear();
+  for (const char* name : {"the temperature of the outer ring of the front bearing",
+                           "the temperature of the outer ring of the rear bearing", "enable", "T a", "T-a"})
+    d.safe.guards.push_back(
+        {.input = name, .unit = "degC", .low = 0, .high = 100, .most_jump = 1e9, .others_coefficient = {}});
+  const Component c(exported("names", d));  // compiles
+  std::set<std::string> names;
+  for (const std::string& name : c.names()) {
+    EXPECT_LE(name.size(), 39u) << name;
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
+  EXPECT_EQ(c.names().size(), 28u);  // 10 of the inputs; of any component 4 in, 8 out and 6 parameters
+  EXPECT_TRUE(names.contains("doubt_T_a_degC_2"));
 }
 
 TEST(LinuxcncComponent, NeverBearsTheNameOfTheModelsOwnFile) {
