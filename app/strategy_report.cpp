@@ -8,8 +8,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "compensation/control/control_files.hpp"
 #include "compensation/formula_predictor.hpp"
 #include "output/csv_row.hpp"
+#include "output/drift_model_c.hpp"
 #include "output/drift_model_files.hpp"
 #include "output/predictor_file.hpp"
 
@@ -348,6 +350,7 @@ std::string strategy_text(const StrategyMatrix& m) {
 }
 
 void write_models(const StrategyMatrix& m, const std::vector<effects::Effect>& effects, output::ResultsFolder& folder) {
+  bool has_formulas = false;
   for (const JudgedStrategy& s : m.strategies) {
     if (s.fitted.is_baseline) continue;
     std::string name;
@@ -368,9 +371,15 @@ void write_models(const StrategyMatrix& m, const std::vector<effects::Effect>& e
     const std::optional<output::DeployedModel> formula = formula_of(s);
     if (!formula) continue;
     folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(*formula));
-    folder.write_text(fmt::format("models/{}.c", name),
-                      output::c_function(*formula, fmt::format("Driftwright {}, scenario {}", folder.made_by().version,
-                                                               folder.made_by().scenario)));
+    const std::string made_by =
+        fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario);
+    folder.write_text(fmt::format("models/{}.c", name), output::c_function(*formula, made_by));
+    folder.write_text(fmt::format("models/{}_axis.comp", name),
+                      output::linuxcnc_component(*formula, name + "_axis", name + ".c", made_by));
+    has_formulas = true;
+  }
+  for (const ControlFile& file : control_files()) {
+    if (has_formulas) folder.write_text("models/" + file.name, file.text);
   }
 }
 

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/errors.hpp"
+#include "compensation/control_tables.hpp"
 
 namespace driftwright::compensation {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 double first_value(const std::vector<double>& x) {
   const auto found = std::find_if(x.begin(), x.end(), [](double v) { return std::isfinite(v); });
@@ -26,28 +24,12 @@ bool is_drive(const std::string& unit) {
 
 std::vector<double> lagged(std::span<const double> time_s, std::span<const double> x, int power, double lag_s,
                            bool is_drive) {
+  const drift_term term{
+      .input = 0, .is_rise = 0, .holds = is_drive, .is_running = 0, .power = power, .coefficient = 1.0, .lag_s = lag_s};
+  drift_term_state state{};
   std::vector<double> result;
-  double state = kMissing, before = 0.0, before_s = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (std::isnan(x[i])) {
-      result.push_back(kMissing);
-      continue;
-    }
-    const double value = std::pow(x[i], power);
-    if (lag_s == 0.0) {
-      result.push_back(value);
-      continue;
-    }
-    if (std::isnan(state)) {
-      state = is_drive ? 0.0 : value;
-    } else {
-      const double towards = is_drive ? before : 0.5 * (before + value);
-      state += (1.0 - std::exp(-(time_s[i] - before_s) / lag_s)) * (towards - state);
-    }
-    before = value;
-    before_s = time_s[i];
-    result.push_back(state);
-  }
+  for (std::size_t i = 0; i < x.size(); ++i)
+    result.push_back(drift_term_value(&term, &state, x[i], i > 0 ? time_s[i] - time_s[i - 1] : 0.0));
   return result;
 }
 
@@ -69,20 +51,23 @@ std::vector<std::string> DriftModel::inputs() const {
 }
 
 std::vector<double> DriftModel::predict(const Record& record) const {
-  std::vector<double> predicted(record.n_samples(), intercept);
+  const std::vector<std::string> names = inputs();
+  std::vector<const std::vector<double>*> channels;
   for (const Term& t : terms) {
     const Channel& channel = record.at(t.input);
     if (channel.unit != t.unit) {
       throw InputError(fmt::format("channel '{}' of {} is in {}, but the model was fitted in {}", t.input, record.source,
                                    channel.unit, t.unit));
     }
-    std::vector<double> x = channel.values;
-    if (from_start && !is_drive(t.unit)) {
-      const double start = first_value(x);
-      for (double& v : x) v -= start;
-    }
-    const std::vector<double> l = lagged(record.time_s, x, t.power, t.lag_s, is_drive(t.unit));
-    for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] += t.coefficient * l[i];
+  }
+  for (const std::string& name : names) channels.push_back(&record.at(name).values);
+  const FormulaTable table = formula_table(*this, names);
+  std::vector<drift_term_state> states(terms.size());
+  std::vector<double> readings(names.size()), predicted;
+  for (std::size_t i = 0; i < record.n_samples(); ++i) {
+    for (std::size_t k = 0; k < names.size(); ++k) readings[k] = (*channels[k])[i];
+    const double dt_s = i > 0 ? record.time_s[i] - record.time_s[i - 1] : 0.0;
+    predicted.push_back(drift_formula_value(&table.formula, states.data(), readings.data(), dt_s));
   }
   return predicted;
 }

@@ -15,7 +15,8 @@ namespace driftwright::compensation {
 ///
 /// exact where x is constant (speeds hold until their next row) or, of temperatures, linear to second order: over a step h the lag
 /// moves by (1 - exp(-h / lag)) towards the speed at its start, or towards the mean of the readings at both ends. Lags of speeds
-/// start from standstill (0), those of temperatures settled at the first reading.
+/// start from standstill (0), those of temperatures settled at the first reading. A term with `is_running` has 1 while x_j is not 0
+/// in place of x_j^p_j, and power 1: the memory of on and off. Evaluated by control/drift_correction.c, as on a control.
 struct DriftModel {
   struct Term {
     std::string input;  ///< channel
@@ -23,6 +24,7 @@ struct DriftModel {
     double coefficient = 0.0;  ///< target_unit per unit^power
     int power = 1;             ///< >= 1
     double lag_s = 0.0;        ///< >= 0
+    bool is_running = false;   ///< 1 while the input is not 0, in place of its value
   };
   std::string kind;  ///< "ridge regression", in words
   std::string target, target_unit;
@@ -33,7 +35,7 @@ struct DriftModel {
 
   /// Channels that it reads, each once, in the order of the terms.
   [[nodiscard]] std::vector<std::string> inputs() const;
-  /// Per row of the record; NaN where an input is missing: its lag then waits.
+  /// Per row of the record; NaN where an input is missing: its lag then waits. A value that is not finite is missing.
   /// @throws InputError  when the record lacks an input or has it in another unit
   [[nodiscard]] std::vector<double> predict(const Record& record) const;
 };

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 #include "base/errors.hpp"
+#include "compensation/control_tables.hpp"
 #include "compensation/drift_model.hpp"
 #include "compensation/product_sums.hpp"
 
@@ -24,10 +26,6 @@ constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 1.5;  /
 constexpr double kMoved_K = 3.0, kNeverApart_K = 1e3;  // less than that is no movement to learn a relation from
 constexpr double kRidge = 0.03;                        // penalty of a relation, columns of unit deviation
 constexpr std::size_t kSlewRows = 10;
-constexpr double kSoonEnough = 1e-6;  // of a period: times that are sums of steps round
-constexpr double kUntold = 1e-6;      // pivot below which only others in doubt tell of an input
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
@@ -93,58 +91,22 @@ double most_apart(std::span<const Record> training, const std::string& input, co
   return apart;
 }
 
-/// What one guard remembers from row to row.
-struct Watch {
-  double start = kMissing;  // first reading, where readings count from it
-  double base = 0.0;        // what they are written with: the first reading of the first row
-  double last = kMissing, last_s = 0.0;
-  double doubted_until_s = -std::numeric_limits<double>::infinity();
-  bool was_doubted = false;
-};
-
-double expected_by_others(const FailSafe::Guard& guard, const std::vector<double>& x) {
-  double expected = guard.others_intercept;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (guard.others_coefficient[k] != 0.0) expected += guard.others_coefficient[k] * x[k];
+/// What was found wrong with an input in a row, in words.
+std::string words(const drift_input_state& state, const std::string& unit) {
+  switch (state.doubt) {
+    case DRIFT_NO_READING:
+      return "gives no reading";
+    case DRIFT_JUMP:
+      return fmt::format("jumps by {:.2f} {}", state.doubt_size, unit);
+    case DRIFT_APART:
+      return fmt::format("is {:+.2f} {} from what the others say", state.doubt_size, unit);
+    default:
+      throw std::logic_error("a doubt without a reason");
   }
-  return expected;
 }
 
-/// Replaces those that are out by what the other inputs lead to, all at once: x_k - sum_l b_kl x_l = b_k + sum_j b_kj x_j with k and l out
-/// and j not. One that only others that are out tell of is untold and stays as it is.
-void replace(const FailSafe& safe, const std::vector<char>& is_out, std::vector<double>& x, std::vector<char>& is_untold) {
-  const std::size_t n = x.size();
-  std::vector<std::vector<double>> a(n, std::vector<double>(n + 1, 0.0));
-  for (std::size_t k = 0; k < n; ++k) {
-    is_untold[k] = 0;
-    if (!is_out[k]) continue;
-    a[k][k] = 1.0;
-    a[k][n] = safe.guards[k].others_intercept;
-    for (std::size_t j = 0; j < n; ++j) {
-      const double b = safe.guards[k].others_coefficient[j];
-      if (is_out[j]) {
-        a[k][j] -= b;
-      } else if (b != 0.0) {
-        a[k][n] += b * x[j];
-      }
-    }
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    if (!is_out[k]) continue;
-    if (!(a[k][k] > kUntold)) {
-      is_untold[k] = 1;
-      for (std::size_t j = 0; j < n; ++j) a[k][j] = j == k ? 1.0 : 0.0;
-      a[k][n] = x[k];
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!is_out[i] || i == k) continue;
-      const double share = a[i][k] / a[k][k];
-      for (std::size_t j = k; j <= n; ++j) a[i][j] -= share * a[k][j];
-    }
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    if (is_out[k]) x[k] = a[k][n] / a[k][k];
-  }
+double step_s(const std::vector<double>& time_s, std::size_t row) {
+  return row > 0 ? time_s[row] - time_s[row - 1] : 0.0;
 }
 
 }  // namespace
@@ -228,6 +190,7 @@ int most_replaced(std::size_t n_inputs) {
 
 Repaired repaired(const FailSafe& safe, Record readings) {
   const std::size_t n = safe.guards.size();
+  const FailSafeTable table = fail_safe_table(safe);
   Repaired result{.readings = std::move(readings), .deserved = {}, .events = {}};
   const std::vector<double>& time_s = result.readings.time_s;
   std::vector<std::vector<double>*> channel;
@@ -236,94 +199,34 @@ Repaired repaired(const FailSafe& safe, Record readings) {
         &result.readings.channels[static_cast<std::size_t>(&result.readings.at(g.input) - result.readings.channels.data())]
              .values);
   }
-  std::vector<Watch> watches(n, Watch{.last_s = time_s.front()});
-  const int most_doubted = most_replaced(n);
-  std::vector<double> x(n), before(n, 0.0);
-  std::vector<char> is_out(n), is_untold(n, 0);
-  std::vector<std::string> why(n);
+  drift_state state{};
+  std::vector<drift_input_state> inputs(n);
+  std::vector<double> room(n * (n + 1)), read(n), x(n);
+  std::vector<char> was_doubted(n, 0);
   for (std::size_t i = 0; i < time_s.size(); ++i) {
-    const double t_s = time_s[i];
-    const auto doubt = [&](std::size_t k, std::string reason) {
-      if (why[k].empty()) why[k] = std::move(reason);
-      watches[k].doubted_until_s = t_s + kBackAfter * safe.fade_s;
-    };
-    const auto is_doubted = [&](std::size_t k) { return t_s < watches[k].doubted_until_s - kSoonEnough * safe.period_s; };
+    for (std::size_t k = 0; k < n; ++k) read[k] = (*channel[k])[i];
+    result.deserved.push_back(
+        drift_repair(&table.safe, &state, inputs.data(), room.data(), read.data(), step_s(time_s, i), x.data()));
     for (std::size_t k = 0; k < n; ++k) {
       const FailSafe::Guard& g = safe.guards[k];
-      Watch& w = watches[k];
-      why[k].clear();
-      double read = (*channel[k])[i];
-      if (safe.from_start && !is_drive(g.unit)) {
-        if (std::isnan(w.start) && i == 0) w.base = std::isnan(read) ? 0.0 : read;
-        if (std::isnan(w.start)) w.start = read - before[k];  // one that comes late goes on from what stood for it
-        read -= w.start;
-      }
-      if (std::isnan(read)) {
-        if (std::isnan(w.last) || t_s - w.last_s > safe.stale_s + kSoonEnough * safe.period_s) doubt(k, "gives no reading");
-      } else {
-        const double steps = std::max(1.0, (t_s - w.last_s) / safe.period_s);
-        if (std::isfinite(w.last) && std::abs(read - w.last) > steps * g.most_jump)
-          doubt(k, fmt::format("jumps by {:.2f} {}", read - w.last, g.unit));
-        w.last = read;
-        w.last_s = t_s;
-      }
-      x[k] = std::isnan(w.last) ? 0.0 : w.last;
+      if (inputs[k].is_doubted && !was_doubted[k])
+        result.events.push_back(fmt::format("from {:.0f} min: {} {}", time_s[i] / 60.0, g.input, words(inputs[k], g.unit)));
+      was_doubted[k] = static_cast<char>(inputs[k].is_doubted);
+      (*channel[k])[i] = x[k];
     }
-    for (std::size_t pass = 0; pass <= n; ++pass) {
-      for (std::size_t k = 0; k < n; ++k) is_out[k] = is_doubted(k) && !safe.guards[k].others_coefficient.empty();
-      if (std::any_of(is_out.begin(), is_out.end(), [](char out) { return out; })) replace(safe, is_out, x, is_untold);
-      for (std::size_t k = 0; pass == 0 && k < n; ++k) {
-        if (is_out[k] && !(std::abs(watches[k].last - x[k]) <= kBackWithin * safe.guards[k].most_apart)) doubt(k, {});
-      }
-      std::size_t worst = n;
-      double most = 1.0;
-      for (std::size_t k = 0; k < n; ++k) {
-        const FailSafe::Guard& g = safe.guards[k];
-        if (is_doubted(k) || g.others_coefficient.empty()) continue;
-        const double apart = std::abs(x[k] - expected_by_others(g, x)) / g.most_apart;
-        if (apart > most) {
-          most = apart;
-          worst = k;
-        }
-      }
-      if (worst == n) break;
-      const FailSafe::Guard& g = safe.guards[worst];
-      doubt(worst, fmt::format("is {:+.2f} {} from what the others say", x[worst] - expected_by_others(g, x), g.unit));
-    }
-    double deserved = 1.0;
-    int n_doubted = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      const FailSafe::Guard& g = safe.guards[k];
-      Watch& w = watches[k];
-      const bool is_rise = safe.from_start && !is_drive(g.unit);
-      if (is_rise && i == 0) x[k] = 0.0;
-      if (is_doubted(k) && (++n_doubted > most_doubted || g.others_coefficient.empty() || is_untold[k])) deserved = 0.0;
-      const double outside = std::max({0.0, g.low - x[k], x[k] - g.high});
-      if (outside > 0.0) deserved = std::min(deserved, std::max(0.0, 1.0 - outside / (g.high - g.low)));
-      if (is_doubted(k) && !w.was_doubted)
-        result.events.push_back(fmt::format("from {:.0f} min: {} {}", t_s / 60.0, g.input, why[k]));
-      w.was_doubted = is_doubted(k);
-      (*channel[k])[i] = std::clamp(x[k], g.low, g.high) + (is_rise ? w.base : 0.0);
-      before[k] = x[k];
-    }
-    result.deserved.push_back(deserved);
   }
   return result;
 }
 
 GuardedCorrection guarded(const FailSafe& safe, const Repaired& readings, std::span<const double> predicted) {
+  const FailSafeTable table = fail_safe_table(safe);
   GuardedCorrection result{.correction_um = {}, .trust = {}, .events = readings.events};
   const std::vector<double>& time_s = readings.readings.time_s;
-  double trust = 1.0, in_force = 0.0, last = 0.0;
+  drift_state state{};
   for (std::size_t i = 0; i < time_s.size(); ++i) {
-    const double step_s = i > 0 ? time_s[i] - time_s[i - 1] : 0.0, deserved = readings.deserved[i];
-    trust = i == 0 ? deserved : trust + (1.0 - std::exp(-step_s / safe.fade_s)) * (deserved - trust);
-    if (std::isfinite(predicted[i])) last = predicted[i];
-    const double wanted = std::clamp(trust * last, safe.lowest_um, safe.highest_um);
-    const double most_um = safe.most_rate_um_s * step_s;
-    in_force = i == 0 ? wanted : in_force + std::clamp(wanted - in_force, -most_um, most_um);
-    result.correction_um.push_back(in_force);
-    result.trust.push_back(trust);
+    result.correction_um.push_back(
+        drift_guarded_um(&table.safe, &state, readings.deserved[i], predicted[i], step_s(time_s, i)));
+    result.trust.push_back(state.trust);
   }
   return result;
 }

@@ -56,9 +56,11 @@ struct Repaired {
   std::vector<double> deserved;     ///< trust that the readings of each row deserve, 0 to 1
   std::vector<std::string> events;  ///< what was doubted, from when: one line each
 };
+/// Row by row by control/drift_correction.c, as on a control. A reading that is not finite is missing.
+/// @throws InputError  when the record lacks an input
+[[nodiscard]] Repaired repaired(const FailSafe& safe, Record readings);
 /// How many of n inputs may be replaced.
 [[nodiscard]] int most_replaced(std::size_t n_inputs);
-[[nodiscard]] Repaired repaired(const FailSafe& safe, Record readings);
 
 struct GuardedCorrection {
   std::vector<double> correction_um;  ///< in force per row; never missing

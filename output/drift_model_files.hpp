@@ -1,5 +1,5 @@
 #pragma once
-// A formula for the drift as a person and a controller read it: text, a C function. Each with its fail-safe.
+// A formula for the drift and its fail-safe as a person reads them. (predictor_file: as JSON; drift_model_c: as C.)
 
 #include <string>
 
@@ -17,9 +17,5 @@ struct DeployedModel {
 
 /// A formula that can be typed into a controller, with units and validity ranges.
 [[nodiscard]] std::string formula_text(const DeployedModel& deployed);
-
-/// C99 source of one function that gives the correction from readings, call by call, with fail-safe: the same numbers as
-/// guarded(safe, r, model.predict(r.readings)) of r = repaired(safe, readings). Needs <math.h> alone; missing readings are NAN.
-[[nodiscard]] std::string c_function(const DeployedModel& deployed, const std::string& made_by);
 
 }  // namespace driftwright::output

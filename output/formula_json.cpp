@@ -14,6 +14,7 @@ Json formula_json(const DriftModel& model) {
   for (const DriftModel::Term& t : model.terms) {
     j["terms"].push_back(
         {{"input", t.input}, {"unit", t.unit}, {"coefficient", t.coefficient}, {"power", t.power}, {"lag_s", t.lag_s}});
+    if (t.is_running) j["terms"].back()["is_running"] = true;
   }
   return j;
 }
@@ -27,11 +28,15 @@ DriftModel formula_of(const Json& j) {
                        .unit = value<std::string>(t, "unit"),
                        .coefficient = finite(t, "coefficient"),
                        .power = value<int>(t, "power"),
-                       .lag_s = finite(t, "lag_s")});
+                       .lag_s = finite(t, "lag_s"),
+                       .is_running = t.contains("is_running") && value<bool>(t, "is_running")});
     const DriftModel::Term& term = m.terms.back();
     if (term.lag_s < 0.0 || term.power < 1)
       throw InputError(fmt::format("term '{}' has `lag_s` {} and `power` {}; at least 0 and 1 are wanted", term.input,
                                    term.lag_s, term.power));
+    if (term.is_running && term.power != 1)
+      throw InputError(fmt::format("term '{}' has `is_running` and `power` {}; with `is_running` the power is 1", term.input,
+                                   term.power));
   }
   return m;
 }

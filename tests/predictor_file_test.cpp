@@ -11,7 +11,7 @@
 #include "base/errors.hpp"
 #include "compensation/formula_predictor.hpp"
 #include "compensation/past_drift.hpp"
-#include "tests/sensor_records.hpp"
+#include "tests/deployed_model.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::output {
@@ -23,24 +23,14 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 using Json = nlohmann::ordered_json;
 
-/// Four thermometers, the third between the first two and the fourth beside the first, and a speed.
 ObservedRun machine(std::uint64_t seed) {
-  ObservedRun run{.cyclogram = {.name = "work", .sections = {{9000.0, {.speed_rpm = 2000.0}}, {9e4, {}}}},
-                  .hall = {{0.0, 9000.0}, {0.0, 1.5}},
-                  .readings = fixtures::sensor_record(seed, 300, 4, 0.02, 0.1)};
-  Record& r = run.readings;
-  for (std::size_t i = 0; i < r.n_samples(); ++i) {
-    r.channels[2].values[i] =
-        0.5 * (r.channels[0].values[i] + r.channels[1].values[i]) + 0.01 * std::sin(5.0 * static_cast<double>(i));
-    r.channels[3].values[i] = r.channels[0].values[i] + 0.01 * std::cos(7.0 * static_cast<double>(i));
-    r.time_s[i] = 60.0 * static_cast<double>(i);
-  }
-  r.channels.push_back({"spindle", "rpm", {}});
-  for (std::size_t i = 0; i < r.n_samples(); ++i) r.channels.back().values.push_back(i / 40 % 2 == 0 ? 1500.0 : 0.0);
-  return run;
+  return {.cyclogram = {.name = "work", .sections = {{9000.0, {.speed_rpm = 2000.0}}, {9e4, {}}}},
+          .hall = {{0.0, 9000.0}, {0.0, 1.5}},
+          .readings = fixtures::machine(seed, 60.0)};
 }
 
 PredictorFile formula(bool from_start) {
+  DeployedModel model = fixtures::deployed(from_start, 60.0 / 7.0);
   PredictorFile file;
   DeployedPredictor& d = file.predictor;
   d.name = "regression with lags";
@@ -49,25 +39,9 @@ PredictorFile formula(bool from_start) {
   d.sensors = {"X1", "X2", "X3", "X4"};
   d.hall = "X4";
   d.reason = "because";
-  DriftModel model{.kind = "regression with lags",
-                   .target = "drift_y",
-                   .target_unit = "um",
-                   .intercept = 1.0 / 3.0,
-                   .terms = {{.input = "X3", .unit = "degC", .coefficient = -0.7},
-                             {.input = "X1", .unit = "degC", .coefficient = 2.3, .lag_s = 780.0},
-                             {.input = "X2", .unit = "degC", .coefficient = 0.02, .power = 2},
-                             {.input = "X4", .unit = "degC", .coefficient = 0.9},
-                             {.input = "spindle", .unit = "rpm", .coefficient = 1e-6, .power = 2, .lag_s = 1200.0}},
-                   .from_start = from_start};
-  std::vector<Record> training;
-  std::vector<std::vector<double>> predicted;
-  for (const std::uint64_t seed : {1, 2}) {
-    training.push_back(machine(seed).readings);
-    predicted.push_back(model.predict(training.back()));
-  }
-  d.fail_safe = learn_fail_safe(training, {"X1", "X2", "X3", "X4", "spindle"}, predicted, from_start);
-  d.predictor = std::make_shared<FormulaPredictor>(std::move(model));
-  d.interval_um = 2.0 / 7.0;
+  d.fail_safe = std::move(model.safe);
+  d.predictor = std::make_shared<FormulaPredictor>(std::move(model.model));
+  d.interval_um = model.interval_um;
   file.judged = {{"verdict", "safe within limits"}, {"tolerance_um", 10.0}};
   return file;
 }
@@ -131,6 +105,8 @@ TEST(PredictorFile, WhatIsNoneIsRefusedWithItsKey) {
       {"no lag", [](Json& j) { j["formula"]["terms"][0].erase("lag_s"); }, "`lag_s`"},
       {"negative lag", [](Json& j) { j["formula"]["terms"][0]["lag_s"] = -1.0; }, "`lag_s` -1"},
       {"power 0", [](Json& j) { j["formula"]["terms"][0]["power"] = 0; }, "`power` 0"},
+      {"running squared", [](Json& j) { j["formula"]["terms"][6]["is_running"] = true; }, "`is_running` and `power` 2"},
+      {"running by a number", [](Json& j) { j["formula"]["terms"][7]["is_running"] = 1; }, "`is_running`"},
       {"terms as text", [](Json& j) { j["formula"]["terms"] = "none"; }, "`terms`"},
       {"no fail-safe", [](Json& j) { j.erase("fail_safe"); }, "`fail_safe`"},
       {"no fade", [](Json& j) { j["fail_safe"].erase("fade_s"); }, "`fade_s`"},

@@ -42,6 +42,7 @@ DriftModel formula(bool from_start) {
                     {.input = "X1", .unit = "degC", .coefficient = 2.3, .lag_s = 780.0},
                     {.input = "X2", .unit = "degC", .coefficient = 0.02, .power = 2, .lag_s = 3000.0},
                     {.input = "spindle", .unit = "rpm", .coefficient = 1e-6, .power = 2, .lag_s = 1200.0},
+                    {.input = "spindle", .unit = "rpm", .coefficient = 3.0, .lag_s = 900.0, .is_running = true},
                     {.input = "spindle", .unit = "rpm", .coefficient = 1e-3}},
           .from_start = from_start};
 }

@@ -127,6 +127,11 @@ TEST_F(ValidationStudy, WritesFormulasAsTextJsonAndC) {
   EXPECT_THAT(text, HasSubstr("um/degC"));
   EXPECT_THAT(text, HasSubstr("Valid for"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "models" / "regression_forward.c"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "models" / "regression_forward_axis.comp"));
+  for (const char* file : {"drift_correction.h", "drift_correction.c", "axis_offset.h", "axis_offset.c"}) {
+    EXPECT_GT(read_text(folder_ / "models" / file).size(), 500u) << file;
+    EXPECT_EQ(read_text(folder_ / "models" / file), read_text(std::filesystem::path("compensation/control") / file)) << file;
+  }
   EXPECT_TRUE(std::filesystem::exists(folder_ / "models" / "regression_with_lags.json"));
 }
 
