@@ -40,9 +40,10 @@ void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
 
 /// What a prediction begins with.
 void add_warm_start(CLI::App* verb, std::string& start, std::string& after_pause, std::string& model) {
-  CLI::Option* record = verb->add_option(
-      "--start", start, "record CSV of what the machine did before, as `simulate` writes it: the model runs it first [cold]");
-  verb->add_option("--after-pause", after_pause, "time at rest behind that record, such as '30 min' [none]")->needs(record);
+  CLI::Option* record = verb->add_option("--start", start,
+                                         "what the machine did before, a record CSV as `simulate` writes it or a cyclogram "
+                                         "of the scenario: the model runs it first [cold]");
+  verb->add_option("--after-pause", after_pause, "time at rest behind it, such as '30 min' [none]")->needs(record);
   verb->add_option("--model", model, "reduced or full [reduced; full for lumped nodes alone where the scenario has it]")
       ->check(CLI::IsMember({"reduced", "full"}));
 }
@@ -132,7 +133,8 @@ int main(int argc, char** argv) {
                    "name in the scenario, or a record CSV with the column speed_rpm; may be repeated [all of the scenario]")
       ->allow_extra_args(false);
   verb->callback([&] { app::simulate(simulate); });
-  verb = add_verb(cli, "predict", "drift of a cyclogram ahead of its run, by the reduced model; warm after another run where one is given",
+  verb = add_verb(cli, "predict",
+                  "drift of a cyclogram ahead of its run, by the reduced model; warm after another run where one is given",
                   "predict scenarios/fp3_spindle.yaml --cyclogram plan.csv -o results/plan", predict);
   verb->add_option("--cyclogram", predict.cyclogram,
                    "name in the scenario, or a record CSV with the column speed_rpm (docs/cyclograms.md)")

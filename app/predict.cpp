@@ -40,6 +40,7 @@ nlohmann::ordered_json summary_json(const Prediction& prediction, const std::str
   Json j = {{"program", "driftwright"}, {"version", made_by.version},        {"scenario", made_by.scenario},
             {"cyclogram", cyclogram},   {"duration_min", duration_s / 60.0}, {"predicted_by", prediction.predicted_by}};
   j["started_from"] = prediction.started_from.empty() ? Json() : Json(prediction.started_from);
+  j["start_checks"] = start_checks_json(prediction);
   j["channels"] = Json::array();
   for (const Course& c : courses_of(prediction.record)) {
     j["channels"].push_back(
@@ -87,6 +88,7 @@ void predict(const PredictOptions& options) {
   progress.end();
   fmt::print("{}, {:.0f} min{}, predicted by the {}\n", options.cyclogram, cyclogram.duration_s() / 60.0, after,
              prediction.predicted_by);
+  fmt::print("{}", start_check_text(prediction));
   for (const Course& c : courses_of(prediction.record)) {
     fmt::print("  {:<12} peak {:7.1f} {} at {:.0f} min, {:7.1f} {} at the end\n", c.name, c.peak, c.unit, c.peak_s / 60.0,
                c.end, c.unit);

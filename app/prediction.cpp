@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "base/quantity.hpp"
+#include "compensation/interpolate.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "scenarios/read_cyclogram.hpp"
 
@@ -44,24 +47,61 @@ void require_no_effect_in(const scenarios::MachineModel& machine, const std::str
   }
 }
 
-scenarios::JobOrder read_order(const scenarios::MachineModel& machine, const PredictionOptions& options,
-                               const std::string& job) {
-  scenarios::JobOrder order{.start = std::nullopt,
-                            .pause_s = duration_s("--after-pause", options.after_pause),
-                            .n_parts = options.parts,
-                            .between_s = duration_s("--between", options.between)};
-  if (options.start.empty()) return order;
-  order.start =
-      scenarios::run_of(read_record_csv(options.start), &machine, sensors_on_hall(machine), scenarios::Reading::kStrict);
-  require_no_effect_in(machine, order.start->cyclogram.name, job);
-  return order;
+/// What was before the job, as the command line names it.
+struct Before {
+  scenarios::JobOrder order;
+  std::optional<Record> record;  ///< none: a cyclogram of the scenario, or nothing
+};
+
+Before read_before(const scenarios::Scenario& scenario, const PredictionOptions& options, const std::string& job) {
+  const scenarios::MachineModel& machine = *scenario.machine;
+  Before before;
+  before.order.pause_s = duration_s("--after-pause", options.after_pause);
+  before.order.n_parts = options.parts;
+  before.order.between_s = duration_s("--between", options.between);
+  if (options.start.empty()) return before;
+  if (options.start.ends_with(".csv")) {
+    before.record = read_record_csv(options.start);
+    before.order.start = scenarios::run_of(*before.record, &machine, sensors_on_hall(machine), scenarios::Reading::kStrict);
+  } else {
+    before.order.start.emplace();
+    before.order.start->cyclogram = scenario.cyclogram(options.start);
+  }
+  require_no_effect_in(machine, before.order.start->cyclogram.name, job);
+  return before;
 }
 
-std::string start_words(const scenarios::JobOrder& order, const PredictionOptions& options) {
-  if (!order.start) return "";
-  return fmt::format("{} ({:.4g} min{}){}", options.start, order.start->cyclogram.duration_s() / 60.0,
-                     order.start->has_ambient() ? "" : ", without a hall temperature: the scenario's",
-                     order.pause_s > 0.0 ? fmt::format(" and {:.4g} min at rest", order.pause_s / 60.0) : "");
+std::string start_words(const Before& before, const PredictionOptions& options) {
+  if (!before.order.start) return "";
+  const bool lacks_hall = before.record && !before.order.start->has_ambient();
+  return fmt::format("{}{} ({:.4g} min{}){}", before.record ? "" : "cyclogram ", options.start,
+                     before.order.start->cyclogram.duration_s() / 60.0,
+                     lacks_hall ? ", without a hall temperature: the scenario's" : "",
+                     before.order.pause_s > 0.0 ? fmt::format(" and {:.4g} min at rest", before.order.pause_s / 60.0) : "");
+}
+
+/// @param recorded  the run before
+/// @param modelled  begins with the same run
+std::vector<StartCheck> start_checks(const Record& recorded, const Record& modelled) {
+  std::vector<StartCheck> checks;
+  for (const Channel& channel : recorded.channels) {
+    const Channel* model = modelled.find(channel.name);
+    if ((channel.unit != "um" && channel.unit != "urad") || !model || model->unit != channel.unit) continue;
+    const auto is_reading = [](double v) { return !std::isnan(v); };
+    const auto first = std::find_if(channel.values.begin(), channel.values.end(), is_reading);
+    const auto last = std::find_if(channel.values.rbegin(), channel.values.rend(), is_reading);
+    if (first == channel.values.end()) continue;
+    const auto modelled_at = [&](std::ptrdiff_t row) {
+      return compensation::interpolate(modelled.time_s, model->values,
+                                       recorded.time_s[static_cast<std::size_t>(row)] - recorded.time_s.front());
+    };
+    checks.push_back(
+        {.channel = channel.name,
+         .unit = channel.unit,
+         .recorded = *last - *first,
+         .modelled = modelled_at(last.base() - channel.values.begin() - 1) - modelled_at(first - channel.values.begin())});
+  }
+  return checks;
 }
 
 /// Rows from the first part on, with the time counted from there.
@@ -91,8 +131,8 @@ scenarios::ModelKind predicting_model(const scenarios::Scenario& scenario) {
 Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
                          Progress& progress, const std::string& verb) {
   const scenarios::MachineModel& own = require_machine(scenario, verb);
-  const scenarios::JobOrder order = read_order(own, options, job.name);
-  scenarios::JobSeries series = scenarios::job_series(job, order, own.hall, scenario.solver.output_interval_s);
+  const Before before = read_before(scenario, options, job.name);
+  scenarios::JobSeries series = scenarios::job_series(job, before.order, own.hall, scenario.solver.output_interval_s);
   scenarios::check_cyclogram(scenario, series.cyclogram);
   scenarios::Scenario asked = scenario;
   asked.solver.model = options.model.empty()     ? predicting_model(scenario)
@@ -118,7 +158,26 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
   return {.record = from_row(run.record, first),
           .parts = std::move(series.parts),
           .predicted_by = model.words(),
-          .started_from = start_words(order, options)};
+          .started_from = start_words(before, options),
+          .start_checks = before.record ? start_checks(*before.record, run.record) : std::vector<StartCheck>{}};
+}
+
+std::string start_check_text(const Prediction& prediction) {
+  std::string text;
+  for (const StartCheck& c : prediction.start_checks) {
+    text += fmt::format("  over that record {} changes by {:+.1f} {}, in the model by {:+.1f} {}\n", c.channel, c.recorded,
+                        c.unit, c.modelled, c.unit);
+  }
+  return text;
+}
+
+nlohmann::ordered_json start_checks_json(const Prediction& prediction) {
+  nlohmann::ordered_json checks = nlohmann::ordered_json::array();
+  for (const StartCheck& c : prediction.start_checks) {
+    checks.push_back(
+        {{"name", c.channel}, {"unit", c.unit}, {"recorded_change", c.recorded}, {"modelled_change", c.modelled}});
+  }
+  return checks;
 }
 
 compensation::Iso230Figures iso_figures(const Prediction& prediction) {

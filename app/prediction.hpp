@@ -1,6 +1,8 @@
 #pragma once
 // The drift of a job ahead of its run, by the machine's model: what `predict` shows and `schedule` corrects.
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "app/results.hpp"
 #include "compensation/iso230_3.hpp"
 #include "scenarios/job_series.hpp"
@@ -9,11 +11,18 @@ namespace driftwright::app {
 
 /// What a prediction begins with, as the command line says it.
 struct PredictionOptions {
-  std::string start = {};        ///< record CSV of what the machine did before; empty: the scenario's start
+  std::string start = {};  ///< what the machine did before, a record CSV or a cyclogram of the scenario; empty: its start
   std::string after_pause = {};  ///< at rest between that record and the job, such as "30 min"; empty: none
   int parts = 1;                 ///< how many times the job is done
   std::string between = {};      ///< at rest between two of them, such as "2 min"; empty: none
   std::string model = {};        ///< "reduced", "full" or empty: predicting_model()
+};
+
+/// How a displacement or tilt changed over the run before, from its first reading to its last.
+struct StartCheck {
+  std::string channel, unit;
+  double recorded = 0.0;  ///< by the record
+  double modelled = 0.0;  ///< by the model between the same times
 };
 
 struct Prediction {
@@ -21,6 +30,7 @@ struct Prediction {
   std::vector<scenarios::PartRows> parts;  ///< rows of each part in it
   std::string predicted_by;                ///< for terminal and report: the model, in words
   std::string started_from;                ///< the same: what was before; empty: the scenario's start
+  std::vector<StartCheck> start_checks;    ///< of a record that has displacements or tilts of the machine's
 };
 
 /// The model that predictions run when nobody names one: the reduced model, also where the scenario asks for the full one, since a
@@ -35,6 +45,11 @@ struct Prediction {
 ///                     machine cannot run or that has too many rows
 [[nodiscard]] Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job,
                                        const PredictionOptions& options, Progress& progress, const std::string& verb);
+
+/// A line of the terminal for each start check, two spaces before it.
+[[nodiscard]] std::string start_check_text(const Prediction& prediction);
+/// [{"name", "unit", "recorded_change", "modelled_change"}]
+[[nodiscard]] nlohmann::ordered_json start_checks_json(const Prediction& prediction);
 
 /// The figures of ISO 230-3 of a prediction; none behind another run: the machine is not in balance with its hall then.
 [[nodiscard]] compensation::Iso230Figures iso_figures(const Prediction& prediction);

@@ -277,10 +277,10 @@ std::string schedule_terminal(const CorrectedSeries& series) {
     n_divided += program.shared.plan.n_divided;
     n_stretches += program.shared.plan.long_stretches.size();
   }
-  std::string text =
-      fmt::format("{}, {}{}\n  drift predicted by the {}\n  policy {}, written for {}{}\n", series.file,
-                  extent_words(series), start_words(series), series.prediction.predicted_by, series.settings.policy,
-                  series.settings.dialect, n_divided > 0 ? fmt::format("; {} block(s) divided", n_divided) : "");
+  std::string text = fmt::format("{}, {}{}\n{}  drift predicted by the {}\n  policy {}, written for {}{}\n", series.file,
+                                 extent_words(series), start_words(series), start_check_text(series.prediction),
+                                 series.prediction.predicted_by, series.settings.policy, series.settings.dialect,
+                                 n_divided > 0 ? fmt::format("; {} block(s) divided", n_divided) : "");
   for (const CorrectedProgram& program : series.programs) {
     if (series.is_series()) text += fmt::format("  {}: {}\n", parts_of(program.shared), program.file);
     text += axes_lines(series, program, series.is_series() ? "    " : "  ");
@@ -356,6 +356,7 @@ nlohmann::ordered_json schedule_json(const CorrectedSeries& series, const output
             {"between_min", series.between_s / 60.0},
             {"predicted_by", series.prediction.predicted_by}};
   j["started_from"] = series.prediction.started_from.empty() ? Json() : Json(series.prediction.started_from);
+  j["start_checks"] = start_checks_json(series.prediction);
   j["policy"] = series.settings.policy;
   j["dialect"] = series.settings.dialect;
   j["corrected"] = Json::array();
