@@ -145,6 +145,34 @@ TEST(WarmStart, BehindARecordIsTheRecordAndTheJobInOneCyclogram) {
   EXPECT_NEAR(cold.at("nose_z").values.front(), 0.0, 1e-9);
 }
 
+// A cyclogram of the scenario is exact where a record's rows are not: speeds that change between two rows.
+TEST(WarmStart, BehindACyclogramIsBothInOneCyclogram) {
+  const std::string odd =
+      write_file("odd.yaml", with(exact_head(), "  short:",
+                                  "  odd: [[10.3 min, 2000 rpm], [0.4 min, 500 rpm], [11 min, 1500 rpm]]\n"
+                                  "  odd_day: [[10.3 min, 2000 rpm], [0.4 min, 500 rpm], [11 min, 1500 rpm], "
+                                  "[45 min, 2000 rpm]]\n  short:"));
+  const Record day = record_in(run_verb("odd_day", "simulate " + odd + " --cyclogram odd_day"));
+  const Record warm = record_in(run_verb("odd_warm", "predict " + odd + " --cyclogram short --start odd"));
+  EXPECT_NEAR(warm.time_s.back() + 21.7 * 60.0, day.time_s.back(), 1e-6);
+  EXPECT_NEAR(warm.at("nose_z").values.back(), day.at("nose_z").values.back(), 2e-4);
+}
+
+// A record in which the tool drifts by 30 um where the model says 41.9: both are shown, of channels that the machine has.
+TEST(WarmStart, SetsTheRecordsChangeBesideTheModels) {
+  const std::string scenario = write_file("exact.yaml", exact_head());
+  const std::string start = write_file(
+      "measured.csv", "time_s,speed_rpm,nose_z_um,other_um\n0,2000,100,0\n1800,2000,,1\n3600,2000,130,2\n5400,0,,\n");
+  const auto out = fresh_folder("checks") / "out";
+  const CommandOutcome outcome =
+      run_program("predict " + scenario + " --cyclogram short --start " + start + " -o " + out.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("over that record nose_z changes by +30.0 um, in the model by +41.9 um"));
+  const Json checks = Json::parse(read_text(out / "summary.json"))["start_checks"];
+  ASSERT_EQ(checks.size(), 1U);
+  EXPECT_NEAR(checks[0]["modelled_change"], warming_um(60), 1e-3);
+}
+
 TEST(WarmStart, APauseIsTimeAtRest) {
   const std::string scenario = write_file("exact.yaml", exact_head());
   const auto morning = run_verb("morning_2", "simulate " + scenario + " --cyclogram morning");
