@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/axis_loop_report.hpp"
+#include "app/iso230_3_report.hpp"
 #include "app/machine_study_output.hpp"
 #include "app/run_report.hpp"
 
@@ -191,6 +192,7 @@ output::Report study_report(const scenarios::Scenario& scenario, const Model& mo
     add(channels_plot("Tilts of the spindle against the table", "tilt [urad]", study.judged.record,
                       study.judged.record.names_with_unit("urad"), judged));
   }
+  report.blocks.push_back(iso230_3_block(compensation::iso230_3_figures(study.judged.record)));
   add(heat_plot(study.judged.trajectory, judged));
   add(heat_table(study.judged.trajectory));
   add(inner_heat_table(study.judged.trajectory));

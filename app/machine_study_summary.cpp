@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/axis_loop_report.hpp"
+#include "app/iso230_3_report.hpp"
 #include "app/machine_study_output.hpp"
 
 namespace driftwright::app {
@@ -118,6 +119,14 @@ Json summary_json(const scenarios::Scenario& scenario, const Model& model, const
   j["corrections"] = Json::array();
   for (const CorrectedRun& c : study.corrections) j["corrections"].push_back(json_of(c));
   if (study.axis_loop) j["axis_loop"] = axis_loop_json(*scenario.axis_loop, *study.axis_loop);
+  j["iso_230_3"] = Json::array();
+  const auto add_iso = [&](const std::string& cyclogram, const Record& record) {
+    Json figures = {{"cyclogram", cyclogram}};
+    figures.update(iso230_3_json(compensation::iso230_3_figures(record)));
+    j["iso_230_3"].push_back(figures);
+  };
+  add_iso(settings.judge, study.judged.record);
+  for (const SimulatedRun& run : study.train) add_iso(run.record.source, run.record);
   j["drift_at_one_temperature"] = Json::array();
   for (const auto& [sensor, a] : study.ambiguities) {
     j["drift_at_one_temperature"].push_back({{"sensor", sensor},

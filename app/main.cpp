@@ -38,6 +38,16 @@ void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
   if (judges) verb->add_option("--test", options.test, "record CSV to judge on; may be repeated")->allow_extra_args(false);
 }
 
+/// What a prediction begins with.
+void add_warm_start(CLI::App* verb, std::string& start, std::string& after_pause, std::string& model) {
+  CLI::Option* record = verb->add_option("--start", start,
+                                         "what the machine did before, a record CSV as `simulate` writes it or a cyclogram "
+                                         "of the scenario: the model runs it first [cold]");
+  verb->add_option("--after-pause", after_pause, "time at rest behind it, such as '30 min' [none]")->needs(record);
+  verb->add_option("--model", model, "reduced or full [reduced; full for lumped nodes alone where the scenario has it]")
+      ->check(CLI::IsMember({"reduced", "full"}));
+}
+
 /// The filter: no scenario, no folder of results.
 void add_inject(CLI::App& cli, app::InjectOptions& options) {
   CLI::App* verb = cli.add_subcommand(
@@ -119,14 +129,17 @@ int main(int argc, char** argv) {
       ->callback([&] { app::mesh(mesh); });
   CLI::App* verb = add_verb(cli, "simulate", "temperatures and drift of cyclograms; fields too where one is named",
                             "simulate scenarios/fp3_spindle.yaml --cyclogram warm_up_2000 -o results/warm_up", simulate);
-  verb->add_option("--cyclogram", simulate.cyclograms, "name in the scenario; may be repeated [all]")
+  verb->add_option("--cyclogram", simulate.cyclograms,
+                   "name in the scenario, or a record CSV with the column speed_rpm; may be repeated [all of the scenario]")
       ->allow_extra_args(false);
   verb->callback([&] { app::simulate(simulate); });
-  verb = add_verb(cli, "predict", "drift of a cyclogram by thermal modes, without time steps",
+  verb = add_verb(cli, "predict",
+                  "drift of a cyclogram ahead of its run, by the reduced model; warm after another run where one is given",
                   "predict scenarios/fp3_spindle.yaml --cyclogram plan.csv -o results/plan", predict);
   verb->add_option("--cyclogram", predict.cyclogram,
                    "name in the scenario, or a record CSV with the column speed_rpm (docs/cyclograms.md)")
       ->required();
+  add_warm_start(verb, predict.start, predict.after_pause, predict.model);
   verb->callback([&] { app::predict(predict); });
   verb =
       add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
@@ -138,6 +151,11 @@ int main(int argc, char** argv) {
   verb->add_option("--dialect", schedule.dialect, "linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
       ->check(CLI::IsMember(scenarios::kScheduleDialects));
   verb->add_flag("--split", schedule.split, "divide straight blocks that cannot keep the tolerance in one piece");
+  add_warm_start(verb, schedule.start, schedule.after_pause, schedule.model);
+  CLI::Option* parts = verb->add_option("--parts", schedule.parts, "how many parts the program makes one after another")
+                           ->check(CLI::Range(1, 1000))
+                           ->capture_default_str();
+  verb->add_option("--between", schedule.between, "time at rest between two parts, such as '2 min' [none]")->needs(parts);
   verb->callback([&] { app::schedule(schedule); });
   add_inject(cli, inject);
   verb = add_verb(cli, "select", "rank the temperature sensors of records by grey relational analysis",

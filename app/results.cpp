@@ -107,6 +107,26 @@ void write_fields(const scenarios::Scenario& scenario, const Model& model, const
 
 }  // namespace
 
+SimulatedRun simulate_run(const scenarios::MachineModel& machine, const solver::TransientOptions& options, const Model& model,
+                          const Eigen::VectorXd& from, const Cyclogram& cyclogram, const std::vector<double>& times_s,
+                          const solver::OutputCallback& at_output) {
+  const scenarios::FeltRun felt = scenarios::felt_run(machine, cyclogram);
+  const auto run = [&](const auto& system) {
+    return solver::simulate(system, felt.cyclogram, felt.hall, times_s, options, from, at_output);
+  };
+  SimulatedRun simulated{.record = {}, .trajectory = model.reduced() ? run(model.reduced()->system) : run(model.full()->system)};
+  simulated.record = scenarios::as_recorded(machine, simulated.trajectory, model.outputs(), cyclogram);
+  return simulated;
+}
+
+Eigen::VectorXd start_of(const scenarios::MachineModel& machine, const Model& model) {
+  return model.reduced() ? model.reduced()->start : scenarios::start_state(machine, *model.full());
+}
+
+const Eigen::VectorXd& ones_of(const Model& model) {
+  return model.reduced() ? model.reduced()->system.ones : model.full()->system.ones;
+}
+
 std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const Model& model,
                                               const std::vector<const Cyclogram*>& cyclograms, Progress& progress,
                                               std::size_t with_fields, output::FieldSeries* fields) {
@@ -119,8 +139,7 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
 
   solver::RegionMaterials materials;
   if (fields && settings.stresses) materials = scenarios::region_materials(machine, model.mesh());
-  const scenarios::ReducedMachine* reduced = model.reduced();
-  const Eigen::VectorXd start = reduced ? reduced->start : scenarios::start_state(machine, *model.full());
+  const Eigen::VectorXd start = start_of(machine, model);
   std::vector<SimulatedRun> runs(cyclograms.size());
   std::vector<std::exception_ptr> failures(cyclograms.size());
   double done_s = 0.0;
@@ -142,14 +161,8 @@ std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenari
     const std::vector<double> times_s =
         scenarios::output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
     try {
-      const scenarios::FeltRun felt = scenarios::felt_run(machine, cyclogram);
-      const Eigen::VectorXd from = start + scenarios::warmer_start_K(machine, cyclogram) *
-                                               (reduced ? reduced->system.ones : model.full()->system.ones);
-      runs[i].trajectory = reduced ? solver::simulate(reduced->system, felt.cyclogram, felt.hall, times_s,
-                                                      settings.transient, from, at_output)
-                                   : solver::simulate(model.full()->system, felt.cyclogram, felt.hall, times_s,
-                                                      settings.transient, from, at_output);
-      runs[i].record = scenarios::as_recorded(machine, runs[i].trajectory, model.outputs(), cyclogram);
+      const Eigen::VectorXd from = start + scenarios::warmer_start_K(machine, cyclogram) * ones_of(model);
+      runs[i] = simulate_run(machine, settings.transient, model, from, cyclogram, times_s, at_output);
     } catch (...) {
       failures[i] = std::current_exception();  // none may leave the parallel loop
     }

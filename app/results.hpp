@@ -38,6 +38,20 @@ struct SimulatedRun {
   solver::Trajectory trajectory;
 };
 
+/// Runs one cyclogram.
+/// @param machine   the scenario's, or one that differs from it in the hall
+/// @param from      state of the model at t = 0
+/// @param times_s   of the outputs, within the cyclogram
+/// @param at_output called at each of them
+[[nodiscard]] SimulatedRun simulate_run(const scenarios::MachineModel& machine, const solver::TransientOptions& options,
+                                        const Model& model, const Eigen::VectorXd& from, const Cyclogram& cyclogram,
+                                        const std::vector<double>& times_s, const solver::OutputCallback& at_output = {});
+
+/// The state of the model at t = 0, by the scenario's `start`, over the reference temperature [K]; reduced for a reduced model.
+[[nodiscard]] Eigen::VectorXd start_of(const scenarios::MachineModel& machine, const Model& model);
+/// The state "1 K warmer everywhere".
+[[nodiscard]] const Eigen::VectorXd& ones_of(const Model& model);
+
 /// Runs cyclograms from the scenario's start on, side by side on all cores, with one progress line for all.
 /// @param with_fields  index of the cyclogram whose whole fields go to `fields` every `fields_every` and at its end
 /// @param fields       or nullptr

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/iso230_3_report.hpp"
 #include "scenarios/heat_flow_record.hpp"
 
 namespace driftwright::app {
@@ -76,6 +77,21 @@ Plot channels_plot(const std::string& title, const std::string& y_label, const R
   for (const std::string& name : names)
     plot.series.push_back({.label = name, .x = minutes(record), .y = record.at(name).values});
   return plot;
+}
+
+void add_channel_plots(output::Report& report, const Record& record, const Cyclogram& cyclogram) {
+  constexpr std::size_t kPerPlot = 8;
+  const auto add = [&](const std::string& title, const std::string& label, const std::string& unit) {
+    const std::vector<std::string> names = record.names_with_unit(unit);
+    for (std::size_t first = 0; first < names.size(); first += kPerPlot) {
+      const auto begin = names.begin() + static_cast<std::ptrdiff_t>(first);
+      const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(first + kPerPlot, names.size()));
+      report.blocks.emplace_back(channels_plot(title, label, record, {begin, end}, cyclogram));
+    }
+  };
+  add("Displacements", "displacement [um]", "um");
+  add("Tilts", "tilt [urad]", "urad");
+  add("Temperatures", "temperature [degC]", "degC");
 }
 
 Table heat_table(const solver::Trajectory& run) {
@@ -170,18 +186,8 @@ output::Report simulation_report(const scenarios::Scenario& scenario, const Mode
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Record& record = runs[i].record;
     add(Heading{"Cyclogram " + cyclograms[i]->name});
-    const auto add_channels = [&](const std::string& title, const std::string& label, const std::string& unit) {
-      std::vector<std::string> names = record.names_with_unit(unit);
-      constexpr std::size_t kPerPlot = 8;
-      for (std::size_t first = 0; first < names.size(); first += kPerPlot) {
-        const auto begin = names.begin() + static_cast<std::ptrdiff_t>(first);
-        const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(first + kPerPlot, names.size()));
-        add(channels_plot(title, label, record, {begin, end}, *cyclograms[i]));
-      }
-    };
-    add_channels("Displacements", "displacement [um]", "um");
-    add_channels("Tilts", "tilt [urad]", "urad");
-    add_channels("Temperatures", "temperature [degC]", "degC");
+    add_channel_plots(report, record, *cyclograms[i]);
+    add(iso230_3_block(compensation::iso230_3_figures(record)));
     add(heat_plot(runs[i].trajectory, *cyclograms[i]));
     add(heat_table(runs[i].trajectory));
     add(inner_heat_table(runs[i].trajectory));

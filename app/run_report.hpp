@@ -16,6 +16,9 @@ namespace driftwright::app {
 [[nodiscard]] output::Plot channels_plot(const std::string& title, const std::string& y_label, const Record& record,
                                          const std::vector<std::string>& names, const Cyclogram& cyclogram);
 
+/// Displacements, tilts and temperatures over time, eight in a plot.
+void add_channel_plots(output::Report& report, const Record& record, const Cyclogram& cyclogram);
+
 /// Who heats, who cools: mean power and heat of each flow across the machine's boundary.
 [[nodiscard]] output::Table heat_table(const solver::Trajectory& run);
 /// The same of the flows within it.
@@ -28,7 +31,7 @@ namespace driftwright::app {
 /// The largest of all, in a line; "" for none.
 [[nodiscard]] std::string overshoot_text(const solver::Trajectory& run, const Model& model);
 
-/// The report of `simulate`: each cyclogram's channels, heat flows and overshoots.
+/// The report of `simulate`: each cyclogram's channels, figures of ISO 230-3, heat flows and overshoots.
 [[nodiscard]] output::Report simulation_report(const scenarios::Scenario& scenario, const Model& model,
                                                const std::vector<const Cyclogram*>& cyclograms,
                                                const std::vector<SimulatedRun>& runs, const output::Provenance& made_by);

@@ -3,11 +3,13 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/schedule_report.hpp"
 #include "app/verbs.hpp"
 #include "base/file_bytes.hpp"
+#include "output/json_text.hpp"
 #include "scenarios/read_cyclogram.hpp"
 
 namespace driftwright::app {
@@ -26,13 +28,58 @@ NcDialect dialect_of(const std::string& name) {
   return name == "heidenhain" ? NcDialect::kHeidenhain : NcDialect::kLinuxCnc;
 }
 
-/// Times of the prediction. Durations added up in another order end elsewhere by rounding: the last sample is the end.
-std::vector<double> program_times_s(const Record& record, double end_s) {
-  std::vector<double> time_s = record.time_s;
+/// Times of one part from its start. Durations added up in another order end elsewhere by rounding: the last sample is the end.
+std::vector<double> part_times_s(const Prediction& prediction, const scenarios::PartRows& rows, double end_s) {
+  const std::vector<double>& all_s = prediction.record.time_s;
+  std::vector<double> time_s;
+  for (std::size_t i = rows.first; i <= rows.last; ++i) time_s.push_back(all_s[i] - all_s[rows.first]);
   if (!(std::abs(time_s.back() - end_s) <= 1e-6 * end_s))
     throw std::logic_error("a prediction of another length than its program");
   time_s.back() = end_s;
   return time_s;
+}
+
+/// The drift of one part along the axes to correct, from where the machine was set.
+std::vector<compensation::ProgramAxis> axes_of(const CorrectedSeries& series, const scenarios::PartRows& rows) {
+  std::vector<compensation::ProgramAxis> axes;
+  for (const scenarios::ScheduleAxis& axis : series.settings.axes) {
+    const std::vector<double>& all_um = series.prediction.record.at(axis.displacement).values;
+    std::vector<double> drift_um(all_um.begin() + static_cast<std::ptrdiff_t>(rows.first),
+                                 all_um.begin() + static_cast<std::ptrdiff_t>(rows.last) + 1);
+    const double zero_um = series.settings.from_start ? drift_um.front() : 0.0;
+    for (double& d : drift_um) d -= zero_um;
+    axes.push_back({axis.axis, axis.sign, axis.tolerance_um, std::move(drift_um)});
+  }
+  return axes;
+}
+
+/// Plans all parts and writes the programs.
+void correct(CorrectedSeries& series, const std::string& bytes) {
+  const scenarios::ScheduleSettings& settings = series.settings;
+  NcOffsetOptions offsets{.dialect = dialect_of(settings.dialect),
+                          .work_offset = settings.work_offset,
+                          .base_m = settings.base_offset_m,
+                          .axes = {false, false, false}};
+  for (const scenarios::ScheduleAxis& axis : settings.axes) offsets.axes[axis.axis] = true;
+  const std::vector<scenarios::PartRows>& rows = series.prediction.parts;
+  const std::vector<double> time_s = part_times_s(series.prediction, rows.front(), series.program.duration_s());
+  std::vector<std::vector<compensation::ProgramAxis>> parts;
+  for (const scenarios::PartRows& part : rows) {
+    if (part.last - part.first != rows.front().last - rows.front().first)
+      throw std::logic_error("parts of one program with other rows");
+    parts.push_back(axes_of(series, part));
+  }
+  const compensation::ProgramScheduleOptions how{
+      .policy = settings.policy == "paper" ? compensation::SchedulePolicy::kPaper : compensation::SchedulePolicy::kMinimal,
+      .split = series.split};
+  for (compensation::SharedPlan& shared : compensation::plan_series(series.program.steps, time_s, parts, how)) {
+    CorrectedProgram program{.file = corrected_file(series.file, shared, rows.size()), .shared = {}, .corrected = {}};
+    program.corrected =
+        corrected_nc_program(bytes, series.program.steps, compensation::initial_shift_m(shared.plan, shared.axes),
+                             compensation::offset_changes(shared.plan, shared.axes), offsets);
+    program.shared = std::move(shared);
+    series.programs.push_back(std::move(program));
+  }
 }
 
 }  // namespace
@@ -40,56 +87,56 @@ std::vector<double> program_times_s(const Record& record, double end_s) {
 void schedule(const ScheduleVerbOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   (void)require_machine(scenario, "schedule");
-  CorrectedPart part{.file = std::filesystem::path(options.program).filename().string(),
-                     .settings = require_schedule(scenario),
-                     .split = options.split};
-  if (const std::set<std::string> ours = {"schedule.txt", "schedule.csv", "record.csv", "report.html"};
-      ours.contains(part.file))
+  CorrectedSeries series{.file = std::filesystem::path(options.program).filename().string(),
+                         .settings = require_schedule(scenario),
+                         .split = options.split};
+  if (const std::set<std::string> ours = {"schedule.txt", "schedule.csv", "record.csv", "report.html", "summary.json"};
+      ours.contains(series.file))
     throw InputError(
         fmt::format("{}: `schedule` writes a file of this name of its own; rename the program", options.program));
-  if (!options.policy.empty()) part.settings.policy = options.policy;
-  if (!options.dialect.empty()) part.settings.dialect = options.dialect;
-  const scenarios::ScheduleSettings& settings = part.settings;
-  part.program = read_nc_program(options.program, settings.nc);
+  if (!options.policy.empty()) series.settings.policy = options.policy;
+  if (!options.dialect.empty()) series.settings.dialect = options.dialect;
+  const scenarios::ScheduleSettings& settings = series.settings;
+  series.program = read_nc_program(options.program, settings.nc);
   const std::string bytes = read_bytes(options.program);
-  part.cyclogram = scenarios::cyclogram_of(part.program, std::filesystem::path(part.file).stem().string(),
-                                           settings.resolution_s, settings.cutting_power_W);
-  if (part.cyclogram.sections.empty())
+  series.cyclogram = scenarios::cyclogram_of(series.program, std::filesystem::path(series.file).stem().string(),
+                                             settings.resolution_s, settings.cutting_power_W);
+  if (series.cyclogram.sections.empty())
     throw InputError(fmt::format("{}: the program takes no time; there is no drift to correct", options.program));
-  scenarios::check_cyclogram(scenario, part.cyclogram);
+  scenarios::check_cyclogram(scenario, series.cyclogram);
+  const PredictionOptions asked{.start = options.start,
+                                .after_pause = options.after_pause,
+                                .parts = options.parts,
+                                .between = options.between,
+                                .model = options.model};
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  part.prediction = predict_drift(scenario, part.cyclogram, progress, "schedule");
+  series.prediction = predict_drift(scenario, series.cyclogram, asked, progress, "schedule");
+  const Prediction& prediction = series.prediction;
+  if (series.is_series())
+    series.between_s =
+        prediction.record.time_s[prediction.parts[1].first] - prediction.record.time_s[prediction.parts[0].last];
+  series.iso = iso_figures(prediction);
   progress.begin("planning corrections");
-  const Record& record = part.prediction.record;
-  NcOffsetOptions offsets{.dialect = dialect_of(settings.dialect),
-                          .work_offset = settings.work_offset,
-                          .base_m = settings.base_offset_m,
-                          .axes = {false, false, false}};
-  for (const scenarios::ScheduleAxis& axis : settings.axes) {
-    std::vector<double> drift_um = record.at(axis.displacement).values;
-    const double zero_um = settings.from_start ? drift_um.front() : 0.0;
-    for (double& d : drift_um) d -= zero_um;
-    part.axes.push_back({axis.axis, axis.sign, axis.tolerance_um, std::move(drift_um)});
-    offsets.axes[axis.axis] = true;
+  correct(series, bytes);
+  const std::string what = fmt::format("predicted by the {} for {}", prediction.predicted_by, options.program);
+  std::vector<std::string> files;
+  for (const CorrectedProgram& program : series.programs) {
+    folder.write_text(program.file, program.corrected.text);
+    files.push_back(program.file);
   }
-  part.plan = compensation::plan_program(
-      part.program.steps, program_times_s(record, part.program.duration_s()), part.axes,
-      {.policy = settings.policy == "paper" ? compensation::SchedulePolicy::kPaper : compensation::SchedulePolicy::kMinimal,
-       .split = options.split});
-  part.corrected = corrected_nc_program(bytes, part.program.steps, compensation::initial_shift_m(part.plan, part.axes),
-                                        compensation::offset_changes(part.plan, part.axes), offsets);
-  const std::string what = fmt::format("predicted by {} thermal modes for {}", part.prediction.n_modes, options.program);
-  folder.write_text(part.file, part.corrected.text);
-  folder.write_text("record.csv", record_csv(record, provenance_lines(folder.made_by(), what)));
-  folder.write_text("schedule.txt", schedule_notation(part));
+  folder.write_text("record.csv", record_csv(prediction.record, provenance_lines(folder.made_by(), what)));
+  folder.write_text("schedule.txt", schedule_notation(series));
   folder.write_text("schedule.csv",
-                    schedule_csv(part, provenance_lines(folder.made_by(), "corrections of the drift " + what)));
-  folder.write_text("report.html", output::render_html(schedule_report(part, scenario.name, folder.made_by())));
+                    schedule_csv(series, provenance_lines(folder.made_by(), "corrections of the drift " + what)));
+  folder.write_text("summary.json", output::json_text(schedule_json(series, folder.made_by())));
+  folder.write_text("report.html", output::render_html(schedule_report(series, scenario.name, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}  results in {}: {}, schedule.txt, schedule.csv, record.csv, report.html\n", schedule_terminal(part),
-             shown_path(folder.target()), part.file);
+  fmt::print(
+      "{}  results in {}: {}, schedule.txt, schedule.csv, record.csv, summary.json, report.html\n",
+      schedule_terminal(series), shown_path(folder.target()),
+      files.size() > 3 ? fmt::format("{} to {}", files.front(), files.back()) : fmt::format("{}", fmt::join(files, ", ")));
 }
 
 }  // namespace driftwright::app

@@ -1,38 +1,54 @@
 #pragma once
 // Words, tables and pictures about the corrections of an NC program.
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "app/prediction.hpp"
 #include "base/nc_program.hpp"
-#include "compensation/program_schedule.hpp"
+#include "compensation/iso230_3.hpp"
+#include "compensation/program_series.hpp"
 #include "output/html_report.hpp"
 
 namespace driftwright::app {
 
-/// A program and its corrections.
-struct CorrectedPart {
+/// A corrected program as it is written, and the parts that it serves.
+struct CorrectedProgram {
+  std::string file;
+  compensation::SharedPlan shared;
+  CorrectedNcProgram corrected;
+};
+
+/// A program and its corrections, for one part or for a series.
+struct CorrectedSeries {
   std::string file;  ///< name of the program
   scenarios::ScheduleSettings settings;
   bool split = false;
   NcProgram program = {};
-  Cyclogram cyclogram = {};
+  Cyclogram cyclogram = {};  ///< of one part
   Prediction prediction = {};
-  std::vector<compensation::ProgramAxis> axes = {};  ///< as settings.axes
-  compensation::ProgramSchedule plan = {};
-  CorrectedNcProgram corrected = {};
+  double between_s = 0.0;
+  std::vector<CorrectedProgram> programs = {};  ///< by their parts
+  compensation::Iso230Figures iso = {};
+
+  [[nodiscard]] bool is_series() const { return prediction.parts.size() > 1; }
 };
 
-/// Largest |drift| and |residual| over a course [um].
-[[nodiscard]] double peak_before_um(const compensation::AxisCourse& course);
-[[nodiscard]] double peak_after_um(const compensation::AxisCourse& course);
+/// Names of the written programs: the program's own where one serves all parts, else with the numbers of its parts:
+/// part_01.ngc, part_02_to_20.ngc.
+[[nodiscard]] std::string corrected_file(const std::string& file, const compensation::SharedPlan& shared,
+                                         std::size_t n_parts);
+
 /// Changes of one axis (its first value in front of the program is one if it is not 0).
 [[nodiscard]] int n_changes(const compensation::ProgramSchedule& plan, int axis);
 
-[[nodiscard]] std::string schedule_terminal(const CorrectedPart& part);
-/// The paper's notation, per axis and operation.
-[[nodiscard]] std::string schedule_notation(const CorrectedPart& part);
-/// Rows of time, line, and per axis what changes: increment, correction, offset.
-[[nodiscard]] std::string schedule_csv(const CorrectedPart& part, const std::vector<std::string>& comments);
-[[nodiscard]] output::Report schedule_report(const CorrectedPart& part, const std::string& scenario_name,
+[[nodiscard]] std::string schedule_terminal(const CorrectedSeries& series);
+/// The paper's notation, per program, axis and operation.
+[[nodiscard]] std::string schedule_notation(const CorrectedSeries& series);
+/// Rows of time, line, and per axis what changes: increment, correction, offset; for a series with the parts in front.
+[[nodiscard]] std::string schedule_csv(const CorrectedSeries& series, const std::vector<std::string>& comments);
+/// Everything that a script would want, with units in the keys (docs/schedule.md).
+[[nodiscard]] nlohmann::ordered_json schedule_json(const CorrectedSeries& series, const output::Provenance& made_by);
+[[nodiscard]] output::Report schedule_report(const CorrectedSeries& series, const std::string& scenario_name,
                                              const output::Provenance& made_by);
 
 }  // namespace driftwright::app

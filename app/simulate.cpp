@@ -1,22 +1,67 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
-#include "app/results.hpp"
+#include "app/iso230_3_report.hpp"
+#include "app/prediction.hpp"
 #include "app/run_report.hpp"
 #include "app/verbs.hpp"
+#include "output/json_text.hpp"
 #include "scenarios/reduced_files.hpp"
 
 namespace driftwright::app {
+namespace {
+
+/// All of the scenario's where none is named.
+/// @throws InputError  for two of one name, whose records would be one file, and as named_cyclogram()
+std::vector<Cyclogram> asked_cyclograms(const scenarios::Scenario& scenario, const std::vector<std::string>& names) {
+  if (names.empty()) return scenario.cyclograms;
+  std::vector<Cyclogram> asked;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    asked.push_back(named_cyclogram(scenario, names[i]));
+    for (std::size_t k = 0; k < i; ++k) {
+      if (asked[k].name == asked[i].name)
+        throw InputError(
+            fmt::format("--cyclogram {} and --cyclogram {} are both named '{}'; their records would have one name", names[k],
+                        names[i], asked[i].name));
+    }
+  }
+  return asked;
+}
+
+nlohmann::ordered_json summary_json(const Model& machine, const std::vector<const Cyclogram*>& cyclograms,
+                                    const std::vector<SimulatedRun>& runs,
+                                    const std::vector<compensation::Iso230Figures>& iso, const output::Provenance& made_by) {
+  using Json = nlohmann::ordered_json;
+  Json j = {{"program", "driftwright"},
+            {"version", made_by.version},
+            {"scenario", made_by.scenario},
+            {"simulated_by", machine.words()},
+            {"cyclograms", Json::array()}};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    Json run = {{"name", cyclograms[i]->name},
+                {"duration_min", cyclograms[i]->duration_s() / 60.0},
+                {"energy_balance_gap", std::max(1e-16, runs[i].trajectory.energy_gap())},
+                {"at_end", Json::array()}};
+    for (const Channel& c : runs[i].record.channels) {
+      if (c.unit == "um" || c.unit == "urad")
+        run["at_end"].push_back({{"name", c.name}, {"unit", c.unit}, {"value", c.values.back()}});
+    }
+    run["iso_230_3"] = iso230_3_json(iso[i]);
+    j["cyclograms"].push_back(run);
+  }
+  return j;
+}
+
+}  // namespace
 
 void simulate(const SimulateOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   const scenarios::MachineModel& model = require_machine(scenario, "simulate");
+  const std::vector<Cyclogram> asked = asked_cyclograms(scenario, options.cyclograms);
   std::vector<const Cyclogram*> cyclograms;
-  for (const std::string& name : options.cyclograms) cyclograms.push_back(&scenario.cyclogram(name));
-  if (cyclograms.empty()) {
-    for (const Cyclogram& c : scenario.cyclograms) cyclograms.push_back(&c);
-  }
+  for (const Cyclogram& c : asked) cyclograms.push_back(&c);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   // Whole fields of one cyclogram only: several would fill the disk and mix in one list of times.
@@ -30,9 +75,11 @@ void simulate(const SimulateOptions& options) {
       simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
   if (fields) fields->finish();
   std::string summary;
+  std::vector<compensation::Iso230Figures> iso;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const SimulatedRun& run = runs[i];
     const Cyclogram* cyclogram = cyclograms[i];
+    iso.push_back(compensation::iso230_3_figures(run.record));
     const std::string file = cyclograms.size() == 1 ? "record.csv" : "records/" + cyclogram->name + ".csv";
     folder.write_text(file, record_csv(run.record, provenance_lines(folder.made_by(), "cyclogram " + cyclogram->name)));
     folder.write_text(cyclograms.size() == 1 ? "heat_flows.csv" : "heat_flows/" + cyclogram->name + ".csv",
@@ -42,6 +89,7 @@ void simulate(const SimulateOptions& options) {
     for (const auto& d : model.displacements)
       summary += fmt::format("  {} {:.1f} um", d.name, run.record.at(d.name).values.back());
     summary += fmt::format("; energy balance {:.0e}; {}\n", std::max(1e-16, run.trajectory.energy_gap()), file);
+    if (cyclograms.size() == 1) summary += iso230_3_text(iso.back());
     const std::string overshoot = overshoot_text(run.trajectory, machine);
     if (!overshoot.empty()) summary += "    " + overshoot + "\n";
   }
@@ -55,11 +103,12 @@ void simulate(const SimulateOptions& options) {
     scenarios::export_reduced(reduced->system, reduced->start, reduced->error, drives,
                               [&](const std::string& file) { return folder.path("reduced_model/" + file); });
   }
+  folder.write_text("summary.json", output::json_text(summary_json(machine, cyclograms, runs, iso, folder.made_by())));
   folder.write_text("report.html",
                     output::render_html(simulation_report(scenario, machine, cyclograms, runs, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}{}{}\nresults in {}: report.html, heat flows in W{}\n{}", summary, machine.words(),
+  fmt::print("{}{}{}\nresults in {}: report.html, summary.json, heat flows in W{}\n{}", summary, machine.words(),
              machine.was_known ? " (known from disk)" : "", shown_path(folder.target()),
              fields                       ? fmt::format(", fields in {} (ParaView)", fields->file_to_open())
              : !has_mesh || !wants_fields ? ""

@@ -19,12 +19,15 @@ void check(const CommonOptions& options);
 void mesh(const CommonOptions& options);
 
 struct SimulateOptions : CommonOptions {
-  std::vector<std::string> cyclograms;  ///< names; empty: all of the scenario
+  std::vector<std::string> cyclograms;  ///< names, or record CSVs; empty: all of the scenario
 };
 void simulate(const SimulateOptions& options);
 
 struct PredictOptions : CommonOptions {
-  std::string cyclogram;  ///< a name of the scenario, or a record CSV (scenarios/read_cyclogram.hpp)
+  std::string cyclogram;    ///< a name of the scenario, or a record CSV (scenarios/read_cyclogram.hpp)
+  std::string start;        ///< what the machine did before, a record CSV or a cyclogram of the scenario; empty: its start
+  std::string after_pause;  ///< at rest between that and the cyclogram, such as "30 min"; empty: none
+  std::string model;        ///< reduced, full; empty: predicting_model() of app/prediction.hpp
 };
 void predict(const PredictOptions& options);
 
@@ -33,6 +36,11 @@ struct ScheduleVerbOptions : CommonOptions {
   std::string policy;   ///< empty: the scenario's
   std::string dialect;  ///< empty: the scenario's
   bool split = false;   ///< divide blocks that cannot keep the tolerance
+  std::string start;    ///< these as in PredictOptions
+  std::string after_pause;
+  std::string model;
+  int parts = 1;        ///< made one after another by the program
+  std::string between;  ///< at rest between two of them, such as "2 min"; empty: none
 };
 void schedule(const ScheduleVerbOptions& options);
 

@@ -235,6 +235,21 @@ class CourseWriter {
   bool taken_ = false;
 };
 
+/// The course of one axis under a plan.
+CourseWriter written_course(const ProgramSchedule& schedule, const std::vector<NcStep>& steps,
+                            std::span<const double> time_s, const ProgramAxis& axis) {
+  std::vector<Place> places = {{}};
+  std::vector<double> planned_um = {schedule.initial_um[axis.axis]};
+  for (const ProgramChange& change : schedule.changes) {
+    if (!change.correction_um[axis.axis]) continue;
+    places.push_back({change.step, change.share, change.time_s, change.in_force_s[axis.axis]});
+    planned_um.push_back(*change.correction_um[axis.axis]);
+  }
+  CourseWriter writer(axis, time_s);
+  writer.run(steps, places, planned_um);
+  return writer;
+}
+
 void check_commanded(const std::vector<NcStep>& steps, int axis) {
   const auto takes = [&](const NcStep& step) { return takes_offset(step, axis) && !step.ends_program; };
   if (std::any_of(steps.begin(), steps.end(), takes)) return;
@@ -285,6 +300,7 @@ ProgramSchedule plan_program(const std::vector<NcStep>& steps, std::span<const d
   ProgramSchedule schedule;
   std::map<Key, ProgramChange> changes;
   std::map<Key, std::array<bool, 3>> used;
+  std::vector<std::vector<LongStretch>> planned_stretches;  // per axis
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const ProgramAxis& axis = axes[a];
     check_commanded(steps, axis.axis);
@@ -304,15 +320,7 @@ ProgramSchedule plan_program(const std::vector<NcStep>& steps, std::span<const d
       used[key][axis.axis] = true;
     }
     schedule.schedules.push_back(schedule_of(planner.cells, planner.correction_um, boundaries_s, axis.tolerance_um));
-    CourseWriter writer(axis, time_s);
-    writer.run(steps, planner.places, planner.correction_um);
-    schedule.courses.push_back(std::move(writer.course));
-    if (writer.without) {
-      writer.without->axis = a;
-      schedule.long_stretches.push_back(*writer.without);
-    }
-    const std::vector<LongStretch> found = long_stretches(planner, steps, a, axis.tolerance_um);
-    schedule.long_stretches.insert(schedule.long_stretches.end(), found.begin(), found.end());
+    planned_stretches.push_back(long_stretches(planner, steps, a, axis.tolerance_um));
   }
   std::size_t divided = steps.size();
   for (const auto& [key, change] : changes) {
@@ -322,7 +330,23 @@ ProgramSchedule plan_program(const std::vector<NcStep>& steps, std::span<const d
       divided = change.step;
     }
   }
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    CourseWriter writer = written_course(schedule, steps, time_s, axes[a]);
+    schedule.courses.push_back(std::move(writer.course));
+    if (writer.without) {
+      writer.without->axis = a;
+      schedule.long_stretches.push_back(*writer.without);
+    }
+    schedule.long_stretches.insert(schedule.long_stretches.end(), planned_stretches[a].begin(), planned_stretches[a].end());
+  }
   return schedule;
+}
+
+std::vector<AxisCourse> courses_of(const ProgramSchedule& schedule, const std::vector<NcStep>& steps,
+                                   std::span<const double> time_s, const std::vector<ProgramAxis>& axes) {
+  std::vector<AxisCourse> courses;
+  for (const ProgramAxis& axis : axes) courses.push_back(written_course(schedule, steps, time_s, axis).course);
+  return courses;
 }
 
 std::vector<NcOffsetChange> offset_changes(const ProgramSchedule& schedule, const std::vector<ProgramAxis>& axes) {

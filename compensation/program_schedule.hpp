@@ -76,6 +76,13 @@ struct ProgramSchedule {
 [[nodiscard]] ProgramSchedule plan_program(const std::vector<NcStep>& steps, std::span<const double> time_s,
                                            const std::vector<ProgramAxis>& axes, const ProgramScheduleOptions& options);
 
+/// What a plan leaves of another drift than that which it was made for, such as the next part's, per axis.
+/// @param steps   of the program that it was made for
+/// @param time_s  of the drifts: from 0 to the end of the program, strictly increasing
+/// @param axes    as it was made for, with the other drift
+[[nodiscard]] std::vector<AxisCourse> courses_of(const ProgramSchedule& schedule, const std::vector<NcStep>& steps,
+                                                 std::span<const double> time_s, const std::vector<ProgramAxis>& axes);
+
 /// The plan as offsets: the axis moves by -c, so that the offset is shifted by -sign c.
 [[nodiscard]] std::vector<NcOffsetChange> offset_changes(const ProgramSchedule& schedule,
                                                          const std::vector<ProgramAxis>& axes);
