@@ -2,17 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "app/prediction.hpp"
 #include "app/verbs.hpp"
-#include "scenarios/read_cyclogram.hpp"
+#include "base/mapped_record.hpp"
+#include "scenarios/recorded_run.hpp"
 
 namespace driftwright::app {
 namespace {
 
+/// A cyclogram of the scenario, or what drove the machine in a record.
 Cyclogram find_cyclogram(const scenarios::Scenario& scenario, const std::string& name_or_file) {
-  if (name_or_file.ends_with(".csv")) return scenarios::cyclogram_of(read_record_csv(name_or_file));
-  return scenario.cyclogram(name_or_file);
+  const bool is_known = std::any_of(scenario.cyclograms.begin(), scenario.cyclograms.end(),
+                                    [&](const Cyclogram& c) { return c.name == name_or_file; });
+  if (is_known || (!name_or_file.ends_with(".csv") && !std::filesystem::exists(name_or_file)))
+    return scenario.cyclogram(name_or_file);
+  const ReadRecord read = read_record(name_or_file, scenario.columns);
+  for (const std::string& note : read.notes) fmt::print("note: {}\n", note);
+  const scenarios::RecordedRun run = scenarios::run_of(read.record, nullptr, {}, scenarios::Reading::kStrict);
+  for (const scenarios::DataFinding& f : run.findings) {
+    if (f.channel == "speed") fmt::print("note: {}\n", f.what);  // the hall is the scenario's
+  }
+  return run.cyclogram;
 }
 
 }  // namespace
