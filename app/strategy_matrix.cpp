@@ -17,9 +17,10 @@ using namespace compensation;
 
 constexpr double kHour_s = 3600.0;
 
-double range_until(const std::vector<double>& time_s, const std::vector<double>& x, double until_s) {
+/// From row `first` on.
+double range_until(const std::vector<double>& time_s, const std::vector<double>& x, std::size_t first, double until_s) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t i = 0; i < x.size() && time_s[i] - time_s.front() <= until_s; ++i) {
+  for (std::size_t i = first; i < x.size() && time_s[i] - time_s[first] <= until_s; ++i) {
     if (std::isnan(x[i])) continue;
     low = std::min(low, x[i]);
     high = std::max(high, x[i]);
@@ -48,8 +49,8 @@ Case judge(const FittedStrategy& strategy, std::size_t index, const ObservedRun&
   for (double off : unguarded) c.peak_unguarded_um = std::max(c.peak_unguarded_um, std::abs(off));
   std::erase_if(unguarded, [](double off) { return std::isinf(off); });
   c.rms_unguarded_um = score(unguarded).rmse;
-  c.first_hour_um = range_until(run.readings.time_s, left, kHour_s);
-  c.whole_um = range_until(run.readings.time_s, left, std::numeric_limits<double>::infinity());
+  c.first_hour_um = range_until(run.readings.time_s, left, run.n_before, kHour_s);
+  c.whole_um = range_until(run.readings.time_s, left, run.n_before, std::numeric_limits<double>::infinity());
   c.covered = strategy.interval_um && n > 0 ? static_cast<double>(n_inside) / n : std::numeric_limits<double>::quiet_NaN();
   c.events = correction.events;
   return c;
@@ -81,7 +82,7 @@ std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings
   std::vector<std::pair<std::string, ObservedRun>> list = {{"", judged.run}};
   if (!settings.fails_at || judged.season != settings.fails_in) return list;
   const std::vector<double>& t = judged.run.readings.time_s;
-  const double from_s = t.front() + *settings.fails_at * (t.back() - t.front());
+  const double start_s = t[judged.run.n_before], from_s = start_s + *settings.fails_at * (t.back() - start_s);
   for (const std::string& sensor : strategy.sensors) {
     for (const Failure& failure : kFailures) {
       if (failure.kind == SensorFailure::kDetached && (settings.elsewhere.empty() || settings.elsewhere == sensor)) continue;
@@ -225,9 +226,7 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
   std::vector<std::vector<double>> drift_um;
   for (const JudgedRunOfMachine& r : matrix.runs) {
     const std::string& target = settings.strategies.target;
-    drift_um.push_back((settings.strategies.count_from_start ? counted_from_start(r.run.readings, target) : r.run.readings)
-                           .at(target)
-                           .values);
+    drift_um.push_back(scored_readings(r.run, target, settings.strategies.count_from_start).at(target).values);
   }
   for (std::size_t r = 0; r < drift_um.size(); ++r) {
     if (score(drift_um[r]).n == 0)

@@ -13,7 +13,6 @@
 #include "compensation/model_scatter.hpp"
 #include "compensation/thermometers.hpp"
 #include "scenarios/as_recorded.hpp"
-#include "scenarios/recorded_run.hpp"
 #include "solver/reduced_transient.hpp"
 
 namespace driftwright::app {
@@ -56,15 +55,6 @@ std::string speed_channel(const Record& record) {
   if (!speed || speed->unit != "rpm") return {};
   const auto [low, high] = std::minmax_element(speed->values.begin(), speed->values.end());
   return *high > *low || *high > 0.0 ? "speed" : "";
-}
-
-/// Channels that read the hall: sensors on it.
-std::vector<std::string> hall_sensors(const Scenario& scenario) {
-  std::vector<std::string> names;
-  for (const scenarios::Sensor& s : scenario.machine ? scenario.machine->sensors : std::vector<scenarios::Sensor>{}) {
-    if (scenarios::is_on_hall(s)) names.push_back(s.name);
-  }
-  return names;
 }
 
 /// The hall among the channels of a simulated record: a sensor on it, or `ambient`.
@@ -249,43 +239,9 @@ StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model,
   return judge_strategies(settings, std::move(training), std::move(judged));
 }
 
-StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<Record>& training,
-                                   const std::vector<Record>& test, Progress& progress) {
+StrategyMatrix validate_on_records(const Scenario& scenario, StudyRecords records, Progress& progress) {
   const scenarios::Study& study = *scenario.study;
-  const scenarios::MachineModel* machine = scenario.machine ? &*scenario.machine : nullptr;
-  std::vector<const Record*> records;
-  for (const std::vector<Record>* list : {&training, &test}) {
-    for (const Record& record : *list) records.push_back(&record);
-  }
-  std::vector<scenarios::RecordedRun> recorded;
-  std::vector<std::string> findings;
-  for (const Record* record : records) {
-    recorded.push_back(scenarios::run_of(*record, machine, hall_sensors(scenario), scenarios::Reading::kLenient));
-    for (const scenarios::DataFinding& f : recorded.back().findings) {
-      if (std::find(findings.begin(), findings.end(), f.what) == findings.end()) findings.push_back(f.what);
-    }
-  }
-  // the hall is an input where every record has it, in the same channel
-  const std::string hall = recorded.front().hall_channel;
-  const bool has_hall =
-      std::all_of(recorded.begin(), recorded.end(), [&](const auto& run) { return run.hall_channel == hall; });
-  if (!has_hall)
-    findings.emplace_back("not every record has the hall's temperature in the same channel; it is used from none");
-  std::vector<ObservedRun> seen;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    ObservedRun run{
-        .cyclogram = std::move(recorded[r].cyclogram), .hall = std::move(recorded[r].hall), .readings = *records[r]};
-    run.readings.time_s = std::move(recorded[r].time_s);
-    if (machine) {  // drive and hall as the scenario's effects say that they were
-      scenarios::MachineModel there = *machine;
-      if (has_hall) there.hall = run.hall;
-      scenarios::FeltRun felt = scenarios::felt_run(there, run.cyclogram);
-      felt.cyclogram.name = run.cyclogram.name;
-      run.cyclogram = std::move(felt.cyclogram);
-      run.hall = std::move(felt.hall);
-    }
-    seen.push_back(std::move(run));
-  }
+  const std::vector<Record> training = own_records(records.train);
   MatrixSettings settings;
   StrategySettings& how = settings.strategies;
   how.target = study.target;
@@ -294,21 +250,24 @@ StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<R
   how.count_from_start = study.count_from_start;
   how.image = study.image;
   how.speed = speed_channel(training.front());
-  how.hall = has_hall ? hall : "";
+  how.hall = records.hall;
   std::vector<const ObservedRun*> all;
-  for (const ObservedRun& run : seen) all.push_back(&run);
+  for (const std::vector<ObservedRun>* list : {&records.train, &records.test}) {
+    for (const ObservedRun& run : *list) all.push_back(&run);
+  }
   RecordedPhysics physics = physics_for_records(scenario, all, how, progress);
   how.physics = std::move(physics.physics);
   how.without_physics = std::move(physics.why_none);
   std::vector<JudgedRunOfMachine> judged;
-  for (std::size_t r = training.size(); r < seen.size(); ++r)
-    judged.push_back({"measured", "", std::filesystem::path(records[r]->source).filename().string(), std::move(seen[r])});
-  seen.resize(training.size());
+  for (ObservedRun& run : records.test) {
+    const std::string name = std::filesystem::path(run.readings.source).filename().string();
+    judged.push_back({"measured", "", name, std::move(run)});
+  }
   settings.tolerance_um = study.tolerance_um;
   settings.fails_at = 0.5;
   progress.begin(fmt::format("fitting and judging strategies on {} records", judged.size()));
-  StrategyMatrix matrix = judge_strategies(settings, std::move(seen), std::move(judged));
-  matrix.findings = std::move(findings);
+  StrategyMatrix matrix = judge_strategies(settings, std::move(records.train), std::move(judged));
+  matrix.findings = std::move(records.findings);
   return matrix;
 }
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <span>
 
-#include "base/record.hpp"
+#include "compensation/observed_run.hpp"
 #include "solver/model_factors.hpp"
 
 namespace driftwright::compensation {
@@ -21,13 +21,6 @@ struct ObserverSettings {
   double factor_walk = 0.02;     ///< by which a factor may wander in an hour
   double scale = 0.05;           ///< of each displacement
   double longest_step_s = 60.0;  ///< of the filter between readings
-};
-
-/// One run of the machine as the observer sees it.
-struct ObservedRun {
-  Cyclogram cyclogram;
-  TimeSeries hall;  ///< minus the reference temperature [K]
-  Record readings;  ///< channels named as the model's outputs; temperatures in degC, displacements in um
 };
 
 struct Observation {
