@@ -78,7 +78,7 @@ TEST(MeasuredScenarios, AreReadByTheProgramWithoutTheirRecords) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
     ++n;
   }
-  EXPECT_EQ(n, 9);
+  EXPECT_EQ(n, 10);
 }
 
 // One record of 28 h: fitted to its first 20 h, judged by the other 8.
