@@ -22,12 +22,20 @@ void print_cyclogram(const Cyclogram& cyclogram) {
   for (const std::string& remark : cyclogram.remarks) fmt::print("    {}\n", remark);
 }
 
+/// How the records are read that verbs are given.
+void print_columns(const scenarios::Scenario& scenario) {
+  if (!scenario.columns) return;
+  fmt::print("  records are read by `columns`:\n");
+  for (const std::string& line : words(*scenario.columns)) fmt::print("    {}\n", line);
+}
+
 }  // namespace
 
 void check(const CommonOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   if (!scenario.machine) {
     fmt::print("{}: fine; a study of measured records, target {}\n", options.scenario, scenario.study->target);
+    print_columns(scenario);
     return;
   }
   Progress progress;
@@ -39,6 +47,7 @@ void check(const CommonOptions& options) {
                placed.balance.nodes.size(), scenario.machine->effects.size(), scenario.machine->sensors.size(),
                scenario.cyclograms.size());
     for (const Cyclogram& cyclogram : scenario.cyclograms) print_cyclogram(cyclogram);
+    print_columns(scenario);
     return;
   }
   const mesh::Quality quality = mesh::worst_quality(placed.mesh);
@@ -49,6 +58,7 @@ void check(const CommonOptions& options) {
       placed.mesh.joints.size(), scenario.machine->effects.size(), scenario.machine->sensors.size(),
       scenario.cyclograms.size(), quality.min_scaled);
   for (const Cyclogram& cyclogram : scenario.cyclograms) print_cyclogram(cyclogram);
+  print_columns(scenario);
   for (const std::string& note : placed.mesh.notes) fmt::print("note: {}\n", note);
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/compensate_frame.hpp"
+#include "app/record_study.hpp"
 #include "app/results.hpp"
 #include "app/validation_study.hpp"
 #include "compensation/axis_loop.hpp"
@@ -178,7 +179,13 @@ void compensate(const CompensateOptions& options) {
   ObservedRun run;
   std::vector<double> ahead_um;
   if (is_measured) {
-    run = observed_run(scenario, read_record_csv(options.measured), predictor->hall);
+    RecordOptions measured;
+    measured.test = {options.measured};
+    StudyRecords records = read_records(scenario, measured, &predictor->hall);
+    for (const std::vector<std::string>* notes : {&records.notes, &records.findings}) {
+      for (const std::string& note : *notes) fmt::print("note: {}\n", note);
+    }
+    run = std::move(records.test.front());
   } else {
     const Model model = open_model(scenario, {cyclogram}, progress, false);
     if (const scenarios::Machine* full = model.full())
@@ -192,12 +199,8 @@ void compensate(const CompensateOptions& options) {
   }
   const DeployedPredictor& d = *predictor;
   progress.begin("correcting");
-  if (d.from_start) {
-    Channel& target =
-        run.readings.channels[static_cast<std::size_t>(&run.readings.at(d.target) - run.readings.channels.data())];
-    target = counted_from_start({.source = {}, .time_s = run.readings.time_s, .channels = {target}}, target.name)
-                 .channels.front();
-  }
+  run.readings.channels[static_cast<std::size_t>(&run.readings.at(d.target) - run.readings.channels.data())] =
+      scored_readings(run, d.target, d.from_start).at(d.target);
   Outcome o = options.through == "none"       ? through_none(d, run)
               : options.through == "injector" ? through_injector(scenario, d, run)
                                               : through_schedule(scenario, d, run, ahead_um);

@@ -32,10 +32,12 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
 
 /// @param judges  it also tests, and does without records where the scenario has a programme
 void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
-  verb->add_option("--train", options.train, "record CSV to fit on; may be repeated")
+  verb->add_option("--train", options.train, "record to fit on, or a part of it: run.csv:0h..20h; may be repeated")
       ->required(!judges)
       ->allow_extra_args(false);
-  if (judges) verb->add_option("--test", options.test, "record CSV to judge on; may be repeated")->allow_extra_args(false);
+  if (judges)
+    verb->add_option("--test", options.test, "record to judge on, or a part of it: run.csv:20h..28h; may be repeated")
+        ->allow_extra_args(false);
 }
 
 /// What a prediction begins with.

@@ -42,7 +42,7 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   m.mesh = placed.mesh;
   const solver::Outputs names = scenarios::output_names(model, placed);
   for (const std::string& path : measured) {
-    m.runs.push_back(diagnosis::read_measured(path, model, names));
+    m.runs.push_back(diagnosis::read_measured(path, model, names, scenario.columns));
     for (std::size_t r = 0; r + 1 < m.runs.size(); ++r) {
       if (same_readings(m.runs[r], m.runs.back())) {
         throw InputError(fmt::format("{}: the same readings as {}; a record counts once", path, m.runs[r].path));

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/mapped_record.hpp"
 #include "base/quantity.hpp"
 #include "compensation/interpolate.hpp"
 #include "scenarios/as_recorded.hpp"
@@ -61,7 +62,7 @@ Before read_before(const scenarios::Scenario& scenario, const PredictionOptions&
   before.order.between_s = duration_s("--between", options.between);
   if (options.start.empty()) return before;
   if (options.start.ends_with(".csv")) {
-    before.record = read_record_csv(options.start);
+    before.record = read_record(options.start, scenario.columns).record;
     before.order.start = scenarios::run_of(*before.record, &machine, sensors_on_hall(machine), scenarios::Reading::kStrict);
   } else {
     before.order.start.emplace();
@@ -191,8 +192,13 @@ compensation::Iso230Figures iso_figures(const Prediction& prediction) {
 Cyclogram named_cyclogram(const scenarios::Scenario& scenario, const std::string& name_or_file) {
   Cyclogram cyclogram;
   if (name_or_file.ends_with(".csv")) {
-    cyclogram = scenarios::cyclogram_of(read_record_csv(name_or_file));
-    cyclogram.name = std::filesystem::path(name_or_file).stem().string();
+    const ReadRecord read = read_record(name_or_file, scenario.columns);
+    for (const std::string& note : read.notes) fmt::print("note: {}\n", note);
+    scenarios::RecordedRun run = scenarios::run_of(read.record, nullptr, {}, scenarios::Reading::kStrict);
+    for (const scenarios::DataFinding& f : run.findings) {
+      if (f.channel == "speed") fmt::print("note: {}\n", f.what);  // the hall is the scenario's
+    }
+    cyclogram = std::move(run.cyclogram);
   } else {
     cyclogram = scenario.cyclogram(name_or_file);
   }

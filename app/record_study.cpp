@@ -9,8 +9,13 @@
 #include <tuple>
 
 #include "base/errors.hpp"
+#include "base/mapped_record.hpp"
 #include "compensation/product_sums.hpp"
 #include "compensation/regression_quality.hpp"
+#include "scenarios/as_recorded.hpp"
+#include "scenarios/record_part.hpp"
+#include "scenarios/record_runs.hpp"
+#include "scenarios/recorded_run.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -66,29 +71,169 @@ std::vector<std::tuple<std::string, std::string, std::string>> exchanged(const s
   return found;
 }
 
+using compensation::ObservedRun;
+using scenarios::RecordPart;
+using scenarios::RunRows;
+
+/// A file, read once, whatever parts of it are asked for.
+struct ReadFile {
+  std::string path;
+  Record record;
+  scenarios::RecordedRun recorded;
+  scenarios::FeltRun felt;  ///< drive and hall as the scenario's effects say that they were
+};
+
+Record read_with_target(const std::string& path, const scenarios::Scenario& scenario, std::vector<std::string>& notes) {
+  ReadRecord read = read_record(path, scenario.columns);
+  std::move(read.notes.begin(), read.notes.end(), std::back_inserter(notes));
+  const std::string& name = scenario.study->target;
+  const Channel& target = read.record.at(name);
+  if (target.unit != "um")
+    throw InputError(fmt::format(
+        "{}: the target '{}' is in {}; strategies, tolerances and corrections are in um: name and scale the column so", path,
+        name, target.unit));
+  return std::move(read.record);
+}
+
+/// The files that parts name, each once.
+std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const scenarios::Scenario& scenario,
+                                 const std::string* hall, StudyRecords& into) {
+  const std::string& target = scenario.study->target;
+  std::vector<ReadFile> files;
+  for (const RecordPart& part : parts) {
+    if (std::any_of(files.begin(), files.end(), [&](const ReadFile& f) { return f.path == part.file; })) continue;
+    ReadFile file{
+        .path = part.file, .record = read_with_target(part.file, scenario, into.notes), .recorded = {}, .felt = {}};
+    for (const ReadFile& other : files) {
+      if (other.record.time_s == file.record.time_s && other.record.at(target).values == file.record.at(target).values)
+        throw InputError(
+            fmt::format("{} and {} hold the same run; one run can be trained on or judged by, once", other.path, file.path));
+    }
+    file.recorded = scenarios::run_of(file.record, scenario.machine ? &*scenario.machine : nullptr, hall_sensors(scenario),
+                                      scenarios::Reading::kLenient);
+    for (const scenarios::DataFinding& f : file.recorded.findings) {
+      if (std::find(into.findings.begin(), into.findings.end(), f.what) == into.findings.end())
+        into.findings.push_back(f.what);
+    }
+    file.record.time_s = file.recorded.time_s;
+    files.push_back(std::move(file));
+  }
+  // the hall is an input where every record has it, in the same channel
+  into.hall = files.front().recorded.hall_channel;
+  const bool is_same =
+      std::all_of(files.begin(), files.end(), [&](const ReadFile& f) { return f.recorded.hall_channel == into.hall; });
+  const bool has_hall = is_same && (!hall || (!hall->empty() && *hall == into.hall));
+  if (!has_hall) into.hall.clear();
+  if (!is_same) {
+    into.findings.emplace_back("not every record has the hall's temperature in the same channel; it is used from none");
+  }
+  for (ReadFile& file : files) {
+    file.felt = {file.recorded.cyclogram, file.recorded.hall};
+    if (!scenario.machine) continue;
+    scenarios::MachineModel there = *scenario.machine;
+    if (has_hall) there.hall = file.recorded.hall;
+    file.felt = scenarios::felt_run(there, file.recorded.cyclogram);
+    file.felt.cyclogram.name = file.recorded.cyclogram.name;
+  }
+  return files;
+}
+
+double hours(const ReadFile& file, std::size_t row) {
+  return file.record.time_s[row] / 3600.0;
+}
+
+ObservedRun observed(const ReadFile& file, const RunRows& rows, const std::string& name) {
+  ObservedRun run{.cyclogram = file.felt.cyclogram,
+                  .hall = file.felt.hall,
+                  .readings = file.record,
+                  .n_before = rows.first - rows.history,
+                  .history = fmt::format("{} from row {}", file.path, rows.history)};
+  run.readings.source = name;
+  const std::vector<double>& t = file.record.time_s;
+  if (rows.history == 0 && rows.last == t.size()) return run;
+  run.cyclogram = scenarios::part_of(run.cyclogram, t[rows.history], t[rows.last - 1]);
+  run.hall = scenarios::part_of(run.hall, t[rows.history], t[rows.last - 1]);
+  for (Channel& c : run.readings.channels) c.values.resize(rows.last);
+  run.readings.time_s.resize(rows.last);
+  run.readings = compensation::own_rows(std::move(run.readings), rows.history);
+  return run;
+}
+
+/// Says where a single record was cut, or why not.
+std::string words_of_cut(const RecordPart& part, const ReadFile& file, const std::vector<RunRows>& runs) {
+  if (file.recorded.cyclogram.sections.empty())
+    return fmt::format("{} does not say what drove the machine, so that it is not cut into runs at rests", part.words);
+  if (runs.size() == 1)
+    return fmt::format(
+        "{} has no rest of 10 min or more between two stretches of work and stays one run. Parts, --train FILE:0h..10h "
+        "--train FILE:10h..20h, divide it by time",
+        part.words);
+  std::vector<std::string> at, going_on;
+  for (std::size_t r = 1; r < runs.size(); ++r) {
+    at.push_back(fmt::format("{:.2f} h", hours(file, runs[r].first)));
+    if (runs[r].history < runs[r].first) going_on.push_back(at.back());
+  }
+  return fmt::format(
+      "{} is cut into {} runs where the drive starts anew after a rest, at {}{}", part.words, runs.size(),
+      fmt::join(at, ", "),
+      going_on.empty()
+          ? ""
+          : fmt::format("; the machine is not back in balance at {}: what follows goes on from what came before",
+                        fmt::join(going_on, ", ")));
+}
+
 }  // namespace
 
-StudyRecords read_records(const scenarios::Study& study, const RecordOptions& options) {
-  StudyRecords records;
-  const auto read = [&](const std::string& file, std::vector<Record>& into) {
-    Record record = read_record_csv(file);
-    const Channel& target = record.at(study.target);
-    if (target.unit != "um")
-      throw InputError(fmt::format(
-          "{}: the target '{}' is in {}; strategies, tolerances and corrections are in um: name and scale the column so",
-          file, study.target, target.unit));
-    for (const std::vector<Record>* others : {&records.train, &records.test}) {
-      for (const Record& other : *others) {
-        if (other.time_s == record.time_s && other.at(study.target).values == target.values)
-          throw InputError(
-              fmt::format("{} and {} hold the same run; one run can be trained on or judged by, once", other.source, file));
-      }
+StudyRecords read_records(const scenarios::Scenario& scenario, const RecordOptions& options, const std::string* hall) {
+  std::vector<RecordPart> parts;
+  for (const std::vector<std::string>* list : {&options.train, &options.test}) {
+    for (const std::string& argument : *list) {
+      parts.push_back(scenarios::read_record_part(argument));
+      for (std::size_t other = 0; other + 1 < parts.size(); ++other) scenarios::refuse_overlap(parts[other], parts.back());
     }
-    into.push_back(std::move(record));
-  };
-  for (const std::string& file : options.train) read(file, records.train);
-  for (const std::string& file : options.test) read(file, records.test);
+  }
+  StudyRecords records;
+  const std::vector<ReadFile> files = read_files(parts, scenario, hall, records);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const RecordPart& part = parts[p];
+    const ReadFile& file = *std::find_if(files.begin(), files.end(), [&](const ReadFile& f) { return f.path == part.file; });
+    const auto [first, last] = scenarios::rows_of(part, file.record);
+    const scenarios::CutRecord cut{file.record, file.recorded.cyclogram, file.recorded.hall};
+    if (options.train.size() == 1 && p == 0) {
+      const std::vector<RunRows> runs = scenarios::runs_between_rests(cut, first, last);
+      records.notes.push_back(words_of_cut(part, file, runs));
+      for (const RunRows& rows : runs) {
+        const std::string name = runs.size() == 1 ? part.words
+                                                  : fmt::format("{} from {:.2f} h to {:.2f} h", part.file,
+                                                                hours(file, rows.first), hours(file, rows.last - 1));
+        records.train.push_back(observed(file, rows, name));
+      }
+    } else {
+      (p < options.train.size() ? records.train : records.test)
+          .push_back(observed(file, scenarios::whole_run(cut, first, last), part.words));
+    }
+  }
   return records;
+}
+
+std::vector<Record> own_records(std::span<const ObservedRun> runs) {
+  std::vector<Record> records;
+  for (const ObservedRun& run : runs) records.push_back(compensation::own_rows(run.readings, run.n_before));
+  return records;
+}
+
+std::vector<Record> whole_records(std::span<const ObservedRun> runs, const std::string& target) {
+  std::vector<Record> records;
+  for (ObservedRun& run : compensation::joined_histories(runs, target)) records.push_back(std::move(run.readings));
+  return records;
+}
+
+std::vector<std::string> hall_sensors(const scenarios::Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const scenarios::Sensor& s : scenario.machine ? scenario.machine->sensors : std::vector<scenarios::Sensor>{}) {
+    if (scenarios::is_on_hall(s)) names.push_back(s.name);
+  }
+  return names;
 }
 
 std::vector<std::string> sensor_warnings(const std::vector<Record>& records, const std::vector<std::string>& candidates) {

@@ -1,22 +1,41 @@
 #pragma once
 // Records that sensors are ranked on and strategies judged by.
 
+#include <span>
+
 #include "app/verbs.hpp"
 #include "base/record.hpp"
+#include "compensation/observed_run.hpp"
 #include "scenarios/scenario.hpp"
 
 namespace driftwright::app {
 
 struct StudyRecords {
-  std::vector<Record> train, test;
+  std::vector<compensation::ObservedRun> train, test;
+  std::string hall;                   ///< channel of the hall in every record; "": not all have it in the same one
+  std::vector<std::string> notes;     ///< how records were read and cut, a sentence each
+  std::vector<std::string> findings;  ///< what is wrong with drive and hall, a sentence each
 };
 
-/// Reads the records and checks that they have the study's target.
-/// @throws InputError  for a missing file or channel, and when a file is given twice: trained on and judged by, or trained on twice
-[[nodiscard]] StudyRecords read_records(const scenarios::Study& study, const RecordOptions& options);
+/// Reads the records, or parts of them (scenarios/record_part.hpp), and checks that they have the study's target. Drive and hall are what the
+/// scenario's effects say of the recorded ones. A part goes on from what came before it in its record. A single record to train on is cut
+/// into runs at rests of its drive (scenarios/record_runs.hpp).
+/// @throws InputError  for a missing file or channel, and when rows are given twice: trained on and judged by, or trained on twice
+/// @param hall  null: the hall is read from the channel that all records have it in; else from this one alone, "" for none
+[[nodiscard]] StudyRecords read_records(const scenarios::Scenario& scenario, const RecordOptions& options,
+                                        const std::string* hall = nullptr);
+
+/// The rows of the runs alone, as records.
+[[nodiscard]] std::vector<Record> own_records(std::span<const compensation::ObservedRun> runs);
+
+/// The records that the runs were cut from, each once and with what came before: what is looked at for broken sensors.
+[[nodiscard]] std::vector<Record> whole_records(std::span<const compensation::ObservedRun> runs, const std::string& target);
 
 /// What a person would want to know of the candidates before anything is fitted to them: never changing, missing in part or moving as one. A line each.
 [[nodiscard]] std::vector<std::string> sensor_warnings(const std::vector<Record>& records,
                                                        const std::vector<std::string>& candidates);
+
+/// Channels that read the hall: sensors on it.
+[[nodiscard]] std::vector<std::string> hall_sensors(const scenarios::Scenario& scenario);
 
 }  // namespace driftwright::app

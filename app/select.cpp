@@ -56,12 +56,15 @@ struct Chosen {
 void select(const RecordOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   const scenarios::Study& settings = require_study(scenario, "select");
-  std::vector<Record> records = read_records(settings, options).train;
-  const std::vector<std::string> all = candidate_sensors(settings, records.front());
-  const std::vector<std::string> warnings = sensor_warnings(records, all), candidates = usable_sensors(records, all);
-  if (settings.count_from_start) {
-    for (Record& record : records) record = counted_from_start(std::move(record), settings.target);
-  }
+  const StudyRecords read = read_records(scenario, options);
+  const std::vector<Record> training = own_records(read.train);
+  const std::vector<std::string> all = candidate_sensors(settings, training.front()),
+                                 candidates = usable_sensors(training, all);
+  std::vector<std::string> warnings = sensor_warnings(whole_records(read.train, settings.target), all);
+  warnings.insert(warnings.begin(), read.notes.begin(), read.notes.end());
+  std::vector<Record> records;
+  for (const ObservedRun& run : read.train)
+    records.push_back(own_rows(scored_readings(run, settings.target, settings.count_from_start), run.n_before));
   const GreyOptions how{.image = settings.image,
                         .quantity = settings.count_from_start ? Quantity::kRise : Quantity::kAsRecorded};
   const int n = settings.sensors_to_choose;

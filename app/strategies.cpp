@@ -34,8 +34,7 @@ struct Strategy {
 
 std::vector<Record> records_of(std::span<const ObservedRun> runs, const StrategySettings& s) {
   std::vector<Record> records;
-  for (const ObservedRun& run : runs)
-    records.push_back(s.count_from_start ? counted_from_start(run.readings, s.target) : run.readings);
+  for (const ObservedRun& run : runs) records.push_back(scored_readings(run, s.target, s.count_from_start));
   return records;
 }
 
@@ -49,8 +48,12 @@ DeployedPredictor deployed(std::shared_ptr<const Predictor> predictor, const Str
 
 Strategy baseline(const std::string& name, const StrategySettings& s,
                   std::function<std::shared_ptr<const Predictor>(const std::vector<Record>&)> make) {
-  return {name, true,
-          [s, make](std::span<const ObservedRun> training) { return deployed(make(records_of(training, s)), s); }};
+  return {name, true, [s, make](std::span<const ObservedRun> training) {
+            std::vector<Record> records = records_of(training, s);
+            for (std::size_t r = 0; r < records.size(); ++r)
+              records[r] = own_rows(std::move(records[r]), training[r].n_before);
+            return deployed(make(records), s);
+          }};
 }
 
 /// A formula of channels.
@@ -98,15 +101,16 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
   return {name, false, [s, with_sensors, learns](std::span<const ObservedRun> training) {
             const Physics& p = *s.physics;
             const ObserverSettings how{.reading_K = s.reading_K, .drift_um = s.drift_um};
+            const std::vector<ObservedRun> histories = joined_histories(training, s.target);
             DeployedPredictor f;
             Selection selection;
             if (with_sensors) {
-              selection = select_by_observability(p.system, p.start, training, s.candidates, s.target, s.n_sensors, how);
+              selection = select_by_observability(p.system, p.start, histories, s.candidates, s.target, s.n_sensors, how);
               f.reason = fmt::format("{}: {}", fmt::join(selection.sensors, ", "), selection.reason);
             }
             Observer observer(p.system, p.start, p.start_hall_K, learns ? s.candidates : selection.sensors, s.target, how);
             if (learns) {
-              observer.learn(training);
+              observer.learn(histories);
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
               observer = observer.with_sensors(selection.sensors);
             }
@@ -144,12 +148,12 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
   for (const Selector& selector : by_records)
     list.push_back(regression_on("regression, " + selector.name, s, by_record_selector(selector.select, s.n_sensors)));
   if (s.physics) {
-    list.push_back(regression_on("regression, observability", s,
-                                 [s](std::span<const ObservedRun> training, const std::vector<Record>&) {
-                                   const Physics& p = *s.physics;
-                                   return select_by_observability(p.system, p.start, training, s.candidates, s.target,
-                                                                  s.n_sensors, {.reading_K = s.reading_K});
-                                 }));
+    list.push_back(regression_on(
+        "regression, observability", s, [s](std::span<const ObservedRun> training, const std::vector<Record>&) {
+          const Physics& p = *s.physics;
+          return select_by_observability(p.system, p.start, joined_histories(training, s.target), s.candidates, s.target,
+                                         s.n_sensors, {.reading_K = s.reading_K});
+        }));
   }
   list.push_back(formula_of_all("ridge, all sensors", s, fit_ridge));
   list.push_back(formula_of_all("principal components, all sensors", s, fit_principal_components));
@@ -183,8 +187,7 @@ double quantile(std::vector<double> x, double share) {
 /// Magnitudes of measured - predicted of a run, without missing ones.
 std::vector<double> misses(const DeployedPredictor& f, const ObservedRun& run, const StrategySettings& s) {
   const std::vector<double> predicted = live(*f.predictor, run);
-  const Record& readings = s.count_from_start ? counted_from_start(run.readings, s.target) : run.readings;
-  const std::vector<double>& measured = readings.at(s.target).values;
+  const std::vector<double> measured = scored_readings(run, s.target, s.count_from_start).at(s.target).values;
   std::vector<double> result;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (std::isfinite(measured[i] - predicted[i])) result.push_back(std::abs(measured[i] - predicted[i]));
@@ -218,12 +221,14 @@ DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, s
   f.interval_um = interval(strategy, s, training);
   if (f.is_baseline) return f;
   std::vector<std::vector<double>> predicted;
-  for (const ObservedRun& run : training) predicted.push_back(live(*f.predictor, run));
   // an observer looks after its sensors itself
   std::vector<std::string> guarded;
   if (const DriftModel* formula = as_formula(*f.predictor)) guarded = formula->inputs();
   std::vector<Record> readings;
-  for (const ObservedRun& run : training) readings.push_back(run.readings);
+  for (const ObservedRun& run : joined_histories(training, s.target)) {
+    predicted.push_back(live(*f.predictor, run));
+    readings.push_back(run.readings);
+  }
   f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start);
   return f;
 }

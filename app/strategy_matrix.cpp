@@ -18,9 +18,10 @@ using namespace compensation;
 
 constexpr double kHour_s = 3600.0;
 
-double range_until(const std::vector<double>& time_s, const std::vector<double>& x, double until_s) {
+/// From row `first` on.
+double range_until(const std::vector<double>& time_s, const std::vector<double>& x, std::size_t first, double until_s) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t i = 0; i < x.size() && time_s[i] - time_s.front() <= until_s; ++i) {
+  for (std::size_t i = first; i < x.size() && time_s[i] - time_s[first] <= until_s; ++i) {
     if (std::isnan(x[i])) continue;
     low = std::min(low, x[i]);
     high = std::max(high, x[i]);
@@ -77,7 +78,7 @@ std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings
   std::vector<std::pair<std::string, ObservedRun>> list = {{"", judged.run}};
   if (!settings.fails_at || judged.season != settings.fails_in) return list;
   const std::vector<double>& t = judged.run.readings.time_s;
-  const double from_s = t.front() + *settings.fails_at * (t.back() - t.front());
+  const double start_s = t[judged.run.n_before], from_s = start_s + *settings.fails_at * (t.back() - start_s);
   const auto add = [&](const std::string& words, const std::string& sensor, SensorFailure kind,
                        const std::string& elsewhere) {
     ObservedRun run = judged.run;
@@ -274,8 +275,8 @@ Case judge(const DeployedPredictor& strategy, const ObservedRun& run, const std:
   for (double off : unguarded) c.peak_unguarded_um = std::max(c.peak_unguarded_um, std::abs(off));
   std::erase_if(unguarded, [](double off) { return std::isinf(off); });
   c.rms_unguarded_um = score(unguarded).rmse;
-  c.first_hour_um = range_until(run.readings.time_s, left, kHour_s);
-  c.whole_um = range_until(run.readings.time_s, left, std::numeric_limits<double>::infinity());
+  c.first_hour_um = range_until(run.readings.time_s, left, run.n_before, kHour_s);
+  c.whole_um = range_until(run.readings.time_s, left, run.n_before, std::numeric_limits<double>::infinity());
   c.covered = strategy.interval_um && n > 0 ? static_cast<double>(n_inside) / n : std::numeric_limits<double>::quiet_NaN();
   c.events = correction.events;
   return c;
@@ -290,9 +291,7 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
   std::vector<std::vector<double>> drift_um;
   for (const JudgedRunOfMachine& r : matrix.runs) {
     const std::string& target = settings.strategies.target;
-    drift_um.push_back((settings.strategies.count_from_start ? counted_from_start(r.run.readings, target) : r.run.readings)
-                           .at(target)
-                           .values);
+    drift_um.push_back(scored_readings(r.run, target, settings.strategies.count_from_start).at(target).values);
   }
   for (std::size_t r = 0; r < drift_um.size(); ++r) {
     if (score(drift_um[r]).n == 0)

@@ -92,8 +92,7 @@ output::Plot course(const StrategyMatrix& m, std::size_t run, const std::vector<
   std::vector<double> t_min;
   for (double t_s : r.run.readings.time_s) t_min.push_back(t_s / 60.0);
   const std::string& target = m.settings.strategies.target;
-  const Record counted =
-      m.settings.strategies.count_from_start ? counted_from_start(r.run.readings, target) : r.run.readings;
+  const Record counted = scored_readings(r.run, target, m.settings.strategies.count_from_start);
   output::Plot plot{
       .title =
           fmt::format("{}{}: {} and what strategies take it for", r.name, r.season.empty() ? "" : ", " + r.season, target),

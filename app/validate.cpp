@@ -88,11 +88,13 @@ void validate(const RecordOptions& options) {
     if (list->empty()) throw InputError(fmt::format("`validate` on records wants {} too, at least once", name));
   }
   const scenarios::Study& settings = require_study(scenario, "validate");
-  const StudyRecords records = read_records(settings, options);
-  std::vector<std::string> warnings = sensor_warnings(records.train, candidate_sensors(settings, records.train.front()));
+  StudyRecords records = read_records(scenario, options);
+  const std::vector<Record> training = whole_records(records.train, settings.target);
+  std::vector<std::string> warnings = sensor_warnings(training, candidate_sensors(settings, training.front()));
+  warnings.insert(warnings.begin(), records.notes.begin(), records.notes.end());
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const StrategyMatrix matrix = validate_on_records(scenario, records.train, records.test, progress);
+  const StrategyMatrix matrix = validate_on_records(scenario, std::move(records), progress);
   progress.end();
   warnings.insert(warnings.end(), matrix.findings.begin(), matrix.findings.end());
   Json summary = provenance(folder.made_by());

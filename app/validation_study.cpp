@@ -13,7 +13,6 @@
 #include "compensation/model_scatter.hpp"
 #include "compensation/thermometers.hpp"
 #include "scenarios/as_recorded.hpp"
-#include "scenarios/recorded_run.hpp"
 #include "solver/reduced_transient.hpp"
 
 namespace driftwright::app {
@@ -58,15 +57,6 @@ std::string speed_channel(const Record& record) {
   return *high > *low || *high > 0.0 ? "speed" : "";
 }
 
-/// Channels that read the hall: sensors on it.
-std::vector<std::string> hall_sensors(const Scenario& scenario) {
-  std::vector<std::string> names;
-  for (const scenarios::Sensor& s : scenario.machine ? scenario.machine->sensors : std::vector<scenarios::Sensor>{}) {
-    if (scenarios::is_on_hall(s)) names.push_back(s.name);
-  }
-  return names;
-}
-
 /// The hall among the channels of a simulated record: a sensor on it, or `ambient`.
 std::string hall_channel(const Scenario& scenario, const Record& record) {
   const std::vector<std::string> sensors = hall_sensors(scenario);
@@ -86,21 +76,6 @@ std::string why_not_in_balance(const scenarios::MachineModel& machine, const Obs
                        run.readings.source, s.name, c->values.front(), hall_C);
   }
   return "";
-}
-
-/// A record as predictors see it: drive and hall as the scenario's effects say that they were.
-/// @param has_hall  whether the hall is taken from the record; otherwise from the scenario
-ObservedRun observed_run(const Scenario& scenario, const Record& record, scenarios::RecordedRun recorded, bool has_hall) {
-  ObservedRun run{.cyclogram = std::move(recorded.cyclogram), .hall = std::move(recorded.hall), .readings = record};
-  run.readings.time_s = std::move(recorded.time_s);
-  if (!scenario.machine) return run;
-  scenarios::MachineModel there = *scenario.machine;
-  if (has_hall) there.hall = run.hall;
-  scenarios::FeltRun felt = scenarios::felt_run(there, run.cyclogram);
-  felt.cyclogram.name = run.cyclogram.name;
-  run.cyclogram = std::move(felt.cyclogram);
-  run.hall = std::move(felt.hall);
-  return run;
 }
 
 /// What strategies may know of the machine behind records, or why nothing.
@@ -162,13 +137,6 @@ std::optional<Physics> physics_of(const Scenario& scenario, const Model& model, 
   const ModalPredictor modes =
       make_ritz_predictor(reduced->system, reduced->start, kObserverModes, {.drive = {}, .hall_K = hall_K});
   return Physics{scattered(modes.system, scatter, seed, true), modes.start, hall_K};
-}
-
-ObservedRun observed_run(const Scenario& scenario, const Record& record, const std::string& hall) {
-  scenarios::RecordedRun recorded = scenarios::run_of(record, scenario.machine ? &*scenario.machine : nullptr,
-                                                      hall_sensors(scenario), scenarios::Reading::kLenient);
-  const bool has_hall = !hall.empty() && recorded.hall_channel == hall;
-  return observed_run(scenario, record, std::move(recorded), has_hall);
 }
 
 std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record) {
@@ -271,31 +239,9 @@ StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model,
   return judge_strategies(settings, std::move(training), std::move(judged));
 }
 
-StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<Record>& training,
-                                   const std::vector<Record>& test, Progress& progress) {
+StrategyMatrix validate_on_records(const Scenario& scenario, StudyRecords records, Progress& progress) {
   const scenarios::Study& study = *scenario.study;
-  const scenarios::MachineModel* machine = scenario.machine ? &*scenario.machine : nullptr;
-  std::vector<const Record*> records;
-  for (const std::vector<Record>* list : {&training, &test}) {
-    for (const Record& record : *list) records.push_back(&record);
-  }
-  std::vector<scenarios::RecordedRun> recorded;
-  std::vector<std::string> findings;
-  for (const Record* record : records) {
-    recorded.push_back(scenarios::run_of(*record, machine, hall_sensors(scenario), scenarios::Reading::kLenient));
-    for (const scenarios::DataFinding& f : recorded.back().findings) {
-      if (std::find(findings.begin(), findings.end(), f.what) == findings.end()) findings.push_back(f.what);
-    }
-  }
-  // the hall is an input where every record has it, in the same channel
-  const std::string hall = recorded.front().hall_channel;
-  const bool has_hall =
-      std::all_of(recorded.begin(), recorded.end(), [&](const auto& run) { return run.hall_channel == hall; });
-  if (!has_hall)
-    findings.emplace_back("not every record has the hall's temperature in the same channel; it is used from none");
-  std::vector<ObservedRun> seen;
-  for (std::size_t r = 0; r < records.size(); ++r)
-    seen.push_back(observed_run(scenario, *records[r], std::move(recorded[r]), has_hall));
+  const std::vector<Record> training = own_records(records.train);
   MatrixSettings settings;
   StrategySettings& how = settings.strategies;
   how.target = study.target;
@@ -304,21 +250,24 @@ StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<R
   how.count_from_start = study.count_from_start;
   how.image = study.image;
   how.speed = speed_channel(training.front());
-  how.hall = has_hall ? hall : "";
+  how.hall = records.hall;
   std::vector<const ObservedRun*> all;
-  for (const ObservedRun& run : seen) all.push_back(&run);
+  for (const std::vector<ObservedRun>* list : {&records.train, &records.test}) {
+    for (const ObservedRun& run : *list) all.push_back(&run);
+  }
   RecordedPhysics physics = physics_for_records(scenario, all, how, progress);
   how.physics = std::move(physics.physics);
   how.without_physics = std::move(physics.why_none);
   std::vector<JudgedRunOfMachine> judged;
-  for (std::size_t r = training.size(); r < seen.size(); ++r)
-    judged.push_back({"measured", "", std::filesystem::path(records[r]->source).filename().string(), std::move(seen[r])});
-  seen.resize(training.size());
+  for (ObservedRun& run : records.test) {
+    const std::string name = std::filesystem::path(run.readings.source).filename().string();
+    judged.push_back({"measured", "", name, std::move(run)});
+  }
   settings.tolerance_um = study.tolerance_um;
   settings.fails_at = 0.5;
   progress.begin(fmt::format("fitting and judging strategies on {} records", judged.size()));
-  StrategyMatrix matrix = judge_strategies(settings, std::move(seen), std::move(judged));
-  matrix.findings = std::move(findings);
+  StrategyMatrix matrix = judge_strategies(settings, std::move(records.train), std::move(judged));
+  matrix.findings = std::move(records.findings);
   return matrix;
 }
 

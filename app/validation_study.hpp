@@ -2,6 +2,7 @@
 // The runs that strategies are fitted on and judged by: simulated in every season of a scenario's `validation`, or measured.
 
 #include "app/model.hpp"
+#include "app/record_study.hpp"
 #include "app/strategy_matrix.hpp"
 #include "scenarios/scenario.hpp"
 
@@ -13,14 +14,10 @@ namespace driftwright::app {
 [[nodiscard]] StrategyMatrix validate_strategies(const scenarios::Scenario& scenario, const Model& model,
                                                  Progress& progress);
 
-/// Strategies on measured records. Those with physics take part where the scenario has a machine that is linear, drift counts from the start
+/// Strategies on measured records (app/record_study.hpp). Those with physics take part where the scenario has a machine that is linear, drift counts from the start
 /// of each record, and the records say what drove it.
-[[nodiscard]] StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, const std::vector<Record>& training,
-                                                 const std::vector<Record>& test, Progress& progress);
-
-/// A measured record as a predictor sees it that was fitted on records of the same scenario.
-/// @param hall  channel that the hall was read from in the training records; "" for none
-[[nodiscard]] ObservedRun observed_run(const scenarios::Scenario& scenario, const Record& record, const std::string& hall);
+[[nodiscard]] StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, StudyRecords records,
+                                                 Progress& progress);
 
 /// The model as strategies get it, off by random factors (compensation::scattered()); none where it is not a linear reduced one.
 [[nodiscard]] std::optional<Physics> physics_of(const scenarios::Scenario& scenario, const Model& model, double scatter,

@@ -7,7 +7,9 @@ namespace driftwright::compensation {
 GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run) {
   if (deployed.fail_safe) {
     const Repaired repair = repaired(*deployed.fail_safe, run.readings);
-    return guarded(*deployed.fail_safe, repair, live(*deployed.predictor, {run.cyclogram, run.hall, repair.readings}));
+    ObservedRun mended = run;
+    mended.readings = repair.readings;
+    return guarded(*deployed.fail_safe, repair, live(*deployed.predictor, mended));
   }
   GuardedCorrection c{.correction_um = live(*deployed.predictor, run),
                       .trust = std::vector<double>(run.readings.n_samples(), 1.0),

@@ -1,17 +1,23 @@
 #include "compensation/past_drift.hpp"
 
 #include <functional>
+#include <limits>
 
 #include "compensation/score.hpp"
 
 namespace driftwright::compensation {
 namespace {
 
-/// A drift that is a function of time.
+/// A drift that is a function of the time since the run began; none is told of its lead-in.
 class TimeFollower final : public Follower {
  public:
   explicit TimeFollower(std::function<double(double t_s)> drift_um) : drift_um_(std::move(drift_um)) {}
-  double next(const ObservedRun& run) override { return drift_um_(run.readings.time_s[row_++]); }
+  double next(const ObservedRun& run) override {
+    const std::size_t row = row_++;
+    if (row < run.n_before) return std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double>& t = run.readings.time_s;
+    return drift_um_(run.n_before > 0 ? t[row] - t[run.n_before] : t[row]);
+  }
 
  private:
   std::function<double(double)> drift_um_;

@@ -6,17 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/cyclogram.hpp"
-#include "base/record.hpp"
+#include "compensation/observed_run.hpp"
 
 namespace driftwright::compensation {
-
-/// One run of the machine: what drove it, what surrounded it, and what was read.
-struct ObservedRun {
-  Cyclogram cyclogram;
-  TimeSeries hall;  ///< minus the reference temperature [K]
-  Record readings;  ///< channels named as the model's outputs; temperatures in degC, displacements in um
-};
 
 /// A predictor on its way through one run.
 class Follower {
@@ -42,7 +34,7 @@ class Predictor {
   [[nodiscard]] virtual std::unique_ptr<Follower> follow() const = 0;
 };
 
-/// The drift of a run [um], row by row: what the machine would be told while it runs. NaN where nothing can be said.
+/// The drift of a run [um], row by row, lead-in included: what the machine would be told while it runs. NaN where nothing can be said.
 /// @throws InputError  for readings that lack an input or have it in another unit
 [[nodiscard]] std::vector<double> live(const Predictor& predictor, const ObservedRun& run);
 

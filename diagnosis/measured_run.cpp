@@ -151,14 +151,17 @@ void set_grid(MeasuredRun& run) {
   }
 }
 
-MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model, const solver::Outputs& outputs) {
-  const Record whole = read_record_csv(path);
+MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model, const solver::Outputs& outputs,
+                          const std::optional<ColumnMap>& columns) {
+  const ReadRecord read = read_record(path, columns);
+  const Record& whole = read.record;
   if (whole.n_samples() < 3) {
     throw InputError(
         fmt::format("{}: {} rows; a diagnosis wants at least three, and rather a hundred", path, whole.n_samples()));
   }
   MeasuredRun run;
   run.path = path;
+  for (const std::string& note : read.notes) run.findings.push_back({"", note, false});
   const Record record = without_spikes(without_holes(whole, run.findings), run.findings);
   std::vector<std::string> on_hall;  // a thermometer in the hall does as well
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/record.hpp"
+#include "base/mapped_record.hpp"
 #include "scenarios/recorded_run.hpp"
 #include "solver/thermal_system.hpp"
 
@@ -51,7 +51,9 @@ void set_grid(MeasuredRun& run);
 /// Readings of a sensor that stood still are taken out (stuck_sensor.hpp).
 /// @throws InputError  for a record without speed, with fewer than three rows, with a channel that is called as an output but has a
 ///                     unit of another kind, with a hall temperature in another unit than its header says, or with nothing to compare
+/// @param columns  how the file is written, where it is no record CSV
 [[nodiscard]] MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model,
-                                        const solver::Outputs& outputs);
+                                        const solver::Outputs& outputs,
+                                        const std::optional<ColumnMap>& columns = std::nullopt);
 
 }  // namespace driftwright::diagnosis

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/mapped_record.hpp"
 #include "base/nc_sections.hpp"
+#include "scenarios/read_columns.hpp"
+#include "scenarios/recorded_run.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -16,24 +19,21 @@ constexpr double kShortest_s = 1e-3, kMostSpeed_rpm = 1e6, kMostFeed_m_s = 100.0
 constexpr int kMostRepeats = 100000;
 constexpr double kMostSections = 1e6;
 
-/// A column of rows, and the channel of a record that says the same.
+/// A column of rows.
 struct Column {
-  const char* name;  ///< in `columns`, and of the channel
-  const char* unit;  ///< of rows
-  const char* channel_unit;
-  double to_si;        ///< from the channel's unit
-  double most;         ///< in `unit`
-  bool may_be_signed;  ///< in records
+  const char* name;  ///< in `columns`
+  const char* unit;
+  double most;  ///< in `unit`
   double* (*place)(Drive& drive);
 };
 
 const std::array<Column, 5>& columns() {
   static const std::array<Column, 5> table = {{
-      {"speed", "rpm", "rpm", 1.0, kMostSpeed_rpm, false, [](Drive& d) { return &d.speed_rpm; }},
-      {"feed_x", "m/s", "mm_min", 1e-3 / 60.0, kMostFeed_m_s, true, [](Drive& d) { return &d.feed_m_s[0]; }},
-      {"feed_y", "m/s", "mm_min", 1e-3 / 60.0, kMostFeed_m_s, true, [](Drive& d) { return &d.feed_m_s[1]; }},
-      {"feed_z", "m/s", "mm_min", 1e-3 / 60.0, kMostFeed_m_s, true, [](Drive& d) { return &d.feed_m_s[2]; }},
-      {"cutting_power", "W", "W", 1.0, kMostPower_W, false, [](Drive& d) { return &d.cutting_power_W; }},
+      {"speed", "rpm", kMostSpeed_rpm, [](Drive& d) { return &d.speed_rpm; }},
+      {"feed_x", "m/s", kMostFeed_m_s, [](Drive& d) { return &d.feed_m_s[0]; }},
+      {"feed_y", "m/s", kMostFeed_m_s, [](Drive& d) { return &d.feed_m_s[1]; }},
+      {"feed_z", "m/s", kMostFeed_m_s, [](Drive& d) { return &d.feed_m_s[2]; }},
+      {"cutting_power", "W", kMostPower_W, [](Drive& d) { return &d.cutting_power_W; }},
   }};
   return table;
 }
@@ -65,7 +65,7 @@ std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std:
 }
 
 /// `columns:` without its first, the duration.
-std::vector<const Column*> read_columns(const ConfigMap& in) {
+std::vector<const Column*> row_columns(const ConfigMap& in) {
   std::vector<std::string> known;
   for (const Column& c : columns()) known.emplace_back(c.name);
   const std::vector<std::string> names = in.texts("columns");
@@ -111,9 +111,12 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
   if (n_kinds != 1)
     cyclograms.fail(name, "a cyclogram is a list of [duration, speed], or a map with one of the keys rows, csv, nc_program");
   if (in.has("rows")) {
-    cyclogram.sections = sections_of_rows(in, "rows", read_columns(in));
+    cyclogram.sections = sections_of_rows(in, "rows", row_columns(in));
   } else if (in.has("csv")) {
-    cyclogram.sections = cyclogram_of(read_record_csv(beside(in, "csv"))).sections;
+    std::optional<ColumnMap> columns;
+    if (const auto map = in.optional_map("columns")) columns = read_columns(*map);
+    cyclogram.sections =
+        run_of(read_record(beside(in, "csv"), columns).record, nullptr, {}, Reading::kPlan).cyclogram.sections;
   } else {
     read_nc_cyclogram(in, cyclogram);
   }
@@ -158,34 +161,6 @@ Cyclogram cyclogram_of(const NcProgram& program, const std::string& name, double
     }
   }
   return cyclogram;
-}
-
-Cyclogram cyclogram_of(const Record& record) {
-  if (record.time_s.front() != 0.0) {
-    throw InputError(
-        fmt::format("{}: a cyclogram starts at time 0, this one at {:g} s", record.source, record.time_s.front()));
-  }
-  (void)record.at("speed");
-  std::vector<Cyclogram::Section> sections(record.n_samples() - 1);
-  for (std::size_t i = 0; i < sections.size(); ++i) sections[i].duration_s = record.time_s[i + 1] - record.time_s[i];
-  for (const Column& column : columns()) {
-    const Channel* channel = record.find(column.name);
-    if (!channel) continue;
-    if (channel->unit != column.channel_unit) {
-      throw InputError(fmt::format("{}: column '{}' is of no use in a cyclogram; {}_{} is wanted", record.source,
-                                   channel->header(), column.name, column.channel_unit));
-    }
-    for (std::size_t i = 0; i < sections.size(); ++i) {
-      const double told = channel->values[i], value = column.to_si * (column.may_be_signed ? std::abs(told) : told);
-      if (!(value >= 0.0 && value <= column.most)) {
-        throw InputError(fmt::format("{}: {} is missing or {}above {:g} at {:g} s", record.source, channel->header(),
-                                     column.may_be_signed ? "" : "negative or ", column.most / column.to_si,
-                                     record.time_s[i]));
-      }
-      *column.place(sections[i].drive) = value;
-    }
-  }
-  return {.name = record.source, .sections = repeated(sections, 1)};
 }
 
 }  // namespace driftwright::scenarios

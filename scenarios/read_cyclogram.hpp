@@ -4,7 +4,6 @@
 #include "base/config_map.hpp"
 #include "base/cyclogram.hpp"
 #include "base/nc_program.hpp"
-#include "base/record.hpp"
 
 namespace driftwright::scenarios {
 
@@ -19,12 +18,5 @@ namespace driftwright::scenarios {
 /// @throws InputError  for a program that takes no time or turns the spindle faster than any
 [[nodiscard]] Cyclogram cyclogram_of(const NcProgram& program, const std::string& name, double resolution_s,
                                      double cutting_power_W);
-
-/// The cyclogram that a record tells: channels speed [rpm], and if there feed_x, feed_y, feed_z [mm/min] (their sign does not
-/// count) and cutting_power [W]. Values hold from their row on; the last row ends it and its values do not count. Other
-/// channels are not looked at.
-/// @throws InputError  when the record does not start at time 0, when speed is missing or has another unit, and for values
-///                     that are missing or out of range
-[[nodiscard]] Cyclogram cyclogram_of(const Record& record);
 
 }  // namespace driftwright::scenarios

@@ -4,8 +4,9 @@
 
 #include <filesystem>
 
+#include "base/mapped_record.hpp"
 #include "base/quantity.hpp"
-#include "base/record.hpp"
+#include "scenarios/read_columns.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -16,7 +17,9 @@ bool is_hall_temperature(double temperature_K) {
 
 TimeSeries of_record(const ConfigMap& in, double reference_K) {
   const auto path = std::filesystem::path(in.file()).parent_path() / in.text("csv");  // an absolute path stays
-  const Record record = read_record_csv(path.string());
+  std::optional<ColumnMap> columns;
+  if (const auto map = in.optional_map("columns")) columns = read_columns(*map);
+  const Record record = read_record(path.string(), columns).record;
   const Channel& channel = record.at(in.text("channel"));
   in.reject_unknown_keys();
   if (channel.unit != "degC") in.fail("channel", fmt::format("{} is no temperature in degC", channel.header()));

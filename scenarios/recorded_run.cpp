@@ -16,32 +16,53 @@ namespace {
 
 constexpr double kJitter = 0.01;      // of the top speed: no change of the drive
 constexpr double kRoom_K = 293.15;    // the reference where there is no machine
-constexpr double kManyMissing = 0.1;  // of a hall's readings
+constexpr double kManyMissing = 0.1;  // of the readings of speed or hall
 
 std::ptrdiff_t n_readings(const Channel& channel) {
   return std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isnan(v); });
 }
 
-/// A channel of the drive, if it is there. @throws InputError  for another unit than it has to have, and for a value below 0
-const Channel* drive_channel(const Record& record, const std::string& name, const std::string& unit) {
-  const Channel* channel = record.find(name);
+/// What a channel of the drive may hold.
+struct DriveKind {
+  const char* name;
+  const char* unit;
+  double most;         ///< in `unit`
+  bool may_be_signed;  ///< the sign does not count
+};
+constexpr DriveKind kSpeed{"speed", "rpm", 1e6, false}, kCutting{"cutting_power", "W", 1e9, false},
+    kFeeds[] = {{"feed_x", "mm_min", 6e6, true}, {"feed_y", "mm_min", 6e6, true}, {"feed_z", "mm_min", 6e6, true}};
+
+/// A channel of the drive, if it is there. A plan's last row ends it; its values do not count.
+/// @throws InputError  for another unit than it has to have, and for a value that no machine has
+const Channel* drive_channel(const Record& record, const DriveKind& kind, bool is_plan) {
+  const Channel* channel = record.find(kind.name);
   if (!channel) return nullptr;
-  if (channel->unit != unit)
-    throw InputError(fmt::format("{}: channel {} is in {}; {} is wanted", record.source, name, channel->unit, unit));
-  for (std::size_t i = 0; i < channel->values.size(); ++i) {
-    if (channel->values[i] < 0.0) {
-      throw InputError(fmt::format("{}: {} {:g} {} at {:g} s; {} are positive, whatever the direction", record.source, name,
-                                   channel->values[i], unit, record.time_s[i], unit == "W" ? "powers" : "speeds"));
-    }
+  if (channel->unit != kind.unit)
+    throw InputError(
+        fmt::format("{}: channel {} is in {}; {} is wanted", record.source, kind.name, channel->unit, kind.unit));
+  for (std::size_t i = 0; i + (is_plan ? 1 : 0) < channel->values.size(); ++i) {
+    const double v = channel->values[i];
+    const auto refuse = [&](const std::string& why) {
+      throw InputError(
+          fmt::format("{}: {} {:g} {} at {:g} s; {}", record.source, kind.name, v, kind.unit, record.time_s[i], why));
+    };
+    if (is_plan && std::isnan(v))
+      throw InputError(fmt::format("{}: {} is missing at {:g} s; a plan says what is driven in every row", record.source,
+                                   channel->header(), record.time_s[i]));
+    if (v < 0.0 && !kind.may_be_signed)
+      refuse(fmt::format("{} are positive, whatever the direction", channel->unit == "W" ? "powers" : "speeds"));
+    if (std::abs(v) > kind.most) refuse(fmt::format("{:g} {} at most is allowed", kind.most, kind.unit));
   }
   return channel;
 }
 
 /// Sections of constant drive, each row's from its time on; what is missing is held.
 /// @throws InputError  where the record does not say one
-Cyclogram drive_of(const Record& record, const std::vector<double>& time_s) {
+Cyclogram drive_of(const Record& record, const std::vector<double>& time_s, bool is_plan) {
   const std::string& path = record.source;
-  const Channel* speed = drive_channel(record, "speed", "rpm");
+  if (is_plan && record.time_s.front() != 0.0)
+    throw InputError(fmt::format("{}: a cyclogram starts at time 0, this one at {:g} s", path, record.time_s.front()));
+  const Channel* speed = drive_channel(record, kSpeed, is_plan);
   if (!speed) {
     std::vector<std::string> names;
     for (const Channel& c : record.channels) names.push_back(c.header());
@@ -49,9 +70,9 @@ Cyclogram drive_of(const Record& record, const std::vector<double>& time_s) {
                                  fmt::join(names, ", ")));
   }
   if (n_readings(*speed) == 0) throw InputError(fmt::format("{}: channel speed_rpm is empty", path));
-  const Channel* feeds[] = {drive_channel(record, "feed_x", "mm_min"), drive_channel(record, "feed_y", "mm_min"),
-                            drive_channel(record, "feed_z", "mm_min")};
-  const Channel* cutting = drive_channel(record, "cutting_power", "W");
+  const Channel* feeds[] = {drive_channel(record, kFeeds[0], is_plan), drive_channel(record, kFeeds[1], is_plan),
+                            drive_channel(record, kFeeds[2], is_plan)};
+  const Channel* cutting = drive_channel(record, kCutting, is_plan);
   Cyclogram cyclogram;
   double top_rpm = 0.0;
   for (double rpm : speed->values) top_rpm = std::isnan(rpm) ? top_rpm : std::max(top_rpm, rpm);
@@ -61,10 +82,11 @@ Cyclogram drive_of(const Record& record, const std::vector<double>& time_s) {
   for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
     if (!std::isnan(speed->values[i])) last_rpm = speed->values[i];
     const double held_rpm = cyclogram.sections.empty() ? last_rpm : cyclogram.sections.back().drive.speed_rpm;
-    const bool is_jitter = held_rpm > 0.0 && last_rpm > 0.0 && std::abs(last_rpm - held_rpm) <= kJitter * top_rpm;
+    const bool is_jitter =
+        !is_plan && held_rpm > 0.0 && last_rpm > 0.0 && std::abs(last_rpm - held_rpm) <= kJitter * top_rpm;
     drive.speed_rpm = is_jitter ? held_rpm : last_rpm;
     for (std::size_t a = 0; a < 3; ++a) {
-      if (feeds[a] && !std::isnan(feeds[a]->values[i])) drive.feed_m_s[a] = feeds[a]->values[i] / 60e3;
+      if (feeds[a] && !std::isnan(feeds[a]->values[i])) drive.feed_m_s[a] = std::abs(feeds[a]->values[i]) / 60e3;
     }
     if (cutting && !std::isnan(cutting->values[i])) drive.cutting_power_W = cutting->values[i];
     const double length_s = time_s[i + 1] - time_s[i];
@@ -122,11 +144,20 @@ RecordedRun run_of(const Record& record, const MachineModel* machine, const std:
     try {
       read();
     } catch (const InputError& e) {
-      if (reading == Reading::kStrict) throw;
+      if (reading != Reading::kLenient) throw;
       run.findings.push_back({channel, e.what(), true});
     }
   };
-  attempt("speed", [&] { run.cyclogram = drive_of(record, run.time_s); });
+  const auto note_gaps = [&](const Channel& channel) {
+    const double missing = 1.0 - static_cast<double>(n_readings(channel)) / static_cast<double>(record.n_samples());
+    if (missing > kManyMissing)
+      run.findings.push_back({channel.name,
+                              fmt::format("{} has no reading in {:.0f} % of the rows; its last one is held", channel.name,
+                                          100.0 * missing),
+                              false});
+  };
+  attempt("speed", [&] { run.cyclogram = drive_of(record, run.time_s, reading == Reading::kPlan); });
+  if (!run.cyclogram.sections.empty()) note_gaps(record.at("speed"));
   run.cyclogram.name = name_of(record.source);
   if (machine) run.hall = machine->hall;
   std::vector<std::string> names = {kAmbient};
@@ -139,11 +170,7 @@ RecordedRun run_of(const Record& record, const MachineModel* machine, const std:
                          machine ? &machine->hall : nullptr);
       run.hall_channel = name;
     });
-    const double missing = 1.0 - static_cast<double>(n_readings(*channel)) / static_cast<double>(record.n_samples());
-    if (run.has_ambient() && missing > kManyMissing)
-      run.findings.push_back(
-          {name, fmt::format("{} has no reading in {:.0f} % of the rows; its last one is held", name, 100.0 * missing),
-           false});
+    if (run.has_ambient()) note_gaps(*channel);
     break;
   }
   if (!run.has_ambient()) {

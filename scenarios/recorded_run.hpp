@@ -21,6 +21,7 @@ struct DataFinding {
 enum class Reading {
   kStrict,   ///< a record must say what drove the machine
   kLenient,  ///< what is missing or unfit is a finding, and the rest is used
+  kPlan,     ///< a record that says what is to be driven: from time 0, every value there, each taken as it is
 };
 
 /// A record as a run of the machine. Its readings stay as they were recorded.
@@ -36,8 +37,9 @@ struct RecordedRun {
 /// @param record   two rows at least; its source names it in messages
 /// @param machine  of the scenario; null: there is none, and the reference is 20 degC
 /// @param on_hall  channels that read the hall as well as `ambient` does
-/// @throws InputError  strict: without a speed, with values below 0 or units that fit no drive or hall, with a hall in another unit than
-///                     its header says. Lenient: never
+/// @throws InputError  strict: without a speed, with speeds and powers below 0 (the sign of a feed does not count), values that no machine has or
+///                     units that fit no drive or hall, with a hall in another unit than its header says. Plan: for missing values and a
+///                     late start, too. Lenient: never
 [[nodiscard]] RecordedRun run_of(const Record& record, const MachineModel* machine, const std::vector<std::string>& on_hall,
                                  Reading reading);
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scenarios/as_recorded.hpp"
+#include "scenarios/read_columns.hpp"
 #include "scenarios/read_cyclogram.hpp"
 #include "scenarios/read_hall.hpp"
 
@@ -191,6 +192,18 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
   return s;
 }
 
+/// The map has the channels that the study is about.
+void check_columns(const ConfigMap& in, const ColumnMap& columns, const Study& study) {
+  std::vector<std::string> names = {study.target}, known;
+  names.insert(names.end(), study.candidates.begin(), study.candidates.end());
+  for (const MappedChannel& c : columns.channels) known.push_back(c.name);
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    in.fail("", fmt::format("`study` is about the channel '{}', which has no column here; there are {}", name,
+                            fmt::join(known, ", ")));
+  }
+}
+
 AxisLoopSettings read_axis_loop_of(const ConfigMap& in, const ConfigMap& axis_loop, const Scenario& scenario) {
   if (!scenario.machine || !scenario.study)
     in.fail("axis_loop", "an axis is corrected by what a `study` of a machine has learned");
@@ -287,6 +300,10 @@ Scenario read_scenario(const ConfigMap& in) {
     }
   }
   if (const auto study = in.optional_map("study")) scenario.study = read_study(*study, scenario);
+  if (const auto columns = in.optional_map("columns")) {
+    scenario.columns = read_columns(*columns);
+    if (scenario.study) check_columns(columns->map("channels"), *scenario.columns, *scenario.study);
+  }
   if (const auto programme = in.optional_map("programme")) {
     if (!has_machine) in.fail("programme", "a programme wants a machine to simulate");
     if (scenario.machine->displacements.empty())

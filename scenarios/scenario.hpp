@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/column_map.hpp"
 #include "base/cyclogram.hpp"
 #include "base/errors.hpp"
 #include "base/fields_format.hpp"
@@ -101,6 +102,7 @@ struct Scenario {
   std::string path;
   std::string name;
   std::optional<MachineModel> machine;  ///< absent in a scenario about measured records alone
+  std::optional<ColumnMap> columns;  ///< how the records that verbs are given are written; absent: as docs/record.md has it
   std::vector<Cyclogram> cyclograms;
   SolverSettings solver;
   std::optional<Study> study;

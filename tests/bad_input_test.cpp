@@ -211,11 +211,15 @@ TEST(BadCommand, AMeshThatGmshCannotMakeEndsWithThree) {
   EXPECT_TRUE(std::filesystem::is_empty(out.parent_path()));
 }
 
-TEST(BadCommand, ACyclogramCsvMustStartAtZeroAndHaveSpeeds) {
-  const std::string late = write_file("late.csv", "time_s,speed_rpm\n100,2000\n200,0\n");
-  EXPECT_THAT(run_program("predict scenarios/fp3_spindle.yaml --cyclogram " + late).output, HasSubstr("starts at time 0"));
-  const std::string gap = write_file("gap.csv", "time_s,speed_rpm\n0,\n200,0\n");
-  EXPECT_THAT(run_program("predict scenarios/fp3_spindle.yaml --cyclogram " + gap).output, HasSubstr("missing or negative"));
+TEST(BadCommand, ARecordToPredictMustSayWhatDroveTheMachine) {
+  for (const auto& [text, words] : {std::pair{"time_s,t_degC\n100,20\n200,21\n", "no channel speed_rpm"},
+                                    std::pair{"time_s,speed_rpm\n0,\n200,\n", "speed_rpm is empty"},
+                                    std::pair{"time_s,speed_rpm\n0,100\n200,-100\n300,0\n", "speeds are positive"}}) {
+    const CommandOutcome outcome =
+        run_program("predict scenarios/fp3_spindle.yaml --cyclogram " + write_file("drive.csv", text));
+    EXPECT_EQ(outcome.exit_code, 2) << words;
+    EXPECT_THAT(outcome.output, HasSubstr(words));
+  }
 }
 
 TEST(BadCommand, ARecordCannotTrainAndJudgeOrTrainTwice) {
@@ -228,6 +232,12 @@ TEST(BadCommand, ARecordCannotTrainAndJudgeOrTrainTwice) {
     const CommandOutcome outcome = run_program("validate scenarios/spindle_22.yaml " + arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_THAT(outcome.output, HasSubstr("hold the same run")) << arguments;
+  }
+  for (const std::string& arguments :
+       {"--train " + b + ":0s..0.9s --test " + b, "--train " + b + ":0s..0.6s --train " + b + ":0.5s.. --test " + a}) {
+    const CommandOutcome outcome = run_program("validate scenarios/spindle_22.yaml " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.output, HasSubstr("overlap")) << arguments;
   }
 }
 

@@ -78,7 +78,29 @@ TEST(MeasuredScenarios, AreReadByTheProgramWithoutTheirRecords) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
     ++n;
   }
-  EXPECT_EQ(n, 9);
+  EXPECT_EQ(n, 10);
+}
+
+// One record of 28 h: fitted to its first 20 h, judged by the other 8.
+TEST(FlThermal, ALongRecordIsCutIntoRunsAndJudgedByItsOtherPart) {
+  const std::filesystem::path file = "../shared/data/fl_thermal/first_28h.csv";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;
+  const auto folder = fresh_folder("fl_thermal") / "out";
+  const CommandOutcome run = run_program("validate scenarios/measured/fl_thermal.yaml --train " + file.string() +
+                                         ":0h..20h --test " + file.string() + ":20h..28h -o " + folder.string());
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const auto summary = nlohmann::json::parse(read_text(folder / "summary.json"));
+  // every strategy that needs no machine
+  const auto& left_out = summary["validation"]["left_out"];
+  ASSERT_EQ(left_out.size(), 1u) << left_out;
+  EXPECT_EQ(left_out[0]["why"], "the scenario has no machine");
+  EXPECT_EQ(summary["validation"]["trained_on"].size(), 3u) << summary["validation"]["trained_on"];
+  // Reference: means over the rows of 0 h to 20 h and 20 h to 28 h of the drift since the first row of the file, written independently in Python.
+  const std::string csv = read_text(folder / "strategies.csv");
+  EXPECT_NEAR(cell(csv, "no correction", "rms_without_fail_safe_um"), 41.240482, 1e-5);
+  EXPECT_NEAR(cell(csv, "mean of the training runs", "rms_without_fail_safe_um"), 37.605422, 1e-5);
+  EXPECT_NEAR(cell(csv, "last value of the training runs", "rms_without_fail_safe_um"), 20.788826, 1e-5);
+  EXPECT_NEAR(cell(csv, "no correction", "peak_before_um"), 69.131, 1e-3);
 }
 
 }  // namespace

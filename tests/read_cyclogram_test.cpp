@@ -9,6 +9,7 @@
 #include "base/nc_program.hpp"
 #include "scenarios/machine.hpp"
 #include "scenarios/read_hall.hpp"
+#include "scenarios/recorded_run.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::scenarios {
@@ -148,10 +149,10 @@ INSTANTIATE_TEST_SUITE_P(
               {"unknown key 'rapid'"}},
         Wrong{"record_missing", "  a: {csv: nowhere.csv}\n", {"nowhere.csv: the file cannot be opened"}},
         Wrong{"record_late", "  a: {csv: late.csv}\n", {"late.csv: a cyclogram starts at time 0, this one at 5 s"}},
-        Wrong{"record_gap", "  a: {csv: gap.csv}\n", {"speed_rpm is missing or negative or above 1e+06 at 0 s"}},
-        Wrong{"record_fast", "  a: {csv: fast.csv}\n", {"feed_z_mm_min is missing or above 6e+06 at 0 s"}},
-        Wrong{"record_without_speed", "  a: {csv: no_speed.csv}\n", {"no channel 'speed'"}},
-        Wrong{"record_unit", "  a: {csv: unit.csv}\n", {"column 'cutting_power_K'", "cutting_power_W is wanted"}},
+        Wrong{"record_gap", "  a: {csv: gap.csv}\n", {"speed_rpm is missing at 0 s"}},
+        Wrong{"record_fast", "  a: {csv: fast.csv}\n", {"feed_z 7e+06 mm_min at 0 s; 6e+06 mm_min at most is allowed"}},
+        Wrong{"record_without_speed", "  a: {csv: no_speed.csv}\n", {"no channel speed_rpm"}},
+        Wrong{"record_unit", "  a: {csv: unit.csv}\n", {"channel cutting_power is in K; W is wanted"}},
         Wrong{"nc_nothing", "  a: {nc_program: empty.ngc}\n", {"takes no time"}},
         Wrong{"nc_fast", "  a: {nc_program: fast.ngc}\n", {"the spindle at 2e+06 rpm"}},
         Wrong{"nc_bad", "  a: {nc_program: bad.ngc, rapid: 1 m/s}\n", {"bad.ngc:2:1: G77"}},
@@ -203,7 +204,7 @@ TEST(ToRecord, CarriesFeedsAndCuttingPowerWhereTheCyclogramUsesThem) {
   ASSERT_EQ(record.channels.size(), 3u);
   EXPECT_EQ(record.at("feed_y_mm_min").values, (std::vector<double>{3000, 0, 0}));
   EXPECT_EQ(record.at("cutting_power_W").values, (std::vector<double>{400, 0, 0}));
-  EXPECT_EQ(cyclogram_of(record).sections, milling.sections);
+  EXPECT_EQ(run_of(record, nullptr, {}, Reading::kPlan).cyclogram.sections, milling.sections);
 }
 
 }  // namespace

@@ -88,9 +88,12 @@ TEST(RecordedRun, HoldsFeedsThatAreMissingAndRefusesForeignOnes) {
       run_of(with(record(), {"feed_x", "mm_min", {600, kMissing, 600, kMissing, 600}}), nullptr, {}, Reading::kStrict);
   ASSERT_THAT(held.cyclogram.sections, SizeIs(2));
   EXPECT_DOUBLE_EQ(held.cyclogram.sections[1].drive.feed_m_s[0], 0.01);
+  const RecordedRun to_and_fro =
+      run_of(with(record(), {"feed_z", "mm_min", {600, -600, 600, -600, 600}}), nullptr, {}, Reading::kStrict);
+  for (const Cyclogram::Section& s : to_and_fro.cyclogram.sections) EXPECT_DOUBLE_EQ(s.drive.feed_m_s[2], 0.01);
   for (const Channel& foreign : {Channel{"feed_x", "percent", std::vector<double>(5, 60.0)},
                                  Channel{"cutting_power", "percent", std::vector<double>(5, 60.0)},
-                                 Channel{"feed_z", "mm_min", {600, -600, 600, -600, 600}}})
+                                 Channel{"feed_z", "mm_min", {600, 7e6, 600, 7e6, 600}}})
     EXPECT_THROW((void)run_of(with(record(), foreign), nullptr, {}, Reading::kStrict), InputError) << foreign.header();
 }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/record.hpp"
 #include "tests/command_line.hpp"
 
 namespace driftwright {
@@ -17,6 +18,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 // A spindle and a column of lumped nodes whose films do not follow temperatures.
@@ -232,6 +234,129 @@ TEST_F(ValidateRecords, AHallThermometerThatNeverReadIsSaid) {
     EXPECT_THAT(summary["warnings"].dump(), AllOf(HasSubstr("no hall temperature"), HasSubstr("used from none")));
     EXPECT_TRUE(strategy(summary, "transfer functions from speed"));
   }
+}
+
+// A machine that is its own model, run for ten hours without ever coming back to balance. What follows 6 h goes on from what came before, so
+// that the model is exact there, too; had the part begun at 0, or cold, it would be off by the 30 um that the machine has gone by then.
+TEST_F(ValidateRecords, APartOfALongRecordGoesOnFromWhatCameBefore) {
+  const std::string week = scenario("long_record", [](std::string& t) {
+    replace(
+        t, "  to_and_fro:",
+        "  week: [[2 h, 3000 rpm], [1 h, 0 rpm], [2 h, 1500 rpm], [1 h, 0 rpm], [2 h, 2500 rpm], [30 min, 0 rpm], [90 min, "
+        "2000 rpm]]\n  to_and_fro:");
+  });
+  simulate(week, "week", "week");
+  const auto out = fresh_folder("parts") / "out";
+  const CommandOutcome run = run_program("validate " + week + " --train " + record("week") + ":0h..6h --test " +
+                                         record("week") + ":6h..10h -o " + out.string());
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const Json summary = Json::parse(read_text(out / "summary.json"));
+  expect_exact(summary);
+  EXPECT_TRUE(summary["validation"]["left_out"].empty()) << summary["validation"]["left_out"];
+  EXPECT_EQ(summary["validation"]["trained_on"].size(), 2u);
+  EXPECT_THAT(summary["warnings"].dump(), AllOf(HasSubstr("cut into 2 runs"), HasSubstr("at 3.00 h"), HasSubstr("goes on")));
+  EXPECT_THAT(run.output, HasSubstr("record.csv:6h..10h"));
+  const Json* nothing = strategy(summary, "no correction");
+  ASSERT_TRUE(nothing);
+  EXPECT_GT((*nothing)["worst_peak_um"].get<double>(), 20.0);
+
+  const CommandOutcome selected =
+      run_program("select " + week + " --train " + record("week") + " -o " + (out / "selected").string());
+  EXPECT_EQ(selected.exit_code, 0) << selected.output;
+  EXPECT_THAT(selected.output, AllOf(HasSubstr("cut into"), Not(HasSubstr("not possible"))));
+}
+
+/// The record as a logger in Germany would have written it, of a clock that is set back in between.
+std::string as_logged(const std::string& record) {
+  std::istringstream lines(read_text(record));
+  std::string line, text = "Messung\r\n\r\nZeit;Drehzahl;Halle;T Spindel;T S\xE4ule;Z [mm]\r\n";  // Latin-1
+  bool is_header = true;
+  while (std::getline(lines, line)) {
+    if (line.starts_with("#")) continue;
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    if (is_header) {
+      EXPECT_EQ(line, "time_s,speed_rpm,ambient_degC,t_spindle_degC,t_column_degC,tip_z_um");
+      is_header = false;
+      continue;
+    }
+    const int seconds = std::stoi(cells[0]) + 3600 + 1800,
+              local = seconds < 3 * 3600 ? seconds : seconds - 3600;  // from 1:30 on
+    char stamp[64];
+    std::snprintf(stamp, sizeof stamp, "27.10.2024 %02d:%02d:%02d", local / 3600, local / 60 % 60, local % 60);
+    char rest[256];
+    std::snprintf(rest, sizeof rest, ";-%s;%s;%s;%s;%.9f\r\n", cells[1].c_str(), cells[2].c_str(), cells[3].c_str(),
+                  cells[4].c_str(), 1e-3 * std::stod(cells[5]));
+    std::string logged = std::string(stamp) + rest;
+    std::replace(logged.begin() + 19, logged.end(), '.', ',');
+    text += logged;
+  }
+  return text;
+}
+constexpr const char* kColumns = R"yaml(columns:
+  decimal: ","
+  time: {column: Zeit, format: "%d.%m.%Y %H:%M:%S", zone: Europe/Berlin}
+  channels:
+    speed: {column: Drehzahl, unit: rpm, magnitude: true}
+    t_spindle: {column: T Spindel, unit: degC}
+    t_column: {column: T Säule, unit: degC}
+    ambient: {column: Halle, unit: degC}
+    tip_z: {column: "Z [mm]", unit: mm}
+)yaml";
+
+// Every verb that takes records: the same numbers from a logger's files as from records of ours.
+TEST_F(ValidateRecords, ReadsLoggersFilesWithEveryVerb) {
+  const std::string mapped = scenario("mapped", [](std::string& t) { t += kColumns; });
+  std::string plain, logged;
+  for (const char* name : {"warm_up", "steps"}) {
+    plain += " --train " + record(name);
+    logged += " --train " + write_file(std::string(name) + ".log", as_logged(record(name)));
+  }
+  const std::string judged = write_file("to_and_fro.log", as_logged(record("to_and_fro")));
+  int n_runs = 0;
+  const auto json = [&](const std::string& arguments, const std::string& file) {
+    const auto out = fresh_folder("verbs") / std::to_string(++n_runs);
+    const CommandOutcome run = run_program(arguments + " -o " + out.string());
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return Json::parse(read_text(out / file));
+  };
+  const Json a = json("validate " + machine_ + plain + " --test " + record("to_and_fro"), "summary.json"),
+             b = json("validate " + mapped + logged + " --test " + judged, "summary.json");
+  ASSERT_EQ(a["validation"]["strategies"].size(), b["validation"]["strategies"].size());
+  for (std::size_t s = 0; s < a["validation"]["strategies"].size(); ++s) {
+    const double of_a = a["validation"]["strategies"][s]["worst_peak_um"],
+                 of_b = b["validation"]["strategies"][s]["worst_peak_um"];
+    EXPECT_NEAR(of_a, of_b, 1e-3 + 1e-3 * of_a) << a["validation"]["strategies"][s]["name"];
+  }
+  const Json ranked_a = json("select " + machine_ + plain, "summary.json"),
+             ranked_b = json("select " + mapped + logged, "summary.json");
+  EXPECT_NEAR(ranked_a["channels"][0]["grade"], ranked_b["channels"][0]["grade"], 1e-5);
+
+  const auto predicted = fresh_folder("predicted");
+  for (const auto& [scenario, file, into] :
+       {std::tuple{machine_, record("to_and_fro"), "a"}, std::tuple{mapped, judged, "b"}}) {
+    const CommandOutcome run =
+        run_program("predict " + scenario + " --cyclogram " + file + " -o " + (predicted / into).string());
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+  }
+  const Record by_record = read_record_csv((predicted / "a/record.csv").string()),
+               by_log = read_record_csv((predicted / "b/record.csv").string());
+  EXPECT_NEAR(by_record.at("tip_z").values.back(), by_log.at("tip_z").values.back(), 1e-6);
+
+  const Json of_records = json("calibrate " + machine_ + " --measured " + record("steps"), "calibration.json"),
+             of_logs = json("calibrate " + mapped + " --measured " + (temporary_folder() / "steps.log").string(),
+                            "calibration.json");
+  EXPECT_EQ(of_records["verdict"], of_logs["verdict"]);
+  EXPECT_EQ(
+      run_program("diagnose " + mapped + " --measured " + judged + " -o " + (predicted / "diagnosis").string()).exit_code,
+      0);
+
+  EXPECT_THAT(run_program("check " + mapped).output,
+              AllOf(HasSubstr("`columns`"), HasSubstr("'Zeit', format '%d.%m.%Y %H:%M:%S', local time of Europe/Berlin"),
+                    HasSubstr("tip_z_um             'Z [mm]' in mm")));
+  const std::string wrong = write_file("wrong.yaml", std::string("name: wrong\nstudy: {target: tip_x}\n") + kColumns);
+  EXPECT_THAT(run_program("check " + wrong).output, AllOf(HasSubstr("'tip_x'"), HasSubstr("no column")));
 }
 
 }  // namespace

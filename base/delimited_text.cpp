@@ -1,0 +1,156 @@
+#include "base/delimited_text.hpp"
+
+#include <fmt/format.h>
+#include <iconv.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+#include "base/errors.hpp"
+#include "base/file_bytes.hpp"
+
+namespace driftwright {
+namespace {
+
+/// Text in another encoding as UTF-8. @throws InputError  for bytes that it does not have
+std::string as_utf8(const std::string& path, std::string bytes, const char* encoding) {
+  const iconv_t converter = iconv_open("UTF-8", encoding);
+  if (converter == reinterpret_cast<iconv_t>(-1))
+    throw InputError(
+        fmt::format("{}: the file is in {}, which this system cannot convert; save it as UTF-8", path, encoding));
+  std::string text(3 * bytes.size() + 4, '\0');
+  char *in = bytes.data(), *out = text.data();
+  std::size_t n_in = bytes.size(), n_out = text.size();
+  const std::size_t failed = iconv(converter, &in, &n_in, &out, &n_out);
+  iconv_close(converter);
+  if (failed == static_cast<std::size_t>(-1))
+    throw InputError(
+        fmt::format("{}: byte {} is no text in {}; save the file as UTF-8", path, bytes.size() - n_in + 1, encoding));
+  text.resize(text.size() - n_out);
+  return text;
+}
+
+bool is_utf8(const std::string& bytes) {
+  std::size_t more = 0;
+  for (const char byte : bytes) {
+    const auto c = static_cast<std::uint8_t>(byte);
+    if (more > 0) {
+      if ((c & 0xC0U) != 0x80U) return false;
+      --more;
+    } else if (c >= 0x80U) {
+      if (c < 0xC2U || c > 0xF4U) return false;
+      more = c < 0xE0U ? 1 : c < 0xF0U ? 2 : 3;
+    }
+  }
+  return more == 0;
+}
+
+void replace_all(std::string& text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+}  // namespace
+
+std::vector<std::string> read_text_lines(const std::string& path) {
+  std::string text = read_bytes(path);
+  if (text.starts_with("\xEF\xBB\xBF")) {
+    text.erase(0, 3);
+  } else if (text.starts_with("\xFF\xFE")) {
+    text = as_utf8(path, text.substr(2), "UTF-16LE");
+  } else if (text.starts_with("\xFE\xFF")) {
+    text = as_utf8(path, text.substr(2), "UTF-16BE");
+  } else if (!is_utf8(text)) {
+    text = as_utf8(path, std::move(text), "WINDOWS-1252");
+  }
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    if (lines.back().ends_with('\r')) lines.back().pop_back();
+    begin = end + 1;
+  }
+  return lines;
+}
+
+std::vector<Cell> split_cells(const std::string& line, char separator) {
+  std::vector<Cell> cells;
+  std::string text;
+  std::size_t begin = 0;
+  bool quoted = false, was_quoted = false;
+  const auto ends = [&](std::size_t at) {
+    const bool is_gap = separator == ' ' && text.empty() && !was_quoted;
+    if (!is_gap) cells.push_back({was_quoted ? text : trimmed(text), static_cast<int>(begin) + 1});
+    text.clear();
+    was_quoted = false;
+    begin = at + 1;
+  };
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quoted) {
+      if (c != '"') {
+        text += c;
+      } else if (i + 1 < line.size() && line[i + 1] == '"') {
+        text += line[++i];
+      } else {
+        quoted = false;
+      }
+    } else if (c == '"' && trimmed(text).empty()) {
+      text.clear();
+      quoted = was_quoted = true;
+    } else if (c == separator || (separator == ' ' && c == '\t')) {
+      ends(i);
+    } else if (!was_quoted || (c != ' ' && c != '\t')) {
+      text += c;
+    }
+  }
+  if (quoted) throw RangeError("a quotation mark is opened and not closed in this line");
+  ends(line.size());
+  return cells;
+}
+
+std::string plain_name(std::string text) {
+  replace_all(text, "\xC2\xA0", " ");         // hard blank
+  replace_all(text, "\xE2\x80\xAF", " ");     // narrow hard blank
+  replace_all(text, "\xCE\xBC", "\xC2\xB5");  // Greek mu as the micro sign
+  return trimmed(text);
+}
+
+double parse_number(const std::string& text, char decimal) {
+  const auto refuse = [&](const std::string& why) { throw RangeError(fmt::format("'{}' {}", text, why)); };
+  std::string number = plain_name(text);
+  const auto n_points = std::count(number.begin(), number.end(), '.'),
+             n_commas = std::count(number.begin(), number.end(), ',');
+  for (std::size_t i = 1; i + 1 < number.size(); ++i) {
+    if ((number[i] == ' ' || number[i] == '\'') && is_digit(number[i - 1]) && is_digit(number[i + 1]))
+      refuse("has a thousands separator; write numbers without");
+  }
+  if (n_points > 1 || n_commas > 1 || (n_points == 1 && n_commas == 1))
+    refuse("has more than one point or comma; write numbers without thousands separators");
+  if (decimal == '.' && n_commas == 1) refuse("has a decimal comma; `decimal: \",\"` is wanted in `columns`");
+  if (decimal == ',' && n_points == 1) refuse("has a decimal point, and `columns` says `decimal: \",\"`");
+  std::replace(number.begin(), number.end(), ',', '.');
+  if (number.starts_with('+') || number.starts_with('-'))  // "+  23.4"
+    number.erase(1, std::min(number.find_first_not_of(' ', 1), number.size()) - 1);
+  if (number.starts_with('+')) number.erase(0, 1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error == std::errc::result_out_of_range) refuse("is out of range");
+  if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(value))
+    refuse("is not a finite number; if it stands for a missing reading, name it in `missing`");
+  return value;
+}
+
+}  // namespace driftwright

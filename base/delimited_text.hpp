@@ -1,0 +1,32 @@
+#pragma once
+// Lines and cells of a text file as loggers and spreadsheets write them, in UTF-8 whatever the file is encoded in.
+
+#include <string>
+#include <vector>
+
+namespace driftwright {
+
+/// The lines of a text file without their line breaks (LF, CR LF), in UTF-8. A byte order mark tells UTF-8 or UTF-16; without one a file
+/// that is no UTF-8 is taken as Windows-1252, which has Latin-1's degree sign.
+/// @throws InputError  for a file that cannot be opened or holds bytes that are no text
+[[nodiscard]] std::vector<std::string> read_text_lines(const std::string& path);
+
+/// A cell and where it begins.
+struct Cell {
+  std::string text;  ///< without quotation marks and blanks around it
+  int column = 1;    ///< byte of the line, from 1
+};
+
+/// The cells of a line. Quotation marks (") keep separators; doubled they stand for one.
+/// @param separator  ' ': any number of blanks and tabs
+/// @throws RangeError  for a quotation mark that is not closed
+[[nodiscard]] std::vector<Cell> split_cells(const std::string& line, char separator);
+
+/// A name as two people may write it: without blanks around it, hard blanks as blanks, both mu as the micro sign.
+[[nodiscard]] std::string plain_name(std::string text);
+
+/// The number in a cell. Its message says what is wrong: decimal comma or point, thousands separators, text.
+/// @throws RangeError  when the cell is no finite number
+[[nodiscard]] double parse_number(const std::string& text, char decimal);
+
+}  // namespace driftwright

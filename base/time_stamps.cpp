@@ -1,0 +1,121 @@
+#include "base/time_stamps.hpp"
+
+#include <date/date.h>
+#include <date/tz.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/errors.hpp"
+
+namespace driftwright {
+namespace {
+
+using std::chrono::nanoseconds;
+constexpr nanoseconds kDay = std::chrono::hours(24), kHalfDay = std::chrono::hours(12);
+
+bool has_any(const std::string& format, const std::string& letters) {
+  for (std::size_t i = 0; i + 1 < format.size(); ++i) {
+    if (format[i] == '%' && letters.find(format[++i]) != std::string::npos) return true;
+  }
+  return false;
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// "08:07:12:237" and "08:07:12,237" as "08:07:12.237".
+std::string with_point(std::string text) {
+  for (std::size_t i = 0; i + 9 < text.size(); ++i) {
+    const auto digits = [&](std::size_t at) { return is_digit(text[at]) && is_digit(text[at + 1]); };
+    const bool is_time = digits(i) && text[i + 2] == ':' && digits(i + 3) && text[i + 5] == ':' && digits(i + 6);
+    if (!is_time) continue;
+    if ((text[i + 8] == ':' || text[i + 8] == ',') && is_digit(text[i + 9])) text[i + 8] = '.';
+    break;
+  }
+  return text;
+}
+
+template <class Time>
+bool fits(const std::string& text, const std::string& format, Time& time) {
+  std::istringstream in(text);
+  in >> date::parse(format, time);
+  return !in.fail() && (in >> std::ws).eof();
+}
+
+/// A stamp of ISO 8601: date, T or a blank, time, and perhaps Z or an offset.
+std::optional<nanoseconds> iso_8601(std::string text, bool& has_offset) {
+  if (text.size() > 10 && text[10] == ' ') text[10] = 'T';
+  has_offset = true;
+  date::sys_time<nanoseconds> time;
+  if (text.ends_with('Z')) {
+    text.back() = '+';
+    text += "00:00";
+  }
+  for (const char* format : {"%FT%T%Ez", "%FT%T%z", "%FT%H:%M%Ez"}) {
+    if (fits(text, format, time)) return time.time_since_epoch();
+  }
+  has_offset = false;
+  for (const char* format : {"%FT%T", "%FT%H:%M", "%F"}) {
+    if (fits(text, format, time)) return time.time_since_epoch();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+TimeStamps::TimeStamps(std::string format, const std::string& zone) : format_(std::move(format)) {
+  has_date_ = format_.empty() || has_any(format_, "dejDFcxmsUW");
+  has_offset_ = has_any(format_, "z") || format_.find("%Ez") != std::string::npos;
+  if (zone.empty()) return;
+  if (!has_date_) throw RangeError("a zone wants stamps with a date; this format has none");
+  try {
+    zone_ = date::locate_zone(zone);
+  } catch (const std::runtime_error&) {
+    throw RangeError(fmt::format("'{}' is no time zone of the IANA data base, such as Europe/Berlin or UTC", zone));
+  }
+}
+
+nanoseconds TimeStamps::read(const std::string& text) {
+  const std::string stamp = with_point(text);
+  bool has_offset = has_offset_;
+  nanoseconds time{};
+  if (format_.empty()) {
+    const auto iso = iso_8601(stamp, has_offset);
+    if (!iso)
+      throw RangeError(
+          fmt::format("'{}' is no time stamp of ISO 8601 (2024-03-01T10:00:00); `format` says how others are written, "
+                      "`unit` that it is a number",
+                      text));
+    time = *iso;
+  } else if (has_date_) {
+    date::sys_time<nanoseconds> point;
+    if (!fits(stamp, format_, point))
+      throw RangeError(fmt::format("'{}' is no time stamp of the format '{}'", text, format_));
+    time = point.time_since_epoch();
+  } else {
+    if (!fits(stamp, format_, time)) throw RangeError(fmt::format("'{}' is no time of the format '{}'", text, format_));
+    if (before_) {
+      time += *before_ - *before_ % kDay;
+      if (*before_ - time > kHalfDay) time += kDay;
+    }
+  }
+  if (zone_ && !has_offset) time = in_zone(time, text);
+  before_ = time;
+  return time;
+}
+
+nanoseconds TimeStamps::in_zone(nanoseconds local, const std::string& text) const {
+  const auto& zone = *static_cast<const date::time_zone*>(zone_);
+  const auto info = zone.get_info(date::local_time<nanoseconds>(local));
+  const nanoseconds first = local - info.first.offset;
+  if (info.result == date::local_info::unique) return first;
+  if (info.result == date::local_info::nonexistent)
+    throw RangeError(fmt::format("'{}' does not exist in {}: clocks skip that hour", text, zone.name()));
+  return before_ && first <= *before_ ? local - info.second.offset : first;
+}
+
+}  // namespace driftwright

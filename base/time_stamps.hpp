@@ -1,0 +1,38 @@
+#pragma once
+// Time stamps as loggers write them, turned into time that only goes on: across clock changes and midnight.
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+namespace driftwright {
+
+/// Reads the stamps of a file one after another.
+///
+/// Seconds may have a fraction behind a point, a comma or a colon ("08:07:12:237"). In a zone, an hour that comes twice a year is told by the order
+/// of the stamps: the earlier one unless it does not follow the stamp before. Where the format has no date, a time more than 12 h earlier
+/// than the one before is of the next day. Source: Hinnant, date and tz libraries (the C++20 calendar), with the IANA data base of the system.
+class TimeStamps {
+ public:
+  /// @param format  as strftime() has it: %d.%m.%Y %H:%M:%S, with %z for an offset to UTC; empty: ISO 8601
+  /// @param zone    of the IANA data base; empty: all stamps are of one clock that is never set
+  /// @throws RangeError  for a zone that is not known, and for a zone beside a format without a date
+  TimeStamps(std::string format, const std::string& zone);
+
+  /// Time since an epoch that is the same for all stamps.
+  /// @throws RangeError  for a text that the format does not fit, and for a time that a clock in the zone skips
+  [[nodiscard]] std::chrono::nanoseconds read(const std::string& text);
+
+  [[nodiscard]] bool has_date() const { return has_date_; }
+  [[nodiscard]] bool has_zone() const { return zone_ != nullptr; }
+
+ private:
+  [[nodiscard]] std::chrono::nanoseconds in_zone(std::chrono::nanoseconds local, const std::string& text) const;
+
+  std::string format_;
+  const void* zone_ = nullptr;  // date::time_zone, owned by the library for the life of the program
+  bool has_date_ = true, has_offset_ = false;
+  std::optional<std::chrono::nanoseconds> before_;
+};
+
+}  // namespace driftwright

@@ -1,0 +1,35 @@
+#pragma once
+// A run of the machine as predictors see it: drive, hall and readings, and how much of them came before what is fitted and scored.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/cyclogram.hpp"
+#include "base/record.hpp"
+
+namespace driftwright::compensation {
+
+/// Rows [n_before, n_samples) are the run; those before it are its lead-in, from the last time on at which the machine was in balance. Predictors
+/// follow the lead-in, so that what has a memory - lags, states of a model, a fail-safe - starts the run with what came before it; nothing is fitted
+/// to its drift, and it is not scored. Where temperatures and drift count from the start, they count from the first row of the lead-in.
+struct ObservedRun {
+  Cyclogram cyclogram;       ///< from the first row of the readings, as the hall
+  TimeSeries hall;           ///< minus the reference temperature [K]
+  Record readings;           ///< channels named as the model's outputs; temperatures in degC, displacements in um
+  std::size_t n_before = 0;  ///< rows of lead-in, less than all
+  std::string history = {};  ///< runs that share it are of one record and begin at the same row of it; "": of none
+};
+
+/// The readings with temperatures and `target` counted from their first row where `from_start`, and the target missing in the lead-in: what
+/// fits and scores may know.
+[[nodiscard]] Record scored_readings(const ObservedRun& run, const std::string& target, bool from_start);
+
+/// The rows of the run alone. Its time goes from 0.
+[[nodiscard]] Record own_rows(Record readings, std::size_t n_before);
+
+/// Runs of one history as one run, whose target is missing in the rows that none of them has as its own: each reading then counts once. Those
+/// of no history stay as they are, and come in their order.
+[[nodiscard]] std::vector<ObservedRun> joined_histories(std::span<const ObservedRun> runs, const std::string& target);
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,33 @@
+#pragma once
+// A record, or a part of it, as the command line names it: run.csv, or run.csv:20h..28h.
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "base/record.hpp"
+
+namespace driftwright::scenarios {
+
+/// From `from_s` on, before `until_s`, both since the first row of the record.
+struct RecordPart {
+  std::string file;
+  double from_s = 0.0;
+  double until_s = std::numeric_limits<double>::infinity();
+  std::string words;  ///< as the command line has it
+
+  [[nodiscard]] bool is_whole() const { return from_s == 0.0 && until_s == std::numeric_limits<double>::infinity(); }
+};
+
+/// "run.csv", "run.csv:0h..20h", "run.csv:90min..", "run.csv:..2h". What names a file as it stands is that file.
+/// @throws InputError  for times without a unit, or that do not go on
+[[nodiscard]] RecordPart read_record_part(const std::string& argument);
+
+/// The first row of the part, and the one behind its last.
+/// @throws InputError  for a part that the record does not have, or one that holds fewer than three rows
+[[nodiscard]] std::pair<std::size_t, std::size_t> rows_of(const RecordPart& part, const Record& record);
+
+/// @throws InputError  where both have rows of one file in common
+void refuse_overlap(const RecordPart& a, const RecordPart& b);
+
+}  // namespace driftwright::scenarios

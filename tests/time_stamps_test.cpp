@@ -1,0 +1,77 @@
+// Time stamps of loggers. Clock changes are those of the IANA data base: Berlin 2024-03-31 2:00 -> 3:00 and 2024-10-27 3:00 -> 2:00,
+// Adelaide (half hours from UTC) 2024-04-07 3:00 -> 2:00.
+
+#include "base/time_stamps.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/errors.hpp"
+
+namespace driftwright {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+double seconds_between(TimeStamps stamps, const std::string& a, const std::string& b) {
+  const auto first = stamps.read(a);
+  return 1e-9 * static_cast<double>((stamps.read(b) - first).count());
+}
+
+TEST(TimeStamps, ReadIso8601) {
+  const TimeStamps iso("", "");
+  EXPECT_DOUBLE_EQ(seconds_between(iso, "2024-02-28T23:59:59", "2024-02-29 00:00:00.25"), 1.25);  // a leap year
+  EXPECT_DOUBLE_EQ(seconds_between(iso, "2024-03-01T10:00:00Z", "2024-03-01T12:00:00+02:00"), 0.0);
+  EXPECT_DOUBLE_EQ(seconds_between(iso, "2024-03-01T10:00", "2024-03-02"), 14 * 3600.0);
+}
+
+TEST(TimeStamps, ReadFractionsBehindPointCommaAndColon) {
+  const TimeStamps german("%d.%m.%Y %H:%M:%S", "");
+  for (const char* b : {"01.03.2024 10:00:01.237", "01.03.2024 10:00:01,237", "01.03.2024 10:00:01:237"})
+    EXPECT_NEAR(seconds_between(german, "01.03.2024 10:00:00", b), 1.237, 1e-12) << b;
+  EXPECT_NEAR(seconds_between(TimeStamps("%m/%d/%Y %I:%M:%S %p", ""), "3/1/2024 11:59:59 AM", "3/1/2024 12:00:00 PM"), 1.0,
+              1e-12);
+  EXPECT_NEAR(seconds_between(TimeStamps("%y%m%d %H:%M", ""), "240101 00:00", "240301 00:00"), 60 * 86400.0, 1e-9);
+}
+
+TEST(TimeStamps, GoOnOverMidnightWithoutADate) {
+  const TimeStamps clock("%H:%M:%S", "");
+  EXPECT_DOUBLE_EQ(seconds_between(clock, "23:59:50", "00:00:10"), 20.0);
+  EXPECT_DOUBLE_EQ(seconds_between(clock, "10:00:00", "09:59:00"), -60.0);  // no midnight: the caller refuses it
+  TimeStamps days("%H:%M:%S", "");
+  const auto first = days.read("12:00:00");
+  for (const char* t : {"20:00:00", "04:00:00", "12:00:00", "20:00:00"}) (void)days.read(t);
+  EXPECT_EQ(days.read("04:00:00") - first, std::chrono::hours(40));
+}
+
+TEST(TimeStamps, TellTheRepeatedHourByTheirOrder) {
+  TimeStamps berlin("%d.%m.%Y %H:%M", "Europe/Berlin");
+  const auto first = berlin.read("27.10.2024 01:30");
+  const std::pair<const char*, int> rows[] = {{"27.10.2024 02:00", 30},
+                                              {"27.10.2024 02:30", 60},
+                                              {"27.10.2024 02:00", 90},
+                                              {"27.10.2024 02:30", 120},
+                                              {"27.10.2024 03:00", 150}};
+  for (const auto& [text, minutes] : rows) EXPECT_EQ(berlin.read(text) - first, std::chrono::minutes(minutes)) << text;
+  EXPECT_DOUBLE_EQ(seconds_between(TimeStamps("%F %H:%M", "Australia/Adelaide"), "2024-04-07 01:59", "2024-04-07 03:01"),
+                   7320.0);
+}
+
+TEST(TimeStamps, SkipTheMissingHour) {
+  const TimeStamps berlin("%d.%m.%Y %H:%M", "Europe/Berlin");
+  EXPECT_DOUBLE_EQ(seconds_between(berlin, "31.03.2024 01:59", "31.03.2024 03:00"), 60.0);
+  EXPECT_THAT([&] { (void)seconds_between(berlin, "31.03.2024 01:59", "31.03.2024 02:30"); },
+              ThrowsMessage<RangeError>(HasSubstr("does not exist in Europe/Berlin")));
+}
+
+TEST(TimeStamps, RefuseWhatTheFormatDoesNotFit) {
+  for (const char* text : {"2024-03-01", "1.3.2024 10:00:00 Uhr", "32.01.2024 10:00:00", "01.03.2024 25:00:00", ""})
+    EXPECT_THROW((void)TimeStamps("%d.%m.%Y %H:%M:%S", "").read(text), RangeError) << text;
+  EXPECT_THROW((void)TimeStamps("", "").read("01.03.2024 10:00:00"), RangeError);
+  EXPECT_THROW((void)TimeStamps("", "Europe/Entenhausen"), RangeError);
+  EXPECT_THROW((void)TimeStamps("%H:%M", "Europe/Berlin"), RangeError);
+}
+
+}  // namespace
+}  // namespace driftwright
