@@ -51,6 +51,14 @@ std::vector<double> lagged(std::span<const double> time_s, std::span<const doubl
   return result;
 }
 
+std::vector<double> taken_by(const DriftModel::Term& term, std::vector<double> x) {
+  if (!term.is_running) return x;
+  for (double& v : x) {
+    if (!std::isnan(v)) v = v != 0.0 ? 1.0 : 0.0;
+  }
+  return x;
+}
+
 Record counted_from_start(Record record, const std::string& target) {
   for (Channel& channel : record.channels) {
     if (channel.name != target && channel.header() != target && channel.unit != "degC" && channel.unit != "K") continue;
@@ -81,7 +89,7 @@ std::vector<double> DriftModel::predict(const Record& record) const {
       const double start = first_value(x);
       for (double& v : x) v -= start;
     }
-    const std::vector<double> l = lagged(record.time_s, x, t.power, t.lag_s, is_drive(t.unit));
+    const std::vector<double> l = lagged(record.time_s, taken_by(t, std::move(x)), t.power, t.lag_s, is_drive(t.unit));
     for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] += t.coefficient * l[i];
   }
   return predicted;

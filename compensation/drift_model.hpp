@@ -23,6 +23,7 @@ struct DriftModel {
     double coefficient = 0.0;  ///< target_unit per unit^power
     int power = 1;             ///< >= 1
     double lag_s = 0.0;        ///< >= 0
+    bool is_running = false;   ///< 1 while the input is not 0, in place of its value
   };
   std::string kind;  ///< "ridge regression", in words
   std::string target, target_unit;
@@ -44,6 +45,9 @@ struct DriftModel {
 /// L[x^power] of one channel, per row. @param lag_s  >= 0
 [[nodiscard]] std::vector<double> lagged(std::span<const double> time_s, std::span<const double> x, int power, double lag_s,
                                          bool is_drive);
+
+/// What a term takes powers and lags of: x, or, where it is of running and rest, 1 where x is not 0; NaN stays.
+[[nodiscard]] std::vector<double> taken_by(const DriftModel::Term& term, std::vector<double> x);
 
 /// The record with its temperatures, and `target`, minus their first values that are not missing.
 [[nodiscard]] Record counted_from_start(Record record, const std::string& target);
