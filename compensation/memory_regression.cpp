@@ -18,6 +18,8 @@ constexpr double kTemperatureLags_min[] = {20, 60, 180};
 constexpr double kDriveLags_min[] = {2, 5, 10, 20, 40, 80, 160};
 constexpr double kPenalties[] = {1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02,
                                  0.05, 0.1,  0.2,  0.5,  1.0,  2.0,  5.0,  10.0, 30.0, 100.0};
+// Times the penalty of a thermometer's reading: what is read goes before what is remembered.
+constexpr double kOfMemories = 3.0;
 constexpr std::size_t kParts = 24;        // of a single record
 constexpr std::size_t kPartsLeftOut = 3;  // neighbours, so that what is predicted is not beside what was fitted
 
@@ -76,6 +78,20 @@ std::vector<Record> parts_of(const Record& whole) {
   return parts;
 }
 
+/// Divides columns of the sums, so that one penalty weighs more on them; their deviations are as much larger.
+void weigh(ProductSums& sums, const std::vector<DriftModel::Term>& terms) {
+  for (std::size_t j = 0; j < terms.size(); ++j) {
+    if (terms[j].lag_s == 0.0 && !is_drive(terms[j].unit)) continue;
+    const auto column = static_cast<Eigen::Index>(j);
+    const double by = std::sqrt(kOfMemories);
+    sums.deviation(column) *= by;
+    for (Eigen::MatrixXd& s : sums.by_record) {
+      s.row(column + 1) /= by;
+      s.col(column + 1) /= by;
+    }
+  }
+}
+
 /// Sums of what is left out together.
 std::vector<Eigen::MatrixXd> folds_of(const ProductSums& sums, std::size_t n_together) {
   std::vector<Eigen::MatrixXd> parts, folds;
@@ -100,8 +116,8 @@ FittedFormula fit_with_memories(std::span<const Record> records, const std::vect
   if (columns.terms.empty())
     throw InputError(fmt::format("the regression of '{}' was given no thermometer and no drive", target));
   const bool is_single = records.size() == 1;
-  const ProductSums sums =
-      product_sums(is_single ? parts_of(columns.records.front()) : columns.records, columns.names, target);
+  ProductSums sums = product_sums(is_single ? parts_of(columns.records.front()) : columns.records, columns.names, target);
+  weigh(sums, columns.terms);
   std::vector<int> all(columns.terms.size());
   std::iota(all.begin(), all.end(), 0);
   const std::vector<Eigen::MatrixXd> folds = folds_of(sums, is_single ? kPartsLeftOut : 1);
