@@ -12,6 +12,7 @@
 #include "base/errors.hpp"
 #include "compensation/fitted_formulas.hpp"
 #include "compensation/formula_predictor.hpp"
+#include "compensation/memory_regression.hpp"
 #include "compensation/observability.hpp"
 #include "compensation/past_drift.hpp"
 #include "compensation/score.hpp"
@@ -171,6 +172,10 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
                       return of_formula(std::move(f.model), std::move(f.reason), s);
                     }});
   }
+  list.push_back({"thermometers and memories", false, [s](std::span<const ObservedRun> training) {
+                    FittedFormula f = fit_with_memories(records_of(training, s), s.candidates, s.speed, s.hall, s.target);
+                    return of_formula(std::move(f.model), std::move(f.reason), s);
+                  }});
   if (s.physics) {
     list.push_back(observing("thermal modes of the model", s, false, false));
     list.push_back(observing("model fitted to the training runs", s, false, true));

@@ -33,6 +33,14 @@ std::vector<double> lagged(std::span<const double> time_s, std::span<const doubl
   return result;
 }
 
+std::vector<double> taken_by(const DriftModel::Term& term, std::vector<double> x) {
+  if (!term.is_running) return x;
+  for (double& v : x) {
+    if (!std::isnan(v)) v = v != 0.0 ? 1.0 : 0.0;
+  }
+  return x;
+}
+
 Record counted_from_start(Record record, const std::string& target) {
   for (Channel& channel : record.channels) {
     if (channel.name != target && channel.header() != target && channel.unit != "degC" && channel.unit != "K") continue;

@@ -47,6 +47,9 @@ struct DriftModel {
 [[nodiscard]] std::vector<double> lagged(std::span<const double> time_s, std::span<const double> x, int power, double lag_s,
                                          bool is_drive);
 
+/// What a term takes powers and lags of: x, or, where it is of running and rest, 1 where x is not 0; NaN stays.
+[[nodiscard]] std::vector<double> taken_by(const DriftModel::Term& term, std::vector<double> x);
+
 /// The record with its temperatures, and `target`, minus their first values that are not missing.
 [[nodiscard]] Record counted_from_start(Record record, const std::string& target);
 

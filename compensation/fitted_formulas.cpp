@@ -11,6 +11,7 @@
 
 #include "base/errors.hpp"
 #include "compensation/product_sums.hpp"
+#include "compensation/term_columns.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -23,25 +24,6 @@ std::vector<int> all_columns(const ProductSums& sums) {
   std::vector<int> columns(sums.inputs.size());
   std::iota(columns.begin(), columns.end(), 0);
   return columns;
-}
-
-/// One column of the sums as a term; coefficient in real units.
-DriftModel model_of(const ProductSums& sums, std::span<const int> columns, const ScaledFit& fit,
-                    const std::vector<DriftModel::Term>& terms, std::string kind) {
-  const double unit = sums.deviation(sums.n_inputs());
-  DriftModel model{.kind = std::move(kind),
-                   .target = sums.target,
-                   .target_unit = sums.target_unit,
-                   .intercept = sums.mean(sums.n_inputs()) + unit * fit.intercept,
-                   .terms = {}};
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const int j = columns[i];
-    DriftModel::Term term = terms[static_cast<std::size_t>(j)];
-    term.coefficient = unit * fit.slope(static_cast<Eigen::Index>(i)) / sums.deviation(j);
-    model.intercept -= term.coefficient * sums.mean(j);
-    model.terms.push_back(std::move(term));
-  }
-  return model;
 }
 
 std::vector<DriftModel::Term> plain_terms(const ProductSums& sums) {
@@ -147,31 +129,6 @@ FittedFormula by_components(std::span<const Record> records, const std::vector<s
           least};
 }
 
-/// Records with a channel for each input at each lag and power, and the terms that these are.
-struct LaggedChannels {
-  std::vector<Record> records;
-  std::vector<std::string> names;
-  std::vector<DriftModel::Term> terms;
-};
-LaggedChannels lagged_channels(std::span<const Record> records, const std::vector<DriftModel::Term>& terms,
-                               const std::string& target) {
-  if (records.empty()) throw InputError("no record was given; at least one is needed");
-  LaggedChannels result;
-  for (std::size_t i = 0; i < terms.size(); ++i) result.names.push_back(fmt::format("column_{}", i));
-  for (const Record& record : records) {
-    Record r{.source = record.source, .time_s = record.time_s, .channels = {record.at(target)}};
-    for (std::size_t i = 0; i < terms.size(); ++i) {
-      const Channel& channel = record.at(terms[i].input);
-      r.channels.push_back({result.names[i], channel.unit,
-                            lagged(record.time_s, channel.values, terms[i].power, terms[i].lag_s, is_drive(channel.unit))});
-    }
-    result.records.push_back(std::move(r));
-  }
-  result.terms = terms;
-  for (DriftModel::Term& t : result.terms) t.unit = records.front().at(t.input).unit;
-  return result;
-}
-
 struct Choice {
   std::vector<int> columns;
   double penalty = 0.0, error = std::numeric_limits<double>::infinity();
@@ -232,7 +189,7 @@ FittedFormula fit_with_lags(std::span<const Record> records, const std::vector<s
   for (double lag_min : kLags_min) {
     for (const std::string& input : inputs) terms.push_back({.input = input, .unit = {}, .lag_s = 60.0 * lag_min});
   }
-  const LaggedChannels channels = lagged_channels(records, terms, target);
+  const TermColumns channels = term_columns(records, terms, target);
   const ProductSums sums = product_sums(channels.records, channels.names, target);
   const int m = static_cast<int>(inputs.size());
   Choice best;
@@ -258,7 +215,7 @@ FittedFormula fit_from_speed(std::span<const Record> records, const std::string&
   if (!hall.empty()) {
     for (double lag_min : kLags_min) terms.push_back({.input = hall, .unit = {}, .lag_s = 60.0 * lag_min});
   }
-  const LaggedChannels channels = lagged_channels(records, terms, target);
+  const TermColumns channels = term_columns(records, terms, target);
   const ProductSums sums = product_sums(channels.records, channels.names, target);
   const bool has_hall = !hall.empty() && !sums.is_constant[static_cast<std::size_t>(2 * n_lags)];
   Choice best;
