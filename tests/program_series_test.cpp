@@ -48,7 +48,10 @@ TEST(ProgramSeries, PartsThatAgreeWithinTheResolutionShareOnePlanAndOthersDoNot)
   EXPECT_EQ(plans[1].first_part, 1);
   EXPECT_EQ(plans[1].last_part, 3);
   EXPECT_EQ(plans[2].first_part, 4);
-  EXPECT_EQ(plans[1].courses.size(), 3U);
+  ASSERT_EQ(plans[1].courses.size(), 3U);
+  EXPECT_NEAR(plans[1].courses[0][0].drift_um.front(), 20.0, 1e-9) << "each part with its own drift";
+  EXPECT_NEAR(plans[1].courses[1][0].drift_um.front(), 20.08, 1e-9);
+  EXPECT_NEAR(plans[1].peak_before_um(0), 35.1, 1e-9);
 }
 
 // What steals in by 0.08 um a part is compared with the part that the plan was made for, not with the neighbour.
