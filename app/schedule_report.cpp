@@ -133,7 +133,8 @@ Plot course_plot(const CorrectedSeries& series, std::size_t a) {
 
 output::Table axes_table(const CorrectedSeries& series) {
   output::Table table{.caption = "Largest error of the predicted drift, before and after.",
-                      .headers = {"axis", "displacement", "tolerance [um]", "before [um]", "after [um]", "changes"},
+                      .headers = {"axis", "displacement", "tolerance [um]", "before [um]", "after [um]",
+                                  series.is_series() ? "changes, program by program" : "changes"},
                       .rows = {}};
   for (std::size_t a = 0; a < series.settings.axes.size(); ++a) {
     const auto& axis = series.settings.axes[a];
