@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/nc_program.hpp"
@@ -63,6 +64,29 @@ TEST(ProgramSeries, ASlowCreepDoesNotHideInSmallSteps) {
   const auto plans = plan_series(p.steps, time_s, parts, {});
   EXPECT_EQ(plans.size(), 5U);
   for (const SharedPlan& shared : plans) EXPECT_LE(shared.peak_after_um(0), 10.1 + 1e-9);
+}
+
+// A picture needs no more than its extremes.
+TEST(ProgramSeries, AThinnedCourseKeepsItsEndsAndItsExtremes) {
+  AxisCourse course;
+  for (int i = 0; i < 10000; ++i) {
+    course.time_s.push_back(i);
+    course.drift_um.push_back(i == 4321 ? 99.0 : 1.0);
+    course.correction_um.push_back(0.5);
+    course.residual_um.push_back(i == 7777 ? -88.0 : course.drift_um.back() - 0.5);
+  }
+  course.peak_drift_um = 99.0;
+  course.worst_um = 98.5;
+  const AxisCourse thin = thinned(course, 500);
+  EXPECT_LE(thin.time_s.size(), 500U);
+  EXPECT_GE(thin.time_s.size(), 200U);
+  EXPECT_TRUE(std::is_sorted(thin.time_s.begin(), thin.time_s.end()));
+  EXPECT_EQ(thin.time_s.front(), 0.0);
+  EXPECT_EQ(thin.time_s.back(), 9999.0);
+  EXPECT_EQ(*std::max_element(thin.residual_um.begin(), thin.residual_um.end()), 98.5);
+  EXPECT_EQ(*std::min_element(thin.residual_um.begin(), thin.residual_um.end()), -88.0);
+  EXPECT_EQ(thin.worst_um, 98.5);
+  EXPECT_EQ(thinned(course, 20000).time_s, course.time_s);
 }
 
 TEST(ProgramSeries, EveryAxisHasToAgree) {
