@@ -107,14 +107,15 @@ void write_fields(const scenarios::Scenario& scenario, const Model& model, const
 
 }  // namespace
 
-SimulatedRun simulate_run(const scenarios::MachineModel& machine, const solver::TransientOptions& options, const Model& model,
-                          const Eigen::VectorXd& from, const Cyclogram& cyclogram, const std::vector<double>& times_s,
-                          const solver::OutputCallback& at_output) {
+SimulatedRun simulate_run(const scenarios::MachineModel& machine, const solver::TransientOptions& options,
+                          const Model& model, const Eigen::VectorXd& from, const Cyclogram& cyclogram,
+                          const std::vector<double>& times_s, const solver::OutputCallback& at_output) {
   const scenarios::FeltRun felt = scenarios::felt_run(machine, cyclogram);
   const auto run = [&](const auto& system) {
     return solver::simulate(system, felt.cyclogram, felt.hall, times_s, options, from, at_output);
   };
-  SimulatedRun simulated{.record = {}, .trajectory = model.reduced() ? run(model.reduced()->system) : run(model.full()->system)};
+  SimulatedRun simulated{.record = {},
+                         .trajectory = model.reduced() ? run(model.reduced()->system) : run(model.full()->system)};
   simulated.record = scenarios::as_recorded(machine, simulated.trajectory, model.outputs(), cyclogram);
   return simulated;
 }

@@ -119,7 +119,9 @@ void schedule(const ScheduleVerbOptions& options) {
   series.iso = iso_figures(prediction);
   progress.begin("planning corrections");
   correct(series, bytes);
-  const std::string what = fmt::format("predicted by the {} for {}", prediction.predicted_by, options.program);
+  const std::string what = fmt::format("predicted by the {} for {}{}{}", prediction.predicted_by, options.program,
+                                       series.is_series() ? fmt::format(", {} parts", prediction.parts.size()) : "",
+                                       prediction.started_from.empty() ? "" : ", after " + prediction.started_from);
   std::vector<std::string> files;
   for (const CorrectedProgram& program : series.programs) {
     folder.write_text(program.file, program.corrected.text);

@@ -133,7 +133,8 @@ Plot course_plot(const CorrectedSeries& series, std::size_t a) {
 
 output::Table axes_table(const CorrectedSeries& series) {
   output::Table table{.caption = "Largest error of the predicted drift, before and after.",
-                      .headers = {"axis", "displacement", "tolerance [um]", "before [um]", "after [um]", "changes"},
+                      .headers = {"axis", "displacement", "tolerance [um]", "before [um]", "after [um]",
+                                  series.is_series() ? "changes, program by program" : "changes"},
                       .rows = {}};
   for (std::size_t a = 0; a < series.settings.axes.size(); ++a) {
     const auto& axis = series.settings.axes[a];
@@ -168,9 +169,7 @@ output::Table parts_table(const CorrectedSeries& series) {
       const double start_s = series.prediction.record.time_s[series.prediction.parts[part].first];
       std::vector<std::string> cells = {fmt::format("{}", part + 1), fmt::format("{:.1f}", start_s / 60.0), program.file};
       for (const AxisCourse& course : program.shared.courses[i]) {
-        double before_um = 0.0;
-        for (double d_um : course.drift_um) before_um = std::max(before_um, std::abs(d_um));
-        cells.push_back(fmt::format("{:.1f}", before_um));
+        cells.push_back(fmt::format("{:.1f}", course.peak_drift_um));
         cells.push_back(fmt::format("{:.1f}", course.worst_um));
       }
       table.rows.push_back(std::move(cells));

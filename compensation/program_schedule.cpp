@@ -208,6 +208,7 @@ class CourseWriter {
 
   void add(double t_s, double correction_um, bool judged) {
     const double drift_um = interpolate(time_s_, axis_.drift_um, t_s), left_um = drift_um - correction_um;
+    course.peak_drift_um = std::max(course.peak_drift_um, std::abs(drift_um));
     if (judged) course.worst_um = std::max(course.worst_um, std::abs(left_um));
     if (!course.time_s.empty() && course.time_s.back() == t_s && course.correction_um.back() == correction_um) {
       return;  // the end of the block before

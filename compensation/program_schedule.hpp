@@ -43,7 +43,8 @@ struct ProgramChange {
 /// G90, and none after G28, G30, G53 until it is commanded again. Where the correction steps, its time stands there twice.
 struct AxisCourse {
   std::vector<double> time_s, drift_um, correction_um, residual_um;
-  double worst_um = 0.0;  ///< largest |residual|; while the axis has no correction, of cutting blocks alone
+  double peak_drift_um = 0.0;  ///< largest |drift|
+  double worst_um = 0.0;       ///< largest |residual|; while the axis has no correction, of cutting blocks alone
 };
 
 /// Blocks between two permitted places during which one correction cannot keep the tolerance, or that cut without any.

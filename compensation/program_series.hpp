@@ -9,13 +9,18 @@ namespace driftwright::compensation {
 struct SharedPlan {
   int first_part = 0, last_part = 0;  ///< from zero
   std::vector<ProgramAxis> axes;      ///< with the drift of the first of them, which it was made for
-  ProgramSchedule plan;
-  std::vector<std::vector<AxisCourse>> courses;  ///< what it leaves, per part that it serves and per axis
+  ProgramSchedule plan;               ///< its courses stand below
+  /// What it leaves, per part that it serves and per axis; thinned() where there are many parts.
+  std::vector<std::vector<AxisCourse>> courses;
 
-  /// Largest |drift| and |what is left| of one axis over those parts [um]; the latter as AxisCourse::worst_um.
+  /// AxisCourse::peak_drift_um and worst_um of one axis over those parts.
   [[nodiscard]] double peak_before_um(std::size_t axis) const;
   [[nodiscard]] double peak_after_um(std::size_t axis) const;
 };
+
+/// A course of about `most` points for pictures: of each group of neighbours the first and last and those with the lowest and the highest residual.
+/// Its largest numbers are those of the whole one.
+[[nodiscard]] AxisCourse thinned(const AxisCourse& course, std::size_t most);
 
 /// Plans the parts of a series as plan_program() does. A part gets the plan of the part before it where its drift differs from that
 /// which the plan was made for by no more than options.resolution_um throughout, on every axis; what is left may then go beyond the

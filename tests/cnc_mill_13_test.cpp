@@ -60,6 +60,22 @@ TEST_F(CncMill13, TheScrewAloneMakesMostOfTheDriftWhileTheAxisRuns) {
   EXPECT_NEAR(judged_.at("drift_z").values[210], judged_.at("structure_z").values[210], 2.0 * 5.64);
 }
 
+// Rows stand every minute, so that the 60th is one of them. The spindle turns all 300 min.
+TEST_F(CncMill13, GivesTheFiguresOfIso2303OfItsRecord) {
+  const auto& figures = summary_["iso_230_3"][0];
+  EXPECT_EQ(figures["cyclogram"], summary_["judged_on"]);
+  EXPECT_NEAR(figures["spindle_running_period_min"], 300.0, 1e-9);
+  ASSERT_EQ(figures["channels"][0]["name"], "drift_z");
+  const auto& drift = judged_.at("drift_z").values;
+  const auto [low, high] = std::minmax_element(drift.begin(), drift.begin() + 61);
+  EXPECT_NEAR(figures["channels"][0]["range_first_60_min"], *high - *low, 1e-3);
+  const auto [lowest, highest] = std::minmax_element(drift.begin(), drift.end());
+  EXPECT_NEAR(figures["channels"][0]["range_running_period"], *highest - *lowest, 1e-3);
+  EXPECT_NEAR(figures["channels"][0]["at_end_of_running_period"], drift.back() - drift.front(), 1e-3);
+  EXPECT_EQ(summary_["iso_230_3"].size(), 1 + summary_["trained_on"].size());
+  EXPECT_THAT(read_text(folder_ / "report.html"), HasSubstr("d(X),60: first 60 min"));
+}
+
 TEST_F(CncMill13, TheFourChosenAreThoseOfTheRangeImage) {
   std::vector<std::string> first;
   for (int i = 0; i < 4; ++i) first.push_back(summary_["ranking"]["channels"][i]["name"]);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/nc_program.hpp"
@@ -48,7 +49,10 @@ TEST(ProgramSeries, PartsThatAgreeWithinTheResolutionShareOnePlanAndOthersDoNot)
   EXPECT_EQ(plans[1].first_part, 1);
   EXPECT_EQ(plans[1].last_part, 3);
   EXPECT_EQ(plans[2].first_part, 4);
-  EXPECT_EQ(plans[1].courses.size(), 3U);
+  ASSERT_EQ(plans[1].courses.size(), 3U);
+  EXPECT_NEAR(plans[1].courses[0][0].drift_um.front(), 20.0, 1e-9) << "each part with its own drift";
+  EXPECT_NEAR(plans[1].courses[1][0].drift_um.front(), 20.08, 1e-9);
+  EXPECT_NEAR(plans[1].peak_before_um(0), 35.1, 1e-9);
 }
 
 // What steals in by 0.08 um a part is compared with the part that the plan was made for, not with the neighbour.
@@ -60,6 +64,29 @@ TEST(ProgramSeries, ASlowCreepDoesNotHideInSmallSteps) {
   const auto plans = plan_series(p.steps, time_s, parts, {});
   EXPECT_EQ(plans.size(), 5U);
   for (const SharedPlan& shared : plans) EXPECT_LE(shared.peak_after_um(0), 10.1 + 1e-9);
+}
+
+// A picture needs no more than its extremes.
+TEST(ProgramSeries, AThinnedCourseKeepsItsEndsAndItsExtremes) {
+  AxisCourse course;
+  for (int i = 0; i < 10000; ++i) {
+    course.time_s.push_back(i);
+    course.drift_um.push_back(i == 4321 ? 99.0 : 1.0);
+    course.correction_um.push_back(0.5);
+    course.residual_um.push_back(i == 7777 ? -88.0 : course.drift_um.back() - 0.5);
+  }
+  course.peak_drift_um = 99.0;
+  course.worst_um = 98.5;
+  const AxisCourse thin = thinned(course, 500);
+  EXPECT_LE(thin.time_s.size(), 500U);
+  EXPECT_GE(thin.time_s.size(), 200U);
+  EXPECT_TRUE(std::is_sorted(thin.time_s.begin(), thin.time_s.end()));
+  EXPECT_EQ(thin.time_s.front(), 0.0);
+  EXPECT_EQ(thin.time_s.back(), 9999.0);
+  EXPECT_EQ(*std::max_element(thin.residual_um.begin(), thin.residual_um.end()), 98.5);
+  EXPECT_EQ(*std::min_element(thin.residual_um.begin(), thin.residual_um.end()), -88.0);
+  EXPECT_EQ(thin.worst_um, 98.5);
+  EXPECT_EQ(thinned(course, 20000).time_s, course.time_s);
 }
 
 TEST(ProgramSeries, EveryAxisHasToAgree) {
