@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "base/errors.hpp"
+#include "compensation/observed_run.hpp"
 #include "compensation/product_sums.hpp"
 
 namespace driftwright::compensation {
@@ -165,6 +166,10 @@ LaggedChannels lagged_channels(std::span<const Record> records, const std::vecto
       r.channels.push_back({result.names[i], channel.unit,
                             lagged(record.time_s, channel.values, terms[i].power, terms[i].lag_s, is_drive(channel.unit))});
     }
+    // a lead-in has done its work: what is fitted begins with the first drift
+    const std::vector<double>& drift = r.channels.front().values;
+    const auto first = std::find_if(drift.begin(), drift.end(), [](double v) { return std::isfinite(v); });
+    if (first != drift.end()) r = own_rows(std::move(r), static_cast<std::size_t>(first - drift.begin()));
     result.records.push_back(std::move(r));
   }
   result.terms = terms;
