@@ -49,15 +49,56 @@ std::vector<Rest> rests_of(const CutRecord& cut, std::size_t first, std::size_t 
   return list;
 }
 
-/// Mean of the readings in some rows, over the hall where `hall` is given; NaN where there is none.
-double mean_of(const CutRecord& cut, const Channel& channel, std::size_t first, std::size_t last, bool over_hall) {
+/// A channel over the hall where that is known and it is a temperature.
+std::vector<double> over_hall(const CutRecord& cut, const Channel& channel, bool is_temperature) {
+  std::vector<double> x = channel.values;
+  if (!is_temperature || cut.hall.time_s.empty()) return x;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= cut.hall.at(cut.record.time_s[i] - cut.record.time_s.front());
+  return x;
+}
+
+/// Mean of what is there in some rows; NaN where nothing is.
+double mean_of(const std::vector<double>& x, std::size_t first, std::size_t last) {
   double sum = 0.0, n = 0.0;
   for (std::size_t i = first; i < last; ++i) {
-    if (std::isnan(channel.values[i])) continue;
-    sum += channel.values[i] - (over_hall ? cut.hall.at(cut.record.time_s[i] - cut.record.time_s.front()) : 0.0);
+    if (std::isnan(x[i])) continue;
+    sum += x[i];
     ++n;
   }
   return n > 0.0 ? sum / n : std::nan("");
+}
+
+/// Those of some rows, in rising order, at which the machine is back in balance; one way through the record.
+std::vector<std::size_t> in_balance(const CutRecord& cut, const std::vector<std::size_t>& rows) {
+  std::vector<bool> is_back(rows.size(), true);
+  for (const Channel& c : cut.record.channels) {
+    const bool is_temperature = c.unit == "degC" || c.unit == "K";
+    if (!is_temperature && c.unit != "um") continue;
+    const std::vector<double> x = over_hall(cut, c, is_temperature);
+    const double begin = mean_of(x, 0, std::min(kMeanRows, x.size()));
+    if (std::isnan(begin)) continue;
+    double way = 0.0;
+    std::size_t seen = 0;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      for (; seen < rows[r]; ++seen) {
+        if (!std::isnan(x[seen])) way = std::max(way, std::abs(x[seen] - begin));
+      }
+      if (rows[r] < kMeanRows) continue;
+      const double now = mean_of(x, rows[r] - kMeanRows, rows[r]);
+      if (std::abs(now - begin) > std::max(kBack * way, is_temperature ? kBack_K : kBack_um)) is_back[r] = false;
+    }
+  }
+  std::vector<std::size_t> result;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (is_back[r]) result.push_back(rows[r]);
+  }
+  return result;
+}
+
+/// @param balanced  rows of the record, in rising order
+RunRows run_from(const std::vector<std::size_t>& balanced, std::size_t first, std::size_t last) {
+  const auto after = std::upper_bound(balanced.begin(), balanced.end(), first);
+  return {after == balanced.begin() ? 0 : *(after - 1), first, last};
 }
 
 }  // namespace
@@ -69,29 +110,11 @@ std::vector<std::size_t> starts_after_rests(const CutRecord& cut, std::size_t fi
 }
 
 bool is_back_in_balance(const CutRecord& cut, std::size_t row) {
-  if (row < 2 * kMeanRows) return row == 0;
-  for (const Channel& c : cut.record.channels) {
-    const bool is_temperature = c.unit == "degC" || c.unit == "K";
-    if (!is_temperature && c.unit != "um") continue;
-    const bool over_hall = is_temperature && !cut.hall.time_s.empty();
-    const double begin = mean_of(cut, c, 0, kMeanRows, over_hall), now = mean_of(cut, c, row - kMeanRows, row, over_hall);
-    if (std::isnan(begin) || std::isnan(now)) continue;
-    double way = 0.0;
-    for (std::size_t i = 0; i < row; ++i) {
-      const double x = mean_of(cut, c, i, i + 1, over_hall);
-      if (!std::isnan(x)) way = std::max(way, std::abs(x - begin));
-    }
-    if (std::abs(now - begin) > std::max(kBack * way, is_temperature ? kBack_K : kBack_um)) return false;
-  }
-  return true;
+  return !in_balance(cut, {row}).empty();
 }
 
 RunRows whole_run(const CutRecord& cut, std::size_t first, std::size_t last) {
-  RunRows run{0, first, last};
-  for (const std::size_t start : starts_after_rests(cut, 0, last)) {
-    if (start <= first && is_back_in_balance(cut, start)) run.history = start;
-  }
-  return run;
+  return run_from(in_balance(cut, starts_after_rests(cut, 0, last)), first, last);
 }
 
 std::vector<RunRows> runs_between_rests(const CutRecord& cut, std::size_t first, std::size_t last) {
@@ -106,8 +129,9 @@ std::vector<RunRows> runs_between_rests(const CutRecord& cut, std::size_t first,
     if (leaves_rows) cuts.push_back(rest.start);
   }
   std::sort(cuts.begin(), cuts.end());
+  const std::vector<std::size_t> balanced = in_balance(cut, starts_after_rests(cut, 0, last));
   std::vector<RunRows> runs;
-  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) runs.push_back(whole_run(cut, cuts[i], cuts[i + 1]));
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) runs.push_back(run_from(balanced, cuts[i], cuts[i + 1]));
   return runs;
 }
 

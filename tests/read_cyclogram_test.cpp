@@ -164,6 +164,24 @@ TimeSeries hall(const std::string& entry) {
   return read_hall(ConfigMap::read_file(write_file("scenario.yaml", "hall: " + entry + "\n")), 293.15);
 }
 
+TEST(ReadCyclogram, TakesAFileOfALoggerByItsColumns) {
+  (void)write_file("drive.log", "Zeit;n\n08:00:00;1500\n08:01:00;0\n08:02:00;0\n");
+  const Cyclogram c = read(
+      "  logged: {csv: drive.log, columns: {time: {column: Zeit, format: \"%H:%M:%S\"}, channels: {speed: {column: n, unit: "
+      "rpm}}}}\n");
+  EXPECT_EQ(c.sections, (std::vector<Cyclogram::Section>{{60, {.speed_rpm = 1500}}, {60, {}}}));
+}
+
+TEST(ReadHall, TakesAFileOfALoggerByItsColumns) {
+  (void)write_file("hall.log", "Zeit;T\n0;68\n2;77\n");
+  const TimeSeries h = hall(
+      "{csv: hall.log, channel: t_hall, columns: {time: {column: Zeit, unit: h}, channels: {t_hall: {column: T, unit: "
+      "degF}}}}");
+  EXPECT_EQ(h.time_s, (std::vector<double>{0, 7200}));
+  EXPECT_NEAR(h.value[0], 0.0, 1e-9);
+  EXPECT_NEAR(h.value[1], 5.0, 1e-9);
+}
+
 TEST(ReadHall, TakesRowsOrAChannelOfARecord) {
   (void)write_file("hall.csv", "time_h,ambient_degC,door_1\n0,21,0\n2,25.5,1\n");
   for (const char* entry : {"[[0 s, 21 degC], [2 h, 298.65 K]]", "{csv: hall.csv, channel: ambient}"}) {
