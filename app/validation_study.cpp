@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "app/run_up.hpp"
 #include "base/quantity.hpp"
 #include "base/random.hpp"
 #include "compensation/model_scatter.hpp"
@@ -249,16 +250,27 @@ StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model,
   return judge_strategies(settings, std::move(training), std::move(judged));
 }
 
-StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<Record>& training,
-                                   const std::vector<Record>& test, Progress& progress) {
+StrategyMatrix validate_on_records(const Scenario& scenario, const std::vector<Record>& to_train,
+                                   const std::vector<Record>& to_test, Progress& progress) {
   const scenarios::Study& study = *scenario.study;
+  std::vector<std::string> findings;
+  std::vector<Record> training, test, earlier;
+  for (const auto& [from, into] : {std::pair{&to_train, &training}, std::pair{&to_test, &test}}) {
+    for (const Record& record : *from) {
+      RunUp run = study.count_from_start ? RunUp{record, {}} : with_run_up(record, earlier, study.target);
+      if (!run.follows.empty())
+        findings.push_back(fmt::format("{} follows {}, whose rows of up to 12 h before are known to strategies, but for {}",
+                                       record.source, run.follows, study.target));
+      earlier.push_back(run.record);
+      into->push_back(std::move(run.record));
+    }
+  }
   const scenarios::MachineModel* machine = scenario.machine ? &*scenario.machine : nullptr;
   std::vector<const Record*> records;
   for (const std::vector<Record>* list : {&training, &test}) {
     for (const Record& record : *list) records.push_back(&record);
   }
   std::vector<scenarios::RecordedRun> recorded;
-  std::vector<std::string> findings;
   for (const Record* record : records) {
     recorded.push_back(scenarios::run_of(*record, machine, hall_sensors(scenario), scenarios::Reading::kLenient));
     for (const scenarios::DataFinding& f : recorded.back().findings) {

@@ -14,7 +14,8 @@ namespace driftwright::app {
                                                  Progress& progress);
 
 /// Strategies on measured records. Those with physics take part where the scenario has a machine that is linear, drift counts from the start
-/// of each record, and the records say what drove it.
+/// of each record, and the records say what drove it. Where drift does not count from the start of each record, one that follows another is
+/// predicted with the rows of that one before it (with_run_up()).
 [[nodiscard]] StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, const std::vector<Record>& training,
                                                  const std::vector<Record>& test, Progress& progress);
 
