@@ -8,6 +8,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "app/run_up.hpp"
 #include "base/errors.hpp"
 #include "base/mapped_record.hpp"
 #include "compensation/product_sums.hpp"
@@ -80,7 +81,8 @@ struct ReadFile {
   std::string path;
   Record record;
   scenarios::RecordedRun recorded;
-  scenarios::FeltRun felt;  ///< drive and hall as the scenario's effects say that they were
+  scenarios::FeltRun felt;   ///< drive and hall as the scenario's effects say that they were
+  std::size_t n_before = 0;  ///< rows in front that are of the record that this one follows
 };
 
 Record read_with_target(const std::string& path, const scenarios::Scenario& scenario, std::vector<std::string>& notes) {
@@ -100,14 +102,27 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
                                  const std::string* hall, StudyRecords& into) {
   const std::string& target = scenario.study->target;
   std::vector<ReadFile> files;
+  std::vector<Record> as_read;
   for (const RecordPart& part : parts) {
     if (std::any_of(files.begin(), files.end(), [&](const ReadFile& f) { return f.path == part.file; })) continue;
     ReadFile file{
         .path = part.file, .record = read_with_target(part.file, scenario, into.notes), .recorded = {}, .felt = {}};
-    for (const ReadFile& other : files) {
-      if (other.record.time_s == file.record.time_s && other.record.at(target).values == file.record.at(target).values)
-        throw InputError(
-            fmt::format("{} and {} hold the same run; one run can be trained on or judged by, once", other.path, file.path));
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      if (as_read[k].time_s == file.record.time_s && as_read[k].at(target).values == file.record.at(target).values)
+        throw InputError(fmt::format("{} and {} hold the same run; one run can be trained on or judged by, once",
+                                     files[k].path, file.path));
+    }
+    if (!scenario.study->count_from_start && part.is_whole()) {
+      RunUp run_up = with_run_up(file.record, as_read, target);
+      if (!run_up.follows.empty())
+        into.findings.push_back(
+            fmt::format("{} follows {}, whose rows of up to 12 h before are known to strategies, but for {}", part.file,
+                        run_up.follows, target));
+      as_read.push_back(std::move(file.record));
+      file.record = std::move(run_up.record);
+      file.n_before = file.record.n_samples() - as_read.back().n_samples();
+    } else {
+      as_read.push_back(file.record);
     }
     file.recorded = scenarios::run_of(file.record, scenario.machine ? &*scenario.machine : nullptr, hall_sensors(scenario),
                                       scenarios::Reading::kLenient);
@@ -197,7 +212,8 @@ StudyRecords read_records(const scenarios::Scenario& scenario, const RecordOptio
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const RecordPart& part = parts[p];
     const ReadFile& file = *std::find_if(files.begin(), files.end(), [&](const ReadFile& f) { return f.path == part.file; });
-    const auto [first, last] = scenarios::rows_of(part, file.record);
+    auto [first, last] = scenarios::rows_of(part, file.record);
+    first += file.n_before;
     const scenarios::CutRecord cut{file.record, file.recorded.cyclogram, file.recorded.hall};
     if (options.train.size() == 1 && p == 0) {
       const std::vector<RunRows> runs = scenarios::runs_between_rests(cut, first, last);

@@ -16,8 +16,9 @@ namespace {
 // On the record fl_thermal (docs/measured.md) finer and coarser lags leave the same on data left out, within its scatter.
 constexpr double kTemperatureLags_min[] = {20, 60, 180};
 constexpr double kDriveLags_min[] = {2, 5, 10, 20, 40, 80, 160};
-constexpr double kPenalties[] = {1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02,
-                                 0.05, 0.1,  0.2,  0.5,  1.0,  2.0,  5.0,  10.0, 30.0, 100.0};
+// The least keeps levels that were never tried from being made up out of differences of columns that are nearly alike.
+constexpr double kPenalties[] = {5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05,
+                                 0.1,  0.2,  0.5,  1.0,  2.0,  5.0,  10.0, 30.0, 100.0};
 // Times the penalty of a thermometer's reading: what is read goes before what is remembered.
 constexpr double kOfMemories = 3.0;
 constexpr std::size_t kParts = 24;        // of a single record
