@@ -1,5 +1,6 @@
 // `validate` on records as a user has them: with and without a machine in the scenario, with a hall, without one.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -326,6 +327,11 @@ TEST_F(ValidateRecords, ReadsLoggersFilesWithEveryVerb) {
                     HasSubstr("tip_z_um             'Z [mm]' in mm")));
   const std::string wrong = write_file("wrong.yaml", std::string("name: wrong\nstudy: {target: tip_x}\n") + kColumns);
   EXPECT_THAT(run_program("check " + wrong).output, AllOf(HasSubstr("'tip_x'"), HasSubstr("no column")));
+  for (const auto& [target, exit_code] : {std::pair{"tip_z_um", 0}, std::pair{"ambient", 2}}) {
+    const std::string by_header =
+        write_file("by_header.yaml", fmt::format("name: by_header\nstudy: {{target: {}}}\n", target) + kColumns);
+    EXPECT_EQ(run_program("check " + by_header).exit_code, exit_code) << target;
+  }
 }
 
 }  // namespace
