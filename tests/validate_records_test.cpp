@@ -284,6 +284,16 @@ TEST_F(ValidateRecords, ReadsLoggersFilesWithEveryVerb) {
     logged += " --train " + write_file(std::string(name) + ".log", as_logged(record(name)));
   }
   const std::string judged = write_file("to_and_fro.log", as_logged(record("to_and_fro")));
+  const CommandOutcome notes = run_program("select " +
+                                           scenario("fewer",
+                                                    [](std::string& t) {
+                                                      t += kColumns;
+                                                      replace(t, "    ambient: {column: Halle, unit: degC}\n", "");
+                                                    }) +
+                                           logged + " -o " + (fresh_folder("verbs") / "notes").string());
+  const std::size_t first = notes.output.find("not read: column 'Halle'");
+  ASSERT_NE(first, std::string::npos) << notes.output;
+  EXPECT_EQ(notes.output.find("not read", first + 1), std::string::npos) << notes.output;  // once, not for each file
   int n_runs = 0;
   const auto json = [&](const std::string& arguments, const std::string& file) {
     const auto out = fresh_folder("verbs") / std::to_string(++n_runs);
