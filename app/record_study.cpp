@@ -87,7 +87,11 @@ struct ReadFile {
 
 Record read_with_target(const std::string& path, const scenarios::Scenario& scenario, std::vector<std::string>& notes) {
   ReadRecord read = read_record(path, scenario.columns);
-  std::move(read.notes.begin(), read.notes.end(), std::back_inserter(notes));
+  for (const std::string& note : read.notes) {  // of files that are written alike the first alone
+    const std::string what = note.starts_with(path) ? note.substr(path.size()) : note;
+    if (std::none_of(notes.begin(), notes.end(), [&](const std::string& n) { return n.ends_with(what); }))
+      notes.push_back(note);
+  }
   const std::string& name = scenario.study->target;
   const Channel& target = read.record.at(name);
   if (target.unit != "um")

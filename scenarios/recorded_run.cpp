@@ -151,10 +151,10 @@ RecordedRun run_of(const Record& record, const MachineModel* machine, const std:
   const auto note_gaps = [&](const Channel& channel) {
     const double missing = 1.0 - static_cast<double>(n_readings(channel)) / static_cast<double>(record.n_samples());
     if (missing > kManyMissing)
-      run.findings.push_back({channel.name,
-                              fmt::format("{} has no reading in {:.0f} % of the rows; its last one is held", channel.name,
-                                          100.0 * missing),
-                              false});
+      run.findings.push_back(
+          {channel.name,
+           fmt::format("{} has no reading in {:.0f} % of the rows; its last one is held", channel.name, 100.0 * missing),
+           false});
   };
   attempt("speed", [&] { run.cyclogram = drive_of(record, run.time_s, reading == Reading::kPlan); });
   if (!run.cyclogram.sections.empty()) note_gaps(record.at("speed"));

@@ -192,15 +192,21 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
   return s;
 }
 
-/// The map has the channels that the study is about.
+/// The map has the channels that the study is about, with or without their units, and its target in um.
 void check_columns(const ConfigMap& in, const ColumnMap& columns, const Study& study) {
   std::vector<std::string> names = {study.target}, known;
   names.insert(names.end(), study.candidates.begin(), study.candidates.end());
   for (const MappedChannel& c : columns.channels) known.push_back(c.name);
   for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    in.fail("", fmt::format("`study` is about the channel '{}', which has no column here; there are {}", name,
-                            fmt::join(known, ", ")));
+    const auto channel = std::find_if(columns.channels.begin(), columns.channels.end(), [&](const MappedChannel& c) {
+      return c.name == name || c.name + "_" + c.unit == name;
+    });
+    if (channel == columns.channels.end())
+      in.fail("", fmt::format("`study` is about the channel '{}', which has no column here; there are {}", name,
+                              fmt::join(known, ", ")));
+    if (name == study.target && channel->unit != "um")
+      in.fail(channel->name, fmt::format("the target of `study` is in {} here; a length is wanted, which records have in um",
+                                         channel->written_unit));
   }
 }
 

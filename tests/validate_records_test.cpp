@@ -1,5 +1,6 @@
 // `validate` on records as a user has them: with and without a machine in the scenario, with a hall, without one.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -314,6 +315,16 @@ TEST_F(ValidateRecords, ReadsLoggersFilesWithEveryVerb) {
     logged += " --train " + write_file(std::string(name) + ".log", as_logged(record(name)));
   }
   const std::string judged = write_file("to_and_fro.log", as_logged(record("to_and_fro")));
+  const CommandOutcome notes = run_program("select " +
+                                           scenario("fewer",
+                                                    [](std::string& t) {
+                                                      t += kColumns;
+                                                      replace(t, "    ambient: {column: Halle, unit: degC}\n", "");
+                                                    }) +
+                                           logged + " -o " + (fresh_folder("verbs") / "notes").string());
+  const std::size_t first = notes.output.find("not read: column 'Halle'");
+  ASSERT_NE(first, std::string::npos) << notes.output;
+  EXPECT_EQ(notes.output.find("not read", first + 1), std::string::npos) << notes.output;  // once, not for each file
   int n_runs = 0;
   const auto json = [&](const std::string& arguments, const std::string& file) {
     const auto out = fresh_folder("verbs") / std::to_string(++n_runs);
@@ -357,6 +368,11 @@ TEST_F(ValidateRecords, ReadsLoggersFilesWithEveryVerb) {
                     HasSubstr("tip_z_um             'Z [mm]' in mm")));
   const std::string wrong = write_file("wrong.yaml", std::string("name: wrong\nstudy: {target: tip_x}\n") + kColumns);
   EXPECT_THAT(run_program("check " + wrong).output, AllOf(HasSubstr("'tip_x'"), HasSubstr("no column")));
+  for (const auto& [target, exit_code] : {std::pair{"tip_z_um", 0}, std::pair{"ambient", 2}}) {
+    const std::string by_header =
+        write_file("by_header.yaml", fmt::format("name: by_header\nstudy: {{target: {}}}\n", target) + kColumns);
+    EXPECT_EQ(run_program("check " + by_header).exit_code, exit_code) << target;
+  }
 }
 
 }  // namespace
