@@ -13,6 +13,7 @@
 #include "compensation/axis_loop.hpp"
 #include "compensation/correction.hpp"
 #include "compensation/formula_predictor.hpp"
+#include "compensation/observer.hpp"
 #include "compensation/past_drift.hpp"
 #include "output/html_report.hpp"
 #include "output/json_text.hpp"
@@ -52,29 +53,70 @@ DeployedPredictor by_modes(const Scenario& scenario, const Record& foretold) {
   return d;
 }
 
-DeployedPredictor from_file(const Scenario& scenario, const std::string& path) {
+output::PredictorFile from_file(const Scenario& scenario, const std::string& path) {
   if (path == "observer") {
     throw InputError(
         "--model observer: an observer is fitted and judged by `validate`, which writes it to models/observer.json; take "
         "that file");
   }
-  DeployedPredictor d = output::read_predictor(path).predictor;
-  for (const scenarios::DisplacementOutput& output :
-       scenario.machine ? scenario.machine->displacements : std::vector<scenarios::DisplacementOutput>{}) {
-    if (output.name == d.target) return d;
+  output::PredictorFile file = output::read_predictor(path);
+  if (!scenario.machine) return file;
+  const std::vector<scenarios::DisplacementOutput>& outputs = scenario.machine->displacements;
+  const std::string& target = file.predictor.target;
+  if (std::none_of(outputs.begin(), outputs.end(), [&](const auto& output) { return output.name == target; }))
+    throw InputError(fmt::format("{}: its target '{}' is no displacement of {}", path, target, scenario.path));
+  return file;
+}
+
+/// What it was judged to be, as its file says; "" where nobody has judged it.
+std::string verdict_of(const Json& judged) {
+  return judged.is_object() && judged.contains("verdict") && judged["verdict"].is_string()
+             ? judged["verdict"].get<std::string>()
+             : "";
+}
+
+/// A run that a predictor was fitted on says nothing of how good it is.
+void refuse_trained_on(const Json& judged, const std::string& path, const std::string& run) {
+  if (!judged.is_object() || !judged.contains("trained_on")) return;
+  for (const Json& trained : judged["trained_on"]) {
+    if (trained.is_string() && trained.get<std::string>() == run)
+      throw InputError(
+          fmt::format("{}: it was fitted on '{}', which says nothing of how good it is; take another run", path, run));
   }
-  if (scenario.machine)
-    throw InputError(fmt::format("{}: its target '{}' is no displacement of {}", path, d.target, scenario.path));
-  return d;
+}
+
+/// A model follows a record only as `validate` would have let it.
+void require_model_follows(const Scenario& scenario, const DeployedPredictor& d, const StudyRecords& records) {
+  if (!dynamic_cast<const Observer*>(d.predictor.get())) return;
+  const ObservedRun& run = records.test.front();
+  if (!scenario.machine)
+    throw InputError(fmt::format("'{}' is a model of a machine, and {} has none", d.name, scenario.path));
+  if (d.hall != records.hall)
+    throw InputError(fmt::format("'{}' takes the hall from {}, which {} does not have", d.name,
+                                 d.hall.empty() ? "the scenario" : "the channel '" + d.hall + "'", run.readings.source));
+  if (const std::string why = why_no_model_follows(*scenario.machine, run); !why.empty())
+    throw InputError(fmt::format("'{}' cannot follow this record: {}", d.name, why));
+}
+
+/// What the injector wants, before any work.
+void require_axis(const Scenario& scenario, const std::string& target) {
+  if (!scenario.axis_loop) {
+    throw InputError(
+        scenario.study->where,
+        "--through injector wants the block `axis_loop`, which says encoder, injector and servo (docs/injector.md)");
+  }
+  if (target != scenario.axis_loop->displacement)
+    throw InputError(scenario.axis_loop->where,
+                     fmt::format("the axis corrects '{}', but the predictor tells '{}'; set `displacement: {}`, or take "
+                                 "another --model",
+                                 scenario.axis_loop->displacement, target, target));
 }
 
 /// The drift before the run: of a formula by temperatures that the model's modes foretell, of anything else by drive and hall alone.
 std::vector<double> foretold_um(const DeployedPredictor& d, const ObservedRun& run,
                                 const std::function<Record()>& foretold) {
   if (as_formula(*d.predictor)) return live(*d.predictor, {run.cyclogram, run.hall, foretold()});
-  std::vector<double> drift_um =
-      ahead(*d.predictor, {run.cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}});
-  return drift_um;
+  return ahead(*d.predictor, {run.cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}});
 }
 
 /// The correction itself, as `validate` judges it.
@@ -86,16 +128,6 @@ Outcome through_none(const DeployedPredictor& d, const ObservedRun& run) {
 }
 
 Outcome through_injector(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run) {
-  if (!scenario.axis_loop) {
-    throw InputError(
-        scenario.study->where,
-        "--through injector wants the block `axis_loop`, which says encoder, injector and servo (docs/injector.md)");
-  }
-  if (d.target != scenario.axis_loop->displacement)
-    throw InputError(scenario.axis_loop->where,
-                     fmt::format("the axis corrects '{}', but the predictor tells '{}'; set `displacement: {}`, or take "
-                                 "another --model",
-                                 scenario.axis_loop->displacement, d.target, d.target));
   const AxisLoopRun loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
     return correct(d, {run.cyclogram, run.hall, readings}).correction_um;
   });
@@ -131,20 +163,6 @@ Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, c
   return {.time_s = run.readings.time_s, .drift_um = drift_um, .predicted_um = ahead_um, .left_um = corrected.residual_um};
 }
 
-/// The cyclogram to correct, which is none that predictors are fitted on.
-const Cyclogram& judged_cyclogram(const Scenario& scenario, const std::string& name) {
-  const scenarios::Study& study = *scenario.study;
-  const Cyclogram& cyclogram = scenario.cyclogram(name.empty() ? study.judge : name);
-  for (const std::string& trained : study.train) {
-    if (scenario.cyclogram(trained).sections == cyclogram.sections)
-      throw InputError(
-          study.where,
-          fmt::format("--cyclogram {}: it is what predictors are trained on ('{}'), and says nothing of how good they are",
-                      cyclogram.name, trained));
-  }
-  return cyclogram;
-}
-
 std::string corrected_csv(const Outcome& o, const std::vector<std::string>& comments) {
   std::string csv;
   for (const std::string& c : comments) csv += "# " + c + "\n";
@@ -171,9 +189,16 @@ void compensate(const CompensateOptions& options) {
         "--measured goes with --through none and a predictor's file, and without --cyclogram: a record says what happened");
   if (!is_measured) (void)require_machine(scenario, "compensate");
   std::optional<DeployedPredictor> predictor;
-  if (options.model != "modes") predictor = from_file(scenario, options.model);
+  Json judged_as;
+  if (options.model != "modes") {
+    output::PredictorFile file = from_file(scenario, options.model);
+    predictor = std::move(file.predictor);
+    judged_as = std::move(file.judged);
+  }
   const Cyclogram* cyclogram = nullptr;
-  if (!is_measured) cyclogram = &judged_cyclogram(scenario, options.cyclogram);
+  if (!is_measured) cyclogram = &scenario.cyclogram(options.cyclogram.empty() ? study.judge : options.cyclogram);
+  refuse_trained_on(judged_as, options.model, is_measured ? options.measured : cyclogram->name);
+  if (options.through == "injector") require_axis(scenario, predictor ? predictor->target : study.target);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   ObservedRun run;
@@ -185,13 +210,14 @@ void compensate(const CompensateOptions& options) {
     for (const std::vector<std::string>* notes : {&records.notes, &records.findings}) {
       for (const std::string& note : *notes) fmt::print("note: {}\n", note);
     }
+    require_model_follows(scenario, *predictor, records);
     run = std::move(records.test.front());
   } else {
     const Model model = open_model(scenario, {cyclogram}, progress, false);
     if (const scenarios::Machine* full = model.full())
       scenarios::require_ways_out(full->placed.mesh, full->placed.balance, scenario.machine->where);
-    scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, *cyclogram);
-    run = {std::move(felt.cyclogram), std::move(felt.hall),
+    // a predictor knows what is recorded, as in validate_strategies(), and not what the scenario's effects make of it
+    run = {*cyclogram, scenario.machine->hall,
            std::move(simulate_cyclograms(scenario, model, {cyclogram}, progress, 0, nullptr).front().record)};
     const auto foretold = [&] { return modal_record(scenario, model, *cyclogram, run.readings.time_s); };
     if (!predictor) predictor = by_modes(scenario, foretold());
@@ -248,6 +274,7 @@ void compensate(const CompensateOptions& options) {
   folder.write_text("report.html", output::render_html(page));
   folder.commit();
   progress.end();
+  if (const std::string verdict = verdict_of(judged_as); !verdict.empty()) fmt::print("judged by `validate`: {}\n", verdict);
   fmt::print(
       "{} by {} {}: peak {:.1f} um left of {:.1f} um ({:.0f} % removed), RMS {:.2f} of {:.2f} um\nreport in "
       "{}\n",

@@ -62,8 +62,11 @@ Before read_before(const scenarios::Scenario& scenario, const PredictionOptions&
   before.order.between_s = duration_s("--between", options.between);
   if (options.start.empty()) return before;
   if (options.start.ends_with(".csv")) {
-    before.record = read_record(options.start, scenario.columns).record;
-    before.order.start = scenarios::run_of(*before.record, &machine, sensors_on_hall(machine), scenarios::Reading::kStrict);
+    ReadRecord read = read_record(options.start, scenario.columns);
+    before.order.start = scenarios::run_of(read.record, &machine, sensors_on_hall(machine), scenarios::Reading::kStrict);
+    for (const std::string& note : read.notes) fmt::print("note: {}\n", note);
+    for (const scenarios::DataFinding& f : before.order.start->findings) fmt::print("note: {}\n", f.what);
+    before.record = std::move(read.record);
   } else {
     before.order.start.emplace();
     before.order.start->cyclogram = scenario.cyclogram(options.start);
@@ -139,6 +142,12 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
   asked.solver.model = options.model.empty()     ? predicting_model(scenario)
                        : options.model == "full" ? scenarios::ModelKind::kFull
                                                  : scenarios::ModelKind::kReduced;
+  TimeSeries& hall =
+      asked.machine->hall;  // what the model is asked for: halls as warm as the series', behind the scenario's own
+  for (double value_K : series.hall.value) {
+    hall.time_s.push_back(hall.time_s.back() + 1.0);
+    hall.value.push_back(value_K);
+  }
   const Model model = open_model(asked, {&series.cyclogram}, progress, false);
   progress.begin(fmt::format("simulating {:.0f} min", series.cyclogram.duration_s() / 60.0));
   scenarios::MachineModel machine = own;
@@ -191,7 +200,9 @@ compensation::Iso230Figures iso_figures(const Prediction& prediction) {
 
 Cyclogram named_cyclogram(const scenarios::Scenario& scenario, const std::string& name_or_file) {
   Cyclogram cyclogram;
-  if (name_or_file.ends_with(".csv")) {
+  const bool is_known = std::any_of(scenario.cyclograms.begin(), scenario.cyclograms.end(),
+                                    [&](const Cyclogram& c) { return c.name == name_or_file; });
+  if (!is_known && (name_or_file.ends_with(".csv") || std::filesystem::exists(name_or_file))) {
     const ReadRecord read = read_record(name_or_file, scenario.columns);
     for (const std::string& note : read.notes) fmt::print("note: {}\n", note);
     scenarios::RecordedRun run = scenarios::run_of(read.record, nullptr, {}, scenarios::Reading::kStrict);

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <tuple>
 
 #include "app/run_up.hpp"
@@ -76,6 +77,12 @@ using compensation::ObservedRun;
 using scenarios::RecordPart;
 using scenarios::RunRows;
 
+/// However the two are written.
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code unknown;
+  return a == b || std::filesystem::equivalent(a, b, unknown);
+}
+
 /// A file, read once, whatever parts of it are asked for.
 struct ReadFile {
   std::string path;
@@ -108,7 +115,8 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
   std::vector<ReadFile> files;
   std::vector<Record> as_read;
   for (const RecordPart& part : parts) {
-    if (std::any_of(files.begin(), files.end(), [&](const ReadFile& f) { return f.path == part.file; })) continue;
+    if (std::any_of(files.begin(), files.end(), [&](const ReadFile& f) { return is_same_file(f.path, part.file); }))
+      continue;
     ReadFile file{
         .path = part.file, .record = read_with_target(part.file, scenario, into.notes), .recorded = {}, .felt = {}};
     for (std::size_t k = 0; k < files.size(); ++k) {
@@ -215,7 +223,8 @@ StudyRecords read_records(const scenarios::Scenario& scenario, const RecordOptio
   const std::vector<ReadFile> files = read_files(parts, scenario, hall, records);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const RecordPart& part = parts[p];
-    const ReadFile& file = *std::find_if(files.begin(), files.end(), [&](const ReadFile& f) { return f.path == part.file; });
+    const ReadFile& file =
+        *std::find_if(files.begin(), files.end(), [&](const ReadFile& f) { return is_same_file(f.path, part.file); });
     auto [first, last] = scenarios::rows_of(part, file.record);
     first += file.n_before;
     const scenarios::CutRecord cut{file.record, file.recorded.cyclogram, file.recorded.hall};

@@ -97,6 +97,21 @@ std::string words(std::vector<Observer::Factor> factors) {
   return fmt::format("{}", fmt::join(text, ", "));
 }
 
+/// Runs that were cut from longer records without what was read in rows that none of them has as its own: an observer must not learn from them.
+std::vector<ObservedRun> without_others_readings(std::vector<ObservedRun> histories, const StrategySettings& s) {
+  for (ObservedRun& run : histories) {
+    if (run.history.empty()) continue;
+    const std::vector<double> drift = run.readings.at(s.target).values;
+    for (Channel& c : run.readings.channels) {
+      if (std::find(s.candidates.begin(), s.candidates.end(), c.name) == s.candidates.end()) continue;
+      for (std::size_t i = 0; i < drift.size(); ++i) {
+        if (std::isnan(drift[i])) c.values[i] = drift[i];
+      }
+    }
+  }
+  return histories;
+}
+
 /// An observer with some sensors, or none, taught by the training runs or not.
 Strategy observing(const std::string& name, const StrategySettings& s, bool with_sensors, bool learns) {
   return {name, false, [s, with_sensors, learns](std::span<const ObservedRun> training) {
@@ -111,7 +126,7 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
             }
             Observer observer(p.system, p.start, p.start_hall_K, learns ? s.candidates : selection.sensors, s.target, how);
             if (learns) {
-              observer.learn(histories);
+              observer.learn(without_others_readings(histories, s));
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
               observer = observer.with_sensors(selection.sensors);
             }
@@ -230,11 +245,13 @@ DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, s
   std::vector<std::string> guarded;
   if (const DriftModel* formula = as_formula(*f.predictor)) guarded = formula->inputs();
   std::vector<Record> readings;
-  for (const ObservedRun& run : joined_histories(training, s.target)) {
-    predicted.push_back(live(*f.predictor, run));
-    readings.push_back(run.readings);
+  // a run's lead-in is followed, and bounds nothing: its rows may be those that are judged
+  for (const ObservedRun& run : training) {
+    const std::vector<double> drift_um = live(*f.predictor, run);
+    predicted.emplace_back(drift_um.begin() + static_cast<std::ptrdiff_t>(run.n_before), drift_um.end());
+    readings.push_back(own_rows(s.count_from_start ? counted_from_start(run.readings, {}) : run.readings, run.n_before));
   }
-  f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start);
+  f.fail_safe = learn_fail_safe(readings, guarded, predicted, s.count_from_start, true);
   return f;
 }
 

@@ -36,7 +36,8 @@ struct Failure {
 constexpr Failure kFailures[] = {{SensorFailure::kStuck, "stuck"},
                                  {SensorFailure::kOpen, "open"},
                                  {SensorFailure::kDetached, "fallen off"},
-                                 {SensorFailure::kDrifting, "drifting"}};
+                                 {SensorFailure::kRising, "drifting up"},
+                                 {SensorFailure::kFalling, "drifting down"}};
 
 /// The hall as a thermometer tells it that fails at a time. One that gives nothing new leaves its last reading; any other tells what it read then,
 /// and from there on as much more as its channel does. One that nobody knows stays unknown.
@@ -52,9 +53,10 @@ TimeSeries failed_hall(const TimeSeries& hall, SensorFailure failure, double fro
   for (std::size_t i = 0; i < hall.time_s.size() && hall.time_s[i] < from_s; ++i) add(hall.time_s[i], hall.value[i]);
   add(from_s, hall.at(from_s));
   if (failure == SensorFailure::kStuck || failure == SensorFailure::kOpen) return told;
-  if (failure == SensorFailure::kDrifting) {
+  if (failure == SensorFailure::kRising || failure == SensorFailure::kFalling) {
+    const double rate_K_s = (failure == SensorFailure::kRising ? 1.0 : -1.0) * kSensorDrift_K_h / 3600.0;
     for (double t_s : readings.time_s) {
-      if (t_s > from_s) add(t_s, hall.at(t_s) + kSensorDrift_K_h * (t_s - from_s) / 3600.0);
+      if (t_s > from_s) add(t_s, hall.at(t_s) + rate_K_s * (t_s - from_s));
     }
     return told;
   }
@@ -69,6 +71,24 @@ TimeSeries failed_hall(const TimeSeries& hall, SensorFailure failure, double fro
     }
   }
   return told;
+}
+
+/// The thermometer whose readings differ most from a sensor's over the run; "" where there is no other.
+std::string least_alike(const ObservedRun& run, const std::string& sensor, const std::vector<std::string>& candidates) {
+  const Channel& mine = run.readings.at(sensor);
+  std::string worst;
+  double most = 0.0;
+  for (const std::string& name : candidates) {
+    const Channel& other = run.readings.at(name);
+    if (name == sensor || other.unit != mine.unit) continue;
+    std::vector<double> apart;
+    for (std::size_t i = 0; i < mine.values.size(); ++i) apart.push_back(other.values[i] - mine.values[i]);
+    if (const double rms = score(apart).rmse; rms > most) {
+      most = rms;
+      worst = name;
+    }
+  }
+  return worst;
 }
 
 /// What to run one strategy on: the run as it is, and with each of its sensors failed in each way.
@@ -97,9 +117,8 @@ std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings
         continue;
       add(fmt::format("{} {}", sensors[s], failure.word), sensors[s], failure.kind, settings.elsewhere);
     }
-    if (s + 1 < sensors.size() && judged.run.readings.at(sensors[s]).unit == judged.run.readings.at(sensors[s + 1]).unit)
-      add(fmt::format("{} and {} exchanged", sensors[s], sensors[s + 1]), sensors[s], SensorFailure::kSwapped,
-          sensors[s + 1]);
+    if (const std::string other = least_alike(judged.run, sensors[s], settings.strategies.candidates); !other.empty())
+      add(fmt::format("{} and {} exchanged", sensors[s], other), sensors[s], SensorFailure::kSwapped, other);
   }
   return list;
 }
@@ -109,11 +128,14 @@ bool is_worse_than_nothing(const Case& c) {
   return c.after.rmse > c.before.rmse || c.after.peak_abs > c.before.peak_abs;
 }
 
-/// Of the cases that leave more than no correction would, the one with the largest peak; null: none does.
+/// Of the cases that leave more than no correction would, the one with the most above it; null: none does.
 const Case* worst_beside_nothing(const JudgedStrategy& s) {
+  const auto excess_um = [](const Case& c) {
+    return std::max(c.after.peak_abs - c.before.peak_abs, c.after.rmse - c.before.rmse);
+  };
   const Case* worst = nullptr;
   for (const Case& c : s.cases) {
-    if (is_worse_than_nothing(c) && (!worst || c.after.peak_abs > worst->after.peak_abs)) worst = &c;
+    if (is_worse_than_nothing(c) && (!worst || excess_um(c) > excess_um(*worst))) worst = &c;
   }
   return worst;
 }
@@ -132,23 +154,25 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   // a little more than before while the drift passes through 0 is no harm
   const auto harms = [&](const Case& c) { return c.after.peak_abs > tolerance && c.harm_um > tolerance; };
   const Case* worse = worst_beside_nothing(s);
+  s.is_worse_than_nothing = worse != nullptr;
+  const bool harms_beyond =
+      std::any_of(s.cases.begin(), s.cases.end(), [&](const Case& c) { return is_worse_than_nothing(c) && !keeps(c); });
   const auto beside_nothing = [&](const Case& c) {
     return fmt::format(
-        "more is left than without any correction, {:.1f} um instead of a peak of {:.1f} um, RMS {:.1f} instead of {:.1f} "
-        "um, {}",
-        c.after.peak_abs, c.before.peak_abs, c.after.rmse, c.before.rmse, where_of(m, c));
+        "more is left than without any correction, RMS {:.1f} instead of {:.1f} um and peak {:.1f} instead of {:.1f} um {}",
+        c.after.rmse, c.before.rmse, c.after.peak_abs, c.before.peak_abs, where_of(m, c));
   };
   if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
     s.safety = Safety::kSafe;
-    s.why = fmt::format(
-        "{}never more than {:.1f} um left of the drift; the most {}{}",
-        worse ? fmt::format("where the drift is small {}; inside the tolerance, though: ", beside_nothing(*worse)) : "",
-        all.peak->after.peak_abs, where_of(m, *all.peak),
-        m.runs.size() > 2 ? ""
-                          : fmt::format("; only {} run{} tried", m.runs.size(), m.runs.size() == 1 ? " was" : "s were"));
+    s.why = fmt::format("{}never more than {:.1f} um left of the drift; the most {}{}",
+                        worse ? fmt::format("{}, inside the tolerance, though: ", beside_nothing(*worse)) : "",
+                        all.peak->after.peak_abs, where_of(m, *all.peak),
+                        m.runs.size() > 2
+                            ? ""
+                            : fmt::format("; only {} run{} tried", m.runs.size(), m.runs.size() == 1 ? " was" : "s were"));
     return;
   }
-  if (worse && worse->after.peak_abs > tolerance) {
+  if (harms_beyond) {
     s.safety = Safety::kUnsafe;
     s.why = beside_nothing(*worse);
     return;
@@ -182,7 +206,7 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
                                         all.peak->before.peak_abs, where_of(m, *all.peak));
   s.safety = s.limits.empty() ? Safety::kUnsafe : Safety::kWithinLimits;
   s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst : worst;
-  if (worse) s.why = fmt::format("where the drift is small {}; {}", beside_nothing(*worse), s.why);
+  if (worse) s.why = fmt::format("{}, inside the tolerance, though; {}", beside_nothing(*worse), s.why);
 }
 
 template <class F>

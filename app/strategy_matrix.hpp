@@ -45,7 +45,8 @@ struct JudgedStrategy {
   DeployedPredictor fitted;
   std::vector<Case> cases;
   Safety safety = Safety::kUnsafe;
-  std::string why;        ///< one sentence
+  bool is_worse_than_nothing = false;  ///< in some case more is left than without correction, by RMS or peak
+  std::string why;                     ///< one sentence
   std::string beaten_by;  ///< baseline whose RMS over all intact rows is smaller; empty: none, and for baselines
   std::vector<std::string>
       limits;  ///< families (seasons) in which it keeps the tolerance with sensors intact, where not everywhere

@@ -181,9 +181,9 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
       "any season, then of each season{}. Left: the largest share of the peak. RMS: over all rows. 95 %: half width of the "
       "prediction interval, from training "
       "runs left out, and the share of rows that it covers. Fitted on {} training runs that are none of these.",
-      has_failures(m)
-          ? ", then with each sensor of the strategy failed half-way in the first season, stuck, open or fallen off"
-          : "",
+      has_failures(m) ? ", then with each sensor of the strategy failed half-way in the first season: stuck, open, fallen "
+                        "off, drifting by 2 K/h either way, exchanged with the one least like it"
+                      : "",
       m.training.size())});
   blocks.emplace_back(matrix_table(m));
   output::Table enough{
@@ -256,6 +256,7 @@ Json verdict_json(const JudgedStrategy& s) {
   Json entry = Json::object();
   if (!s.fitted.is_baseline) {
     entry["verdict"] = word(s.safety);
+    entry["worse_than_nothing"] = s.is_worse_than_nothing;
     entry["why"] = s.why;
     entry["keeps_tolerance_in"] = s.limits;
     entry["beaten_by"] = s.beaten_by;
@@ -277,7 +278,10 @@ Json verdict_json(const JudgedStrategy& s) {
 Json conditions_json(const StrategyMatrix& m) {
   Json j = {{"target", m.settings.strategies.target},
             {"tolerance_um", m.settings.tolerance_um},
-            {"count_from_start", m.settings.strategies.count_from_start}};
+            {"count_from_start", m.settings.strategies.count_from_start},
+            {"sensors_fail_at", m.settings.fails_at ? Json(*m.settings.fails_at) : Json(nullptr)},
+            {"reading_K", m.settings.strategies.reading_K},
+            {"drift_um", m.settings.strategies.drift_um}};
   for (const ObservedRun& r : m.training) j["trained_on"].push_back(r.readings.source);
   return j;
 }
@@ -337,7 +341,8 @@ std::string strategy_text(const StrategyMatrix& m) {
                           failed.peak ? percent(failed.left) : "");
     text += fmt::format("   RMS {:>6}", fmt::format("{:.2f}", overall_rms(s)));
     text += s.fitted.is_baseline ? "   baseline\n"
-                                 : fmt::format("   {}{}\n", word(s.safety),
+                                 : fmt::format("   {}{}{}\n", word(s.safety),
+                                               s.is_worse_than_nothing ? ", worse than nothing in some case" : "",
                                                s.beaten_by.empty() ? "" : fmt::format(", but beaten by '{}'", s.beaten_by));
   }
   for (const LeftOut& l : m.left_out) text += fmt::format("  {:<38} left out: {}\n", l.name, l.why);

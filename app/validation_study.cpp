@@ -96,9 +96,7 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
     return {std::nullopt, "every record begins in a hall of its own; `start: hall` is needed"};
   std::vector<const Cyclogram*> cyclograms;
   for (const ObservedRun* run : runs) {
-    if (run->cyclogram.sections.empty())
-      return {std::nullopt, fmt::format("{} does not say what drove the machine", run->readings.source)};
-    if (const std::string why = why_not_in_balance(machine, *run); !why.empty()) return {std::nullopt, why};
+    if (std::string why = why_no_model_follows(machine, *run); !why.empty()) return {std::nullopt, std::move(why)};
     cyclograms.push_back(&run->cyclogram);
   }
   Scenario reduced = scenario;
@@ -129,6 +127,11 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
 }
 
 }  // namespace
+
+std::string why_no_model_follows(const scenarios::MachineModel& machine, const ObservedRun& run) {
+  if (run.cyclogram.sections.empty()) return fmt::format("{} does not say what drove the machine", run.readings.source);
+  return why_not_in_balance(machine, run);
+}
 
 std::optional<Physics> physics_of(const Scenario& scenario, const Model& model, double scatter, int seed) {
   const scenarios::ReducedMachine* reduced = model.reduced();
@@ -258,6 +261,8 @@ StrategyMatrix validate_on_records(const Scenario& scenario, StudyRecords record
   RecordedPhysics physics = physics_for_records(scenario, all, how, progress);
   how.physics = std::move(physics.physics);
   how.without_physics = std::move(physics.why_none);
+  const Channel* elsewhere = how.hall.empty() ? nullptr : records.test.front().readings.find(how.hall);
+  if (elsewhere && elsewhere->unit == training.front().at(how.candidates.front()).unit) settings.elsewhere = how.hall;
   std::vector<JudgedRunOfMachine> judged;
   for (ObservedRun& run : records.test) {
     const std::string name = std::filesystem::path(run.readings.source).filename().string();

@@ -19,6 +19,9 @@ namespace driftwright::app {
 [[nodiscard]] StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, StudyRecords records,
                                                  Progress& progress);
 
+/// Why a model of the machine cannot follow a measured run: nothing says what drove it, or it begins out of balance with its hall. "" where it can.
+[[nodiscard]] std::string why_no_model_follows(const scenarios::MachineModel& machine, const ObservedRun& run);
+
 /// The model as strategies get it, off by random factors (compensation::scattered()); none where it is not a linear reduced one.
 [[nodiscard]] std::optional<Physics> physics_of(const scenarios::Scenario& scenario, const Model& model, double scatter,
                                                 int seed);

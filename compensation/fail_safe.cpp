@@ -112,9 +112,9 @@ double step_s(const std::vector<double>& time_s, std::size_t row) {
 }  // namespace
 
 FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std::string>& inputs,
-                         const std::vector<std::vector<double>>& predicted, bool from_start) {
+                         const std::vector<std::vector<double>>& predicted, bool from_start, bool is_counted) {
   std::vector<Record> training(as_given.begin(), as_given.end());
-  if (from_start) {
+  if (from_start && !is_counted) {
     for (Record& record : training) record = counted_from_start(std::move(record), {});
   }
   FailSafe safe;

@@ -40,9 +40,11 @@ struct FailSafe {
 /// @param inputs      channels of the model; drives (rpm) have a range alone
 /// @param predicted   by the model on each training record, per row
 /// @param from_start  temperatures count from the first row of each record
+/// @param is_counted  they do so already in `training`: rows may have been cut off since
 /// @throws InputError  as complete_rows() and fit_regression(), and for training records of one row
 [[nodiscard]] FailSafe learn_fail_safe(std::span<const Record> training, const std::vector<std::string>& inputs,
-                                       const std::vector<std::vector<double>>& predicted, bool from_start);
+                                       const std::vector<std::vector<double>>& predicted, bool from_start,
+                                       bool is_counted = false);
 
 /// Readings with what is doubted replaced by what the other inputs lead to.
 ///

@@ -19,11 +19,14 @@ bool is_distortion(const Channel& channel) {
 
 /// How long the spindle turns [s], from the first row to the end of the last one at which it does; 0: it does not at the start.
 double running_period_s(const Record& record, const Channel& speed) {
-  double running_s = 0.0, rpm = 0.0;
+  constexpr double kStill = 0.01;  // of the top speed: what a drive at rest may be logged as
+  double running_s = 0.0, rpm = 0.0, top_rpm = 0.0;
+  for (double v : speed.values) top_rpm = std::max(top_rpm, std::isnan(v) ? 0.0 : v);
+  const double still_rpm = kStill * top_rpm;
   for (std::size_t i = 0; i + 1 < record.n_samples(); ++i) {
     if (!std::isnan(speed.values[i])) rpm = speed.values[i];
-    if (i == 0 && !(rpm > 0.0)) return 0.0;
-    if (rpm > 0.0) running_s = record.time_s[i + 1] - record.time_s.front();
+    if (i == 0 && !(rpm > still_rpm)) return 0.0;
+    if (rpm > still_rpm) running_s = record.time_s[i + 1] - record.time_s.front();
   }
   return running_s;
 }

@@ -11,7 +11,7 @@ namespace driftwright::compensation {
 ///
 /// T of the thermometers and the hall, L behind 20, 60 and 180 min; n the drive, M behind 2, 5, 10, 20, 40, 80 and 160 min. A body without
 /// a thermometer follows heat and its neighbours in sums of such lags, and a penalty on columns of unit deviation prefers the sums that
-/// are smooth in the lag. It weighs ten times as much on what is remembered, and on the drive itself, as on a thermometer's reading. Its
+/// are smooth in the lag. It weighs three times as much on what is remembered, and on the drive itself, as on a thermometer's reading. Its
 /// size is the only thing that is chosen: the one with the smallest RMS error on data left out, as a mean over what is left out: each
 /// record in turn, or, of a single record, an eighth of its rows that lie together, at 22 places.
 ///

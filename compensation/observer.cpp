@@ -80,11 +80,15 @@ class Observer::Run final : public Follower {
   };
 
   void begin(const ObservedRun& run) {
-    const auto channel = [&](const std::string& name) {
-      return static_cast<std::size_t>(&run.readings.at(name) - run.readings.channels.data());
+    const auto channel = [&](const std::string& name, const char* unit) {
+      const Channel& c = run.readings.at(name);
+      if (c.unit != unit)
+        throw InputError(
+            fmt::format("channel '{}' of {} is in {}; the model tells it in {}", name, run.readings.source, c.unit, unit));
+      return static_cast<std::size_t>(&c - run.readings.channels.data());
     };
-    for (const std::string& name : o_.sensors_) sensor_channel_.push_back(channel(name));
-    if (with_drift_) drift_channel_ = channel(o_.drift_);
+    for (const std::string& name : o_.sensors_) sensor_channel_.push_back(channel(name, "degC"));
+    if (with_drift_) drift_channel_ = channel(o_.drift_, "um");
     start_hall_K_ = run.hall.at(run.readings.time_s.front());
     belief_.mean.head(n_) = o_.start_ + (start_hall_K_ - o_.start_hall_K_) * s_.ones;
     start_state_ = belief_.mean.head(n_);

@@ -95,8 +95,11 @@ Record with_failed_sensor(Record record, const std::string& sensor, SensorFailur
       case SensorFailure::kSwapped:
         std::swap(failed.values[i], other->values[i]);
         break;
-      case SensorFailure::kDrifting:
+      case SensorFailure::kRising:
         failed.values[i] += kSensorDrift_K_h * (record.time_s[i] - from_s) / 3600.0;
+        break;
+      case SensorFailure::kFalling:
+        failed.values[i] -= kSensorDrift_K_h * (record.time_s[i] - from_s) / 3600.0;
         break;
     }
   }

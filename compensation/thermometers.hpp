@@ -25,11 +25,12 @@ struct Thermometers {
 
 /// How a sensor fails.
 enum class SensorFailure {
-  kStuck,    ///< its reading stays what it was
-  kOpen,     ///< no reading any more
+  kStuck,     ///< its reading stays what it was
+  kOpen,      ///< no reading any more
   kDetached,  ///< it fell off: from then on it reads `elsewhere`
   kSwapped,   ///< its plug and that of `elsewhere` are exchanged: from then on each reads the other's place
-  kDrifting,  ///< it reads ever more, by kSensorDrift_K_h
+  kRising,    ///< it reads ever more, by kSensorDrift_K_h
+  kFalling,   ///< or ever less
 };
 /// A thermometer that ages within a run: a platinum resistor whose insulation gives way, a junction that corrodes [K/h].
 inline constexpr double kSensorDrift_K_h = 2.0;

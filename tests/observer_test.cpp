@@ -285,6 +285,12 @@ TEST(Observer, RowByRowSaysTheSameAsOfTheWholeRun) {
   }
 }
 
+TEST(Observer, ASensorInAnotherUnitIsRefused) {
+  ObservedRun run = run_of(three_parts());
+  run.readings.channels[0].unit = "K";
+  EXPECT_THAT([&] { (void)live(observer_of(three_parts(), {"T1"}), run); }, ThrowsMessage<InputError>(HasSubstr("in degC")));
+}
+
 // Before the run there are no readings: the model with what it has learnt.
 TEST(Observer, AheadItIsTheModelWithItsFactors) {
   const ObservedRun run = run_of(with_motor(1.2));

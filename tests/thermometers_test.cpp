@@ -66,7 +66,7 @@ TEST(Thermometers, FailAsTheyAreTold) {
   EXPECT_THAT(with_failed_sensor(r, "b", SensorFailure::kDetached, 30.0, "a").at("b").values,
               ElementsAre(20.0, 20.0, 20.5, 23.06));
   const Record swapped = with_failed_sensor(r, "b", SensorFailure::kSwapped, 30.0, "a");
-  const Record drifting = with_failed_sensor(r, "b", SensorFailure::kDrifting, 20.0);
+  const Record drifting = with_failed_sensor(r, "b", SensorFailure::kRising, 20.0);
   for (std::size_t i = 0; i < r.n_samples(); ++i) {
     const bool is_after = r.time_s[i] >= 30.0;
     EXPECT_EQ(swapped.at("a").values[i], r.at(is_after ? "b" : "a").values[i]);
