@@ -14,11 +14,13 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kFlag = 5.0;          // deviations of the mean innovation
-constexpr double kOutlier = 6.0;       // deviations of one innovation: that reading is passed over
-constexpr double kMemory = 0.9;        // of the mean innovation from row to row
-constexpr std::size_t kRowsBack = 30;  // to which the filter returns when a sensor is dropped
-constexpr double kZero = 2.0;          // of an indicator's deviation: what its zero may be off by
+constexpr double kFlag = 5.0;            // deviations of the mean innovation
+constexpr double kOutlier = 6.0;         // deviations of one innovation: that reading is passed over
+constexpr double kMemory = 0.9;          // of the mean innovation from row to row
+constexpr std::size_t kRowsBack = 30;    // to which the filter returns when a sensor is dropped
+constexpr double kZero = 2.0;            // of an indicator's deviation: what its zero may be off by
+constexpr double kHallJump_K = 3.0;      // that no hall changes by from row to row
+constexpr double kHallJumpIn_s = 600.0;  // of rows further apart, in so long
 constexpr std::size_t kStepsKept = 512;
 constexpr double kStart_K = 0.1;  // by which all of the machine may be warmer than the start says
 
@@ -53,9 +55,10 @@ class Observer::Run final : public Follower {
     if (row_ == 0) begin(run);
     history_.push_back({row_, belief_});
     if (history_.size() > kRowsBack) history_.pop_front();
+    judge_hall(run, row_);
     take_row(run, row_);
     if (const int suspect = worst_suspect(row_); suspect >= 0) drop(run, static_cast<std::size_t>(suspect));
-    return 1e6 * drift_m(run, run.readings.time_s[row_++]);
+    return 1e6 * drift_m(row_++);
   }
 
   /// Of the rows taken so far, the last.
@@ -63,9 +66,7 @@ class Observer::Run final : public Follower {
     const Eigen::VectorXd h = drift_gradient();
     return 1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h)));
   }
-  [[nodiscard]] Eigen::VectorXd outputs(const ObservedRun& run) const {
-    return s_.observe(belief_.mean.head(n_), run.hall.at(run.readings.time_s[row_ - 1]));
-  }
+  [[nodiscard]] Eigen::VectorXd outputs() const { return s_.observe(belief_.mean.head(n_), hall_K_[row_ - 1]); }
   [[nodiscard]] const std::vector<std::string>& distrusted() const { return distrusted_; }
 
   [[nodiscard]] Belief factors() const {
@@ -94,6 +95,28 @@ class Observer::Run final : public Follower {
     start_state_ = belief_.mean.head(n_);
   }
 
+  /// What the hall's thermometer is believed at a row. One that jumps does not tell of a hall: its last reading holds until it is back near it.
+  void judge_hall(const ObservedRun& run, std::size_t i) {
+    const std::vector<double>& t = run.readings.time_s;
+    const double told_K = run.hall.at(t[i]);
+    if (i == 0) {
+      hall_K_.push_back(told_K);
+      is_hall_doubted_.push_back(false);
+      return;
+    }
+    const double most_K = kHallJump_K * std::max(1.0, (t[i] - t[i - 1]) / kHallJumpIn_s);
+    const bool is_doubted = std::abs(told_K - hall_K_.back()) > most_K;
+    if (is_doubted && !is_hall_doubted_.back())
+      distrusted_.push_back(fmt::format("the hall's thermometer from {:.0f} min", t[i] / 60.0));
+    hall_K_.push_back(is_doubted ? hall_K_.back() : told_K);
+    is_hall_doubted_.push_back(is_doubted);
+  }
+
+  /// Between the row before and row i.
+  [[nodiscard]] double hall_K(const ObservedRun& run, std::size_t i, double t_s) const {
+    return is_hall_doubted_[i] || is_hall_doubted_[i - 1] ? hall_K_[i] : run.hall.at(t_s);
+  }
+
   /// Goes back to before its mean innovation began to grow, and follows the rows since then without it.
   void drop(const ObservedRun& run, std::size_t sensor) {
     live_[sensor] = false;
@@ -108,15 +131,14 @@ class Observer::Run final : public Follower {
 
   void take_row(const ObservedRun& run, std::size_t i) {
     const std::vector<double>& t = run.readings.time_s;
-    const double hall_K = run.hall.at(t[i]);
-    if (i > 0) advance(run, t[i - 1], t[i]);
+    if (i > 0) advance(run, i);
     for (std::size_t k = 0; k < sensor_channel_.size(); ++k) {
       const double read = run.readings.channels[sensor_channel_[k]].values[i];
       if (!live_[k] || std::isnan(read)) continue;
       const Eigen::Index output = o_.sensor_output_[k];
       Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
       h.head(n_) = s_.outputs.state.col(output);
-      const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * hall_K + s_.reference_K - 273.15;
+      const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * hall_K_[i] + s_.reference_K - 273.15;
       const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, t[i], last_s_[k]);
       const double innovation = read - expected_K, spread = std::sqrt(h.dot(belief_.covariance * h) + variance);
       mean_innovation_[k] = kMemory * mean_innovation_[k] + (1.0 - kMemory) * innovation / spread;
@@ -127,12 +149,12 @@ class Observer::Run final : public Follower {
       // counts from the start of the run; where it is missing there, from the model's at its first value
       if (first_drift_ >= i) {
         first_drift_ = i;
-        drift_zero_m_ = 1e-6 * drift_um - (i > 0 ? drift_m(run, t[i]) : 0.0);
+        drift_zero_m_ = 1e-6 * drift_um - (i > 0 ? drift_m(i) : 0.0);
       }
       const double variance = 1e-12 * variance_of(o_.settings_.drift_um, o_.settings_.model_um, t[i], last_drift_s_);
       Eigen::VectorXd h = drift_gradient();
       h(zero_) = 1.0;
-      correct(h, 1e-6 * drift_um - drift_zero_m_ - drift_m(run, t[i]) - belief_.mean(zero_), variance);
+      correct(h, 1e-6 * drift_um - drift_zero_m_ - drift_m(i) - belief_.mean(zero_), variance);
     }
   }
 
@@ -159,8 +181,9 @@ class Observer::Run final : public Follower {
     return worst;
   }
 
-  void advance(const ObservedRun& run, double from_s, double to_s) {
-    double section_end_s = 0.0;
+  void advance(const ObservedRun& run, std::size_t i) {
+    double from_s = run.readings.time_s[i - 1], section_end_s = 0.0;
+    const double to_s = run.readings.time_s[i];
     for (std::size_t c = 0; c < run.cyclogram.sections.size() && from_s < to_s; ++c) {
       const bool is_last = c + 1 == run.cyclogram.sections.size();
       section_end_s += run.cyclogram.sections[c].duration_s;
@@ -169,7 +192,7 @@ class Observer::Run final : public Follower {
         const auto n_left = std::ceil((until_s - from_s) / o_.settings_.longest_step_s - 1e-9);
         const double h_s = (until_s - from_s) / n_left;
         effects::Inputs at{
-            .drive = run.cyclogram.sections[c].drive, .hall_K = run.hall.at(from_s + 0.5 * h_s), .time_s = from_s};
+            .drive = run.cyclogram.sections[c].drive, .hall_K = hall_K(run, i, from_s + 0.5 * h_s), .time_s = from_s};
         at.run = run.cyclogram.name;
         step(at, h_s);
         from_s += h_s;
@@ -248,9 +271,9 @@ class Observer::Run final : public Follower {
   }
 
   /// Since the start of the run: a scale of the displacement leaves alone what was there before.
-  [[nodiscard]] double drift_m(const ObservedRun& run, double time_s) const {
+  [[nodiscard]] double drift_m(std::size_t i) const {
     return (1.0 + belief_.mean(scale_)) * unscaled_drift_m() +
-           s_.outputs.hall(o_.drift_output_) * (run.hall.at(time_s) - start_hall_K_);
+           s_.outputs.hall(o_.drift_output_) * (hall_K_[i] - start_hall_K_);
   }
   [[nodiscard]] double unscaled_drift_m() const {
     return s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_) - start_state_);
@@ -275,6 +298,8 @@ class Observer::Run final : public Follower {
   std::size_t drift_channel_ = 0;
   std::vector<bool> live_;
   std::vector<std::string> distrusted_;
+  std::vector<double> hall_K_;  // per row taken: as believed
+  std::vector<bool> is_hall_doubted_;
   std::vector<double> mean_innovation_;
   std::vector<double> last_s_;  // of each sensor's readings
   double last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
@@ -327,7 +352,7 @@ Observation Observer::observe(const ObservedRun& run) const {
   for (std::size_t i = 0; i < n; ++i) {
     seen.drift_um.push_back(pass.next(run));
     seen.deviation_um.push_back(pass.deviation_um());
-    seen.outputs.col(static_cast<Eigen::Index>(i)) = pass.outputs(run);
+    seen.outputs.col(static_cast<Eigen::Index>(i)) = pass.outputs();
   }
   seen.distrusted = pass.distrusted();
   return seen;

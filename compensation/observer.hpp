@@ -38,7 +38,7 @@ struct Observation {
 ///
 /// K(u) enters by its exponential, exact for any step; factors on exchanges act as heat over a step. Where readings keep away from what the
 /// rest expects (their mean over about ten rows by more than five deviations), the sensor is dropped for the rest of the run and the filter
-/// goes back to before it began. Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
+/// goes back to before it began. A hall that jumps by more than 3 K from row to row (of rows more than 10 min apart: in 10 min) is held where it was until it is back. Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
 class Observer final : public Predictor {
  public:
   /// @param system   linear, M = 1; copied

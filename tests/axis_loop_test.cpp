@@ -72,7 +72,9 @@ TEST(AxisLoop, OnlyGrowthThatTheFeedbackDoesNotSeeIsAnError) {
     loop.growing_part = part;
     loop.expansion_1_K = 10e-6;
     loop.at_um = 500e3;
-    const Predictor nothing = [](const Record& readings) { return std::vector<double>(readings.n_samples(), 0.0); };
+    const PredictedFromReadings nothing = [](const Record& readings) {
+      return std::vector<double>(readings.n_samples(), 0.0);
+    };
     return run_axis_loop(loop, record, "nose", nothing).before_um.back();
   };
   EXPECT_NEAR(error_um(Feedback::kMotor, GrowingPart::kScrew), 5.0, 1e-9);

@@ -285,6 +285,22 @@ TEST(Observer, RowByRowSaysTheSameAsOfTheWholeRun) {
   }
 }
 
+// A thermometer of the hall whose plug is exchanged for a warm one: its last reading holds, and it counts again once it is back.
+TEST(Observer, AHallThatJumpsIsHeld) {
+  const ObservedRun run = run_of(three_parts(), 60.0, 4.0);
+  ObservedRun exchanged = run;
+  exchanged.hall = {{0.0, 3599.0, 3600.0, 7200.0, 7201.0}, {4.0, 4.0, 19.0, 26.0, 4.0}};
+  for (const std::vector<std::string>& sensors : {std::vector<std::string>{}, {"T1", "T3"}}) {
+    const Observation o = observer_of(three_parts(), sensors).observe(exchanged);
+    EXPECT_LT(worst_um(o.drift_um, run), 1e-8) << sensors.size();
+    EXPECT_THAT(o.distrusted, ElementsAre(HasSubstr("the hall's thermometer from 60 min")));
+  }
+  ObservedRun slow = run;  // what is slower is a hall
+  slow.hall = {{0.0, 3600.0, 7200.0}, {4.0, 4.0, 26.0}};
+  EXPECT_THAT(observer_of(three_parts(), {}).observe(slow).distrusted, IsEmpty());
+  EXPECT_GT(worst_um(observer_of(three_parts(), {}).observe(slow).drift_um, run), 1.0);
+}
+
 TEST(Observer, ASensorInAnotherUnitIsRefused) {
   ObservedRun run = run_of(three_parts());
   run.readings.channels[0].unit = "K";
