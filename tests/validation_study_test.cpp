@@ -73,18 +73,23 @@ bool is_intact(const CsvRow& r) {
   return r.failed.empty();
 }
 
-// What is wanted of the best strategy: a tenth of the peak with sensors intact, three tenths with one failed, in its worst run.
+// What is wanted of the best strategy: a tenth of the peak with sensors intact, three tenths with one failed, in its worst run. An exchange of two
+// thermometers that are near each other at that moment is beyond it (0.43, docs/validation.md), and then it is safe within limits.
 TEST_F(ValidationStudy, TheObserverLeavesATenthAndThreeTenthsWithAFailedSensor) {
-  double intact = 0.0, failed = 0.0;
+  double intact = 0.0, failed = 0.0, exchanged = 0.0;
   for (const CsvRow& r : rows_) {
-    if (r.strategy == "observer")
-      (is_intact(r) ? intact : failed) = std::max(is_intact(r) ? intact : failed, r.left_um / r.before_um);
+    if (r.strategy != "observer") continue;
+    double& worst = is_intact(r) ? intact : r.failed.find("exchanged") == std::string::npos ? failed : exchanged;
+    worst = std::max(worst, r.left_um / r.before_um);
   }
   EXPECT_GT(intact, 0.0);
   EXPECT_LE(intact, 0.10);
   EXPECT_GT(failed, 0.0);
   EXPECT_LE(failed, 0.30);
-  EXPECT_EQ(strategy("observer")["verdict"], "safe to deploy");
+  EXPECT_GT(exchanged, 0.0);
+  EXPECT_LE(exchanged, 0.50);
+  EXPECT_EQ(strategy("observer")["verdict"], "safe within limits");
+  EXPECT_EQ(strategy("observer")["worse_than_nothing"], false);
 }
 
 // Source paper C: temperatures alone, learned while running continuously, do not tell the drift of another cyclogram.
