@@ -172,7 +172,7 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
         : best->safety == Safety::kSafe ? output::Verdict::Kind::kGood
                                         : output::Verdict::Kind::kNeutral,
         fmt::format("{}: {}", best->fitted.name, word(best->safety)),
-        fmt::format("It leaves the smallest share in its worst run, {:.0f} % of the peak{}. {}.", 100.0 * intact.left,
+        fmt::format("It leaves the smallest share in its worst run, {:.0f} % of the peak{}. Why: {}.", 100.0 * intact.left,
                     failed.peak ? fmt::format(", {:.0f} % with one sensor failed", 100.0 * failed.left) : "", best->why)});
   }
   blocks.emplace_back(output::Paragraph{fmt::format(

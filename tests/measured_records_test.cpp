@@ -46,8 +46,8 @@ TEST(Spindle22, RankingAndRegressionAgreeWithAnIndependentCalculation) {
   // baselines, written independently in Python. Six digits, as the summary has.
   const auto model = nlohmann::json::parse(read_text(folder / "models" / "regression_grey_grade.json"));
   std::map<std::string, double> coefficients;
-  for (const auto& term : model["terms"]) coefficients[term["input"]] = term["coefficient"];
-  EXPECT_NEAR(model["intercept"].get<double>(), 0.767083, 2e-6);
+  for (const auto& term : model["formula"]["terms"]) coefficients[term["input"]] = term["coefficient"];
+  EXPECT_NEAR(model["formula"]["intercept"].get<double>(), 0.767083, 2e-6);
   EXPECT_NEAR(coefficients["rise_00"], 7.910716, 1e-5);
   EXPECT_NEAR(coefficients["rise_13"], -0.438819, 1e-6);
   EXPECT_NEAR(coefficients["rise_12"], -0.251247, 1e-6);
