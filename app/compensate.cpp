@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/compensate_frame.hpp"
+#include "app/iso230_3_report.hpp"
 #include "app/record_study.hpp"
 #include "app/results.hpp"
 #include "app/validation_study.hpp"
@@ -163,6 +164,15 @@ Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, c
   return {.time_s = run.readings.time_s, .drift_um = drift_um, .predicted_um = ahead_um, .left_um = corrected.residual_um};
 }
 
+/// What ISO 230-3 asks of the drift, and of what is left of it.
+Iso230Figures iso_figures(const Outcome& o, const ObservedRun& run, const std::string& channel) {
+  Record test{.source = run.readings.source,
+              .time_s = o.time_s,
+              .channels = {{"speed", "rpm", {}}, {channel, "um", o.drift_um}, {channel + " corrected", "um", o.left_um}}};
+  for (double t_s : o.time_s) test.channels.front().values.push_back(run.cyclogram.speed_rpm(t_s));
+  return iso230_3_figures(test);
+}
+
 std::string corrected_csv(const Outcome& o, const std::vector<std::string>& comments) {
   std::string csv;
   for (const std::string& c : comments) csv += "# " + c + "\n";
@@ -236,19 +246,21 @@ void compensate(const CompensateOptions& options) {
   const double removed = 100.0 * (1.0 - o.after.peak_abs / o.before.peak_abs);
   const std::string way = options.through == "none" ? "without an actuator" : "through the " + options.through;
   const std::string title = fmt::format("{}: {} corrected {}", scenario.name, d.target, way);
-  const Json summary = {{"program", "driftwright"},
-                        {"version", folder.made_by().version},
-                        {"scenario", folder.made_by().scenario},
-                        {"model", options.model},
-                        {"predictor", d.name},
-                        {"through", options.through},
-                        {"cyclogram", what},
-                        {"channel", d.target},
-                        {"peak_before_um", o.before.peak_abs},
-                        {"peak_left_um", o.after.peak_abs},
-                        {"removed_percent", removed},
-                        {"rms_before_um", o.before.rmse},
-                        {"rms_left_um", o.after.rmse}};
+  const Iso230Figures iso = iso_figures(o, run, d.target);
+  Json summary = {{"program", "driftwright"},
+                  {"version", folder.made_by().version},
+                  {"scenario", folder.made_by().scenario},
+                  {"model", options.model},
+                  {"judged", verdict_of(judged_as)},
+                  {"predictor", d.name},
+                  {"through", options.through},
+                  {"cyclogram", what},
+                  {"channel", d.target},
+                  {"peak_before_um", o.before.peak_abs},
+                  {"peak_left_um", o.after.peak_abs},
+                  {"removed_percent", removed},
+                  {"rms_before_um", o.before.rmse},
+                  {"rms_left_um", o.after.rmse}};
   std::vector<double> t_min;
   for (double t_s : judged(o, o.time_s)) t_min.push_back(t_s / 60.0);
   output::Report page{.title = title,
@@ -268,6 +280,8 @@ void compensate(const CompensateOptions& options) {
                               {.label = "predicted", .x = t_min, .y = judged(o, o.predicted_um)},
                               {.label = "left", .x = t_min, .y = judged(o, o.left_um)}},
                    .bands = {{.label = "tolerance", .low = -study.tolerance_um, .high = study.tolerance_um}}});
+  summary["iso_230_3"] = iso230_3_json(iso);
+  page.blocks.push_back(iso230_3_block(iso));
   folder.write_text("corrected.csv",
                     corrected_csv(o, provenance_lines(folder.made_by(), (is_measured ? "record " : "cyclogram ") + what)));
   folder.write_text("summary.json", output::json_text(summary));

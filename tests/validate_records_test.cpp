@@ -159,12 +159,36 @@ TEST_F(ValidateRecords, AFileCorrectsAsItWasJudged) {
       EXPECT_EQ(left["peak_left_um"], (*s)["worst_peak_um"]) << predictor["name"];
       EXPECT_EQ(left["rms_left_um"], (*s)["overall_rms_um"]) << predictor["name"];
       EXPECT_EQ(predictor["judged"]["verdict"], (*s)["verdict"]) << predictor["name"];
+      EXPECT_EQ(left["judged"], (*s)["verdict"]) << predictor["name"];
     }
     const auto n_baselines =
         std::count_if(summary["validation"]["strategies"].begin(), summary["validation"]["strategies"].end(),
                       [](const Json& s) { return s["baseline"] == true; });
     EXPECT_EQ(n, static_cast<int>(summary["validation"]["strategies"].size() - static_cast<std::size_t>(n_baselines)));
   }
+}
+
+// Where `validate` would have left a model out, its file corrects nothing.
+TEST_F(ValidateRecords, AModelFollowsNoRecordThatItCannot) {
+  const auto out = fresh_folder("judged") / "out";
+  const CommandOutcome judged = run_program("validate " + machine_ + " --train " + record("warm_up") + " --train " +
+                                            record("steps") + " --test " + record("to_and_fro") + " -o " + out.string());
+  ASSERT_EQ(judged.exit_code, 0) << judged.output;
+  const auto refused = [&](const std::string& scenario, const std::string& measured) {
+    const CommandOutcome run = run_program("compensate " + scenario + " --model " + (out / "models/observer.json").string() +
+                                           " --through none --measured " + measured + " -o " + (out / "corrected").string());
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    return run.output;
+  };
+  EXPECT_THAT(refused(machine_, record("warm_up")), HasSubstr("it was fitted on"));
+  EXPECT_THAT(refused(records_only_, record("to_and_fro")), HasSubstr("is a model of a machine"));
+  edited("to_and_fro", "warm_start", [](std::vector<std::string>& cells, const std::vector<std::string>& header) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (header[i] == "t_spindle_degC" && cells[0] != header[0]) cells[i] = std::to_string(std::stod(cells[i]) + 8.0);
+    }
+    return true;
+  });
+  EXPECT_THAT(refused(machine_, record("warm_start")), HasSubstr("starts as warm as the hall"));
 }
 
 // The recorded hall drives the model, not the scenario's; and a record's clock may start anywhere.
