@@ -188,7 +188,9 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
                     }});
   }
   list.push_back({"thermometers and memories", false, [s](std::span<const ObservedRun> training) {
-                    FittedFormula f = fit_with_memories(records_of(training, s), s.candidates, s.speed, s.hall, s.target);
+                    // runs cut from one record are one again: its own blocks tell more of it than two or three runs
+                    const std::vector<Record> records = records_of(joined_histories(training, s.target), s);
+                    FittedFormula f = fit_with_memories(records, s.candidates, s.speed, s.hall, s.target);
                     return of_formula(std::move(f.model), std::move(f.reason), s);
                   }});
   if (s.physics) {
