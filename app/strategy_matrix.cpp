@@ -41,7 +41,7 @@ constexpr Failure kFailures[] = {{SensorFailure::kStuck, "stuck"},
 
 /// The hall as a thermometer tells it that fails at a time. One that gives nothing new leaves its last reading; any other tells what it read then,
 /// and from there on as much more as its channel does. One that nobody knows stays unknown.
-/// @param read  its channel after the failure
+/// @param readings  after the failure; @param channel  of the hall's thermometer in them
 TimeSeries failed_hall(const TimeSeries& hall, SensorFailure failure, double from_s, const Record& readings,
                        const std::string& channel) {
   if (hall.time_s.empty()) return hall;
