@@ -1,0 +1,196 @@
+#!/usr/bin/python3
+"""Scores diagnoses of a set of cases against their truth; the rules are those of README.md and were written before any diagnosis was run.
+
+    score.py CASES [--diagnoses NAME]      reads case_*/truth.json, case_*/NAME/diagnosis.json, case_*/NAME.heldout.json
+"""
+import argparse
+import collections
+import json
+import math
+import pathlib
+import re
+
+SUFFIX = re.compile(r"_(degC|um|urad)$")
+MINUTES = dict(min=1.0, s=1 / 60, h=60.0, d=1440.0)
+TO_UNIT = {"kJ/K": ("J/K", 1e3), "mK": ("K", 1e-3), "kW": ("W", 1e3), "mm": ("um", 1e3), "percent": ("1", 1e-2), "%": ("1", 1e-2), "": ("1", 1.0), "-": ("1", 1.0)}
+
+
+def wilson(k, n):
+    if n == 0:
+        return "     -"
+    z, p = 1.959964, k / n
+    middle, half = (p + z * z / (2 * n)) / (1 + z * z / n), z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)
+    return f"{k:4d} of {n:4d}   {100 * p:5.1f} %   [{100 * max(0, middle - half):5.1f}, {100 * min(1, middle + half):5.1f}]"
+
+
+def words(text):
+    if isinstance(text, (list, tuple)):
+        return set().union(*[words(x) for x in text]) if text else set()
+    return {SUFFIX.sub("", w) for w in re.split(r"[^A-Za-z0-9_]+", str(text or "")) if w}
+
+
+def accepted(effect):
+    """(name, place) pairs that count as right for this truth."""
+    return [(effect["key"], effect["where"])] + [(a["effect"], a["where"]) for a in effect["also"]]
+
+
+def kind_right(cause, effect):
+    return any(cause.get("effect") == name for name, _ in accepted(effect))
+
+
+def place_right(cause, effect, n_records):
+    for name, where in accepted(effect):
+        if cause.get("effect") != name:
+            continue
+        told = words(cause.get("where"))
+        if name == "run_state":
+            text = json.dumps({k: v for k, v in cause.items() if k != "alternatives"})
+            named = set(re.findall(r"measured_\d+", text))
+            truth = set(words(where))
+            rest = {f"measured_{i + 1}" for i in range(n_records)} - truth
+            if named in (truth, rest):
+                return True
+        elif name == "expansion":
+            if told & words(where):
+                return True
+        elif "," in where:
+            if words(where) - {"hall"} <= told:
+                return True
+        elif words(where) & told:
+            return True
+    return False
+
+
+def value_in(unit, value):
+    if unit in MINUTES:
+        return "min", value * MINUTES[unit]
+    name, factor = TO_UNIT.get(unit, (unit, 1.0))
+    return name, value * factor
+
+
+def coverage(cause, effect):
+    """[(first parameter?, inside?)] for the parameters that both name, in one unit, with an interval."""
+    told = {p.get("name"): p for p in cause.get("parameters") or []}
+    truth = {p["name"]: p for p in effect["parameters"]}
+    if cause.get("effect") != effect["key"]:
+        return []
+    out = []
+    for i, (name, p) in enumerate(truth.items()):
+        names = {"time": ["time", "from"], "from": ["from", "time"], "length": ["length"], "further_exponent": []}.get(name, [name])
+        mine = next((told[n] for n in names if n in told), None)
+        if not mine or not mine.get("ci95") or None in mine["ci95"] or p["value"] == 0:
+            continue
+        unit, low = value_in(mine.get("unit", "1"), mine["ci95"][0])
+        _, high = value_in(mine.get("unit", "1"), mine["ci95"][1])
+        true_unit, value = value_in(p["unit"], p["value"])
+        if unit != true_unit:
+            continue
+        values = [value]
+        if effect["key"] == "friction_law" and name == "exponent":
+            values.append(truth["further_exponent"]["value"])
+        if name in ("power", "growth") and "at_speed" in truth:
+            at = told.get("at_speed", {}).get("value")
+            if at is None:
+                continue
+            values = [value * (at / truth["at_speed"]["value"]) ** truth["exponent"]["value"]]
+        out.append((i == 0, any(low <= v <= high for v in values)))
+    return out
+
+
+def main():
+    a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    a.add_argument("cases")
+    a.add_argument("--diagnoses", default="diagnosis")
+    a.add_argument("--list", action="store_true", help="one line for each case")
+    a = a.parse_args()
+    count = collections.defaultdict(lambda: [0, 0])
+    by_kind = collections.defaultdict(lambda: [0, 0, 0, 0, 0])
+    failed = skipped = 0
+
+    def note(figure, yes):
+        count[figure][0] += bool(yes)
+        count[figure][1] += 1
+
+    for folder in sorted(pathlib.Path(a.cases).glob("case_*")):
+        truth = json.loads((folder / "truth.json").read_text())
+        file, ended = folder / a.diagnoses / "diagnosis.json", folder / (a.diagnoses + ".exit")
+        if not file.exists() and not ended.exists():
+            skipped += 1
+            continue
+        failed += not file.exists()
+        d = json.loads(file.read_text()) if file.exists() else dict(verdict="none", causes=[])
+        causes = d.get("causes") or []
+        named = [c for c in causes if c.get("standing") == "named"]
+        loose = causes + [x for c in causes if c.get("standing") == "ambiguous" for x in c.get("alternatives") or []]
+        said = [c for c in causes if c.get("standing") in ("named", "suspected")]
+        effects, n, cls = truth["effects"], truth["n_records"], truth["class"]
+        wrong = [c for c in named if not any(kind_right(c, e) for e in effects)] or (["verdict"] if d["verdict"] == "named" and not named else [])
+        note(f"{cls} ended with a diagnosis", file.exists())
+        note(f"{cls} wrong name", wrong)
+        note("all classes: wrong name", wrong)
+        line = f"{folder.name} {cls:3s} {truth['family']:16s} {d['verdict']:12s}"
+        if cls == "B":
+            note("B verdict consistent", d["verdict"] == "consistent")
+            note("B nothing named", file.exists() and not named and d["verdict"] != "named")
+        if cls in ("A", "C16", "C8"):
+            e = effects[0]
+            kind, place = any(kind_right(c, e) for c in named), any(kind_right(c, e) and place_right(c, e, n) for c in named)
+            some = any(kind_right(c, e) for c in loose)
+            some_place = any(kind_right(c, e) and place_right(c, e, n) for c in loose)
+            note(f"{cls} named, kind right", kind)
+            note(f"{cls} named, kind and place right", place)
+            note(f"{cls} kind right in any standing, or what cannot be told from it", some)
+            note(f"{cls} kind and place right in any standing, or what cannot be told from it", some_place)
+            note(f"{cls} verdict consistent though something is hidden", d["verdict"] == "consistent")
+            if cls == "C8":
+                note("C8 named or suspected rightly", any(kind_right(c, e) for c in said))
+                note("C8 named or suspected wrongly", any(not kind_right(c, e) for c in said))
+            t = by_kind[cls[0], e["key"]]
+            for i, x in enumerate((True, kind, place, some, bool(wrong))):
+                t[i] += x
+            line += f" {e['key']:18s} {e['nats']:6.1f}  {'kind' if kind else '----'} {'place' if place else '-----'}"
+        if cls == "D":
+            # two effects of one kind never occur together with one place; each needs a cause of its own
+            def both(causes, placed):
+                fits = [{i for i, c in enumerate(causes) if kind_right(c, e) and (not placed or place_right(c, e, n))} for e in effects]
+                return any(i != j for i in fits[0] for j in fits[1])
+
+            note("D both named", both(named, False))
+            note("D both named, places right", both(named, True))
+            note("D one of them named", any(kind_right(c, e) for c in named for e in effects))
+            note("D both in any standing, or what cannot be told from it", both(loose, False))
+            line += " " + ",".join(e["key"] for e in effects)
+        for e in effects:
+            for c in named:
+                if kind_right(c, e) and place_right(c, e, n):
+                    for first, inside in coverage(c, e):
+                        note("true value inside its 95 % interval, all comparable parameters", inside)
+                        if first:
+                            note("true value inside its 95 % interval, first parameter", inside)
+                    break
+        held = folder / (a.diagnoses + ".heldout.json")
+        if held.exists():
+            h = json.loads(held.read_text())
+            if h.get("written"):
+                note("extended file that does not run", h.get("after") is None)
+            if h.get("after") is not None:
+                worse = h["after"] > 1.05 * h["before"]
+                note("extended file worse on the holdout, all classes", worse)
+                note(f"{cls} extended file worse on the holdout", worse)
+                line += f"   holdout {h['before']:.3g} -> {h['after']:.3g}{' WORSE' if worse else ''}"
+        if wrong:
+            line += "   wrong: " + ",".join(c if isinstance(c, str) else c["effect"] + "@" + str(c.get("where")) for c in wrong)
+        if a.list:
+            print(line)
+
+    print(f"without a try: {skipped}; ended without a diagnosis (counted as not found): {failed}")
+    print("95 % intervals: Wilson")
+    for figure in sorted(count):
+        print(f"{figure:82s} {wilson(*count[figure])}")
+    print(f"\n{'class and truth':24s} {'cases':>6s} {'kind':>6s} {'place':>6s} {'loose':>6s} {'wrong':>6s}     kind, place: named; loose: kind in any standing; wrong: another kind named")
+    for (cls, key), t in sorted(by_kind.items()):
+        print(f"{cls} {key:22s} " + " ".join(f"{x:6d}" for x in t))
+
+
+if __name__ == "__main__":
+    main()

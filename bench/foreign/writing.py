@@ -1,0 +1,78 @@
+"""A machine as a user would write it down (scenario YAML), and records as a logger would write them."""
+import numpy as np
+
+TITLES = dict(lathe_headstock="headstock of a lathe", grinding_spindle="grinding spindle with coolant", motor_spindle="motor spindle with a chiller",
+              printer="printer with a heated bed in a chamber; the bed's electric power is recorded", incubator="heated box with a fan; the heater's electric power is recorded",
+              house="room of a house; heaters' power and outdoor temperature are recorded", gantry="gantry with two screws", heater_plate="test bench with a heater plate",
+              gearbox="gearbox with an oil sump", rotary_table="rotary table with a torque motor", hydraulic_unit="hydraulic unit with pump and manifold")
+
+
+def g(x):
+    return f"{x:.6g}"
+
+
+def scenario(machine, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="measured_1.csv", name=None):
+    v = {k: x for k, (x, _) in machine.numbers.items()}
+    out = [f"# {TITLES[machine.family].capitalize()}. Nominal numbers are estimates.", f"name: {name or machine.family}", f"reference_temperature: {g(machine.t_ref)} degC",
+           f"start: {machine.start if isinstance(machine.start, str) else g(machine.start) + ' degC'}", "machine: {generator: lumped}", "effects:"]
+    for b in machine.bodies:
+        if b in machine.air:
+            out.append(f"  - {{type: air_node, node: {b}, capacity: {g(v['C ' + b])} J/K, exchange: {g(v[f'G {b} hall'])} W/K}}")
+        else:
+            out.append(f"  - {{type: node, node: {b}, capacity: {g(v['C ' + b])} J/K}}")
+    for a, b in machine.links:
+        if not (a in machine.air and b == "hall"):
+            out.append(f"  - {{type: link, node: {a}, to: {b}, conductance: {g(v[f'G {a} {b}'])} W/K}}")
+    for node, set_point in machine.circuits:
+        out.append(f"  - {{type: coolant, node: {node}, flow: {g(v['flow ' + node])} L/min, passage_conductance: {g(v['passage ' + node])} W/K, set_point: {g(set_point)} degC}}")
+    for i, law in enumerate(machine.heats):
+        p, e = v[f"P {i}"], f", exponent: {g(v[f'e {i}'])}" if law["has_exponent"] else ""
+        idle = f", idle: {g(v[f'idle {i}'])} W" if law["has_idle"] else ""
+        head = f"  - {{type: {law['kind']}, node: {law['node']}"
+        if law["kind"] == "cutting_heat":
+            out.append(f"{head}, share: {g(p)}}}")
+        elif law["kind"] == "servo_loss":
+            out.append(f"{head}, power: {g(p)} W, at_feed: {g(law['at'] * 60)} m/min{e or ', exponent: 1'}{idle}, axis: {law['axis']}}}")
+        elif law["kind"] == "heat_source" and not law["has_exponent"]:
+            out.append(f"{head}, power: {g(p)} W{', runs: while_spindle_turns' if law['turning'] else ''}}}")
+        else:
+            decay = f", decay: {g(v[f'decay {i}'])} 1/K, at_temperature: {g(machine.t_ref)} degC" if law["has_decay"] else ""
+            out.append(f"{head}, power: {g(p)} W, at_speed: {g(law['at'])} rpm{e}{idle}{decay}}}")
+    out.append(f"hall: {hall}")
+    if machine.sensors:
+        out.append("sensors:")
+        out += [f"  - {{name: {n}, node: {b}}}" for n, b in machine.sensors]
+    if machine.displacements:
+        out.append("displacements:")
+        for name_d, _, nodes in machine.displacements:
+            terms = ", ".join(f"{{node: {b}, sensitivity: {g(v[f'S {name_d} {b}'])} um/K}}" for b in nodes)
+            out.append(f"  - {{name: {name_d}, sensitivities: [{terms}]}}")
+    out += ["cyclograms:", f"  plan: {{csv: {plan}}}", f"solver: {{relative_tolerance: 1e-5, absolute_tolerance: 1e-4 K, output_interval: {g(dt)} s}}"]
+    return "\n".join(out) + "\n"
+
+
+def record_csv(machine, record, temperatures, displacements, rng=None, missing=0.0):
+    head, columns = ["time_s", "speed_rpm"], [[g(t) for t in record.time_s], [g(n) for n in record.speed]]
+    for axis, f in sorted(record.feeds.items()):
+        head.append(f"feed_{axis}_mm_min")
+        columns.append([f"{x * 60000:.1f}" for x in f])
+    if record.power.any() or any(h["kind"] == "cutting_heat" for h in machine.heats):
+        head.append("cutting_power_W")
+        columns.append([g(p) for p in record.power])
+    for name, (unit, x) in record.columns.items():
+        head.append(f"{name}_{unit}")
+        columns.append([g(a) for a in x])
+    head.append("ambient_degC")
+    columns.append([f"{x:.2f}" for x in record.hall])
+    cells = []
+    for i, (name, _) in enumerate(machine.sensors):
+        head.append(name + "_degC")
+        cells.append([f"{x:.4f}".rstrip("0").rstrip(".") for x in temperatures[:, i]])
+    for i, (name, _, _) in enumerate(machine.displacements):
+        head.append(name + "_um")
+        cells.append([f"{x:.2f}" for x in displacements[:, i]])
+    if missing > 0:
+        for column in cells:
+            for k in np.flatnonzero(rng.random(len(column)) < missing):
+                column[k] = ""
+    return ",".join(head) + "\n" + "\n".join(",".join(r) for r in zip(*(columns + cells))) + "\n"
