@@ -18,14 +18,19 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
   std::vector<std::string> head = {fmt::format("{} with what `driftwright diagnose` found written in; verdict: {}",
                                                options.scenario, diagnosis::word(d.verdict))};
   for (const diagnosis::Cause& c : d.causes) {
-    head.push_back(
-        fmt::format("  {} at {} ({}){}{}", c.effect, c.where, c.law, c.parameters.empty() ? "" : ": ", parameters_text(c)));
+    head.push_back(fmt::format("  {}{}: {} at {} ({}){}{}", diagnosis::word(c.standing),
+                               c.is_written ? "" : ", not written in", c.effect, c.where, c.law,
+                               c.parameters.empty() ? "" : ": ", parameters_text(c)));
     for (const diagnosis::Cause& a : c.alternatives) head.push_back(fmt::format("    or {} at {}", a.effect, a.where));
   }
+  if (!d.written.keeps_numbers)
+    head.emplace_back("  rows that were kept out are predicted best by the scenario as it was: nothing is written in");
   for (const std::string& path : options.measured) head.push_back("  measured: " + path);
-  head.emplace_back(options.causes_only ? "  the scenario's own numbers are as they were"
-                                        : "  the scenario's own numbers are as fitted beside the causes (`calibration` in comments); "
-                                          "--causes-only leaves them");
+  if (d.written.keeps_numbers)
+    head.emplace_back(options.causes_only
+                          ? "  the scenario's own numbers are as they were"
+                          : "  the scenario's own numbers are as fitted beside the causes (`calibration` in comments); "
+                            "--causes-only leaves them");
   head.emplace_back("");
   return head;
 }
@@ -45,16 +50,17 @@ void diagnose(const DiagnoseOptions& options) {
     if (keys.contains(key)) continue;
     throw InputError(fmt::format("--without {}: no candidate has that key; there are {}", key, fmt::join(keys, ", ")));
   }
-  const diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how,
-                                                     [&](const std::string& work) { progress.begin(work); });
+  diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how,
+                                               [&](const std::string& work) { progress.begin(work); });
   progress.begin("writing");
   const std::vector<diagnosis::Candidate> candidates = diagnosis::candidates(*m.twin, m.runs, m.how.without);
   std::string difference;
   std::vector<diagnosis::StatedChange> changes;  // in the order in which the fit makes them
-  if (!options.causes_only) changes = stated_scatter(*m.twin, d);
+  if (!options.causes_only && d.written.keeps_numbers) changes = stated_scatter(*m.twin, d);
   for (diagnosis::StatedChange& cause : stated_causes(d)) changes.push_back(std::move(cause));
   const diagnosis::ExtendedScenario extended =
       write_scenario("extended", m, changes, head_of(d, options), folder, &difference);
+  if (extended.not_written.empty()) simulate_written(m, folder.path("extended.yaml").string(), d);
   nlohmann::ordered_json json = diagnosis_json(d);
   json["extended"] = {{"written", extended.written}, {"not_written", extended.not_written}};
   folder.write_text("diagnosis.json", output::json_text(json));

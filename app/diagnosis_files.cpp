@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "app/diagnosis_summary.hpp"
 #include "base/errors.hpp"
@@ -18,15 +19,17 @@ namespace driftwright::app {
 using diagnosis::StatedChange;
 
 std::vector<StatedChange> stated_causes(const diagnosis::Diagnosis& d) {
-  const diagnosis::Fit& fit = d.search.fit;
-  Eigen::Index first = fit.x.size();
-  for (const diagnosis::Claim& c : d.search.hypothesis) first -= static_cast<Eigen::Index>(c.knobs.size());
   std::vector<StatedChange> changes;
-  for (std::size_t c = 0; c < d.search.hypothesis.size(); ++c) {
-    const diagnosis::Claim& claim = d.search.hypothesis[c];
+  if (!d.written.keeps_numbers) return changes;
+  const diagnosis::Fit& fit = d.written.fit;
+  Eigen::Index first = fit.x.size();
+  for (const diagnosis::Claim& c : d.written.hypothesis) first -= static_cast<Eigen::Index>(c.knobs.size());
+  for (std::size_t c = 0; c < d.written.hypothesis.size(); ++c) {
+    const diagnosis::Claim& claim = d.written.hypothesis[c];
     const auto n = static_cast<Eigen::Index>(claim.knobs.size());
-    const diagnosis::Cause& cause = d.causes.at(c);
-    std::vector<std::string> numbers = {fmt::format("evidence gain {:.1f} nats", cause.log_evidence_gain)};
+    const diagnosis::Cause& cause = d.causes.at(d.written.causes.at(c));
+    std::vector<std::string> numbers = {
+        fmt::format("{}, evidence gain {:.1f} nats", diagnosis::word(cause.standing), cause.log_evidence_gain)};
     for (const diagnosis::Estimate& p : cause.parameters)
       numbers.push_back(fmt::format("{} {}, 95 %: {}", p.name, value_text(p), interval_text(p)));
     changes.push_back({fmt::format("{} at {}", cause.effect, cause.where),
@@ -71,6 +74,26 @@ diagnosis::ExtendedScenario write_scenario(const std::string& stem, const Measur
   folder.write_text(stem + ".diff", diff);
   if (difference) *difference = diff;
   return extended;
+}
+
+void simulate_written(const MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d) {
+  const diagnosis::TwinState state = scenarios::read_scenario(path).machine->effects;
+  const diagnosis::Twin& twin = *m.twin;
+  diagnosis::Twin::Workspace workspace(twin);
+  std::map<std::string, std::pair<double, double>> squares;  // and rows
+  for (const diagnosis::MeasuredRun& run : m.runs) {
+    const Eigen::MatrixXd readings = twin.read(state, run, twin.respond(state, run, workspace));
+    for (const diagnosis::MeasuredChannel& c : run.channels) {
+      auto& [sum, rows] = squares[c.name];
+      for (Eigen::Index i = 0; i < c.value.size(); ++i) {
+        if (std::isnan(c.value[i])) continue;
+        sum += std::pow((c.unit == "K" ? 1.0 : 1e6) * (c.value[i] - readings(c.output, i)), 2);
+        rows += 1.0;
+      }
+    }
+  }
+  for (diagnosis::ChannelGain& g : d.gain)
+    g.rmse_written = std::sqrt(squares[g.name].first / std::max(1.0, squares[g.name].second));
 }
 
 std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d, const std::vector<diagnosis::Candidate>& candidates) {

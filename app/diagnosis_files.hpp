@@ -21,6 +21,10 @@ namespace driftwright::app {
                                                          const std::vector<std::string>& head, output::ResultsFolder& folder,
                                                          std::string* difference);
 
+/// Runs the file that was written over the whole of each record, by the twin, with the effects as the file has them: ChannelGain::rmse_written.
+/// @throws InputError  as read_scenario()
+void simulate_written(const MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d);
+
 /// Best claim of missing heat in a region or lumped node, on top of scatter alone.
 struct MissingHeat {
   std::string body;

@@ -1,5 +1,6 @@
 #include "app/diagnosis_json.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace driftwright::app {
@@ -12,7 +13,13 @@ Json json_of(const diagnosis::Estimate& e) {
 }
 
 Json json_of(const diagnosis::Cause& c) {
-  Json json = {{"effect", c.effect}, {"where", c.where}, {"law", c.law}, {"parameters", Json::array()}};
+  Json json = {{"effect", c.effect},
+               {"standing", diagnosis::word(c.standing)},
+               {"where", c.where},
+               {"law", c.law},
+               {"parameters", Json::array()}};
+  if (!c.doubt.empty()) json["doubt"] = c.doubt;
+  json["written"] = c.is_written;
   for (const auto& p : c.parameters) json["parameters"].push_back(json_of(p));
   json["log_evidence_gain"] = c.log_evidence_gain;
   json["alternatives"] = Json::array();
@@ -81,6 +88,7 @@ Json diagnosis_json(const diagnosis::Diagnosis& d) {
                         {"rmse_before", g.rmse_before},
                         {"rmse_calibrated", g.rmse_calibrated},
                         {"rmse_after", g.rmse_after},
+                        {"rmse_written", std::isnan(g.rmse_written) ? Json() : Json(g.rmse_written)},
                         {"peak_before", g.peak_before},
                         {"peak_after", g.peak_after},
                         {"noise_floor", g.noise_floor}});
@@ -97,6 +105,10 @@ Json diagnosis_json(const diagnosis::Diagnosis& d) {
   }
   json["weighed_by_model_error"] = d.weighed_by_model_error;
   json["n_candidates"] = d.n_candidates;
+  // evidence that the best candidate has where nothing is wrong: at one machine in two, in a hundred, in ten thousand
+  json["chance"] = {{"median", d.search.chance.gain_at(0.5)},
+                    {"one_in_100", d.search.chance.gain_at(0.01)},
+                    {"one_in_10000", d.search.chance.gain_at(1e-4)}};
   return json;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -27,6 +28,7 @@ output::Verdict verdict_box(const diagnosis::Diagnosis& d) {
                     : d.verdict == Verdict::kUnexplained ? output::Verdict::Kind::kBad
                                                          : output::Verdict::Kind::kNeutral;
   static const std::map<Verdict, const char*> titles = {{Verdict::kConsistent, "Consistent with the scenario"},
+                                                        {Verdict::kSuspected, "A cause is suspected"},
                                                         {Verdict::kNamed, "Causes named"},
                                                         {Verdict::kAmbiguous, "Ambiguous: several causes would do"},
                                                         {Verdict::kUnexplained, "Something is left unexplained"},
@@ -37,7 +39,14 @@ output::Verdict verdict_box(const diagnosis::Diagnosis& d) {
 void add_causes(const diagnosis::Diagnosis& d, Blocks& blocks) {
   for (std::size_t i = 0; i < d.causes.size(); ++i) {
     const diagnosis::Cause& c = d.causes[i];
-    blocks.emplace_back(Heading{fmt::format("Cause {}: {} at {}", i + 1, c.effect, c.where)});
+    blocks.emplace_back(
+        Heading{fmt::format("Cause {}, {}: {} at {}", i + 1, diagnosis::word(c.standing), c.effect, c.where)});
+    if (!c.doubt.empty() || !c.is_written)
+      blocks.emplace_back(
+          Paragraph{fmt::format("{}{}", c.doubt.empty() ? "" : "Only suspected, since " + c.doubt + ". ",
+                                c.is_written ? ""
+                                             : "It is not written into extended.yaml: rows that were kept out "
+                                               "are predicted better without it.")});
     Table table{
         .caption = c.alternatives.empty()
                        ? "Gain: logarithm of how much more probable the data are with it than without, after the "
@@ -91,15 +100,19 @@ void add_unexplained(const diagnosis::Unexplained& u, Blocks& blocks) {
 void add_gain(const diagnosis::Diagnosis& d, Blocks& blocks) {
   blocks.emplace_back(Heading{"What mending it gains"});
   Table table{
-      .caption = fmt::format("Root mean square and peak of measured minus simulated. Held out: {}. Noise floor: what the "
-                             "readings scatter by themselves.",
-                             d.holdout),
-      .headers = {"channel", "unit", "as written", "scatter alone", "extended", "noise floor", "peak before", "peak after"},
+      .caption = fmt::format(
+          "Root mean square and peak of measured minus simulated. Held out: {}. Noise floor: what the "
+          "readings scatter by themselves. The file: what extended.yaml gives over the whole of all records, to which its "
+          "numbers were fitted.",
+          d.holdout),
+      .headers = {"channel", "unit", "as written", "scatter alone", "extended", "noise floor", "peak before", "peak after",
+                  "the file, all rows"},
       .rows = {}};
   for (const auto& g : d.gain) {
     table.rows.push_back({g.name, g.unit, fmt::format("{:.3g}", g.rmse_before), fmt::format("{:.3g}", g.rmse_calibrated),
                           fmt::format("{:.3g}", g.rmse_after), fmt::format("{:.3g}", g.noise_floor),
-                          fmt::format("{:.3g}", g.peak_before), fmt::format("{:.3g}", g.peak_after)});
+                          fmt::format("{:.3g}", g.peak_before), fmt::format("{:.3g}", g.peak_after),
+                          std::isnan(g.rmse_written) ? "" : fmt::format("{:.3g}", g.rmse_written)});
   }
   blocks.emplace_back(table);
 }
@@ -128,7 +141,15 @@ void add_candidates(const DiagnosisPage& page, Blocks& blocks) {
     bars.bars.push_back({fmt::format("{} at {}: {}", c.effect, c.where, c.variants.at(s.variant).law), s.gain,
                          fmt::format("{:.1f}", s.gain)});
   }
+  const diagnosis::Chance& chance = d.search.chance;
+  const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
   blocks.emplace_back(Heading{"Best single candidates"});
+  blocks.emplace_back(
+      Paragraph{fmt::format("The best of all would have {:.1f} nats at half of all machines in which nothing is wrong, "
+                            "{:.1f} at one in a hundred, above which a cause is "
+                            "suspected, and {:.1f} at one in ten thousand, above which it is named; found by simulating "
+                            "this machine with these records.",
+                            chance.gain_at(0.5) + price, chance.gain_at(0.01) + price, chance.gain_at(1e-4) + price)});
   if (bars.bars.empty()) {
     blocks.emplace_back(Paragraph{"None would bring evidence."});
     return;
@@ -185,10 +206,10 @@ output::Report diagnosis_report(const DiagnosisPage& page, const output::Provena
   add_causes(d, report.blocks);
   if (d.experiment) add_experiment(*d.experiment, report.blocks);
   if (d.unexplained) add_unexplained(*d.unexplained, report.blocks);
+  add_candidates(page, report.blocks);
   add_data(d, report.blocks);
   add_gain(d, report.blocks);
   add_residuals(page.measured, d, "extended", report.blocks);
-  add_candidates(page, report.blocks);
   report.blocks.emplace_back(Heading{"The scenario's own numbers"});
   report.blocks.emplace_back(numbers_table(d));
   add_written(page, report.blocks);

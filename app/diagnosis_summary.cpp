@@ -72,12 +72,12 @@ std::string summary_text(const diagnosis::Diagnosis& d) {
     text += fmt::format("data: {}: {}{}\n", f.channel, f.what, f.leaves_out ? " (left out)" : "");
   if (!d.causes.empty()) {
     text += "\ncauses, 95 % intervals in brackets, gain of evidence in nats\n";
-    std::vector<std::vector<std::string>> rows = {{"effect", "gain", "numbers"}};
+    std::vector<std::vector<std::string>> rows = {{"effect", "standing", "gain", "numbers"}};
     for (const diagnosis::Cause& c : d.causes) {
-      rows.push_back(
-          {fmt::format("{} at {}", c.effect, c.where), fmt::format("{:.1f}", c.log_evidence_gain), parameters_text(c)});
+      rows.push_back({fmt::format("{} at {}", c.effect, c.where), diagnosis::word(c.standing),
+                      fmt::format("{:.1f}", c.log_evidence_gain), parameters_text(c)});
       for (const diagnosis::Cause& a : c.alternatives)
-        rows.push_back({fmt::format("  or {} at {}", a.effect, a.where), fmt::format("{:.1f}", a.log_evidence_gain),
+        rows.push_back({fmt::format("  or {} at {}", a.effect, a.where), "", fmt::format("{:.1f}", a.log_evidence_gain),
                         parameters_text(a)});
     }
     text += columns(rows, true);
@@ -101,11 +101,12 @@ std::string summary_text(const diagnosis::Diagnosis& d) {
   }
   text += fmt::format("\nrms of measured minus simulated; {}\n", d.holdout);
   std::vector<std::vector<std::string>> rows = {
-      {"channel", "unit", "as written", "scatter alone", "extended", "noise", "peak before", "after"}};
+      {"channel", "unit", "as written", "scatter alone", "extended", "noise", "peak before", "after", "the file, all rows"}};
   for (const auto& g : d.gain) {
     rows.push_back({g.name, g.unit, fmt::format("{:.3g}", g.rmse_before), fmt::format("{:.3g}", g.rmse_calibrated),
                     fmt::format("{:.3g}", g.rmse_after), fmt::format("{:.3g}", g.noise_floor),
-                    fmt::format("{:.3g}", g.peak_before), fmt::format("{:.3g}", g.peak_after)});
+                    fmt::format("{:.3g}", g.peak_before), fmt::format("{:.3g}", g.peak_after),
+                    std::isnan(g.rmse_written) ? "" : fmt::format("{:.3g}", g.rmse_written)});
   }
   return text + columns(rows) + "\n";
 }
@@ -125,7 +126,8 @@ std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector
     reasons.push_back(fmt::format("{} is left with {:.2g} {} that is not noise", worst.name, worst.rms, worst.unit));
   }
   const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
-  if (!d.search.scores.empty() && d.search.scores.front().gain > price + diagnosis::SearchOptions{}.must_gain.front()) {
+  if (!d.search.scores.empty() &&
+      d.search.scores.front().gain > price + d.search.chance.gain_at(diagnosis::SearchOptions{}.wrongly_suspected)) {
     const diagnosis::Score& s = d.search.scores.front();
     reasons.push_back(fmt::format("{} at {} would bring {:.0f} nats of evidence", candidates.at(s.candidate).effect,
                                   candidates.at(s.candidate).where, s.gain));

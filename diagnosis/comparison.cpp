@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace driftwright::diagnosis {
+namespace {
+
+/// What no thermometer, indicator or integrator is worth more than, slowly coming and going.
+constexpr double kSlow_K = 0.01, kSlow_m = 2e-8, kSlow_rad = 2e-7, kSlow_s = 1200.0;
+
+}  // namespace
+
 Comparison::Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise) {
   for (std::size_t r = 0; r < runs.size(); ++r) {
     for (const MeasuredChannel& c : runs[r].channels) {
@@ -39,7 +46,7 @@ Eigen::VectorXd relative_speed(const MeasuredRun& run) {
 std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>& runs, const Prediction& prediction,
                                                  double floor_K, double floor_m, double floor_rad) {
   std::map<std::string, std::vector<NoiseSeries>> series;
-  std::map<std::string, double> floors;
+  std::map<std::string, double> floors, slow;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const Eigen::MatrixXd curves = smooth_curves(runs[r].time_s, relative_speed(runs[r]));
     for (const MeasuredChannel& c : runs[r].channels) {
@@ -48,10 +55,14 @@ std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>&
           {runs[r].time_s, c.value - prediction[r].row(c.output).transpose(), telling(curves, n_readings)});
       const double floor = c.unit == "K" ? floor_K : c.unit == "m" ? floor_m : floor_rad;
       floors[c.name] = std::max({floors[c.name], floor, c.quantum / std::sqrt(12.0)});
+      slow[c.name] = c.unit == "K" ? kSlow_K : c.unit == "m" ? kSlow_m : kSlow_rad;
     }
   }
   std::map<std::string, NoiseModel> noise;
-  for (const auto& [name, list] : series) noise[name] = estimate_noise(list, floors[name]);
+  for (const auto& [name, list] : series) {
+    NoiseModel& n = noise[name] = estimate_noise(list, floors[name]);
+    if (n.correlated < slow[name]) n = {n.white, slow[name], kSlow_s};
+  }
   return noise;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <memory>
 
@@ -12,6 +13,7 @@
 #include "diagnosis/latent_heat.hpp"
 #include "diagnosis/leftover.hpp"
 #include "diagnosis/missing_data.hpp"
+#include "diagnosis/no_solution.hpp"
 #include "diagnosis/scatter.hpp"
 #include "diagnosis/warm_start.hpp"
 
@@ -25,11 +27,13 @@ constexpr double kJump =
     27.0;  // squares that one step somewhere may take off by chance: exp(-13.5) times some thousand rows
 constexpr double kRough = 3.0;                // leftover over noise: a model that no effect mends
 constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
-constexpr double kFurther = 4.0;              // nats of one more effect, its price paid
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
-constexpr double kWorseHeldOut = 1.2;         // kept-out misses with the causes over those of scatter alone
 constexpr double kUnnamed = 3.0;              // nats by which one cause without a name must be better than those with one
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
+constexpr double kAmbient_K = 0.3;            // to which a recorded hall is known
+constexpr double kSureCause = 20.0;           // nats: no smaller rest hides it
+constexpr double kRestOfCause = 0.35;         // of what the causes explain: more left, and they are not what is wrong
+constexpr double kTooFar = 3.5;               // sigmas of its prior: a number beyond is a cause
 
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
@@ -58,10 +62,34 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
   return c;
 }
 
-/// What a warm start and another mesh change (one column a channel): the amplitude of each is unknown.
+/// Readings of all runs at nought, but for one.
+Prediction zero_but(const std::vector<MeasuredRun>& runs, Eigen::Index n_outputs, std::size_t run, Eigen::MatrixXd there) {
+  Prediction column;
+  for (const MeasuredRun& r : runs)
+    column.push_back(Eigen::MatrixXd::Zero(n_outputs, static_cast<Eigen::Index>(r.time_s.size())));
+  column[run] = std::move(there);
+  return column;
+}
+
+/// What a hall does that was otherwise than recorded by one standard deviation, a run each.
+std::vector<Prediction> ambient_columns(const Twin& twin, const std::vector<MeasuredRun>& runs, const TwinState& state) {
+  TwinState warmer = state;
+  warmer.push_back(effects::make_effect("ambient", effects::Place::kHall, effects::kHallName, {{"offset", kAmbient_K}}));
+  Twin::Workspace workspace(twin);
+  std::vector<Prediction> columns;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    Eigen::MatrixXd there = twin.read(warmer, runs[r], twin.respond(warmer, runs[r], workspace)) -
+                            twin.read(state, runs[r], twin.respond(state, runs[r], workspace));
+    columns.push_back(zero_but(runs, there.rows(), r, there));
+  }
+  return columns;
+}
+
+/// What a warm start, a hall that is not quite as recorded and another mesh (one column a channel) change: the amplitude of each is unknown.
 std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double share,
                                         const std::vector<MeasuredRun>& runs, const TwinState& state) {
   std::vector<Prediction> columns = start_columns(twin, runs);
+  for (Prediction& c : ambient_columns(twin, runs, state)) columns.push_back(std::move(c));
   if (!coarse) return columns;
   Twin::Workspace fine_space(twin), coarse_space(*coarse);
   Prediction difference;
@@ -108,10 +136,24 @@ std::string words(const Unnamed& u) {
                      u.where, course, u.follows == "nothing" ? "" : " " + u.follows);
 }
 
+/// What is left beside the causes, in a sentence.
+std::string rest_words(const Unexplained& u) {
+  return fmt::format("Beside it {:.2g} {} RMS that is not noise is left at {}", u.channels.front().rms,
+                     u.channels.front().unit, u.channels.front().name);
+}
+
+/// Machines without fault per one at which chance offers as much.
+std::string odds_words(const Diagnosis& d, const Cause& c) {
+  const double share = d.search.chance.share_above(c.log_evidence_gain);
+  return share < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / share);
+}
+
 std::string reason_of(const Diagnosis& d) {
   std::vector<std::string> parts;
   for (const Cause& c : d.causes) {
     std::string text = words(c);
+    if (c.standing == Standing::kSuspected)
+      text = fmt::format("suspected{}{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, odds_words(d, c), text);
     if (!c.alternatives.empty()) {
       std::vector<std::string> others;
       for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, a.where));
@@ -120,6 +162,7 @@ std::string reason_of(const Diagnosis& d) {
     parts.push_back(text);
   }
   std::string text = fmt::format("{}", fmt::join(parts, "; and "));
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   switch (d.verdict) {
     case Verdict::kConsistent:
       return fmt::format(
@@ -139,9 +182,11 @@ std::string reason_of(const Diagnosis& d) {
       if (d.unexplained && d.unexplained->one_cause) {
         return fmt::format("{}. The best of the catalogue: {}.", words(*d.unexplained->one_cause), text);
       }
-      return "Something is left that no candidate explains; the best so far: " + text + ".";
+      return fmt::format("Something is left that no candidate explains, {:.2g} {} RMS at {}; the best so far: {}.",
+                         d.unexplained->channels.front().rms, d.unexplained->channels.front().unit,
+                         d.unexplained->channels.front().name, text);
     default:
-      return text + ".";
+      return text + "." + (d.unexplained ? " " + rest_words(*d.unexplained) + "." : "");
   }
 }
 
@@ -189,9 +234,8 @@ std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResu
   for (const Leftover& l : list) {
     const bool stands_out = l.sigmas() > kStandsOut || (together > kStandsOutTogether && l.sigmas() > 3.0);
     const bool is_large = l.rms >= kWorthNaming * noise.at(l.channel).total();
-    const bool is_more =
-        result.further_gain > kFurther && u.channels.empty();  // the worst stands for what one more effect would take
-    if (!(stands_out && is_large) && l.jump_squares < kJump && !is_more) continue;
+    if (!(stands_out && is_large) && l.jump_squares < kJump) continue;
+    u.nats += 0.5 * std::max(l.squares - l.n_curves, l.jump_squares);
     u.channels.push_back({l.channel,
                           l.unit == "K"   ? "K"
                           : l.unit == "m" ? "um"
@@ -261,23 +305,110 @@ Unexplained explained_better(const Fitter& fitter, const SearchResult& result, c
   return u;
 }
 
-/// Kept-out misses with the causes over those of scatter alone: geometric mean over the channels.
-double worse_than_scatter(const std::vector<ChannelGain>& gain) {
-  double sum = 0.0;
-  for (const ChannelGain& g : gain) sum += std::log(std::max(1e-12, g.rmse_after) / std::max(1e-12, g.rmse_calibrated));
-  return gain.empty() ? 1.0 : std::exp(sum / static_cast<double>(gain.size()));
-}
-
 /// Causes that fit all data and predict kept-out ones worse than no cause does.
 Unexplained failed_held_out(const std::vector<ChannelGain>& gain) {
   const auto worst = std::max_element(gain.begin(), gain.end(), [](const ChannelGain& a, const ChannelGain& b) {
-    return a.rmse_after * b.rmse_calibrated < b.rmse_after * a.rmse_calibrated;
+    return a.rmse_calibrated * b.noise_floor < b.rmse_calibrated * a.noise_floor;
   });
   Unexplained u;
   u.channels.push_back(
-      {worst->name, worst->unit, worst->rmse_after, worst->rmse_after / std::max(1e-12, worst->noise_floor)});
+      {worst->name, worst->unit, worst->rmse_calibrated, worst->rmse_calibrated / std::max(1e-12, worst->noise_floor)});
   u.fails_held_out = true;
   return u;
+}
+
+/// Claims that kept-out rows are predicted better with, and all numbers fitted beside them alone.
+Written written_of(const Fitter& fitter, const SearchResult& result, const HeldOut& held, Twin::Workspace& workspace) {
+  Written w{.hypothesis = result.hypothesis, .causes = {}, .fit = result.fit, .keeps_numbers = held.keeps_numbers};
+  std::vector<std::size_t> dropped;
+  for (std::size_t c = 0; c < result.hypothesis.size(); ++c) (held.keeps_claim[c] ? w.causes : dropped).push_back(c);
+  if (dropped.empty()) return w;
+  const Remainder rest = without_claims(result.hypothesis, dropped, fitter.n_nuisance());
+  w.hypothesis = rest.hypothesis;
+  w.fit = result.without;
+  if (w.hypothesis.empty()) return w;
+  const Eigen::VectorXd x = result.fit.x(rest.x);
+  if (!has_solution([&] { w.fit = fitter.fit(w.hypothesis, x.tail(x.size() - fitter.n_nuisance()), workspace); })) {
+    w.hypothesis.clear();
+    w.causes.clear();
+  }
+  return w;
+}
+
+/// The scenario's own numbers as fitted.
+std::vector<Estimate> calibrated_numbers(const Fitter& fitter, const Fit& fit) {
+  std::vector<Estimate> numbers;
+  const Twin& twin = fitter.twin();
+  for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
+    const Knob& k = fitter.scatter()[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    const double x = fit.x[at], sd = std::sqrt(fit.covariance(at, at));
+    TwinState turned = twin.as_written();
+    k.set(turned, k.value(x));
+    std::string of;  // one of several sensitivities of a body
+    if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
+      of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
+    numbers.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x), k.value(x - 1.96 * sd),
+                       k.value(x + 1.96 * sd), x / k.prior_sd});
+  }
+  return numbers;
+}
+
+/// Numbers of the scenario that have gone so far that they are no calibration: causes by their own key, as fitted.
+std::vector<Cause> moved_numbers(const Diagnosis& d, const std::vector<Knob>& scatter) {
+  std::vector<Cause> causes;
+  const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
+  for (std::size_t i = 0; i < scatter.size(); ++i) {
+    const Estimate& e = d.calibrated[i];
+    if (!(std::abs(e.deviation) > kTooFar)) continue;
+    const Knob& k = scatter[i];
+    const double x = e.deviation * k.prior_sd;
+    // the density of its value under the wide prior of a fault over that under what is known of it
+    const double gain = 0.5 * e.deviation * e.deviation - 0.5 * std::pow(x / effects::kFactorSd, 2) -
+                        std::log(effects::kFactorSd / k.prior_sd) - price;
+    Estimate number = e;
+    number.name = k.name;
+    Cause c{k.effect, k.where, fmt::format("another {}, {:+.1f} sigmas from what is known of it", k.name, e.deviation),
+            {number}, gain,    {}};
+    c.standing = gain >= d.search.chance.gain_at(SearchOptions{}.wrongly_named) ? Standing::kNamed : Standing::kSuspected;
+    causes.push_back(std::move(c));
+  }
+  std::stable_sort(causes.begin(), causes.end(),
+                   [](const Cause& a, const Cause& b) { return a.log_evidence_gain > b.log_evidence_gain; });
+  return causes;
+}
+
+/// How surely each claim is a cause.
+void give_standing(Diagnosis& d, const HeldOut& held) {
+  for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
+    Cause& cause = d.causes[c];
+    cause.is_written = held.keeps_claim[c] && held.keeps_numbers;
+    if (!d.search.findings[c].is_named) continue;
+    if (!held.keeps_claim[c] || held.claim_nats[c] <= 0.0) {
+      cause.doubt = "rows that were kept out are not predicted better with it";
+      continue;
+    }
+    cause.standing = cause.alternatives.empty() ? Standing::kNamed : Standing::kAmbiguous;
+  }
+}
+
+/// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
+bool rest_rules(const Diagnosis& d) {
+  if (!d.unexplained) return false;
+  if (d.causes.empty() || d.unexplained->one_cause || d.unexplained->fails_held_out) return true;
+  double explained = 0.0;
+  for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
+  return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
+}
+
+Verdict verdict_of(const Diagnosis& d) {
+  if (rest_rules(d)) return Verdict::kUnexplained;
+  const auto is_any = [&](Standing s) {
+    return std::any_of(d.causes.begin(), d.causes.end(), [&](const Cause& c) { return c.standing == s; });
+  };
+  if (is_any(Standing::kAmbiguous)) return Verdict::kAmbiguous;
+  if (is_any(Standing::kNamed)) return Verdict::kNamed;
+  return d.causes.empty() ? Verdict::kConsistent : Verdict::kSuspected;
 }
 
 }  // namespace
@@ -286,6 +417,8 @@ const char* word(Verdict verdict) {
   switch (verdict) {
     case Verdict::kConsistent:
       return "consistent";
+    case Verdict::kSuspected:
+      return "suspected";
     case Verdict::kNamed:
       return "named";
     case Verdict::kAmbiguous:
@@ -294,6 +427,18 @@ const char* word(Verdict verdict) {
       return "unexplained";
     case Verdict::kInsufficientData:
       return "insufficient_data";
+  }
+  return "";
+}
+
+const char* word(Standing standing) {
+  switch (standing) {
+    case Standing::kSuspected:
+      return "suspected";
+    case Standing::kAmbiguous:
+      return "ambiguous";
+    case Standing::kNamed:
+      return "named";
   }
   return "";
 }
@@ -363,7 +508,6 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.unexplained->one_cause = std::move(unnamed);
   }
   d.scatter_alone = d.search.without.prediction;
-  d.extended = d.search.fit.prediction;
 
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     const Finding& f = d.search.findings[c];
@@ -376,34 +520,26 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     }
     d.causes.push_back(std::move(cause));
   }
-  for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
-    const Knob& k = fitter.scatter()[i];
-    const auto at = static_cast<Eigen::Index>(i);
-    const double x = d.search.fit.x[at], sd = std::sqrt(d.search.fit.covariance(at, at));
-    TwinState turned = twin.as_written();
-    k.set(turned, k.value(x));
-    std::string of;  // one of several sensitivities of a body
-    if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
-      of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
-    d.calibrated.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x),
-                            k.value(x - 1.96 * sd), k.value(x + 1.96 * sd), x / k.prior_sd});
-  }
   say("measuring the gain");
-  HeldOut held = held_out_gain(fitter, d.search, d.noise);
-  d.holdout = std::move(held.how);
-  d.gain = std::move(held.channels);
-  const bool fails_held_out = !d.causes.empty() && worse_than_scatter(d.gain) > kWorseHeldOut;
-  if (fails_held_out && !d.unexplained) d.unexplained = failed_held_out(d.gain);
-  if (n_readings < kFewestReadings) {
-    d.verdict = Verdict::kInsufficientData;
-  } else if (d.unexplained) {
-    d.verdict = Verdict::kUnexplained;
-  } else if (d.causes.empty()) {
-    d.verdict = Verdict::kConsistent;
-  } else {
-    const bool is_ambiguous =
-        std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
-    d.verdict = is_ambiguous ? Verdict::kAmbiguous : Verdict::kNamed;
+  const HeldOut held = held_out_gain(fitter, d.search, d.noise);
+  d.written = written_of(fitter, d.search, held, workspace);
+  d.extended = d.written.keeps_numbers ? d.written.fit.prediction : d.as_written;
+  d.calibrated = calibrated_numbers(fitter, d.written.fit);
+  for (Cause& c : moved_numbers(d, fitter.scatter())) d.causes.push_back(std::move(c));
+  d.holdout = held.how;
+  d.gain = held.channels;
+  give_standing(d, held);
+  const bool none_is_kept = std::none_of(held.keeps_claim.begin(), held.keeps_claim.end(), [](char k) { return k != 0; });
+  if (!d.search.findings.empty() && d.search.findings.front().is_named && none_is_kept) {
+    if (!d.unexplained) d.unexplained = failed_held_out(d.gain);
+    d.unexplained->fails_held_out = true;
+  }
+  d.verdict = n_readings < kFewestReadings ? Verdict::kInsufficientData : verdict_of(d);
+  if (d.verdict == Verdict::kUnexplained) {
+    for (Cause& c : d.causes) {
+      if (c.standing != Standing::kSuspected && c.doubt.empty()) c.doubt = "more is left than it explains";
+      c.standing = Standing::kSuspected;
+    }
   }
   if (std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); })) {
     say("choosing an experiment");

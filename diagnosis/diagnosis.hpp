@@ -9,8 +9,16 @@
 
 namespace driftwright::diagnosis {
 
-enum class Verdict { kConsistent, kNamed, kAmbiguous, kUnexplained, kInsufficientData };
+enum class Verdict { kConsistent, kSuspected, kNamed, kAmbiguous, kUnexplained, kInsufficientData };
 [[nodiscard]] const char* word(Verdict verdict);
+
+/// How surely a cause is one.
+enum class Standing {
+  kSuspected,  ///< more than chance has to offer, and too little to be sure of; or it does not predict kept-out rows better; or more is left than it explains
+  kAmbiguous,  ///< sure, but others would do as well
+  kNamed,
+};
+[[nodiscard]] const char* word(Standing standing);
 
 /// A number with its 95 % interval.
 struct Estimate {
@@ -24,6 +32,18 @@ struct Cause {
   std::vector<Estimate> parameters;
   double log_evidence_gain = 0.0;
   std::vector<Cause> alternatives;
+  Standing standing = Standing::kSuspected;
+  std::string doubt = {};  ///< why it is only suspected, a clause; "" where it is not
+  bool is_written = true;  ///< whether extended.yaml has it: it predicts kept-out rows better than without
+};
+
+/// What extended.yaml holds: claims that predict kept-out rows better, and the scenario's own numbers as fitted beside them.
+struct Written {
+  Hypothesis hypothesis;
+  std::vector<std::size_t> causes;  ///< of Diagnosis::causes, one a claim
+  Fit fit;
+  bool keeps_numbers =
+      true;  ///< false: the scenario as written predicts kept-out rows better than what was fitted; nothing is written
 };
 
 /// Residuals of a channel in three states of the model.
@@ -31,8 +51,11 @@ struct ChannelGain {
   std::string name, unit;  ///< K, um, urad
   double noise_floor = 0.0;
   double rmse_before = 0.0, rmse_calibrated = 0.0,
-         rmse_after = 0.0;  ///< as written; scatter alone; with the causes; kept out of the fit
+         rmse_after =
+             0.0;  ///< as written; scatter alone; what extended.yaml holds, fitted without them: on rows that were kept out
   double peak_before = 0.0, peak_after = 0.0;
+  double rmse_written =
+      0.0;  ///< of the file extended.yaml over the whole of all records, its own rows; NaN where nobody simulated it
 };
 
 /// What no candidate explains.
@@ -43,6 +66,7 @@ struct Unexplained {
     double times_noise = 0.0;  ///< its squares over what noise would have, in standard deviations of that
   };
   std::vector<Channel> channels;  ///< worst first; those that stand out
+  double nats = 0.0;              ///< what a cause of the right shape would bring at most
   std::string correlates_with;    ///< what its waveform looks like, or ""
   double correlation = 0.0;
   std::string heat_would_sit_in;       ///< region whose missing heat would explain most of it, or ""
@@ -60,12 +84,15 @@ struct Diagnosis {
   /// Causes, intervals and gains count what the model misses as noise: it misses far more than noise, whatever is claimed.
   bool weighed_by_model_error = false;
   std::string holdout;  ///< how the gain was held out
+  bool keeps_numbers =
+      true;  ///< false: the scenario as written predicts kept-out rows better than what was fitted; nothing of it is written
   std::vector<ChannelGain> gain;
   std::vector<DataFinding> data;
   int n_candidates = 0;
-  SearchResult search;
+  SearchResult search;  ///< its claims are the first causes, in their order; behind them numbers that have gone too far
   std::map<std::string, NoiseModel> noise;
-  std::vector<Estimate> calibrated;  ///< scatter's numbers, as fitted with the causes
+  Written written;
+  std::vector<Estimate> calibrated;  ///< scatter's numbers, as fitted with the causes that are written
   Prediction as_written, scatter_alone, extended;
 };
 

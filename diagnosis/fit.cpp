@@ -75,6 +75,16 @@ Fitter::Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vect
   take_slopes({}, x);
 }
 
+Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
+    : twin_(other.twin_),
+      runs_(runs),
+      scatter_(other.scatter_),
+      linear_(other.linear_),
+      nuisance_(other.nuisance_),
+      differences_(other.differences_) {
+  set_noise(other.noise_);
+}
+
 Eigen::VectorXd Fitter::nuisance_sd() const {
   Eigen::VectorXd sd = Eigen::VectorXd::Ones(n_nuisance());
   for (std::size_t i = 0; i < scatter_.size(); ++i) sd[static_cast<Eigen::Index>(i)] = scatter_[i].prior_sd;

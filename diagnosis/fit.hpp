@@ -50,6 +50,9 @@ class Fitter {
   /// @param linear  further columns [per run: n_outputs x n_times] with an unknown amplitude of standard deviation 1
   Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter, std::vector<Prediction> linear);
 
+  /// The same with other readings: some of them left out, the noise as it is. @param runs  with the same rows, the missing ones NaN; outlive it
+  Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs);
+
   /// Whitens anew. @param noise  by channel
   void set_noise(const std::map<std::string, NoiseModel>& noise);
   /// Takes scatter's slopes at a fit of a hypothesis: later fits of others start there.

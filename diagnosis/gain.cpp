@@ -2,133 +2,251 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kFitted = 2.0 / 3.0;  // of a single run
+constexpr int kBlocks = 6;             // of a run, every other one kept out
+constexpr double kNoBetter = 0.99;     // of the squares: what takes off less is not worth writing
 
-/// x of a fit with numbers taken from some rows of the whitened data alone: one Gauss-Newton step, damped, from the fit to all.
-Eigen::VectorXd refitted(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit,
-                         const std::vector<char>& is_used, bool keep_unseen, Twin::Workspace& workspace) {
-  const Eigen::Index n_n = fitter.n_nuisance(), n = fit.x.size();
-  Eigen::MatrixXd slopes(fit.residual.size(), n);
-  slopes << fitter.nuisance_slopes(), fit.slopes;
-  const Eigen::VectorXd all_squares = slopes.colwise().squaredNorm();
-  Eigen::VectorXd residual = fit.residual;
-  for (Eigen::Index i = 0; i < residual.size(); ++i) {
-    if (is_used[static_cast<std::size_t>(i)]) continue;
-    slopes.row(i).setZero();
-    residual[i] = 0.0;
+/// Rows that numbers are fitted to, and the others. Both have all runs; readings that are not theirs are missing.
+struct Fold {
+  std::vector<MeasuredRun> fitted, kept_out;
+};
+
+Fold fold_of(const std::vector<MeasuredRun>& runs, const std::function<bool(std::size_t run, double t_s)>& is_kept_out) {
+  Fold fold{runs, runs};
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (std::size_t i = 0; i < runs[r].time_s.size(); ++i) {
+      std::vector<MeasuredRun>& without = is_kept_out(r, runs[r].time_s[i]) ? fold.fitted : fold.kept_out;
+      for (MeasuredChannel& c : without[r].channels) c.value[static_cast<Eigen::Index>(i)] = std::nan("");
+    }
   }
-  const Eigen::VectorXd sd = fitter.prior_sd(hypothesis);
-  Eigen::MatrixXd hessian = slopes.transpose() * slopes;
-  hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
-  Eigen::VectorXd step = slopes.transpose() * residual - fit.x.cwiseQuotient(sd.cwiseProduct(sd));
-  const Eigen::VectorXd used_squares = slopes.colwise().squaredNorm();
-  Eigen::VectorXd from = fit.x;
-  for (Eigen::Index i = n_n; i < n; ++i) {  // it happened elsewhere
-    if (used_squares[i] > 1e-6 * all_squares[i]) continue;
-    const bool has_no_slope = all_squares[i] == 0.0;  // a time, or cables that are swapped or not
-    step[i] = 0.0;
-    hessian.row(i).setZero();
-    hessian.col(i).setZero();
-    hessian(i, i) = 1.0;
-    if (!keep_unseen && !has_no_slope) from[i] = 0.0;
-  }
-  // What few data want may be more than the machine stands: only as far as it explains them better.
-  const auto misfit = [&](const Eigen::VectorXd& x) {
-    double sum = 1e300;
-    (void)has_solution([&] {
-      const Eigen::VectorXd r =
-          fitter.comparison().measured() - fitter.comparison().whitened(fitter.predict(hypothesis, x, workspace));
-      sum = 0.5 * x.cwiseQuotient(sd).squaredNorm();
-      for (Eigen::Index i = 0; i < r.size(); ++i) {
-        if (is_used[static_cast<std::size_t>(i)]) sum += 0.5 * r[i] * r[i];
-      }
-    });
-    return sum;
+  return fold;
+}
+
+/// Whether a claim changes any reading of a run.
+std::vector<char> runs_of(const Fitter& fitter, const SearchResult& result, std::size_t claim, Twin::Workspace& workspace) {
+  const Remainder rest = without_claims(result.hypothesis, {claim}, fitter.n_nuisance());
+  const Prediction without = fitter.predict(rest.hypothesis, result.fit.x(rest.x), workspace);
+  std::vector<char> acts;
+  for (std::size_t r = 0; r < without.size(); ++r) acts.push_back(!without[r].isApprox(result.fit.prediction[r], 1e-12));
+  return acts;
+}
+
+bool has_time(const Claim& claim) {
+  return std::any_of(claim.knobs.begin(), claim.knobs.end(), [](const Knob& k) { return k.is_time; });
+}
+
+struct Folds {
+  std::vector<Fold> list;
+  std::string how;
+};
+
+Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace& workspace) {
+  const std::vector<MeasuredRun>& runs = fitter.runs();
+  Folds folds;
+  const auto by_blocks = [&](std::size_t run) {
+    const double block_s = runs[run].time_s.back() / kBlocks;
+    for (int odd : {0, 1})
+      folds.list.push_back(
+          fold_of(runs, [&](std::size_t r, double t_s) { return r == run && static_cast<int>(t_s / block_s) % 2 == odd; }));
   };
-  const Eigen::VectorXd whole = hessian.llt().solve(step);
-  const double before = misfit(from);
-  for (double share : {1.0, 0.5, 0.25, 0.1}) {
-    if (misfit(from + share * whole) < before) return from + share * whole;
+  if (runs.size() == 1) {
+    if (std::any_of(result.hypothesis.begin(), result.hypothesis.end(), has_time)) {
+      by_blocks(0);
+      folds.how = fmt::format(
+          "sixths of the only record, every other one predicted with numbers fitted to the rest, for something happened in "
+          "it");
+    } else {
+      const double from_s = kFitted * runs[0].time_s.back();
+      folds.list.push_back(fold_of(runs, [&](std::size_t, double t_s) { return t_s > from_s; }));
+      folds.how = "the last third of the only record, predicted with numbers fitted to the first two thirds";
+    }
+  } else {
+    std::vector<char> happened(runs.size(), 0);  // something in this run alone
+    for (std::size_t c = 0; c < result.hypothesis.size(); ++c) {
+      const std::vector<char> acts = runs_of(fitter, result, c, workspace);
+      if (std::count(acts.begin(), acts.end(), 1) == 1)
+        happened[static_cast<std::size_t>(std::find(acts.begin(), acts.end(), 1) - acts.begin())] = 1;
+    }
+    for (std::size_t out = 0; out < runs.size(); ++out) {
+      if (happened[out]) {
+        by_blocks(out);
+      } else {
+        folds.list.push_back(fold_of(runs, [&](std::size_t r, double) { return r == out; }));
+      }
+    }
+    folds.how = fmt::format("each of the {} records in turn, predicted with numbers fitted to the others{}", runs.size(),
+                            std::count(happened.begin(), happened.end(), 1) > 0
+                                ? "; of a record in which alone something happened, sixths, every other one kept out"
+                                : "");
   }
-  return from;
+  folds.how += "; which effect it is was decided on all rows";
+  return folds;
+}
+
+/// Claims that are fitted together: a bit each.
+using Subset = unsigned;
+
+class Judge {
+ public:
+  Judge(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
+        std::vector<Fold> folds)
+      : result_(result), noise_(noise), folds_(std::move(folds)) {
+    for (const Fold& fold : folds_) {
+      fitters_.push_back(std::make_unique<Fitter>(fitter, fold.fitted));
+      comparisons_.emplace_back(fold.kept_out, fitter.noise());
+    }
+    Twin::Workspace workspace(fitter.twin());
+    written_ = fitter.predict({}, Eigen::VectorXd::Zero(fitter.n_nuisance()), workspace);
+  }
+
+  /// Predictions of all runs, a fold each, with numbers that were fitted to the fold's other rows.
+  const std::vector<Prediction>& predicted(Subset claims) {
+    const auto known = predictions_.find(claims);
+    if (known != predictions_.end()) return known->second;
+    std::vector<std::size_t> left_out;
+    for (std::size_t c = 0; c < result_.hypothesis.size(); ++c) {
+      if (((claims >> c) & 1U) == 0) left_out.push_back(c);
+    }
+    const Eigen::Index n_n = fitters_.front()->n_nuisance();
+    const Remainder rest = without_claims(result_.hypothesis, left_out, n_n);
+    const Eigen::VectorXd x = result_.fit.x(rest.x);
+    std::vector<Prediction> list(folds_.size());
+    for_each_index(
+        folds_.size(), [&] { return Twin::Workspace(fitters_.front()->twin()); },
+        [&](std::size_t f, Twin::Workspace& workspace) {
+          const bool is_solved = has_solution(
+              [&] { list[f] = fitters_[f]->fit(rest.hypothesis, x.tail(x.size() - n_n), workspace).prediction; });
+          if (!is_solved) list[f] = written_;
+        });
+    return predictions_.emplace(claims, std::move(list)).first->second;
+  }
+  [[nodiscard]] std::vector<Prediction> written() const { return std::vector<Prediction>(folds_.size(), written_); }
+
+  /// Squares of kept-out misses, whitened.
+  [[nodiscard]] double squares(const std::vector<Prediction>& predicted) const {
+    double sum = 0.0;
+    for (std::size_t f = 0; f < folds_.size(); ++f)
+      sum += (comparisons_[f].measured() - comparisons_[f].whitened(predicted[f])).squaredNorm();
+    return sum;
+  }
+  /// Squares of kept-out misses over those of noise, not whitened: what a user sees of them.
+  [[nodiscard]] double squares_over_noise(const std::vector<Prediction>& predicted) const {
+    double sum = 0.0;
+    for_each_miss(predicted,
+                  [&](const MeasuredChannel& c, double miss) { sum += std::pow(miss / noise_.at(c.name).total(), 2); });
+    return sum;
+  }
+  template <class Work>
+  void for_each_miss(const std::vector<Prediction>& predicted, const Work& work) const {
+    for (std::size_t f = 0; f < folds_.size(); ++f) {
+      for (std::size_t r = 0; r < folds_[f].kept_out.size(); ++r) {
+        for (const MeasuredChannel& c : folds_[f].kept_out[r].channels) {
+          for (Eigen::Index i = 0; i < c.value.size(); ++i) {
+            if (!std::isnan(c.value[i])) work(c, c.value[i] - predicted[f][r](c.output, i));
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  const SearchResult& result_;
+  const std::map<std::string, NoiseModel>& noise_;
+  std::vector<Fold> folds_;
+  std::vector<std::unique_ptr<Fitter>> fitters_;
+  std::vector<Comparison> comparisons_;
+  std::map<Subset, std::vector<Prediction>> predictions_;
+  Prediction written_;
+};
+
+double scale_of(const std::string& unit) {
+  return unit == "K" ? 1.0 : 1e6;
+}
+
+std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise,
+                                       const Judge& judge, const std::vector<Prediction>& written,
+                                       const std::vector<Prediction>& calibrated, const std::vector<Prediction>& extended) {
+  std::vector<ChannelGain> gains;
+  std::map<std::string, std::size_t> index;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) {
+      if (!index.emplace(c.name, gains.size()).second) continue;
+      gains.push_back({.name = c.name,
+                       .unit = c.unit == "K"   ? "K"
+                               : c.unit == "m" ? "um"
+                                               : "urad",
+                       .noise_floor = scale_of(c.unit) * noise.at(c.name).total(),
+                       .rmse_written = std::numeric_limits<double>::quiet_NaN()});
+    }
+  }
+  std::vector<double> n_rows(gains.size(), 0.0);
+  const auto add = [&](const std::vector<Prediction>& predicted, double ChannelGain::*rmse, double ChannelGain::*peak) {
+    std::fill(n_rows.begin(), n_rows.end(), 0.0);
+    judge.for_each_miss(predicted, [&](const MeasuredChannel& c, double miss) {
+      const std::size_t i = index.at(c.name);
+      const double x = scale_of(c.unit) * miss;
+      gains[i].*rmse += x * x;
+      if (peak) gains[i].*peak = std::max(gains[i].*peak, std::abs(x));
+      n_rows[i] += 1.0;
+    });
+    for (std::size_t i = 0; i < gains.size(); ++i) gains[i].*rmse = std::sqrt(gains[i].*rmse / std::max(1.0, n_rows[i]));
+  };
+  add(written, &ChannelGain::rmse_before, &ChannelGain::peak_before);
+  add(calibrated, &ChannelGain::rmse_calibrated, nullptr);
+  add(extended, &ChannelGain::rmse_after, &ChannelGain::peak_after);
+  return gains;
 }
 
 }  // namespace
 
 HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise) {
-  const std::vector<MeasuredRun>& runs = fitter.runs();
-  const Comparison& comparison = fitter.comparison();
   HeldOut held;
-  std::map<std::string, std::size_t> index;
-  std::vector<double> n_rows;
-  for (const MeasuredRun& run : runs) {
-    for (const MeasuredChannel& c : run.channels) {
-      if (index.contains(c.name)) continue;
-      index[c.name] = held.channels.size();
-      held.channels.push_back({c.name, c.unit == "K" ? "K" : c.unit == "m" ? "um" : "urad", 0, 0, 0, 0, 0, 0});
-      n_rows.push_back(0.0);
-    }
+  const std::size_t n_claims = result.hypothesis.size();
+  Folds folds;
+  {
+    Twin::Workspace workspace(fitter.twin());
+    folds = folds_of(fitter, result, workspace);
   }
-  Twin::Workspace workspace(fitter.twin());
-  const Prediction written = fitter.predict({}, Eigen::VectorXd::Zero(fitter.n_nuisance()), workspace);
-  const bool single = runs.size() == 1;
-  for (std::size_t out = 0; out < runs.size(); ++out) {
-    const double from_s = single ? kFitted * runs[0].time_s.back() : -1.0;
-    std::vector<char> is_used(static_cast<std::size_t>(comparison.n()), 1);
-    for (const Comparison::Block& b : comparison.blocks()) {
-      if (b.run != out) continue;
-      const Eigen::VectorXd& value = runs[out].find(b.channel)->value;
-      Eigen::Index row = b.first;
-      for (Eigen::Index i = 0; i < value.size(); ++i) {
-        if (std::isnan(value[i])) continue;
-        if (runs[out].time_s[static_cast<std::size_t>(i)] > from_s) is_used[static_cast<std::size_t>(row)] = 0;
-        ++row;
+  held.how = folds.how;
+  Judge judge(fitter, result, noise, std::move(folds.list));
+  const Subset all = (1U << n_claims) - 1U;
+  held.claim_nats.assign(n_claims, 0.0);
+  for (std::size_t c = 0; c < n_claims; ++c)
+    held.claim_nats[c] = 0.5 * (judge.squares(judge.predicted(all & ~(1U << c))) - judge.squares(judge.predicted(all)));
+
+  // What kept-out rows are better off without is taken out, the worst first.
+  Subset kept = all;
+  while (kept != 0) {
+    const double with_all = judge.squares_over_noise(judge.predicted(kept));
+    Subset best = kept;
+    double least = with_all * kNoBetter;
+    for (std::size_t c = 0; c < n_claims; ++c) {
+      const Subset without = kept & ~(1U << c);
+      if (without == kept) continue;
+      const double squares = judge.squares_over_noise(judge.predicted(without));
+      if (squares < least) {
+        least = squares;
+        best = without;
       }
     }
-    const Prediction without =
-        fitter.predict({}, refitted(fitter, {}, result.without, is_used, !single, workspace), workspace);
-    const Prediction with =
-        result.hypothesis.empty()
-            ? without
-            : fitter.predict(result.hypothesis, refitted(fitter, result.hypothesis, result.fit, is_used, !single, workspace),
-                             workspace);
-    for (const MeasuredChannel& c : runs[out].channels) {
-      ChannelGain& g = held.channels[index[c.name]];
-      const double scale = c.unit == "K" ? 1.0 : 1e6;
-      for (Eigen::Index i = 0; i < c.value.size(); ++i) {
-        if (std::isnan(c.value[i]) || !(runs[out].time_s[static_cast<std::size_t>(i)] > from_s)) continue;
-        const auto miss = [&](const Prediction& p) { return scale * (c.value[i] - p[out](c.output, i)); };
-        g.rmse_before += std::pow(miss(written), 2);
-        g.rmse_calibrated += std::pow(miss(without), 2);
-        g.rmse_after += std::pow(miss(with), 2);
-        g.peak_before = std::max(g.peak_before, std::abs(miss(written)));
-        g.peak_after = std::max(g.peak_after, std::abs(miss(with)));
-        n_rows[index[c.name]] += 1.0;
-      }
-    }
+    if (best == kept) break;
+    kept = best;
   }
-  for (auto& [name, i] : index) {
-    ChannelGain& g = held.channels[i];
-    const double n = std::max(1.0, n_rows[i]);
-    for (double* sum : {&g.rmse_before, &g.rmse_calibrated, &g.rmse_after}) *sum = std::sqrt(*sum / n);
-    g.noise_floor = (g.unit == "K" ? 1.0 : 1e6) * noise.at(name).total();
-  }
-  held.how =
-      single
-          ? "the last third of the only record, predicted with numbers fitted to the first two thirds; which effect it is "
-            "was decided on the whole record"
-          : fmt::format(
-                "each of the {} records in turn, predicted with numbers fitted to the others; which effect it is was "
-                "decided on all, and numbers of what happened in one record alone are kept",
-                runs.size());
+  for (std::size_t c = 0; c < n_claims; ++c) held.keeps_claim.push_back(((kept >> c) & 1U) != 0);
+  const std::vector<Prediction> written = judge.written();
+  held.keeps_numbers = judge.squares_over_noise(judge.predicted(kept)) <= judge.squares_over_noise(written);
+  held.channels = channel_gains(fitter.runs(), noise, judge, written, judge.predicted(0),
+                                held.keeps_numbers ? judge.predicted(kept) : written);
   return held;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/stuck_sensor.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -83,7 +85,8 @@ Record without_spikes(Record record, std::vector<DataFinding>& findings) {
     for (std::size_t i : known) sorted.push_back(c.values[i]);
     std::sort(sorted.begin(), sorted.end());
     const std::size_t few = 1 + sorted.size() / 50;  // spikes themselves do not count
-    const double range = sorted[sorted.size() - 1 - few] - sorted[few], usual = median(changes);
+    const double range = sorted[sorted.size() - 1 - few] - sorted[few],
+                 usual = std::max(median(changes), quantum_of(c.values));  // one step of the instrument is no leap
     const double leap = std::max(kLeap * usual, kLeapOfRange * range);
     if (!(leap > 0.0)) continue;
     int n = 0;

@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
+#include "diagnosis/chance.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/projection.hpp"
 
@@ -241,6 +242,10 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   say(fmt::format("signatures of {} candidates", candidates.size()));
   std::vector<Signature> columns = signatures(fitter, candidates, {}, weighed_at);
   result.scores = scores(fitter, candidates, columns, {}, weighed_at);
+  result.chance = chance_of(fitter, candidates, columns, weighed_at);
+  const auto must_gain = [&](std::size_t claim) {  // counted from 0
+    return std::max(result.chance.gain_at(options.wrongly_suspected), options.least_gain.at(claim));
+  };
   double best_value = best_fit.log_evidence;
 
   const auto exchange = [&] {  // each for a better one, until none is; true where something changed
@@ -280,7 +285,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
     if (additions.empty()) break;
     const Hypothesis tried = with(best, additions.front().claim);
     const double value = evidence(additions.front().fit, tried) - laws_price(candidates, best);
-    if (!(value > best_value + options.must_gain[best.size()])) break;
+    if (!(value > best_value + must_gain(best.size()))) break;
     best = tried;
     best_fit = additions.front().fit;
     best_value = value;
@@ -309,7 +314,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
     // a fit that starts where the cause was may stay far from its best
     if (others.empty() && result.without.log_evidence > fit.log_evidence) fit = result.without;
     const double without_value = evidence(fit, others) - laws_price(candidates, others);
-    if (!(best_value > without_value + options.must_gain[best.size() - 1])) {
+    if (!(best_value > without_value + must_gain(best.size() - 1))) {
       best = others;
       best_fit = fit;
       best_value = without_value;
@@ -317,7 +322,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
       result.findings.clear();
       continue;
     }
-    Finding finding{best[i], best_value - without_value, {}};
+    Finding finding{best[i], best_value - without_value, false, {}};
     for (Fitted& f : best_additions(fitter, candidates, columns, others, fit, options.refits)) {
       const double value = evidence(f.fit, with(others, f.claim)) - laws_price(candidates, others);
       if (f.claim.candidate == best[i].candidate || value < best_value - options.cannot_tell) continue;
@@ -326,13 +331,9 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
     result.findings.push_back(std::move(finding));
     ++i;
   }
-  if (!best.empty()) {
-    const std::vector<Fitted> further = best_additions(fitter, candidates, columns, best, best_fit, options.refits / 2);
-    if (!further.empty()) {
-      const Hypothesis tried = with(best, further.front().claim);
-      result.further_gain = evidence(further.front().fit, tried) - laws_price(candidates, best) - best_value;
-    }
-  }
+  const double named_from = result.chance.gain_at(options.wrongly_named);
+  for (Finding& f : result.findings)
+    f.is_named = f.log_evidence_gain >= std::max(named_from, best.size() > 1 ? options.least_named_beside : -1e300);
   result.hypothesis = std::move(best);
   result.fit = std::move(best_fit);
   return result;

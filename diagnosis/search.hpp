@@ -5,11 +5,23 @@
 
 namespace driftwright::diagnosis {
 
+/// Evidence [nats, the price of the number of candidates paid] that the best candidate has by chance where nothing is wrong: Gumbel's distribution.
+struct Chance {
+  double mode = -4.0, spread = 1.0;
+  /// Share of machines without fault at which the best candidate has as much evidence or more.
+  [[nodiscard]] double share_above(double gain) const;
+  /// The evidence that this share of them reaches.
+  [[nodiscard]] double gain_at(double share) const;
+};
+
 struct SearchOptions {
   int most_effects = 3;
-  /// Evidence [nats] a claim must bring beyond the logarithm of how many candidates there are.
-  std::vector<double> must_gain = {8.0, 8.0,
-                                   20.0};  ///< the first, the second, the third: few machines are wrong in three ways
+  /// Share of faultless machines at which a cause may be suspected, and named.
+  double wrongly_suspected = 0.01, wrongly_named = 1e-4;
+  /// Evidence [nats] that a second, third, ... claim must bring at least, beyond the logarithm of how many candidates there are: chance is judged for machines
+  /// without fault, a fault that is not quite of a law of the catalogue leaves something, and few machines are wrong in three ways.
+  std::vector<double> least_gain = {-1e300, 3.0, 12.0};
+  double least_named_beside = 8.0;  ///< one of several is not named below
   /// Two claims whose evidence differs by less than this cannot be told apart.
   double cannot_tell = 3.0;
   int refits = 10;  ///< candidates of each round that are fitted in full
@@ -19,6 +31,7 @@ struct SearchOptions {
 struct Finding {
   Claim claim;
   double log_evidence_gain = 0.0;  ///< over the best hypothesis without it, after the price of the number of candidates
+  bool is_named = false;           ///< else suspected
   struct Alternative {
     Claim claim;
     Fit fit;  ///< of the hypothesis with it in the finding's place
@@ -50,8 +63,7 @@ struct SearchResult {
   Fit without;  ///< scatter alone
   std::vector<Finding> findings;
   int n_candidates = 0;
-  /// Evidence that one more effect would bring; too little to claim it, and yet more than chance has to offer.
-  double further_gain = 0.0;
+  Chance chance;              ///< what the best candidate would have with nothing wrong
   std::vector<Score> scores;  ///< of all candidates on top of scatter alone
 };
 
