@@ -30,7 +30,7 @@ void calibrate(const CalibrateOptions& options) {
   head.emplace_back("");
   std::string difference;
   const diagnosis::ExtendedScenario calibrated =
-      write_scenario("calibrated", m, stated_scatter(*m.twin, d), head, folder, &difference);
+      write_scenario("calibrated", m, stated_scatter(d), head, folder, &difference);
   nlohmann::ordered_json json = diagnosis_json(d);
   json["warning"] = warning;
   json["calibrated_scenario"] = {{"written", calibrated.written}, {"not_written", calibrated.not_written}};

@@ -56,7 +56,7 @@ void diagnose(const DiagnoseOptions& options) {
   const std::vector<diagnosis::Candidate> candidates = diagnosis::candidates(*m.twin, m.runs, m.how.without);
   std::string difference;
   std::vector<diagnosis::StatedChange> changes;  // in the order in which the fit makes them
-  if (!options.causes_only && d.written.keeps_numbers) changes = stated_scatter(*m.twin, d);
+  if (!options.causes_only && d.written.keeps_numbers) changes = stated_scatter(d);
   for (diagnosis::StatedChange& cause : stated_causes(d)) changes.push_back(std::move(cause));
   const diagnosis::ExtendedScenario extended =
       write_scenario("extended", m, changes, head_of(d, options), folder, &difference);

@@ -11,7 +11,6 @@
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
 #include "base/line_diff.hpp"
-#include "diagnosis/scatter.hpp"
 #include "output/vtk_fields.hpp"
 
 namespace driftwright::app {
@@ -40,10 +39,10 @@ std::vector<StatedChange> stated_causes(const diagnosis::Diagnosis& d) {
   return changes;
 }
 
-std::vector<StatedChange> stated_scatter(const diagnosis::Twin& twin, const diagnosis::Diagnosis& d) {
+std::vector<StatedChange> stated_scatter(const diagnosis::Diagnosis& d) {
   constexpr double kUnmoved = 1e-4;  // standard deviations of the prior
   std::vector<StatedChange> changes;
-  const std::vector<diagnosis::Knob> knobs = diagnosis::scatter(twin);
+  const std::vector<diagnosis::Knob>& knobs = d.scatter;
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     const diagnosis::Estimate& e = d.calibrated.at(i);
     if (std::abs(e.deviation) < kUnmoved) continue;

@@ -10,8 +10,7 @@ namespace driftwright::app {
 /// The causes of a diagnosis as changes of the scenario.
 [[nodiscard]] std::vector<diagnosis::StatedChange> stated_causes(const diagnosis::Diagnosis& d);
 /// The scenario's own numbers as fitted.
-[[nodiscard]] std::vector<diagnosis::StatedChange> stated_scatter(const diagnosis::Twin& twin,
-                                                                  const diagnosis::Diagnosis& d);
+[[nodiscard]] std::vector<diagnosis::StatedChange> stated_scatter(const diagnosis::Diagnosis& d);
 
 /// Writes <stem>.yaml and <stem>.diff and reads the scenario back; where that fails, `not_written` says so, too.
 /// @param head  comment lines for the top of the scenario

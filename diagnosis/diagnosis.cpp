@@ -30,7 +30,6 @@ constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
 constexpr double kUnnamed = 3.0;              // nats by which one cause without a name must be better than those with one
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
-constexpr double kAmbient_K = 0.3;            // to which a recorded hall is known
 constexpr double kSureCause = 20.0;           // nats: no smaller rest hides it
 constexpr double kRestOfCause = 0.35;         // of what the causes explain: more left, and they are not what is wrong
 constexpr double kTooFar = 3.5;               // sigmas of its prior: a number beyond is a cause
@@ -62,34 +61,10 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
   return c;
 }
 
-/// Readings of all runs at nought, but for one.
-Prediction zero_but(const std::vector<MeasuredRun>& runs, Eigen::Index n_outputs, std::size_t run, Eigen::MatrixXd there) {
-  Prediction column;
-  for (const MeasuredRun& r : runs)
-    column.push_back(Eigen::MatrixXd::Zero(n_outputs, static_cast<Eigen::Index>(r.time_s.size())));
-  column[run] = std::move(there);
-  return column;
-}
-
-/// What a hall does that was otherwise than recorded by one standard deviation, a run each.
-std::vector<Prediction> ambient_columns(const Twin& twin, const std::vector<MeasuredRun>& runs, const TwinState& state) {
-  TwinState warmer = state;
-  warmer.push_back(effects::make_effect("ambient", effects::Place::kHall, effects::kHallName, {{"offset", kAmbient_K}}));
-  Twin::Workspace workspace(twin);
-  std::vector<Prediction> columns;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    Eigen::MatrixXd there = twin.read(warmer, runs[r], twin.respond(warmer, runs[r], workspace)) -
-                            twin.read(state, runs[r], twin.respond(state, runs[r], workspace));
-    columns.push_back(zero_but(runs, there.rows(), r, there));
-  }
-  return columns;
-}
-
-/// What a warm start, a hall that is not quite as recorded and another mesh (one column a channel) change: the amplitude of each is unknown.
+/// What a warm start and another mesh change (one column a channel): the amplitude of each is unknown.
 std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double share,
                                         const std::vector<MeasuredRun>& runs, const TwinState& state) {
   std::vector<Prediction> columns = start_columns(twin, runs);
-  for (Prediction& c : ambient_columns(twin, runs, state)) columns.push_back(std::move(c));
   if (!coarse) return columns;
   Twin::Workspace fine_space(twin), coarse_space(*coarse);
   Prediction difference;
@@ -355,13 +330,13 @@ std::vector<Estimate> calibrated_numbers(const Fitter& fitter, const Fit& fit) {
 }
 
 /// Numbers of the scenario that have gone so far that they are no calibration: causes by their own key, as fitted.
-std::vector<Cause> moved_numbers(const Diagnosis& d, const std::vector<Knob>& scatter) {
+std::vector<Cause> moved_numbers(const Diagnosis& d) {
   std::vector<Cause> causes;
   const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
-  for (std::size_t i = 0; i < scatter.size(); ++i) {
+  for (std::size_t i = 0; i < d.scatter.size(); ++i) {
     const Estimate& e = d.calibrated[i];
     if (!(std::abs(e.deviation) > kTooFar)) continue;
-    const Knob& k = scatter[i];
+    const Knob& k = d.scatter[i];
     const double x = e.deviation * k.prior_sd;
     // the density of its value under the wide prior of a fault over that under what is known of it
     const double gain = 0.5 * e.deviation * e.deviation - 0.5 * std::pow(x / effects::kFactorSd, 2) -
@@ -457,9 +432,11 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   const std::vector<Candidate> list = candidates(twin, runs, options.without);
   d.n_candidates = static_cast<int>(list.size());
 
-  say(fmt::format("slopes of {} uncertain numbers", scatter(twin).size()));
+  d.scatter = scatter(twin);
+  for (Knob& k : hall_scatter(runs)) d.scatter.push_back(std::move(k));
+  say(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
   const auto fresh_fitter = [&] {
-    return std::make_unique<Fitter>(twin, runs, scatter(twin),
+    return std::make_unique<Fitter>(twin, runs, d.scatter,
                                     unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()));
   };
   auto own_fitter = fresh_fitter();
@@ -484,7 +461,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     if (!left || !coarse || d.search.hypothesis.empty()) return left;
     // the mesh's error is another one where the machine is another one
     Fitter again(
-        twin, runs, scatter(twin),
+        twin, runs, d.scatter,
         unknown_columns(twin, coarse, options.mesh_error_share, runs, f.state(d.search.hypothesis, d.search.fit.x)));
     again.set_noise(d.noise);
     again.settle(d.search.hypothesis, d.search.fit);
@@ -525,7 +502,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.written = written_of(fitter, d.search, held, workspace);
   d.extended = d.written.keeps_numbers ? d.written.fit.prediction : d.as_written;
   d.calibrated = calibrated_numbers(fitter, d.written.fit);
-  for (Cause& c : moved_numbers(d, fitter.scatter())) d.causes.push_back(std::move(c));
+  for (Cause& c : moved_numbers(d)) d.causes.push_back(std::move(c));
   d.holdout = held.how;
   d.gain = held.channels;
   give_standing(d, held);

@@ -92,7 +92,8 @@ struct Diagnosis {
   SearchResult search;  ///< its claims are the first causes, in their order; behind them numbers that have gone too far
   std::map<std::string, NoiseModel> noise;
   Written written;
-  std::vector<Estimate> calibrated;  ///< scatter's numbers, as fitted with the causes that are written
+  std::vector<Knob> scatter;         ///< what is known roughly: the scenario's own numbers and each run's hall
+  std::vector<Estimate> calibrated;  ///< of these, as fitted with the causes that are written
   Prediction as_written, scatter_alone, extended;
 };
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,44 +15,72 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHallKnots_s = 600.0;      // films pass on nothing faster
+constexpr double kHallKnots_s = 600.0;      // at the most
+constexpr double kHallKnown_K = 0.005;      // what is left of a course matters to nobody
 constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
 constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
 
-/// Piecewise linear least squares on knots; keeps a recorded hall's slow course and drops its noise. One reading at least.
-TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
-  std::vector<double> t, v;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    if (!std::isnan(value[i])) {
-      t.push_back(time_s[i]);
-      v.push_back(value[i]);
-    }
-  }
-  const double length_s = t.back() - t.front();
-  const int n_pieces = std::max(1, std::min(static_cast<int>(length_s / kHallKnots_s), static_cast<int>(t.size()) / 3));
-  const double width_s = length_s / n_pieces;
-  Eigen::MatrixXd hats = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(t.size()) + n_pieces - 1, n_pieces + 1);
-  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(hats.rows());
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const double x = width_s > 0.0 ? (t[i] - t.front()) / width_s : 0.0;
+/// Readings that are there.
+struct Readings {
+  std::vector<double> time_s, value;
+};
+
+/// Piecewise linear least squares on evenly spaced knots.
+TimeSeries on_knots(const Readings& r, int n_pieces) {
+  const double length_s = r.time_s.back() - r.time_s.front(), width_s = length_s / n_pieces;
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(n_pieces + 1, n_pieces + 1);
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(n_pieces + 1);
+  for (std::size_t i = 0; i < r.time_s.size(); ++i) {
+    const double x = width_s > 0.0 ? (r.time_s[i] - r.time_s.front()) / width_s : 0.0;
     const int k = std::clamp(static_cast<int>(x), 0, n_pieces - 1);
-    hats(static_cast<Eigen::Index>(i), k) = 1.0 - (x - k);
-    hats(static_cast<Eigen::Index>(i), k + 1) = x - k;
-    rhs[static_cast<Eigen::Index>(i)] = v[i];
+    const Eigen::Vector2d hats(1.0 - (x - k), x - k);
+    square.block<2, 2>(k, k) += hats * hats.transpose();
+    rhs.segment<2>(k) += r.value[i] * hats;
   }
   for (int k = 1; k < n_pieces; ++k) {  // a light hand on curvature bridges gaps
-    const auto row = static_cast<Eigen::Index>(t.size()) + k - 1;
-    hats(row, k - 1) = hats(row, k + 1) = 0.05;
-    hats(row, k) = -0.1;
+    const Eigen::Vector3d curvature(0.05, -0.1, 0.05);
+    square.block<3, 3>(k - 1, k - 1) += curvature * curvature.transpose();
   }
-  const Eigen::VectorXd knots = hats.colPivHouseholderQr().solve(rhs);
+  square.diagonal().array() += 1e-12;
+  const Eigen::VectorXd knots = square.llt().solve(rhs);
   TimeSeries series;
   for (int k = 0; k <= n_pieces; ++k) {
-    series.time_s.push_back(t.front() + k * width_s);
+    series.time_s.push_back(r.time_s.front() + k * width_s);
     series.value.push_back(knots[k]);
   }
-  if (series.time_s.size() > 1 && !(series.time_s[1] > series.time_s[0])) return {{t.front()}, {knots[0]}};
+  if (series.time_s.size() > 1 && !(series.time_s[1] > series.time_s[0])) return {{r.time_s.front()}, {knots[0]}};
   return series;
+}
+
+double rms_beside(const Readings& r, const TimeSeries& series) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < r.time_s.size(); ++i) sum += std::pow(r.value[i] - series.at(r.time_s[i]), 2);
+  return std::sqrt(sum / static_cast<double>(r.time_s.size()));
+}
+
+/// Standard deviation of white noise, by second differences: a course has next to none.
+double white_noise(const Readings& r) {
+  double sum = 0.0;
+  for (std::size_t i = 2; i < r.value.size(); ++i) sum += std::pow(r.value[i] - 2.0 * r.value[i - 1] + r.value[i - 2], 2);
+  return r.value.size() < 3 ? 0.0 : std::sqrt(sum / (6.0 * static_cast<double>(r.value.size() - 2)));
+}
+
+/// A recorded hall without its noise, and with all of its course: knots as far apart as what they miss is noise, at each reading where that is what it takes. A
+/// machine that starts as warm as the hall would else start wrong. One reading at least.
+TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
+  Readings r;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (std::isnan(value[i])) continue;
+    r.time_s.push_back(time_s[i]);
+    r.value.push_back(value[i]);
+  }
+  const double enough_K = std::max(kHallKnown_K, 1.1 * white_noise(r)), length_s = r.time_s.back() - r.time_s.front();
+  const int n_readings = static_cast<int>(r.time_s.size());
+  for (int n_pieces = std::max(1, static_cast<int>(length_s / kHallKnots_s)); 3 * n_pieces <= n_readings; n_pieces *= 2) {
+    TimeSeries series = on_knots(r, n_pieces);
+    if (rms_beside(r, series) <= enough_K) return series;
+  }
+  return n_readings < 3 ? on_knots(r, 1) : TimeSeries{r.time_s, r.value};
 }
 
 /// Most rows in a row at a value.

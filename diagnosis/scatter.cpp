@@ -7,7 +7,27 @@ namespace {
 
 constexpr double kScatter = 0.10;  // of what is not in the scenario as a number of an effect
 
+constexpr double kHall_K = 0.3;
+
 }  // namespace
+
+std::vector<Knob> hall_scatter(const std::vector<MeasuredRun>& runs) {
+  std::vector<Knob> knobs;
+  for (const MeasuredRun& run : runs) {
+    knobs.push_back(
+        {.effect = "ambient",
+         .where = effects::kHallName,
+         .name = "offset in " + run.name,
+         .unit = "K",
+         .prior_sd = kHall_K,
+         .step = 0.5 * kHall_K,
+         .set = [name = run.name](TwinState& s, double value) {
+           s.push_back(effects::make_effect("ambient", effects::Place::kHall, effects::kHallName, {{"offset", value}}));
+           s.back().in = name;
+         }});
+  }
+  return knobs;
+}
 
 std::vector<Knob> scatter(const Twin& twin) {
   std::vector<Knob> knobs;

@@ -14,6 +14,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
+constexpr int kMostTurns = 6;
+constexpr double kSettled = 0.05;  // of Φ
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
 
@@ -116,6 +118,18 @@ Fit fit_at_zero(const Fitter& fitter) {
   fit.residual = fitter.comparison().measured() - fitter.comparison().whitened(fit.prediction);
   fit.slopes.resize(fit.residual.size(), 0);
   return fit;
+}
+
+/// Takes scatter's slopes where a fit stands and fits again, until nothing is gained by it: what a fit has left to gain, the next claim would be thanked for.
+void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    fitter.settle(hypothesis, fit);
+    Fit again = fit_all(fitter, {{hypothesis, fit.x.tail(fit.x.size() - fitter.n_nuisance())}}).front();
+    if (again.prediction.empty()) return;  // the last one stands
+    const double gained = fit.misfit - again.misfit;
+    fit = std::move(again);
+    if (gained < kSettled) return;
+  }
 }
 
 double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
@@ -234,8 +248,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   if (is_bent) {
     weighed_at = fit_at_zero(fitter);
   } else {
-    fitter.settle({}, best_fit);
-    best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
+    settle_well(fitter, {}, best_fit);
     weighed_at = best_fit;
   }
   result.without = best_fit;
@@ -289,18 +302,14 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
     best = tried;
     best_fit = additions.front().fit;
     best_value = value;
-    fitter.settle(best, best_fit);  // what comes next starts from here
-    best_fit = fit_all(fitter, {{best, best_fit.x.tail(best_fit.x.size() - fitter.n_nuisance())}}).front();
+    settle_well(fitter, best, best_fit);  // what comes next starts from here
     best_value = evidence(best_fit, best) - laws_price(candidates, best);
     if (is_bent) columns = signatures(fitter, candidates, best, best_fit);
     exchange();
   }
   for (int turn = 0; turn < 2 && !best.empty(); ++turn) {
     say("settling the numbers");
-    fitter.settle(best, best_fit);
-    Fit settled = fit_all(fitter, {{best, best_fit.x.tail(best_fit.x.size() - fitter.n_nuisance())}}).front();
-    if (settled.prediction.empty()) break;  // the last one stands
-    best_fit = std::move(settled);
+    settle_well(fitter, best, best_fit);
     best_value = evidence(best_fit, best) - laws_price(candidates, best);
     columns = signatures(fitter, candidates, best, best_fit);
     if (!exchange()) break;
