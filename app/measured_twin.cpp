@@ -94,8 +94,12 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
     m.how.mesh_error_share = 1.0 / std::abs(size * size - 1.0);
     break;
   }
-  m.how.floor_K = std::max(m.how.floor_K, m.focus->error_K);
-  m.how.floor_m = std::max(m.how.floor_m, m.focus->error_m);
+  m.how.floor.white_K = std::max(m.how.floor.white_K, m.focus->error_K);
+  m.how.floor.white_m = std::max(m.how.floor.white_m, m.focus->error_m);
+  if (!m.twin->machine().system.is_linear()) {  // integrated in steps, and thermostats that switch a little early or late
+    m.how.floor.slow_K = 0.02;
+    m.how.floor.slow_m = 5e-8;
+  }
   return m;
 }
 

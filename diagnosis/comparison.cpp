@@ -6,8 +6,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-/// What no thermometer, indicator or integrator is worth more than, slowly coming and going.
-constexpr double kSlow_K = 0.01, kSlow_m = 2e-8, kSlow_rad = 2e-7, kSlow_s = 1200.0;
+constexpr double kSlow_s = 1200.0;  // time constant of what instruments and integrators are off by
 
 }  // namespace
 
@@ -44,7 +43,7 @@ Eigen::VectorXd relative_speed(const MeasuredRun& run) {
 }
 
 std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>& runs, const Prediction& prediction,
-                                                 double floor_K, double floor_m, double floor_rad) {
+                                                 const NoiseFloor& least) {
   std::map<std::string, std::vector<NoiseSeries>> series;
   std::map<std::string, double> floors, slow;
   for (std::size_t r = 0; r < runs.size(); ++r) {
@@ -53,9 +52,9 @@ std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>&
       const Eigen::Index n_readings = (c.value.array() == c.value.array()).count();
       series[c.name].push_back(
           {runs[r].time_s, c.value - prediction[r].row(c.output).transpose(), telling(curves, n_readings)});
-      const double floor = c.unit == "K" ? floor_K : c.unit == "m" ? floor_m : floor_rad;
+      const double floor = c.unit == "K" ? least.white_K : c.unit == "m" ? least.white_m : least.white_rad;
       floors[c.name] = std::max({floors[c.name], floor, c.quantum / std::sqrt(12.0)});
-      slow[c.name] = c.unit == "K" ? kSlow_K : c.unit == "m" ? kSlow_m : kSlow_rad;
+      slow[c.name] = c.unit == "K" ? least.slow_K : c.unit == "m" ? least.slow_m : least.slow_rad;
     }
   }
   std::map<std::string, NoiseModel> noise;

@@ -38,11 +38,15 @@ class Comparison {
   Eigen::Index n_ = 0;
 };
 
+/// What no reading is better than, white and slowly coming and going (20 min): errors of the reduced model, of integrators, of any instrument.
+struct NoiseFloor {
+  double white_K = 2e-3, white_m = 5e-9, white_rad = 5e-8;
+  double slow_K = 4e-3, slow_m = 1e-8, slow_rad = 1e-7;
+};
+
 /// Noise of each channel, from what measured runs and a prediction differ by.
-/// @param floor_K, floor_m, floor_rad  errors that the model has anyway: no noise is taken for less
 [[nodiscard]] std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>& runs,
-                                                               const Prediction& prediction, double floor_K, double floor_m,
-                                                               double floor_rad);
+                                                               const Prediction& prediction, const NoiseFloor& least);
 
 /// Values of a run's drive between 0 and 1 per time, for smooth_curves().
 [[nodiscard]] Eigen::VectorXd relative_speed(const MeasuredRun& run);

@@ -442,11 +442,11 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   auto own_fitter = fresh_fitter();
   Twin::Workspace workspace(twin);
   d.as_written = own_fitter->predict({}, Eigen::VectorXd::Zero(own_fitter->n_nuisance()), workspace);
-  d.noise = estimate_noise(runs, d.as_written, options.floor_K, options.floor_m, options.floor_rad);
+  d.noise = estimate_noise(runs, d.as_written, options.floor);
   for (int pass = 0; pass < 2; ++pass) {
     own_fitter->set_noise(d.noise);
     d.search = search(*own_fitter, list, {.most_effects = options.most_effects}, say);
-    const auto sharper = estimate_noise(runs, d.search.fit.prediction, options.floor_K, options.floor_m, options.floor_rad);
+    const auto sharper = estimate_noise(runs, d.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(),
                                         [&](const auto& s) { return s.second.total() < 0.9 * d.noise.at(s.first).total(); });
     if (!is_sharper || pass == 1) break;

@@ -102,7 +102,7 @@ struct DiagnosisOptions {
   int most_effects = 3;  ///< 0: scatter alone
   /// Error of the twin's mesh over the difference to the other one: 1 / |size ratio² - 1| where errors go with the square of the size.
   double mesh_error_share = 1.0;
-  double floor_K = 2e-3, floor_m = 5e-9, floor_rad = 5e-8;  ///< errors of the reduced model
+  NoiseFloor floor;
 };
 
 /// @param coarse  the same machine on a coarser mesh, or null: what its mesh does is no finding
