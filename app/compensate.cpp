@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/compensate_frame.hpp"
 #include "app/iso230_3_report.hpp"
 #include "app/record_study.hpp"
 #include "app/results.hpp"
+#include "app/thermal_modes.hpp"
 #include "app/validation_study.hpp"
 #include "compensation/axis_loop.hpp"
 #include "compensation/correction.hpp"
 #include "compensation/formula_predictor.hpp"
 #include "compensation/observer.hpp"
-#include "compensation/past_drift.hpp"
 #include "output/html_report.hpp"
 #include "output/json_text.hpp"
 #include "output/predictor_file.hpp"
@@ -36,22 +34,10 @@ struct Outcome {
   Score before = {}, after = {};
 };
 
-Record modal_record(const Scenario& scenario, const Model& model, const Cyclogram& cyclogram,
-                    const std::vector<double>& time_s) {
-  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
-  const ModalPredictor predictor =
-      modal_predictors(scenario, model, scenario.study->thermal_modes, mean_drive({&felt.cyclogram})).completed;
-  return scenarios::as_recorded(*scenario.machine, predictor.predict(felt.cyclogram, felt.hall, time_s), model.outputs(),
-                                cyclogram);
-}
-
-/// What the model's thermal modes tell of a cyclogram before it is run, as a predictor.
-DeployedPredictor by_modes(const Scenario& scenario, const Record& foretold) {
-  DeployedPredictor d;
-  d.name = "thermal modes of the model";
-  d.target = scenario.study->target;
-  d.predictor = std::make_shared<EarlierRunsPredictor>(std::span(&foretold, 1), d.target);
-  return d;
+/// The model's thermal modes, with laws of temperature frozen in the mean drive of the cyclogram that they are to foretell.
+ModalPredictor modes_for(const Scenario& scenario, const Model& model, const Cyclogram& cyclogram) {
+  const Cyclogram felt = scenarios::felt_run(*scenario.machine, cyclogram).cyclogram;
+  return modal_predictors(scenario, model, scenario.study->thermal_modes, mean_drive({&felt})).completed;
 }
 
 output::PredictorFile from_file(const Scenario& scenario, const std::string& path) {
@@ -111,13 +97,6 @@ void require_axis(const Scenario& scenario, const std::string& target) {
                      fmt::format("the axis corrects '{}', but the predictor tells '{}'; set `displacement: {}`, or take "
                                  "another --model",
                                  scenario.axis_loop->displacement, target, target));
-}
-
-/// The drift before the run: of a formula by temperatures that the model's modes foretell, of anything else by drive and hall alone.
-std::vector<double> foretold_um(const DeployedPredictor& d, const ObservedRun& run,
-                                const std::function<Record()>& foretold) {
-  if (as_formula(*d.predictor)) return live(*d.predictor, {run.cyclogram, run.hall, foretold()});
-  return ahead(*d.predictor, {run.cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}});
 }
 
 /// The correction itself, as `validate` judges it.
@@ -229,9 +208,18 @@ void compensate(const CompensateOptions& options) {
     // a predictor knows what is recorded, as in validate_strategies(), and not what the scenario's effects make of it
     run = {*cyclogram, scenario.machine->hall,
            std::move(simulate_cyclograms(scenario, model, {cyclogram}, progress, 0, nullptr).front().record)};
-    const auto foretold = [&] { return modal_record(scenario, model, *cyclogram, run.readings.time_s); };
-    if (!predictor) predictor = by_modes(scenario, foretold());
-    if (options.through == "schedule") ahead_um = foretold_um(*predictor, run, foretold);
+    if (!predictor) {
+      predictor = by_thermal_modes(*scenario.machine, model.outputs(), modes_for(scenario, model, *cyclogram), study.target);
+      predictor->name = "thermal modes of the model";
+    }
+    if (options.through == "schedule") {
+      // a formula reads temperatures that the modes foretell; anything else has drive and hall alone
+      ObservedRun known{*cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}};
+      if (as_formula(*predictor->predictor))
+        known.readings = foretold_record(*scenario.machine, model.outputs(), modes_for(scenario, model, *cyclogram),
+                                         *cyclogram, run.readings.time_s);
+      ahead_um = ahead(*predictor->predictor, known);
+    }
   }
   const DeployedPredictor& d = *predictor;
   progress.begin("correcting");
