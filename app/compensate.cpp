@@ -6,6 +6,7 @@
 
 #include "app/compensate_frame.hpp"
 #include "app/iso230_3_report.hpp"
+#include "app/planner.hpp"
 #include "app/record_study.hpp"
 #include "app/results.hpp"
 #include "app/thermal_modes.hpp"
@@ -138,8 +139,9 @@ Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, c
   for (const auto& section : run.cyclogram.sections) durations_s.push_back(section.duration_s);
   const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
   const std::vector<double>& drift_um = run.readings.at(d.target).values;
-  const CorrectedRun corrected = correct_by_schedule(
-      {run.readings.time_s, drift_um, boundaries_s, scenario.study->tolerance_um}, ahead_um, d.interval_um.value_or(0.0));
+  const CorrectedRun corrected =
+      correct_by_schedule({run.readings.time_s, drift_um, boundaries_s, scenario.study->tolerance_um}, ahead_um,
+                          d.interval_um.value_or(0.0), planner_of(scenario));
   return {.time_s = run.readings.time_s, .drift_um = drift_um, .predicted_um = ahead_um, .left_um = corrected.residual_um};
 }
 

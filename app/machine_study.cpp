@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "app/planner.hpp"
 #include "app/thermal_modes.hpp"
 #include "compensation/fitted_formulas.hpp"
 #include "compensation/formula_predictor.hpp"
@@ -121,8 +122,9 @@ void correct(MachineStudy& study, const Scenario& scenario) {
     const JudgedRun run{judged.readings.time_s, study.judged.record.at(d.target).values, boundaries_s,
                         settings.tolerance_um};
     const double margin_um = largest_miss_um(d, training);
-    for (CorrectedRun corrected : {correct_by_injector(run, live(*d.predictor, judged), settings.encoder_period_um),
-                                   correct_by_schedule(run, ahead(*d.predictor, foretold), margin_um)}) {
+    for (CorrectedRun corrected :
+         {correct_by_injector(run, live(*d.predictor, judged), settings.encoder_period_um),
+          correct_by_schedule(run, ahead(*d.predictor, foretold), margin_um, planner_of(scenario))}) {
       corrected.predictor = d.name;
       corrected.channel = d.target;
       study.corrections.push_back(std::move(corrected));

@@ -7,9 +7,10 @@
 #include <cmath>
 #include <memory>
 
+#include "app/planner.hpp"
 #include "base/random.hpp"
 #include "compensation/model_scatter.hpp"
-#include "compensation/schedule.hpp"
+#include "compensation/schedule_policy.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "solver/propagator.hpp"
 
@@ -108,7 +109,7 @@ double largest_percent(const ProgrammeStudy::Predictor& p) {
 
 /// Corrections planned on each prediction of a random cyclogram, and what the true drift leaves of them.
 ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& p, std::size_t channel,
-                                        double tolerance_um) {
+                                        double tolerance_um, SchedulePolicy policy) {
   ProgrammeStudy::Scheduled s{p.name, study.channels.name[channel]};
   const auto c = static_cast<Eigen::Index>(channel);
   for (std::size_t i = 0; i < study.judged.size(); ++i) {
@@ -120,8 +121,8 @@ ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const Progr
     for (const auto& section : j.cyclogram.sections) boundaries_s.push_back(boundaries_s.back() + section.duration_s);
     boundaries_s.back() = std::min(boundaries_s.back(), j.time_s.back());
     // half the tolerance is left to the predictor's error
-    const Schedule schedule =
-        plan_schedule(j.time_s, drift_um, boundaries_s, {.tolerance_um = tolerance_um, .margin_um = 0.5 * tolerance_um});
+    const Schedule schedule = plan_cyclogram(
+        j.time_s, drift_um, boundaries_s, {.policy = policy, .tolerance_um = tolerance_um, .margin_um = 0.5 * tolerance_um});
     double worst_um = 0.0, before_um = 0.0;
     int changes = 0;
     for (std::size_t k = 0; k < j.time_s.size(); ++k) {
@@ -292,7 +293,8 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   const std::string target = scenario.study ? scenario.study->target : study.channels.name.front();
   const auto channel = static_cast<std::size_t>(std::find(study.channels.name.begin(), study.channels.name.end(), target) -
                                                 study.channels.name.begin());
-  for (const auto& p : study.predictors) study.scheduled.push_back(schedule_with(study, p, channel, programme.tolerance_um));
+  for (const auto& p : study.predictors)
+    study.scheduled.push_back(schedule_with(study, p, channel, programme.tolerance_um, planner_of(scenario)));
   return study;
 }
 
