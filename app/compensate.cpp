@@ -100,25 +100,6 @@ void require_axis(const Scenario& scenario, const std::string& target) {
                                  scenario.axis_loop->displacement, target, target));
 }
 
-/// The correction itself, as `validate` judges it.
-Outcome through_none(const DeployedPredictor& d, const ObservedRun& run) {
-  const std::vector<double>& drift_um = run.readings.at(d.target).values;
-  Outcome o{.time_s = run.readings.time_s, .drift_um = drift_um, .predicted_um = correct(d, run).correction_um};
-  for (std::size_t i = 0; i < drift_um.size(); ++i) o.left_um.push_back(drift_um[i] - o.predicted_um[i]);
-  return o;
-}
-
-Outcome through_injector(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run) {
-  const AxisLoopRun loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
-    return correct(d, {run.cyclogram, run.hall, readings}).correction_um;
-  });
-  return {.time_s = loop.time_s,
-          .drift_um = loop.before_um,
-          .predicted_um = loop.predicted_um,
-          .left_um = loop.after_um,
-          .at_rest = loop.at_rest};
-}
-
 /// The values of rows that are judged: during a pass an axis lags behind its command, which is no thermal error.
 std::vector<double> judged(const Outcome& o, const std::vector<double>& values) {
   if (o.at_rest.empty()) return values;
@@ -127,6 +108,32 @@ std::vector<double> judged(const Outcome& o, const std::vector<double>& values) 
     if (o.at_rest[i]) kept.push_back(values[i]);
   }
   return kept;
+}
+
+/// The correction itself, as `validate` judges it.
+Outcome through_none(const DeployedPredictor& d, const ObservedRun& run) {
+  const std::vector<double>& drift_um = run.readings.at(d.target).values;
+  Judgement j = judge(d, run, drift_um);
+  return {.time_s = run.readings.time_s,
+          .drift_um = drift_um,
+          .predicted_um = std::move(j.correction_um),
+          .left_um = std::move(j.left_um),
+          .before = j.scores.before,
+          .after = j.scores.after};
+}
+
+Outcome through_injector(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run) {
+  const AxisLoopRun loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
+    return correct(d, {run.cyclogram, run.hall, readings}).correction_um;
+  });
+  Outcome o{.time_s = loop.time_s,
+            .drift_um = loop.before_um,
+            .predicted_um = loop.predicted_um,
+            .left_um = loop.after_um,
+            .at_rest = loop.at_rest};
+  o.before = score(judged(o, o.drift_um));
+  o.after = score(judged(o, o.left_um));
+  return o;
 }
 
 Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
@@ -142,7 +149,12 @@ Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, c
   const CorrectedRun corrected =
       correct_by_schedule({run.readings.time_s, drift_um, boundaries_s, scenario.study->tolerance_um}, ahead_um,
                           d.interval_um.value_or(0.0), planner_of(scenario));
-  return {.time_s = run.readings.time_s, .drift_um = drift_um, .predicted_um = ahead_um, .left_um = corrected.residual_um};
+  return {.time_s = run.readings.time_s,
+          .drift_um = drift_um,
+          .predicted_um = ahead_um,
+          .left_um = corrected.residual_um,
+          .before = corrected.before,
+          .after = corrected.after};
 }
 
 /// What ISO 230-3 asks of the drift, and of what is left of it.
@@ -227,12 +239,10 @@ void compensate(const CompensateOptions& options) {
   progress.begin("correcting");
   run.readings.channels[static_cast<std::size_t>(&run.readings.at(d.target) - run.readings.channels.data())] =
       scored_readings(run, d.target, d.from_start).at(d.target);
-  Outcome o = options.through == "none"       ? through_none(d, run)
-              : options.through == "injector" ? through_injector(scenario, d, run)
-                                              : through_schedule(scenario, d, run, ahead_um);
+  const Outcome o = options.through == "none"       ? through_none(d, run)
+                    : options.through == "injector" ? through_injector(scenario, d, run)
+                                                    : through_schedule(scenario, d, run, ahead_um);
   const std::string what = is_measured ? run.readings.source : cyclogram->name;
-  o.before = score(judged(o, o.drift_um));
-  o.after = score(judged(o, o.left_um));
   const double removed = 100.0 * (1.0 - o.after.peak_abs / o.before.peak_abs);
   const std::string way = options.through == "none" ? "without an actuator" : "through the " + options.through;
   const std::string title = fmt::format("{}: {} corrected {}", scenario.name, d.target, way);

@@ -9,8 +9,8 @@
 
 #include "app/planner.hpp"
 #include "base/random.hpp"
+#include "compensation/correction.hpp"
 #include "compensation/model_scatter.hpp"
-#include "compensation/schedule_policy.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "solver/propagator.hpp"
 
@@ -107,6 +107,11 @@ double largest_percent(const ProgrammeStudy::Predictor& p) {
   return largest;
 }
 
+std::vector<double> row_of(const Eigen::MatrixXd& rows, Eigen::Index channel) {
+  const Eigen::VectorXd row = rows.row(channel);
+  return {row.begin(), row.end()};
+}
+
 /// Corrections planned on each prediction of a random cyclogram, and what the true drift leaves of them.
 ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& p, std::size_t channel,
                                         double tolerance_um, SchedulePolicy policy) {
@@ -115,25 +120,21 @@ ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const Progr
   for (std::size_t i = 0; i < study.judged.size(); ++i) {
     const JudgedCyclogram& j = study.judged[i];
     if (!j.is_random) continue;
-    const Eigen::VectorXd predicted = p.predicted[i].row(c);
-    const std::vector<double> drift_um(predicted.begin(), predicted.end());
-    std::vector<double> boundaries_s = {0.0};
-    for (const auto& section : j.cyclogram.sections) boundaries_s.push_back(boundaries_s.back() + section.duration_s);
+    std::vector<double> durations_s;
+    for (const auto& section : j.cyclogram.sections) durations_s.push_back(section.duration_s);
+    std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
     boundaries_s.back() = std::min(boundaries_s.back(), j.time_s.back());
+    const std::vector<double> drift_um = row_of(j.truth, c);
     // half the tolerance is left to the predictor's error
-    const Schedule schedule = plan_cyclogram(
-        j.time_s, drift_um, boundaries_s, {.policy = policy, .tolerance_um = tolerance_um, .margin_um = 0.5 * tolerance_um});
-    double worst_um = 0.0, before_um = 0.0;
+    const CorrectedRun corrected = correct_by_schedule({j.time_s, drift_um, boundaries_s, tolerance_um},
+                                                       row_of(p.predicted[i], c), 0.5 * tolerance_um, policy);
     int changes = 0;
-    for (std::size_t k = 0; k < j.time_s.size(); ++k) {
-      const double correction_um = correction_at(schedule, j.time_s[k]);
-      changes += correction_um != before_um;
-      before_um = correction_um;
-      worst_um = std::max(worst_um, std::abs(j.truth(c, static_cast<Eigen::Index>(k)) - correction_um));
-    }
+    for (const Operation& o : corrected.schedule->operations)
+      changes += static_cast<int>(std::count_if(o.corrections.begin(), o.corrections.end(),
+                                                [](const Correction& change) { return change.delta_um != 0.0; }));
     ++s.n_cyclograms;
-    s.n_inside += worst_um <= tolerance_um;
-    s.worst_um = std::max(s.worst_um, worst_um);
+    s.n_inside += corrected.inside_tolerance;
+    s.worst_um = std::max(s.worst_um, corrected.after.peak_abs);
     s.mean_changes += changes;
     s.most_changes = std::max(s.most_changes, changes);
   }
