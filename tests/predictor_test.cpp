@@ -111,6 +111,8 @@ TEST(Predictor, WhatHasToReadSaysNothingAhead) {
   std::erase_if(known.readings.channels, [](const Channel& c) { return c.unit == "degC"; });
   EXPECT_THAT(ahead(FormulaPredictor(formula(false)), known), ::testing::Each(IsNan()));
   EXPECT_THAT(ahead(ConstantPredictor(2.5), known), ::testing::Each(2.5));
+  const ObservedRun foretold = run_with_holes();  // temperatures that a model foretells are read
+  expect_equal(ahead(FormulaPredictor(formula(false)), foretold), live(FormulaPredictor(formula(false)), foretold));
 }
 
 TEST(Predictor, EarlierRunsAreTheirMeanAtTheSameTime) {
