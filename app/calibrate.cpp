@@ -6,6 +6,7 @@
 #include "app/diagnosis_json.hpp"
 #include "app/diagnosis_report.hpp"
 #include "app/diagnosis_summary.hpp"
+#include "app/measured_iso230_3.hpp"
 #include "app/results.hpp"
 #include "output/json_text.hpp"
 
@@ -32,6 +33,7 @@ void calibrate(const CalibrateOptions& options) {
   const diagnosis::ExtendedScenario calibrated =
       write_scenario("calibrated", m, stated_scatter(d), head, folder, &difference);
   nlohmann::ordered_json json = diagnosis_json(d);
+  json["iso_230_3"] = iso230_3_json(measured_iso230_3(m));
   json["warning"] = warning;
   json["calibrated_scenario"] = {{"written", calibrated.written}, {"not_written", calibrated.not_written}};
   folder.write_text("calibration.json", output::json_text(json));

@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/compensate_frame.hpp"
 #include "app/iso230_3_report.hpp"
+#include "app/planner.hpp"
 #include "app/record_study.hpp"
 #include "app/results.hpp"
+#include "app/thermal_modes.hpp"
 #include "app/validation_study.hpp"
 #include "compensation/axis_loop.hpp"
 #include "compensation/correction.hpp"
 #include "compensation/formula_predictor.hpp"
 #include "compensation/observer.hpp"
-#include "compensation/past_drift.hpp"
 #include "output/html_report.hpp"
 #include "output/json_text.hpp"
 #include "output/predictor_file.hpp"
@@ -36,22 +35,10 @@ struct Outcome {
   Score before = {}, after = {};
 };
 
-Record modal_record(const Scenario& scenario, const Model& model, const Cyclogram& cyclogram,
-                    const std::vector<double>& time_s) {
-  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
-  const ModalPredictor predictor =
-      modal_predictors(scenario, model, scenario.study->thermal_modes, mean_drive({&felt.cyclogram})).completed;
-  return scenarios::as_recorded(*scenario.machine, predictor.predict(felt.cyclogram, felt.hall, time_s), model.outputs(),
-                                cyclogram);
-}
-
-/// What the model's thermal modes tell of a cyclogram before it is run, as a predictor.
-DeployedPredictor by_modes(const Scenario& scenario, const Record& foretold) {
-  DeployedPredictor d;
-  d.name = "thermal modes of the model";
-  d.target = scenario.study->target;
-  d.predictor = std::make_shared<EarlierRunsPredictor>(std::span(&foretold, 1), d.target);
-  return d;
+/// The model's thermal modes, with laws of temperature frozen in the mean drive of the cyclogram that they are to foretell.
+ModalPredictor modes_for(const Scenario& scenario, const Model& model, const Cyclogram& cyclogram) {
+  const Cyclogram felt = scenarios::felt_run(*scenario.machine, cyclogram).cyclogram;
+  return modal_predictors(scenario, model, scenario.study->thermal_modes, mean_drive({&felt})).completed;
 }
 
 output::PredictorFile from_file(const Scenario& scenario, const std::string& path) {
@@ -113,32 +100,6 @@ void require_axis(const Scenario& scenario, const std::string& target) {
                                  scenario.axis_loop->displacement, target, target));
 }
 
-/// The drift before the run: of a formula by temperatures that the model's modes foretell, of anything else by drive and hall alone.
-std::vector<double> foretold_um(const DeployedPredictor& d, const ObservedRun& run,
-                                const std::function<Record()>& foretold) {
-  if (as_formula(*d.predictor)) return live(*d.predictor, {run.cyclogram, run.hall, foretold()});
-  return ahead(*d.predictor, {run.cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}});
-}
-
-/// The correction itself, as `validate` judges it.
-Outcome through_none(const DeployedPredictor& d, const ObservedRun& run) {
-  const std::vector<double>& drift_um = run.readings.at(d.target).values;
-  Outcome o{.time_s = run.readings.time_s, .drift_um = drift_um, .predicted_um = correct(d, run).correction_um};
-  for (std::size_t i = 0; i < drift_um.size(); ++i) o.left_um.push_back(drift_um[i] - o.predicted_um[i]);
-  return o;
-}
-
-Outcome through_injector(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run) {
-  const AxisLoopRun loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
-    return correct(d, {run.cyclogram, run.hall, readings}).correction_um;
-  });
-  return {.time_s = loop.time_s,
-          .drift_um = loop.before_um,
-          .predicted_um = loop.predicted_um,
-          .left_um = loop.after_um,
-          .at_rest = loop.at_rest};
-}
-
 /// The values of rows that are judged: during a pass an axis lags behind its command, which is no thermal error.
 std::vector<double> judged(const Outcome& o, const std::vector<double>& values) {
   if (o.at_rest.empty()) return values;
@@ -147,6 +108,32 @@ std::vector<double> judged(const Outcome& o, const std::vector<double>& values) 
     if (o.at_rest[i]) kept.push_back(values[i]);
   }
   return kept;
+}
+
+/// The correction itself, as `validate` judges it.
+Outcome through_none(const DeployedPredictor& d, const ObservedRun& run) {
+  const std::vector<double>& drift_um = run.readings.at(d.target).values;
+  Judgement j = judge(d, run, drift_um);
+  return {.time_s = run.readings.time_s,
+          .drift_um = drift_um,
+          .predicted_um = std::move(j.correction_um),
+          .left_um = std::move(j.left_um),
+          .before = j.scores.before,
+          .after = j.scores.after};
+}
+
+Outcome through_injector(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run) {
+  const AxisLoopRun loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
+    return correct(d, {run.cyclogram, run.hall, readings}).correction_um;
+  });
+  Outcome o{.time_s = loop.time_s,
+            .drift_um = loop.before_um,
+            .predicted_um = loop.predicted_um,
+            .left_um = loop.after_um,
+            .at_rest = loop.at_rest};
+  o.before = score(judged(o, o.drift_um));
+  o.after = score(judged(o, o.left_um));
+  return o;
 }
 
 Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
@@ -159,9 +146,15 @@ Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, c
   for (const auto& section : run.cyclogram.sections) durations_s.push_back(section.duration_s);
   const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
   const std::vector<double>& drift_um = run.readings.at(d.target).values;
-  const CorrectedRun corrected = correct_by_schedule(
-      {run.readings.time_s, drift_um, boundaries_s, scenario.study->tolerance_um}, ahead_um, d.interval_um.value_or(0.0));
-  return {.time_s = run.readings.time_s, .drift_um = drift_um, .predicted_um = ahead_um, .left_um = corrected.residual_um};
+  const CorrectedRun corrected =
+      correct_by_schedule({run.readings.time_s, drift_um, boundaries_s, scenario.study->tolerance_um}, ahead_um,
+                          d.interval_um.value_or(0.0), planner_of(scenario));
+  return {.time_s = run.readings.time_s,
+          .drift_um = drift_um,
+          .predicted_um = ahead_um,
+          .left_um = corrected.residual_um,
+          .before = corrected.before,
+          .after = corrected.after};
 }
 
 /// What ISO 230-3 asks of the drift, and of what is left of it.
@@ -229,20 +222,27 @@ void compensate(const CompensateOptions& options) {
     // a predictor knows what is recorded, as in validate_strategies(), and not what the scenario's effects make of it
     run = {*cyclogram, scenario.machine->hall,
            std::move(simulate_cyclograms(scenario, model, {cyclogram}, progress, 0, nullptr).front().record)};
-    const auto foretold = [&] { return modal_record(scenario, model, *cyclogram, run.readings.time_s); };
-    if (!predictor) predictor = by_modes(scenario, foretold());
-    if (options.through == "schedule") ahead_um = foretold_um(*predictor, run, foretold);
+    if (!predictor) {
+      predictor = by_thermal_modes(*scenario.machine, model.outputs(), modes_for(scenario, model, *cyclogram), study.target);
+      predictor->name = "thermal modes of the model";
+    }
+    if (options.through == "schedule") {
+      // a formula reads temperatures that the modes foretell; anything else has drive and hall alone
+      ObservedRun known{*cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}};
+      if (as_formula(*predictor->predictor))
+        known.readings = foretold_record(*scenario.machine, model.outputs(), modes_for(scenario, model, *cyclogram),
+                                         *cyclogram, run.readings.time_s);
+      ahead_um = ahead(*predictor->predictor, known);
+    }
   }
   const DeployedPredictor& d = *predictor;
   progress.begin("correcting");
   run.readings.channels[static_cast<std::size_t>(&run.readings.at(d.target) - run.readings.channels.data())] =
       scored_readings(run, d.target, d.from_start).at(d.target);
-  Outcome o = options.through == "none"       ? through_none(d, run)
-              : options.through == "injector" ? through_injector(scenario, d, run)
-                                              : through_schedule(scenario, d, run, ahead_um);
+  const Outcome o = options.through == "none"       ? through_none(d, run)
+                    : options.through == "injector" ? through_injector(scenario, d, run)
+                                                    : through_schedule(scenario, d, run, ahead_um);
   const std::string what = is_measured ? run.readings.source : cyclogram->name;
-  o.before = score(judged(o, o.drift_um));
-  o.after = score(judged(o, o.left_um));
   const double removed = 100.0 * (1.0 - o.after.peak_abs / o.before.peak_abs);
   const std::string way = options.through == "none" ? "without an actuator" : "through the " + options.through;
   const std::string title = fmt::format("{}: {} corrected {}", scenario.name, d.target, way);

@@ -8,6 +8,7 @@
 #include "app/diagnosis_json.hpp"
 #include "app/diagnosis_report.hpp"
 #include "app/diagnosis_summary.hpp"
+#include "app/measured_iso230_3.hpp"
 #include "app/results.hpp"
 #include "output/json_text.hpp"
 
@@ -62,6 +63,7 @@ void diagnose(const DiagnoseOptions& options) {
       write_scenario("extended", m, changes, head_of(d, options), folder, &difference);
   if (extended.not_written.empty()) simulate_written(m, folder.path("extended.yaml").string(), d);
   nlohmann::ordered_json json = diagnosis_json(d);
+  json["iso_230_3"] = iso230_3_json(measured_iso230_3(m));
   json["extended"] = {{"written", extended.written}, {"not_written", extended.not_written}};
   folder.write_text("diagnosis.json", output::json_text(json));
   const bool has_mesh = write_missing_heat(m.mesh, missing_heat(d, candidates), folder);

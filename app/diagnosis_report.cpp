@@ -8,6 +8,7 @@
 #include <set>
 
 #include "app/diagnosis_summary.hpp"
+#include "app/measured_iso230_3.hpp"
 #include "app/residual_report.hpp"
 
 namespace driftwright::app {
@@ -210,6 +211,7 @@ output::Report diagnosis_report(const DiagnosisPage& page, const output::Provena
   add_data(d, report.blocks);
   add_gain(d, report.blocks);
   add_residuals(page.measured, d, "extended", report.blocks);
+  report.blocks.push_back(iso230_3_block(measured_iso230_3(page.measured)));
   report.blocks.emplace_back(Heading{"The scenario's own numbers"});
   report.blocks.emplace_back(numbers_table(d));
   add_written(page, report.blocks);
@@ -231,6 +233,7 @@ output::Report calibration_report(const DiagnosisPage& page, const output::Prove
   add_data(d, report.blocks);
   add_gain(d, report.blocks);
   add_residuals(page.measured, d, "calibrated", report.blocks);
+  report.blocks.push_back(iso230_3_block(measured_iso230_3(page.measured)));
   if (!fits) add_candidates(page, report.blocks);
   add_written(page, report.blocks);
   return report;

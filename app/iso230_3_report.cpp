@@ -70,4 +70,36 @@ output::ReportBlock iso230_3_block(const Iso230Figures& figures) {
   return table;
 }
 
+nlohmann::ordered_json iso230_3_json(const std::vector<Iso230Run>& runs) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Iso230Run& r : runs) {
+    nlohmann::ordered_json entry = {{"run", r.run}};
+    entry.update(iso230_3_json(r.figures));
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+output::ReportBlock iso230_3_block(const std::vector<Iso230Run>& runs) {
+  output::Table table{
+      .caption =
+          "Thermal distortion by rotating spindle (ISO 230-3), without correction: t is the spindle running period. Ranges "
+          "d are maximum minus minimum; the value at t counts from the start of the run. The last column has the time at "
+          "rest behind t in it, too.",
+      .headers = {"run", "t [min]", "X", "unit", "d(X),60: first 60 min", "d(X),t: running period", "X at t",
+                  "range of the whole run"},
+      .rows = {}};
+  for (const Iso230Run& r : runs) {
+    if (!r.figures.not_available.empty())
+      table.rows.push_back({r.run, "", "not available: " + r.figures.not_available, "", "", "", "", ""});
+    for (const Iso230Channel& c : r.figures.channels) {
+      const bool is_first = &c == &r.figures.channels.front();
+      table.rows.push_back({is_first ? r.run : "", is_first ? fmt::format("{:.4g}", r.figures.running_period_s / 60.0) : "",
+                            c.name, c.unit, number(c.range_first_60_min, c.unit), number(c.range_running, c.unit),
+                            signed_number(c.at_end_of_running, c.unit), number(c.range_whole_record, c.unit)});
+    }
+  }
+  return table;
+}
+
 }  // namespace driftwright::app

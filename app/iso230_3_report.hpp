@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "compensation/iso230_3.hpp"
 #include "output/html_report.hpp"
@@ -18,5 +19,15 @@ namespace driftwright::app {
 
 /// A table, or a paragraph that says why there is none.
 [[nodiscard]] output::ReportBlock iso230_3_block(const compensation::Iso230Figures& figures);
+
+/// Figures of one of several runs.
+struct Iso230Run {
+  std::string run;
+  compensation::Iso230Figures figures;
+};
+/// A list of the same objects, each with `run` before it.
+[[nodiscard]] nlohmann::ordered_json iso230_3_json(const std::vector<Iso230Run>& runs);
+/// One table of all runs and their channels, with why there are no figures where there are none.
+[[nodiscard]] output::ReportBlock iso230_3_block(const std::vector<Iso230Run>& runs);
 
 }  // namespace driftwright::app

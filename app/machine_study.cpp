@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "app/planner.hpp"
+#include "app/thermal_modes.hpp"
+#include "compensation/fitted_formulas.hpp"
+#include "compensation/formula_predictor.hpp"
 #include "compensation/thermometers.hpp"
 #include "scenarios/as_recorded.hpp"
 
@@ -11,6 +16,8 @@ namespace {
 
 using namespace compensation;
 using scenarios::Scenario;
+
+constexpr const char* kByRegression = "regression";  // what goes through the axis, too
 
 std::vector<std::string> candidates(const scenarios::Study& study, const Record& record) {
   return study.candidates.empty() ? scenarios::sensor_channels(record) : study.candidates;
@@ -26,14 +33,6 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   double largest = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
   return largest;
-}
-
-/// The modal model's record of a cyclogram, at the times of the full model's.
-Record predict_record(const ModalPredictor& predictor, const Scenario& scenario, const Model& model,
-                      const Cyclogram& cyclogram, const std::vector<double>& time_s) {
-  const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
-  return scenarios::as_recorded(*scenario.machine, predictor.predict(felt.cyclogram, felt.hall, time_s), model.outputs(),
-                                cyclogram);
 }
 
 ModalError modal_error(const Record& predicted, const Record& full, const std::vector<std::string>& displacements,
@@ -53,7 +52,8 @@ ModalError modal_error(const Record& predicted, const Record& full, const std::v
   return error;
 }
 
-void fit_modal(MachineStudy& study, const Scenario& scenario, const Model& model) {
+/// The modes that correct: completed ones.
+ModalPredictor fit_modal(MachineStudy& study, const Scenario& scenario, const Model& model) {
   const Cyclogram& judged = scenario.cyclogram(scenario.study->judge);
   const int n_modes = scenario.study->thermal_modes;
   std::vector<Cyclogram> felt;
@@ -65,23 +65,14 @@ void fit_modal(MachineStudy& study, const Scenario& scenario, const Model& model
   const Drive typical = mean_drive(training);
   const ModalPredictors predictors = modal_predictors(scenario, model, n_modes, typical);
   for (bool with_steady_responses : {false, true}) {
-    const ModalPredictor& predictor = with_steady_responses ? predictors.completed : predictors.bare;
-    Record predicted = predict_record(predictor, scenario, model, judged, study.judged.record.time_s);
+    study.modal_prediction =
+        foretold_record(*scenario.machine, model.outputs(), with_steady_responses ? predictors.completed : predictors.bare,
+                        judged, study.judged.record.time_s);
     study.modal_errors.push_back(
-        modal_error(predicted, study.judged.record, study.displacements, n_modes, with_steady_responses));
-    if (!with_steady_responses) continue;
-    study.modal_prediction = std::move(predicted);
-    study.modal_time_constant_s = predictor.time_constant_s;
-    study.modal_margin_um.assign(study.displacements.size(), 0.0);
-    for (const SimulatedRun& run : study.train) {
-      const Record p = predict_record(predictor, scenario, model, scenario.cyclogram(run.record.source), run.record.time_s);
-      for (std::size_t d = 0; d < study.displacements.size(); ++d) {
-        study.modal_margin_um[d] =
-            std::max(study.modal_margin_um[d],
-                     largest_difference(p.at(study.displacements[d]).values, run.record.at(study.displacements[d]).values));
-      }
-    }
+        modal_error(study.modal_prediction, study.judged.record, study.displacements, n_modes, with_steady_responses));
   }
+  study.modal_time_constant_s = predictors.completed.time_constant_s;
+  return predictors.completed;
 }
 
 void fit_regression_on_best(MachineStudy& study, const scenarios::Study& settings) {
@@ -95,43 +86,59 @@ void fit_regression_on_best(MachineStudy& study, const scenarios::Study& setting
   }
 }
 
+DeployedPredictor by_regression(const char* name, const Regression& regression) {
+  DeployedPredictor d;
+  d.name = name;
+  d.target = regression.target;
+  d.sensors = regression.inputs;
+  d.predictor = std::make_shared<FormulaPredictor>(as_drift_model(regression));
+  return d;
+}
+
+/// The largest error of a predictor on runs [um].
+double largest_miss_um(const DeployedPredictor& d, const std::vector<ObservedRun>& runs) {
+  double largest = 0.0;
+  for (const ObservedRun& run : runs)
+    largest = std::max(largest, largest_difference(live(*d.predictor, run), run.readings.at(d.target).values));
+  return largest;
+}
+
 void correct(MachineStudy& study, const Scenario& scenario) {
   const scenarios::Study& settings = *scenario.study;
-  std::vector<double> durations_s;
-  for (const auto& section : scenario.cyclogram(settings.judge).sections) durations_s.push_back(section.duration_s);
-  const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
-  const Record& record = study.judged.record;
   // The injector works on readings of the run itself. A schedule is written before the run: what it may know of the
   // temperatures is the modal model's prediction of them.
-  const Record readings = as_read(record, {.resolution_K = settings.sensor_resolution_K}, 0);
-  const Record& ahead = study.modal_prediction;
-  for (std::size_t d = 0; d < study.displacements.size(); ++d) {
-    const std::string& channel = study.displacements[d];
-    const JudgedRun run{record.time_s, record.at(channel).values, boundaries_s, settings.tolerance_um};
-    const auto add = [&](const char* predictor, const std::vector<double>& live_um, const std::vector<double>& ahead_um,
-                         double margin_um) {
-      for (CorrectedRun corrected :
-           {correct_by_injector(run, live_um, settings.encoder_period_um), correct_by_schedule(run, ahead_um, margin_um)}) {
-        corrected.predictor = predictor;
-        corrected.channel = channel;
-        study.corrections.push_back(std::move(corrected));
-      }
-    };
-    const auto add_regression = [&](const char* predictor, const Regression& r) {
-      add(predictor, r.predict(readings), r.predict(ahead), r.max_abs_residual);
-    };
-    add_regression(kPredictors[0], study.single_sensor[d]);
-    add_regression(kPredictors[1], study.regressions[d]);
-    const std::vector<double>& modal_um = ahead.at(channel).values;
-    add(kPredictors[2], modal_um, modal_um, study.modal_margin_um[d]);
+  const auto as_observed = [&](const SimulatedRun& run) {
+    return ObservedRun{scenario.cyclogram(run.record.source), scenario.machine->hall,
+                       as_read(run.record, {.resolution_K = settings.sensor_resolution_K}, 0)};
+  };
+  std::vector<ObservedRun> training;
+  for (const SimulatedRun& run : study.train) training.push_back(as_observed(run));
+  const ObservedRun judged = as_observed(study.judged);
+  const ObservedRun foretold{judged.cyclogram, judged.hall, study.modal_prediction};
+  std::vector<double> durations_s;
+  for (const auto& section : judged.cyclogram.sections) durations_s.push_back(section.duration_s);
+  const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
+  for (const DeployedPredictor& d : study.predictors) {
+    const JudgedRun run{judged.readings.time_s, study.judged.record.at(d.target).values, boundaries_s,
+                        settings.tolerance_um};
+    const double margin_um = largest_miss_um(d, training);
+    for (CorrectedRun corrected :
+         {correct_by_injector(run, live(*d.predictor, judged), settings.encoder_period_um),
+          correct_by_schedule(run, ahead(*d.predictor, foretold), margin_um, planner_of(scenario))}) {
+      corrected.predictor = d.name;
+      corrected.channel = d.target;
+      study.corrections.push_back(std::move(corrected));
+    }
   }
 }
 
 void run_axis(MachineStudy& study, const scenarios::AxisLoopSettings& settings) {
-  const auto d = std::find(study.displacements.begin(), study.displacements.end(), settings.displacement);
-  const Regression& regression = study.regressions[static_cast<std::size_t>(d - study.displacements.begin())];
-  study.axis_loop = run_axis_loop(settings.loop, study.judged.record, settings.displacement,
-                                  [&](const Record& readings) { return regression.predict(readings); });
+  const auto d = std::find_if(study.predictors.begin(), study.predictors.end(), [&](const DeployedPredictor& p) {
+    return p.name == kByRegression && p.target == settings.displacement;
+  });
+  study.axis_loop = run_axis_loop(settings.loop, study.judged.record, settings.displacement, [&](const Record& readings) {
+    return live(*d->predictor, {.cyclogram = {}, .hall = {}, .readings = readings});
+  });
 }
 
 void find_ambiguities(MachineStudy& study, const Scenario& scenario) {
@@ -171,7 +178,12 @@ MachineStudy study_machine(const Scenario& scenario, const Model& model, Progres
   for (const auto& d : scenario.machine->displacements) study.displacements.push_back(d.name);
   progress.begin("fitting and correcting");
   fit_regression_on_best(study, settings);
-  fit_modal(study, scenario, model);
+  const ModalPredictor modes = fit_modal(study, scenario, model);
+  for (std::size_t d = 0; d < study.displacements.size(); ++d) {
+    study.predictors.push_back(by_regression("one thermometer", study.single_sensor[d]));
+    study.predictors.push_back(by_regression(kByRegression, study.regressions[d]));
+    study.predictors.push_back(by_thermal_modes(*scenario.machine, model.outputs(), modes, study.displacements[d]));
+  }
   correct(study, scenario);
   if (scenario.axis_loop) run_axis(study, *scenario.axis_loop);
   find_ambiguities(study, scenario);

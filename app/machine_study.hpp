@@ -1,21 +1,18 @@
 #pragma once
-// The main job: simulate the training cyclograms and the judged one, fit both predictors on the former, correct the latter.
+// The main job: simulate the training cyclograms and the judged one, fit the predictors on the former, correct the latter.
 
-#include <array>
 #include <optional>
 
 #include "app/results.hpp"
 #include "compensation/axis_loop.hpp"
 #include "compensation/correction.hpp"
+#include "compensation/deployed_predictor.hpp"
 #include "compensation/grey_relational.hpp"
 #include "compensation/modal_predictor.hpp"
 #include "compensation/regression.hpp"
 #include "compensation/temperature_ambiguity.hpp"
 
 namespace driftwright::app {
-
-/// The predictors, by the names that summary and report use.
-inline constexpr std::array<const char*, 3> kPredictors = {"one thermometer", "regression", "thermal modes"};
 
 /// How far a modal model is from the full model on one run.
 struct ModalError {
@@ -40,9 +37,10 @@ struct MachineStudy {
   std::vector<compensation::Regression> single_sensor;  ///< on the very best one: what temperature alone can do
   std::vector<double> modal_time_constant_s;
   Record modal_prediction;               ///< of the judged cyclogram
-  std::vector<double> modal_margin_um;   ///< largest error on the training cyclograms, per displacement
   std::vector<ModalError> modal_errors;  ///< on the judged cyclogram: bare modes, then completed ones
-  /// Displacement by displacement: predictors (kPredictors) x actuators (pulse injector, schedule).
+  /// Displacement by displacement: one thermometer, regression, thermal modes.
+  std::vector<compensation::DeployedPredictor> predictors;
+  /// In the order of the predictors, each through pulse injector and schedule.
   std::vector<compensation::CorrectedRun> corrections;
   std::optional<compensation::AxisLoopRun> axis_loop;  ///< the regression through the injector, where the scenario says how
   std::vector<SensorAmbiguity> ambiguities;            ///< of the target at each point on the machine, worst first

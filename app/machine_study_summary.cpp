@@ -50,12 +50,13 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
   for (const std::string& d : study.displacements)
     drift += fmt::format("  {} {:6.1f} um", d, study.of_channel(d).front()->before.peak_abs);
   text += drift + "\n";
-  for (const char* predictor : kPredictors) {
+  for (const compensation::DeployedPredictor& predictor : study.predictors) {
+    if (predictor.target != study.displacements.front()) continue;  // each predictor once, all displacements on its lines
     for (const char* actuator : {"pulse injector", "schedule"}) {
-      text += fmt::format("  after {:<15} by {:<14} ", predictor, actuator);
+      text += fmt::format("  after {:<15} by {:<14} ", predictor.name, actuator);
       bool inside = false;
       for (const CorrectedRun& c : study.corrections) {
-        if (c.predictor != predictor || c.actuator != actuator) continue;
+        if (c.predictor != predictor.name || c.actuator != actuator) continue;
         text += fmt::format("  {} {:6.1f} um", c.channel, c.after.peak_abs);
         if (c.channel == settings.target) inside = c.inside_tolerance;
       }

@@ -37,7 +37,7 @@ output::Table error_table(const ProgrammeStudy& study, bool in_percent) {
   for (const auto& p : study.predictors) {
     bool is_first = true;
     for (const Group& g : groups(study)) {
-      std::vector<std::string> row = {is_first ? p.name : "", g.name, ""};
+      std::vector<std::string> row = {is_first ? p.name() : "", g.name, ""};
       is_first = false;
       for (std::size_t c = 0; c < study.channels.name.size(); ++c) {
         const Summary s = summary(study, p, c, g.holds);
@@ -65,7 +65,7 @@ output::Plot course(const ProgrammeStudy& study, std::size_t cyclogram, std::siz
                     .series = {{.label = "simulated", .x = t_min, .y = row(j.truth), .width = 4.0}},
                     .half_width = true};
   for (const auto& p : study.predictors)
-    plot.series.push_back({.label = p.name, .x = t_min, .y = row(p.predicted[cyclogram])});
+    plot.series.push_back({.label = p.name(), .x = t_min, .y = row(p.predicted[cyclogram])});
   double start_s = 0.0;
   if (j.cyclogram.sections.size() <= 8) {
     for (const auto& s : j.cyclogram.sections) {
@@ -160,7 +160,7 @@ nlohmann::ordered_json programme_json(const ProgrammeStudy& study, const output:
                         {"mean_percent", s.mean_percent}});
       }
     }
-    j["predictors"].push_back({{"name", p.name}, {"errors", rows}});
+    j["predictors"].push_back({{"name", p.name()}, {"errors", rows}});
   }
   j["modes_of_the_model"] = study.n_modes_wanted;
   if (!study.without_model.empty()) j["without_model"] = study.without_model;
@@ -185,7 +185,7 @@ std::string programme_csv(const ProgrammeStudy& study) {
     for (std::size_t i = 0; i < study.judged.size(); ++i) {
       for (std::size_t c = 0; c < study.channels.name.size(); ++c) {
         const PredictionError& e = p.errors[i][c];
-        text += fmt::format("\"{}\",{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.name,
+        text += fmt::format("\"{}\",{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.name(),
                             study.judged[i].cyclogram.name, compensation::word(study.judged[i].type), study.channels.name[c],
                             study.channels.unit[c], e.peak, e.largest, e.mean, e.of, e.largest_percent(), e.mean_percent());
       }
@@ -198,12 +198,12 @@ std::string programme_text(const ProgrammeStudy& study) {
   std::string text =
       fmt::format("{} cyclograms; largest error in % of max(peak of the axis, 10 % of the vector's)\n", study.judged.size());
   std::size_t width = 0;
-  for (const auto& p : study.predictors) width = std::max(width, p.name.size());
+  for (const auto& p : study.predictors) width = std::max(width, p.name().size());
   text += fmt::format("  {:<{}}", "", width);
   for (const std::string& name : study.channels.name) text += fmt::format("  {:>8}", name);
   text += "\n";
   for (const auto& p : study.predictors) {
-    text += fmt::format("  {:<{}}", p.name, width);
+    text += fmt::format("  {:<{}}", p.name(), width);
     for (std::size_t c = 0; c < study.channels.name.size(); ++c)
       text += fmt::format("  {:8.2f}", summary(study, p, c, [](const JudgedCyclogram&) { return true; }).largest_percent);
     text += "\n";

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <memory>
 
+#include "app/planner.hpp"
 #include "base/random.hpp"
+#include "compensation/correction.hpp"
+#include "compensation/driven_predictor.hpp"
 #include "compensation/model_scatter.hpp"
-#include "compensation/schedule.hpp"
 #include "scenarios/as_recorded.hpp"
 #include "solver/propagator.hpp"
 
@@ -83,22 +85,79 @@ Eigen::MatrixXd rows_of(const solver::Trajectory& run, const solver::Outputs& ou
   return rows;
 }
 
-void judge(ProgrammeStudy& study, const std::string& name,
-           const std::function<Eigen::MatrixXd(const JudgedCyclogram&)>& predict) {
-  ProgrammeStudy::Predictor p{name, {}, {}, 0.0};
+std::vector<double> row_of(const Eigen::MatrixXd& rows, Eigen::Index channel) {
+  const Eigen::VectorXd row = rows.row(channel);
+  return {row.begin(), row.end()};
+}
+
+/// All channels of a cyclogram since the start, in um and urad, n_channels x n_times. @param hall  minus the reference temperature [K]
+using Courses =
+    std::function<Eigen::MatrixXd(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& time_s)>;
+
+/// A predictor of each channel, which takes its row.
+std::vector<DeployedPredictor> predictors_of(const std::string& name, const TestChannels& channels, const Courses& courses) {
+  std::vector<DeployedPredictor> list;
+  for (std::size_t c = 0; c < channels.name.size(); ++c) {
+    DeployedPredictor d;
+    d.name = name;
+    d.target = channels.name[c];
+    d.from_start = true;
+    d.predictor = std::make_shared<DrivenPredictor>(
+        [courses, row = static_cast<Eigen::Index>(c)](const Cyclogram& cyclogram, const TimeSeries& hall,
+                                                      const std::vector<double>& time_s) {
+          return row_of(courses(cyclogram, hall, time_s), row);
+        });
+    list.push_back(std::move(d));
+  }
+  return list;
+}
+
+/// Of a linear model and its state at the start, by what the machine feels of drive and hall.
+Courses by_model(const scenarios::MachineModel& machine, const TestChannels& channels, const solver::ReducedSystem& system,
+                 const Eigen::VectorXd& start) {
+  struct Owned {
+    explicit Owned(const solver::ReducedSystem& s) : system(s), propagator(system) {}
+    Owned(const Owned&) = delete;
+    Owned& operator=(const Owned&) = delete;
+    solver::ReducedSystem system;
+    solver::Propagator propagator;  // of the system beside it, which stays where it is
+  };
+  // shared: a function is copied, one for each channel, and all may have what was decomposed for one of them
+  return [machine, channels, start, owned = std::make_shared<Owned>(system)](
+             const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& time_s) {
+    scenarios::MachineModel there = machine;
+    there.hall = hall;
+    const scenarios::FeltRun felt = scenarios::felt_run(there, cyclogram);
+    return rows_of(owned->propagator.run(felt.cyclogram, felt.hall, time_s, start), owned->system.outputs, channels);
+  };
+}
+
+/// Predictors of all channels on all judged cyclograms, before they run. @param hall  minus the reference temperature [K]
+JudgedPredictor judged(const ProgrammeStudy& study, const TimeSeries& hall, const std::string& name,
+                       const Courses& courses) {
+  JudgedPredictor p{predictors_of(name, study.channels, courses), {}, {}, 0.0};
   const auto start = std::chrono::steady_clock::now();
-  for (const JudgedCyclogram& j : study.judged) p.predicted.push_back(predict(j));
+  for (const JudgedCyclogram& j : study.judged) {
+    const ObservedRun known{j.cyclogram, hall, {.source = {}, .time_s = j.time_s, .channels = {}}};
+    Eigen::MatrixXd predicted(j.truth.rows(), j.truth.cols());
+    for (std::size_t c = 0; c < p.channels.size(); ++c) {
+      const std::vector<double> row = ahead(*p.channels[c].predictor, known);
+      predicted.row(static_cast<Eigen::Index>(c)) =
+          Eigen::Map<const Eigen::RowVectorXd>(row.data(), static_cast<Eigen::Index>(row.size()));
+    }
+    p.predicted.push_back(std::move(predicted));
+  }
   p.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
-              static_cast<double>(study.judged.size());
+              static_cast<double>(study.judged.size() * p.channels.size());
   for (std::size_t i = 0; i < study.judged.size(); ++i) {
     p.errors.emplace_back();
     for (Eigen::Index c = 0; c < p.predicted[i].rows(); ++c)
       p.errors.back().push_back(error_of(study.judged[i].truth, p.predicted[i], study.channels, c));
   }
-  study.predictors.push_back(std::move(p));
+  return p;
 }
 
-double largest_percent(const ProgrammeStudy::Predictor& p) {
+double largest_percent(const JudgedPredictor& p) {
   double largest = 0.0;
   for (const auto& cyclogram : p.errors) {
     for (const PredictionError& e : cyclogram) largest = std::max(largest, e.largest_percent());
@@ -107,32 +166,28 @@ double largest_percent(const ProgrammeStudy::Predictor& p) {
 }
 
 /// Corrections planned on each prediction of a random cyclogram, and what the true drift leaves of them.
-ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& p, std::size_t channel,
-                                        double tolerance_um) {
-  ProgrammeStudy::Scheduled s{p.name, study.channels.name[channel]};
+ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const JudgedPredictor& p, std::size_t channel,
+                                        double tolerance_um, SchedulePolicy policy) {
+  ProgrammeStudy::Scheduled s{p.name(), study.channels.name[channel]};
   const auto c = static_cast<Eigen::Index>(channel);
   for (std::size_t i = 0; i < study.judged.size(); ++i) {
     const JudgedCyclogram& j = study.judged[i];
     if (!j.is_random) continue;
-    const Eigen::VectorXd predicted = p.predicted[i].row(c);
-    const std::vector<double> drift_um(predicted.begin(), predicted.end());
-    std::vector<double> boundaries_s = {0.0};
-    for (const auto& section : j.cyclogram.sections) boundaries_s.push_back(boundaries_s.back() + section.duration_s);
+    std::vector<double> durations_s;
+    for (const auto& section : j.cyclogram.sections) durations_s.push_back(section.duration_s);
+    std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
     boundaries_s.back() = std::min(boundaries_s.back(), j.time_s.back());
+    const std::vector<double> drift_um = row_of(j.truth, c);
     // half the tolerance is left to the predictor's error
-    const Schedule schedule =
-        plan_schedule(j.time_s, drift_um, boundaries_s, {.tolerance_um = tolerance_um, .margin_um = 0.5 * tolerance_um});
-    double worst_um = 0.0, before_um = 0.0;
+    const CorrectedRun corrected = correct_by_schedule({j.time_s, drift_um, boundaries_s, tolerance_um},
+                                                       row_of(p.predicted[i], c), 0.5 * tolerance_um, policy);
     int changes = 0;
-    for (std::size_t k = 0; k < j.time_s.size(); ++k) {
-      const double correction_um = correction_at(schedule, j.time_s[k]);
-      changes += correction_um != before_um;
-      before_um = correction_um;
-      worst_um = std::max(worst_um, std::abs(j.truth(c, static_cast<Eigen::Index>(k)) - correction_um));
-    }
+    for (const Operation& o : corrected.schedule->operations)
+      changes += static_cast<int>(std::count_if(o.corrections.begin(), o.corrections.end(),
+                                                [](const Correction& change) { return change.delta_um != 0.0; }));
     ++s.n_cyclograms;
-    s.n_inside += worst_um <= tolerance_um;
-    s.worst_um = std::max(s.worst_um, worst_um);
+    s.n_inside += corrected.inside_tolerance;
+    s.worst_um = std::max(s.worst_um, corrected.after.peak_abs);
     s.mean_changes += changes;
     s.most_changes = std::max(s.most_changes, changes);
   }
@@ -142,7 +197,7 @@ ProgrammeStudy::Scheduled schedule_with(const ProgrammeStudy& study, const Progr
 
 }  // namespace
 
-Summary summary(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& predictor, std::size_t channel,
+Summary summary(const ProgrammeStudy& study, const JudgedPredictor& predictor, std::size_t channel,
                 const std::function<bool(const JudgedCyclogram&)>& counts) {
   Summary s;
   for (std::size_t i = 0; i < study.judged.size(); ++i) {
@@ -191,11 +246,11 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   // --- truth
   const std::vector<Cyclogram> tests = scenarios::test_cyclograms(programme),
                                random = scenarios::random_cyclograms(programme);
-  std::vector<Cyclogram> judged = programme.cyclograms;
-  judged.insert(judged.end(), random.begin(), random.end());
+  std::vector<Cyclogram> asked = programme.cyclograms;
+  asked.insert(asked.end(), random.begin(), random.end());
   std::vector<const Cyclogram*> all;
   for (const Cyclogram& c : tests) all.push_back(&c);
-  for (const Cyclogram& c : judged) all.push_back(&c);
+  for (const Cyclogram& c : asked) all.push_back(&c);
   const std::vector<SimulatedRun> runs = simulate_cyclograms(scenario, model, all, progress, 0, nullptr);
   const double hall_K = scenarios::felt_hall_at_start_K(machine);
   TestBed bed{study.channels, {}};
@@ -209,10 +264,10 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
     bed.tests.push_back({tests[t], hall, runs[t].record.time_s, rows_of(runs[t].record, bed.all)});
   }
   add_noise(bed.tests, bed.all, programme);
-  for (std::size_t i = 0; i < judged.size(); ++i) {
+  for (std::size_t i = 0; i < asked.size(); ++i) {
     const Record& record = runs[tests.size() + i].record;
     study.judged.push_back(
-        {judged[i], type_of(judged[i]), i >= programme.cyclograms.size(), record.time_s, rows_of(record, study.channels)});
+        {asked[i], type_of(asked[i]), i >= programme.cyclograms.size(), record.time_s, rows_of(record, study.channels)});
   }
   const std::size_t n_channels = study.channels.name.size();
   const auto displacements = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
@@ -222,20 +277,28 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   // --- from tests alone
   progress.begin("identifying modes from tests");
   study.identified = identify_modes(bed.tests, bed.all, {.most_modes = programme.most_modes});
-  judge(study, "modes from tests", [&](const JudgedCyclogram& j) {
-    return displacements(study.identified.predict(j.cyclogram, hall, j.time_s, programme.extrapolate));
-  });
+  const auto by_tests = [&](const IdentifiedModes& modes) -> Courses {
+    return
+        [modes, n = static_cast<Eigen::Index>(n_channels), extrapolate = programme.extrapolate](
+            const Cyclogram& cyclogram, const TimeSeries& absolute, const std::vector<double>& time_s) -> Eigen::MatrixXd {
+          return modes.predict(cyclogram, from_start(absolute), time_s, extrapolate).topRows(n);
+        };
+  };
+  const auto add = [&](const std::string& name, const Courses& courses) {
+    study.predictors.push_back(judged(study, machine.hall, name, courses));
+  };
+  add("modes from tests", by_tests(study.identified));
   const IdentifiedModes fixed =
       identify_modes(bed.tests, bed.all, {.most_modes = programme.most_modes, .with_growth = false});
-  judge(study, "modes from tests, fixed rates", [&](const JudgedCyclogram& j) {
-    return displacements(fixed.predict(j.cyclogram, hall, j.time_s, programme.extrapolate));
-  });
+  add("modes from tests, fixed rates", by_tests(fixed));
   progress.begin("cutting curves");
   std::vector<ThermalTest> of_displacements = bed.tests;
   for (ThermalTest& t : of_displacements) t.readings = displacements(t.readings);
   const AssembledCurves curves(of_displacements, study.channels);
-  judge(study, "assembled curves",
-        [&](const JudgedCyclogram& j) { return curves.predict(j.cyclogram, j.time_s, programme.extrapolate); });
+  add("assembled curves", [curves, extrapolate = programme.extrapolate](const Cyclogram& cyclogram, const TimeSeries&,
+                                                                        const std::vector<double>& time_s) {
+    return curves.predict(cyclogram, time_s, extrapolate);
+  });
 
   // --- from the model
   const scenarios::ReducedMachine* reduced = model.reduced();
@@ -247,33 +310,24 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   } else {
     progress.begin("modes of the model");
     const solver::ReducedSystem& system = reduced->system;
-    const auto by_propagator = [&](const solver::ReducedSystem& s, const Eigen::VectorXd& start) {
-      auto propagator = std::make_shared<solver::Propagator>(s);
-      return [&, propagator, start](const JudgedCyclogram& j) {
-        const scenarios::FeltRun felt = scenarios::felt_run(machine, j.cyclogram);
-        return rows_of(propagator->run(felt.cyclogram, felt.hall, j.time_s, start), system.outputs, study.channels);
-      };
-    };
     std::vector<const Cyclogram*> pointers;
     for (const Cyclogram& c : tests) pointers.push_back(&c);
     const effects::Inputs standstill{.drive = {}, .hall_K = hall_K},
         typical{.drive = mean_drive(pointers), .hall_K = hall_K};
     for (int n = 1; n <= std::min(kMostModelModes, system.size()); ++n) {
       const ModalPredictor p = make_ritz_predictor(system, reduced->start, n, standstill);
-      ProgrammeStudy trial;
-      trial.channels = study.channels;
-      trial.judged = study.judged;
-      judge(trial, fmt::format("{} modes of the model", n), by_propagator(p.system, p.start));
-      study.error_by_modes.emplace_back(n, largest_percent(trial.predictors.front()));
+      JudgedPredictor trial = judged(study, machine.hall, fmt::format("{} modes of the model", n),
+                                     by_model(machine, study.channels, p.system, p.start));
+      study.error_by_modes.emplace_back(n, largest_percent(trial));
       const bool is_enough = study.error_by_modes.back().second <= kWantedPercent;
       if (!is_enough && n < std::min(kMostModelModes, system.size())) continue;
       study.n_modes_wanted = is_enough ? n : 0;
       study.time_constant_s = p.time_constant_s;
-      study.predictors.push_back(std::move(trial.predictors.front()));
+      study.predictors.push_back(std::move(trial));
       const solver::ReducedSystem frozen = with_fixed_exchanges(p.system, typical);
-      judge(study, fmt::format("{} modes of the model, fixed rates", n), by_propagator(frozen, p.start));
+      add(fmt::format("{} modes of the model, fixed rates", n), by_model(machine, study.channels, frozen, p.start));
       const solver::ReducedSystem wrong = scattered(p.system, programme.model_scatter, programme.seed);
-      judge(study, "modes of a model that is off", by_propagator(wrong, p.start));
+      add("modes of a model that is off", by_model(machine, study.channels, wrong, p.start));
       progress.begin("scaling the model's modes to tests");
       std::vector<ThermalTest> felt_tests = bed.tests;
       for (ThermalTest& t : felt_tests) {
@@ -283,7 +337,7 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
       }
       const ScaledModes scaled = fit_scaled_modes(wrong, p.start, hall_K, felt_tests, bed.all);
       study.factors = scaled.factors;
-      judge(study, "hybrid: those, scaled to tests", by_propagator(scaled.system, p.start));
+      add("hybrid: those, scaled to tests", by_model(machine, study.channels, scaled.system, p.start));
       break;
     }
   }
@@ -292,7 +346,8 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const Model&
   const std::string target = scenario.study ? scenario.study->target : study.channels.name.front();
   const auto channel = static_cast<std::size_t>(std::find(study.channels.name.begin(), study.channels.name.end(), target) -
                                                 study.channels.name.begin());
-  for (const auto& p : study.predictors) study.scheduled.push_back(schedule_with(study, p, channel, programme.tolerance_um));
+  for (const auto& p : study.predictors)
+    study.scheduled.push_back(schedule_with(study, p, channel, programme.tolerance_um, planner_of(scenario)));
   return study;
 }
 

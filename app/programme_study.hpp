@@ -5,6 +5,7 @@
 
 #include "app/results.hpp"
 #include "compensation/assembled_curves.hpp"
+#include "compensation/deployed_predictor.hpp"
 #include "compensation/identified_modes.hpp"
 #include "compensation/scaled_modes.hpp"
 
@@ -27,16 +28,20 @@ struct JudgedCyclogram {
   Eigen::MatrixXd truth;  ///< n_channels x n_times, um and urad, since the start
 };
 
+/// Predictors of one kind, one a channel, and what they foretold of drive and hall alone.
+struct JudgedPredictor {
+  std::vector<compensation::DeployedPredictor> channels;  ///< of one name, as TestChannels; those of tilts tell urad
+  std::vector<Eigen::MatrixXd> predicted;                 ///< per judged cyclogram, as its truth
+  std::vector<std::vector<PredictionError>> errors;       ///< per judged cyclogram, per channel
+  double seconds = 0.0;                                   ///< of one prediction of one channel, mean; for the terminal alone
+
+  [[nodiscard]] const std::string& name() const { return channels.front().name; }
+};
+
 struct ProgrammeStudy {
   compensation::TestChannels channels;  ///< displacements, then tilts
   std::vector<JudgedCyclogram> judged;
-  struct Predictor {
-    std::string name;
-    std::vector<Eigen::MatrixXd> predicted;            ///< per judged cyclogram, as its truth
-    std::vector<std::vector<PredictionError>> errors;  ///< per judged cyclogram, per channel
-    double seconds = 0.0;                              ///< of one prediction, mean; for the terminal alone
-  };
-  std::vector<Predictor> predictors;
+  std::vector<JudgedPredictor> predictors;
   compensation::IdentifiedModes identified;
   std::vector<compensation::ScaledModes::Factor> factors;
   int n_modes_wanted = 0;     ///< of the model, completed, so that every error is at most 1 %; 0: no number reaches it
@@ -58,7 +63,7 @@ struct Summary {
   int n = 0;
 };
 /// @param counts  which cyclograms do
-[[nodiscard]] Summary summary(const ProgrammeStudy& study, const ProgrammeStudy::Predictor& predictor, std::size_t channel,
+[[nodiscard]] Summary summary(const ProgrammeStudy& study, const JudgedPredictor& predictor, std::size_t channel,
                               const std::function<bool(const JudgedCyclogram&)>& counts);
 
 /// @throws InputError, SolveError  as the predictors

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/planner.hpp"
 #include "app/schedule_report.hpp"
 #include "app/verbs.hpp"
 #include "base/file_bytes.hpp"
@@ -69,9 +70,7 @@ void correct(CorrectedSeries& series, const std::string& bytes) {
       throw std::logic_error("parts of one program with other rows");
     parts.push_back(axes_of(series, part));
   }
-  const compensation::ProgramScheduleOptions how{
-      .policy = settings.policy == "paper" ? compensation::SchedulePolicy::kPaper : compensation::SchedulePolicy::kMinimal,
-      .split = series.split};
+  const compensation::ProgramScheduleOptions how{.policy = policy_of(settings.policy), .split = series.split};
   for (compensation::SharedPlan& shared : compensation::plan_series(series.program.steps, time_s, parts, how)) {
     CorrectedProgram program{.file = corrected_file(series.file, shared, rows.size()), .shared = {}, .corrected = {}};
     program.corrected =

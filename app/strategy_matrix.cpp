@@ -279,10 +279,10 @@ const JudgedStrategy* best_strategy(const StrategyMatrix& matrix) {
   return best;
 }
 
-Case judge(const DeployedPredictor& strategy, const ObservedRun& run, const std::vector<double>& drift_um) {
+Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const std::vector<double>& drift_um) {
   Case c;
   const std::vector<double> predicted = live(*strategy.predictor, run);
-  const GuardedCorrection correction = correct(strategy, run);
+  GuardedCorrection correction = correct(strategy, run);
   std::vector<double> left, unguarded;
   int n_inside = 0, n = 0;
   for (std::size_t i = 0; i < drift_um.size(); ++i) {
@@ -302,8 +302,8 @@ Case judge(const DeployedPredictor& strategy, const ObservedRun& run, const std:
   c.first_hour_um = range_until(run.readings.time_s, left, run.n_before, kHour_s);
   c.whole_um = range_until(run.readings.time_s, left, run.n_before, std::numeric_limits<double>::infinity());
   c.covered = strategy.interval_um && n > 0 ? static_cast<double>(n_inside) / n : std::numeric_limits<double>::quiet_NaN();
-  c.events = correction.events;
-  return c;
+  c.events = std::move(correction.events);
+  return {std::move(c), std::move(correction.correction_um), std::move(left)};
 }
 
 StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
@@ -335,7 +335,7 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
     const std::size_t r = job % n_runs;
     try {
       for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
-        cases[job].push_back(judge(strategy, run, drift_um[r]));
+        cases[job].push_back(judge(strategy, run, drift_um[r]).scores);
         cases[job].back().run = r;
         cases[job].back().failed = failed;
       }

@@ -61,8 +61,15 @@ struct StrategyMatrix {
   std::vector<std::string> findings = {};  ///< about the records themselves, a sentence each
 };
 
+/// A case with its course, per row of the run's readings.
+struct Judgement {
+  Case scores;                        ///< without `run` and `failed`, which are the matrix's
+  std::vector<double> correction_um;  ///< as it goes to the axis
+  std::vector<double> left_um;        ///< drift - correction; NaN where no drift is known
+};
 /// What one predictor leaves of the drift of one run. @param drift_um  per row of the run's readings, true; from the start, where it counts so
-[[nodiscard]] Case judge(const DeployedPredictor& strategy, const ObservedRun& run, const std::vector<double>& drift_um);
+[[nodiscard]] Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run,
+                              const std::vector<double>& drift_um);
 
 /// Fits on `training`, judges on `runs`. Cases go side by side on all cores; the result is the same on any number of them.
 [[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,

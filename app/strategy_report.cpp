@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "app/iso230_3_report.hpp"
 #include "compensation/control/control_files.hpp"
 #include "compensation/formula_predictor.hpp"
 #include "output/csv_row.hpp"
@@ -154,6 +155,38 @@ output::Table worst_table(const StrategyMatrix& m) {
   return table;
 }
 
+/// Of what is judged, all displacements and tilts that were recorded. The test begins in balance: a run that goes on from others has none.
+std::vector<Iso230Run> judged_iso230_3(const StrategyMatrix& m) {
+  std::vector<Iso230Run> list;
+  for (const JudgedRunOfMachine& r : m.runs) {
+    const std::string name = r.season.empty() ? r.name : fmt::format("{}, {}", r.name, r.season);
+    list.push_back({name, r.run.n_before == 0 ? iso230_3_figures(r.run.readings)
+                                              : Iso230Figures{.running_period_s = 0.0,
+                                                              .channels = {},
+                                                              .not_available = "the run goes on from what came before it"}});
+  }
+  return list;
+}
+
+/// Displacements and tilts of the runs that strategies leave as they are.
+std::vector<std::string> other_axes(const StrategyMatrix& m) {
+  std::vector<std::string> names;
+  const Record& readings = m.runs.front().run.readings;
+  for (const Channel& c : readings.channels) {
+    const bool is_axis = c.unit == "um" || c.unit == "mm" || c.unit == "urad";
+    if (is_axis && &c != readings.find(m.settings.strategies.target)) names.push_back(c.name);
+  }
+  return names;
+}
+
+/// Of which axis a verdict is; "" where no other was recorded.
+std::string axis_text(const StrategyMatrix& m) {
+  const std::vector<std::string> others = other_axes(m);
+  if (others.empty()) return "";
+  return fmt::format("Verdicts are of {} alone: no strategy here corrects or judges {}.", m.settings.strategies.target,
+                     fmt::join(others, ", "));
+}
+
 std::string enough_text(const StrategyMatrix& m, const std::string& family) {
   const JudgedStrategy* s = simplest_enough(m, family);
   if (!s) return fmt::format("none keeps {:g} um", m.settings.tolerance_um);
@@ -175,6 +208,7 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
         fmt::format("It leaves the smallest share in its worst run, {:.0f} % of the peak{}. Why: {}.", 100.0 * intact.left,
                     failed.peak ? fmt::format(", {:.0f} % with one sensor failed", 100.0 * failed.left) : "", best->why)});
   }
+  if (const std::string axis = axis_text(m); !axis.empty()) blocks.emplace_back(output::Paragraph{axis});
   blocks.emplace_back(output::Paragraph{fmt::format(
       "Residual: drift less the correction in force, that is the prediction times trust, clamped and slewed. The table has "
       "the worst run of each family in "
@@ -232,6 +266,7 @@ std::vector<output::ReportBlock> strategy_blocks(const StrategyMatrix& m) {
     }
     blocks.emplace_back(course(m, c.run, shown));
   }
+  blocks.push_back(iso230_3_block(judged_iso230_3(m)));
   output::Table fits{
       .caption = "What each fit decided, on the training runs alone.", .headers = {"strategy", "decided"}, .rows = {}};
   for (const JudgedStrategy& s : m.strategies) {
@@ -277,6 +312,7 @@ Json verdict_json(const JudgedStrategy& s) {
 /// The conditions that all of them were judged under.
 Json conditions_json(const StrategyMatrix& m) {
   Json j = {{"target", m.settings.strategies.target},
+            {"not_judged", other_axes(m)},
             {"tolerance_um", m.settings.tolerance_um},
             {"count_from_start", m.settings.strategies.count_from_start},
             {"sensors_fail_at", m.settings.fails_at ? Json(*m.settings.fails_at) : Json(nullptr)},
@@ -301,6 +337,7 @@ Json strategy_json(const StrategyMatrix& m) {
   for (const std::string& family : families_of(m)) j["simplest_enough"][family] = enough_text(m, family);
   j["left_out"] = Json::array();
   for (const LeftOut& l : m.left_out) j["left_out"].push_back({{"name", l.name}, {"why", l.why}});
+  j["iso_230_3"] = iso230_3_json(judged_iso230_3(m));
   return j;
 }
 
@@ -350,6 +387,7 @@ std::string strategy_text(const StrategyMatrix& m) {
     text += fmt::format("enough for '{}': {}\n", family, enough_text(m, family));
   if (const JudgedStrategy* best = best_strategy(m))
     text += fmt::format("best: {}, {}; {}\n", best->fitted.name, word(best->safety), best->why);
+  if (const std::string axis = axis_text(m); !axis.empty()) text += axis + "\n";
   return text;
 }
 

@@ -62,7 +62,8 @@ void validate_machine(const scenarios::Scenario& scenario, const CommonOptions& 
     if (!page.blocks.empty()) page.blocks.emplace_back(output::Heading{programme.title});
     std::move(programme.blocks.begin(), programme.blocks.end(), std::back_inserter(page.blocks));
     text += programme_text(study) + schedule_text(study);
-    for (const auto& p : study.predictors) text += fmt::format("one prediction by {}: {:.2f} ms\n", p.name, 1e3 * p.seconds);
+    for (const auto& p : study.predictors)
+      text += fmt::format("one prediction by {}: {:.2f} ms\n", p.name(), 1e3 * p.seconds);
   }
   folder.write_text("summary.json", output::json_text(summary));
   folder.write_text("report.html", output::render_html(page));

@@ -37,9 +37,11 @@ CorrectedRun correct_by_injector(const JudgedRun& run, std::span<const double> p
   return judge(run, "pulse injector", std::move(residual_um));
 }
 
-CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um) {
-  const ScheduleOptions options{.tolerance_um = run.tolerance_um, .margin_um = std::min(margin_um, 0.5 * run.tolerance_um)};
-  Schedule schedule = plan_schedule(run.time_s, predicted_um, run.boundaries_s, options);
+CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um,
+                                 SchedulePolicy policy) {
+  Schedule schedule = plan_cyclogram(
+      run.time_s, predicted_um, run.boundaries_s,
+      {.policy = policy, .tolerance_um = run.tolerance_um, .margin_um = std::min(margin_um, 0.5 * run.tolerance_um)});
   std::vector<double> residual_um;
   for (std::size_t i = 0; i < run.drift_um.size(); ++i) {
     residual_um.push_back(run.drift_um[i] - correction_at(schedule, run.time_s[i]));

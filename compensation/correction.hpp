@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/schedule.hpp"
+#include "compensation/schedule_policy.hpp"
 #include "compensation/score.hpp"
 
 namespace driftwright::compensation {
@@ -37,10 +37,11 @@ struct CorrectedRun {
 /// @throws RangeError, InputError  as simulate_injection()
 [[nodiscard]] CorrectedRun correct_by_injector(const JudgedRun& run, std::span<const double> predicted_um, double period_um);
 
-/// The correction is planned ahead from the prediction and written into the program.
+/// The correction is planned ahead from the prediction by plan_cyclogram(), with the policies that `schedule` writes programs by.
 /// @param margin_um  kept in reserve for the predictor's error; more than half of the tolerance is cut to that half
-/// @throws RangeError, InputError  as plan_schedule()
-[[nodiscard]] CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um);
+/// @throws RangeError, InputError  as plan_cyclogram()
+[[nodiscard]] CorrectedRun correct_by_schedule(const JudgedRun& run, std::span<const double> predicted_um, double margin_um,
+                                               SchedulePolicy policy = SchedulePolicy::kMinimal);
 
 /// Starts of a run's operations and its end [s], from the sections of its cyclogram.
 [[nodiscard]] std::vector<double> operation_boundaries_s(std::span<const double> section_durations_s);

@@ -40,7 +40,8 @@ class Predictor {
 
 /// The drift before the run [um]: by drive and hall alone, with no reading but those of channels that are known ahead. All NaN for a predictor
 /// that cannot do without its thermometers.
-/// @param known  its readings hold the times, and channels such as `speed` that follow from the cyclogram
+/// @param known  its readings hold the times, and channels that are known ahead: `speed`, which follows from the cyclogram, or temperatures that
+///               a model foretells
 [[nodiscard]] std::vector<double> ahead(const Predictor& predictor, ObservedRun known);
 
 }  // namespace driftwright::compensation

@@ -92,9 +92,7 @@ class AxisPlanner {
     std::vector<int> cost;
     for (const Place& place : places)
       cost.push_back(2 * place.cost - static_cast<int>(used.contains({place.step, place.share})));
-    correction_um = options_.policy == SchedulePolicy::kPaper
-                        ? steps_of_tolerance(cells, axis_.tolerance_um, cost)
-                        : fewest_changes(cells, axis_.tolerance_um, options_.resolution_um, cost);
+    correction_um = planned_corrections(cells, options_.policy, axis_.tolerance_um, options_.resolution_um, cost);
   }
 
   bool wants_parts(std::size_t cell) const {

@@ -11,11 +11,6 @@
 
 namespace driftwright::compensation {
 
-enum class SchedulePolicy {
-  kPaper,    ///< steps_of_tolerance()
-  kMinimal,  ///< fewest_changes()
-};
-
 /// An axis of the program and the drift along it: error = actual - commanded.
 struct ProgramAxis {
   int axis = 0;                ///< 0, 1, 2 = x, y, z

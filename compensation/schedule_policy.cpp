@@ -138,6 +138,19 @@ std::vector<std::size_t> cheapest_starts(const std::vector<Interval>& cells, std
   return starts;
 }
 
+/// Where operations begin, and every multiple of the resolution from there to their end.
+std::vector<double> grid_s(std::span<const double> boundaries_s, double resolution_s) {
+  if (!(resolution_s > 0.0)) throw RangeError(fmt::format("resolution {} s must be positive", resolution_s));
+  std::vector<double> times_s;
+  for (std::size_t o = 0; o + 1 < boundaries_s.size(); ++o) {
+    const double length_s = boundaries_s[o + 1] - boundaries_s[o];
+    const auto n = std::max(1L, std::lround(std::ceil(length_s / resolution_s - kRounding)));
+    for (long k = 0; k < n; ++k) times_s.push_back(boundaries_s[o] + static_cast<double>(k) * resolution_s);
+  }
+  times_s.push_back(boundaries_s.back());
+  return times_s;
+}
+
 void require_positive(const char* what, double um) {
   if (!(um > 0.0)) throw RangeError(fmt::format("{} {} um must be positive", what, um));
 }
@@ -213,6 +226,26 @@ std::vector<double> fewest_changes(std::span<const DriftCell> cells, double tole
               correction_um.begin() + static_cast<std::ptrdiff_t>(end), held_um);
   }
   return correction_um;
+}
+
+std::vector<double> planned_corrections(std::span<const DriftCell> cells, SchedulePolicy policy, double tolerance_um,
+                                        double resolution_um, std::span<const int> cost) {
+  return policy == SchedulePolicy::kPaper ? steps_of_tolerance(cells, tolerance_um, cost)
+                                          : fewest_changes(cells, tolerance_um, resolution_um, cost);
+}
+
+Schedule plan_cyclogram(std::span<const double> time_s, std::span<const double> drift_um,
+                        std::span<const double> boundaries_s, const ScheduleOptions& options) {
+  check_drift(time_s, drift_um, boundaries_s);
+  require_positive("tolerance", options.tolerance_um);
+  require_positive("resolution", options.resolution_um);
+  if (!(options.margin_um >= 0.0 && options.margin_um < options.tolerance_um))
+    throw RangeError(
+        fmt::format("margin {} um must lie in [0, {}) um, below the tolerance", options.margin_um, options.tolerance_um));
+  const double kept_um = options.tolerance_um - options.margin_um;
+  const std::vector<DriftCell> cells = drift_cells(time_s, drift_um, grid_s(boundaries_s, options.resolution_s));
+  return schedule_of(cells, planned_corrections(cells, options.policy, kept_um, options.resolution_um), boundaries_s,
+                     kept_um);
 }
 
 Schedule schedule_of(std::span<const DriftCell> cells, std::span<const double> correction_um,

@@ -1,5 +1,6 @@
 #pragma once
-// Corrections planned ahead where they may change at permitted times only, such as the ends of a program's blocks.
+// Corrections planned ahead where they may change at permitted times only: the ends of a program's blocks (program_schedule.hpp), or, of a cyclogram
+// that no program stands behind, a grid of time.
 
 #include <span>
 #include <vector>
@@ -18,7 +19,7 @@ struct DriftCell {
 
 /// The cells between permitted times; the drift is linear between its samples.
 /// @param permitted_s  strictly increasing, two at least (start and end), inside time_s
-/// @throws InputError  as plan_schedule()
+/// @throws InputError  as check_drift()
 [[nodiscard]] std::vector<DriftCell> drift_cells(std::span<const double> time_s, std::span<const double> drift_um,
                                                  std::span<const double> permitted_s);
 
@@ -56,10 +57,39 @@ inline constexpr double kPaperReach = 0.1;
 [[nodiscard]] std::vector<double> fewest_changes(std::span<const DriftCell> cells, double tolerance_um,
                                                  double resolution_um = 0.0, std::span<const int> cost = {});
 
+enum class SchedulePolicy {
+  kPaper,    ///< steps_of_tolerance(), the step being the tolerance
+  kMinimal,  ///< fewest_changes()
+};
+
+/// The correction in force in each cell [um], by a policy. @param resolution_um, cost  as fewest_changes()
+[[nodiscard]] std::vector<double> planned_corrections(std::span<const DriftCell> cells, SchedulePolicy policy,
+                                                      double tolerance_um, double resolution_um,
+                                                      std::span<const int> cost = {});
+
 /// The paper's notation of such a plan: changes as increments, per operation.
 /// @param correction_um  per cell
 /// @param boundaries_s   starts of the operations and the end of the last; the cells cover them
 [[nodiscard]] Schedule schedule_of(std::span<const DriftCell> cells, std::span<const double> correction_um,
                                    std::span<const double> boundaries_s, double tolerance_um);
+
+struct ScheduleOptions {
+  SchedulePolicy policy = SchedulePolicy::kMinimal;
+  double tolerance_um = 10.0;
+  double margin_um = 0.0;      ///< part of the tolerance kept in reserve for the predictor's error
+  double resolution_um = 0.1;  ///< minimal: corrections are multiples of it
+  double resolution_s = 1.0;   ///< changes stand at whole multiples of it, counted from the operation's start
+};
+
+/// Plans the corrections of a cyclogram's predicted drift, as plan_program() does those of an NC program, for tolerance - margin. They may
+/// change where operations begin and at every multiple of the resolution in between; no place is better than another.
+///
+/// remaining error = drift - c, where c is the sum of the increments so far: c is how much of the drift is taken away, the axis moves by -c.
+/// @returns a schedule whose tolerance_um and inside_band are of tolerance - margin
+/// @param time_s, drift_um, boundaries_s  as check_drift()
+/// @throws InputError  as check_drift()
+/// @throws RangeError  when tolerance or a resolution is not positive, or the margin lies outside [0, tolerance)
+[[nodiscard]] Schedule plan_cyclogram(std::span<const double> time_s, std::span<const double> drift_um,
+                                      std::span<const double> boundaries_s, const ScheduleOptions& options = {});
 
 }  // namespace driftwright::compensation

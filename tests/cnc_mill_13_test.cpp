@@ -76,6 +76,18 @@ TEST_F(CncMill13, GivesTheFiguresOfIso2303OfItsRecord) {
   EXPECT_THAT(read_text(folder_ / "report.html"), HasSubstr("d(X),60: first 60 min"));
 }
 
+TEST_F(CncMill13, StrategiesThatLeaveTheToleranceAreShownFailing) {
+  int n_failing = 0;
+  for (const auto& c : summary_["corrections"]) {
+    if (c["channel"] != "drift_z") continue;
+    const bool inside = c["inside_tolerance"];
+    EXPECT_EQ(inside, c["after"]["peak_um"].get<double>() <= 10.0);
+    n_failing += inside ? 0 : 1;
+  }
+  EXPECT_EQ(n_failing, 4);  // one thermometer and regression, through both actuators; modes keep it
+  EXPECT_THAT(outcome_.output, HasSubstr("drift_z LEAVES 10 um"));
+}
+
 TEST_F(CncMill13, TheFourChosenAreThoseOfTheRangeImage) {
   std::vector<std::string> first;
   for (int i = 0; i < 4; ++i) first.push_back(summary_["ranking"]["channels"][i]["name"]);

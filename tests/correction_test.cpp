@@ -1,11 +1,15 @@
 #include "compensation/correction.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
 namespace driftwright::compensation {
 namespace {
+
+using ::testing::DoubleNear;
+using ::testing::Pointwise;
 
 const std::vector<double> kTime_s = {0, 60, 120, 180};
 const std::vector<double> kDrift_um = {0, 4, 8, 12};
@@ -32,13 +36,17 @@ TEST(CorrectByInjector, AWrongPredictionLeavesItsError) {
 }
 
 TEST(CorrectBySchedule, StepsBeforeThePredictionLeavesTheTolerance) {
-  // 4 um/min, tolerance 5 um: corrections of 5 um where the prediction passes 5 and 10 um, at 75 s and 150 s. The second
-  // operation starts at 120 s.
+  // 4 um/min, tolerance 5 um: nothing until the prediction passes 5 um at 75 s, from there the middle of 12 - 5 and 5 + 5 um. The
+  // second operation starts at 120 s.
   const CorrectedRun c = correct_by_schedule(run_with_tolerance(5.0), kDrift_um, 0.0);
   ASSERT_TRUE(c.schedule.has_value());
-  EXPECT_EQ(to_text(*c.schedule), "2-{1.25,0.75}-{0,5}\n2-{0.5,0.5}-{0,5}\n");
-  EXPECT_EQ(c.residual_um, (std::vector<double>{0, 4, 3, 2}));
+  EXPECT_EQ(to_text(*c.schedule), "2-{1.25,0.75}-{0,8.5}\n1-{1}-{0}\n");
+  EXPECT_THAT(c.residual_um, Pointwise(DoubleNear(1e-9), {0.0, 4.0, -0.5, 3.5}));
   EXPECT_TRUE(c.inside_tolerance);
+  // the paper's steps: 5 um where the prediction passes 5 and 10 um, at 75 s and 150 s
+  const CorrectedRun paper = correct_by_schedule(run_with_tolerance(5.0), kDrift_um, 0.0, SchedulePolicy::kPaper);
+  EXPECT_EQ(to_text(*paper.schedule), "2-{1.25,0.75}-{0,5}\n2-{0.5,0.5}-{0,5}\n");
+  EXPECT_EQ(paper.residual_um, (std::vector<double>{0, 4, 3, 2}));
 }
 
 TEST(CorrectBySchedule, AMarginBeyondHalfTheToleranceIsCutToIt) {

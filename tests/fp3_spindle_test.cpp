@@ -69,18 +69,20 @@ TEST_F(Fp3Spindle, DriftIsNoFunctionOfTemperature) {
   EXPECT_GE(summary_["drift_at_one_temperature"].size(), 12U);
 }
 
-TEST_F(Fp3Spindle, SomeStrategyStaysInsideTenMicrometresAndOneIsShownFailing) {
-  int n_inside = 0, n_failing = 0;
+// One that fails is shown by CncMill13.
+TEST_F(Fp3Spindle, SomeStrategyStaysInsideTenMicrometres) {
+  double least_um = 1e9, most_um = 0.0;
   for (const auto& c : summary_["corrections"]) {
     if (c["channel"] != "drift_y") continue;
-    const bool inside = c["inside_tolerance"];
-    EXPECT_EQ(inside, c["after"]["peak_um"].get<double>() <= 10.0);
-    (inside ? n_inside : n_failing)++;
+    const double peak_um = c["after"]["peak_um"];
+    EXPECT_EQ(c["inside_tolerance"].get<bool>(), peak_um <= 10.0);
     EXPECT_GT(c["before"]["peak_um"].get<double>(), 20.0);
+    least_um = std::min(least_um, peak_um);
+    most_um = std::max(most_um, peak_um);
   }
-  EXPECT_GE(n_inside, 1);
-  EXPECT_GE(n_failing, 1);
-  EXPECT_THAT(outcome_.output, HasSubstr("LEAVES 10 um"));
+  EXPECT_LT(least_um, 2.0);  // modes through the injector
+  EXPECT_GT(most_um, 9.0);   // one thermometer by a schedule, which uses the whole tolerance
+  EXPECT_THAT(outcome_.output, HasSubstr("stays inside 10 um"));
 }
 
 TEST_F(Fp3Spindle, ScoresAreThoseOfTheWrittenRecord) {

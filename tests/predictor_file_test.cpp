@@ -89,6 +89,31 @@ TEST(PredictorFile, WhatWasMeasuredBeforeComesBack) {
   EXPECT_TRUE(std::isnan(before.back()));  // behind both
 }
 
+TEST(PredictorFile, EarlierRunsThatAreNoneAreRefused) {
+  PredictorFile file;
+  const std::vector<Record> runs = {{"a", {0.0, 100.0, 300.0}, {{"z", "um", {0.0, 1.0, 30.0}}}}};
+  file.predictor = {.name = "same time",
+                    .target = "z",
+                    .is_baseline = true,
+                    .predictor = std::make_shared<EarlierRunsPredictor>(runs, "z")};
+  const Json good = predictor_json(file, {}, {"1", "a test"});
+  const auto refused = [&](const char* key, const Json& value, const char* word) {
+    Json j = good;
+    (key == std::string("runs") ? j["earlier_runs"]["runs"] : j["earlier_runs"]["runs"][0][key]) = value;
+    const std::string path = driftwright::write_file("broken_runs.json", j.dump());
+    EXPECT_THAT([&] { (void)read_predictor(path); }, ThrowsMessage<InputError>(HasSubstr(word))) << value.dump();
+  };
+  refused("runs", Json::array(), "`runs` is empty");
+  refused("time_s", {0.0, 100.0, 100.0}, "which rise");
+  refused("time_s", {0.0, 100.0}, "as many `drift_um`");
+  refused("time_s", "never", "`time_s`");
+  Json none = good;
+  none["earlier_runs"]["runs"][0]["time_s"] = Json::array();
+  none["earlier_runs"]["runs"][0]["drift_um"] = Json::array();
+  const std::string path = driftwright::write_file("no_rows.json", none.dump());
+  EXPECT_THROW((void)read_predictor(path), InputError);
+}
+
 TEST(PredictorFile, WhatIsNoneIsRefusedWithItsKey) {
   const Json good = predictor_json(formula(false), {}, {"1", "a test"});
   struct Broken {

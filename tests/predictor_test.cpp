@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "compensation/driven_predictor.hpp"
 #include "compensation/formula_predictor.hpp"
 #include "compensation/past_drift.hpp"
 #include "tests/sensor_records.hpp"
@@ -110,6 +111,8 @@ TEST(Predictor, WhatHasToReadSaysNothingAhead) {
   std::erase_if(known.readings.channels, [](const Channel& c) { return c.unit == "degC"; });
   EXPECT_THAT(ahead(FormulaPredictor(formula(false)), known), ::testing::Each(IsNan()));
   EXPECT_THAT(ahead(ConstantPredictor(2.5), known), ::testing::Each(2.5));
+  const ObservedRun foretold = run_with_holes();  // temperatures that a model foretells are read
+  expect_equal(ahead(FormulaPredictor(formula(false)), foretold), live(FormulaPredictor(formula(false)), foretold));
 }
 
 TEST(Predictor, EarlierRunsAreTheirMeanAtTheSameTime) {
@@ -119,6 +122,34 @@ TEST(Predictor, EarlierRunsAreTheirMeanAtTheSameTime) {
   const ObservedRun run{
       .cyclogram = {}, .hall = {}, .readings = {.source = {}, .time_s = {0.0, 50.0, 150.0, 201.0}, .channels = {}}};
   EXPECT_THAT(live(p, run), ElementsAre(1.0, 4.0, 5.0, IsNan()));
+}
+
+// 2 um/K of the hall, and 1e-3 um/rpm of the spindle: known before the run, and followed while it grows.
+TEST(Predictor, WhatFollowsFromTheDriveIsKnownAheadAndFollowsAGrowingRun) {
+  int n_asked = 0;
+  const DrivenPredictor p([&](const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& time_s) {
+    ++n_asked;
+    std::vector<double> drift_um;
+    for (double t_s : time_s) drift_um.push_back(2.0 * hall.at(t_s) + 1e-3 * cyclogram.speed_rpm(t_s));
+    return drift_um;
+  });
+  const ObservedRun run{.cyclogram = {.name = "work", .sections = {{100.0, {.speed_rpm = 3000.0}}, {900.0, {}}}},
+                        .hall = {{0.0, 200.0}, {0.0, 1.0}},
+                        .readings = {.source = {}, .time_s = {0.0, 50.0, 150.0, 300.0}, .channels = {}}};
+  EXPECT_THAT(ahead(p, run), ElementsAre(3.0, 3.5, 1.5, 2.0));
+  EXPECT_EQ(n_asked, 1);
+  const std::unique_ptr<Follower> follower = p.follow();
+  ObservedRun growing = run;
+  growing.readings.time_s.clear();
+  std::vector<double> row_by_row;
+  for (double t_s : run.readings.time_s) {
+    growing.readings.time_s.push_back(t_s);
+    row_by_row.push_back(follower->next(growing));
+  }
+  expect_equal(row_by_row, live(p, run));
+  const DrivenPredictor too_short(
+      [](const Cyclogram&, const TimeSeries&, const std::vector<double>&) { return std::vector<double>{1.0}; });
+  EXPECT_THROW((void)live(too_short, run), std::logic_error);
 }
 
 TEST(Predictor, AnInputInAnotherUnitIsRefused) {

@@ -1,3 +1,5 @@
+// Plans of a cyclogram, and the paper's notation of them.
+
 #include "compensation/schedule.hpp"
 
 #include <gmock/gmock.h>
@@ -7,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "compensation/interpolate.hpp"
+#include "compensation/schedule_policy.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -21,40 +24,48 @@ std::vector<double> seconds(std::vector<double> minutes) {
 
 Schedule plan_min(const std::vector<double>& time_min, const std::vector<double>& drift_um,
                   const std::vector<double>& boundaries_min, const ScheduleOptions& options = {}) {
-  return plan_schedule(seconds(time_min), drift_um, seconds(boundaries_min), options);
+  return plan_cyclogram(seconds(time_min), drift_um, seconds(boundaries_min), options);
 }
 
-// 0.5 um/min passes 10, 20, 30 um at 20, 40, 60 min: a correction at each, though there are two samples only.
-TEST(Schedule, OfALinearRampCorrectsWhereItPassesEachTolerance) {
-  const Schedule s = plan_min({0, 70}, {0, 35}, {0, 70});
-  EXPECT_EQ(to_text(s), "4-{20,20,20,10}-{0,10,10,10}\n");
-  EXPECT_NEAR(s.worst_remaining_um, 10.0, 1e-9);
-  EXPECT_TRUE(s.inside_band);
+constexpr ScheduleOptions kPaper{.policy = SchedulePolicy::kPaper};
+
+// 0.5 um/min passes 10, 20, 30 um at 20, 40, 60 min: the paper corrects at each, though there are two samples only. The fewest: 20 um
+// serve from 10 to 30 um, and from there the middle of 35 - 10 and 30 + 10.
+TEST(Schedule, OfALinearRampIsPlannedByEitherPolicy) {
+  const Schedule paper = plan_min({0, 70}, {0, 35}, {0, 70}, kPaper);
+  EXPECT_EQ(to_text(paper), "4-{20,20,20,10}-{0,10,10,10}\n");
+  EXPECT_NEAR(paper.worst_remaining_um, 10.0, 1e-9);
+  EXPECT_TRUE(paper.inside_band);
+  const Schedule fewest = plan_min({0, 70}, {0, 35}, {0, 70});
+  EXPECT_EQ(to_text(fewest), "3-{20,40,10}-{0,20,12.5}\n");
+  EXPECT_NEAR(fewest.worst_remaining_um, 10.0, 1e-9);
+  EXPECT_TRUE(fewest.inside_band);
 }
 
 // Polyakov et al.: tolerance 10 um, five operations of 60 min. The drift curve is made to pass 10, 20, 30, 40
 // um at 18, 45, 75, 115 min and 50 um never; the text is the paper's.
 TEST(Schedule, ReproducesThePapersExample) {
-  const Schedule s = plan_min({0, 18, 45, 75, 115, 300}, {0, 10, 20, 30, 40, 49}, {0, 60, 120, 180, 240, 300});
+  const Schedule s = plan_min({0, 18, 45, 75, 115, 300}, {0, 10, 20, 30, 40, 49}, {0, 60, 120, 180, 240, 300}, kPaper);
   EXPECT_EQ(to_text(s), "3-{18,27,15}-{0,10,10}\n3-{15,40,5}-{0,10,10}\n1-{60}-{0}\n1-{60}-{0}\n1-{60}-{0}\n");
   EXPECT_DOUBLE_EQ(correction_at(s, 150 * 60.0), 40.0);
 }
 
 TEST(Schedule, OfAFallingDriftHasNegativeIncrements) {
-  EXPECT_EQ(to_text(plan_min({0, 50}, {0, -25}, {0, 50})), "3-{20,20,10}-{0,-10,-10}\n");
+  EXPECT_EQ(to_text(plan_min({0, 50}, {0, -25}, {0, 50}, kPaper)), "3-{20,20,10}-{0,-10,-10}\n");
+  EXPECT_EQ(to_text(plan_min({0, 50}, {0, -25}, {0, 50})), "2-{20,30}-{0,-17.5}\n");
 }
 
-// Up to 20 um in 40 min and back in 40: corrected at 20 min. At the top the remaining error is 10, on the
-// edge and so inside; on the way down it passes 0 and reaches -10 just at the end.
+// Up to 20 um in 40 min and back in 40: corrected at 20 min, by 10 um, which leave 10 at the top and -10 at the end.
 TEST(Schedule, HoldsTheCorrectionAsLongAsItServes) {
   EXPECT_EQ(to_text(plan_min({0, 40, 80}, {0, 20, 0}, {0, 80})), "2-{20,60}-{0,10}\n");
 }
 
-// Band 10 - 2 = 8 um: corrections where d = 8, 18, 28 um, that is at 16, 36, 56 min.
+// 10 - 2 = 8 um: nothing until 8 um at 16 min, 16 um until 24 um at 48 min, then the middle of 30 - 8 and 24 + 8.
 TEST(Schedule, KeepsTheMarginInReserve) {
   const Schedule s = plan_min({0, 60}, {0, 30}, {0, 60}, {.margin_um = 2.0});
-  EXPECT_EQ(to_text(s), "4-{16,20,20,4}-{0,10,10,10}\n");
+  EXPECT_EQ(to_text(s), "3-{16,32,12}-{0,16,11}\n");
   EXPECT_NEAR(s.worst_remaining_um, 8.0, 1e-9);
+  EXPECT_DOUBLE_EQ(s.tolerance_um, 8.0);
 }
 
 // 0.1 um/s less a little: 10 um are passed at 100.4 s. Written in whole seconds, the correction comes at 100
@@ -63,23 +74,23 @@ TEST(Schedule, KeepsTheMarginInReserve) {
 TEST(Schedule, RoundsTowardsTheSideThatStaysInsideTheBand) {
   const std::vector<double> t_s = {0, 150.6};
   const std::vector<double> d_um = {0, 15};
-  const Schedule whole = plan_schedule(t_s, d_um, std::vector<double>{0, 150});
+  const Schedule whole = plan_cyclogram(t_s, d_um, std::vector<double>{0, 150});
   EXPECT_DOUBLE_EQ(whole.operations[0].corrections[0].interval_s, 100.0);
   EXPECT_TRUE(whole.inside_band);
-  const Schedule tenths = plan_schedule(t_s, d_um, std::vector<double>{0, 150}, {.resolution_s = 0.1});
+  const Schedule tenths = plan_cyclogram(t_s, d_um, std::vector<double>{0, 150}, {.resolution_s = 0.1});
   EXPECT_NEAR(tenths.operations[0].corrections[0].interval_s, 100.4, 1e-9);
 }
 
-// The drift jumps from 8 to 20 um within the second after 100 s. With steps of 2 um and a band of 10 um, c
-// must lie in [20 - 10, 8 + 10] during it: five increments at once, at 100 s. The same downwards.
-TEST(Schedule, TakesSeveralIncrementsAtOnceForAJump) {
+// The drift jumps from 8 to 20 um within the second after 100 s. c must lie in [20 - 10, 8 + 10] during it, and may be that until the end.
+// The same downwards.
+TEST(Schedule, CorrectsAJumpInTheSecondInWhichItHappens) {
   const std::vector<double> t_s = {0, 100, 101, 200};
   for (double sign : {1.0, -1.0}) {
     const std::vector<double> d_um = {sign * 8, sign * 8, sign * 20, sign * 20};
-    const Schedule s = plan_schedule(t_s, d_um, std::vector<double>{0, 200}, {.step_um = 2.0});
+    const Schedule s = plan_cyclogram(t_s, d_um, std::vector<double>{0, 200});
     ASSERT_EQ(s.operations[0].corrections.size(), 2u);
     EXPECT_DOUBLE_EQ(s.operations[0].corrections[0].interval_s, 100.0);
-    EXPECT_DOUBLE_EQ(s.operations[0].corrections[1].delta_um, sign * 10.0);
+    EXPECT_NEAR(s.operations[0].corrections[1].delta_um, sign * 14.0, 1e-9);
     EXPECT_TRUE(s.inside_band);
   }
 }
@@ -88,30 +99,31 @@ TEST(Schedule, TakesSeveralIncrementsAtOnceForAJump) {
 // from the start.
 TEST(Schedule, SeesAPeakBetweenTwoWrittenTimes) {
   for (double sign : {1.0, -1.0}) {
-    const Schedule s = plan_schedule(std::vector<double>{0, 30, 60, 120}, std::vector<double>{0, sign * 15, 0, 0},
-                                     std::vector<double>{0, 120}, {.resolution_s = 60.0});
-    EXPECT_EQ(correction_at(s, 0.0), sign * 10.0);
-    EXPECT_DOUBLE_EQ(s.worst_remaining_um, 10.0);  // at 0 s; without the correction it would be 15 at 30 s
+    const Schedule s = plan_cyclogram(std::vector<double>{0, 30, 60, 120}, std::vector<double>{0, sign * 15, 0, 0},
+                                      std::vector<double>{0, 120}, {.resolution_s = 60.0});
+    EXPECT_NEAR(correction_at(s, 0.0), sign * 7.5, 1e-9);
+    EXPECT_NEAR(s.worst_remaining_um, 7.5, 1e-9);  // without the correction it would be 15 at 30 s
   }
 }
 
-// 25 um within a second cannot be followed inside +-10 um: c would have to lie in [15, 10]. The nearest
-// multiple of 10 to the middle, 12.5, is 10: off by 25 - 10 = 15 um; a second later 20 serves.
+// 25 um within a second cannot be followed inside +-10 um: c would have to lie in [15, 10]. The middle, 12.5, misses by the least; a
+// second later 25 serves.
 TEST(Schedule, SaysSoWhereTheDriftIsTooFast) {
   const std::vector<double> t_s = {0, 100, 101, 200};
-  const Schedule s = plan_schedule(t_s, std::vector<double>{0, 0, 25, 25}, std::vector<double>{0, 200});
+  const Schedule s = plan_cyclogram(t_s, std::vector<double>{0, 0, 25, 25}, std::vector<double>{0, 200});
   EXPECT_FALSE(s.inside_band);
-  EXPECT_DOUBLE_EQ(s.worst_remaining_um, 15.0);
-  EXPECT_DOUBLE_EQ(correction_at(s, 150.0), 20.0);
+  EXPECT_NEAR(s.worst_remaining_um, 12.5, 1e-9);
+  EXPECT_NEAR(correction_at(s, 150.0), 25.0, 1e-9);
 }
 
-// A drift of 25 um that is there at the start needs two increments in the first interval: 25 - 20 = 5 um.
+// A drift of 25 um that is there at the start: two steps in the first interval, or all of it.
 TEST(Schedule, CorrectsAtTheStartWhereTheDriftIsThereAlready) {
-  EXPECT_EQ(to_text(plan_min({0, 10}, {25, 25}, {0, 10})), "1-{10}-{20}\n");
+  EXPECT_EQ(to_text(plan_min({0, 10}, {25, 25}, {0, 10}, kPaper)), "1-{10}-{20}\n");
+  EXPECT_EQ(to_text(plan_min({0, 10}, {25, 25}, {0, 10})), "1-{10}-{25}\n");
 }
 
-// Property: whatever the drift, |d - c| stays within the tolerance at every time, between samples, too. d is
-// a wild curve of at most 0.3 um/s, so that a cell of 1 s always has a correction that serves.
+// Property: whatever the drift, |d - c| stays within tolerance - margin at every time, between samples, too. d is
+// a wild curve of at most 0.3 um/s, so that a cell of 1 s always has a correction that serves; operations end between whole seconds.
 TEST(Schedule, KeepsAWildDriftInsideTheTolerance) {
   std::vector<double> t_s, d_um;
   for (int i = 0; i <= 700; ++i) {
@@ -119,22 +131,28 @@ TEST(Schedule, KeepsAWildDriftInsideTheTolerance) {
     t_s.push_back(t);
     d_um.push_back(40.0 * std::sin(t / 400.0) + 15.0 * std::sin(t / 83.0) - 0.004 * t);
   }
-  for (double step_um : {3.0, 10.0, 16.0}) {
+  for (const SchedulePolicy policy : {SchedulePolicy::kPaper, SchedulePolicy::kMinimal}) {
     const Schedule s =
-        plan_schedule(t_s, d_um, std::vector<double>{100.5, 1800, 3000.25, 5000}, {.step_um = step_um, .margin_um = 1.0});
+        plan_cyclogram(t_s, d_um, std::vector<double>{100.5, 1800, 3000.25, 5000}, {.policy = policy, .margin_um = 1.0});
     double worst_um = 0.0;
     for (double t = 100.5; t <= 5000.0; t += 0.05) {
       worst_um = std::max(worst_um, std::abs(interpolate(t_s, d_um, t) - correction_at(s, t)));
     }
-    EXPECT_LE(worst_um, 9.0 + 1e-6) << step_um;
-    EXPECT_GT(worst_um, 8.0) << step_um;  // corrections are held, not chased
-    EXPECT_LE(worst_um, s.worst_remaining_um + 1e-9) << step_um;
+    EXPECT_LE(worst_um, 9.0 + 1e-6);
+    EXPECT_GT(worst_um, 8.0);  // corrections are held, not chased
+    EXPECT_LE(worst_um, s.worst_remaining_um + 1e-9);
+    EXPECT_TRUE(s.inside_band);
+    for (const Operation& o : s.operations) {
+      double sum_s = 0.0;
+      for (const Correction& c : o.corrections) sum_s += c.interval_s;
+      EXPECT_NEAR(sum_s, o.end_s - o.start_s, 1e-9);
+    }
   }
 }
 
 // 4-{20,20,20,10}-{0,10,10,10}, by eye.
 TEST(Schedule, CorrectionAtATimeIsTheSumOfTheIncrementsBeforeIt) {
-  const Schedule s = plan_min({0, 70}, {0, 35}, {0, 70});
+  const Schedule s = plan_min({0, 70}, {0, 35}, {0, 70}, kPaper);
   EXPECT_EQ(correction_at(s, -1.0), 0.0);
   EXPECT_EQ(correction_at(s, 19.9 * 60.0), 0.0);
   EXPECT_EQ(correction_at(s, 20.0 * 60.0), 10.0);
@@ -155,7 +173,7 @@ class ScheduleErrors : public ::testing::TestWithParam<BadSeries> {};
 
 TEST_P(ScheduleErrors, NameWhatIsWrong) {
   const BadSeries& bad = GetParam();
-  EXPECT_THAT([&] { (void)plan_schedule(bad.time_s, bad.drift_um, bad.boundaries_s); },
+  EXPECT_THAT([&] { (void)plan_cyclogram(bad.time_s, bad.drift_um, bad.boundaries_s); },
               ThrowsMessage<InputError>(HasSubstr(bad.message)));
 }
 
@@ -172,12 +190,12 @@ INSTANTIATE_TEST_SUITE_P(Each, ScheduleErrors,
 TEST(Schedule, RefusesOptionsOutOfRange) {
   const auto plan = [](const ScheduleOptions& options) { (void)plan_min({0, 10}, {0, 1}, {0, 10}, options); };
   EXPECT_THAT([&] { plan({.tolerance_um = 0.0}); }, ThrowsMessage<RangeError>(HasSubstr("tolerance")));
-  EXPECT_THAT([&] { plan({.tolerance_um = NAN, .step_um = 1.0}); }, ThrowsMessage<RangeError>(HasSubstr("tolerance")));
+  EXPECT_THAT([&] { plan({.tolerance_um = NAN}); }, ThrowsMessage<RangeError>(HasSubstr("tolerance")));
   EXPECT_THAT([&] { plan({.margin_um = 10.0}); }, ThrowsMessage<RangeError>(HasSubstr("margin")));
   EXPECT_THAT([&] { plan({.margin_um = -1.0}); }, ThrowsMessage<RangeError>(HasSubstr("margin")));
-  EXPECT_THAT([&] { plan({.step_um = 0.0}); }, ThrowsMessage<RangeError>(HasSubstr("step")));
-  EXPECT_THAT([&] { plan({.step_um = 20.1}); }, ThrowsMessage<RangeError>(HasSubstr("step")));
-  EXPECT_THAT([&] { plan({.resolution_s = 0.0}); }, ThrowsMessage<RangeError>(HasSubstr("resolution")));
+  EXPECT_THAT([&] { plan({.margin_um = NAN}); }, ThrowsMessage<RangeError>(HasSubstr("margin")));
+  EXPECT_THAT([&] { plan({.resolution_um = 0.0}); }, ThrowsMessage<RangeError>(HasSubstr("resolution 0 um")));
+  EXPECT_THAT([&] { plan({.resolution_s = 0.0}); }, ThrowsMessage<RangeError>(HasSubstr("resolution 0 s")));
 }
 
 }  // namespace

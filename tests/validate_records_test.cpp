@@ -383,6 +383,13 @@ TEST_F(ValidateRecords, ReadsLoggersFilesWithEveryVerb) {
              of_logs = json("calibrate " + mapped + " --measured " + (temporary_folder() / "steps.log").string(),
                             "calibration.json");
   EXPECT_EQ(of_records["verdict"], of_logs["verdict"]);
+  const Json& distortion = of_records["iso_230_3"].at(0);
+  EXPECT_EQ(distortion["run"], "record");
+  EXPECT_EQ(distortion["channels"].at(0)["unit"], "um");
+  const Record steps = read_record_csv(record("steps"));
+  const std::vector<double>& drift_um = steps.at(distortion["channels"][0]["name"].get<std::string>()).values;
+  const auto [low, high] = std::minmax_element(drift_um.begin(), drift_um.end());
+  EXPECT_NEAR(distortion["channels"][0]["range_whole_record"].get<double>(), *high - *low, 1e-4 * (*high - *low));
   EXPECT_EQ(
       run_program("diagnose " + mapped + " --measured " + judged + " -o " + (predicted / "diagnosis").string()).exit_code,
       0);

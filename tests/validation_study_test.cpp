@@ -154,6 +154,32 @@ TEST_F(ValidationStudy, GivesTheSameBytesOnOneThread) {
     EXPECT_EQ(read_text(other / file), read_text(folder_ / file)) << file;
 }
 
+TEST_F(ValidationStudy, SaysOfWhichAxisItsVerdictsAreAndHowFarAllAxesDrift) {
+  EXPECT_THAT(outcome_.output, HasSubstr("Verdicts are of drift_z alone: no strategy here corrects or judges structure_z."));
+  EXPECT_EQ(validation_["not_judged"], Json({"structure_z"}));
+  std::set<std::string> runs;
+  for (const Json& run : validation_["iso_230_3"]) {
+    runs.insert(run["run"]);
+    if (run.contains("not_available")) continue;
+    EXPECT_EQ(run["channels"].size(), 2U) << run["run"];
+    for (const Json& c : run["channels"])
+      EXPECT_LE(c["range_first_60_min"].get<double>(), c["range_running_period"].get<double>()) << run["run"];
+  }
+  std::set<std::pair<std::string, std::string>> judged;  // by strategies.csv
+  std::istringstream csv(read_text(folder_ / "strategies.csv"));
+  std::string line;
+  std::getline(csv, line);
+  while (std::getline(csv, line)) {
+    std::istringstream rest(line.substr(line.find('"', 1) + 2));
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
+    judged.insert({cells[2], cells[1]});
+  }
+  EXPECT_EQ(runs.size(), judged.size());
+  for (const auto& [name, season] : judged) EXPECT_TRUE(runs.contains(name + ", " + season)) << name;
+  EXPECT_THAT(read_text(folder_ / "report.html"), HasSubstr("d(X),60: first 60 min"));
+}
+
 TEST_F(ValidationStudy, AModelGoesThroughInjectorAndSchedule) {
   const auto out = fresh_folder("compensate") / "out";
   const auto compensate = [&](const std::string& scenario, const std::string& model, const std::string& through) {
