@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFitted = 2.0 / 3.0;  // of a single run
 constexpr int kBlocks = 6;             // of a run, every other one kept out
-constexpr double kNoBetter = 0.99;     // of the squares: what takes off less is not worth writing
+constexpr double kWorse = 1.1;         // of the squares
 
 /// Rows that numbers are fitted to, and the others. Both have all runs; readings that are not theirs are missing.
 struct Fold {
@@ -100,45 +100,46 @@ class Judge {
  public:
   Judge(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
         std::vector<Fold> folds)
-      : result_(result), noise_(noise), folds_(std::move(folds)) {
-    for (const Fold& fold : folds_) {
-      fitters_.push_back(std::make_unique<Fitter>(fitter, fold.fitted));
-      comparisons_.emplace_back(fold.kept_out, fitter.noise());
-    }
+      : whole_(fitter), result_(result), noise_(noise), folds_(std::move(folds)) {
+    for (const Fold& fold : folds_) fitters_.push_back(std::make_unique<Fitter>(fitter, fold.fitted));
     Twin::Workspace workspace(fitter.twin());
     written_ = fitter.predict({}, Eigen::VectorXd::Zero(fitter.n_nuisance()), workspace);
   }
 
-  /// Predictions of all runs, a fold each, with numbers that were fitted to the fold's other rows.
-  const std::vector<Prediction>& predicted(Subset claims) {
-    const auto known = predictions_.find(claims);
-    if (known != predictions_.end()) return known->second;
+  /// What some of the claims make of the folds, all numbers fitted anew to the rows of each.
+  struct Judged {
+    std::vector<Prediction> predicted;  ///< of all runs, a fold each
+    /// Logarithm of the probability of the kept-out rows, the fitted ones given, summed over the folds; up to what all claims share:
+    /// the evidence of all rows less that of the fitted ones.
+    double log_predictive = 0.0;
+  };
+  const Judged& judged(Subset claims) {
+    const auto known = judged_.find(claims);
+    if (known != judged_.end()) return known->second;
     std::vector<std::size_t> left_out;
     for (std::size_t c = 0; c < result_.hypothesis.size(); ++c) {
       if (((claims >> c) & 1U) == 0) left_out.push_back(c);
     }
-    const Eigen::Index n_n = fitters_.front()->n_nuisance();
+    const Eigen::Index n_n = whole_.n_nuisance();
     const Remainder rest = without_claims(result_.hypothesis, left_out, n_n);
     const Eigen::VectorXd x = result_.fit.x(rest.x);
-    std::vector<Prediction> list(folds_.size());
+    std::vector<Fit> fits(folds_.size() + 1);  // the last one to all rows
     for_each_index(
-        folds_.size(), [&] { return Twin::Workspace(fitters_.front()->twin()); },
+        fits.size(), [&] { return Twin::Workspace(whole_.twin()); },
         [&](std::size_t f, Twin::Workspace& workspace) {
-          const bool is_solved = has_solution(
-              [&] { list[f] = fitters_[f]->fit(rest.hypothesis, x.tail(x.size() - n_n), workspace).prediction; });
-          if (!is_solved) list[f] = written_;
+          const Fitter& fitter = f < folds_.size() ? *fitters_[f] : whole_;
+          if (!has_solution([&] { fits[f] = fitter.fit(rest.hypothesis, x.tail(x.size() - n_n), workspace); }))
+            fits[f] = Fit{};
         });
-    return predictions_.emplace(claims, std::move(list)).first->second;
+    Judged j;
+    for (std::size_t f = 0; f < folds_.size(); ++f) {
+      j.log_predictive += fits.back().log_evidence - fits[f].log_evidence;
+      j.predicted.push_back(fits[f].prediction.empty() ? written_ : std::move(fits[f].prediction));
+    }
+    return judged_.emplace(claims, std::move(j)).first->second;
   }
   [[nodiscard]] std::vector<Prediction> written() const { return std::vector<Prediction>(folds_.size(), written_); }
 
-  /// Squares of kept-out misses, whitened.
-  [[nodiscard]] double squares(const std::vector<Prediction>& predicted) const {
-    double sum = 0.0;
-    for (std::size_t f = 0; f < folds_.size(); ++f)
-      sum += (comparisons_[f].measured() - comparisons_[f].whitened(predicted[f])).squaredNorm();
-    return sum;
-  }
   /// Squares of kept-out misses over those of noise, not whitened: what a user sees of them.
   [[nodiscard]] double squares_over_noise(const std::vector<Prediction>& predicted) const {
     double sum = 0.0;
@@ -160,12 +161,12 @@ class Judge {
   }
 
  private:
+  const Fitter& whole_;
   const SearchResult& result_;
   const std::map<std::string, NoiseModel>& noise_;
   std::vector<Fold> folds_;
   std::vector<std::unique_ptr<Fitter>> fitters_;
-  std::vector<Comparison> comparisons_;
-  std::map<Subset, std::vector<Prediction>> predictions_;
+  std::map<Subset, Judged> judged_;
   Prediction written_;
 };
 
@@ -220,22 +221,22 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   held.how = folds.how;
   Judge judge(fitter, result, noise, std::move(folds.list));
   const Subset all = (1U << n_claims) - 1U;
-  held.claim_nats.assign(n_claims, 0.0);
   for (std::size_t c = 0; c < n_claims; ++c)
-    held.claim_nats[c] = 0.5 * (judge.squares(judge.predicted(all & ~(1U << c))) - judge.squares(judge.predicted(all)));
+    held.claim_nats.push_back(judge.judged(all).log_predictive - judge.judged(all & ~(1U << c)).log_predictive);
 
   // What kept-out rows are better off without is taken out, the worst first.
   Subset kept = all;
   while (kept != 0) {
-    const double with_all = judge.squares_over_noise(judge.predicted(kept));
+    const double squares = judge.squares_over_noise(judge.judged(kept).predicted);
     Subset best = kept;
-    double least = with_all * kNoBetter;
+    double most = 0.0;  // nats gained by taking it out
     for (std::size_t c = 0; c < n_claims; ++c) {
       const Subset without = kept & ~(1U << c);
       if (without == kept) continue;
-      const double squares = judge.squares_over_noise(judge.predicted(without));
-      if (squares < least) {
-        least = squares;
+      const double nats = judge.judged(without).log_predictive - judge.judged(kept).log_predictive;
+      const bool is_worse = squares > kWorse * judge.squares_over_noise(judge.judged(without).predicted);
+      if (nats > most || (is_worse && best == kept)) {
+        most = std::max(most, nats);
         best = without;
       }
     }
@@ -244,9 +245,9 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   }
   for (std::size_t c = 0; c < n_claims; ++c) held.keeps_claim.push_back(((kept >> c) & 1U) != 0);
   const std::vector<Prediction> written = judge.written();
-  held.keeps_numbers = judge.squares_over_noise(judge.predicted(kept)) <= judge.squares_over_noise(written);
-  held.channels = channel_gains(fitter.runs(), noise, judge, written, judge.predicted(0),
-                                held.keeps_numbers ? judge.predicted(kept) : written);
+  held.keeps_numbers = judge.squares_over_noise(judge.judged(kept).predicted) <= judge.squares_over_noise(written);
+  held.channels = channel_gains(fitter.runs(), noise, judge, written, judge.judged(0).predicted,
+                                held.keeps_numbers ? judge.judged(kept).predicted : written);
   return held;
 }
 

@@ -8,7 +8,7 @@ namespace driftwright::diagnosis {
 struct HeldOut {
   std::string how;
   std::vector<ChannelGain> channels;  ///< of the claims that are kept
-  /// Per claim: log likelihood [nats] of the kept-out rows with it over that without it, all numbers fitted to the other rows in either case.
+  /// Per claim: how much likelier the kept-out rows are with it than without it, those fitted given, whatever is not known of all numbers counted in [nats].
   std::vector<double> claim_nats;
   std::vector<char> keeps_claim;  ///< per claim: kept-out rows are predicted better with it
   bool keeps_numbers =
