@@ -41,7 +41,7 @@ TEST(Cyclogram, SplitAtFurtherTimesEndsAtTheSameTimeToTheLastBit) {
   EXPECT_EQ(split.duration_s(), cycle.duration_s());
   for (double t_s : {0.0, 0.07, 0.2, 0.5, 0.9, 977.0}) EXPECT_EQ(split.drive(t_s), cycle.drive(t_s)) << t_s;
   EXPECT_EQ(split_at(cycle, {}).sections, cycle.sections);
-  EXPECT_EQ(split.column("heater_W")->at(4.9), 5.0);
+  EXPECT_EQ(split.column("heater_W")->at(4.9), 1.0);
   EXPECT_EQ(split.column("heater")->at(5.0), 7.0);
   EXPECT_EQ(split.column("heater_K"), nullptr);
 }
