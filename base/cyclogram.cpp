@@ -17,13 +17,6 @@ double on_grid_s(double cut_s, double end_s) {
 
 }  // namespace
 
-double Drive::signal(std::string_view name) const {
-  for (const Signal& s : signals) {
-    if (s.name == name) return s.value;
-  }
-  return 0.0;
-}
-
 double Cyclogram::Column::at(double time_s) const {
   const auto after = std::upper_bound(rows.time_s.begin(), rows.time_s.end(), time_s);
   const auto i = static_cast<std::size_t>(after - rows.time_s.begin());

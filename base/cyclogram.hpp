@@ -30,8 +30,6 @@ struct Drive {
   double cutting_power_W = 0.0;                      ///< at the cutting edge, >= 0
   std::vector<Signal> signals = {};                  ///< of recorded columns that effects ask for; most machines have none
   bool operator==(const Drive&) const = default;
-  /// The value of a signal, 0 where there is none of that name.
-  [[nodiscard]] double signal(std::string_view name) const;
 };
 
 /// The drive over time, piecewise constant. Sections follow each other from t = 0.
