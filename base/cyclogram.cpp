@@ -9,7 +9,26 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // of the time: sums of many durations miss a knot that is meant to be one of them
 
+/// A cut on a grid of four times the rounding of the section's end: so durations of its pieces add up to that end to the last bit.
+double on_grid_s(double cut_s, double end_s) {
+  const double grid_s = 4.0 * (std::nextafter(end_s, 2.0 * end_s) - end_s);
+  return grid_s * std::round(cut_s / grid_s);
+}
+
 }  // namespace
+
+double Cyclogram::Column::at(double time_s) const {
+  const auto after = std::upper_bound(rows.time_s.begin(), rows.time_s.end(), time_s);
+  const auto i = static_cast<std::size_t>(after - rows.time_s.begin());
+  return rows.value[i == 0 ? 0 : i - 1];
+}
+
+const Cyclogram::Column* Cyclogram::column(std::string_view name_or_header) const {
+  for (const Column& c : columns) {
+    if (c.name == name_or_header || c.header() == name_or_header) return &c;
+  }
+  return nullptr;
+}
 
 double Cyclogram::duration_s() const {
   double sum_s = 0.0;
@@ -26,6 +45,36 @@ Drive Cyclogram::drive(double time_s) const {
   return sections.empty() ? Drive{} : sections.back().drive;
 }
 
+double Cyclogram::speed_rpm(double time_s) const {
+  double end_s = 0.0;
+  for (const Section& s : sections) {
+    end_s += s.duration_s;
+    if (time_s < end_s) return s.drive.speed_rpm;
+  }
+  return sections.empty() ? 0.0 : sections.back().drive.speed_rpm;
+}
+
+Cyclogram split_at(const Cyclogram& cyclogram, std::vector<double> times_s) {
+  std::sort(times_s.begin(), times_s.end());
+  Cyclogram split{.name = cyclogram.name, .sections = {}, .remarks = cyclogram.remarks, .columns = cyclogram.columns};
+  split.sections.reserve(cyclogram.sections.size() + times_s.size());
+  double start_s = 0.0;
+  for (const Cyclogram::Section& section : cyclogram.sections) {
+    const double end_s = start_s + section.duration_s, rounding_s = kRounding * end_s;
+    double from_s = start_s;
+    for (auto t = std::upper_bound(times_s.begin(), times_s.end(), start_s + rounding_s); t != times_s.end(); ++t) {
+      if (*t >= end_s - rounding_s) break;
+      const double cut_s = on_grid_s(*t, end_s);
+      if (cut_s <= from_s + rounding_s) continue;
+      split.sections.push_back({cut_s - from_s, section.drive});
+      from_s = cut_s;
+    }
+    split.sections.push_back({from_s == start_s ? section.duration_s : end_s - from_s, section.drive});
+    start_s = end_s;
+  }
+  return split;
+}
+
 Drive mean_drive(const std::vector<const Cyclogram*>& cyclograms) {
   Drive mean;
   double total_s = 0.0;
@@ -36,6 +85,12 @@ Drive mean_drive(const std::vector<const Cyclogram*>& cyclograms) {
       mean.speed_rpm += share * section.drive.speed_rpm;
       for (std::size_t axis = 0; axis < 3; ++axis) mean.feed_m_s[axis] += share * section.drive.feed_m_s[axis];
       mean.cutting_power_W += share * section.drive.cutting_power_W;
+      for (const Signal& signal : section.drive.signals) {
+        auto of_it =
+            std::find_if(mean.signals.begin(), mean.signals.end(), [&](const Signal& s) { return s.name == signal.name; });
+        if (of_it == mean.signals.end()) of_it = mean.signals.insert(of_it, {signal.name, 0.0});
+        of_it->value += share * signal.value;
+      }
     }
   }
   return mean;

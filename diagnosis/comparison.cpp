@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/residual_structure.hpp"
+#include "effects/reading_chain.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kSlow_s = 1200.0;  // time constant of what instruments and integrators are off by
+constexpr std::size_t kRowsForColumns = 60;  // fewer tell no noise from what follows them
 
 }  // namespace
 
@@ -42,12 +46,28 @@ Eigen::VectorXd relative_speed(const MeasuredRun& run) {
   return top > 0.0 ? Eigen::VectorXd(speed / top) : speed;
 }
 
+Eigen::MatrixXd curves_of(const MeasuredRun& run) {
+  Eigen::MatrixXd curves = smooth_curves(run.time_s, relative_speed(run));
+  if (run.time_s.size() < kRowsForColumns) return curves;
+  for (const auto& [name, recorded] : beside_drive(run, 0.0)) {
+    const double span = recorded.maxCoeff() - recorded.minCoeff();
+    if (!(span > 0.0)) continue;
+    for (double lag_s : {0.0, 180.0, 720.0}) {
+      Eigen::RowVectorXd curve = (recorded.array() - recorded[0]).transpose() / span;
+      effects::lag_behind(curve, run.time_s, lag_s);
+      curves.conservativeResize(Eigen::NoChange, curves.cols() + 1);
+      curves.rightCols<1>() = curve.transpose();
+    }
+  }
+  return curves;
+}
+
 std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>& runs, const Prediction& prediction,
                                                  const NoiseFloor& least) {
   std::map<std::string, std::vector<NoiseSeries>> series;
   std::map<std::string, double> floors, slow;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    const Eigen::MatrixXd curves = smooth_curves(runs[r].time_s, relative_speed(runs[r]));
+    const Eigen::MatrixXd curves = curves_of(runs[r]);
     for (const MeasuredChannel& c : runs[r].channels) {
       const Eigen::Index n_readings = (c.value.array() == c.value.array()).count();
       series[c.name].push_back(

@@ -50,5 +50,7 @@ struct NoiseFloor {
 
 /// Values of a run's drive between 0 and 1 per time, for smooth_curves().
 [[nodiscard]] Eigen::VectorXd relative_speed(const MeasuredRun& run);
+/// smooth_curves() of a run, and what is recorded beside its drive (beside_drive()) behind the same lags.
+[[nodiscard]] Eigen::MatrixXd curves_of(const MeasuredRun& run);
 
 }  // namespace driftwright::diagnosis

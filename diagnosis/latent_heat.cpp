@@ -6,6 +6,7 @@
 
 #include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
+#include "diagnosis/residual_structure.hpp"
 #include "diagnosis/scene.hpp"
 
 namespace driftwright::diagnosis {
@@ -41,14 +42,15 @@ std::pair<std::string, double> resembles(const MeasuredRun& run, const Eigen::Ve
     travelled[i] = travelled[i - 1] + speed[i - 1] * (time[i] - time[i - 1]);
   }
   std::pair<std::string, double> best{"nothing recorded", 0.0};
-  const std::vector<std::pair<const char*, Eigen::VectorXd>> quantities = {{"speed", speed},
-                                                                           {"the square of speed", speed.cwiseAbs2()},
-                                                                           {"changes of speed", change},
-                                                                           {"turns made", travelled},
-                                                                           {"feeds", feed},
-                                                                           {"hall temperature", hall},
-                                                                           {"its rate", hall_rate},
-                                                                           {"time", time}};
+  std::vector<std::pair<std::string, Eigen::VectorXd>> quantities = {{"speed", speed},
+                                                                     {"the square of speed", speed.cwiseAbs2()},
+                                                                     {"changes of speed", change},
+                                                                     {"turns made", travelled},
+                                                                     {"feeds", feed},
+                                                                     {"hall temperature", hall},
+                                                                     {"its rate", hall_rate},
+                                                                     {"time", time}};
+  for (auto& [name, values] : beside_drive(run, 0.0)) quantities.emplace_back(name, std::move(values));
   for (const auto& [name, values] : quantities) {
     const double c = correlation(values, series);
     if (std::abs(c) > std::abs(best.second) + 0.01) best = {name, c};

@@ -19,7 +19,7 @@ std::vector<Leftover> leftovers(const std::vector<MeasuredRun>& runs, const Pred
   for (std::size_t b = 0; b < comparison.blocks().size(); ++b) {
     const Comparison::Block& block = comparison.blocks()[b];
     const MeasuredRun& run = runs[block.run];
-    const Eigen::MatrixXd curves = telling(smooth_curves(run.time_s, relative_speed(run)), block.n);
+    const Eigen::MatrixXd curves = telling(curves_of(run), block.n);
     Eigen::MatrixXd x(block.n, curves.cols());
     for (Eigen::Index c = 0; c < curves.cols(); ++c) comparison.whitener(b).apply(curves.col(c), x.col(c));
     Eigen::MatrixXd normal = x.transpose() * x;

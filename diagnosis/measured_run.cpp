@@ -11,6 +11,8 @@
 #include "base/quantity.hpp"
 #include "diagnosis/record_faults.hpp"
 #include "diagnosis/stuck_sensor.hpp"
+#include "effects/recorded_column.hpp"
+#include "scenarios/as_recorded.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -18,6 +20,7 @@ namespace {
 constexpr double kHallKnots_s = 600.0;      // at the most
 constexpr double kHallKnown_K = 0.005;      // what is left of a course matters to nobody
 constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
+constexpr int kMostColumns = 6;             // that nobody drives the machine by; each may drive it at each body
 constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
 
 /// Readings that are there.
@@ -154,6 +157,30 @@ void inspect(const Record& record, const std::vector<double>& time_s, Channel& c
   }
 }
 
+/// Keeps those columns that the scenario's effects want, and others that change, as long as they are few.
+void keep_columns(MeasuredRun& run, const scenarios::MachineModel& model) {
+  const std::vector<std::string> wanted = scenarios::wanted_columns(model, run.name);
+  std::vector<Cyclogram::Column> kept;
+  int n_others = 0, n_temperatures = 0;
+  const auto is_wanted = [&](const Cyclogram::Column& c) {
+    return std::any_of(wanted.begin(), wanted.end(), [&](const auto& name) { return name == c.name || name == c.header(); });
+  };
+  const auto is_offered = [](const Cyclogram::Column& c) {
+    return std::adjacent_find(c.rows.value.begin(), c.rows.value.end(), std::not_equal_to<>()) != c.rows.value.end();
+  };
+  for (const Cyclogram::Column& c : run.cyclogram.columns) {
+    if (is_wanted(c) || !is_offered(c)) continue;
+    ++(c.unit == "degC" ? n_temperatures : n_others);
+  }
+  const bool with_temperatures =
+      n_temperatures + n_others <= kMostColumns;  // else a machine full of thermometers that nobody placed
+  for (Cyclogram::Column& c : run.cyclogram.columns) {
+    const bool is_one_of_few = c.unit == "degC" ? with_temperatures : n_others <= kMostColumns;
+    if (is_wanted(c) || (is_offered(c) && is_one_of_few)) kept.push_back(std::move(c));
+  }
+  run.cyclogram.columns = std::move(kept);
+}
+
 }  // namespace
 
 const MeasuredChannel* MeasuredRun::find(const std::string& channel) const {
@@ -207,6 +234,8 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
     run.hall = smoothed(run.time_s, hall_K);
   }
   std::move(recorded_run.findings.begin(), recorded_run.findings.end(), std::back_inserter(run.findings));
+  scenarios::require_columns(model, run.cyclogram);
+  keep_columns(run, model);
   set_grid(run);
   const double reference_C = model.reference_K - kZeroCelsius_K;
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
@@ -242,16 +271,29 @@ MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel
     measured.quantum = scale * quantum_of(recorded->values);
     run.channels.push_back(std::move(measured));
   }
-  std::vector<std::string> unknown;
+  std::vector<std::string> unknown, drives;
   for (const Channel& c : record.channels) {
-    const bool is_input =
-        c.name == "speed" || c.name == "ambient" || c.name.starts_with("feed_") || c.name == "cutting_power";
-    if (!is_input && std::find(outputs.name.begin(), outputs.name.end(), c.name) == outputs.name.end())
-      unknown.push_back(c.header());
+    const bool is_input = c.name == "speed" || c.name == "ambient" || effects::is_drive_channel(c.name);
+    if (is_input || std::find(outputs.name.begin(), outputs.name.end(), c.name) != outputs.name.end()) continue;
+    (run.cyclogram.column(c.name) ? drives : unknown).push_back(c.header());
   }
   if (!unknown.empty()) {
     run.findings.push_back(
         {"", fmt::format("the scenario knows no sensor or displacement called {}; not compared", fmt::join(unknown, ", ")),
+         false});
+  }
+  const std::vector<std::string> wanted = scenarios::wanted_columns(model, run.name);
+  std::erase_if(drives, [&](const std::string& header) {
+    return std::any_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
+      return run.cyclogram.column(name) && run.cyclogram.column(name)->header() == header;
+    });
+  });
+  if (!drives.empty()) {
+    run.findings.push_back(
+        {"",
+         fmt::format("the scenario knows no sensor or displacement called {}; not compared, but taken for "
+                     "what may drive the machine",
+                     fmt::join(drives, ", ")),
          false});
   }
   if (run.channels.empty()) {

@@ -1,5 +1,6 @@
 #include "diagnosis/residual_structure.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace driftwright::diagnosis {
@@ -41,7 +42,7 @@ double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 }
 
 struct Quantity {
-  const char* name;
+  std::string name;
   Eigen::VectorXd value;  ///< per time; NaN where not known
 };
 
@@ -59,7 +60,10 @@ std::vector<Quantity> recorded(const MeasuredRun& run, double earlier_s) {
     change[i] = before_known ? std::abs(speed[i] - run.cyclogram.drive(t_s - step_s).speed_rpm) : nan();
     rate[i] = before_known ? (hall[i] - run.hall.at(t_s - step_s)) / step_s : nan();
   }
-  return {{"speed", speed}, {"speed^2", square}, {"|change of speed|", change}, {"hall", hall}, {"hall rate", rate}};
+  std::vector<Quantity> list = {
+      {"speed", speed}, {"speed^2", square}, {"|change of speed|", change}, {"hall", hall}, {"hall rate", rate}};
+  for (auto& [name, value] : beside_drive(run, earlier_s)) list.push_back({name, std::move(value)});
+  return list;
 }
 
 /// Behind a first-order lag, settled at the first value, which holds until the next.
@@ -74,6 +78,24 @@ Eigen::VectorXd lagged(const std::vector<double>& time_s, const Eigen::VectorXd&
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, Eigen::VectorXd>> beside_drive(const MeasuredRun& run, double earlier_s) {
+  std::vector<std::pair<std::string, Eigen::VectorXd>> list;
+  const auto add = [&](const std::string& name, const auto& at) {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(run.time_s.size()));
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+      const double t_s = run.time_s[static_cast<std::size_t>(i)] - earlier_s;
+      values[i] = t_s >= 0.0 ? at(t_s) : nan();
+    }
+    list.emplace_back(name, std::move(values));
+  };
+  const auto& sections = run.cyclogram.sections;
+  const bool cuts =
+      std::any_of(sections.begin(), sections.end(), [](const auto& s) { return s.drive.cutting_power_W > 0.0; });
+  if (cuts) add("cutting_power_W", [&](double t_s) { return run.cyclogram.drive(t_s).cutting_power_W; });
+  for (const Cyclogram::Column& c : run.cyclogram.columns) add(c.header(), [&](double t_s) { return c.at(t_s); });
+  return list;
+}
 
 ResidualStructure residual_structure(const MeasuredRun& run, const Eigen::VectorXd& residual) {
   ResidualStructure s;
@@ -98,8 +120,9 @@ ResidualStructure residual_structure(const MeasuredRun& run, const Eigen::Vector
   }
 
   for (const Quantity& q : recorded(run, 0.0)) {
-    if (q.value.hasNaN()) continue;                        // changes and rates: what follows them is no step response
-    const bool from_zero = q.name != std::string("hall");  // the machine has not turned before, but it has stood in its hall
+    if (q.value.hasNaN()) continue;  // changes and rates: what follows them is no step response
+    // the machine has not turned before, but it has stood in its hall and its sun
+    const bool from_zero = q.name == "speed" || q.name == "speed^2";
     for (int k = 0;; ++k) {
       const double lag_s = kShortest_s * std::pow(10.0, static_cast<double>(k) / kPerDecade);
       if (lag_s > kLongest_s) break;

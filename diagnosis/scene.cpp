@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace driftwright::diagnosis {
 namespace {
@@ -26,6 +27,58 @@ effects::DoubtScene::Material material_of(const Twin& twin, const solver::BodyPa
     }
   }
   return m;
+}
+
+/// The most that a heat grows by what is recorded beside speed and feeds.
+double most_of_record_W(const effects::HeatInput& heat, const std::vector<MeasuredRun>& runs, const TwinState& own) {
+  const double at_rest_W = heat.power_W(effects::Inputs{});
+  double most_W = 0.0;
+  for (const MeasuredRun& run : runs) {
+    const Cyclogram felt = effects::true_cyclogram(effects::drive_change(own, run.name), run.cyclogram);
+    for (const auto& section : felt.sections) {
+      const Drive& d = section.drive;
+      const effects::Inputs at{.drive = {.cutting_power_W = d.cutting_power_W, .signals = d.signals}};
+      most_W = std::max(most_W, std::abs(heat.power_W(at) - at_rest_W));
+    }
+  }
+  return most_W;
+}
+
+/// What changes in every record beside the drive, or is a cutting power there.
+std::vector<effects::DoubtScene::Column> columns_of(const std::vector<MeasuredRun>& runs, const TwinState& own) {
+  std::vector<effects::DoubtScene::Column> columns;
+  const auto add = [&](const std::string& name, const std::string& unit, const auto& values_of) {
+    std::set<double> values;
+    for (const MeasuredRun& run : runs) {
+      const std::vector<double> of_run = values_of(run);
+      if (of_run.empty()) return;
+      values.insert(of_run.begin(), of_run.end());
+    }
+    if (values.size() < 2) return;
+    effects::DoubtScene::Column c{.header = name + "_" + unit,
+                                  .unit = unit,
+                                  .span = *values.rbegin() - *values.begin(),
+                                  .n_levels = static_cast<int>(values.size())};
+    c.drives = std::any_of(own.begin(), own.end(), [&](const effects::Effect& e) {
+      const auto word = e.words.find("column");
+      const bool cuts = name == "cutting_power" && e.kind->key == "cutting_heat";
+      return e.kind->contribute && (cuts || (word != e.words.end() && (word->second == name || word->second == c.header)));
+    });
+    columns.push_back(c);
+  };
+  if (runs.empty()) return columns;
+  add("cutting_power", "W", [](const MeasuredRun& run) {
+    std::vector<double> values;
+    for (const auto& section : run.cyclogram.sections) values.push_back(section.drive.cutting_power_W);
+    return values;
+  });
+  for (const Cyclogram::Column& column : runs.front().cyclogram.columns) {
+    add(column.name, column.unit, [&](const MeasuredRun& run) {
+      const Cyclogram::Column* there = run.cyclogram.column(column.header());
+      return there ? there->rows.value : std::vector<double>{};
+    });
+  }
+  return columns;
 }
 
 }  // namespace
@@ -67,8 +120,9 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
   s.heat_W = 0.0;
   const effects::Inputs top{.drive = {.speed_rpm = top_speed_rpm(runs)}};
   for (const auto& h : s.balance.heats) {
-    if (h.power_W.probes.empty()) s.heat_W += std::abs(h.power_W(top));
+    if (h.power_W.probes.empty()) s.heat_W += std::abs(h.power_W(top)) + most_of_record_W(h, runs, s.own);
   }
+  s.columns = columns_of(runs, s.own);
   const auto& system = twin.machine().system;
   for (const auto& part : system.parts) {
     const effects::Body body = twin.body_of(part.body);

@@ -199,7 +199,8 @@ std::vector<StuckStretch> stuck_stretches(const Record& record, const Channel& c
     if (!(high - low >= kManySteps * quantum)) continue;  // too coarse to learn from
     Judgement best;
     for (const Channel& other : record.channels) {
-      const bool is_input = other.name.starts_with("feed_") || other.name == "cutting_power";
+      const bool is_input = other.name.starts_with("feed_") || other.name == "cutting_power" || other.unit == "W" ||
+                            other.unit == "W_m2" || other.unit == "percent" || other.unit == "V" || other.unit == "1";
       if (is_input || other.name == channel.name) continue;
       const Judgement j = judged_by(record, other, channel, stretch);
       if (j.misses >= best.misses) continue;

@@ -123,7 +123,10 @@ Twin::Twin(const AugmentedModel& augmented, const scenarios::ReducedMachine& mac
     const Eigen::VectorXd heat = part.mass * machine.system.ones;  // ones: the state 1 K everywhere
     const double capacity_J_K = machine.system.ones.dot(heat);
     if (!(capacity_J_K > 0.0)) continue;
-    outputs_.name.push_back("mean of " + part.body);
+    const std::string name = effects::mean_output(part.body);
+    if (std::find(outputs_.name.begin(), outputs_.name.end(), name) != outputs_.name.end())
+      continue;  // an effect asks for it
+    outputs_.name.push_back(name);
     outputs_.unit.emplace_back("K");
     outputs_.state.conservativeResize(Eigen::NoChange, outputs_.state.cols() + 1);
     outputs_.state.rightCols<1>() = heat / capacity_J_K;

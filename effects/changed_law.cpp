@@ -46,6 +46,13 @@ Effect changed(const std::string& law) {
   return make_effect("changed_law", Place::kLaw, law);
 }
 
+/// Whether a heat follows from a recorded power or column, whatever the spindle does: it has a gain of its own, and no exponent of speed.
+bool is_of_record(const DoubtScene& s, const HeatInput& heat) {
+  return std::any_of(s.own.begin(), s.own.end(), [&](const Effect& e) {
+    return heat.name.starts_with(e.name()) && (e.kind->key == "recorded_drive" || e.kind->key == "cutting_heat");
+  });
+}
+
 /// Another heat, growth with speed or decay of what heats a body.
 void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) {
   std::vector<Effect> of_all, of_known;  // laws of the body; those that follow from the drive alone
@@ -58,7 +65,7 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
     if (std::none_of(to.begin(), to.end(), [&](const Effect& e) { return e.place == law; })) to.push_back(changed(law));
   };
   for (const HeatInput& h : s.balance.heats) {
-    if (!(h.body == body) || !h.power_W.thermostat.empty()) continue;
+    if (!(h.body == body) || !h.power_W.thermostat.empty() || is_of_record(s, h)) continue;
     add(of_all, h.name);
     low_W += power_W(h, 0.97 * s.typical_rpm);
     high_W += power_W(h, 1.03 * s.typical_rpm);

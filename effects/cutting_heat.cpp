@@ -25,7 +25,8 @@ EffectKind cutting_heat() {
                       {},
                       "part of the heat that enters this body; chips keep most of it",
                       0.1,
-                      "heat_source"}},
+                      "recorded_drive",
+                      Doubted::kFactor}},
       .timing = Timing::kInTime,
       .contribute = contribute};
 }

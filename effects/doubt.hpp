@@ -40,6 +40,15 @@ struct DoubtScene {
     std::vector<std::string> sensitivities;  ///< displacements that follow its temperature by a number of their own
   };
   std::vector<Material> materials;
+  /// Something recorded beside the drive, in every record, that changes there (Cyclogram::Column), or the cutting power.
+  struct Column {
+    std::string header, unit;
+    double span = 1.0;    ///< largest minus smallest value, > 0
+    int n_levels = 0;     ///< different values
+    bool drives = false;  ///< an effect of the scenario is driven by it already
+    [[nodiscard]] bool is_temperature() const { return unit == "degC"; }
+  };
+  std::vector<Column> columns;
 
   [[nodiscard]] double longest_s() const;
   /// 1 sigma of a heat that nobody knows of [W].

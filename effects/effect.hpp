@@ -66,9 +66,13 @@ struct Table {
   std::string meaning;
 };
 
-/// Another sensor or a displacement that an effect names; `Effect::words` holds it, "" where it is left out.
+/// Another sensor, a displacement or a recorded column that an effect names; `Effect::words` holds it, "" where it is left out.
 struct Mention {
-  enum class Of { kSensor, kDisplacement };
+  enum class Of {
+    kSensor,
+    kDisplacement,
+    kColumn,  ///< of the cyclogram (Cyclogram::column()), with or without its unit
+  };
   std::string name;
   Of of = Of::kSensor;
   bool compulsory = false;

@@ -1,42 +1,18 @@
-#include <algorithm>
-#include <cmath>
-
 #include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 constexpr double kShortest_min = 1e-3;
-constexpr double kRounding = 1e-9;  // of the time: a stop at the end of a section cuts nothing off
-
-/// A cut on a grid of four times the rounding of the section's end: so durations of its pieces add up to that end to the last bit,
-/// and both cyclograms end at the same time.
-double on_grid_s(double cut_s, double end_s) {
-  const double grid_s = 4.0 * (std::nextafter(end_s, 2.0 * end_s) - end_s);
-  return grid_s * std::round(cut_s / grid_s);
-}
 
 /// Sections that the stop begins or ends in are split.
 Cyclogram with_stop(const Cyclogram& recorded, double stop_s, double go_s) {
-  Cyclogram felt = recorded;
-  felt.sections.clear();
+  Cyclogram felt = split_at(recorded, {stop_s, go_s});
   double start_s = 0.0;
-  for (const Cyclogram::Section& section : recorded.sections) {
-    const double end_s = start_s + section.duration_s, rounding_s = kRounding * end_s;
-    std::vector<double> cuts = {start_s};
-    for (double cut_s : {stop_s, go_s}) {
-      if (cut_s > start_s + rounding_s && cut_s < end_s - rounding_s) cuts.push_back(on_grid_s(cut_s, end_s));
-    }
-    std::sort(cuts.begin(), cuts.end());
-    cuts.push_back(end_s);
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-      const double middle_s = 0.5 * (cuts[i] + cuts[i + 1]);
-      Cyclogram::Section piece = section;
-      if (cuts.size() > 2) piece.duration_s = cuts[i + 1] - cuts[i];
-      if (middle_s >= stop_s && middle_s < go_s) piece.drive.speed_rpm = 0.0;
-      if (piece.duration_s > 0.0) felt.sections.push_back(piece);
-    }
-    start_s = end_s;
+  for (Cyclogram::Section& section : felt.sections) {
+    const double middle_s = start_s + 0.5 * section.duration_s;
+    if (middle_s >= stop_s && middle_s < go_s) section.drive.speed_rpm = 0.0;
+    start_s += section.duration_s;
   }
   return felt;
 }
@@ -74,7 +50,8 @@ EffectKind missing_stop() {
           .title = "stop of the spindle that the record does not have",
           .law = "n = 0 from start to start + length; feeds and cutting power as recorded",
           .places = {Place::kSpindle},
-          .parameters = {{"start", "min", 0.0, 1e7, {}, "when it stops"}, {"length", "min", kShortest_min, 1e7, {}, "for how long"}},
+          .parameters = {{"start", "min", 0.0, 1e7, {}, "when it stops"},
+                         {"length", "min", kShortest_min, 1e7, {}, "for how long"}},
           .timing = Timing::kInRecord,
           .change_drive = change_drive,
           .doubts = doubts};

@@ -23,6 +23,14 @@ enum class ReadingStage {
   kClock,       ///< and when
 };
 
+/// The output that holds the mean temperature of a body beside what instruments read: it is in no record.
+[[nodiscard]] inline std::string mean_output(const std::string& body) {
+  return "mean of " + body;
+}
+[[nodiscard]] inline bool is_mean_output(const std::string& name) {
+  return name.starts_with("mean of ");
+}
+
 /// Readings of a run on their way through the chain.
 struct Readings {
   const std::vector<std::string>& name;  ///< of the outputs, as unit: "K", "m", "rad"
@@ -35,6 +43,8 @@ struct Readings {
   /// The row of a sensor; of a displacement or tilt. @throws std::logic_error  for a name that is no such output
   [[nodiscard]] Eigen::Index sensor(const std::string& of) const { return row(of, true); }
   [[nodiscard]] Eigen::Index displacement(const std::string& of) const { return row(of, false); }
+  /// The row of a body's mean temperature. @throws std::logic_error  where no effect of the machine names the body
+  [[nodiscard]] Eigen::Index mean_of(const std::string& body) const { return row(mean_output(body), true); }
   [[nodiscard]] Eigen::Index n_times() const { return value.cols(); }
   [[nodiscard]] double time(Eigen::Index i) const { return time_s[static_cast<std::size_t>(i)]; }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/quantity.hpp"
+#include "effects/recorded_column.hpp"
 #include "scenarios/machine.hpp"
 
 namespace driftwright::scenarios {
@@ -36,6 +37,19 @@ void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
                            : fmt::format("'{}' is a displacement, no tilt; `tilt` does not fit", effect.place));
 }
 
+/// Calls work(effect, name) for each column that effects name and that is no channel of the drive.
+template <class Work>
+void for_each_wanted_column(const MachineModel& model, const std::string& cyclogram, Work work) {
+  for (const effects::Effect& e : model.effects) {
+    if (!e.acts_in(cyclogram)) continue;
+    for (const effects::Mention& mention : e.kind->mentions) {
+      if (mention.of != effects::Mention::Of::kColumn) continue;
+      if (const std::string& name = e.words.at(mention.name); !name.empty() && !effects::is_drive_channel(name))
+        work(e, name);
+    }
+  }
+}
+
 }  // namespace
 
 bool is_on_hall(const Sensor& sensor) {
@@ -47,7 +61,38 @@ bool has_ambient_channel(const MachineModel& model) {
   return std::none_of(model.sensors.begin(), model.sensors.end(), is_on_hall);
 }
 
+std::vector<std::string> wanted_columns(const MachineModel& model, const std::string& cyclogram) {
+  std::vector<std::string> names;
+  for_each_wanted_column(model, cyclogram, [&](const effects::Effect&, const std::string& name) { names.push_back(name); });
+  return names;
+}
+
+void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
+  for_each_wanted_column(model, cyclogram.name, [&](const effects::Effect& effect, const std::string& name) {
+    const Cyclogram::Column* column = cyclogram.column(name);
+    if (!column) {
+      std::vector<std::string> known;
+      for (const Cyclogram::Column& c : cyclogram.columns) known.push_back(c.header());
+      throw InputError(
+          effect.where,
+          fmt::format("{} wants the column '{}', which cyclogram '{}' does not have ({}); take a record that has "
+                      "it (`{{csv: FILE}}`), or give it in rows (`columns: [duration, speed, {}]`)",
+                      effect.name(), name, cyclogram.name,
+                      known.empty() ? "it has none beside the drive" : fmt::format("it has {}", fmt::join(known, ", ")),
+                      name));
+    }
+    if (effect.place_kind == effects::Place::kDisplacement && column->unit != "degC")
+      throw InputError(effect.where, fmt::format("{} follows temperatures in degC; the column '{}' is in {}", effect.name(),
+                                                 column->name, column->unit));
+  });
+}
+
 FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
+  require_columns(model, recorded);
+  return felt_run_as_far_as_known(model, recorded);
+}
+
+FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded) {
   const effects::DriveChange change = effects::drive_change(model.effects, recorded.name);
   return {effects::true_cyclogram(change, recorded), effects::true_hall(change, model.hall, recorded)};
 }
@@ -58,7 +103,7 @@ double felt_hall_at_start_K(const MachineModel& model) {
 
 double warmer_start_K(const MachineModel& model, const Cyclogram& recorded) {
   if (model.start != Start::kHall && model.start != Start::kSteady) return 0.0;
-  return felt_run(model, recorded).hall.at(0.0) - felt_hall_at_start_K(model);
+  return felt_run_as_far_as_known(model, recorded).hall.at(0.0) - felt_hall_at_start_K(model);
 }
 
 Record as_recorded(const MachineModel& model, const solver::Trajectory& run, const solver::Outputs& outputs,
@@ -76,10 +121,23 @@ Record as_recorded(const MachineModel& model, const solver::Trajectory& run, con
     told.outputs = chain.apply(outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.hall, std::move(told.outputs));
   }
   Record record = to_record(told, outputs, recorded, model.reference_K);
-  if (!has_ambient_channel(model)) return record;
-  Channel ambient{kAmbient, "degC", {}};
-  for (double hall_K : hall) ambient.values.push_back(hall_K + (model.reference_K - kZeroCelsius_K));
-  record.channels.insert(record.channels.end() - static_cast<std::ptrdiff_t>(outputs.name.size()), std::move(ambient));
+  std::vector<Channel> further;  // columns that drive the machine; the hall
+  for (const std::string& name : wanted_columns(model, recorded.name)) {
+    const Cyclogram::Column* column = recorded.column(name);
+    const auto is_it = [&](const Channel& c) { return c.name == column->name; };
+    if (!column || std::any_of(record.channels.begin(), record.channels.end(), is_it) ||
+        std::any_of(further.begin(), further.end(), is_it))
+      continue;
+    further.push_back({column->name, column->unit, {}});
+    for (double t_s : record.time_s) further.back().values.push_back(column->at(t_s));
+  }
+  if (has_ambient_channel(model)) {
+    further.push_back({kAmbient, "degC", {}});
+    for (double hall_K : hall) further.back().values.push_back(hall_K + (model.reference_K - kZeroCelsius_K));
+  }
+  const std::ptrdiff_t n_read = std::count_if(outputs.name.begin(), outputs.name.end(),
+                                              [](const std::string& name) { return !effects::is_mean_output(name); });
+  record.channels.insert(record.channels.end() - n_read, further.begin(), further.end());
   return record;
 }
 
@@ -106,7 +164,8 @@ void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& 
     }
     for (const effects::Mention& mention : e.kind->mentions) {
       const std::string& name = e.words.at(mention.name);
-      if (name.empty()) continue;  // left out
+      if (name.empty() || mention.of == effects::Mention::Of::kColumn)
+        continue;  // left out; or of records: require_columns()
       const bool is_sensor = mention.of == effects::Mention::Of::kSensor;
       must_be_one_of(e.reference_where.at(mention.name), is_sensor ? "sensor" : "displacement", name,
                      is_sensor ? sensors : by_sensitivities);

@@ -16,7 +16,14 @@ struct FeltRun {
   TimeSeries hall;  ///< minus the reference temperature [K]
 };
 /// What is felt while the record says `recorded` and the scenario's hall; its effects tell them apart.
+/// @throws InputError  where an effect wants a column that the cyclogram does not have
 [[nodiscard]] FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded);
+/// The same of a cyclogram that is looked at and not run: a column that it does not have counts as 0.
+[[nodiscard]] FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded);
+/// Columns that effects of the machine want of a cyclogram of that name, as they call them; none of them a channel of the drive.
+[[nodiscard]] std::vector<std::string> wanted_columns(const MachineModel& model, const std::string& cyclogram);
+/// @throws InputError  for one that the cyclogram does not have, and for a displacement that would follow a column that is no temperature
+void require_columns(const MachineModel& model, const Cyclogram& cyclogram);
 /// The hall that the machine starts in, minus the reference temperature [K]: with errors that every cyclogram has, so that all
 /// of them start alike.
 [[nodiscard]] double felt_hall_at_start_K(const MachineModel& model);

@@ -108,9 +108,8 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   for (const effects::Effect& e : model.effects) {
     if (e.place_kind == effects::Place::kSensor || e.place_kind == effects::Place::kDisplacement ||
         e.place_kind == effects::Place::kClock || e.place_kind == effects::Place::kSpindle) {
-      continue;  // no part of the machine: check_instruments()
-    }
-    if (e.place_kind == effects::Place::kLaw) {
+      // no part of the machine: check_instruments()
+    } else if (e.place_kind == effects::Place::kLaw) {
       must_be_one_of(e.where, "heat or exchange", e.place, laws);
       const bool is_of_joint = std::any_of(balance.exchanges.begin(), balance.exchanges.end(), [&](const auto& x) {
         return x.name == e.place && x.body.kind == effects::BodyKind::kJoint;
@@ -360,6 +359,18 @@ Machine build(const MachineModel& model, PlacedMachine placed, bool with_elastic
   return machine;
 }
 
+std::vector<effects::Body> bodies_of_readings(const MachineModel& model) {
+  std::vector<effects::Body> bodies;
+  for (const effects::Effect& e : model.effects) {
+    if (!e.kind->change_readings) continue;
+    for (const auto& [name, body] : e.references) {
+      const bool is_new = std::find(bodies.begin(), bodies.end(), body) == bodies.end();
+      if (is_new && !(body == effects::hall())) bodies.push_back(body);
+    }
+  }
+  return bodies;
+}
+
 solver::Outputs output_names(const MachineModel& model, const PlacedMachine& placed) {
   solver::Outputs out;
   for (const Sensor& s : model.sensors) {
@@ -374,6 +385,10 @@ solver::Outputs output_names(const MachineModel& model, const PlacedMachine& pla
     out.name.push_back(t.name);
     out.unit.emplace_back("rad");
   }
+  for (const effects::Body& body : bodies_of_readings(model)) {
+    out.name.push_back(effects::mean_output(body.name));
+    out.unit.emplace_back("K");
+  }
   out.hall = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(out.name.size()));
   for (std::size_t i = 0; i < placed.sensor_weights.size(); ++i) {
     if (placed.sensor_weights[i].empty()) out.hall[static_cast<Eigen::Index>(i)] = 1.0;
@@ -387,9 +402,8 @@ Machine build_with_influences(const MachineModel& model, PlacedMachine placed, c
       solver::assemble_heat(machine.placed.mesh, machine.placed.materials, machine.placed.balance, model.reference_K);
   solver::Outputs& out = machine.system.outputs;
   const auto n_sensors = model.sensors.size();
-  const auto n_outputs = static_cast<Eigen::Index>(n_sensors + machine.placed.functionals.size());
   out = output_names(model, machine.placed);
-  out.state = Eigen::MatrixXd::Zero(machine.system.size(), n_outputs);
+  out.state = Eigen::MatrixXd::Zero(machine.system.size(), static_cast<Eigen::Index>(out.name.size()));
   for (std::size_t i = 0; i < n_sensors; ++i) {
     for (const auto& [unknown, weight] : machine.placed.sensor_weights[i]) {
       out.state(unknown, static_cast<Eigen::Index>(i)) += weight;
@@ -404,6 +418,10 @@ Machine build_with_influences(const MachineModel& model, PlacedMachine placed, c
       output += effects::sensitivity_factor(factors, body, model.displacements[i].name) * sensitivity_m_K *
                 solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
     }
+  }
+  Eigen::Index mean = out.state.cols() - static_cast<Eigen::Index>(bodies_of_readings(model).size());
+  for (const effects::Body& body : bodies_of_readings(model)) {
+    out.state.col(mean++) = solver::mean_weights(machine.placed.mesh, machine.placed.balance, body);
   }
   return machine;
 }
@@ -453,6 +471,7 @@ Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, 
   record.channels.push_back(std::move(speed));
   add_feeds_and_cutting_power(record, cyclogram);
   for (std::size_t i = 0; i < outputs.name.size(); ++i) {
+    if (effects::is_mean_output(outputs.name[i])) continue;  // of no instrument
     const auto row = run.outputs.row(static_cast<Eigen::Index>(i));
     Channel channel{outputs.name[i], "", {}};
     double factor = 1e6, offset = 0.0;

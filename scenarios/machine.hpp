@@ -54,14 +54,18 @@ struct Machine {
 [[nodiscard]] Machine build_with_influences(const MachineModel& model, PlacedMachine placed,
                                             const Eigen::MatrixXd& influence);
 
-/// What the instruments of a scenario tell, in its order, and who of them reads the hall; `state` stays empty: before there is a system.
+/// Bodies whose mean temperature effects on readings look at, each once; the hall is none of them.
+[[nodiscard]] std::vector<effects::Body> bodies_of_readings(const MachineModel& model);
+
+/// What the instruments of a scenario tell, in its order, then mean temperatures of bodies_of_readings() (effects::mean_output()), and who of them reads the hall; `state` stays empty: before there is a system.
 [[nodiscard]] solver::Outputs output_names(const MachineModel& model, const PlacedMachine& placed);
 
 /// Temperatures minus the reference temperature at t = 0, by the scenario's `start`.
 /// @throws SolveError  when there is no steady state to start from
 [[nodiscard]] Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine);
 
-/// A trajectory as a record: speed_rpm, feeds in mm/min and cutting power in W where the cyclogram uses them, sensors in degC, displacements in um, tilts in urad.
+/// A trajectory as a record: speed_rpm, feeds in mm/min and cutting power in W where the cyclogram uses them, sensors in degC, displacements in um, tilts in urad;
+/// no mean temperatures of bodies.
 [[nodiscard]] Record to_record(const solver::Trajectory& run, const solver::Outputs& outputs, const Cyclogram& cyclogram,
                                double reference_K);
 

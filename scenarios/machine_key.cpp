@@ -7,6 +7,7 @@
 
 #include "base/file_bytes.hpp"
 #include "scenarios/as_recorded.hpp"
+#include "scenarios/machine.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -98,6 +99,7 @@ std::string machine_text(const MachineModel& model) {
     text += fmt::format("hall at the start {} K\n", felt_hall_at_start_K(model));
   }
   if (model.start == Start::kSteady) text += numbers_of_laws(model);
+  for (const effects::Body& body : bodies_of_readings(model)) text += fmt::format("mean of {}\n", words(body));
   if (has_curves(model)) text += fmt::format("curves frozen in a hall of {} K\n", model.hall.at(0.0));
   return text;
 }
@@ -110,6 +112,7 @@ std::string machine_key(const MachineModel& model, const ReductionPlan& plan, co
   if (freezes_laws) {  // modal predictors are frozen at the typical drive
     const Drive& t = plan.typical;
     key += fmt::format("typical {} {} {}\n", t.speed_rpm, fmt::join(t.feed_m_s, " "), t.cutting_power_W);
+    for (const Signal& signal : t.signals) key += fmt::format("typical {} {}\n", signal.name, signal.value);
     key += numbers_of_laws(model);
   } else if (makes_modes) {  // or taken at standstill
     key +=

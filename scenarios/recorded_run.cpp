@@ -99,6 +99,31 @@ Cyclogram drive_of(const Record& record, const std::vector<double>& time_s, bool
   return cyclogram;
 }
 
+/// What was recorded beside drive, hall and readings.
+std::vector<Cyclogram::Column> columns_of(const Record& record, const std::vector<double>& time_s,
+                                          const MachineModel* machine, const std::vector<std::string>& on_hall) {
+  std::vector<std::string> known = {kSpeed.name, kCutting.name, kAmbient};
+  for (const DriveKind& feed : kFeeds) known.emplace_back(feed.name);
+  known.insert(known.end(), on_hall.begin(), on_hall.end());
+  if (machine) {
+    for (const Sensor& s : machine->sensors) known.push_back(s.name);
+    for (const DisplacementOutput& d : machine->displacements) known.push_back(d.name);
+    for (const TiltOutput& t : machine->tilts) known.push_back(t.name);
+  }
+  std::vector<Cyclogram::Column> columns;
+  for (const Channel& c : record.channels) {
+    const bool is_known = std::find(known.begin(), known.end(), c.name) != known.end();
+    if (is_known || !is_of_column(c.unit) || n_readings(c) == 0) continue;
+    columns.push_back({c.name, c.unit, {.time_s = time_s, .value = {}}});
+    double last = *std::find_if(c.values.begin(), c.values.end(), [](double v) { return !std::isnan(v); });
+    for (double v : c.values) {
+      if (!std::isnan(v)) last = v;
+      columns.back().rows.value.push_back(last);
+    }
+  }
+  return columns;
+}
+
 /// The recorded hall, held where a reading is missing, over the reference.
 /// @throws InputError  for a unit that is none of a hall, in the header or by the numbers
 TimeSeries hall_of(const Record& record, const Channel& ambient, const std::vector<double>& time_s, double reference_C,
@@ -136,6 +161,11 @@ std::string name_of(const std::string& source) {
 
 }  // namespace
 
+bool is_of_column(const std::string& unit) {
+  constexpr const char* kOther[] = {"um", "mm", "urad", "s", "min", "h"};
+  return std::find(std::begin(kOther), std::end(kOther), unit) == std::end(kOther);
+}
+
 RecordedRun run_of(const Record& record, const MachineModel* machine, const std::vector<std::string>& on_hall,
                    Reading reading) {
   RecordedRun run;
@@ -159,6 +189,7 @@ RecordedRun run_of(const Record& record, const MachineModel* machine, const std:
   attempt("speed", [&] { run.cyclogram = drive_of(record, run.time_s, reading == Reading::kPlan); });
   if (!run.cyclogram.sections.empty()) note_gaps(record.at("speed"));
   run.cyclogram.name = name_of(record.source);
+  run.cyclogram.columns = columns_of(record, run.time_s, machine, on_hall);
   if (machine) run.hall = machine->hall;
   std::vector<std::string> names = {kAmbient};
   names.insert(names.end(), on_hall.begin(), on_hall.end());

@@ -27,12 +27,18 @@ enum class Reading {
 /// A record as a run of the machine. Its readings stay as they were recorded.
 struct RecordedRun {
   std::vector<double> time_s;  ///< of the rows, from 0
-  Cyclogram cyclogram;  ///< the drive: each row's from its time on; no section where no speed was recorded. Named as the file
-  TimeSeries hall;      ///< as read, its last reading held; else the machine's; minus the reference [K]; no knot where neither is known
+  /// The drive: each row's from its time on; no section where no speed was recorded. Named as the file. Its columns: whatever else was recorded that
+  /// is no output of the machine and has a unit that may drive one (is_of_column()), what is missing held.
+  Cyclogram cyclogram;
+  TimeSeries
+      hall;  ///< as read, its last reading held; else the machine's; minus the reference [K]; no knot where neither is known
   std::string hall_channel;  ///< that was read for it: `ambient`, else a sensor on the hall; "" where none has a reading
   std::vector<DataFinding> findings;
   [[nodiscard]] bool has_ambient() const { return !hall_channel.empty(); }
 };
+
+/// Whether a unit of a record may be that of something that drives a machine: all but lengths, angles and times.
+[[nodiscard]] bool is_of_column(const std::string& unit);
 
 /// @param record   two rows at least; its source names it in messages
 /// @param machine  of the scenario; null: there is none, and the reference is 20 degC

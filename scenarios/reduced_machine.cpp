@@ -118,7 +118,7 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
   const MachineModel& model = *scenario.machine;
   const effects::HeatBalance balance = effects::with_radiation_as_films(effects::heat_balance(model.effects));
   std::vector<FeltRun> felt;
-  for (const Cyclogram* cyclogram : cyclograms) felt.push_back(felt_run(model, *cyclogram));
+  for (const Cyclogram* cyclogram : cyclograms) felt.push_back(felt_run_as_far_as_known(model, *cyclogram));
   std::vector<const Cyclogram*> driven;
   for (const FeltRun& run : felt) driven.push_back(&run.cyclogram);
   ReductionPlan plan;
@@ -136,7 +136,7 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
   for (const Cyclogram& c : scenario.cyclograms) {
     const bool trains = !scenario.study || std::find(scenario.study->train.begin(), scenario.study->train.end(), c.name) !=
                                                scenario.study->train.end();
-    if (trains) typical.push_back(felt_run(model, c).cyclogram);
+    if (trains) typical.push_back(felt_run_as_far_as_known(model, c).cyclogram);
   }
   std::vector<const Cyclogram*> pointers;
   for (const Cyclogram& c : typical) pointers.push_back(&c);

@@ -260,7 +260,7 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
         fmt::format("{}: cyclogram '{}' would give {:.1e} rows of output, more than {:.0e}; take a longer output_interval",
                     scenario.path, cyclogram.name, n_outputs, kMostOutputs));
   }
-  const Cyclogram felt = felt_run(*scenario.machine, cyclogram).cyclogram;
+  const Cyclogram felt = felt_run_as_far_as_known(*scenario.machine, cyclogram).cyclogram;
   for (const effects::Effect& effect : scenario.machine->effects) {
     const effects::HeatBalance balance = effects::heat_balance({effect});
     for (const Cyclogram::Section& section : felt.sections) {

@@ -29,6 +29,23 @@ TEST(TimeSeries, IsLinearBetweenKnotsAndConstantOutside) {
   EXPECT_EQ(s.at(41), -1.0);
 }
 
+TEST(Cyclogram, SplitAtFurtherTimesEndsAtTheSameTimeToTheLastBit) {
+  const Cyclogram cycle{.name = "odd",
+                        .sections = {{0.1, {.speed_rpm = 1}}, {1.0 / 3.0, {.speed_rpm = 2}}, {977.7, {.speed_rpm = 3}}},
+                        .remarks = {},
+                        .columns = {{"heater", "W", {{0, 5}, {1, 7}}}}};
+  std::vector<double> times_s = {-1, 0, 0.1, 1e4, 0.05};
+  for (int i = 0; i < 300; ++i) times_s.push_back(3.3 * i + 0.7);
+  const Cyclogram split = split_at(cycle, times_s);
+  EXPECT_EQ(split.sections.size(), 3u + 1u + 297u);  // 0.7 ... 977.5 lie in the last section
+  EXPECT_EQ(split.duration_s(), cycle.duration_s());
+  for (double t_s : {0.0, 0.07, 0.2, 0.5, 0.9, 977.0}) EXPECT_EQ(split.drive(t_s), cycle.drive(t_s)) << t_s;
+  EXPECT_EQ(split_at(cycle, {}).sections, cycle.sections);
+  EXPECT_EQ(split.column("heater_W")->at(4.9), 1.0);
+  EXPECT_EQ(split.column("heater")->at(5.0), 7.0);
+  EXPECT_EQ(split.column("heater_K"), nullptr);
+}
+
 TEST(LinearStretches, EndAtChangesOfSpeedAndAtKnotsOfTheHall) {
   // Knots at 0 and 100 coincide with starts of sections; 30 and 250 lie inside; 900 lies behind the end.
   const auto stretches = linear_stretches(kCycle, TimeSeries{{0, 30, 100, 250, 900}, {0, 1, 2, 3, 4}});

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <tuple>
 
 #include "base/parallel.hpp"
 #include "diagnosis/extended_scenario.hpp"
@@ -34,6 +35,11 @@ MeasuredRun run_of(const scenarios::Scenario& s, Cyclogram cyclogram, const solv
     end_s += kept.back().duration_s;
   }
   cyclogram.sections = kept;
+  for (const auto& [name, unit, high] :
+       {std::tuple{"oven", "W", 300.0}, std::tuple{"valve", "percent", 60.0}, std::tuple{"stove", "degC", 70.0}}) {
+    const TimeSeries rows{{0.0, 0.2 * end_s, 0.5 * end_s, 0.7 * end_s}, {0.0, high, 0.0, high}};
+    if (!cyclogram.column(name)) cyclogram.columns.push_back({name, unit, rows});
+  }
   run.cyclogram = cyclogram;
   run.path = s.path;  // stands for its file, which nobody opens
   run.hall = s.machine->hall;

@@ -47,6 +47,20 @@ TEST(ReadCyclogram, TakesNamedColumnsAndRepeats) {
             (std::vector<Cyclogram::Section>{{3.0, {.speed_rpm = 0, .feed_m_s = {0, 1, 0}}}}));
 }
 
+TEST(ReadCyclogram, TakesFurtherColumnsThatEffectsMayAskFor) {
+  const Cyclogram c = read(
+      "  pulses:\n    columns: [duration, heater_W, speed, bed_degC, sun_W_m2]\n"
+      "    rows: [[3 min, 0.2 kW, 100 rpm, 60 degC, 50 W/m^2], [2 min, 0 W, 0 rpm, 40 degC, 0 W/m^2]]\n    repeat: 2\n");
+  ASSERT_EQ(c.sections.size(), 4u);
+  EXPECT_EQ(c.sections[2].drive, Drive{.speed_rpm = 100});
+  ASSERT_EQ(c.columns.size(), 3u);
+  EXPECT_EQ(c.columns[0].header(), "heater_W");
+  EXPECT_EQ(c.columns[0].rows.time_s, (std::vector<double>{0, 180, 300, 480}));
+  EXPECT_EQ(c.columns[0].rows.value, (std::vector<double>{200, 0, 200, 0}));
+  EXPECT_NEAR(c.column("bed")->at(200), 40.0, 1e-9);
+  EXPECT_EQ(c.column("sun_W_m2")->at(310), 50.0);
+}
+
 TEST(ReadCyclogram, TakesARecordWhoseLastRowEndsIt) {
   (void)write_file("drive.csv",
                    "time_min,speed_rpm,feed_x_mm_min,cutting_power_W,nose_degC\n"

@@ -77,6 +77,37 @@ TEST(Centrifugal, FollowsTheSquareOfSpeedAtOnce) {
   expect_row(1e6 * m, kZ, {-12, -12, -3, -3, 0, 0}, 1e-12);  // a section holds from its start on
 }
 
+TEST(DisplacementPath, FollowsABodyTheHallOrAColumn) {
+  const auto z_um = [](const std::string& keys) -> Eigen::MatrixXd {
+    Cyclogram cyclogram = kCyclogram;
+    cyclogram.columns = {{"bed", "degC", {{0, 300}, {25, 40}}}};
+    const Effect e = read("{type: displacement_path, displacement: z, " + keys + "}");
+    Eigen::MatrixXd outputs(2, 6);
+    outputs << 0, 0, 0, 0, 0, 0,  //
+        1, 2, 3, 4, 5, 6;
+    return 1e6 *
+           reading_chain({e}, "shift").apply({"z", mean_output("head")}, {"m", "K"}, kTime_s, cyclogram, kHall, outputs);
+  };
+  expect_row(z_um("body: head, sensitivity: 3 um/K"), 0, {3, 6, 9, 12, 15, 18}, 1e-12);
+  expect_row(z_um("body: hall, sensitivity: -2 um/K"), 0, {0, -1.2, -3, -6, -12, -18}, 1e-12);
+  expect_row(z_um("column: bed, zero: 22 degC, sensitivity: 1 um/K"), 0, {3, 3, 3, 18, 18, 18}, 1e-12);  // held from row to row
+  // The hall rises by 0.01 K/s from its start on: 100 s behind it is 0.01 (t - 100 (1 - exp(-t/100)))
+  const auto behind = [](double t_s) { return 0.01 * (t_s - 100.0 * (1.0 - std::exp(-t_s / 100.0))); };
+  expect_row(z_um("body: hall, sensitivity: 1 um/K, lag: 1.6666666666666667 min"), 0,
+             {0, behind(60), behind(150), behind(300), behind(600), behind(900)}, 1e-9);
+}
+
+TEST(DisplacementPath, WantsOneThingToFollow) {
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, sensitivity: 1 um/K}"); },
+              ThrowsMessage<InputError>(HasSubstr("one of two")));
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, body: a, column: b, sensitivity: 1 um/K}"); },
+              ThrowsMessage<InputError>(HasSubstr("one of two")));
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, body: a, sensitivity: 1 um/K, tilt: 1 urad/K}"); },
+              ThrowsMessage<InputError>(HasSubstr("one of two")));
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, column: feed_x, sensitivity: 1 um/K}"); },
+              ThrowsMessage<InputError>(HasSubstr("of the drive")));
+}
+
 TEST(MountShift, IsAStepFromItsTimeOn) {
   const std::vector<std::string> shift = {"{type: mount_shift, displacement: z, shift: 4 um, time: 5 min, in: shift}"};
   expect_row(1e6 * told(shift), kZ, {0, 0, 0, 4, 4, 4}, 1e-12);

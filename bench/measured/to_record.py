@@ -5,18 +5,19 @@
     to_record.py lathe         2016-12-30_TM1.csv         out.csv   nominal levels, stopped where the spindle cools
     to_record.py lathe_no_stop 2016-12-30_TM1.csv         out.csv   the same as if nobody had noted the stop
     to_record.py table_d       -                          out.csv   eight published numbers, at standstill
-    to_record.py incubator     2021-01-22_lid_opening.csv out.csv   heater as cutting_power_W
-    to_record.py printer_frame frame_temp_v_pos_....csv   out.csv   heat of the bed as cutting_power_W
+    to_record.py incubator     2021-01-22_lid_opening.csv out.csv   at standstill, heater_W beside
+    to_record.py printer_frame frame_temp_v_pos_....csv   out.csv   at standstill, bed_degC beside
     to_record.py printer_good  frame_temp_v_pos_....csv   out.csv   the same without homings off by more than 1 mm
     to_record.py heated_plate  run.csv                    out.csv   100 rpm per volt of lamp drive
-    to_record.py test_house    prbs.csv                   out.csv   heaters as cutting_power_W, sun left out
-    to_record.py test_house_sun prbs.csv                  out.csv   the same, sun as feed_x: 100 mm/min per W/m2
+    to_record.py test_house    prbs.csv                   out.csv   at standstill, heater_W beside, sun left out
+    to_record.py test_house_sun prbs.csv                  out.csv   the same, solar_W_m2 too
 
-Speeds, feeds and cutting power are the drives that a record may have; what drives these machines is written into one of them.
+Columns that drive a machine keep their names: effects `recorded_drive` of the scenario take them. An empty cell stays empty.
 Standard library only.
 """
 
 import csv
+import math
 import sys
 
 # Nominal: the source knows low (BM), medium (TM) and high (CM) only.
@@ -32,16 +33,48 @@ def read(path):
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
+def number(cell):
+    return float(cell) if cell.strip() else math.nan
+
+
+def written(value, digits):
+    """As a cell: empty where it is missing."""
+    return "" if math.isnan(value) else f"{value:.{digits}f}"
+
+
+def first_of(rows, name):
+    """The first reading of a column."""
+    return next(v for v in (number(r[name]) for r in rows) if not math.isnan(v))
+
+
+# A stop at mid-day: the rear bearing falls by a good part of its day's range, and rises again within the day.
+LEAST_FALL = 0.1
+LEAST_RISE_AGAIN = 0.5
+LONGEST_STOP_S = 4 * 3600.0
+
+
 def is_turning(rows):
-    """Per row, false in the one stop of the day: from the highest to the lowest reading of the rear bearing's deepest fall."""
-    rear = [float(r["spindle_rear_degC"]) for r in rows]
-    peak = begin = end = 0
-    for i, value in enumerate(rear):
-        if value > rear[peak]:
-            peak = i
-        if rear[peak] - value > rear[begin] - rear[end]:
-            begin, end = peak, i
-    return [not begin <= i < end for i in range(len(rear))]
+    """Per row, false in the one stop of the day: from the highest to the lowest reading of the rear bearing's deepest fall. A fall that is small, that
+    takes longer than a break, or that does not end in a rise of half its size (a night, a day that cools with its hall) is no stop."""
+    known = [i for i, r in enumerate(rows) if r["spindle_rear_degC"].strip()]
+    rear = {i: float(rows[i]["spindle_rear_degC"]) for i in known}
+    time_s = [float(r["time_s"]) for r in rows]
+    day = max(rear.values()) - min(rear.values())
+    begin = end = known[0]
+    for n, peak in enumerate(known):
+        lowest = peak
+        for i in known[n:]:
+            if rear[i] > rear[peak]:
+                break
+            if rear[i] < rear[lowest]:
+                lowest = i
+        fall = rear[peak] - rear[lowest]
+        if fall <= rear[begin] - rear[end] or fall < LEAST_FALL * day or time_s[lowest] - time_s[peak] > LONGEST_STOP_S:
+            continue
+        if max(rear[i] for i in known if i >= lowest) - rear[lowest] < LEAST_RISE_AGAIN * fall:
+            continue
+        begin, end = peak, lowest
+    return [not begin <= i < end for i in range(len(rows))]
 
 
 def lathe(path, with_stop):
@@ -52,12 +85,12 @@ def lathe(path, with_stop):
     # scenario has one start for all.
     names = [n for n in rows[0] if n.endswith("_degC") and n != "ambient_degC"]
     start_s = float(rows[0]["time_s"])
-    first = {n: float(rows[0][n]) for n in [*names, "ambient_degC", "diameter_um"]}
+    first = {n: first_of(rows, n) for n in [*names, "ambient_degC", "diameter_um"]}
     yield ["time_s", "speed_rpm", "ambient_degC", *(n.replace("degC", "K") for n in names), "diameter_um"]
     for row, turns in zip(rows, turning):
-        rise = {n: float(row[n]) - first[n] for n in first}
-        yield [f"{float(row['time_s']) - start_s:g}", level if turns else 0, f"{20.0 + rise['ambient_degC']:.2f}", *(f"{rise[n]:.2f}" for n in names),
-               f"{rise['diameter_um']:.3f}"]
+        rise = {n: number(row[n]) - first[n] for n in first}
+        yield [f"{float(row['time_s']) - start_s:g}", level if turns else 0, written(20.0 + rise["ambient_degC"], 2),
+               *(written(rise[n], 2) for n in names), written(rise["diameter_um"], 3)]
 
 
 def table_d(_):
@@ -73,7 +106,8 @@ def with_columns(rename, fixed=None, scale=None):
     def convert(path):
         yield ["time_s", *fixed, *rename.values()]
         for row in read(path):
-            yield [row["time_s"], *fixed.values(), *(f"{float(row[n]) * scale.get(n, 1.0):.6g}" for n in rename)]
+            yield [row["time_s"], *fixed.values(),
+                   *("" if math.isnan(number(row[n])) else f"{number(row[n]) * scale.get(n, 1.0):.6g}" for n in rename)]
 
     return convert
 
@@ -84,31 +118,31 @@ def spindle_22(path):
 
 
 def printer(keep):
-    """The bed's heat into the chamber, 1 W/K times what it is warmer than the room, of 22 degC, as cutting power."""
-
     def convert(path):
-        yield ["time_s", "speed_rpm", "cutting_power_W", "frame_degC", "chamber_degC", "drift_um"]
+        names = ("bed_degC", "frame_degC", "chamber_degC")
+        yield ["time_s", "speed_rpm", *names, "drift_um"]
         for row in filter(keep, read(path)):
-            power_W = max(0.0, float(row["bed_degC"]) - 22.0)
-            yield [row["time_s"], 0, f"{power_W:.2f}", *(f"{float(row[n]):.2f}" for n in ("frame_degC", "chamber_degC")),
-                   row["drift_um"]]
+            yield [row["time_s"], 0, *(written(number(row[n]), 2) for n in names), row["drift_um"]]
 
     return convert
 
 
-HOUSE = {"outdoor_degC": "ambient_degC", "heater_W": "cutting_power_W", "indoor_degC": "indoor_degC"}
+def same(*names):
+    return {n: n for n in names}
+
+
+HOUSE = {"outdoor_degC": "ambient_degC", **same("heater_W", "indoor_degC")}
 CONVERSIONS = {
     "spindle_22": spindle_22,
     "lathe": lambda path: lathe(path, True),
     "lathe_no_stop": lambda path: lathe(path, False),
     "table_d": table_d,
-    "incubator": with_columns({"heater_W": "cutting_power_W", "room_degC": "room_degC", "inside_2_degC": "inside_2_degC",
-                               "inside_3_degC": "inside_3_degC"}, {"speed_rpm": 0}),
+    "incubator": with_columns(same("heater_W", "room_degC", "inside_2_degC", "inside_3_degC"), {"speed_rpm": 0}),
     "printer_frame": printer(lambda row: True),
-    "printer_good": printer(lambda row: abs(float(row["drift_um"])) < 1000.0),
+    "printer_good": printer(lambda row: not abs(number(row["drift_um"])) >= 1000.0),
     "heated_plate": with_columns({"drive_V": "speed_rpm", "plate_degC": "plate_degC"}, scale={"drive_V": 100.0}),
     "test_house": with_columns(HOUSE, {"speed_rpm": 0}),
-    "test_house_sun": with_columns({**HOUSE, "solar_W_m2": "feed_x_mm_min"}, {"speed_rpm": 0}, {"solar_W_m2": 100.0}),
+    "test_house_sun": with_columns({**HOUSE, **same("solar_W_m2")}, {"speed_rpm": 0}),
 }
 
 if __name__ == "__main__":

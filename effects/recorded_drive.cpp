@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/quantity.hpp"
+#include "effects/recorded_column.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+constexpr double kMedium_K =
+    kZeroCelsius_K + 20.0;     // of an exchange with a recorded temperature: heat makes up for the rest
+constexpr int kFewLevels = 4;  // of what opens and shuts an exchange: more are no valve and no lid
+
+void contribute(const Effect& e, HeatBalance& balance) {
+  const auto signal = signal_of(e.words.at("column"), e["lag"] * 60.0);
+  const std::string name = e.name() + " " + e.words.at("column");
+  if (e.has("gain")) {
+    balance.heats.push_back(
+        {name, e.body(), [=, gain = e["gain"]](const Inputs& u) { return gain * signal(u.drive).value_or(0.0); }});
+    return;
+  }
+  Exchange exchange{.name = name, .body = e.body(), .coefficient = {}, .per = Per::kTotal};
+  if (e.has("opening")) {
+    exchange.coefficient = [=, opening = e["opening"]](const Inputs& u) { return opening * signal(u.drive).value_or(0.0); };
+    exchange.surrounding = e.references.at("surrounding").name;
+    balance.exchanges.push_back(exchange);
+    return;
+  }
+  const double conductance_W_K = e["conductance"], medium_C = kMedium_K - kZeroCelsius_K;
+  exchange.coefficient = [=](const Inputs& u) { return signal(u.drive) ? conductance_W_K : 0.0; };
+  exchange.medium_K = kMedium_K;
+  balance.exchanges.push_back(exchange);
+  balance.heats.push_back(
+      {name, e.body(), [=](const Inputs& u) { return conductance_W_K * (signal(u.drive).value_or(medium_C) - medium_C); }});
+}
+
+void change_drive(const Effect& e, DriveChange& change) {
+  const std::string column = e.words.at("column");
+  if (is_drive_channel(column)) return;
+  change.drive.push_back(
+      [=, lag_s = e["lag"] * 60.0](const Cyclogram& recorded) { return with_signal(recorded, column, lag_s); });
+}
+
+void check(const Effect& e, const ConfigMap& in) {
+  const int n_given =
+      static_cast<int>(e.has("gain")) + static_cast<int>(e.has("conductance")) + static_cast<int>(e.has("opening"));
+  if (n_given != 1) {
+    in.fail("gain",
+            "one of three is wanted: `gain`, W per unit of the column; `conductance`, W/K to a body as warm as the column "
+            "says; `opening`, W/K per unit of the column, to `surrounding`");
+  }
+  if (e["lag"] > 0.0 && is_drive_channel(e.words.at("column")))
+    in.fail("lag", "feeds and cutting power act at once; a lag is one of further columns");
+}
+
+/// In W per unit of a column, as much as an unknown heat at the column's largest swing; a recorded power counts for itself.
+double gain_sd(const DoubtScene& s, const DoubtScene::Column& column) {
+  return column.unit == "W" ? 1.0 : s.unknown_heat_W() / column.span;
+}
+
+Doubt doubt(const Body& body, const DoubtScene::Column& column, const std::string& law, const std::string& number,
+            const std::string& unit, double sd) {
+  Doubt d{.finding = "recorded_drive",
+          .where = body.name,
+          .law = fmt::format(fmt::runtime(law), column.header),
+          .added = {make_effect("recorded_drive", body, {{number, 0.0}})},
+          .numbers = {doubted(number, unit, sd, 0.1 * sd)},
+          .trial = 0.1 * sd};
+  d.added[0].words["column"] = column.header;
+  d.numbers[0].low = 0.0;
+  return d;
+}
+
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const DoubtScene::Column& column : s.columns) {
+    if (column.drives) continue;
+    for (const Body& body : s.bodies) {
+      if (column.is_temperature()) {
+        list.push_back(
+            doubt(body, column, "exchange with a body as warm as {} says", "conductance", "W/K", 0.2 * s.unknown_heat_W()));
+        continue;
+      }
+      list.push_back(doubt(body, column, "heat in proportion to {}", "gain", "W per " + column.unit, gain_sd(s, column)));
+      if (column.unit == "K") list.back().numbers[0].low = -1e300;  // of a difference
+      if (column.unit == "W" || column.n_levels > kFewLevels || body.kind != BodyKind::kNode) continue;
+      list.push_back(doubt(body, column, "exchange with the hall that {} opens", "opening", "W/K per " + column.unit,
+                           0.2 * s.unknown_heat_W() / column.span));
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectKind recorded_drive() {
+  return {.key = "recorded_drive",
+          .title = "heat or exchange by a recorded column: a heater's power, the sun, a bed, a valve",
+          .law =
+              "P = gain c; or Q = conductance (T - c), c in degC; or Q = opening c (T - T_surrounding). c: value of the "
+              "column in "
+              "its unit, from each row on; with a lag: lag dx/dt = c - x for c, settled at the first row",
+          .places = {Place::kRegion, Place::kSurface, Place::kNode},
+          .parameters = {{"gain", "1", -1e9, 1e9, kNotGiven, "W per unit of the column", 0.1, "recorded_drive",
+                          Doubted::kFactor},
+                         {"conductance", "W/K", 0.0, 1e9, kNotGiven, "or: to a body as warm as the column says", 0.1,
+                          "recorded_drive", Doubted::kFactor},
+                         {"opening", "1", 0.0, 1e9, kNotGiven, "or: W/K per unit of the column, to the surrounding", 0.1,
+                          "recorded_drive", Doubted::kFactor},
+                         {"lag", "min", 0.0, 1e5, 0.0, "first-order lag behind the column"}},
+          .timing = Timing::kInTime,
+          .contribute = contribute,
+          .change_drive = change_drive,
+          .references = {surrounding_reference()},
+          .check = check,
+          .mentions =
+              {{"column", Mention::Of::kColumn, true,
+                "of the record or cyclogram, with its unit (`heater_W`) or without; cutting_power and feed_x, _y, _z, too"}},
+          .doubts = doubts};
+}
+
+}  // namespace driftwright::effects
