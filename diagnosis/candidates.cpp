@@ -54,7 +54,8 @@ std::vector<Knob> knobs_of(const effects::Doubt& doubt) {
            .step = n.step,
            .low = n.low,
            .high = n.high,
-           .is_time = n.is_time};
+           .is_time = n.is_time,
+           .grows_with_size = n.grows_with_size};
     if (!n.set) {  // no search goes where no scenario can follow
       const effects::EffectKind& kind = *doubt.added.front().kind;
       for (const effects::Parameter& p : kind.parameters) {

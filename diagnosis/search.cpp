@@ -16,6 +16,8 @@ namespace {
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
 
+constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which other numbers grow
+
 Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   const Variant& v = candidates[score.candidate].variants[score.variant];
   return {score.candidate, score.variant, v.knobs, v.all_or_nothing};
@@ -199,6 +201,11 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
     of_each[i] = {signature.candidate, signature.variant, gain - std::log(static_cast<double>(v.grid.size())),
                   signature.shape};
     of_each[i].start[0] = x;
+    if (const double grown = x / v.trial_x; size.scale == Knob::Scale::kLinear && grown > kLeastGrowth) {
+      for (std::size_t k = 1; k < v.knobs.size(); ++k) {
+        if (v.knobs[k].grows_with_size) of_each[i].start[static_cast<Eigen::Index>(k)] += std::log(grown);
+      }
+    }
   }
   std::vector<Score> list;
   for (const Score& s : of_each) {  // those of one law follow each other
