@@ -89,7 +89,7 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
     if (!kind.doubts) continue;
     for (const effects::Doubt& d : kind.doubts(scene)) {
       candidate(list, d.finding, d.where)
-          .variants.push_back({d.law, knobs_of(d), d.trial, d.grid, d.at_speed_rpm, d.all_or_nothing});
+          .variants.push_back({d.law, knobs_of(d), d.trial, d.grid, d.at_speed_rpm, d.all_or_nothing, d.rarity});
     }
   }
   for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {

@@ -59,6 +59,12 @@ Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return both;
 }
 
+/// What one law of a candidate costs beside the others: their number, and how rare it is.
+double law_price(const std::vector<Candidate>& candidates, std::size_t candidate, std::size_t variant) {
+  const std::vector<Variant>& laws = candidates[candidate].variants;
+  return std::log(static_cast<double>(laws.size())) + laws[variant].rarity;
+}
+
 struct Fitted {
   Claim claim;
   Fit fit;
@@ -84,8 +90,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
   std::vector<Fit> fits = fit_all(fitter, jobs);
   std::vector<Fitted> fitted;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const double n_laws = static_cast<double>(candidates[chosen[i].candidate].variants.size());
-    fits[i].log_evidence -= std::log(n_laws);
+    fits[i].log_evidence -= law_price(candidates, chosen[i].candidate, chosen[i].variant);
     fitted.push_back({jobs[i].first.back(), std::move(fits[i])});
   }
   std::sort(fitted.begin(), fitted.end(),
@@ -121,7 +126,7 @@ Fit fit_at_zero(const Fitter& fitter) {
 
 double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
   double price = 0.0;
-  for (const Claim& c : hypothesis) price += std::log(static_cast<double>(candidates[c.candidate].variants.size()));
+  for (const Claim& c : hypothesis) price += law_price(candidates, c.candidate, c.variant);
   return price;
 }
 

@@ -332,10 +332,11 @@ Eigen::MatrixXd Twin::all_states(const TwinState& state, const MeasuredRun& run,
 Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                               const solver::Course* near) const {
   const Eigen::MatrixXd z = states(state, run, workspace, near);
-  const TimeSeries hall = effects::true_hall(effects::drive_change(state, run.name), run.hall, run.cyclogram);
   Eigen::MatrixXd weights = outputs_.state;
   solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));
   Eigen::MatrixXd outputs = weights.transpose() * z;
+  if ((outputs_.hall.array() == 0.0).all()) return outputs;
+  const TimeSeries hall = effects::true_hall(effects::drive_change(state, run.name), run.hall, run.cyclogram);
   for (std::size_t k = 0; k < run.grid_s.size(); ++k) {
     outputs.col(static_cast<Eigen::Index>(k)) += hall.at(run.grid_s[k]) * outputs_.hall;
   }

@@ -74,6 +74,7 @@ struct Doubt {
   std::vector<std::vector<double>> grid = {{}};  ///< x of numbers 1.. to try first
   double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is the trial
+  double rarity = 0.0;                           ///< nats: how much rarer it is than other laws, before any reading
   bool scatters = false;                         ///< its size is one of those that no scenario knows better than to 10 %
 };
 

@@ -7,8 +7,9 @@ namespace driftwright::effects {
 namespace {
 
 constexpr const char* kSuffix = "_hidden";
-constexpr double kCapacitySd = 1.5;                     // of the logarithm: from a fifth to five times its body's
-constexpr double kTrial = 0.1;                          // of a typical conductance
+constexpr double kCapacitySd = 1.5;  // of the logarithm: from a fifth to five times its body's
+constexpr double kTrial = 0.1;       // of a typical conductance
+constexpr double kRare = 4.0;  // nats; with little capacity a body between is a path to the hall, which is the simpler one
 constexpr double kTimeConstants[] = {0.03, 0.12, 0.5};  // tried first, of the longest record
 
 void contribute(const Effect& e, HeatBalance& balance) {
@@ -54,6 +55,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     between.numbers.push_back(out);
     between.added[0].set("hall_conductance", typical_W_K);
     for (auto& x : between.grid) x.push_back(std::log(kTrial));
+    between.rarity = kRare;
     list.push_back(std::move(between));
   }
   return list;

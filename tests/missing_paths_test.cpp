@@ -5,6 +5,7 @@
 
 #include "diagnosis/extended_scenario.hpp"
 #include "tests/beside_records.hpp"
+#include "tests/column_and_head.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -129,6 +130,23 @@ TEST(MissingPaths, AreOfferedOnceWhereNothingJoinsTwoBodies) {
   EXPECT_THAT(links,
               testing::UnorderedElementsAre("spindle,column", "spindle,motor", "spindle,hall", "head,hall", "column,motor"));
   EXPECT_THAT(bodies, testing::UnorderedElementsAre("spindle", "head", "column", "motor"));
+}
+
+TEST(AWrittenGradient, ThatIsFarOffIsFound) {
+  const auto written = [](const std::string& gradient) {
+    fixtures::ColumnAndHead what;
+    what.start = "hall";
+    what.effects.push_back("{type: stratification, gradient: " + gradient + ", level: 0.1 m}");
+    what.cyclograms = "{cycle: [[100 min, 1000 rpm], [100 min, 0 rpm], [100 min, 600 rpm], [60 min, 1500 rpm]]}";
+    return fixtures::write_column_and_head(fresh_folder("gradient_" + gradient.substr(0, 2)), what);
+  };
+  const Beside beside(written("1 K/m"), record(written("13 K/m"), "gradient"));
+  const Diagnosis d = beside.diagnosed(3);
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, "stratification");
+  EXPECT_EQ(d.causes[0].where, "hall");
+  EXPECT_NEAR(d.causes[0].parameters[0].value, 13.0, 1.5);
 }
 
 }  // namespace
