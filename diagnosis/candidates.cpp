@@ -54,7 +54,8 @@ std::vector<Knob> knobs_of(const effects::Doubt& doubt) {
            .step = n.step,
            .low = n.low,
            .high = n.high,
-           .is_time = n.is_time};
+           .is_time = n.is_time,
+           .grows_with_size = n.grows_with_size};
     if (!n.set) {  // no search goes where no scenario can follow
       const effects::EffectKind& kind = *doubt.added.front().kind;
       for (const effects::Parameter& p : kind.parameters) {
@@ -88,7 +89,7 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
     if (!kind.doubts) continue;
     for (const effects::Doubt& d : kind.doubts(scene)) {
       candidate(list, d.finding, d.where)
-          .variants.push_back({d.law, knobs_of(d), d.trial, d.grid, d.at_speed_rpm, d.all_or_nothing});
+          .variants.push_back({d.law, knobs_of(d), d.trial, d.grid, d.at_speed_rpm, d.all_or_nothing, d.rarity});
     }
   }
   for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {

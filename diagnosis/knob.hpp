@@ -24,6 +24,7 @@ struct Knob {
   double step = 0.1;                  ///< of x, for differences
   double low = -1e300, high = 1e300;  ///< of the value
   bool is_time = false;               ///< found by search, not by slopes
+  bool grows_with_size = false;       ///< where to look first, in proportion to the claim's size; of kLog
   bool reading_only = false;          ///< the machine's own response does not change
   std::function<void(TwinState&, double value)> set = {};
 

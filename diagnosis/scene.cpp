@@ -14,6 +14,7 @@ effects::DoubtScene::Material material_of(const Twin& twin, const solver::BodyPa
   m.body = twin.body_of(part.body);
   m.conducts = part.conduction.cwiseAbs().maxCoeff() > 0.0;
   m.stores = part.mass.cwiseAbs().maxCoeff() > 0.0;
+  m.capacity_J_K = twin.machine().system.ones.dot(part.mass * twin.machine().system.ones);  // ones: the state 1 K everywhere
   for (std::size_t o = model.sensors.size(); o < static_cast<std::size_t>(part.outputs.cols()); ++o) {
     if (!(part.outputs.col(static_cast<Eigen::Index>(o)).cwiseAbs().maxCoeff() > 0.0)) continue;
     const std::size_t d = o - model.sensors.size();

@@ -19,6 +19,8 @@ constexpr double kSettled = 0.05;  // of Φ
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
 
+constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which other numbers grow
+
 Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   const Variant& v = candidates[score.candidate].variants[score.variant];
   return {score.candidate, score.variant, v.knobs, v.all_or_nothing};
@@ -60,6 +62,12 @@ Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return both;
 }
 
+/// What one law of a candidate costs beside the others: their number, and how rare it is.
+double law_price(const std::vector<Candidate>& candidates, std::size_t candidate, std::size_t variant) {
+  const std::vector<Variant>& laws = candidates[candidate].variants;
+  return std::log(static_cast<double>(laws.size())) + laws[variant].rarity;
+}
+
 struct Fitted {
   Claim claim;
   Fit fit;
@@ -85,8 +93,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
   std::vector<Fit> fits = fit_all(fitter, jobs);
   std::vector<Fitted> fitted;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const double n_laws = static_cast<double>(candidates[chosen[i].candidate].variants.size());
-    fits[i].log_evidence -= std::log(n_laws);
+    fits[i].log_evidence -= law_price(candidates, chosen[i].candidate, chosen[i].variant);
     fitted.push_back({jobs[i].first.back(), std::move(fits[i])});
   }
   std::sort(fitted.begin(), fitted.end(),
@@ -134,7 +141,7 @@ void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
 
 double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
   double price = 0.0;
-  for (const Claim& c : hypothesis) price += std::log(static_cast<double>(candidates[c.candidate].variants.size()));
+  for (const Claim& c : hypothesis) price += law_price(candidates, c.candidate, c.variant);
   return price;
 }
 
@@ -214,6 +221,11 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
     of_each[i] = {signature.candidate, signature.variant, gain - std::log(static_cast<double>(v.grid.size())),
                   signature.shape};
     of_each[i].start[0] = x;
+    if (const double grown = x / v.trial_x; size.scale == Knob::Scale::kLinear && grown > kLeastGrowth) {
+      for (std::size_t k = 1; k < v.knobs.size(); ++k) {
+        if (v.knobs[k].grows_with_size) of_each[i].start[static_cast<Eigen::Index>(k)] += std::log(grown);
+      }
+    }
   }
   std::vector<Score> list;
   for (const Score& s : of_each) {  // those of one law follow each other

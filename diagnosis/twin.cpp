@@ -22,6 +22,7 @@ constexpr double kExpectedFilm_W_m2K = 10.0;
 constexpr double kTolerance_K =
     0.1;                        // with everything that may be wrong stepping at once, which is ten times what a run does
 constexpr double kWider = 2.0;  // coefficients and powers may be wrong by this and more
+constexpr double kNoWayOut_1_s = 1e-14;  // what keeps a node that nothing reaches from having no steady state
 
 bool is_outer(const std::string& surface) {
   return surface.find('@') == std::string::npos;
@@ -57,6 +58,15 @@ std::vector<effects::Effect> places(const mesh::Mesh& mesh, const effects::HeatB
   return list;
 }
 
+AugmentedModel::Air air_of(const effects::HeatBalance& balance) {
+  AugmentedModel::Air air;
+  for (const effects::Stratification& s : balance.stratifications) {
+    air.gradient_K_m += s.gradient_K_m;
+    air.level_K += s.gradient_K_m * s.level_m;
+  }
+  return air;
+}
+
 double factor_of(const std::vector<effects::MaterialFactor>& factors, const effects::Body& body,
                  double effects::MaterialFactor::*member) {
   double product = 1.0;
@@ -72,7 +82,6 @@ AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& me
   AugmentedModel a{.model = *scenario.machine, .plan = {}, .n_own_effects = scenario.machine->effects.size()};
   std::vector<effects::Effect>& list = a.model.effects;
   const effects::HeatBalance own = effects::with_radiation_as_films(effects::heat_balance(list));
-  a.has_own_gradient = !own.stratifications.empty();
 
   double top_rpm = 1.0;
   std::vector<const Cyclogram*> cyclograms;
@@ -103,6 +112,7 @@ AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& me
   a.plan.with_parts = true;
   solver::ReductionDemand& d = a.plan.demand;
   const effects::HeatBalance all = effects::with_radiation_as_films(effects::heat_balance(list));
+  a.air = air_of(all);
   for (std::size_t e = 0; e < all.exchanges.size(); ++e) {
     const auto i = static_cast<Eigen::Index>(e);
     const bool is_own = std::any_of(own.exchanges.begin(), own.exchanges.end(),
@@ -187,44 +197,54 @@ Eigen::MatrixXd Twin::expansion_factors(const TwinState& state) const {
   return factors;
 }
 
+void Twin::set_places(const effects::HeatBalance& balance, Workspace& workspace) const {
+  solver::AddedPlaces added = solver::places_lacking(machine_.system, balance);
+  if (added == workspace.added_) return;
+  workspace.system_ = solver::with_places(machine_.system, added);
+  workspace.added_ = std::move(added);
+  workspace.factors_ = {};
+  workspace.offsets_.clear();
+  workspace.propagator_.reset();
+}
+
 void Twin::set_matrices(const TwinState& state, Workspace& workspace) const {
   solver::ModelFactors factors = material_factors(state);
   if (factors.conductivity == workspace.factors_.conductivity && factors.heat_capacity == workspace.factors_.heat_capacity)
     return;
   solver::ReducedSystem& system = workspace.system_;
-  system.conduction = machine_.system.conduction;
-  system.mass = machine_.system.mass;
-  solver::scale_matrices(system.conduction, system.mass, machine_.system.parts, factors.conductivity, factors.heat_capacity);
+  Eigen::MatrixXd conduction = machine_.system.conduction, mass = machine_.system.mass;
+  solver::scale_matrices(conduction, mass, machine_.system.parts, factors.conductivity, factors.heat_capacity);
+  system.conduction.topLeftCorner(conduction.rows(), conduction.cols()) = conduction;
+  system.mass.topLeftCorner(mass.rows(), mass.cols()) = mass;
   workspace.factors_ = std::move(factors);
   workspace.propagator_.reset();
 }
 
-void Twin::set_laws(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+void Twin::set_air(const effects::HeatBalance& balance, solver::ReducedSystem& system) const {
+  const AugmentedModel::Air& assembled = augmented_.air;
+  if (assembled.gradient_K_m == 0.0) return;
+  const AugmentedModel::Air now = air_of(balance);
+  const double share =
+      now.gradient_K_m / assembled.gradient_K_m;  // assembled + level: what air makes that is as warm as recorded at z = 0
+  for (std::size_t e = 0; e < machine_.system.exchanges.size(); ++e) {
+    const auto& of = machine_.system.exchanges[e];
+    if (of.offset.size() == 0 || of.medium.size() > 0) continue;
+    Eigen::VectorXd& offset = system.exchanges[e].offset;
+    offset.setZero();
+    offset.head(of.offset.size()) = share * (of.offset + assembled.level_K * of.to_hall) - now.level_K * of.to_hall;
+    system.exchanges[e].offset_sum = share * (of.offset_sum + assembled.level_K * of.hall_sum) - now.level_K * of.hall_sum;
+  }
+  for (std::size_t p = 0; p < machine_.system.probes.size(); ++p) {
+    const solver::Probe& of = machine_.system.probes[p];
+    if (!of.before.empty()) system.probes[p].offset_K = share * (of.offset_K + assembled.level_K) - now.level_K;
+  }
+}
+
+void Twin::set_laws(effects::HeatBalance balance, Workspace& workspace) const {
   solver::ReducedSystem& system = workspace.system_;
-  TwinState acting;
-  for (const effects::Effect& e : state) {
-    if (e.acts_in(run.name)) acting.push_back(e);
-  }
-  effects::HeatBalance now = balance(acting);
-  std::sort(now.change_times_s.begin(), now.change_times_s.end());
-  solver::bind_laws(system, now);
-  if (!augmented_.has_own_gradient) {  // the air of the reduced machine is 1 K/m warmer above
-    double gradient_K_m = 0.0, level_K = 0.0;
-    for (const effects::Stratification& s : now.stratifications) {
-      gradient_K_m += s.gradient_K_m;
-      level_K += s.gradient_K_m * s.level_m;
-    }
-    for (std::size_t e = 0; e < machine_.system.exchanges.size(); ++e) {
-      const auto& unit = machine_.system.exchanges[e];
-      if (unit.offset.size() == 0 || unit.medium.size() > 0) continue;
-      system.exchanges[e].offset = gradient_K_m * unit.offset - level_K * unit.to_hall;
-      system.exchanges[e].offset_sum = gradient_K_m * unit.offset_sum - level_K * unit.hall_sum;
-    }
-    for (std::size_t p = 0; p < machine_.system.probes.size(); ++p) {
-      const solver::Probe& unit = machine_.system.probes[p];
-      if (!unit.before.empty()) system.probes[p].offset_K = gradient_K_m * unit.offset_K - level_K;
-    }
-  }
+  std::sort(balance.change_times_s.begin(), balance.change_times_s.end());
+  solver::bind_laws(system, balance);
+  set_air(balance, system);
   std::vector<double> offsets;
   for (const auto& e : system.exchanges) offsets.push_back(e.offset_sum);
   if (offsets == workspace.offsets_) return;
@@ -232,32 +252,41 @@ void Twin::set_laws(const TwinState& state, const MeasuredRun& run, Workspace& w
   workspace.propagator_.reset();
 }
 
-Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& hall, const solver::ReducedSystem& system) const {
+Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& hall, const Workspace& workspace) const {
+  const solver::ReducedSystem& system = workspace.system_;
   Eigen::VectorXd start = machine_.start;
   const double hall_at_start_K = hall.at(0.0);
+  const bool is_steady = augmented_.model.start == scenarios::Start::kSteady && system.is_linear();
   if (augmented_.model.start == scenarios::Start::kHall) start = hall_at_start_K * machine_.system.ones;
-  if (augmented_.model.start == scenarios::Start::kSteady && system.is_linear()) {
-    const effects::Inputs standstill{.drive = {},
-                                     .hall_K = hall_at_start_K};  // before the run: what happened in it acts not yet
-    Eigen::MatrixXd k = system.conduction;
-    for (const auto& e : system.exchanges) k += e.coefficient(standstill) * e.matrix;
-    start = k.llt().solve(system.load(standstill));
-  } else if (augmented_.model.start == scenarios::Start::kSteady) {  // as written, moved with the hall
+  if (augmented_.model.start == scenarios::Start::kSteady && !is_steady)  // as written, moved with the hall
     start += (hall_at_start_K - scenarios::felt_hall_at_start_K(augmented_.model)) * machine_.system.ones;
-  }
-  if (run.start_K.size() > 0) start += warmer_bodies() * run.start_K;
-  return start;
+  Eigen::VectorXd warmer = Eigen::VectorXd::Zero(start.size());
+  if (run.start_K.size() > 0) warmer = warmer_bodies() * run.start_K;
+  if (!is_steady) return solver::with_places(start + warmer, machine_.system, workspace.added_);
+  const effects::Inputs standstill{.drive = {},
+                                   .hall_K = hall_at_start_K};  // before the run: what happened in it acts not yet
+  Eigen::MatrixXd k = system.conduction;
+  for (const auto& e : system.exchanges) k += e.coefficient(standstill) * e.matrix;
+  const auto n_added = static_cast<Eigen::Index>(workspace.added_.nodes.size());
+  k.diagonal().tail(n_added).array() += kNoWayOut_1_s;
+  return k.llt().solve(system.load(standstill)) + solver::with_places(warmer, machine_.system, workspace.added_);
 }
 
 Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+  TwinState acting;
+  for (const effects::Effect& e : state) {
+    if (e.acts_in(run.name)) acting.push_back(e);
+  }
+  effects::HeatBalance now = balance(acting);
+  set_places(now, workspace);
   set_matrices(state, workspace);
-  set_laws(state, run, workspace);
+  set_laws(std::move(now), workspace);
   const effects::DriveChange change = effects::drive_change(state, run.name);
   Driven d{.cyclogram = effects::true_cyclogram(change, run.cyclogram),
            .hall = effects::true_hall(change, run.hall, run.cyclogram),
            .start = {}};
   d.cyclogram.name = run.name;
-  d.start = start(run, d.hall, workspace.system_);
+  d.start = start(run, d.hall, workspace);
   return d;
 }
 
@@ -269,9 +298,14 @@ std::optional<solver::Course> Twin::course(const TwinState& state, const Measure
 
 Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                              const solver::Course* near) const {
+  return all_states(state, run, workspace, near).topRows(machine_.system.size());
+}
+
+Eigen::MatrixXd Twin::all_states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
+                                 const solver::Course* near) const {
   auto [felt, hall, from] = drive(state, run, workspace);
   solver::ReducedSystem& system = workspace.system_;
-  if (near) {
+  if (near && near->states().rows() == system.size()) {
     if (auto close = near->states_of(system, felt, hall, from)) return *std::move(close);
   }
   Eigen::MatrixXd states;
@@ -301,10 +335,11 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
 Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                               const solver::Course* near) const {
   const Eigen::MatrixXd z = states(state, run, workspace, near);
-  const TimeSeries hall = effects::true_hall(effects::drive_change(state, run.name), run.hall, run.cyclogram);
   Eigen::MatrixXd weights = outputs_.state;
   solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));
   Eigen::MatrixXd outputs = weights.transpose() * z;
+  if ((outputs_.hall.array() == 0.0).all()) return outputs;
+  const TimeSeries hall = effects::true_hall(effects::drive_change(state, run.name), run.hall, run.cyclogram);
   for (std::size_t k = 0; k < run.grid_s.size(); ++k) {
     outputs.col(static_cast<Eigen::Index>(k)) += hall.at(run.grid_s[k]) * outputs_.hall;
   }

@@ -6,18 +6,23 @@
 #include "diagnosis/knob.hpp"
 #include "diagnosis/measured_run.hpp"
 #include "scenarios/reduced_machine.hpp"
+#include "solver/added_places.hpp"
 #include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::diagnosis {
 
 /// The scenario's machine with the places that a diagnosis may add something at: heat in each region, node and surface, films where there are
-/// none, a medium along each body, a way from each node to the hall, stratified air. Its reduced model holds for laws at all of them.
+/// none, a medium along each body, a way from each node to the hall, stratified air. Its reduced model holds for laws at all of them. Bodies and
+/// paths between them that a state has beside these are added to the reduced system as they come (solver/added_places.hpp).
 struct AugmentedModel {
   scenarios::MachineModel model;
   scenarios::ReductionPlan plan;
   std::size_t n_own_effects = 0;  ///< the scenario's, first in the list
-  bool has_own_gradient = false;
+  /// Air of the hall as the reduced machine was assembled with it: level_K less than its gradient times the height over z = 0.
+  struct Air {
+    double gradient_K_m = 0.0, level_K = 0.0;
+  } air = {};
 };
 /// @param mesh  the machine's, for the names of its regions and surfaces
 [[nodiscard]] AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& mesh,
@@ -42,6 +47,7 @@ class Twin {
     solver::ReducedSystem system_;
     solver::ModelFactors factors_;  ///< of conductivities and capacities that system_ has
     std::vector<double> offsets_;   ///< of its exchanges: air and media
+    solver::AddedPlaces added_;     ///< what it has beyond the machine's
     std::unique_ptr<solver::Propagator> propagator_;
   };
 
@@ -80,8 +86,10 @@ class Twin {
   [[nodiscard]] solver::ModelFactors material_factors(const TwinState& state) const;
   /// And on what each part's expansion has of each of the model's own outputs; 0 x 0 for ones.
   [[nodiscard]] Eigen::MatrixXd expansion_factors(const TwinState& state) const;
+  void set_places(const effects::HeatBalance& balance, Workspace& workspace) const;
   void set_matrices(const TwinState& state, Workspace& workspace) const;
-  void set_laws(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
+  void set_laws(effects::HeatBalance balance, Workspace& workspace) const;
+  void set_air(const effects::HeatBalance& balance, solver::ReducedSystem& system) const;
   /// What drives a state in a run: its system in the workspace, what it is told, where it starts.
   struct Driven {
     Cyclogram cyclogram;
@@ -89,8 +97,9 @@ class Twin {
     Eigen::VectorXd start;
   };
   [[nodiscard]] Driven drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
-  [[nodiscard]] Eigen::VectorXd start(const MeasuredRun& run, const TimeSeries& hall,
-                                      const solver::ReducedSystem& system) const;
+  [[nodiscard]] Eigen::VectorXd start(const MeasuredRun& run, const TimeSeries& hall, const Workspace& workspace) const;
+  [[nodiscard]] Eigen::MatrixXd all_states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
+                                           const solver::Course* near) const;
 
   const AugmentedModel& augmented_;
   const scenarios::ReducedMachine& machine_;

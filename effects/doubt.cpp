@@ -15,6 +15,19 @@ double DoubtScene::unknown_heat_W() const {
   return std::max(20.0, 0.5 * heat_W);
 }
 
+double DoubtScene::typical_conductance_W_K() const {
+  double sum_log = 0.0;
+  int n = 0;
+  for (const Exchange& e : balance.exchanges) {
+    if (e.per != Per::kTotal || !e.coefficient.probes.empty() || !e.coefficient.thermostat.empty()) continue;
+    const double conductance_W_K = e.coefficient(Inputs{.drive = {.speed_rpm = typical_rpm}});
+    if (!(conductance_W_K > 0.0)) continue;
+    sum_log += std::log(conductance_W_K);
+    ++n;
+  }
+  return n > 0 ? std::exp(sum_log / n) : 0.1 * unknown_heat_W();
+}
+
 DoubtedNumber doubted(std::string name, std::string unit, double prior_sd, double step, double nominal) {
   return {.name = std::move(name), .unit = std::move(unit), .nominal = nominal, .prior_sd = prior_sd, .step = step};
 }

@@ -38,6 +38,7 @@ struct DoubtScene {
     bool conducts = false, stores = false;
     bool expands = false;                    ///< and bends the mesh
     std::vector<std::string> sensitivities;  ///< displacements that follow its temperature by a number of their own
+    double capacity_J_K = 0.0;               ///< of the whole body
   };
   std::vector<Material> materials;
   /// Something recorded beside the drive, in every record, that changes there (Cyclogram::Column), or the cutting power.
@@ -53,6 +54,9 @@ struct DoubtScene {
   [[nodiscard]] double longest_s() const;
   /// 1 sigma of a heat that nobody knows of [W].
   [[nodiscard]] double unknown_heat_W() const;
+  /// Size of a path of heat that nobody knows of [W/K]: the geometric mean of the scenario's own links at the typical speed; where there are none,
+  /// such that the unknown heat makes 10 K.
+  [[nodiscard]] double typical_conductance_W_K() const;
 };
 
 /// One number of a doubted effect. Its scale is that of its prior: nominal + x or nominal exp(x), x ~ N(0, prior_sd).
@@ -63,6 +67,8 @@ struct DoubtedNumber {
   double low = -1e300, high = 1e300;  ///< of the value
   bool is_log = false;
   bool is_time = false;  ///< found by search beside slopes
+  /// Of a logarithmic number behind the size: what is looked at first grows in proportion to the size, so that their ratio (a time constant) stays.
+  bool grows_with_size = false;
   /// Writes the value into the effects that Doubt::added was copied to. Empty: the parameter of that name of each of them.
   std::function<void(std::span<Effect>, double value)> set = {};
 };
@@ -77,6 +83,7 @@ struct Doubt {
   std::vector<std::vector<double>> grid = {{}};  ///< x of numbers 1.. to try first
   double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is the trial
+  double rarity = 0.0;                           ///< nats: how much rarer it is than other laws, before any reading
   bool scatters = false;                         ///< its size is one of those that no scenario knows better than to 10 %
 };
 

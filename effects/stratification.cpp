@@ -3,33 +3,38 @@
 namespace driftwright::effects {
 namespace {
 
+constexpr double kUsual_K_m = 2.0;  // 1 sigma of a gradient that nobody wrote down
+constexpr double kWritten_K_m =
+    5.0;  // and of what a written one is wrong by: under a roof in summer 10 K/m and more are met
+
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.stratifications.push_back({e["gradient"], e["level"]});
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {
   if (s.surfaces.empty() || !s.balance.stratifications.empty()) return {};
-  return {
-      {.finding = "stratification",
-       .where = kHallName,
-       .law = "warmer above; the hall's thermometer hangs at a level",
-       .added = {make_effect("stratification", Place::kHall, kHallName, {{"level", 1.0}})},
-       .numbers = {doubted("gradient", "K/m", 1.0, 0.2), doubted("level", "m", 0.6, 0.1, 1.0)},  // about where one hangs it
-       .trial = 0.5,
-       .grid = {{-0.6}, {0.2}}}};
+  return {{.finding = "stratification",
+           .where = kHallName,
+           .law = "warmer above; the hall's thermometer hangs at a level",
+           .added = {make_effect("stratification", Place::kHall, kHallName, {{"level", 1.0}})},
+           .numbers = {doubted("gradient", "K/m", kUsual_K_m, 0.2),
+                       doubted("level", "m", 0.6, 0.1, 1.0)},  // about where one hangs it
+           .trial = 0.5,
+           .grid = {{-0.6}, {0.2}}}};
 }
 
 }  // namespace
 
 EffectKind stratification() {
-  return {.key = "stratification",
-          .title = "hall air that is warmer above than below",
-          .law = "T_air(z) = T_hall + gradient (z - level) for films, links and radiation of surfaces to the hall",
-          .places = {Place::kHall},
-          .parameters = {{"gradient", "K/m", -50.0, 50.0, {}, "upwards"},
-                         {"level", "m", -100.0, 100.0, 0.0, "height z of the hall's thermometer"}},
-          .contribute = contribute,
-          .doubts = doubts};
+  return {
+      .key = "stratification",
+      .title = "hall air that is warmer above than below",
+      .law = "T_air(z) = T_hall + gradient (z - level) for films, links and radiation of surfaces to the hall",
+      .places = {Place::kHall},
+      .parameters = {{"gradient", "K/m", -50.0, 50.0, {}, "upwards", 0.0, "stratification", Doubted::kShift, kWritten_K_m},
+                     {"level", "m", -100.0, 100.0, 0.0, "height z of the hall's thermometer"}},
+      .contribute = contribute,
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

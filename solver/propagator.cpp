@@ -74,6 +74,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
   run.time_s = output_s;
   run.outputs.resize(system_.outputs.state.cols(), n_times);
   if (states) states->resize(n, n_times);
+  const bool reads_hall = (system_.outputs.hall.array() != 0.0).any();
   Eigen::VectorXd heat_J;  // of every flow up to the stretch's start
   double initial_J = 0.0;
   if (with_heat) {
@@ -136,7 +137,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
     };
     for (Eigen::Index k = 0; k < n_columns; ++k) {
       const double now_s = output_s[next + static_cast<std::size_t>(k)];
-      run.outputs.col(first_column + k) += hall.at(now_s) * system_.outputs.hall;
+      if (reads_hall) run.outputs.col(first_column + k) += hall.at(now_s) * system_.outputs.hall;
       if (!with_heat) continue;
       run.heat_J.col(first_column + k) = heats_after(now_s - stretch.start_s, integrals.col(k));
       run.stored_J[first_column + k] = d.stored_J_K.dot(block.col(k)) - initial_J;

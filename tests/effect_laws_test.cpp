@@ -172,6 +172,30 @@ TEST(BearingFriction, TightensWithoutLookingAtTheOil) {
   EXPECT_NEAR(power_W({.drive = {.speed_rpm = 2000.0}, .probe_K = {320.0, 310.0}}), 58.2828, 1e-4);
 }
 
+// --- bodies -----------------------------------------------------------------------------------------------------
+
+TEST(HiddenBody, IsANodeBehindItsBody) {
+  const HeatBalance b = balance_of("{type: hidden_body, region: head, capacity: 8 kJ/K, conductance: 9 W/K}");
+  ASSERT_EQ(b.nodes.size(), 1u);
+  EXPECT_EQ(b.nodes[0].name, "head_hidden");
+  EXPECT_EQ(b.nodes[0].capacity_J_K, 8000.0);
+  ASSERT_EQ(b.exchanges.size(), 1u);
+  EXPECT_EQ(b.exchanges[0].body, region("head"));
+  EXPECT_EQ(b.exchanges[0].surrounding, "head_hidden");
+  EXPECT_EQ(b.exchanges[0].per, Per::kTotal);
+  EXPECT_EQ(b.exchanges[0].coefficient({}), 9.0);
+}
+
+TEST(HiddenBody, HasAWayToTheHallWhereGiven) {
+  const HeatBalance b =
+      balance_of("{type: hidden_body, node: head, capacity: 8 kJ/K, conductance: 9 W/K, hall_conductance: 2 W/K}");
+  ASSERT_EQ(b.exchanges.size(), 2u);
+  EXPECT_EQ(b.exchanges[0].body, node("head"));
+  EXPECT_EQ(b.exchanges[1].body, node("head_hidden"));
+  EXPECT_EQ(b.exchanges[1].surrounding, kHallName);
+  EXPECT_EQ(b.exchanges[1].coefficient({}), 2.0);
+}
+
 // --- axes and cutting -------------------------------------------------------------------------------------------
 
 TEST(Axes, ServoHoldsAndGrowsWithItsOwnFeed) {
@@ -456,6 +480,9 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: link, node: n, conductance: 1 W/K}", "key 'to' is missing"},
         Bad{"{type: link, node: n, conductance: 1 W/K, to: n}", "joins two bodies"},
         Bad{"{type: link, node: n, conductance: -1 W/K, to: hall}", "outside what is allowed"},
+        Bad{"{type: hidden_body, node: n, conductance: 1 W/K}", "key 'capacity' is missing"},
+        Bad{"{type: hidden_body, node: n, capacity: 0 J/K, conductance: 1 W/K}", "outside what is allowed"},
+        Bad{"{type: hidden_body, surface: s, capacity: 1 J/K, conductance: 1 W/K}", "wants one place: region or node"},
         Bad{"{type: coolant, region: r, tank: hall, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L}", "is no tank"},
         Bad{"{type: coolant, region: r, tank: t, flow: 0 L/min, passage_conductance: 1 W/K, volume: 1 L}",
             "outside what is allowed"},

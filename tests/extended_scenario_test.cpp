@@ -197,6 +197,15 @@ const std::vector<Case> kCases = {
      added({"{type: changed_law, law: bearing_friction shaft, factor: 1.2, exponent: 0.6, at_speed: 700 rpm}"})},
     {"heat_of_two_laws_that_falls", false,
      added({"{type: changed_law, law: motor_loss housing, exponent: 0.3, at_speed: 700 rpm, decay: 0.03 1/K}"})},
+    {"a_path_that_was_missing", false, added({"{type: link, node: shaft, to: hall, conductance: 3 W/K}"})},
+    {"a_hidden_body", false, added({"{type: hidden_body, node: housing, capacity: 30 kJ/K, conductance: 9 W/K}"})},
+    {"a_hidden_body_with_a_way_out", false,
+     added({"{type: hidden_body, node: shaft, capacity: 4 kJ/K, conductance: 6 W/K, hall_conductance: 2 W/K}"})},
+    {"two_hidden_bodies", false,
+     added({"{type: hidden_body, node: shaft, capacity: 4 kJ/K, conductance: 6 W/K}",
+            "{type: hidden_body, node: housing, capacity: 9 kJ/K, conductance: 6 W/K}"})},
+    {"a_hidden_body_behind_a_region", true,
+     added({"{type: hidden_body, region: head, capacity: 8 kJ/K, conductance: 9 W/K, hall_conductance: 4 W/K}"})},
     {"another_link", false, added({"{type: changed_law, law: link housing - hall, factor: 1.7}"})},
     {"a_link_of_another_number", false, [](TwinState& t) { t[5].set("conductance", 15.3); }},
     {"another_coolant", false, [](TwinState& t) { t[6].values[2] *= 2.0; }},
@@ -286,6 +295,39 @@ TEST(SemiClosedAxis, TheScrewIsUncertainByItsSensitivityAndTheColumnByItsExpansi
     expansions.push_back(k.where + " " + state.back().words.at("displacement"));
   }
   EXPECT_THAT(expansions, ::testing::UnorderedElementsAre("column ", "head ", "screw z"));
+}
+
+TEST(SemiClosedAxis, APathThatWasMissingRunsAsTheTwinPredicted) {
+  expect_runs_as_predicted(semi_closed(),
+                           {"a_path", true, added({"{type: link, region: column, to: screw, conductance: 6 W/K}"})});
+}
+
+/// A machine that starts from its steady state, and one in air that is written as warmer above.
+const Bench& written_with(const std::string& start, const std::string& effect) {
+  static std::vector<std::unique_ptr<Bench>> all;
+  fixtures::ColumnAndHead what;
+  what.start = start;
+  if (!effect.empty()) what.effects.push_back(effect);
+  all.push_back(bench(fixtures::write_column_and_head(fresh_folder("written_" + std::to_string(all.size())), what)));
+  return *all.back();
+}
+
+TEST(AHiddenBody, StartsSteadyAsTheRest) {
+  for (const char* body :
+       {"{type: hidden_body, region: head, capacity: 8 kJ/K, conductance: 9 W/K}",
+        "{type: hidden_body, region: head, capacity: 8 kJ/K, conductance: 9 W/K, hall_conductance: 4 W/K}"}) {
+    expect_runs_as_predicted(written_with("steady", "{type: heat_source, region: column, power: 25 W}"),
+                             {"steady", true, added({body})});
+  }
+}
+
+TEST(WrittenStratification, OfAnotherGradientRunsAsTheTwinPredicted) {
+  const Bench& b = written_with("hall", "{type: stratification, gradient: 1 K/m, level: 0.1 m}");
+  expect_runs_as_predicted(b, {"gradient", true, [](TwinState& t) { t.back().set("gradient", 13.0); }});
+  expect_runs_as_predicted(b, {"level", true, [](TwinState& t) {
+                                 t.back().set("gradient", 13.0);
+                                 t.back().set("level", -0.4);
+                               }});
 }
 
 TEST(ExtendedScenario, KeepsCommentsAndSaysWhatItChanged) {

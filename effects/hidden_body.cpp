@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <cmath>
+
+#include "effects/doubt.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+constexpr const char* kSuffix = "_hidden";
+constexpr double kCapacitySd = 1.5;  // of the logarithm: from a fifth to five times its body's
+constexpr double kTrial = 0.1;       // of a typical conductance
+constexpr double kRare = 4.0;  // nats; with little capacity a body between is a path to the hall, which is the simpler one
+constexpr double kTimeConstants[] = {0.03, 0.12, 0.5};  // tried first, of the longest record
+
+void contribute(const Effect& e, HeatBalance& balance) {
+  const double link_W_K = e["conductance"], to_hall_W_K = e["hall_conductance"];
+  const std::string own = e.place + kSuffix;
+  balance.nodes.push_back({own, e["capacity"]});
+  balance.exchanges.push_back(make_link(
+      e.name() + " - " + own, e.body(), [=](const Inputs&) { return link_W_K; }, own));
+  if (e.has("hall_conductance"))
+    balance.exchanges.push_back(make_link(e.name() + " - hall", node(own), [=](const Inputs&) { return to_hall_W_K; }));
+}
+
+/// A body at each region and node: what it exchanges and stores, and in a second law its own way to the hall.
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  const double typical_W_K = s.typical_conductance_W_K(), longest_s = s.longest_s();
+  std::vector<Doubt> list;
+  if (!(longest_s > 0.0)) return list;
+  for (const DoubtScene::Material& m : s.materials) {
+    const bool has_one = std::any_of(s.balance.nodes.begin(), s.balance.nodes.end(), [&](const LumpedNode& n) {
+      return n.name == m.body.name + kSuffix || n.name + kSuffix == m.body.name;
+    });
+    const bool is_hidden = m.body.name.ends_with(kSuffix);
+    if (has_one || is_hidden || !m.stores || m.body.kind == BodyKind::kSurface) continue;
+    Doubt behind{.finding = "hidden_body",
+                 .where = m.body.name,
+                 .law = "a body behind it, with no other way out",
+                 .added = {make_effect("hidden_body", m.body, {{"capacity", m.capacity_J_K}, {"conductance", 0.0}})},
+                 .numbers = {doubted("conductance", "W/K", typical_W_K, 0.05 * typical_W_K),
+                             doubted("capacity", "J/K", kCapacitySd, 0.1, m.capacity_J_K)},
+                 .trial = kTrial * typical_W_K,
+                 .grid = {}};
+    behind.numbers[0].low = 0.0;
+    behind.numbers[1].is_log = true;
+    behind.numbers[1].grows_with_size = true;
+    for (double share : kTimeConstants) behind.grid.push_back({std::log(behind.trial * share * longest_s / m.capacity_J_K)});
+    list.push_back(behind);
+
+    Doubt between = std::move(behind);
+    between.law = "a body between it and the hall";
+    DoubtedNumber out = doubted("hall_conductance", "W/K", kCapacitySd, 0.1, typical_W_K);
+    out.is_log = true;
+    out.grows_with_size = true;
+    between.numbers.push_back(out);
+    between.added[0].set("hall_conductance", typical_W_K);
+    for (auto& x : between.grid) x.push_back(std::log(kTrial));
+    between.rarity = kRare;
+    list.push_back(std::move(between));
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectKind hidden_body() {
+  return {.key = "hidden_body",
+          .title = "body behind another: a cover, a tank, a clamped part, which no node or region of the machine is",
+          .law =
+              "capacity dT_hidden/dt = conductance (T - T_hidden) - hall_conductance (T_hidden - T_hall); it makes the node "
+              "<its body>_hidden, and takes its heat evenly from the region",
+          .places = {Place::kRegion, Place::kNode},
+          .parameters = {{"capacity", "J/K", 1e-6, 1e12, {}, "heat capacity of the hidden body"},
+                         {"conductance", "W/K", 0.0, 1e9, {}, "between the two", 0.1, "hidden_body", Doubted::kFactor},
+                         {"hall_conductance", "W/K", 0.0, 1e9, kNotGiven, "from the hidden body to the hall", 0.1,
+                          "hidden_body", Doubted::kFactor}},
+          .contribute = contribute,
+          .doubts = doubts};
+}
+
+}  // namespace driftwright::effects
