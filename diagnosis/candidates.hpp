@@ -16,6 +16,7 @@ struct Variant {
   std::vector<std::vector<double>> grid = {{}};  ///< x of knobs 1.. to try first
   double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is trial_x
+  double price_nats = 0.0;  ///< of what was chosen to make it, such as times of windows seen in a waveform
 };
 
 /// An effect at a place. One candidate among many, whatever laws it may follow.

@@ -12,6 +12,7 @@
 #include "diagnosis/latent_heat.hpp"
 #include "diagnosis/leftover.hpp"
 #include "diagnosis/missing_data.hpp"
+#include "diagnosis/no_solution.hpp"
 #include "diagnosis/scatter.hpp"
 #include "diagnosis/warm_start.hpp"
 
@@ -363,6 +364,10 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.unexplained->one_cause = std::move(unnamed);
   }
   d.scatter_alone = d.search.without.prediction;
+  say("waveforms of what is missing");
+  if (!d.scatter_alone.empty()) {
+    (void)has_solution([&] { d.waveforms = waveforms(twin, runs, fitter.state({}, d.search.without.x), d.scatter_alone); });
+  }
   d.extended = d.search.fit.prediction;
 
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {

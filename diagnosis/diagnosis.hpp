@@ -6,6 +6,7 @@
 #include "diagnosis/experiment.hpp"
 #include "diagnosis/search.hpp"
 #include "diagnosis/unnamed.hpp"
+#include "diagnosis/waveform.hpp"
 
 namespace driftwright::diagnosis {
 
@@ -61,6 +62,8 @@ struct Diagnosis {
   bool weighed_by_model_error = false;
   std::string holdout;  ///< how the gain was held out
   std::vector<ChannelGain> gain;
+  /// What the scenario with its numbers fitted, and no cause, misses over time, body by body and displacement by displacement.
+  std::vector<Waveform> waveforms;
   std::vector<DataFinding> data;
   int n_candidates = 0;
   SearchResult search;

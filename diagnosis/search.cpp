@@ -18,7 +18,7 @@ constexpr double kBent =
 
 Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   const Variant& v = candidates[score.candidate].variants[score.variant];
-  return {score.candidate, score.variant, v.knobs, v.all_or_nothing};
+  return {score.candidate, score.variant, v.knobs, v.all_or_nothing, v.price_nats};
 }
 
 /// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x.
@@ -153,7 +153,8 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
       [&](std::size_t j, Space& space) {
         const Variant& v = candidates[jobs[j].candidate].variants[jobs[j].variant];
         const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
-        const Hypothesis tried = with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing});
+        const Hypothesis tried =
+            with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing, v.price_nats});
         for (const std::vector<double>& shape : v.grid) {
           Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
           claim[0] = v.trial_x;
@@ -196,7 +197,7 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
       gain = sr * x - 0.5 * ss * x * x - 0.5 * std::log1p(sd * sd * ss);
     }
     if (size.scale == Knob::Scale::kLog) x = std::clamp(x, -2.0, 2.0);
-    of_each[i] = {signature.candidate, signature.variant, gain - std::log(static_cast<double>(v.grid.size())),
+    of_each[i] = {signature.candidate, signature.variant, gain - v.price_nats - std::log(static_cast<double>(v.grid.size())),
                   signature.shape};
     of_each[i].start[0] = x;
   }
