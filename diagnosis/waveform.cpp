@@ -252,9 +252,9 @@ double worth(const Waveform& w) {
 
 /// The best description of those that explain the readings nearly as well as any; likelihoods know the laws to first order alone.
 Waveform best_of(std::vector<Waveform> descriptions) {
-  double most = 0.0;
+  double most = descriptions.front().log_likelihood_gain;
   for (const Waveform& w : descriptions) most = std::max(most, w.log_likelihood_gain);
-  std::erase_if(descriptions, [&](const Waveform& w) { return w.log_likelihood_gain < kNearly * most; });
+  std::erase_if(descriptions, [&](const Waveform& w) { return w.log_likelihood_gain < most - (1.0 - kNearly) * std::abs(most); });
   return *std::max_element(descriptions.begin(), descriptions.end(),
                            [](const Waveform& a, const Waveform& b) { return worth(a) < worth(b); });
 }
