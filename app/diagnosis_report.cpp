@@ -130,7 +130,8 @@ std::string shape_text(const diagnosis::Waveform& w) {
 void add_waveforms(const diagnosis::Diagnosis& d, Blocks& blocks) {
   constexpr std::size_t kMostPlots = 4;
   Table table{.caption =
-                  "What the scenario with its own numbers fitted, and no cause, misses, row by row: the heat that each body "
+                  "What the scenario misses with its own numbers fitted (as written, where no likely ones fit) and no "
+                  "cause, row by row: the heat that each body "
                   "alone would want beside what is written, or the conductance that would bring it, and the growth "
                   "that each displacement has beside its prediction. Likelihood: over no such heat. Explained: of the "
                   "readings' squared misses by the heat, of the waveform's by its course.",

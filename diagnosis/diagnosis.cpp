@@ -30,6 +30,7 @@ constexpr double kFurther = 4.0;              // nats of one more effect, its pr
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
 constexpr double kWorseHeldOut = 1.2;         // kept-out misses with the causes over those of scatter alone
 constexpr double kUnnamed = 3.0;              // nats by which one cause without a name must be better than those with one
+constexpr double kBeyondBelief = 2.0;         // mean square of how far the scenario's numbers moved, in their sigmas
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
 
 /// Index of a claim's first knob in x.
@@ -366,7 +367,13 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.scatter_alone = d.search.without.prediction;
   say("waveforms of what is missing");
   if (!d.scatter_alone.empty()) {
-    (void)has_solution([&] { d.waveforms = waveforms(twin, runs, fitter.state({}, d.search.without.x), d.scatter_alone); });
+    // where a loud cause bent the numbers beyond belief, heats would be told of another machine
+    const Eigen::VectorXd& x = d.search.without.x;
+    const bool is_bent = x.cwiseQuotient(fitter.nuisance_sd()).squaredNorm() > kBeyondBelief * static_cast<double>(x.size());
+    (void)has_solution([&] {
+      d.waveforms = is_bent ? waveforms(twin, runs, twin.as_written(), d.as_written)
+                            : waveforms(twin, runs, fitter.state({}, x), d.scatter_alone);
+    });
   }
   d.extended = d.search.fit.prediction;
 

@@ -254,7 +254,8 @@ double worth(const Waveform& w) {
 Waveform best_of(std::vector<Waveform> descriptions) {
   double most = descriptions.front().log_likelihood_gain;
   for (const Waveform& w : descriptions) most = std::max(most, w.log_likelihood_gain);
-  std::erase_if(descriptions, [&](const Waveform& w) { return w.log_likelihood_gain < most - (1.0 - kNearly) * std::abs(most); });
+  std::erase_if(descriptions,
+                [&](const Waveform& w) { return w.log_likelihood_gain < most - (1.0 - kNearly) * std::abs(most); });
   return *std::max_element(descriptions.begin(), descriptions.end(),
                            [](const Waveform& a, const Waveform& b) { return worth(a) < worth(b); });
 }
