@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
         Cause{"a_fan_that_stays_on",
               {"{type: changed_law, law: link column - hall, factor: 1.8, from: 100 min, in: tuesday}",
                "{type: changed_law, law: link column - hall, factor: 1.8, in: friday}"},
-              "link",
+              "contact",
               "column,hall",
               "all later records",
               1.8,
