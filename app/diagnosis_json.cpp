@@ -74,6 +74,40 @@ Json json_of(const diagnosis::Unexplained& u) {
   return json;
 }
 
+Json json_of(const diagnosis::Waveform& w) {
+  using diagnosis::Shape;
+  const bool is_heat = w.of == diagnosis::Waveform::Of::kHeat;
+  const double scale = is_heat ? 1.0 : 1e6;
+  const std::string unit = !w.to.empty() ? "W/K" : is_heat ? "W" : w.unit == "rad" ? "urad" : "um";
+  Json shape = {{"class", diagnosis::word(w.shape.shape)},
+                {"size", scale * w.shape.size},
+                {"unit", unit},
+                {"standard_deviation", scale * w.shape.size_sd},
+                {"explained", w.shape.explained}};
+  if (w.shape.shape == Shape::kStep || w.shape.shape == Shape::kDecay) shape["time_min"] = w.shape.time_s / 60.0;
+  if (w.shape.shape == Shape::kDecay) shape["time_constant_min"] = w.shape.time_constant_s / 60.0;
+  if (w.shape.shape == Shape::kPeriodic) shape["period_min"] = w.shape.period_s / 60.0;
+  if (w.shape.shape == Shape::kProportional) shape["follows"] = w.shape.follows;
+  if (w.shape.shape == Shape::kWindows) {
+    shape["windows_min"] = Json::array();
+    for (const auto& [begin_s, end_s] : w.shape.windows_s) shape["windows_min"].push_back({begin_s / 60.0, end_s / 60.0});
+  }
+  Json json = {{"record", w.run}, {"of", is_heat ? "heat" : "growth"}, {"where", w.where}};
+  if (!w.to.empty()) json["to"] = w.to;
+  if (is_heat) {
+    json["log_likelihood_gain"] = w.log_likelihood_gain;
+    json["explained"] = w.explained;
+  }
+  json["shape"] = shape;
+  json["time_min"] = Json::array();
+  json["value"] = Json::array();
+  for (std::size_t i = 0; i < w.time_s.size(); ++i) {
+    json["time_min"].push_back(w.time_s[i] / 60.0);
+    json["value"].push_back(w.to.empty() ? scale * w.value[i] : w.conductance_W_K[i]);
+  }
+  return json;
+}
+
 }  // namespace
 
 Json diagnosis_json(const diagnosis::Diagnosis& d) {
@@ -102,6 +136,10 @@ Json diagnosis_json(const diagnosis::Diagnosis& d) {
     Json entry = json_of(e);
     entry["sigmas_of_prior"] = e.deviation;
     json["calibrated"].push_back(entry);
+  }
+  json["waveforms"] = Json::array();
+  for (const auto& w : d.waveforms) {
+    if (w.shape.shape != diagnosis::Shape::kNothing) json["waveforms"].push_back(json_of(w));
   }
   json["weighed_by_model_error"] = d.weighed_by_model_error;
   json["n_candidates"] = d.n_candidates;

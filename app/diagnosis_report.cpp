@@ -98,6 +98,91 @@ void add_unexplained(const diagnosis::Unexplained& u, Blocks& blocks) {
   blocks.emplace_back(plot);
 }
 
+/// What a waveform looks like, with its numbers.
+std::string shape_text(const diagnosis::Waveform& w) {
+  using diagnosis::Shape;
+  const bool is_heat = w.of == diagnosis::Waveform::Of::kHeat;
+  const bool is_tilt = !is_heat && w.unit == "rad";
+  const char* unit = !w.to.empty() ? "W/K" : is_heat ? "W" : is_tilt ? "urad" : "um";
+  const double scale = is_heat ? 1.0 : 1e6;
+  const auto size = [&] {
+    return fmt::format("{:.3g} ± {:.2g} {}", scale * w.shape.size, 2.0 * scale * w.shape.size_sd, unit);
+  };
+  const std::string what = w.to.empty() ? "" : "conductance to " + w.to + ": ";
+  switch (w.shape.shape) {
+    case Shape::kNothing:
+      return "nothing that stands out";
+    case Shape::kConstant:
+      return what + "constant, " + size();
+    case Shape::kStep:
+      return fmt::format("{}step of {} at {:.1f} min", what, size(), w.shape.time_s / 60.0);
+    case Shape::kDecay:
+      return fmt::format("{}{} at {:.1f} min, decaying with {:.1f} min (a mass added or taken away)", what, size(),
+                         w.shape.time_s / 60.0, w.shape.time_constant_s / 60.0);
+    case Shape::kPeriodic:
+      return fmt::format("{}periodic, {}, period {:.1f} min", what, size(), w.shape.period_s / 60.0);
+    case Shape::kProportional:
+      return fmt::format("{}follows {}", what, w.shape.follows);
+    case Shape::kWindows: {
+      std::vector<std::string> windows;
+      for (const auto& [begin_s, end_s] : w.shape.windows_s)
+        windows.push_back(fmt::format("{:.1f}-{:.1f}", begin_s / 60.0, end_s / 60.0));
+      return fmt::format("{}{} in {} of one size: {} min", what, size(), windows.size() == 1 ? "a window" : "windows",
+                         fmt::join(windows, ", "));
+    }
+    case Shape::kOther:
+      return "none of the simple courses";
+  }
+  return "";
+}
+
+/// The best of each run and kind are drawn.
+void add_waveforms(const diagnosis::Diagnosis& d, Blocks& blocks) {
+  constexpr std::size_t kMostPlots = 4;
+  Table table{.caption =
+                  "What the scenario misses with its own numbers fitted (as written, where no likely ones fit) and no "
+                  "cause, row by row: the heat that each body "
+                  "alone would want beside what is written, or the conductance that would bring it, and the growth "
+                  "that each displacement has beside its prediction. Likelihood: over no such heat. Explained: of the "
+                  "readings' squared misses by the heat, of the waveform's by its course.",
+              .headers = {"record", "where", "what it looks like", "likelihood [nats]", "heat explains", "course explains"},
+              .rows = {}};
+  std::vector<Plot> plots;
+  std::set<std::pair<std::string, bool>> drawn;
+  for (const diagnosis::Waveform& w : d.waveforms) {
+    const bool is_heat = w.of == diagnosis::Waveform::Of::kHeat;
+    if (w.shape.shape == diagnosis::Shape::kNothing) continue;
+    table.rows.push_back({w.run, w.where, shape_text(w), is_heat ? fmt::format("{:.0f}", w.log_likelihood_gain) : "",
+                          is_heat ? fmt::format("{:.0f} %", 100.0 * w.explained) : "",
+                          fmt::format("{:.0f} %", 100.0 * w.shape.explained)});
+    if (plots.size() == kMostPlots || !drawn.insert({is_heat ? w.run : w.run + " " + w.where, is_heat}).second) continue;
+    const bool is_exchange = !w.to.empty();
+    Plot plot{.title = is_exchange ? fmt::format("Conductance that is missing between {} and {}, {}", w.where, w.to, w.run)
+                       : is_heat   ? fmt::format("Heat that is missing in {}, {}", w.where, w.run)
+                                   : fmt::format("Growth that is missing in {}, {}", w.where, w.run),
+              .x_label = "time [min]",
+              .y_label = is_exchange       ? "conductance [W/K]"
+                         : is_heat         ? "heat [W]"
+                         : w.unit == "rad" ? "tilt [urad]"
+                                           : "growth [um]",
+              .series = {{.label = is_exchange ? "conductance"
+                                   : is_heat   ? "heat"
+                                               : "growth",
+                          .x = {},
+                          .y = is_exchange ? w.conductance_W_K : w.value,
+                          .style = output::Series::Style::kSteps}}};
+    for (double t_s : w.time_s) plot.series[0].x.push_back(t_s / 60.0);
+    if (!is_heat) {
+      for (double& y : plot.series[0].y) y *= 1e6;
+    }
+    plots.push_back(std::move(plot));
+  }
+  if (table.rows.empty()) return;
+  blocks.emplace_back(Heading{"What is missing over time"});
+  blocks.emplace_back(table);
+  for (Plot& plot : plots) blocks.emplace_back(std::move(plot));
+}
+
 void add_gain(const diagnosis::Diagnosis& d, Blocks& blocks) {
   blocks.emplace_back(Heading{"What mending it gains"});
   Table table{
@@ -208,6 +293,7 @@ output::Report diagnosis_report(const DiagnosisPage& page, const output::Provena
   if (d.experiment) add_experiment(*d.experiment, report.blocks);
   if (d.unexplained) add_unexplained(*d.unexplained, report.blocks);
   add_candidates(page, report.blocks);
+  add_waveforms(d, report.blocks);
   add_data(d, report.blocks);
   add_gain(d, report.blocks);
   add_residuals(page.measured, d, "extended", report.blocks);
@@ -230,6 +316,7 @@ output::Report calibration_report(const DiagnosisPage& page, const output::Prove
   report.blocks.emplace_back(Heading{"Numbers"});
   report.blocks.emplace_back(numbers_table(d));
   if (d.unexplained) add_unexplained(*d.unexplained, report.blocks);
+  add_waveforms(d, report.blocks);
   add_data(d, report.blocks);
   add_gain(d, report.blocks);
   add_residuals(page.measured, d, "calibrated", report.blocks);

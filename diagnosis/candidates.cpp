@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
+#include "diagnosis/event_candidates.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -99,6 +100,11 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
       if (parameter.doubted == effects::Doubted::kNo || std::isnan(e.values[p]) || e.values[p] == 0.0) continue;
       candidate(list, parameter.finding, effects::where_of(e)).variants.push_back(other_value(twin, i, p));
     }
+  }
+  for (const Event& e : events(twin, runs)) {
+    Variant v{e.doubt.law, knobs_of(e.doubt), e.doubt.trial, e.doubt.grid};
+    v.price_nats = e.price_nats;
+    candidate(list, e.doubt.finding, e.doubt.where).variants.push_back(std::move(v));
   }
   std::erase_if(list, [&](const Candidate& c) { return without.contains(c.effect) || c.variants.empty(); });
   return list;

@@ -16,7 +16,8 @@ struct Variant {
   std::vector<std::vector<double>> grid = {{}};  ///< x of knobs 1.. to try first
   double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is trial_x
-  double rarity = 0.0;                           ///< nats: how much rarer it is than other laws, before any reading
+  double price_nats =
+      0.0;  ///< before any reading: how much rarer it is than other laws, or what was chosen to make it, such as windows seen in a waveform
 };
 
 /// An effect at a place. One candidate among many, whatever laws it may follow.

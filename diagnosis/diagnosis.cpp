@@ -29,6 +29,7 @@ constexpr double kRough = 3.0;                // leftover over noise: a model th
 constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
 constexpr double kUnnamed = 3.0;              // nats by which one cause without a name must be better than those with one
+constexpr double kBeyondBelief = 2.0;         // mean square of how far the scenario's numbers moved, in their sigmas
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
 constexpr double kSureCause = 20.0;           // nats: no smaller rest hides it
 constexpr double kRestOfCause = 0.35;         // of what the causes explain: more left, and they are not what is wrong
@@ -485,6 +486,16 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.unexplained->one_cause = std::move(unnamed);
   }
   d.scatter_alone = d.search.without.prediction;
+  say("waveforms of what is missing");
+  if (!d.scatter_alone.empty()) {
+    // where a loud cause bent the numbers beyond belief, heats would be told of another machine
+    const Eigen::VectorXd& x = d.search.without.x;
+    const bool is_bent = x.cwiseQuotient(fitter.nuisance_sd()).squaredNorm() > kBeyondBelief * static_cast<double>(x.size());
+    (void)has_solution([&] {
+      d.waveforms = is_bent ? waveforms(twin, runs, twin.as_written(), d.as_written)
+                            : waveforms(twin, runs, fitter.state({}, x), d.scatter_alone);
+    });
+  }
 
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     const Finding& f = d.search.findings[c];

@@ -6,6 +6,7 @@
 #include "diagnosis/experiment.hpp"
 #include "diagnosis/search.hpp"
 #include "diagnosis/unnamed.hpp"
+#include "diagnosis/waveform.hpp"
 
 namespace driftwright::diagnosis {
 
@@ -87,6 +88,8 @@ struct Diagnosis {
   bool keeps_numbers =
       true;  ///< false: the scenario as written predicts kept-out rows better than what was fitted; nothing of it is written
   std::vector<ChannelGain> gain;
+  /// What the scenario with its numbers fitted, and no cause, misses over time, body by body and displacement by displacement.
+  std::vector<Waveform> waveforms;
   std::vector<DataFinding> data;
   int n_candidates = 0;
   SearchResult search;  ///< its claims are the first causes, in their order; behind them numbers that have gone too far

@@ -357,7 +357,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   // log det(1 + S J'J S) = log det(H) + 2 Σ log sd
   double log_det = 2.0 * factor.matrixLLT().diagonal().array().log().sum() + 2.0 * sd.array().log().sum();
   f.log_evidence = -f.misfit - 0.5 * log_det;
-  for (const Claim& c : hypothesis) f.log_evidence -= price_of_times(c);
+  for (const Claim& c : hypothesis) f.log_evidence -= price_of_times(c) + c.price_nats;
   for (Eigen::Index k = 0; k < n_k; ++k) {
     const Knob& knob = *knobs[static_cast<std::size_t>(k)];
     const bool has_slope = smooth[static_cast<std::size_t>(k)] != 0;

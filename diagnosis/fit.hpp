@@ -20,6 +20,7 @@ struct Claim {
   std::size_t variant = 0;
   std::vector<Knob> knobs;
   bool all_or_nothing = false;
+  double price_nats = 0.0;  ///< as Variant has it
 };
 using Hypothesis = std::vector<Claim>;
 /// Logarithm of how many rows the jumps of a claim could have happened at [nats].

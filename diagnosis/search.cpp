@@ -23,7 +23,7 @@ constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which o
 
 Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   const Variant& v = candidates[score.candidate].variants[score.variant];
-  return {score.candidate, score.variant, v.knobs, v.all_or_nothing};
+  return {score.candidate, score.variant, v.knobs, v.all_or_nothing, v.price_nats};
 }
 
 /// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x.
@@ -62,10 +62,9 @@ Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return both;
 }
 
-/// What one law of a candidate costs beside the others: their number, and how rare it is.
-double law_price(const std::vector<Candidate>& candidates, std::size_t candidate, std::size_t variant) {
-  const std::vector<Variant>& laws = candidates[candidate].variants;
-  return std::log(static_cast<double>(laws.size())) + laws[variant].rarity;
+/// What one law of a candidate costs for being one of several; how rare it is, a fit counts itself.
+double law_price(const std::vector<Candidate>& candidates, std::size_t candidate) {
+  return std::log(static_cast<double>(candidates[candidate].variants.size()));
 }
 
 struct Fitted {
@@ -93,7 +92,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
   std::vector<Fit> fits = fit_all(fitter, jobs);
   std::vector<Fitted> fitted;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    fits[i].log_evidence -= law_price(candidates, chosen[i].candidate, chosen[i].variant);
+    fits[i].log_evidence -= law_price(candidates, chosen[i].candidate);
     fitted.push_back({jobs[i].first.back(), std::move(fits[i])});
   }
   std::sort(fitted.begin(), fitted.end(),
@@ -141,7 +140,7 @@ void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
 
 double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
   double price = 0.0;
-  for (const Claim& c : hypothesis) price += law_price(candidates, c.candidate, c.variant);
+  for (const Claim& c : hypothesis) price += law_price(candidates, c.candidate);
   return price;
 }
 
@@ -175,7 +174,8 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
       [&](std::size_t j, Space& space) {
         const Variant& v = candidates[jobs[j].candidate].variants[jobs[j].variant];
         const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
-        const Hypothesis tried = with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing});
+        const Hypothesis tried =
+            with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing, v.price_nats});
         for (const std::vector<double>& shape : v.grid) {
           Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
           claim[0] = v.trial_x;
@@ -218,7 +218,7 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
       gain = sr * x - 0.5 * ss * x * x - 0.5 * std::log1p(sd * sd * ss);
     }
     if (size.scale == Knob::Scale::kLog) x = std::clamp(x, -2.0, 2.0);
-    of_each[i] = {signature.candidate, signature.variant, gain - std::log(static_cast<double>(v.grid.size())),
+    of_each[i] = {signature.candidate, signature.variant, gain - v.price_nats - std::log(static_cast<double>(v.grid.size())),
                   signature.shape};
     of_each[i].start[0] = x;
     if (const double grown = x / v.trial_x; size.scale == Knob::Scale::kLinear && grown > kLeastGrowth) {

@@ -290,6 +290,13 @@ Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspa
   return d;
 }
 
+Twin::Bound Twin::bound(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+  Driven d = drive(state, run, workspace);
+  Eigen::MatrixXd weights = outputs_.state;
+  solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));
+  return {workspace.system_, std::move(d.cyclogram), std::move(d.hall), std::move(weights)};
+}
+
 std::optional<solver::Course> Twin::course(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
   const Driven d = drive(state, run, workspace);
   if (!workspace.system_.is_linear()) return std::nullopt;

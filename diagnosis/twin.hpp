@@ -70,6 +70,15 @@ class Twin {
   /// What its instruments say of them at the run's rows, n_outputs x n_times.
   [[nodiscard]] Eigen::MatrixXd read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const;
 
+  /// A state's machine in a run with its laws bound: what a little more heat would do to it.
+  struct Bound {
+    const solver::ReducedSystem& system;  ///< the workspace's, until that is used again
+    Cyclogram cyclogram;                  ///< the true ones
+    TimeSeries hall;
+    Eigen::MatrixXd outputs;  ///< what outputs() have of the reduced state, size x n_outputs, by this state's expansion
+  };
+  [[nodiscard]] Bound bound(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
+
   [[nodiscard]] const solver::Outputs& outputs() const { return outputs_; }
   [[nodiscard]] double reference_K() const { return machine_.system.reference_K; }
   [[nodiscard]] const scenarios::ReducedMachine& machine() const { return machine_; }

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -56,14 +56,18 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   const auto offset = [] { return doubted("offset", "K", 2.0, 0.3); };
   const auto ramp = [] { return doubted("ramp", "K/h", 0.7, 0.1); };
   std::vector<Doubt> list = {doubt("offset", "", offset(), 0.5), doubt("ramp", "", ramp(), 0.2)};
-  for (const DoubtScene::Run& run : s.runs) {
+  for (std::size_t r = 0; r < s.runs.size(); ++r) {
+    const DoubtScene::Run& run = s.runs[r];
     DoubtedNumber step = offset();
     step.name = "step";
-    step.set = [](std::span<Effect> added, double value) { added[0].set("offset", value); };
-    list.push_back(doubt("step", run.name, std::move(step), 0.5));
-    list.back().numbers.push_back(doubted_time(
+    step.set = [](std::span<Effect> added, double value) {
+      for (Effect& e : added) e.set("offset", value);
+    };
+    Doubt stepped = doubt("step", run.name, std::move(step), 0.5);
+    stepped.numbers.push_back(doubted_time(
         "time", run.length_s, [](std::span<Effect> added, double value) { added[0].set("from", value / 60.0); }));
-    list.back().grid = time_grid(run.length_s, 10);
+    stepped.grid = time_grid(run.length_s, 10);
+    add_with_lasting(s, r, stepped, list);
     if (s.runs.size() < 2) continue;
     list.push_back(doubt("offset", run.name, offset(), 0.5));
     list.push_back(doubt("ramp", run.name, ramp(), 0.2));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -136,7 +136,8 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
               .numbers = {doubted_factor()}};
   list.push_back(other);
   if (is_growth) return;
-  for (const DoubtScene::Run& run : s.runs) {
+  for (std::size_t r = 0; r < s.runs.size(); ++r) {
+    const DoubtScene::Run& run = s.runs[r];
     Doubt late = other;
     late.law = what + " from a time on, in " + run.name;
     late.added[0].in = run.name;
@@ -144,7 +145,7 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
         "time", run.length_s, [](std::span<Effect> added, double value) { added[0].from_s = std::max(1.0, value); }));
     late.trial = 0.3;
     late.grid = time_grid(run.length_s, 8);
-    list.push_back(std::move(late));
+    add_with_lasting(s, r, late, list);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -15,22 +15,24 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const std::string& sensor : s.sensors) {
-    for (const DoubtScene::Run& run : s.runs) {
+    for (std::size_t r = 0; r < s.runs.size(); ++r) {
+      const DoubtScene::Run& run = s.runs[r];
       Effect off = make_effect("sensor_detached", Place::kSensor, sensor);
       off.in = run.name;
       DoubtedNumber share = doubted("share", "1", 0.5, 0.05);
       share.low = 0.0;
       share.high = 1.0;
-      list.push_back({.finding = "sensor_detached",
-                      .where = sensor,
-                      .law = "from a time on, in " + run.name,
-                      .added = {off},
-                      .numbers = {share, doubted_time("time", run.length_s,
-                                                      [](std::span<Effect> added, double value) {
-                                                        added[0].set("time", value / 60.0);
-                                                      })},
-                      .trial = 0.3,
-                      .grid = time_grid(run.length_s, 24)});
+      const Doubt doubt{.finding = "sensor_detached",
+                        .where = sensor,
+                        .law = "from a time on, in " + run.name,
+                        .added = {off},
+                        .numbers = {share, doubted_time("time", run.length_s,
+                                                        [](std::span<Effect> added, double value) {
+                                                          added[0].set("time", value / 60.0);
+                                                        })},
+                        .trial = 0.3,
+                        .grid = time_grid(run.length_s, 24)};
+      add_with_lasting(s, r, doubt, list);
     }
   }
   return list;

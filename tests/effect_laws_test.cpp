@@ -396,6 +396,39 @@ TEST(ExchangeWindow, OpensAndClosesOnceOrAgainAndAgain) {
   EXPECT_EQ(b.change_times_s, (std::vector<double>{10, 20, 110, 120, 210, 220}));
 }
 
+TEST(HeatWindow, HeatsWithinItsWindowsOnceOrAgainAndAgain) {
+  const std::string pump =
+      "{type: heat_window, node: a, power: 30 W, windows: [[10 s, 20 s], [50 s, 60 s]], every: 100 s, until_time: 150 s}";
+  const HeatBalance b = heat_balance({read(pump)});
+  ASSERT_EQ(b.heats.size(), 1u);
+  for (const auto& [t_s, power_W] :
+       std::vector<std::pair<double, double>>{{9, 0}, {10, 30}, {20, 0}, {55, 30}, {60, 0}, {115, 30}, {155, 30}, {215, 0}})
+    EXPECT_EQ(b.heats[0].power_W(at(0.0, t_s)), power_W) << t_s;
+  EXPECT_EQ(b.change_times_s, (std::vector<double>{10, 20, 50, 60, 110, 120, 150, 160}));
+  EXPECT_THROW((void)read("{type: heat_window, node: a, power: 30 W, windows: [[20 s, 10 s]]}"), InputError);
+}
+
+TEST(RunState, ChangesAllHeatOrAllExchangeWithTheHallOfOneRecord) {
+  const std::vector<Effect> machine = {read("{type: heat_source, node: a, power: 50 W}"),
+                                       read("{type: link, node: a, to: hall, conductance: 4 W/K}"),
+                                       read("{type: link, node: a, to: b, conductance: 7 W/K}")};
+  const auto in_state = [&](const std::string& state) {
+    std::vector<Effect> all = machine;
+    all.push_back(read(state));
+    return heat_balance(all);
+  };
+  const HeatBalance oil = in_state("{type: run_state, factor: 1.4, in: tuesday}");
+  EXPECT_EQ(oil.heats[0].power_W(at(0.0, 60.0, "monday")), 50.0);
+  EXPECT_NEAR(oil.heats[0].power_W(at(0.0, 60.0, "tuesday")), 70.0, 1e-12);
+  EXPECT_EQ(oil.exchanges[0].coefficient(at(0.0, 60.0, "tuesday")), 4.0);
+  const HeatBalance cover = in_state("{type: run_state, of: exchange, factor: 0.5, in: tuesday}");
+  EXPECT_EQ(cover.heats[0].power_W(at(0.0, 60.0, "tuesday")), 50.0);
+  EXPECT_EQ(cover.exchanges[0].coefficient(at(0.0, 60.0, "tuesday")), 2.0);
+  EXPECT_EQ(cover.exchanges[0].coefficient(at(0.0, 60.0, "monday")), 4.0);
+  EXPECT_EQ(cover.exchanges[1].coefficient(at(0.0, 60.0, "tuesday")), 7.0);  // between bodies
+  EXPECT_THROW((void)read("{type: run_state, factor: 1.4}"), InputError);
+}
+
 TEST(Coolant, WithoutATankIsHeldAtItsSetPoint) {
   const HeatBalance b = heat_balance(
       {read("{type: coolant, region: r, flow: 6 L/min, medium_heat_capacity: 4000 J/(L K), passage_conductance: 400 W/K, "

@@ -218,6 +218,10 @@ const std::vector<Case> kCases = {
     {"a_door_again_and_again", true,
      added({"{type: exchange_window, surface: outside, film: 60 W/(m^2 K), windows: [[5 min, 9 min]], every: 12 min, "
             "until_time: 80 min}"})},
+    {"a_pump_for_a_while", false,
+     added({"{type: heat_window, node: housing, power: 40 W, windows: [[10 min, 25 min], [50 min, 60 min]]}"})},
+    {"another_state_of_running", false,
+     added({"{type: run_state, factor: 1.3, in: cycle}", "{type: run_state, of: exchange, factor: 0.8, in: cycle}"})},
     {"another_film", true, added({"{type: changed_law, law: convection outside, factor: 1.8}"})},
     {"a_film_by_formula", true, added({"{type: changed_law, law: natural_convection front, factor: 3}"})},
     {"a_film_by_formula_of_another_factor", true, [](TwinState& t) { t.back().set("factor", 3.0); }},

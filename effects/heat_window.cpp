@@ -1,0 +1,40 @@
+#include "effects/time_windows.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void contribute(const Effect& e, HeatBalance& balance) {
+  const auto windows = windows_of(e);
+  balance.heats.push_back({e.name(), e.body(), within(windows, e["power"])});
+  add_change_times(windows, balance);
+}
+
+/// Something that runs for a while: a pump, a lamp, a bearing that drags. What takes heat away is an exchange.
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const Body& body : s.bodies) {
+    for (const DoubtScene::Run& run : s.runs) {
+      DoubtedNumber power = doubted("power", "W", s.unknown_heat_W(), 0.1 * s.unknown_heat_W());
+      power.low = 0.0;
+      list.push_back(one_window(run, make_effect("heat_window", body), power, 0.1 * s.unknown_heat_W(), "heat for a while"));
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectKind heat_window() {
+  return {.key = "heat_window",
+          .title = "heat that is there for a while, once or again and again: a pump, a lamp, a bearing that drags",
+          .law = "P = power within the windows, else 0",
+          .places = {Place::kRegion, Place::kSurface, Place::kNode},
+          .parameters = repeating({{"power", "W", -1e6, 1e6, {}, "negative cools", 0.1, "heat_window"}}),
+          .timing = Timing::kInRecord,
+          .contribute = contribute,
+          .tables = {windows_table()},
+          .check = check_windows,
+          .doubts = doubts};
+}
+
+}  // namespace driftwright::effects

@@ -1,0 +1,126 @@
+// Causes that hold for more than an instant of one record: what begins in one record and lasts in the next, what is there for a while, a record
+// run in another state. Each is found in records made with it, and written so that it is found no more.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "diagnosis/extended_scenario.hpp"
+#include "tests/lumped_records.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr const char* kMachine = R"(name: two_nodes
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: head, capacity: 6 kJ/K}
+  - {type: node, node: column, capacity: 40 kJ/K}
+  - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
+  - {type: link, node: head, to: column, conductance: 12 W/K}
+  - {type: link, node: column, to: hall, conductance: 14 W/K}
+hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+sensors:
+  - {name: t_head, node: head}
+  - {name: t_column, node: column}
+displacements:
+  - name: nose
+    sensitivities:
+      - {node: head, sensitivity: 3 um/K}
+cyclograms:
+  monday: [[60 min, 600 rpm], [60 min, 1900 rpm], [40 min, 0 rpm], [80 min, 1000 rpm], [60 min, 1400 rpm]]
+  tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
+  friday: [[40 min, 900 rpm], [60 min, 0 rpm], [80 min, 1600 rpm]]
+solver: {output_interval: 1 min}
+)";
+
+struct Cause {
+  const char* name;
+  std::vector<std::string> entries;  ///< of the truth
+  const char* effect;
+  const char* where;
+  const char* law;  ///< part of it
+  double size, tolerance;
+};
+
+class ACause : public testing::TestWithParam<Cause> {};
+
+TEST_P(ACause, IsFoundInAllItsRecordsAtOnceAndWritten) {
+  const Cause& cause = GetParam();
+  std::string truth = kMachine;
+  for (const std::string& e : cause.entries) truth = with_effect(truth, e);
+  const std::vector<std::string> records =
+      noisy_records(write_file("truth.yaml", truth), std::string(cause.name) + "_", 60.0, 0.03, 0.2);
+  const Beside beside(write_file("plain.yaml", kMachine), records);
+  const Diagnosis d = beside.diagnosed();
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, cause.effect);
+  EXPECT_EQ(d.causes[0].where, cause.where);
+  EXPECT_THAT(d.causes[0].law, HasSubstr(cause.law));
+  EXPECT_NEAR(d.causes[0].parameters[0].value, cause.size, cause.tolerance);
+  const Claim& claim = d.search.hypothesis[0];
+  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
+  const ExtendedScenario extended =
+      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
+  EXPECT_THAT(extended.not_written, IsEmpty());
+  const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
+  EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ACause,
+    ::testing::Values(
+        Cause{"a_thermometer_that_stays_off",
+              {"{type: sensor_detached, sensor: t_column, share: 0.6, time: 100 min, in: tuesday}",
+               "{type: sensor_detached, sensor: t_column, share: 0.6, time: 0 min, in: friday}"},
+              "sensor_detached",
+              "t_column",
+              "all later records",
+              0.6,
+              0.05},
+        Cause{"a_hall_that_stays_warmer",
+              {"{type: ambient, offset: 1.5 K, from: 120 min, in: monday}", "{type: ambient, offset: 1.5 K, in: tuesday}",
+               "{type: ambient, offset: 1.5 K, in: friday}"},
+              "ambient",
+              "hall",
+              "all later records",
+              1.5,
+              0.15},
+        Cause{"a_fan_that_stays_on",
+              {"{type: changed_law, law: link column - hall, factor: 1.8, from: 100 min, in: tuesday}",
+               "{type: changed_law, law: link column - hall, factor: 1.8, in: friday}"},
+              "contact",
+              "column,hall",
+              "all later records",
+              1.8,
+              0.2},
+        Cause{"a_pump_for_a_while",
+              {"{type: heat_window, node: head, power: 60 W, windows: [[90 min, 130 min]], in: tuesday}"},
+              "heat_window",
+              "head",
+              "heat for a while",
+              60.0,
+              6.0},
+        Cause{"a_pump_that_comes_again",
+              {"{type: heat_window, node: head, power: 60 W, windows: [[30 min, 50 min], [140 min, 165 min]], in: monday}",
+               "{type: heat_window, node: head, power: 60 W, windows: [[90 min, 130 min]], in: tuesday}"},
+              "heat_window",
+              "head",
+              "windows of one size",
+              60.0,
+              6.0},
+        Cause{"another_oil",
+              {"{type: run_state, factor: 1.6, in: monday}", "{type: run_state, factor: 1.6, in: friday}"},
+              "run_state",
+              "record",
+              "friday",
+              1.6,
+              0.1}),
+    [](const auto& one) { return one.param.name; });
+
+}  // namespace
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,71 @@
+#pragma once
+// Lumped machines and records of them, with noise, for tests of what a diagnosis says.
+
+#include <optional>
+
+#include "base/random.hpp"
+#include "diagnosis/diagnosis.hpp"
+#include "scenarios/as_recorded.hpp"
+#include "scenarios/machine.hpp"
+#include "solver/transient.hpp"
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::diagnosis {
+
+/// A scenario's text with one more effect, before its key `hall`.
+inline std::string with_effect(std::string text, const std::string& entry) {
+  if (!entry.empty()) text.insert(text.find("hall: [["), "  - " + entry + "\n");
+  return text;
+}
+
+/// Records of all cyclograms of a scenario, by the full model, with noise, as files.
+inline std::vector<std::string> noisy_records(const std::string& scenario, const std::string& prefix, double row_s,
+                                              double noise_K, double noise_um) {
+  const scenarios::Scenario s = scenarios::read_scenario(scenario);
+  const scenarios::MachineModel& model = *s.machine;
+  const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
+  Random random(5, 0);
+  std::vector<std::string> paths;
+  for (const Cyclogram& c : s.cyclograms) {
+    const scenarios::FeltRun felt = scenarios::felt_run(model, c);
+    Record r = scenarios::as_recorded(
+        model,
+        solver::simulate(machine.system, felt.cyclogram, felt.hall, scenarios::output_times_s(c, row_s),
+                         {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7}, scenarios::start_state(model, machine)),
+        machine.system.outputs, c);
+    for (Channel& channel : r.channels) {
+      const double noise = channel.unit == "degC" && channel.name != "ambient" ? noise_K
+                           : channel.unit == "um"                              ? noise_um
+                                                                               : 0.0;
+      for (double& v : channel.values) v += noise * random.normal();
+    }
+    paths.push_back(write_file(prefix + c.name + ".csv", record_csv(r)));
+  }
+  return paths;
+}
+
+/// A twin of a scenario beside records.
+struct Beside {
+  scenarios::Scenario scenario;
+  std::vector<MeasuredRun> runs;
+  AugmentedModel augmented;
+  scenarios::ReducedMachine machine;
+  std::optional<Twin> twin;
+
+  Beside(const std::string& path, const std::vector<std::string>& records) : scenario(scenarios::read_scenario(path)) {
+    const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
+    const solver::Outputs names = scenarios::output_names(*scenario.machine, placed);
+    for (const std::string& r : records) runs.push_back(read_measured(r, *scenario.machine, names));
+    augmented = augment(scenario, placed.mesh, runs);
+    machine = scenarios::reduce(augmented.model, scenarios::build(augmented.model, scenarios::place(augmented.model)),
+                                augmented.plan);
+    twin.emplace(augmented, machine, solver::TransientOptions{.relative_tolerance = 1e-5, .absolute_tolerance_K = 1e-4});
+  }
+  Beside(const Beside&) = delete;  // the twin looks at its parts
+  Beside& operator=(const Beside&) = delete;
+  [[nodiscard]] Diagnosis diagnosed() const {
+    return diagnose(*twin, nullptr, runs, {}, [](const std::string&) {});
+  }
+};
+
+}  // namespace driftwright::diagnosis
