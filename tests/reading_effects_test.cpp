@@ -90,7 +90,8 @@ TEST(DisplacementPath, FollowsABodyTheHallOrAColumn) {
   };
   expect_row(z_um("body: head, sensitivity: 3 um/K"), 0, {3, 6, 9, 12, 15, 18}, 1e-12);
   expect_row(z_um("body: hall, sensitivity: -2 um/K"), 0, {0, -1.2, -3, -6, -12, -18}, 1e-12);
-  expect_row(z_um("column: bed, zero: 22 degC, sensitivity: 1 um/K"), 0, {3, 3, 3, 18, 18, 18}, 1e-12);  // held from row to row
+  expect_row(z_um("column: bed, zero: 22 degC, sensitivity: 1 um/K"), 0, {3, 3, 3, 18, 18, 18},
+             1e-12);  // held from row to row
   // The hall rises by 0.01 K/s from its start on: 100 s behind it is 0.01 (t - 100 (1 - exp(-t/100)))
   const auto behind = [](double t_s) { return 0.01 * (t_s - 100.0 * (1.0 - std::exp(-t_s / 100.0))); };
   expect_row(z_um("body: hall, sensitivity: 1 um/K, lag: 1.6666666666666667 min"), 0,
