@@ -1,6 +1,8 @@
 #pragma once
 // Causes that last: what begins in one record holds in all that follow it.
 
+#include <fmt/format.h>
+
 #include "effects/doubt.hpp"
 
 namespace driftwright::effects {
@@ -25,6 +27,24 @@ inline void add_with_lasting(const DoubtScene& scene, std::size_t run, const Dou
   lasting.law += " and all later records";
   lasting.added = in_this_and_later_runs(scene, run, doubt.added.front());
   list.push_back(std::move(lasting));
+}
+
+/// A doubt that holds in all runs, and the same in each of several alone and from each but the first one on: what was changed between two records.
+/// @param doubt  with a single effect whose numbers are set by name
+inline void add_in_some_runs(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list) {
+  list.push_back(doubt);
+  const std::size_t n = scene.runs.size();
+  for (std::size_t run = 0; run < n && n > 1; ++run) {
+    Doubt once = doubt;
+    once.law += ", in " + scene.runs[run].name;
+    once.added.front().in = scene.runs[run].name;
+    list.push_back(std::move(once));
+    if (run == 0 || run + 1 == n) continue;
+    Doubt lasting = doubt;
+    lasting.law += fmt::format(", from {} on", scene.runs[run].name);
+    lasting.added = in_this_and_later_runs(scene, run, doubt.added.front());
+    list.push_back(std::move(lasting));
+  }
 }
 
 }  // namespace driftwright::effects

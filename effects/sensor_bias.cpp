@@ -1,4 +1,4 @@
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -11,12 +11,14 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const std::string& sensor : s.sensors) {
-    list.push_back({.finding = "sensor_bias",
-                    .where = sensor,
-                    .law = "constant error",
-                    .added = {make_effect("sensor_bias", Place::kSensor, sensor)},
-                    .numbers = {doubted("bias", "K", 1.0, 0.2)},
-                    .trial = 0.3});
+    add_in_some_runs(s,
+                     {.finding = "sensor_bias",
+                      .where = sensor,
+                      .law = "constant error",
+                      .added = {make_effect("sensor_bias", Place::kSensor, sensor)},
+                      .numbers = {doubted("bias", "K", 1.0, 0.2)},
+                      .trial = 0.3},
+                     list);
   }
   return list;
 }

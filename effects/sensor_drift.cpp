@@ -1,4 +1,4 @@
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -13,12 +13,14 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const std::string& sensor : s.sensors) {
-    list.push_back({.finding = "sensor_drift",
-                    .where = sensor,
-                    .law = "error that grows with time",
-                    .added = {make_effect("sensor_drift", Place::kSensor, sensor)},
-                    .numbers = {doubted("drift", "K/h", 0.5, 0.1)},
-                    .trial = 0.2});
+    add_in_some_runs(s,
+                     {.finding = "sensor_drift",
+                      .where = sensor,
+                      .law = "error that grows with time",
+                      .added = {make_effect("sensor_drift", Place::kSensor, sensor)},
+                      .numbers = {doubted("drift", "K/h", 0.5, 0.1)},
+                      .trial = 0.2},
+                     list);
   }
   return list;
 }

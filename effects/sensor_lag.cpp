@@ -1,4 +1,4 @@
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -13,14 +13,17 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
+  DoubtedNumber lag = doubted("lag", "min", 6.0, 0.5);
+  lag.low = 0.0;
   for (const std::string& sensor : s.sensors) {
-    list.push_back({.finding = "sensor_lag",
-                    .where = sensor,
-                    .law = "first-order lag",
-                    .added = {make_effect("sensor_lag", Place::kSensor, sensor)},
-                    .numbers = {doubted("lag", "min", 6.0, 0.5)},
-                    .trial = 2.0});
-    list.back().numbers[0].low = 0.0;
+    add_in_some_runs(s,
+                     {.finding = "sensor_lag",
+                      .where = sensor,
+                      .law = "first-order lag",
+                      .added = {make_effect("sensor_lag", Place::kSensor, sensor)},
+                      .numbers = {lag},
+                      .trial = 2.0},
+                     list);
   }
   return list;
 }

@@ -1,4 +1,4 @@
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -11,15 +11,19 @@ void change_drive(const Effect& e, DriveChange& change) {
   });
 }
 
-std::vector<Doubt> doubts(const DoubtScene&) {
+std::vector<Doubt> doubts(const DoubtScene& s) {
   DoubtedNumber factor = doubted_factor();
   factor.prior_sd = 0.3;
-  return {{.finding = "speed_override",
-           .where = "spindle",
-           .law = "true speed over the recorded one",
-           .added = {make_effect("speed_override", Place::kSpindle, "spindle", {{"factor", 1.0}})},
-           .numbers = {factor},
-           .trial = 0.1}};
+  std::vector<Doubt> list;
+  add_in_some_runs(s,
+                   {.finding = "speed_override",
+                    .where = "spindle",
+                    .law = "true speed over the recorded one",
+                    .added = {make_effect("speed_override", Place::kSpindle, "spindle", {{"factor", 1.0}})},
+                    .numbers = {factor},
+                    .trial = 0.1},
+                   list);
+  return list;
 }
 
 }  // namespace

@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+
+#include "effects/doubt.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+void change_readings(const Effect& e, ReadingChain& chain) {
+  chain.add(ReadingStage::kDetachment, [sensor = e.place, share = e["share"], body = e.references.at("body")](Readings& r) {
+    const Eigen::Index row = r.sensor(sensor);
+    const Eigen::RowVectorXd here = r.value.row(row);
+    if (body == hall()) {
+      for (Eigen::Index i = 0; i < r.n_times(); ++i) r.value(row, i) += share * (r.hall.at(r.time(i)) - here[i]);
+    } else {
+      r.value.row(row) += share * (r.value.row(r.mean_of(body.name)) - here);
+    }
+  });
+}
+
+/// Each other body has a law of its own; the hall has one, too: a thermometer that never touched well.
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  for (const std::string& sensor : s.sensors) {
+    std::vector<Body> bodies = {hall()};
+    for (const DoubtScene::Material& m : s.materials) {
+      if (m.stores) bodies.push_back(m.body);
+    }
+    for (const Body& body : bodies) {
+      Effect place = make_effect("sensor_place", Place::kSensor, sensor);
+      place.references["body"] = body;
+      DoubtedNumber share = doubted("share", "1", 0.4, 0.05);
+      share.low = 0.0;
+      share.high = 1.0;
+      list.push_back({.finding = "sensor_place",
+                      .where = sensor,
+                      .law = fmt::format("sits between its place and {}", body.name),
+                      .added = {place},
+                      .numbers = {share},
+                      .trial = 0.3});
+    }
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectKind sensor_place() {
+  return {.key = "sensor_place",
+          .title = "sensor that sits elsewhere than stated: between its place and another body",
+          .law = "reading = share T_body + (1 - share) T at its place, T_body: mean of the body",
+          .places = {Place::kSensor},
+          .parameters = {{"share", "1", 0.0, 1.0, {}, "of the other body in the reading"}},
+          .timing = Timing::kInRecord,
+          .change_readings = change_readings,
+          .references = {{"body", {BodyKind::kNode, BodyKind::kRegion}, {}, "the other body; `hall`: the hall's air"}},
+          .doubts = doubts};
+}
+
+}  // namespace driftwright::effects
