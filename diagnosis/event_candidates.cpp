@@ -35,7 +35,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
     window.set("conductance", 0.0);
     window.references["surrounding"] = effects::node(seen.to);
     window.tables["windows"] = {{0.0}, {1.0}};
-    if (!holds(twin, window)) return std::nullopt;
+    if (body.kind != effects::BodyKind::kNode && !holds(twin, window)) return std::nullopt;
   }
   Event event;
   effects::Doubt& d = event.doubt;
@@ -79,7 +79,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
     }
   };
   d.finding = window.kind->key;
-  d.where = seen.where;
+  d.where = is_exchange && seen.to != effects::kHallName ? seen.where + "," + seen.to : seen.where;
   d.law = fmt::format("{} windows of one size, seen in the waveform{}: {} min", n_windows,
                       is_exchange ? ", to " + seen.to : std::string(), fmt::join(times, ", "));
   d.numbers = {size, longer};

@@ -47,13 +47,20 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       film.low = 0.0;
       list.push_back(one_window(run, window, film, 4.0, kLid));
     }
-    for (const Body& body : s.bodies) {
-      if (body.kind != BodyKind::kNode) continue;
+    const double sd_W_K = 0.2 * s.unknown_heat_W();
+    DoubtedNumber conductance = doubted("conductance", "W/K", sd_W_K, 0.1 * sd_W_K);
+    conductance.low = 0.0;
+    const auto add = [&](const Body& body, const std::string& to) {
       Effect window = make_effect("exchange_window", Place::kNode, body.name, {{"conductance", 0.0}});
-      const double sd_W_K = 0.2 * s.unknown_heat_W();
-      DoubtedNumber conductance = doubted("conductance", "W/K", sd_W_K, 0.1 * sd_W_K);
-      conductance.low = 0.0;
+      window.references["surrounding"] = node(to);
       list.push_back(one_window(run, window, conductance, 0.1 * sd_W_K, kLid));
+      if (to != kHallName) list.back().where = body.name + "," + to;
+    };
+    for (const Body& body : s.bodies) {
+      if (body.kind == BodyKind::kNode) add(body, kHallName);
+    }
+    for (const Exchange& e : s.balance.exchanges) {  // a valve or a clutch: more of what is there
+      if (e.body.kind == BodyKind::kNode && e.surrounding != kHallName && !e.medium_K) add(e.body, e.surrounding);
     }
   }
   return list;
