@@ -42,6 +42,29 @@ std::vector<char> smooth_knobs(const Hypothesis& hypothesis) {
   return smooth;
 }
 
+bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](double u, double v) { return u == v || (std::isnan(u) && std::isnan(v)); });
+}
+
+bool is_same(const effects::Effect& a, const effects::Effect& b) {
+  return a.kind == b.kind && a.place == b.place && a.in == b.in && a.from_s == b.from_s && a.until_s == b.until_s &&
+         a.words == b.words && same_numbers(a.values, b.values) &&
+         std::equal(a.tables.begin(), a.tables.end(), b.tables.begin(), b.tables.end(), [](const auto& s, const auto& t) {
+           return s.first == t.first && s.second.time_s == t.second.time_s && s.second.value == t.second.value;
+         });
+}
+
+/// Whether a state does in a run what another one does that it was made of by changing numbers and adding effects behind.
+bool acts_alike(const TwinState& before, const TwinState& after, const std::string& run) {
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const bool is_there = i < before.size();
+    const bool acts = after[i].acts_in(run) || (is_there && before[i].acts_in(run));
+    if (acts && (!is_there || !is_same(before[i], after[i]))) return false;
+  }
+  return after.size() >= before.size();
+}
+
 }  // namespace
 
 double price_of_times(const Claim& claim) {
@@ -127,6 +150,17 @@ Prediction Fitter::predict(const Hypothesis& hypothesis, const Eigen::VectorXd& 
   return prediction;
 }
 
+Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction& known, const Hypothesis& hypothesis,
+                                  const Eigen::VectorXd& x, Twin::Workspace& workspace) const {
+  const TwinState s = state(hypothesis, x);
+  Prediction prediction;
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    prediction.push_back(
+        acts_alike(known_state, s, runs_[r].name) ? known[r] : readings(s, r, x, twin_.respond(s, runs_[r], workspace)));
+  }
+  return prediction;
+}
+
 Eigen::MatrixXd Fitter::readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
                                  Eigen::MatrixXd response) const {
   Eigen::MatrixXd readings = twin_.read(state, runs_[run], std::move(response));
@@ -137,11 +171,15 @@ Eigen::MatrixXd Fitter::readings(const TwinState& state, std::size_t run, const 
   return readings;
 }
 
-Prediction Fitter::predict_near(const Courses& about, const Hypothesis& hypothesis, const Eigen::VectorXd& x,
-                                Twin::Workspace& workspace) const {
+Prediction Fitter::predict_near(const Courses& about, const TwinState& known_state, const Prediction& known,
+                                const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace) const {
   const TwinState s = state(hypothesis, x);
   Prediction prediction;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
+    if (acts_alike(known_state, s, runs_[r].name)) {
+      prediction.push_back(known[r]);
+      continue;
+    }
     const solver::Course* near = about[r] ? &*about[r] : nullptr;
     prediction.push_back(readings(s, r, x, twin_.respond(s, runs_[r], workspace, near)));
   }
@@ -156,12 +194,13 @@ Fitter::Courses Fitter::courses(const TwinState& state, Twin::Workspace& workspa
 
 Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
                          const Courses& about, std::size_t which, Twin::Workspace& workspace) const {
+  const TwinState here = state(hypothesis, x);
   for (double share : {1.0, -1.0, 0.1, -0.1}) {  // a machine that is about to run away has a solution on one side only
     const double step = share * scatter_[which].step;
     Eigen::VectorXd turned = x;
     turned[static_cast<Eigen::Index>(which)] += step;
     Prediction difference;
-    if (!has_solution([&] { difference = predict_near(about, hypothesis, turned, workspace); })) continue;
+    if (!has_solution([&] { difference = predict_near(about, here, base, hypothesis, turned, workspace); })) continue;
     for (std::size_t r = 0; r < runs_.size(); ++r) difference[r] = (difference[r] - base[r]) / step;
     return difference;
   }
@@ -276,6 +315,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   f.slopes.resize(f.residual.size(), n_k);
   const auto differentiate = [&] {
     const Eigen::VectorXd base = comparison_->measured() - f.residual;
+    const TwinState here = state(hypothesis, f.x);
     for (Eigen::Index k = 0; k < n_k; ++k) {
       f.slopes.col(k).setZero();
       if (!smooth[static_cast<std::size_t>(k)]) continue;
@@ -285,7 +325,9 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
       if (knob.value(x[n_n + k] + step) == knob.value(x[n_n + k])) step = -step;  // at its bound
       x[n_n + k] += step;
       Prediction kept = knob.reading_only ? responses : Prediction{};
-      f.slopes.col(k) = (comparison_->whitened(predict(hypothesis, x, workspace, &kept, knob.reading_only)) - base) / step;
+      const Prediction turned = knob.reading_only ? predict(hypothesis, x, workspace, &kept, true)
+                                                  : predict_beside(here, f.prediction, hypothesis, x, workspace);
+      f.slopes.col(k) = (comparison_->whitened(turned) - base) / step;
     }
     square.topLeftCorner(n_n, n_n) = *nuisance_squares;
     square.topRightCorner(n_n, n_k).noalias() = nuisance_slopes->transpose() * f.slopes;

@@ -84,6 +84,11 @@ class Fitter {
   [[nodiscard]] Prediction predict(const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace,
                                    Prediction* responses = nullptr, bool reuse = false) const;
 
+  /// The same where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects act are taken from it.
+  [[nodiscard]] Prediction predict_beside(const TwinState& known_state, const Prediction& known,
+                                          const Hypothesis& hypothesis, const Eigen::VectorXd& x,
+                                          Twin::Workspace& workspace) const;
+
   /// One run each, empty where the machine is not linear: what slopes are taken about.
   using Courses = std::vector<std::optional<solver::Course>>;
 
@@ -91,8 +96,9 @@ class Fitter {
   [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held,
                           Twin::Workspace& workspace) const;
   [[nodiscard]] Courses courses(const TwinState& state, Twin::Workspace& workspace) const;
-  /// Readings to first order in how x differs from where the courses were taken.
-  [[nodiscard]] Prediction predict_near(const Courses& about, const Hypothesis& hypothesis, const Eigen::VectorXd& x,
+  /// Readings to first order in how x differs from where the courses were taken, as predict_beside() otherwise.
+  [[nodiscard]] Prediction predict_near(const Courses& about, const TwinState& known_state, const Prediction& known,
+                                        const Hypothesis& hypothesis, const Eigen::VectorXd& x,
                                         Twin::Workspace& workspace) const;
   /// Readings of a state, whose responses are those of the machine.
   [[nodiscard]] Eigen::MatrixXd readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,

@@ -162,6 +162,7 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
     Twin::Workspace workspace(fitter.twin());
     (void)fitter.predict(hypothesis, fit.x, workspace, &responses);
   }
+  const TwinState known = fitter.state(hypothesis, fit.x);
   struct Space {
     Twin::Workspace workspace;
     Prediction kept;
@@ -182,8 +183,8 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
           for (std::size_t k = 0; k < shape.size(); ++k) claim[static_cast<Eigen::Index>(k + 1)] = shape[k];
           Prediction p;
           const bool is_solved = has_solution([&] {
-            p = fitter.predict(tried, joined(fit.x, claim), space.workspace, reading_only ? &space.kept : nullptr,
-                               reading_only);
+            p = reading_only ? fitter.predict(tried, joined(fit.x, claim), space.workspace, &space.kept, true)
+                             : fitter.predict_beside(known, fit.prediction, tried, joined(fit.x, claim), space.workspace);
           });
           if (!is_solved) continue;
           Eigen::VectorXd column = (fitter.comparison().whitened(p) - base) / v.trial_x;

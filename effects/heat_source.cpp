@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -59,7 +59,7 @@ DoubtedNumber in_minutes(DoubtedNumber n) {
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W, longest_min = s.longest_s() / 60.0;
   const auto power = [&] { return doubted("power", "W", sd_W, trial_W); };
-  std::vector<Doubt> list;
+  std::vector<Doubt> list, since;
   for (const Body& body : s.bodies) {
     const auto add = [&](const std::string& law, std::vector<std::pair<std::string, double>> values) -> Doubt& {
       list.push_back({.finding = "heat_source",
@@ -82,6 +82,23 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     of_speed.at_speed_rpm = s.typical_rpm;
     add("constant heat while the spindle turns", {}).added[0].words["runs"] = "while_spindle_turns";
 
+    for (std::size_t run = 0; run < s.runs.size(); ++run) {
+      for (const bool with_speed : {false, true}) {
+        Doubt later = list[list.size() - 1];
+        later.law = fmt::format("{} from a time on, in {}", with_speed ? "heat in proportion to speed" : "constant heat",
+                                s.runs[run].name);
+        later.added = {with_speed ? make_effect("heat_source", body, {{"at_speed", s.typical_rpm}, {"exponent", 1.0}})
+                                  : make_effect("heat_source", body)};
+        later.added[0].in = s.runs[run].name;
+        later.numbers = {power(), doubted_time("from", s.runs[run].length_s,
+                                               [](std::span<Effect> added, double value) { added[0].from_s = value; })};
+        later.numbers[0].low = 0.0;
+        later.at_speed_rpm = with_speed ? s.typical_rpm : 0.0;
+        later.grid = time_grid(s.runs[run].length_s, 8);
+        add_with_lasting(s, run, later, since);
+      }
+    }
+
     Doubt& wave = add("periodic, about a mean; negative: half a period later", {});
     wave.numbers[0].low = -1e300;
     wave.added[0].until_s = s.longest_s();
@@ -94,6 +111,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     wave.numbers.push_back(in_minutes(doubted("delay", "min", 0.5 * period.nominal, 0.5)));
     wave.numbers.push_back(doubted("mean", "W", sd_W, trial_W));
   }
+  list.insert(list.end(), since.begin(), since.end());
   return list;
 }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kFewRuns = 5;  // of which every choice is tried
 
 bool is_meant(const Effect& e, const Exchange& x) {
-  return e.words.at("of") == "exchange" && x.body.kind != BodyKind::kJoint && x.surrounding == kHallName;
+  return e.words.at("of") == "exchange" && x.body.kind != BodyKind::kJoint && x.surrounding == kHallName && !x.medium_K;
 }
 
 void change_laws(const Effect& e, HeatBalance& balance) {
