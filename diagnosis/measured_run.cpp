@@ -18,7 +18,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kHallKnots_s = 600.0;      // at the most
-constexpr double kHallKnown_K = 0.005;      // what is left of a course matters to nobody
+constexpr double kHallKnown_K = 0.006;      // what is left of a course matters to nobody
 constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
 constexpr int kMostColumns = 6;             // that nobody drives the machine by; each may drive it at each body
 constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
@@ -68,6 +68,38 @@ double white_noise(const Readings& r) {
   return r.value.size() < 3 ? 0.0 : std::sqrt(sum / (6.0 * static_cast<double>(r.value.size() - 2)));
 }
 
+/// Marks the knots between two that a straight line does not meet. Source: Douglas & Peucker, Cartographica 10 (1973) 112-122.
+void keep_bends(const TimeSeries& s, std::size_t first, std::size_t last, double within, std::vector<char>& kept) {
+  std::size_t farthest = first;
+  double most = within;
+  for (std::size_t i = first + 1; i < last; ++i) {
+    const double share = (s.time_s[i] - s.time_s[first]) / (s.time_s[last] - s.time_s[first]);
+    const double off = std::abs(s.value[i] - s.value[first] - share * (s.value[last] - s.value[first]));
+    if (off > most) {
+      most = off;
+      farthest = i;
+    }
+  }
+  if (farthest == first) return;
+  kept[farthest] = 1;
+  keep_bends(s, first, farthest, within, kept);
+  keep_bends(s, farthest, last, within, kept);
+}
+
+/// A series on as few of its knots as meet it: an integrator stops at each.
+TimeSeries with_few_knots(const TimeSeries& s, double within) {
+  std::vector<char> kept(s.time_s.size(), 0);
+  kept.front() = kept.back() = 1;
+  keep_bends(s, 0, s.time_s.size() - 1, within, kept);
+  TimeSeries few;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (!kept[i]) continue;
+    few.time_s.push_back(s.time_s[i]);
+    few.value.push_back(s.value[i]);
+  }
+  return few;
+}
+
 /// A recorded hall without its noise, and with all of its course: knots as far apart as what they miss is noise, at each reading where that is what it takes. A
 /// machine that starts as warm as the hall would else start wrong. One reading at least.
 TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
@@ -80,10 +112,11 @@ TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>
   const double enough_K = std::max(kHallKnown_K, 1.1 * white_noise(r)), length_s = r.time_s.back() - r.time_s.front();
   const int n_readings = static_cast<int>(r.time_s.size());
   for (int n_pieces = std::max(1, static_cast<int>(length_s / kHallKnots_s)); 3 * n_pieces <= n_readings; n_pieces *= 2) {
-    TimeSeries series = on_knots(r, n_pieces);
-    if (rms_beside(r, series) <= enough_K) return series;
+    const TimeSeries series = on_knots(r, n_pieces);
+    if (rms_beside(r, series) <= enough_K) return with_few_knots(series, 2.0 * kHallKnown_K);
   }
-  return n_readings < 3 ? on_knots(r, 1) : TimeSeries{r.time_s, r.value};
+  return n_readings < 3 ? on_knots(r, 1)
+                        : with_few_knots({r.time_s, r.value}, std::max(2.0 * kHallKnown_K, 2.0 * white_noise(r)));
 }
 
 /// Most rows in a row at a value.
