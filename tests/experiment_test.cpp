@@ -90,7 +90,7 @@ class OneSpeed : public testing::Test {
     SearchResult result;
     result.hypothesis = {truth};
     result.fit = fitter_->fit(Hypothesis{truth}, x, workspace);
-    Finding finding{truth, 40.0, {}};
+    Finding finding{truth, 40.0, true, {}};
     finding.alternatives.push_back({other, fitter_->fit(Hypothesis{other}, start, workspace), 39.5});
     result.findings.push_back(finding);
     return result;
