@@ -31,7 +31,7 @@ void calibrate(const CalibrateOptions& options) {
   head.emplace_back("");
   std::string difference;
   const diagnosis::ExtendedScenario calibrated =
-      write_scenario("calibrated", m, stated_scatter(d), head, folder, &difference);
+      write_scenario("calibrated", m, stated_scatter(d, false), head, folder, &difference);
   nlohmann::ordered_json json = diagnosis_json(d);
   json["iso_230_3"] = iso230_3_json(measured_iso230_3(m));
   json["warning"] = warning;

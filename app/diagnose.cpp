@@ -45,11 +45,13 @@ void diagnose(const DiagnoseOptions& options) {
   Progress progress;
   MeasuredTwin m = open_measured_twin(scenario, "diagnose", options.measured, progress);
   m.how.without = {options.without.begin(), options.without.end()};
-  std::set<std::string> keys;
-  for (const diagnosis::Candidate& c : diagnosis::candidates(*m.twin, m.runs, {})) keys.insert(c.effect);
-  for (const std::string& key : options.without) {
-    if (keys.contains(key)) continue;
-    throw InputError(fmt::format("--without {}: no candidate has that key; there are {}", key, fmt::join(keys, ", ")));
+  if (!options.without.empty()) {
+    std::set<std::string> keys;
+    for (const diagnosis::Candidate& c : diagnosis::candidates(*m.twin, m.runs, {})) keys.insert(c.effect);
+    for (const std::string& key : options.without) {
+      if (keys.contains(key)) continue;
+      throw InputError(fmt::format("--without {}: no candidate has that key; there are {}", key, fmt::join(keys, ", ")));
+    }
   }
   diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how,
                                                [&](const std::string& work) { progress.begin(work); });
@@ -57,7 +59,7 @@ void diagnose(const DiagnoseOptions& options) {
   const std::vector<diagnosis::Candidate> candidates = diagnosis::candidates(*m.twin, m.runs, m.how.without);
   std::string difference;
   std::vector<diagnosis::StatedChange> changes;  // in the order in which the fit makes them
-  if (!options.causes_only && d.written.keeps_numbers) changes = stated_scatter(d);
+  if (d.written.keeps_numbers) changes = stated_scatter(d, options.causes_only);
   for (diagnosis::StatedChange& cause : stated_causes(d)) changes.push_back(std::move(cause));
   const diagnosis::ExtendedScenario extended =
       write_scenario("extended", m, changes, head_of(d, options), folder, &difference);

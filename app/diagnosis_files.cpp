@@ -39,16 +39,17 @@ std::vector<StatedChange> stated_causes(const diagnosis::Diagnosis& d) {
   return changes;
 }
 
-std::vector<StatedChange> stated_scatter(const diagnosis::Diagnosis& d) {
+std::vector<StatedChange> stated_scatter(const diagnosis::Diagnosis& d, bool causes_only) {
   constexpr double kUnmoved = 1e-4;  // standard deviations of the prior
   std::vector<StatedChange> changes;
   const std::vector<diagnosis::Knob>& knobs = d.scatter;
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     const diagnosis::Estimate& e = d.calibrated.at(i);
-    if (std::abs(e.deviation) < kUnmoved) continue;
+    const bool is_cause = std::find(d.moved.begin(), d.moved.end(), i) != d.moved.end();
+    if (std::abs(e.deviation) < kUnmoved || (causes_only && !is_cause)) continue;
     changes.push_back({e.name, fmt::format("{} {}, 95 %: {}", knobs[i].name, value_text(e), interval_text(e)),
                        [knob = knobs[i], value = e.value](diagnosis::TwinState& state) { knob.set(state, value); },
-                       "calibration"});
+                       is_cause ? "diagnosis" : "calibration"});
   }
   return changes;
 }

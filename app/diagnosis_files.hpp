@@ -9,8 +9,8 @@ namespace driftwright::app {
 
 /// The causes of a diagnosis as changes of the scenario.
 [[nodiscard]] std::vector<diagnosis::StatedChange> stated_causes(const diagnosis::Diagnosis& d);
-/// The scenario's own numbers as fitted.
-[[nodiscard]] std::vector<diagnosis::StatedChange> stated_scatter(const diagnosis::Diagnosis& d);
+/// The scenario's own numbers as fitted. @param causes_only  those alone that have gone so far that they are causes
+[[nodiscard]] std::vector<diagnosis::StatedChange> stated_scatter(const diagnosis::Diagnosis& d, bool causes_only);
 
 /// Writes <stem>.yaml and <stem>.diff and reads the scenario back; where that fails, `not_written` says so, too.
 /// @param head  comment lines for the top of the scenario

@@ -135,6 +135,8 @@ std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector
   for (const Estimate& e : d.calibrated) {
     if (std::abs(e.deviation) > kTooFar) reasons.push_back(fmt::format("{} moved by {:+.1f} sigmas", e.name, e.deviation));
   }
+  if (!d.written.keeps_numbers)
+    reasons.emplace_back("rows that were kept out are predicted better by the scenario as it is written");
   if (reasons.empty()) return "";
   return fmt::format("{}. Numbers that were fitted to it have taken up what is wrong elsewhere: `diagnose` names it.",
                      fmt::join(reasons, "; "));

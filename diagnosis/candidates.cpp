@@ -104,6 +104,7 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
   for (const Event& e : events(twin, runs)) {
     Variant v{e.doubt.law, knobs_of(e.doubt), e.doubt.trial, e.doubt.grid};
     v.price_nats = e.price_nats;
+    v.happens = true;
     candidate(list, e.doubt.finding, e.doubt.where).variants.push_back(std::move(v));
   }
   std::erase_if(list, [&](const Candidate& c) { return without.contains(c.effect) || c.variants.empty(); });

@@ -18,6 +18,7 @@ struct Variant {
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is trial_x
   double price_nats =
       0.0;  ///< before any reading: how much rarer it is than other laws, or what was chosen to make it, such as windows seen in a waveform
+  bool happens = false;  ///< for a while or from a time on, not throughout
 };
 
 /// An effect at a place. One candidate among many, whatever laws it may follow.

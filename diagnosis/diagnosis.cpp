@@ -33,6 +33,7 @@ constexpr double kBeyondBelief = 2.0;         // mean square of how far the scen
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
 constexpr double kSureCause = 20.0;           // nats: no smaller rest hides it
 constexpr double kRestOfCause = 0.35;         // of what the causes explain: more left, and they are not what is wrong
+constexpr double kHallFault_K = 2.0;          // 1 sigma of a hall that was recorded wrongly
 constexpr double kTooFar = 3.5;               // sigmas of its prior: a number beyond is a cause
 
 /// Index of a claim's first knob in x.
@@ -311,8 +312,8 @@ Written written_of(const Fitter& fitter, const SearchResult& result, const HeldO
   return w;
 }
 
-/// The scenario's own numbers as fitted.
-std::vector<Estimate> calibrated_numbers(const Fitter& fitter, const Fit& fit) {
+/// The scenario's own numbers as fitted. @param known_to  1 sigma of each
+std::vector<Estimate> calibrated_numbers(const Fitter& fitter, const Fit& fit, const std::vector<double>& known_to) {
   std::vector<Estimate> numbers;
   const Twin& twin = fitter.twin();
   for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
@@ -325,7 +326,7 @@ std::vector<Estimate> calibrated_numbers(const Fitter& fitter, const Fit& fit) {
     if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
       of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
     numbers.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x), k.value(x - 1.96 * sd),
-                       k.value(x + 1.96 * sd), x / k.prior_sd});
+                       k.value(x + 1.96 * sd), x / known_to[i]});
   }
   return numbers;
 }
@@ -334,18 +335,19 @@ std::vector<Estimate> calibrated_numbers(const Fitter& fitter, const Fit& fit) {
 std::vector<Cause> moved_numbers(const Diagnosis& d) {
   std::vector<Cause> causes;
   const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
-  for (std::size_t i = 0; i < d.scatter.size(); ++i) {
+  for (std::size_t i : d.moved) {
     const Estimate& e = d.calibrated[i];
-    if (!(std::abs(e.deviation) > kTooFar)) continue;
     const Knob& k = d.scatter[i];
-    const double x = e.deviation * k.prior_sd;
+    const double fitted = k.scale == Knob::Scale::kLog ? std::log(e.value / k.nominal) : e.value - k.nominal;
+    const double known_to = std::abs(e.deviation) > 0.0 ? std::abs(fitted / e.deviation) : k.prior_sd;
     // the density of its value under the wide prior of a fault over that under what is known of it
-    const double gain = 0.5 * e.deviation * e.deviation - 0.5 * std::pow(x / effects::kFactorSd, 2) -
-                        std::log(effects::kFactorSd / k.prior_sd) - price;
+    const double gain =
+        0.5 * e.deviation * e.deviation - 0.5 * std::pow(fitted / k.prior_sd, 2) - std::log(k.prior_sd / known_to) - price;
     Estimate number = e;
     number.name = k.name;
     Cause c{k.effect, k.where, fmt::format("another {}, {:+.1f} sigmas from what is known of it", k.name, e.deviation),
             {number}, gain,    {}};
+    c.is_written = d.written.keeps_numbers;
     c.standing = gain >= d.search.chance.gain_at(SearchOptions{}.wrongly_named) ? Standing::kNamed : Standing::kSuspected;
     causes.push_back(std::move(c));
   }
@@ -479,6 +481,23 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.weighed_by_model_error = true;
     if (auto left = unexplained_of(*own_fitter, d.search, d.noise)) d.unexplained = std::move(left);
   }
+  // Numbers that have gone too far are faults: they get the prior of one, and all are fitted anew.
+  std::vector<double> known_to;
+  for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
+  for (std::size_t i = 0; i < d.scatter.size(); ++i) {
+    if (!(std::abs(d.search.fit.x[static_cast<Eigen::Index>(i)]) > kTooFar * known_to[i])) continue;
+    d.moved.push_back(i);
+    d.scatter[i].prior_sd = d.scatter[i].scale == Knob::Scale::kLog ? effects::kFactorSd : kHallFault_K;
+  }
+  if (!d.moved.empty()) {
+    const std::map<std::string, NoiseModel> noise = own_fitter->noise();
+    own_fitter = fresh_fitter();
+    own_fitter->set_noise(noise);
+    own_fitter->settle(d.search.hypothesis, d.search.fit);
+    const Eigen::Index n_n = own_fitter->n_nuisance();
+    d.search.fit = own_fitter->fit(d.search.hypothesis, d.search.fit.x.tail(d.search.fit.x.size() - n_n), workspace);
+    (void)has_solution([&] { d.search.without = own_fitter->fit({}, Eigen::VectorXd(0), workspace); });
+  }
   const Fitter& fitter = *own_fitter;
   if (auto unnamed = best_unnamed(fitter, list, d.search.hypothesis, d.search.fit);
       unnamed && unnamed->log_evidence_gain > kUnnamed) {
@@ -512,13 +531,15 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   const HeldOut held = held_out_gain(fitter, d.search, d.noise);
   d.written = written_of(fitter, d.search, held, workspace);
   d.extended = d.written.keeps_numbers ? d.written.fit.prediction : d.as_written;
-  d.calibrated = calibrated_numbers(fitter, d.written.fit);
+  d.calibrated = calibrated_numbers(fitter, d.written.fit, known_to);
   for (Cause& c : moved_numbers(d)) d.causes.push_back(std::move(c));
   d.holdout = held.how;
   d.gain = held.channels;
   give_standing(d, held);
   const bool none_is_kept = std::none_of(held.keeps_claim.begin(), held.keeps_claim.end(), [](char k) { return k != 0; });
-  if (!d.search.findings.empty() && d.search.findings.front().is_named && none_is_kept) {
+  const bool is_any_named =
+      std::any_of(d.search.findings.begin(), d.search.findings.end(), [](const Finding& f) { return f.is_named; });
+  if (is_any_named && none_is_kept) {
     if (!d.unexplained) d.unexplained = failed_held_out(d.gain);
     d.unexplained->fails_held_out = true;
   }

@@ -96,6 +96,7 @@ struct Diagnosis {
   std::map<std::string, NoiseModel> noise;
   Written written;
   std::vector<Knob> scatter;         ///< what is known roughly: the scenario's own numbers and each run's hall
+  std::vector<std::size_t> moved;    ///< which of these have gone so far that they are causes
   std::vector<Estimate> calibrated;  ///< of these, as fitted with the causes that are written
   Prediction as_written, scatter_alone, extended;
 };

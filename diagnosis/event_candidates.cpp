@@ -28,14 +28,28 @@ struct Seen {
   std::vector<const Waveform*> of_runs;
 };
 
+/// The window of an exchange between two bodies, either end of which may be the one that stands first. None between two regions, or where the twin has no
+/// place for it.
+std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::Body& a, const effects::Body& b) {
+  const bool is_turned = b.kind != effects::BodyKind::kNode;
+  if (is_turned && a.kind != effects::BodyKind::kNode) return std::nullopt;
+  effects::Effect window = effects::make_effect("exchange_window", is_turned ? b : a);
+  window.set("conductance", 0.0);
+  window.references["surrounding"] = is_turned ? a : b;
+  window.tables["windows"] = {{0.0}, {1.0}};
+  const bool joins_nodes = a.kind == effects::BodyKind::kNode && b.kind == effects::BodyKind::kNode;
+  if (!joins_nodes && !holds(twin, window)) return std::nullopt;
+  return window;
+}
+
 std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene, const Seen& seen) {
   const effects::Body body = twin.body_of(seen.where);
-  effects::Effect window = effects::make_effect(seen.to.empty() ? "heat_window" : "exchange_window", body);
+  effects::Effect window = effects::make_effect("heat_window", body);
   if (!seen.to.empty()) {
-    window.set("conductance", 0.0);
-    window.references["surrounding"] = effects::node(seen.to);
-    window.tables["windows"] = {{0.0}, {1.0}};
-    if (body.kind != effects::BodyKind::kNode && !holds(twin, window)) return std::nullopt;
+    const effects::Body other = seen.to == effects::kHallName ? effects::hall() : twin.body_of(seen.to);
+    const auto between = exchange_window(twin, body, other);
+    if (!between) return std::nullopt;
+    window = *between;
   }
   Event event;
   effects::Doubt& d = event.doubt;

@@ -21,6 +21,7 @@ struct Claim {
   std::vector<Knob> knobs;
   bool all_or_nothing = false;
   double price_nats = 0.0;  ///< as Variant has it
+  bool happens = false;     ///< the same
 };
 using Hypothesis = std::vector<Claim>;
 /// Logarithm of how many rows the jumps of a claim could have happened at [nats].

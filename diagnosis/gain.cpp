@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kFitted = 2.0 / 3.0;  // of a single run
 constexpr int kBlocks = 6;             // of a run, every other one kept out
+constexpr double kNoSolution = -1e6;   // nats of a fold that no numbers fit
 constexpr double kWorse = 1.1;         // of the squares
 
 /// Rows that numbers are fitted to, and the others. Both have all runs; readings that are not theirs are missing.
@@ -42,7 +43,7 @@ std::vector<char> runs_of(const Fitter& fitter, const SearchResult& result, std:
 }
 
 bool has_time(const Claim& claim) {
-  return std::any_of(claim.knobs.begin(), claim.knobs.end(), [](const Knob& k) { return k.is_time; });
+  return claim.happens || std::any_of(claim.knobs.begin(), claim.knobs.end(), [](const Knob& k) { return k.is_time; });
 }
 
 struct Folds {
@@ -133,7 +134,8 @@ class Judge {
         });
     Judged j;
     for (std::size_t f = 0; f < folds_.size(); ++f) {
-      j.log_predictive += fits.back().log_evidence - fits[f].log_evidence;
+      const bool is_solved = !fits[f].prediction.empty() && !fits.back().prediction.empty();
+      j.log_predictive += is_solved ? fits.back().log_evidence - fits[f].log_evidence : kNoSolution;
       j.predicted.push_back(fits[f].prediction.empty() ? written_ : std::move(fits[f].prediction));
     }
     return judged_.emplace(claims, std::move(j)).first->second;

@@ -23,7 +23,7 @@ constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which o
 
 Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   const Variant& v = candidates[score.candidate].variants[score.variant];
-  return {score.candidate, score.variant, v.knobs, v.all_or_nothing, v.price_nats};
+  return {score.candidate, score.variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens};
 }
 
 /// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x.
@@ -176,7 +176,7 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
         const Variant& v = candidates[jobs[j].candidate].variants[jobs[j].variant];
         const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
         const Hypothesis tried =
-            with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing, v.price_nats});
+            with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens});
         for (const std::vector<double>& shape : v.grid) {
           Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
           claim[0] = v.trial_x;
@@ -355,7 +355,8 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   }
   const double named_from = result.chance.gain_at(options.wrongly_named);
   for (Finding& f : result.findings)
-    f.is_named = f.log_evidence_gain >= std::max(named_from, best.size() > 1 ? options.least_named_beside : -1e300);
+    f.is_named =
+        f.log_evidence_gain >= std::max(named_from, best.size() > 1 ? options.least_named_beside : options.least_named);
   result.hypothesis = std::move(best);
   result.fit = std::move(best_fit);
   return result;

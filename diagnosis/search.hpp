@@ -20,7 +20,8 @@ struct SearchOptions {
   double wrongly_suspected = 0.01, wrongly_named = 1e-4;
   /// Evidence [nats] that a second, third, ... claim must bring at least, beyond the logarithm of how many candidates there are: chance is judged for machines
   /// without fault, a fault that is not quite of a law of the catalogue leaves something, and few machines are wrong in three ways.
-  std::vector<double> least_gain = {-1e300, 3.0, 12.0};
+  std::vector<double> least_gain = {0.5, 3.0, 12.0};
+  double least_named = 4.0;         ///< nor anything below, however little chance has to offer: it is even odds
   double least_named_beside = 8.0;  ///< one of several is not named below
   /// Two claims whose evidence differs by less than this cannot be told apart.
   double cannot_tell = 3.0;

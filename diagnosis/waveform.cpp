@@ -15,6 +15,7 @@ constexpr double kStart_K = 0.3;      // to which the start of a body is known
 constexpr double kSameModes = 0.03;   // relative change of a coefficient below which modes are kept
 constexpr double kLeast_nats = 12.0;  // of a heat that is worth a look
 constexpr double kMostWork = 3e9;     // of the smoother: longer records are thinned
+constexpr Eigen::Index kFewestRows = 200;
 constexpr double kFewestNoise_K = 5e-3, kFewestNoise_m = 5e-8, kFewestNoise_rad = 5e-7;
 constexpr double kAlike_K = 1.0;                   // of a conductance: no smaller difference of temperatures tells one
 constexpr std::size_t kBestBodies = 3;             // of which conductances are tried
@@ -39,12 +40,13 @@ double noise_of(const MeasuredChannel& channel, const Eigen::VectorXd& residual)
   return std::max({fewest, channel.quantum / std::sqrt(12.0), scatter(residual)});
 }
 
-/// The rows that are looked at.
+/// The rows that are looked at: all of them, or as many as the work allows, but never so few that nothing could be seen in them.
 std::vector<Eigen::Index> rows_of(const MeasuredRun& run, Eigen::Index size, std::size_t n_bodies) {
   const auto n = static_cast<Eigen::Index>(run.time_s.size());
   const double work = 10.0 * static_cast<double>(n_bodies) * static_cast<double>(n) * static_cast<double>(size * size) *
                       (4.0 * static_cast<double>(run.channels.size()) + 10.0);
-  const auto stride = static_cast<Eigen::Index>(std::ceil(work / kMostWork));
+  const auto stride =
+      std::min(static_cast<Eigen::Index>(std::ceil(work / kMostWork)), std::max<Eigen::Index>(1, n / kFewestRows));
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < n; i += std::max<Eigen::Index>(1, stride)) rows.push_back(i);
   return rows;
