@@ -74,7 +74,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
     row_s = std::max(row_s, w->time_s.back() / static_cast<double>(w->time_s.size() - 1));
     d.added.push_back(std::move(in_run));
   }
-  if (n_windows < 2) return std::nullopt;
+  if (n_windows == 0) return std::nullopt;
   for (std::size_t k = 2; k <= n_windows; ++k) event.price_nats -= std::log(static_cast<double>(k));  // in whatever order
   const bool is_exchange = !seen.to.empty();
   const double sd = is_exchange ? 0.2 * scene.unknown_heat_W() : scene.unknown_heat_W();
@@ -94,7 +94,8 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   };
   d.finding = window.kind->key;
   d.where = is_exchange && seen.to != effects::kHallName ? seen.where + "," + seen.to : seen.where;
-  d.law = fmt::format("{} windows of one size, seen in the waveform{}: {} min", n_windows,
+  d.law = fmt::format("{}, seen in the waveform{}: {} min",
+                      n_windows == 1 ? std::string("a window") : fmt::format("{} windows of one size", n_windows),
                       is_exchange ? ", to " + seen.to : std::string(), fmt::join(times, ", "));
   d.numbers = {size, longer};
   d.trial = std::clamp(mean / static_cast<double>(n_windows), -sd, sd);

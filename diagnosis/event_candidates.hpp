@@ -13,7 +13,7 @@ struct Event {
       0.0;  ///< of their times, which were read off the data: the logarithm of how many rows each could have begun and ended at
 };
 
-/// Where the waveform of a body, missing in the twin as written, has two windows or more in all runs together.
+/// Where the waveform of a body, missing in the twin as written, has windows, in all runs together.
 [[nodiscard]] std::vector<Event> events(const Twin& twin, const std::vector<MeasuredRun>& runs);
 
 }  // namespace driftwright::diagnosis

@@ -18,7 +18,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kHallKnots_s = 600.0;      // at the most
-constexpr double kHallKnown_K = 0.006;      // what is left of a course matters to nobody
+constexpr double kHallKnown_K = 0.003;      // what is left of a course matters to nobody
 constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
 constexpr int kMostColumns = 6;             // that nobody drives the machine by; each may drive it at each body
 constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while

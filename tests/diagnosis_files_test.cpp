@@ -68,11 +68,12 @@ TEST(DiagnosisSummary, ShowsCausesAlternativesAndWhatWasNotWritten) {
 TEST(CalibrationWarning, ComesFromLeftoversFromEvidenceAndFromNumbersThatMovedFar) {
   const std::vector<diagnosis::Candidate> list = {candidate("heat_source", "head")};
   diagnosis::Diagnosis d;
-  d.n_candidates = 20;  // ln 20 + 8 = 11.0
-  d.search.scores = {score(0, 0, 10.9, 5.0)};
+  d.n_candidates = 20;  // ln 20 = 3.0, and 0.6 that one faultless machine in a hundred has by chance
+  d.search.chance = {.mode = -4.0, .spread = 1.0};
+  d.search.scores = {score(0, 0, 3.5, 5.0)};
   d.calibrated.push_back({"convection nose film", "W/(m^2 K)", 9.0, 8.0, 10.0, 3.4});
   EXPECT_THAT(calibration_warning(d, list), IsEmpty());
-  d.search.scores = {score(0, 0, 11.1, 5.0)};
+  d.search.scores = {score(0, 0, 3.7, 5.0)};
   EXPECT_THAT(calibration_warning(d, list), AllOf(HasSubstr("heat_source at head"), Not(HasSubstr("film"))));
   d.search.scores.clear();
   d.calibrated[0].deviation = -3.6;

@@ -132,7 +132,9 @@ TEST(Lids, AreOneCauseThatIsWrittenAndReadBack) {
       extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
   EXPECT_THAT(extended.not_written, IsEmpty());
   const Beside again(write_file("extended.yaml", extended.text), measured);
-  for (const Waveform& w : waves_beside(again)) EXPECT_LT(w.log_likelihood_gain, 60.0) << w.where;  // thousands before
+  for (const Waveform& w : waves_beside(again))
+    EXPECT_LT(w.log_likelihood_gain, 300.0)
+        << w.where;  // thousands before; the claim alone is written here, not the numbers beside it
 }
 
 // Shapes by themselves.
