@@ -362,7 +362,8 @@ TEST_F(ValidateRecords, ARecordThatContinuesAnotherIsCorrectedAsJudged) {
 TEST_F(ValidateRecords, ASimulatedRunIsCorrectedAsItWasJudged) {
   const auto out = fresh_folder("simulated") / "out";
   const std::string noisy = scenario("noisy", [](std::string& t) {
-    t += "solver: {model: reduced}\nvalidation:\n  train: [warm_up, steps]\n  families: {other: [to_and_fro]}\n  "
+    replace(t, "  to_and_fro:", "  third: [[90 min, 2000 rpm], [60 min, 0 rpm]]\n  to_and_fro:");
+    t += "solver: {model: reduced}\nvalidation:\n  train: [warm_up, steps, third]\n  families: {other: [to_and_fro]}\n  "
          "sensor_noise: 0.1 K\n"
          "  sensor_resolution: 0.1 K\n";
   });
