@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "app/compensate_frame.hpp"
@@ -13,12 +14,15 @@
 #include "app/validation_study.hpp"
 #include "compensation/axis_loop.hpp"
 #include "compensation/correction.hpp"
+#include "compensation/drift_model.hpp"
 #include "compensation/formula_predictor.hpp"
 #include "compensation/observer.hpp"
 #include "output/html_report.hpp"
 #include "output/json_text.hpp"
+#include "output/json_value.hpp"
 #include "output/predictor_file.hpp"
 #include "scenarios/as_recorded.hpp"
+#include "scenarios/record_part.hpp"
 #include "scenarios/ways_out.hpp"
 
 namespace driftwright::app {
@@ -33,6 +37,7 @@ struct Outcome {
   std::vector<double> time_s = {}, drift_um = {}, predicted_um = {}, left_um = {};
   std::vector<bool> at_rest = {};  ///< rows that are judged, where the axis moves; empty: all
   Score before = {}, after = {};
+  std::optional<double> margin_um = {};  ///< that the plan keeps, where there is one
 };
 
 /// The model's thermal modes, with laws of temperature frozen in the mean drive of the cyclogram that they are to foretell.
@@ -56,6 +61,29 @@ output::PredictorFile from_file(const Scenario& scenario, const std::string& pat
   return file;
 }
 
+/// What a predictor and its fail-safe read, a simulated machine must tell.
+void require_inputs(const Scenario& scenario, const DeployedPredictor& d, const std::string& path) {
+  const scenarios::MachineModel& machine = *scenario.machine;
+  std::vector<Input> wanted = d.predictor->inputs();
+  if (d.fail_safe) {
+    for (const FailSafe::Guard& g : d.fail_safe->guards) wanted.push_back({g.input, g.unit});
+  }
+  for (const Input& input : wanted) {
+    const bool is_temperature = std::any_of(machine.sensors.begin(), machine.sensors.end(),
+                                            [&](const scenarios::Sensor& s) { return s.name == input.name; }) ||
+                                (input.name == scenarios::kAmbient && scenarios::has_ambient_channel(machine));
+    if (!is_temperature && input.name != "speed" && !is_drive(input.unit))
+      throw InputError(
+          fmt::format("{}: it reads '{}', which is no sensor of {} and not its `speed`; take a predictor that "
+                      "`validate` has fitted to this machine",
+                      path, input.name, scenario.path));
+    const std::string unit = is_temperature ? "degC" : input.name == "speed" ? "rpm" : input.unit;
+    if (input.unit != unit)
+      throw InputError(
+          fmt::format("{}: it reads '{}' in {}, which {} tells in {}", path, input.name, input.unit, scenario.path, unit));
+  }
+}
+
 /// What it was judged to be, as its file says; "" where nobody has judged it.
 std::string verdict_of(const Json& judged) {
   return judged.is_object() && judged.contains("verdict") && judged["verdict"].is_string()
@@ -63,27 +91,55 @@ std::string verdict_of(const Json& judged) {
              : "";
 }
 
-/// A run that a predictor was fitted on says nothing of how good it is.
-void refuse_trained_on(const Json& judged, const std::string& path, const std::string& run) {
-  if (!judged.is_object() || !judged.contains("trained_on")) return;
+/// A run that a predictor was fitted on says nothing of how good it is. @param is_fitted_on  of an entry of `trained_on`
+void refuse_trained_on(const Json& judged, const std::string& path, const std::string& run,
+                       const std::function<bool(const Json&)>& is_fitted_on) {
+  if (!judged.is_object() || !judged.contains("trained_on") || !judged["trained_on"].is_array()) return;
   for (const Json& trained : judged["trained_on"]) {
-    if (trained.is_string() && trained.get<std::string>() == run)
+    if (is_fitted_on(trained))
       throw InputError(
-          fmt::format("{}: it was fitted on '{}', which says nothing of how good it is; take another run", path, run));
+          fmt::format("{}: it was fitted on rows of '{}', which says nothing of how good it is; take another run or part of "
+                      "a record",
+                      path, run));
   }
+}
+void refuse_trained_on_cyclogram(const Json& judged, const std::string& path, const std::string& cyclogram) {
+  refuse_trained_on(judged, path, cyclogram,
+                    [&](const Json& trained) { return trained.is_string() && trained.get<std::string>() == cyclogram; });
+}
+void refuse_trained_on_record(const Json& judged, const std::string& path, const std::string& record) {
+  const scenarios::RecordPart part = scenarios::read_record_part(record);
+  refuse_trained_on(judged, path, record, [&](const Json& trained) {
+    return trained.is_object() &&
+           scenarios::has_rows_of(part, output::value<std::string>(trained, "file"), output::finite(trained, "from_s"),
+                                  output::finite(trained, "until_s"));
+  });
 }
 
 /// A model follows a record only as `validate` would have let it.
-void require_model_follows(const Scenario& scenario, const DeployedPredictor& d, const StudyRecords& records) {
+void require_model_follows(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
+                           const std::string& hall) {
   if (!dynamic_cast<const Observer*>(d.predictor.get())) return;
-  const ObservedRun& run = records.test.front();
   if (!scenario.machine)
     throw InputError(fmt::format("'{}' is a model of a machine, and {} has none", d.name, scenario.path));
-  if (d.hall != records.hall)
+  if (d.hall != hall)
     throw InputError(fmt::format("'{}' takes the hall from {}, which {} does not have", d.name,
                                  d.hall.empty() ? "the scenario" : "the channel '" + d.hall + "'", run.readings.source));
   if (const std::string why = why_no_model_follows(*scenario.machine, run); !why.empty())
     throw InputError(fmt::format("'{}' cannot follow this record: {}", d.name, why));
+}
+
+/// --after FILE gives a whole record what came before it.
+void require_continues(const Scenario& scenario, const CompensateOptions& options) {
+  if (options.measured.empty()) throw InputError("--after goes with --measured, the record that continues it");
+  if (scenario.study->count_from_start)
+    throw InputError(scenario.study->where,
+                     "drift counts from the start of each record (`count_from_start`), so that none continues another; "
+                     "leave out --after");
+  for (const std::string& record : {options.after, options.measured}) {
+    if (!scenarios::read_record_part(record).is_whole())
+      throw InputError(fmt::format("{}: --after is for whole records; a part goes on from its own record anyway", record));
+  }
 }
 
 /// What the injector wants, before any work.
@@ -138,7 +194,12 @@ Outcome through_injector(const Scenario& scenario, const DeployedPredictor& d, c
 
 Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
                          const std::vector<double>& ahead_um) {
-  if (std::any_of(ahead_um.begin(), ahead_um.end(), [](double v) { return std::isnan(v); }))
+  const auto unknown = std::find_if(ahead_um.begin(), ahead_um.end(), [](double v) { return std::isnan(v); });
+  if (unknown != ahead_um.end() && d.predictor->inputs().empty())
+    throw InputError(fmt::format(
+        "a schedule wants the drift of the whole run, and '{}' says nothing of it at {:.0f} min; take another --model",
+        d.name, run.readings.time_s[static_cast<std::size_t>(unknown - ahead_um.begin())] / 60.0));
+  if (unknown != ahead_um.end())
     throw InputError(fmt::format(
         "a schedule is written before the run, and '{}' has to read during it; take --through injector, or another --model",
         d.name));
@@ -146,24 +207,57 @@ Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, c
   for (const auto& section : run.cyclogram.sections) durations_s.push_back(section.duration_s);
   const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
   const std::vector<double>& drift_um = run.readings.at(d.target).values;
-  const CorrectedRun corrected =
-      correct_by_schedule({run.readings.time_s, drift_um, boundaries_s, scenario.study->tolerance_um}, ahead_um,
-                          d.interval_um.value_or(0.0), planner_of(scenario));
+  const double tolerance_um = scenario.study->tolerance_um,
+               margin_um = std::min(d.interval_um.value_or(0.0), 0.5 * tolerance_um);
+  const CorrectedRun corrected = correct_by_schedule({run.readings.time_s, drift_um, boundaries_s, tolerance_um}, ahead_um,
+                                                     margin_um, planner_of(scenario));
   return {.time_s = run.readings.time_s,
           .drift_um = drift_um,
           .predicted_um = ahead_um,
           .left_um = corrected.residual_um,
           .before = corrected.before,
-          .after = corrected.after};
+          .after = corrected.after,
+          .margin_um = margin_um};
+}
+
+/// The run's own rows, its time from 0, once all is judged.
+void drop_lead_in(Outcome& o, std::size_t n_before) {
+  if (n_before == 0) return;
+  for (std::vector<double>* values : {&o.time_s, &o.drift_um, &o.predicted_um, &o.left_um})
+    values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(n_before));
+  const double start_s = o.time_s.front();
+  for (double& t_s : o.time_s) t_s -= start_s;
 }
 
 /// What ISO 230-3 asks of the drift, and of what is left of it.
 Iso230Figures iso_figures(const Outcome& o, const ObservedRun& run, const std::string& channel) {
+  if (run.n_before > 0)
+    return {.running_period_s = 0.0, .channels = {}, .not_available = "the run goes on from what came before it"};
   Record test{.source = run.readings.source,
               .time_s = o.time_s,
               .channels = {{"speed", "rpm", {}}, {channel, "um", o.drift_um}, {channel + " corrected", "um", o.left_um}}};
   for (double t_s : o.time_s) test.channels.front().values.push_back(run.cyclogram.speed_rpm(t_s));
   return iso230_3_figures(test);
+}
+
+/// What verdict and margin of a live predictor do not say of a plan, a sentence each; none where nothing is planned.
+std::vector<std::string> reservations_about(const DeployedPredictor& d, const Outcome& o, const std::string& verdict,
+                                            double tolerance_um) {
+  std::vector<std::string> sentences;
+  if (!o.margin_um) return sentences;
+  if (!verdict.empty())
+    sentences.push_back(
+        fmt::format("The verdict '{}' is of '{}' as it follows readings live; the plan, made before the run, was not judged "
+                    "by `validate`.",
+                    verdict, d.name));
+  sentences.push_back(
+      d.interval_um
+          ? fmt::format(
+                "The plan keeps a margin of {:.2f} um: the error of the live predictor on training runs (half of its "
+                "95 % interval{}), not that of a prediction ahead.",
+                *o.margin_um, *d.interval_um > 0.5 * tolerance_um ? ", cut to half of the tolerance" : "")
+          : "The plan keeps no margin, for the predictor has no interval.");
+  return sentences;
 }
 
 std::string corrected_csv(const Outcome& o, const std::vector<std::string>& comments) {
@@ -190,6 +284,7 @@ void compensate(const CompensateOptions& options) {
   if (is_measured && (options.through != "none" || !options.cyclogram.empty() || options.model == "modes"))
     throw InputError(
         "--measured goes with --through none and a predictor's file, and without --cyclogram: a record says what happened");
+  if (!options.after.empty()) require_continues(scenario, options);
   if (!is_measured) (void)require_machine(scenario, "compensate");
   std::optional<DeployedPredictor> predictor;
   Json judged_as;
@@ -200,7 +295,12 @@ void compensate(const CompensateOptions& options) {
   }
   const Cyclogram* cyclogram = nullptr;
   if (!is_measured) cyclogram = &scenario.cyclogram(options.cyclogram.empty() ? study.judge : options.cyclogram);
-  refuse_trained_on(judged_as, options.model, is_measured ? options.measured : cyclogram->name);
+  if (is_measured) {
+    refuse_trained_on_record(judged_as, options.model, options.measured);
+  } else {
+    refuse_trained_on_cyclogram(judged_as, options.model, cyclogram->name);
+  }
+  if (predictor && !is_measured) require_inputs(scenario, *predictor, options.model);
   if (options.through == "injector") require_axis(scenario, predictor ? predictor->target : study.target);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
@@ -208,13 +308,19 @@ void compensate(const CompensateOptions& options) {
   std::vector<double> ahead_um;
   if (is_measured) {
     RecordOptions measured;
-    measured.test = {options.measured};
+    if (!options.after.empty()) measured.test.push_back(options.after);
+    measured.test.push_back(options.measured);
     StudyRecords records = read_records(scenario, measured, &predictor->hall);
     for (const std::vector<std::string>* notes : {&records.notes, &records.findings}) {
       for (const std::string& note : *notes) fmt::print("note: {}\n", note);
     }
-    require_model_follows(scenario, *predictor, records);
-    run = std::move(records.test.front());
+    run = std::move(records.test.back());
+    if (!options.after.empty() && run.n_before == 0)
+      throw InputError(
+          fmt::format("{} does not continue {}: its times must begin within five rows of the other's end, with the same "
+                      "channels in the same units",
+                      options.measured, options.after));
+    require_model_follows(scenario, *predictor, run, records.hall);
   } else {
     const Model model = open_model(scenario, {cyclogram}, progress, false);
     if (const scenarios::Machine* full = model.full())
@@ -222,9 +328,20 @@ void compensate(const CompensateOptions& options) {
     // a predictor knows what is recorded, as in validate_strategies(), and not what the scenario's effects make of it
     run = {*cyclogram, scenario.machine->hall,
            std::move(simulate_cyclograms(scenario, model, {cyclogram}, progress, 0, nullptr).front().record)};
+    if (options.through == "none" && predictor) {
+      std::optional<Record> read;
+      if (scenario.validation) read = as_judged(*scenario.validation, cyclogram->name, run.readings);
+      if (read) {
+        fmt::print("note: thermometers read with noise and steps, as in this run of `validate`\n");
+      } else {
+        fmt::print("note: thermometers read exactly, for `validation` does not judge '{}' in the scenario's hall\n",
+                   cyclogram->name);
+      }
+      if (read) run.readings = std::move(*read);
+    }
     if (!predictor) {
       predictor = by_thermal_modes(*scenario.machine, model.outputs(), modes_for(scenario, model, *cyclogram), study.target);
-      predictor->name = "thermal modes of the model";
+      predictor->name = fmt::format("{} thermal modes in the mean drive", study.thermal_modes);
     }
     if (options.through == "schedule") {
       // a formula reads temperatures that the modes foretell; anything else has drive and hall alone
@@ -239,9 +356,10 @@ void compensate(const CompensateOptions& options) {
   progress.begin("correcting");
   run.readings.channels[static_cast<std::size_t>(&run.readings.at(d.target) - run.readings.channels.data())] =
       scored_readings(run, d.target, d.from_start).at(d.target);
-  const Outcome o = options.through == "none"       ? through_none(d, run)
-                    : options.through == "injector" ? through_injector(scenario, d, run)
-                                                    : through_schedule(scenario, d, run, ahead_um);
+  Outcome o = options.through == "none"       ? through_none(d, run)
+              : options.through == "injector" ? through_injector(scenario, d, run)
+                                              : through_schedule(scenario, d, run, ahead_um);
+  drop_lead_in(o, run.n_before);
   const std::string what = is_measured ? run.readings.source : cyclogram->name;
   const double removed = 100.0 * (1.0 - o.after.peak_abs / o.before.peak_abs);
   const std::string way = options.through == "none" ? "without an actuator" : "through the " + options.through;
@@ -261,6 +379,11 @@ void compensate(const CompensateOptions& options) {
                   {"removed_percent", removed},
                   {"rms_before_um", o.before.rmse},
                   {"rms_left_um", o.after.rmse}};
+  const std::vector<std::string> reservations = reservations_about(d, o, verdict_of(judged_as), study.tolerance_um);
+  if (o.margin_um) {
+    summary["margin_um"] = *o.margin_um;
+    summary["judged_as"] = "live";
+  }
   std::vector<double> t_min;
   for (double t_s : judged(o, o.time_s)) t_min.push_back(t_s / 60.0);
   output::Report page{.title = title,
@@ -280,6 +403,7 @@ void compensate(const CompensateOptions& options) {
                               {.label = "predicted", .x = t_min, .y = judged(o, o.predicted_um)},
                               {.label = "left", .x = t_min, .y = judged(o, o.left_um)}},
                    .bands = {{.label = "tolerance", .low = -study.tolerance_um, .high = study.tolerance_um}}});
+  for (const std::string& sentence : reservations) page.blocks.emplace_back(output::Paragraph{sentence});
   summary["iso_230_3"] = iso230_3_json(iso);
   page.blocks.push_back(iso230_3_block(iso));
   folder.write_text("corrected.csv",
@@ -289,6 +413,7 @@ void compensate(const CompensateOptions& options) {
   folder.commit();
   progress.end();
   if (const std::string verdict = verdict_of(judged_as); !verdict.empty()) fmt::print("judged by `validate`: {}\n", verdict);
+  for (const std::string& sentence : reservations) fmt::print("{}\n", sentence);
   fmt::print(
       "{} by {} {}: peak {:.1f} um left of {:.1f} um ({:.0f} % removed), RMS {:.2f} of {:.2f} um\nreport in "
       "{}\n",

@@ -189,6 +189,9 @@ int main(int argc, char** argv) {
   verb->add_option("--cyclogram", compensate.cyclogram, "name in the scenario [the one that `study` judges by]");
   verb->add_option("--measured", compensate.measured,
                    "record CSV with readings and drift, in place of a simulation; with --through none");
+  verb->add_option("--after", compensate.after,
+                   "record CSV that --measured continues, which lags begin with; without it the machine counts as at rest "
+                   "before");
   verb->callback([&] { app::compensate(compensate); });
   verb = add_verb(cli, "calibrate", "the scenario's uncertain numbers, fitted to measured records, with intervals",
                   "calibrate scenarios/fp3_spindle.yaml --measured good.csv -o results/calibration", calibrate);

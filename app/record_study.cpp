@@ -74,14 +74,9 @@ std::vector<std::tuple<std::string, std::string, std::string>> exchanged(const s
 }
 
 using compensation::ObservedRun;
+using scenarios::is_same_file;
 using scenarios::RecordPart;
 using scenarios::RunRows;
-
-/// However the two are written.
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code unknown;
-  return a == b || std::filesystem::equivalent(a, b, unknown);
-}
 
 /// A file, read once, whatever parts of it are asked for.
 struct ReadFile {
@@ -177,6 +172,9 @@ ObservedRun observed(const ReadFile& file, const RunRows& rows, const std::strin
                   .history = fmt::format("{} from row {}", file.path, rows.history)};
   run.readings.source = name;
   const std::vector<double>& t = file.record.time_s;
+  run.rows = {.file = std::filesystem::absolute(file.path).lexically_normal().string(),
+              .first_s = t[rows.first] - t[file.n_before],
+              .last_s = t[rows.last - 1] - t[file.n_before]};
   if (rows.history == 0 && rows.last == t.size()) return run;
   run.cyclogram = scenarios::part_of(run.cyclogram, t[rows.history], t[rows.last - 1]);
   run.hall = scenarios::part_of(run.hall, t[rows.history], t[rows.last - 1]);

@@ -128,14 +128,14 @@ bool is_worse_than_nothing(const Case& c) {
   return c.after.rmse > c.before.rmse || c.after.peak_abs > c.before.peak_abs;
 }
 
-/// Of the cases that leave more than no correction would, the one with the most above it; null: none does.
-const Case* worst_beside_nothing(const JudgedStrategy& s) {
+/// Of the cases that count and leave more than no correction would, the one with the most above it; null: none does.
+const Case* worst_beside_nothing(const JudgedStrategy& s, const std::function<bool(const Case&)>& counts) {
   const auto excess_um = [](const Case& c) {
     return std::max(c.after.peak_abs - c.before.peak_abs, c.after.rmse - c.before.rmse);
   };
   const Case* worst = nullptr;
   for (const Case& c : s.cases) {
-    if (is_worse_than_nothing(c) && (!worst || excess_um(c) > excess_um(*worst))) worst = &c;
+    if (counts(c) && is_worse_than_nothing(c) && (!worst || excess_um(c) > excess_um(*worst))) worst = &c;
   }
   return worst;
 }
@@ -146,6 +146,17 @@ std::string where_of(const StrategyMatrix& m, const Case& c) {
                      c.failed.empty() ? "" : fmt::format(" with {}", c.failed));
 }
 
+template <class F>
+std::vector<std::string> each_once(const std::vector<JudgedRunOfMachine>& runs, F name) {
+  std::vector<std::string> names;
+  for (const JudgedRunOfMachine& r : runs) {
+    if (std::find(names.begin(), names.end(), name(r)) == names.end()) names.push_back(name(r));
+  }
+  return names;
+}
+
+}  // namespace
+
 void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const double tolerance = m.settings.tolerance_um;
   const Worst all = worst_of(s, [](const Case&) { return true; });
@@ -153,10 +164,9 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const auto keeps = [&](const Case& c) { return c.after.peak_abs <= tolerance; };
   // a little more than before while the drift passes through 0 is no harm
   const auto harms = [&](const Case& c) { return c.after.peak_abs > tolerance && c.harm_um > tolerance; };
-  const Case* worse = worst_beside_nothing(s);
+  const Case* worse = worst_beside_nothing(s, [](const Case&) { return true; });
   s.is_worse_than_nothing = worse != nullptr;
-  const bool harms_beyond =
-      std::any_of(s.cases.begin(), s.cases.end(), [&](const Case& c) { return is_worse_than_nothing(c) && !keeps(c); });
+  const Case* worse_beyond = worst_beside_nothing(s, [&](const Case& c) { return !keeps(c); });
   const auto beside_nothing = [&](const Case& c) {
     return fmt::format(
         "more is left than without any correction, RMS {:.1f} instead of {:.1f} um and peak {:.1f} instead of {:.1f} um {}",
@@ -172,9 +182,9 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
                             : fmt::format("; only {} run{} tried", m.runs.size(), m.runs.size() == 1 ? " was" : "s were"));
     return;
   }
-  if (harms_beyond) {
+  if (worse_beyond) {
     s.safety = Safety::kUnsafe;
-    s.why = beside_nothing(*worse);
+    s.why = beside_nothing(*worse_beyond);
     return;
   }
   const auto harm = std::max_element(s.cases.begin(), s.cases.end(), [&](const Case& a, const Case& b) {
@@ -208,17 +218,6 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst : worst;
   if (worse) s.why = fmt::format("{}, inside the tolerance, though; {}", beside_nothing(*worse), s.why);
 }
-
-template <class F>
-std::vector<std::string> each_once(const std::vector<JudgedRunOfMachine>& runs, F name) {
-  std::vector<std::string> names;
-  for (const JudgedRunOfMachine& r : runs) {
-    if (std::find(names.begin(), names.end(), name(r)) == names.end()) names.push_back(name(r));
-  }
-  return names;
-}
-
-}  // namespace
 
 std::vector<std::string> families_of(const StrategyMatrix& matrix) {
   return each_once(matrix.runs, [](const JudgedRunOfMachine& r) { return r.family; });

@@ -75,6 +75,9 @@ struct Judgement {
 [[nodiscard]] StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
                                               std::vector<JudgedRunOfMachine> runs);
 
+/// Sets `safety`, `is_worse_than_nothing`, `why` and `limits` by the cases of a strategy; nothing where it has none.
+void give_verdict(const StrategyMatrix& matrix, JudgedStrategy& strategy);
+
 /// Over some cases of a strategy: the worst.
 struct Worst {
   const Case* peak = nullptr;  ///< largest peak left; null: no case

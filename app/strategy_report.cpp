@@ -318,7 +318,13 @@ Json conditions_json(const StrategyMatrix& m) {
             {"sensors_fail_at", m.settings.fails_at ? Json(*m.settings.fails_at) : Json(nullptr)},
             {"reading_K", m.settings.strategies.reading_K},
             {"drift_um", m.settings.strategies.drift_um}};
-  for (const ObservedRun& r : m.training) j["trained_on"].push_back(r.readings.source);
+  for (const ObservedRun& r : m.training) {
+    if (r.rows.file.empty()) {
+      j["trained_on"].push_back(r.readings.source);
+    } else {
+      j["trained_on"].push_back({{"file", r.rows.file}, {"from_s", r.rows.first_s}, {"until_s", r.rows.last_s}});
+    }
+  }
   return j;
 }
 
@@ -394,7 +400,6 @@ std::string strategy_text(const StrategyMatrix& m) {
 void write_models(const StrategyMatrix& m, const std::vector<effects::Effect>& effects, output::ResultsFolder& folder) {
   bool has_formulas = false;
   for (const JudgedStrategy& s : m.strategies) {
-    if (s.fitted.is_baseline) continue;
     std::string name;
     for (char ch : s.fitted.name) {
       if (std::isalnum(static_cast<unsigned char>(ch))) {

@@ -50,6 +50,15 @@ ObservedRun simulate(const Scenario& scenario, const Model& model, const Job& jo
   return result;
 }
 
+Thermometers instrument_of(const Validation& v) {
+  return {.noise_K = v.noise_K, .resolution_K = v.resolution_K};
+}
+
+/// @param run  index among training runs and, behind them, those judged
+std::uint64_t seed_of(const Validation& v, std::size_t run) {
+  return 1000 * static_cast<std::uint64_t>(v.seed) + run;
+}
+
 std::string speed_channel(const Record& record) {
   const Channel* speed = record.find("speed");
   if (!speed || speed->unit != "rpm") return {};
@@ -169,6 +178,19 @@ std::vector<std::string> usable_sensors(const std::vector<Record>& records, cons
   return usable;
 }
 
+std::optional<Record> as_judged(const Validation& v, const std::string& cyclogram, const Record& exact) {
+  std::size_t run = v.train.size();
+  for (const Validation::Family& family : v.families) {
+    for (const Validation::Season& season : v.seasons) {
+      for (const Cyclogram& c : family.cyclograms) {
+        if (&season == &v.seasons.front() && c.name == cyclogram) return as_read(exact, instrument_of(v), seed_of(v, run));
+        ++run;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model, Progress& progress) {
   const Validation& v = *scenario.validation;
   const scenarios::Study& study = *scenario.study;
@@ -205,12 +227,10 @@ StrategyMatrix validate_strategies(const Scenario& scenario, const Model& model,
     if (failure) std::rethrow_exception(failure);
   }
   const std::vector<std::string> candidates = candidate_sensors(study, runs.front().readings);
-  const Thermometers instrument{.noise_K = v.noise_K, .resolution_K = v.resolution_K};
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const std::uint64_t seed = 1000 * static_cast<std::uint64_t>(v.seed) + i;
-    runs[i].readings = as_read(std::move(runs[i].readings), instrument, seed);
+    runs[i].readings = as_read(std::move(runs[i].readings), instrument_of(v), seed_of(v, i));
     if (i >= v.train.size()) continue;
-    Random random(seed, 99);
+    Random random(seed_of(v, i), 99);
     const auto target = static_cast<std::size_t>(&runs[i].readings.at(study.target) - runs[i].readings.channels.data());
     for (double& um : runs[i].readings.channels[target].values) um += v.drift_noise_um * random.normal();
   }

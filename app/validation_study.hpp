@@ -14,6 +14,11 @@ namespace driftwright::app {
 [[nodiscard]] StrategyMatrix validate_strategies(const scenarios::Scenario& scenario, const Model& model,
                                                  Progress& progress);
 
+/// The readings of a cyclogram in the scenario's own hall as validate_strategies() gives them to strategies, with the noise of that very run;
+/// none where it judges no such run. @param exact  as simulated
+[[nodiscard]] std::optional<Record> as_judged(const scenarios::Validation& validation, const std::string& cyclogram,
+                                              const Record& exact);
+
 /// Strategies on measured records (app/record_study.hpp). Those with physics take part where the scenario has a machine that is linear, drift counts from the start
 /// of each record, and the records say what drove it.
 [[nodiscard]] StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, StudyRecords records,

@@ -72,6 +72,7 @@ struct CompensateOptions : CommonOptions {
   std::string through;    ///< none, injector, schedule, frame
   std::string cyclogram;  ///< name; empty: the one that the study judges by
   std::string measured;   ///< a record CSV in place of a simulation; empty: simulate
+  std::string after;      ///< with `measured`: the record that it continues; empty: none
 };
 void compensate(const CompensateOptions& options);
 

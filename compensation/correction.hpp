@@ -1,5 +1,6 @@
 #pragma once
-// A predicted drift put into the machine, and what is left: the one place where strategies are scored.
+// A predicted drift put into the machine by the encoder's periods or by a plan, and what is left. Corrections that follow readings live are
+// scored by judge() (app/strategy_matrix.hpp), those of a simulated axis by run_axis_loop() (axis_loop.hpp).
 
 #include <optional>
 #include <span>

@@ -23,6 +23,7 @@ constexpr double kJumpRoom = 2.0;   // times the largest
 constexpr double kSlewRoom = 2.0;   // times the largest rate of the prediction, over ten rows
 constexpr double kApartRoom = 2.0;  // times the largest distance on a run left out
 constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 1.5;  // below, instruments are what is seen
+constexpr double kLeastRoomOfDrive = 0.02;  // of the largest speed or power: one that never changed is told to no more
 constexpr double kMoved_K = 3.0, kNeverApart_K = 1e3;  // less than that is no movement to learn a relation from
 constexpr double kRidge = 0.03;                        // penalty of a relation, columns of unit deviation
 constexpr std::size_t kSlewRows = 10;
@@ -158,7 +159,8 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
         if (i > 0 && std::isfinite(x[i] - x[i - 1])) jump = std::max(jump, std::abs(x[i] - x[i - 1]));
       }
     }
-    const double room = std::max(kRangeRoom * range.width(), is_speed ? 0.0 : kLeastRoom_K);
+    const double largest = std::max(std::abs(range.low), std::abs(range.high));
+    const double room = std::max(kRangeRoom * range.width(), is_speed ? kLeastRoomOfDrive * largest : kLeastRoom_K);
     g.low = range.low - room;
     g.high = range.high + room;
     g.most_jump = is_speed ? std::numeric_limits<double>::infinity() : std::max(kJumpRoom * jump, kLeastJump_K);

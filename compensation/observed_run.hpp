@@ -10,6 +10,12 @@
 
 namespace driftwright::compensation {
 
+/// Rows of a record's file, by the times of the first and the last, both since the first row of the file.
+struct RowsOfFile {
+  std::string file = {};  ///< absolute; "": of no file
+  double first_s = 0.0, last_s = 0.0;
+};
+
 /// Rows [n_before, n_samples) are the run; those before it are its lead-in, from the last time on at which the machine was in balance. Predictors
 /// follow the lead-in, so that what has a memory - lags, states of a model, a fail-safe - starts the run with what came before it; nothing is fitted
 /// to its drift, and it is not scored. Where temperatures and drift count from the start, they count from the first row of the lead-in.
@@ -18,6 +24,7 @@ struct ObservedRun {
   TimeSeries hall;           ///< minus the reference temperature [K]
   Record readings;           ///< channels named as the model's outputs; temperatures in degC, displacements in um
   std::size_t n_before = 0;  ///< rows of lead-in, less than all
+  RowsOfFile rows = {};      ///< the run's own, where it was measured
   std::string history = {};  ///< runs that share it are of one record and begin at the same row of it; "": of none
 };
 

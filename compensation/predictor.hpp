@@ -1,6 +1,7 @@
 #pragma once
 // What tells the drift of a machine, whatever it is made of: a formula, a model, a model that reads thermometers, or what was measured
-// before. One object is fitted, judged, kept in a file and followed row by row.
+// before. It is fitted already, and followed row by row. With fail-safe and interval it is a DeployedPredictor (deployed_predictor.hpp), which
+// `validate` judges and keeps in a file; what `run` fits, and modes of `compensate --model modes`, are judged on their run and kept in none.
 
 #include <memory>
 #include <string>

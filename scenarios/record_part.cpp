@@ -27,6 +27,11 @@ double read_time_s(const std::string& text, const std::string& argument) {
   }
 }
 
+/// A time that no row of that very time misses, for sums of decimal fractions are off by rounding.
+double before(double time_s) {
+  return std::isfinite(time_s) ? time_s - 1e-9 * std::max(1.0, time_s) : time_s;
+}
+
 std::string hours(double time_s) {
   return fmt::format("{:.6g} h", time_s / 3600.0);
 }
@@ -49,9 +54,8 @@ std::pair<std::size_t, std::size_t> rows_of(const RecordPart& part, const Record
   const std::vector<double>& t = record.time_s;
   if (part.is_whole()) return {0, t.size()};
   const double last_s = t.back() - t.front(), step_s = last_s / static_cast<double>(t.size() - 1);
-  const auto row = [&](double time_s) {  // the first at or after it; sums of decimal fractions may miss it by rounding
-    const double at_s = t.front() + time_s - 1e-9 * std::max(1.0, time_s);
-    return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), at_s) - t.begin());
+  const auto row = [&](double time_s) {  // the first at or after it
+    return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), t.front() + before(time_s)) - t.begin());
   };
   if (part.from_s > last_s || (std::isfinite(part.until_s) && part.until_s > last_s + step_s))
     throw InputError(fmt::format("{}: the record is {} long", part.words, hours(last_s)));
@@ -60,6 +64,15 @@ std::pair<std::size_t, std::size_t> rows_of(const RecordPart& part, const Record
     throw InputError(
         fmt::format("{}: the part holds {} rows; {} at least are wanted", part.words, last - first, kFewestRows));
   return {first, last};
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code unknown;
+  return a == b || std::filesystem::equivalent(a, b, unknown);
+}
+
+bool has_rows_of(const RecordPart& part, const std::string& file, double first_s, double last_s) {
+  return is_same_file(part.file, file) && last_s >= before(part.from_s) && first_s < before(part.until_s);
 }
 
 void refuse_overlap(const RecordPart& a, const RecordPart& b) {

@@ -27,6 +27,12 @@ struct RecordPart {
 /// @throws InputError  for a part that the record does not have, or one that holds fewer than three rows
 [[nodiscard]] std::pair<std::size_t, std::size_t> rows_of(const RecordPart& part, const Record& record);
 
+/// However their paths are written.
+[[nodiscard]] bool is_same_file(const std::string& a, const std::string& b);
+
+/// Whether the part has rows in common with those of `file` from first_s to last_s, times of rows since the first row of the file.
+[[nodiscard]] bool has_rows_of(const RecordPart& part, const std::string& file, double first_s, double last_s);
+
 /// @throws InputError  where both have rows of one file in common
 void refuse_overlap(const RecordPart& a, const RecordPart& b);
 

@@ -69,6 +69,28 @@ TEST(PredictorFile, AFormulaComesBackToTheLastDigit) {
   }
 }
 
+// Tests at one speed, or at rest, leave a drive no width.
+TEST(PredictorFile, AFailSafeLearntAtOneSpeedComesBack) {
+  for (const double speed_rpm : {3000.0, -3000.0, 0.0}) {
+    std::vector<Record> training = {fixtures::machine(1, 60.0), fixtures::machine(2, 60.0)};
+    PredictorFile file = formula(false);
+    std::vector<std::vector<double>> predicted;
+    for (Record& r : training) {
+      std::fill(r.channels.back().values.begin(), r.channels.back().values.end(), speed_rpm);
+      predicted.push_back(as_formula(*file.predictor.predictor)->predict(r));
+    }
+    file.predictor.fail_safe = learn_fail_safe(training, {"X1", "X2", "X3", "X4", "spindle"}, predicted, false);
+    const PredictorFile read = back(file);
+    expect_same(file, read);
+    ObservedRun run = machine(7);
+    std::fill(run.readings.channels.back().values.begin(), run.readings.channels.back().values.end(), speed_rpm);
+    const GuardedCorrection as_fitted = correct(file.predictor, run);
+    EXPECT_EQ(as_fitted.correction_um, correct(read.predictor, run).correction_um);
+    for (double& v : run.readings.channels.back().values) v *= 1.01;  // as an encoder reads it
+    EXPECT_EQ(correct(read.predictor, run).trust, as_fitted.trust) << speed_rpm;
+  }
+}
+
 TEST(PredictorFile, WhatWasMeasuredBeforeComesBack) {
   PredictorFile file;
   file.predictor = {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "base/errors.hpp"
 #include "compensation/drift_model.hpp"
@@ -146,6 +147,17 @@ TEST(RecordPart, RefusesWhatIsNoPart) {
   EXPECT_THAT([&] { overlap("week.csv:0h..1.5h", "./week.csv:1h..2h"); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("week.csv:0h..1.5h"), HasSubstr("overlap"))));
   EXPECT_THAT([&] { overlap("week.csv", "week.csv:1h..2h"); }, ThrowsMessage<InputError>(HasSubstr("overlap")));
+}
+
+TEST(RecordPart, KnowsWhetherItHasRowsOfOthers) {
+  const std::string week = write_file("week.csv", ""), other = write_file("other.csv", "");
+  const auto has = [&](const std::string& part) {  // of the rows from 1 h to 2 h
+    return has_rows_of(read_record_part(part), week, 3600.0, 7200.0);
+  };
+  for (const char* part : {"", ":0h..", ":..1.5h", ":2h..", ":1.2h..1.3h", ":0h..9h"}) EXPECT_TRUE(has(week + part)) << part;
+  for (const char* part : {":..1h", ":0h..30min", ":2.01h..", ":3h..4h"}) EXPECT_FALSE(has(week + part)) << part;
+  EXPECT_TRUE(has(std::filesystem::relative(week).string() + ":1h..2h"));
+  EXPECT_FALSE(has(other));
 }
 
 TEST(RecordRuns, PartsOfDriveAndHall) {
