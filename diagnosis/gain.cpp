@@ -15,7 +15,9 @@ namespace {
 constexpr double kFitted = 2.0 / 3.0;  // of a single run
 constexpr int kBlocks = 6;             // of a run, every other one kept out
 constexpr double kNoSolution = -1e6;   // nats of a fold that no numbers fit
-constexpr double kWorse = 1.1;         // of the squares
+// What a kept-out record has of its own, such as its hall, is in the misses and says nothing of a claim: they count where likelihood is not clear.
+constexpr double kSurelyLikelier = 10.0;  // nats
+constexpr double kWorse = 1.1;            // of the squares
 
 /// Rows that numbers are fitted to, and the others. Both have all runs; readings that are not theirs are missing.
 struct Fold {
@@ -236,7 +238,8 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
       const Subset without = kept & ~(1U << c);
       if (without == kept) continue;
       const double nats = judge.judged(without).log_predictive - judge.judged(kept).log_predictive;
-      const bool is_worse = squares > kWorse * judge.squares_over_noise(judge.judged(without).predicted);
+      const bool is_worse =
+          nats > -kSurelyLikelier && squares > kWorse * judge.squares_over_noise(judge.judged(without).predicted);
       if (nats > most || (is_worse && best == kept)) {
         most = std::max(most, nats);
         best = without;
