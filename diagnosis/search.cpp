@@ -14,6 +14,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
+constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a name
 constexpr int kMostTurns = 6;
 constexpr double kSettled = 0.05;  // of Φ
 constexpr double kBent =
@@ -95,6 +96,11 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
     fits[i].log_evidence -= law_price(candidates, chosen[i].candidate);
     fitted.push_back({jobs[i].first.back(), std::move(fits[i])});
   }
+  std::erase_if(fitted, [&](const Fitted& f) {  // nobody would mend a factor so near to one
+    const Knob& size = f.claim.knobs[0];
+    return size.scale == Knob::Scale::kLog && f.fit.x.size() > 0 &&
+           std::abs(f.fit.x[f.fit.x.size() - static_cast<Eigen::Index>(f.claim.knobs.size())]) < kLeastFactor;
+  });
   std::sort(fitted.begin(), fitted.end(),
             [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
   // one law a candidate
