@@ -85,8 +85,6 @@ struct Diagnosis {
   /// Causes, intervals and gains count what the model misses as noise: it misses far more than noise, whatever is claimed.
   bool weighed_by_model_error = false;
   std::string holdout;  ///< how the gain was held out
-  bool keeps_numbers =
-      true;  ///< false: the scenario as written predicts kept-out rows better than what was fitted; nothing of it is written
   std::vector<ChannelGain> gain;
   /// What the scenario with its numbers fitted, and no cause, misses over time, body by body and displacement by displacement.
   std::vector<Waveform> waveforms;

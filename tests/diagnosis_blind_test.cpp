@@ -114,8 +114,8 @@ TEST_P(LoudEffects, AreNamedAtTheirPlace) {
   EXPECT_GT(n_loud, 0);
   EXPECT_LE(t.diagnosis.causes.size(), t.truth["effects"].size()) << t.diagnosis.reason;
   for (const ChannelGain& g : t.diagnosis.gain) {  // kept out of the fit: within a fifth of the noise
-    // what is not known of the hall of a record that nothing was fitted to, 0.3 K, is in it
-    EXPECT_LT(g.rmse_after, std::hypot(1.2 * g.noise_floor, g.unit == "K" ? 0.3 : 1.0)) << g.name;
+    // what is not known of the hall of a record that nothing was fitted to is in it: 0.3 K, and 2 um of each kelvin
+    EXPECT_LT(g.rmse_after, std::hypot(1.2 * g.noise_floor, g.unit == "K" ? 0.3 : 0.6)) << g.name;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, LoudEffects, testing::Values(0, 24, 43, 45, 47, 49, 57));
