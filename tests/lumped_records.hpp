@@ -20,11 +20,11 @@ inline std::string with_effect(std::string text, const std::string& entry) {
 
 /// Records of all cyclograms of a scenario, by the full model, with noise, as files.
 inline std::vector<std::string> noisy_records(const std::string& scenario, const std::string& prefix, double row_s,
-                                              double noise_K, double noise_um) {
+                                              double noise_K, double noise_um, std::uint64_t seed = 5) {
   const scenarios::Scenario s = scenarios::read_scenario(scenario);
   const scenarios::MachineModel& model = *s.machine;
   const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
-  Random random(5, 0);
+  Random random(seed, 0);
   std::vector<std::string> paths;
   for (const Cyclogram& c : s.cyclograms) {
     const scenarios::FeltRun felt = scenarios::felt_run(model, c);
@@ -63,8 +63,10 @@ struct Beside {
   }
   Beside(const Beside&) = delete;  // the twin looks at its parts
   Beside& operator=(const Beside&) = delete;
-  [[nodiscard]] Diagnosis diagnosed() const {
-    return diagnose(*twin, nullptr, runs, {}, [](const std::string&) {});
+  [[nodiscard]] Diagnosis diagnosed(int most_effects = 3) const {
+    DiagnosisOptions how;
+    how.most_effects = most_effects;
+    return diagnose(*twin, nullptr, runs, how, [](const std::string&) {});
   }
 };
 

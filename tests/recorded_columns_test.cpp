@@ -13,6 +13,7 @@
 #include "scenarios/as_recorded.hpp"
 #include "scenarios/machine.hpp"
 #include "solver/transient.hpp"
+#include "tests/lumped_records.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::diagnosis {
@@ -97,30 +98,6 @@ std::vector<std::string> records(const std::string& path, const std::string& nam
   }
   return paths;
 }
-
-/// A twin of a scenario beside records.
-struct Beside {
-  scenarios::Scenario scenario;
-  std::vector<MeasuredRun> runs;
-  AugmentedModel augmented;
-  scenarios::ReducedMachine machine;
-  std::optional<Twin> twin;
-
-  Beside(const std::string& path, const std::vector<std::string>& files) : scenario(scenarios::read_scenario(path)) {
-    const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
-    const solver::Outputs names = scenarios::output_names(*scenario.machine, placed);
-    for (const std::string& file : files) runs.push_back(read_measured(file, *scenario.machine, names));
-    augmented = augment(scenario, placed.mesh, runs);
-    const scenarios::MachineModel& model = augmented.model;
-    machine = scenarios::reduce(model, scenarios::build(model, scenarios::place(model)), augmented.plan);
-    twin.emplace(augmented, machine, solver::TransientOptions{.relative_tolerance = 1e-5, .absolute_tolerance_K = 1e-4});
-  }
-  [[nodiscard]] Diagnosis diagnosed() const {
-    DiagnosisOptions how;
-    how.most_effects = 3;
-    return diagnose(*twin, nullptr, runs, how, [](const std::string&) {});
-  }
-};
 
 struct Hidden {
   const char* name;
