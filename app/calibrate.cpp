@@ -22,8 +22,7 @@ void calibrate(const CalibrateOptions& options) {
   const diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how,
                                                      [&](const std::string& work) { progress.begin(work); });
   progress.begin("writing");
-  const std::vector<diagnosis::Candidate> candidates = diagnosis::candidates(*m.twin, m.runs, {});
-  const std::string warning = calibration_warning(d, candidates);
+  const std::string warning = calibration_warning(d, d.search.candidates);
   std::vector<std::string> head = {
       fmt::format("{} with its numbers as `driftwright calibrate` fitted them", options.scenario)};
   for (const std::string& path : options.measured) head.push_back("  measured: " + path);
@@ -37,7 +36,7 @@ void calibrate(const CalibrateOptions& options) {
   json["warning"] = warning;
   json["calibrated_scenario"] = {{"written", calibrated.written}, {"not_written", calibrated.not_written}};
   folder.write_text("calibration.json", output::json_text(json));
-  const DiagnosisPage page{m, d, candidates, calibrated, difference, "calibrated.yaml"};
+  const DiagnosisPage page{m, d, d.search.candidates, calibrated, difference, "calibrated.yaml"};
   folder.write_text("report.html", output::render_html(calibration_report(page, folder.made_by())));
   folder.commit();
   progress.end();

@@ -10,6 +10,7 @@
 #include "app/diagnosis_summary.hpp"
 #include "app/measured_iso230_3.hpp"
 #include "app/results.hpp"
+#include "diagnosis/event_candidates.hpp"
 #include "output/json_text.hpp"
 
 namespace driftwright::app {
@@ -48,6 +49,7 @@ void diagnose(const DiagnoseOptions& options) {
   if (!options.without.empty()) {
     std::set<std::string> keys;
     for (const diagnosis::Candidate& c : diagnosis::candidates(*m.twin, m.runs, {})) keys.insert(c.effect);
+    keys.insert(std::begin(diagnosis::kEventKeys), std::end(diagnosis::kEventKeys));
     for (const std::string& key : options.without) {
       if (keys.contains(key)) continue;
       throw InputError(fmt::format("--without {}: no candidate has that key; there are {}", key, fmt::join(keys, ", ")));
@@ -56,7 +58,6 @@ void diagnose(const DiagnoseOptions& options) {
   diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how,
                                                [&](const std::string& work) { progress.begin(work); });
   progress.begin("writing");
-  const std::vector<diagnosis::Candidate> candidates = diagnosis::candidates(*m.twin, m.runs, m.how.without);
   std::string difference;
   std::vector<diagnosis::StatedChange> changes;  // in the order in which the fit makes them
   if (d.written.keeps_numbers) changes = stated_scatter(d, options.causes_only);
@@ -68,8 +69,8 @@ void diagnose(const DiagnoseOptions& options) {
   json["iso_230_3"] = iso230_3_json(measured_iso230_3(m));
   json["extended"] = {{"written", extended.written}, {"not_written", extended.not_written}};
   folder.write_text("diagnosis.json", output::json_text(json));
-  const bool has_mesh = write_missing_heat(m.mesh, missing_heat(d, candidates), folder);
-  const DiagnosisPage page{m, d, candidates, extended, difference, "extended.yaml"};
+  const bool has_mesh = write_missing_heat(m.mesh, missing_heat(d, d.search.candidates), folder);
+  const DiagnosisPage page{m, d, d.search.candidates, extended, difference, "extended.yaml"};
   folder.write_text("report.html", output::render_html(diagnosis_report(page, folder.made_by())));
   folder.commit();
   progress.end();

@@ -82,6 +82,21 @@ std::vector<Knob> knobs_of(const effects::Doubt& doubt) {
   return knobs;
 }
 
+std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidate>& list, const std::vector<Event>& events,
+                                                            const std::set<std::string>& without) {
+  std::vector<std::pair<std::size_t, std::size_t>> added;
+  for (const Event& e : events) {
+    if (without.contains(e.doubt.finding)) continue;
+    Variant v{e.doubt.law, knobs_of(e.doubt), e.doubt.trial, e.doubt.grid};
+    v.price_nats = e.price_nats;
+    v.happens = true;
+    Candidate& of = candidate(list, e.doubt.finding, e.doubt.where);
+    of.variants.push_back(std::move(v));
+    added.emplace_back(&of - list.data(), of.variants.size() - 1);
+  }
+  return added;
+}
+
 std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRun>& runs,
                                   const std::set<std::string>& without) {
   const effects::DoubtScene scene = scene_of(twin, runs);
@@ -100,12 +115,6 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
       if (parameter.doubted == effects::Doubted::kNo || std::isnan(e.values[p]) || e.values[p] == 0.0) continue;
       candidate(list, parameter.finding, effects::where_of(e)).variants.push_back(other_value(twin, i, p));
     }
-  }
-  for (const Event& e : events(twin, runs)) {
-    Variant v{e.doubt.law, knobs_of(e.doubt), e.doubt.trial, e.doubt.grid};
-    v.price_nats = e.price_nats;
-    v.happens = true;
-    candidate(list, e.doubt.finding, e.doubt.where).variants.push_back(std::move(v));
   }
   std::erase_if(list, [&](const Candidate& c) { return without.contains(c.effect) || c.variants.empty(); });
   return list;

@@ -8,6 +8,8 @@
 
 namespace driftwright::diagnosis {
 
+struct Event;
+
 /// One law of an effect: its size first, then what shapes it.
 struct Variant {
   std::string law;                               ///< in words
@@ -30,6 +32,10 @@ struct Candidate {
 /// @param without  keys of effects that are not looked for
 [[nodiscard]] std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRun>& runs,
                                                 const std::set<std::string>& without);
+
+/// Adds windows that were found as further laws of heat or exchange for a while. @returns  candidate and law of each
+std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidate>& list, const std::vector<Event>& events,
+                                                            const std::set<std::string>& without);
 
 /// The knobs of a doubt: the first one adds its effects to a state, the others turn numbers of those added last.
 [[nodiscard]] std::vector<Knob> knobs_of(const effects::Doubt& doubt);

@@ -25,14 +25,15 @@ double Chance::gain_at(double share) const {
 
 Chance chance_of(const Fitter& fitter, const std::vector<Candidate>& candidates, const std::vector<Signature>& columns,
                  const Fit& at) {
-  const Eigen::Index n = fitter.comparison().n();
+  const Eigen::Index n = fitter.comparison().n_condensed();
+  const Eigen::MatrixXd slopes = fitter.comparison().condensed(fitter.nuisance_slopes());
   const Eigen::VectorXd sd = fitter.nuisance_sd();
   Eigen::MatrixXd readings(n, kDraws), numbers(fitter.n_nuisance(), kDraws);
   Random noise(kSeed, 1), scatter(kSeed, 2);
   for (double& v : readings.reshaped()) v = noise.normal();
   for (double& v : numbers.reshaped()) v = scatter.normal();
-  readings.noalias() += fitter.nuisance_slopes() * (sd.asDiagonal() * numbers);
-  const Projection projection(fitter.nuisance_slopes(), sd, at.residual);
+  readings.noalias() += slopes * (sd.asDiagonal() * numbers);
+  const Projection projection(slopes, sd, fitter.comparison().condensed(at.residual));
   const Eigen::MatrixXd rest = projection.without(readings);
   const double price = std::log(std::max(1.0, static_cast<double>(candidates.size())));
   Eigen::MatrixXd gains(static_cast<Eigen::Index>(columns.size()), kDraws);

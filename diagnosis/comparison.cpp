@@ -19,7 +19,9 @@ Comparison::Comparison(const std::vector<MeasuredRun>& runs, const std::map<std:
     for (const MeasuredChannel& c : runs[r].channels) {
       whiteners_.emplace_back(noise.at(c.name), runs[r].time_s, present(c.value));
       blocks_.push_back({r, c.name, c.output, n_, whiteners_.back().n()});
-      n_ += whiteners_.back().n();
+      const Eigen::Index n = whiteners_.back().n(), together = std::max<Eigen::Index>(1, n / kEnough);
+      condensed_.push_back({n_condensed(), (n + together - 1) / together, together});
+      n_ += n;
     }
   }
   measured_.resize(n_);
@@ -36,6 +38,19 @@ Eigen::VectorXd Comparison::whitened(const Prediction& prediction) const {
     whiteners_[b].apply(series, w.segment(blocks_[b].first, blocks_[b].n));
   }
   return w;
+}
+
+Eigen::MatrixXd Comparison::condensed(const Eigen::Ref<const Eigen::MatrixXd>& whitened) const {
+  Eigen::MatrixXd few(n_condensed(), whitened.cols());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const Condensed& c = condensed_[b];
+    for (Eigen::Index k = 0; k < c.n; ++k) {
+      const Eigen::Index from = k * c.together, n = std::min(c.together, blocks_[b].n - from);
+      few.row(c.first + k) =
+          whitened.middleRows(blocks_[b].first + from, n).colwise().sum() / std::sqrt(static_cast<double>(n));
+    }
+  }
+  return few;
 }
 
 Eigen::VectorXd relative_speed(const MeasuredRun& run) {

@@ -31,9 +31,21 @@ class Comparison {
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
   [[nodiscard]] const Whitener& whitener(std::size_t block) const { return whiteners_[block]; }
 
+  /// Where the readings of a block are once neighbours are taken together: what moves slowly is told by fewer of them. A block that has at least
+  /// twice kEnough readings has kEnough or a few more; a shorter one all that it had.
+  struct Condensed {
+    Eigen::Index first, n, together;
+  };
+  static constexpr Eigen::Index kEnough = 200;
+  [[nodiscard]] const std::vector<Condensed>& condensed_blocks() const { return condensed_; }
+  [[nodiscard]] Eigen::Index n_condensed() const { return condensed_.empty() ? 0 : condensed_.back().first + condensed_.back().n; }
+  /// Whitened readings, a column each, with neighbours summed over the root of their number: noise stays of variance 1.
+  [[nodiscard]] Eigen::MatrixXd condensed(const Eigen::Ref<const Eigen::MatrixXd>& whitened) const;
+
  private:
   std::vector<Block> blocks_;
   std::vector<Whitener> whiteners_;
+  std::vector<Condensed> condensed_;
   Eigen::VectorXd measured_;
   Eigen::Index n_ = 0;
 };

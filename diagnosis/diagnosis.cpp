@@ -432,8 +432,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   for (const MeasuredRun& run : runs) {
     for (const MeasuredChannel& c : run.channels) n_readings += (c.value.array() == c.value.array()).count();
   }
-  const std::vector<Candidate> list = candidates(twin, runs, options.without);
-  d.n_candidates = static_cast<int>(list.size());
+  const std::vector<Candidate> standing = candidates(twin, runs, options.without);
+  const SearchOptions how{.most_effects = options.most_effects, .without = options.without};
 
   d.scatter = scatter(twin);
   for (Knob& k : hall_scatter(runs)) d.scatter.push_back(std::move(k));
@@ -448,7 +448,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.noise = estimate_noise(runs, d.as_written, options.floor);
   for (int pass = 0; pass < 2; ++pass) {
     own_fitter->set_noise(d.noise);
-    d.search = search(*own_fitter, list, {.most_effects = options.most_effects}, say);
+    d.search = search(*own_fitter, standing, how, say);
     const auto sharper = estimate_noise(runs, d.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(),
                                         [&](const auto& s) { return s.second.total() < 0.9 * d.noise.at(s.first).total(); });
@@ -477,10 +477,12 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     say("weighing again by what the model misses");
     own_fitter = fresh_fitter();
     own_fitter->set_noise(*rough);
-    d.search = search(*own_fitter, list, {.most_effects = options.most_effects}, say);
+    d.search = search(*own_fitter, standing, how, say);
     d.weighed_by_model_error = true;
     if (auto left = unexplained_of(*own_fitter, d.search, d.noise)) d.unexplained = std::move(left);
   }
+  const std::vector<Candidate>& list = d.search.candidates;
+  d.n_candidates = static_cast<int>(list.size());
   // Numbers that have gone too far are faults: they get the prior of one, and all are fitted anew.
   std::vector<double> known_to;
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);

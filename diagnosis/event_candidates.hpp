@@ -1,19 +1,29 @@
 #pragma once
-// Events that come again and again, as one cause: windows that the waveform of what is missing shows, of one size in all of them.
+// Events that come again and again, as one cause: windows of one size, in one run or in several.
 
-#include "diagnosis/twin.hpp"
+#include "diagnosis/fit.hpp"
+#include "diagnosis/projection.hpp"
 #include "effects/doubt.hpp"
 
 namespace driftwright::diagnosis {
 
 struct Event {
-  effects::Doubt
-      doubt;  ///< windows of heat or of an exchange, in one run or in several; its numbers: the size, and how much longer
-  double price_nats =
-      0.0;  ///< of their times, which were read off the data: the logarithm of how many rows each could have begun and ended at
+  effects::Doubt doubt;     ///< windows of heat or of an exchange; its numbers: the size, and how much longer, or when they come again
+  double price_nats = 0.0;  ///< of their times, which were read off the data
 };
 
-/// Where the waveform of a body, missing in the twin as written, has windows, in all runs together.
-[[nodiscard]] std::vector<Event> events(const Twin& twin, const std::vector<MeasuredRun>& runs);
+/// Keys of effects that events may have.
+inline constexpr const char* kEventKeys[] = {"exchange_window", "heat_window"};
+
+/// Where the waveform of a body, missing in the twin as written, has windows, in all runs together; each of their times at the price of all rows that it could
+/// have been at.
+[[nodiscard]] std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>& runs);
+
+/// Those that the whitened readings ask for beside a fit, by linear theory, in any body and between any two, what is known roughly taken off first
+/// (window_search.hpp).
+/// @param projection  of the fit, its readings condensed
+/// @throws SolveError  where the fit's state has no solution
+[[nodiscard]] std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit,
+                                               const Projection& projection);
 
 }  // namespace driftwright::diagnosis

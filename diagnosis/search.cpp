@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
 #include "diagnosis/chance.hpp"
+#include "diagnosis/event_candidates.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/projection.hpp"
 
@@ -27,12 +28,13 @@ Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   return {score.candidate, score.variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens};
 }
 
-/// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x.
+/// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x. Readings are condensed.
 Projection projection_of(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit) {
   Eigen::MatrixXd slopes(fit.residual.size(), fitter.n_nuisance() + fit.slopes.cols());
   slopes << fitter.nuisance_slopes(), fit.slopes;
   const Eigen::VectorXd about_zero = fit.residual + slopes * fit.x;
-  return {std::move(slopes), fitter.prior_sd(hypothesis), about_zero};
+  const Comparison& c = fitter.comparison();
+  return {c.condensed(slopes), fitter.prior_sd(hypothesis), c.condensed(about_zero)};
 }
 
 /// Fits some hypotheses side by side.
@@ -152,17 +154,18 @@ double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hy
 
 }  // namespace
 
-std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                  const Hypothesis& hypothesis, const Fit& fit) {
-  const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
-  struct Job {
-    std::size_t candidate, variant;
-  };
-  std::vector<Job> jobs;
+std::vector<Law> laws_of(const std::vector<Candidate>& candidates) {
+  std::vector<Law> laws;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    for (std::size_t v = 0; v < candidates[c].variants.size(); ++v) jobs.push_back({c, v});
+    for (std::size_t v = 0; v < candidates[c].variants.size(); ++v) laws.push_back({c, v});
   }
-  std::vector<std::vector<Signature>> lists(jobs.size());
+  return laws;
+}
+
+std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
+                                  const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit) {
+  const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
+  std::vector<std::vector<Signature>> lists(laws.size());
   Prediction responses;
   {
     Twin::Workspace workspace(fitter.twin());
@@ -174,15 +177,15 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
     Prediction kept;
   };
   for_each_index(
-      jobs.size(),
+      laws.size(),
       [&] {
         return Space{Twin::Workspace(fitter.twin()), responses};
       },
       [&](std::size_t j, Space& space) {
-        const Variant& v = candidates[jobs[j].candidate].variants[jobs[j].variant];
+        const Variant& v = candidates[laws[j].candidate].variants[laws[j].variant];
         const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
         const Hypothesis tried =
-            with(hypothesis, {jobs[j].candidate, jobs[j].variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens});
+            with(hypothesis, {laws[j].candidate, laws[j].variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens});
         for (const std::vector<double>& shape : v.grid) {
           Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
           claim[0] = v.trial_x;
@@ -193,9 +196,10 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
                              : fitter.predict_beside(known, fit.prediction, tried, joined(fit.x, claim), space.workspace);
           });
           if (!is_solved) continue;
-          Eigen::VectorXd column = (fitter.comparison().whitened(p) - base) / v.trial_x;
+          Eigen::VectorXd column =
+              fitter.comparison().condensed((fitter.comparison().whitened(p) - base) / v.trial_x);
           if (!column.allFinite() || !(column.squaredNorm() > 1e-12)) continue;
-          lists[j].push_back({jobs[j].candidate, jobs[j].variant, std::move(claim), std::move(column)});
+          lists[j].push_back({laws[j].candidate, laws[j].variant, std::move(claim), std::move(column)});
         }
       });
   std::vector<Signature> all;
@@ -246,11 +250,17 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
   return list;
 }
 
-SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, const SearchOptions& options,
+SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
                     const std::function<void(const std::string&)>& say) {
   SearchResult result;
-  result.n_candidates = static_cast<int>(candidates.size());
-  const double price = std::log(std::max(1.0, static_cast<double>(candidates.size())));
+  double price = 0.0;
+  const auto add = [&](const std::vector<Event>& events) {
+    std::vector<Law> laws;
+    for (const auto& [candidate, variant] : add_events(candidates, events, options.without))
+      laws.push_back({candidate, variant});
+    price = std::log(std::max(1.0, static_cast<double>(candidates.size())));
+    return laws;
+  };
   const auto evidence = [&](const Fit& f, const Hypothesis& h) {
     return f.log_evidence - price * static_cast<double>(h.size());
   };
@@ -271,8 +281,11 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
     weighed_at = best_fit;
   }
   result.without = best_fit;
+  say("looking for windows of time");
+  add(events_seen(fitter.twin(), fitter.runs()));
+  add(events_beside(fitter, {}, weighed_at, projection_of(fitter, {}, weighed_at)));
   say(fmt::format("signatures of {} candidates", candidates.size()));
-  std::vector<Signature> columns = signatures(fitter, candidates, {}, weighed_at);
+  std::vector<Signature> columns = signatures(fitter, candidates, laws_of(candidates), {}, weighed_at);
   result.scores = scores(fitter, candidates, columns, {}, weighed_at);
   result.chance = chance_of(fitter, candidates, columns, weighed_at);
   const auto must_gain = [&](std::size_t claim) {  // counted from 0
@@ -308,7 +321,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
         best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits);
     if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself
       fitter.settle({}, best_fit);
-      const std::vector<Signature> there = signatures(fitter, candidates, {}, best_fit);
+      const std::vector<Signature> there = signatures(fitter, candidates, laws_of(candidates), {}, best_fit);
       for (Fitted& f : best_additions(fitter, candidates, there, best, best_fit, options.refits))
         additions.push_back(std::move(f));
       std::stable_sort(additions.begin(), additions.end(),
@@ -323,14 +336,20 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
     best_value = value;
     settle_well(fitter, best, best_fit);  // what comes next starts from here
     best_value = evidence(best_fit, best) - laws_price(candidates, best);
-    if (is_bent) columns = signatures(fitter, candidates, best, best_fit);
+    if (is_bent) {
+      columns = signatures(fitter, candidates, laws_of(candidates), best, best_fit);
+    } else if (round == 0) {  // windows that the first cause hid
+      const std::vector<Law> more = add(events_beside(fitter, best, best_fit, projection_of(fitter, best, best_fit)));
+      for (Signature& s : signatures(fitter, candidates, more, best, best_fit)) columns.push_back(std::move(s));
+      best_value = evidence(best_fit, best) - laws_price(candidates, best);
+    }
     exchange();
   }
   for (int turn = 0; turn < 2 && !best.empty(); ++turn) {
     say("settling the numbers");
     settle_well(fitter, best, best_fit);
     best_value = evidence(best_fit, best) - laws_price(candidates, best);
-    columns = signatures(fitter, candidates, best, best_fit);
+    columns = signatures(fitter, candidates, laws_of(candidates), best, best_fit);
     if (!exchange()) break;
   }
 
@@ -363,6 +382,7 @@ SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, co
   for (Finding& f : result.findings)
     f.is_named =
         f.log_evidence_gain >= std::max(named_from, best.size() > 1 ? options.least_named_beside : options.least_named);
+  result.candidates = std::move(candidates);
   result.hypothesis = std::move(best);
   result.fit = std::move(best_fit);
   return result;

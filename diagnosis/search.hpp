@@ -1,6 +1,8 @@
 #pragma once
 // Which effects do the data want? Forward, with exchange and pruning, by evidence.
 
+#include <set>
+
 #include "diagnosis/fit.hpp"
 
 namespace driftwright::diagnosis {
@@ -25,7 +27,8 @@ struct SearchOptions {
   double least_named_beside = 8.0;  ///< one of several is not named below
   /// Two claims whose evidence differs by less than this cannot be told apart.
   double cannot_tell = 3.0;
-  int refits = 10;  ///< candidates of each round that are fitted in full
+  int refits = 16;  ///< candidates of each round that are fitted in full
+  std::set<std::string> without = {};  ///< keys of effects that are not looked for
 };
 
 /// A claim that stood up, and others that would do as well in its place.
@@ -41,15 +44,20 @@ struct Finding {
   std::vector<Alternative> alternatives;
 };
 
-/// What one law of a candidate does to the whitened readings, at trial size and one shape, per unit of its size.
+/// What one law of a candidate does to the whitened readings, condensed (Comparison::condensed()), at trial size and one shape, per unit of its size.
 struct Signature {
   std::size_t candidate = 0, variant = 0;
   Eigen::VectorXd shape;  ///< x of the claim's knobs, the size at its trial
   Eigen::VectorXd column;
 };
-/// All of them, on top of a fit. They change little with what else is claimed.
+/// One law of a candidate.
+struct Law {
+  std::size_t candidate = 0, variant = 0;
+};
+[[nodiscard]] std::vector<Law> laws_of(const std::vector<Candidate>& candidates);
+/// Those of some laws, on top of a fit. They change little with what else is claimed.
 [[nodiscard]] std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                                const Hypothesis& hypothesis, const Fit& fit);
+                                                const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit);
 
 /// How much evidence a candidate would bring on top of a fit: what the linear theory says.
 struct Score {
@@ -59,17 +67,18 @@ struct Score {
 };
 
 struct SearchResult {
+  std::vector<Candidate> candidates;  ///< those given, and the windows found in the readings
   Hypothesis hypothesis;
   Fit fit;
   Fit without;  ///< scatter alone
   std::vector<Finding> findings;
-  int n_candidates = 0;
   Chance chance;              ///< what the best candidate would have with nothing wrong
   std::vector<Score> scores;  ///< of all candidates on top of scatter alone
 };
 
-/// @param say  is told what goes on
-[[nodiscard]] SearchResult search(Fitter& fitter, const std::vector<Candidate>& candidates, const SearchOptions& options,
+/// @param candidates  windows that the readings ask for are added
+/// @param say         is told what goes on
+[[nodiscard]] SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
                                   const std::function<void(const std::string&)>& say);
 
 /// The best shape of each law of each candidate, best first.

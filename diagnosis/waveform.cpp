@@ -1,18 +1,15 @@
 #include "diagnosis/waveform.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "diagnosis/heat_smoother.hpp"
+#include "diagnosis/linear_run.hpp"
 #include "diagnosis/scene.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kStart_K = 0.3;      // to which the start of a body is known
-constexpr double kSameModes = 0.03;   // relative change of a coefficient below which modes are kept
 constexpr double kLeast_nats = 12.0;  // of a heat that is worth a look
 constexpr double kMostWork = 3e9;     // of the smoother: longer records are thinned
 constexpr Eigen::Index kFewestRows = 200;
@@ -52,110 +49,6 @@ std::vector<Eigen::Index> rows_of(const MeasuredRun& run, Eigen::Index size, std
   return rows;
 }
 
-/// Coefficients of a system's exchanges at a state.
-Eigen::VectorXd coefficients(const solver::ReducedSystem& system, effects::Inputs u, const Eigen::VectorXd& z) {
-  Eigen::VectorXd c(static_cast<Eigen::Index>(system.exchanges.size()));
-  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
-    const solver::BoundLaw& law = system.exchanges[e].coefficient;
-    const auto i = static_cast<Eigen::Index>(e);
-    if (!law.looks_at_state()) {
-      c[i] = law(u);
-    } else {
-      effects::Inputs with_probes = u;
-      for (int p : law.probes)
-        with_probes.probe_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(z, u.hall_K));
-      c[i] = law.law(with_probes);
-    }
-    if (law.thermostat < 0) continue;
-    const solver::Thermostat& t = system.thermostats[static_cast<std::size_t>(law.thermostat)];
-    const double at_K = system.reference_K + system.probes[static_cast<std::size_t>(t.probe)].theta_K(z, u.hall_K);
-    if (at_K < 0.5 * (t.on_above_K + t.off_below_K)) c[i] = 0.0;
-  }
-  return c;
-}
-
-/// A run of a twin as a linear machine from row to row.
-struct LinearRun {
-  ModalCourse course;
-  Eigen::MatrixXd residual;       ///< measured minus predicted over noise, rows x channels
-  Eigen::MatrixXd temperature_K;  ///< predicted mean of each body over the reference, rows x bodies
-  Eigen::VectorXd hall_K;         ///< over the reference
-  std::vector<Eigen::Index> rows;
-};
-
-LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& state, const Eigen::MatrixXd& prediction,
-                     const std::vector<effects::Body>& bodies, Twin::Workspace& workspace) {
-  const Eigen::MatrixXd z = twin.states(state, run, workspace);
-  const Twin::Bound bound = twin.bound(state, run, workspace);
-  const solver::ReducedSystem& system = bound.system;
-  LinearRun l;
-  l.rows = rows_of(run, system.size(), bodies.size());
-  const auto n_rows = static_cast<Eigen::Index>(l.rows.size()), n_channels = static_cast<Eigen::Index>(run.channels.size()),
-             n_bodies = static_cast<Eigen::Index>(bodies.size());
-  Eigen::MatrixXd observe(system.size(), n_channels), load = Eigen::MatrixXd::Zero(system.size(), n_bodies),
-                                                      mean = Eigen::MatrixXd::Zero(system.size(), n_bodies);
-  l.residual.resize(n_rows, n_channels);
-  for (Eigen::Index c = 0; c < n_channels; ++c) {
-    const MeasuredChannel& channel = run.channels[static_cast<std::size_t>(c)];
-    const Eigen::VectorXd missed = channel.value - prediction.row(channel.output).transpose();
-    const double noise = noise_of(channel, missed);
-    observe.col(c) = bound.outputs.col(channel.output) / noise;
-    for (Eigen::Index i = 0; i < n_rows; ++i) l.residual(i, c) = missed[l.rows[static_cast<std::size_t>(i)]] / noise;
-  }
-  for (Eigen::Index b = 0; b < n_bodies; ++b) {
-    const effects::Body& body = bodies[static_cast<std::size_t>(b)];
-    for (const solver::HeatSource& s : system.sources) {
-      if (!(s.body == body)) continue;
-      load.col(b) = s.load;
-      break;
-    }
-    for (std::size_t o = 0; o < twin.outputs().name.size(); ++o) {
-      if (twin.outputs().name[o] == "mean of " + body.name) mean.col(b) = bound.outputs.col(static_cast<Eigen::Index>(o));
-    }
-  }
-  l.temperature_K.resize(n_rows, n_bodies);
-  l.hall_K.resize(n_rows);
-  Eigen::VectorXd held;  // coefficients that the modes at hand were made with
-  Eigen::MatrixXd vectors;
-  const Eigen::MatrixXd warmer = kStart_K * twin.warmer_bodies();
-  for (Eigen::Index i = 0; i < n_rows; ++i) {
-    const Eigen::Index row = l.rows[static_cast<std::size_t>(i)];
-    const double t_s = run.time_s[static_cast<std::size_t>(row)];
-    const Eigen::VectorXd at = z.col(run.row_in_grid[static_cast<std::size_t>(row)]);
-    l.course.time_s.push_back(t_s);
-    l.temperature_K.row(i) = at.transpose() * mean;
-    l.hall_K[i] = bound.hall.at(t_s);
-    if (i + 1 == n_rows) break;
-    const double next_s = run.time_s[static_cast<std::size_t>(l.rows[static_cast<std::size_t>(i + 1)])];
-    const double middle_s = 0.5 * (t_s + next_s);
-    const Eigen::VectorXd now = coefficients(
-        system,
-        {.drive = bound.cyclogram.drive(middle_s), .hall_K = bound.hall.at(middle_s), .time_s = middle_s, .run = run.name},
-        at);
-    const double tiny = 1e-9 * std::max(1e-300, now.cwiseAbs().maxCoeff());
-    const bool is_same = held.size() > 0 && ((now - held).array().abs() <= kSameModes * held.array().abs() + tiny).all();
-    if (!is_same) {
-      Eigen::MatrixXd k = system.conduction;
-      for (std::size_t e = 0; e < system.exchanges.size(); ++e)
-        k += now[static_cast<Eigen::Index>(e)] * system.exchanges[e].matrix;
-      const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (k + k.transpose()), system.mass);
-      ModalCourse::Modes m;
-      m.rate_1_s = eigen.eigenvalues();
-      const Eigen::MatrixXd& v = eigen.eigenvectors();
-      m.load = v.transpose() * load;
-      m.observe = v.transpose() * observe;
-      m.mean = v.transpose() * mean;
-      if (vectors.size() > 0) m.from = v.transpose() * system.mass * vectors;
-      if (vectors.size() == 0) m.start = v.transpose() * system.mass * warmer;
-      vectors = v;
-      held = now;
-      l.course.modes.push_back(std::move(m));
-    }
-    l.course.of_interval.push_back(l.course.modes.size() - 1);
-  }
-  return l;
-}
-
 Eigen::VectorXd at_rows(const Eigen::VectorXd& series, const std::vector<Eigen::Index>& rows, Eigen::Index n) {
   Eigen::VectorXd picked(n);
   for (Eigen::Index i = 0; i < n; ++i) picked[i] = series[rows[static_cast<std::size_t>(i)]];
@@ -179,6 +72,7 @@ double explained(const Eigen::MatrixXd& residual, const Eigen::MatrixXd& reading
 struct Asked {
   const MeasuredRun& run;
   const LinearRun& linear;
+  const Eigen::MatrixXd& residual;  ///< measured minus predicted over noise, rows x channels
   const std::vector<effects::Body>& bodies;
   double typical_W;
   std::vector<NamedCourse> courses;  ///< that a heat or a conductance may follow, per interval
@@ -186,7 +80,7 @@ struct Asked {
 
 void take(const SmoothedHeat& s, const Asked& a, Waveform& w) {
   const Eigen::Index n = s.heat_W.size();
-  w.explained = explained(a.linear.residual, s.readings);
+  w.explained = explained(a.residual, s.readings);
   w.log_likelihood_gain = s.log_likelihood_gain;
   if (w.log_likelihood_gain > kLeast_nats) w.shape = shape_of(w.time_s, s.heat_W, s.sd_W, {}, a.courses);
   w.value.clear();
@@ -204,21 +98,15 @@ struct HeatCourse {
 };
 
 HeatCourse heat_of(const Asked& a, std::size_t b) {
-  const Eigen::Index n = a.linear.residual.rows() - 1;
+  const Eigen::Index n = a.residual.rows() - 1;
   HeatCourse h{
       .wave = {.of = Waveform::Of::kHeat, .run = a.run.name, .where = a.bodies[b].name, .time_s = a.linear.course.time_s},
       .body = b};
   const SmoothedHeat s =
-      smooth_heat(a.linear.course, a.linear.residual, static_cast<Eigen::Index>(b), Eigen::VectorXd::Ones(n), a.typical_W);
+      smooth_heat(a.linear.course, a.residual, static_cast<Eigen::Index>(b), Eigen::VectorXd::Ones(n), a.typical_W);
   take(s, a, h.wave);
   h.warm_K = a.linear.temperature_K + s.mean_K;
   return h;
-}
-
-/// Mean of a temperature difference from row to row: where an exchange is strong it falls exponentially, and its mean is the logarithmic one.
-double between(double a_K, double b_K) {
-  const double ratio = a_K / b_K;
-  return ratio > 0.0 && std::abs(ratio - 1.0) > 1e-6 ? (a_K - b_K) / std::log(ratio) : 0.5 * (a_K + b_K);
 }
 
 /// The same as a conductance to another body or the hall; nothing where there is no difference of temperatures.
@@ -231,13 +119,13 @@ std::optional<Waveform> conductance_of(const Asked& a, const HeatCourse& heat, s
     const auto at = [&](Eigen::Index row) {
       return (is_hall ? a.linear.hall_K[row] : heat.warm_K(row, static_cast<Eigen::Index>(other))) - heat.warm_K(row, b);
     };
-    difference_K[i] = between(at(i), at(i + 1));
+    difference_K[i] = mean_difference(at(i), at(i + 1));
   }
   const double rms_K = std::sqrt(difference_K.squaredNorm() / static_cast<double>(n));
   if (!(rms_K > kAlike_K)) return std::nullopt;
   Waveform w{.of = Waveform::Of::kHeat, .run = a.run.name, .where = heat.wave.where, .time_s = heat.wave.time_s};
   w.to = is_hall ? effects::kHallName : a.bodies[other].name;
-  take(smooth_heat(a.linear.course, a.linear.residual, b, difference_K, a.typical_W / rms_K), a, w);
+  take(smooth_heat(a.linear.course, a.residual, b, difference_K, a.typical_W / rms_K), a, w);
   w.conductance_W_K = w.value;
   for (Eigen::Index i = 0; i <= n; ++i) w.value[static_cast<std::size_t>(i)] *= difference_K[std::min(i, n - 1)];
   for (Eigen::Index i = 0; i <= n; ++i) w.sd[static_cast<std::size_t>(i)] *= std::abs(difference_K[std::min(i, n - 1)]);
@@ -327,22 +215,28 @@ std::vector<NamedCourse> recorded_courses(const MeasuredRun& run) {
 std::vector<Waveform> waveforms(const Twin& twin, const std::vector<MeasuredRun>& runs, const TwinState& state,
                                 const Prediction& prediction) {
   const effects::DoubtScene scene = scene_of(twin, runs);
-  std::vector<effects::Body> bodies;
-  for (const effects::Body& body : scene.bodies) {
-    if (!(body == effects::hall())) bodies.push_back(body);
-  }
+  const std::vector<effects::Body> bodies = bodies_of(scene);
   const double typical_W = kTypicalShare * scene.unknown_heat_W();
   std::vector<Waveform> heats, growths;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const MeasuredRun& run = runs[r];
     if (run.time_s.size() < 10 || run.channels.empty()) continue;
     Twin::Workspace workspace(twin);
-    const LinearRun l = linear_run(twin, run, state, prediction[r], bodies, workspace);
+    const std::vector<Eigen::Index> rows = rows_of(run, twin.machine().system.size(), bodies.size());
+    Eigen::VectorXd noise(static_cast<Eigen::Index>(run.channels.size()));
+    Eigen::MatrixXd residual(static_cast<Eigen::Index>(rows.size()), noise.size());
+    for (Eigen::Index c = 0; c < noise.size(); ++c) {
+      const MeasuredChannel& channel = run.channels[static_cast<std::size_t>(c)];
+      const Eigen::VectorXd missed = channel.value - prediction[r].row(channel.output).transpose();
+      noise[c] = noise_of(channel, missed);
+      residual.col(c) = at_rows(missed, rows, residual.rows()) / noise[c];
+    }
+    const LinearRun l = linear_run(twin, run, state, bodies, rows, noise, workspace);
     std::vector<NamedCourse> courses = recorded_courses(run);
-    Asked asked{run, l, bodies, typical_W, {}};
+    Asked asked{run, l, residual, bodies, typical_W, {}};
     for (const NamedCourse& c : courses) {
       if (run.find(c.name)) continue;  // heat does not follow a reading: that would be an exchange
-      asked.courses.push_back({c.name, c.unit, at_rows(c.value, l.rows, l.residual.rows() - 1)});
+      asked.courses.push_back({c.name, c.unit, at_rows(c.value, rows, residual.rows() - 1)});
     }
     std::vector<HeatCourse> of_body(bodies.size());
     for_each_index(

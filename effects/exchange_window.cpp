@@ -3,8 +3,6 @@
 namespace driftwright::effects {
 namespace {
 
-constexpr const char* kLid = "a lid or door that opens for a while";
-
 /// A region or node takes a conductance of its own, a surface or joint one per area.
 bool is_total(const Effect& e) {
   return e.place_kind == Place::kNode || e.place_kind == Place::kRegion;
@@ -30,7 +28,7 @@ void check(const Effect& e, const ConfigMap& in) {
   check_windows(e, in);
 }
 
-/// A surface that more air reaches for a while, or a node.
+/// A surface that more air reaches for a while. Where and when a region or node may have one, its readings say (diagnosis/event_candidates.hpp).
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const DoubtScene::Run& run : s.runs) {
@@ -46,21 +44,6 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       DoubtedNumber film = doubted("film", "W/(m^2 K)", 15.0, 2.0);
       film.low = 0.0;
       list.push_back(one_window(run, window, film, 4.0, kLid));
-    }
-    const double sd_W_K = 0.2 * s.unknown_heat_W();
-    DoubtedNumber conductance = doubted("conductance", "W/K", sd_W_K, 0.1 * sd_W_K);
-    conductance.low = 0.0;
-    const auto add = [&](const Body& body, const std::string& to) {
-      Effect window = make_effect("exchange_window", Place::kNode, body.name, {{"conductance", 0.0}});
-      window.references["surrounding"] = node(to);
-      list.push_back(one_window(run, window, conductance, 0.1 * sd_W_K, kLid));
-      if (to != kHallName) list.back().where = body.name + "," + to;
-    };
-    for (const Body& body : s.bodies) {
-      if (body.kind == BodyKind::kNode) add(body, kHallName);
-    }
-    for (const Exchange& e : s.balance.exchanges) {  // a valve or a clutch: more of what is there
-      if (e.body.kind == BodyKind::kNode && e.surrounding != kHallName && !e.medium_K) add(e.body, e.surrounding);
     }
   }
   return list;

@@ -9,19 +9,6 @@ void contribute(const Effect& e, HeatBalance& balance) {
   add_change_times(windows, balance);
 }
 
-/// Something that runs for a while: a pump, a lamp, a bearing that drags. What takes heat away is an exchange.
-std::vector<Doubt> doubts(const DoubtScene& s) {
-  std::vector<Doubt> list;
-  for (const Body& body : s.bodies) {
-    for (const DoubtScene::Run& run : s.runs) {
-      DoubtedNumber power = doubted("power", "W", s.unknown_heat_W(), 0.1 * s.unknown_heat_W());
-      power.low = 0.0;
-      list.push_back(one_window(run, make_effect("heat_window", body), power, 0.1 * s.unknown_heat_W(), "heat for a while"));
-    }
-  }
-  return list;
-}
-
 }  // namespace
 
 EffectKind heat_window() {
@@ -33,8 +20,7 @@ EffectKind heat_window() {
           .timing = Timing::kInRecord,
           .contribute = contribute,
           .tables = {windows_table()},
-          .check = check_windows,
-          .doubts = doubts};
+          .check = check_windows};
 }
 
 }  // namespace driftwright::effects

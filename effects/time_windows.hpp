@@ -6,6 +6,7 @@
 namespace driftwright::effects {
 
 inline constexpr const char* kWindows = "windows";
+inline constexpr const char* kLid = "a lid or door that opens for a while";  ///< an exchange's law in words
 
 /// The table, and the parameters `every` and `until_time` by which it repeats.
 [[nodiscard]] Table windows_table();

@@ -88,7 +88,7 @@ TEST(Chance, IsMetByMachinesWithoutFault) {
     const app::MeasuredTwin m = app::open_measured_twin(scenarios::read_scenario(scenario), "diagnose",
                                                         records_of(truth, random, fmt::format("r{}", i)), progress);
     const Diagnosis d = diagnose(*m.twin, nullptr, m.runs, m.how, [](const std::string&) {});
-    const std::vector<Candidate> list = candidates(*m.twin, m.runs, {});
+    const std::vector<Candidate> list = d.search.candidates;
     double best = -1e300;
     for (const Score& s : d.search.scores) {
       const double n_laws = static_cast<double>(list[s.candidate].variants.size());

@@ -1,0 +1,116 @@
+#include "diagnosis/linear_run.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kStart_K = 0.3;     // to which the start of a body is known
+constexpr double kSameModes = 0.03;  // relative change of a coefficient below which modes are kept
+
+/// Coefficients of a system's exchanges at a state.
+Eigen::VectorXd coefficients(const solver::ReducedSystem& system, effects::Inputs u, const Eigen::VectorXd& z) {
+  Eigen::VectorXd c(static_cast<Eigen::Index>(system.exchanges.size()));
+  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
+    const solver::BoundLaw& law = system.exchanges[e].coefficient;
+    const auto i = static_cast<Eigen::Index>(e);
+    if (!law.looks_at_state()) {
+      c[i] = law(u);
+    } else {
+      effects::Inputs with_probes = u;
+      for (int p : law.probes)
+        with_probes.probe_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(z, u.hall_K));
+      c[i] = law.law(with_probes);
+    }
+    if (law.thermostat < 0) continue;
+    const solver::Thermostat& t = system.thermostats[static_cast<std::size_t>(law.thermostat)];
+    const double at_K = system.reference_K + system.probes[static_cast<std::size_t>(t.probe)].theta_K(z, u.hall_K);
+    if (at_K < 0.5 * (t.on_above_K + t.off_below_K)) c[i] = 0.0;
+  }
+  return c;
+}
+
+}  // namespace
+
+std::vector<effects::Body> bodies_of(const effects::DoubtScene& scene) {
+  std::vector<effects::Body> bodies;
+  for (const effects::Body& body : scene.bodies) {
+    if (!(body == effects::hall())) bodies.push_back(body);
+  }
+  return bodies;
+}
+
+LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& state,
+                     const std::vector<effects::Body>& bodies, const std::vector<Eigen::Index>& rows,
+                     const Eigen::VectorXd& scale, Twin::Workspace& workspace) {
+  const Eigen::MatrixXd z = twin.states(state, run, workspace);
+  const Twin::Bound bound = twin.bound(state, run, workspace);
+  const solver::ReducedSystem& system = bound.system;
+  LinearRun l;
+  const auto n_rows = static_cast<Eigen::Index>(rows.size()), n_channels = static_cast<Eigen::Index>(run.channels.size()),
+             n_bodies = static_cast<Eigen::Index>(bodies.size());
+  Eigen::MatrixXd observe(system.size(), n_channels), load = Eigen::MatrixXd::Zero(system.size(), n_bodies),
+                                                      mean = Eigen::MatrixXd::Zero(system.size(), n_bodies);
+  for (Eigen::Index c = 0; c < n_channels; ++c)
+    observe.col(c) = bound.outputs.col(run.channels[static_cast<std::size_t>(c)].output) / scale[c];
+  for (Eigen::Index b = 0; b < n_bodies; ++b) {
+    const effects::Body& body = bodies[static_cast<std::size_t>(b)];
+    for (const solver::HeatSource& s : system.sources) {
+      if (!(s.body == body)) continue;
+      load.col(b) = s.load;
+      break;
+    }
+    for (std::size_t o = 0; o < twin.outputs().name.size(); ++o) {
+      if (twin.outputs().name[o] == "mean of " + body.name) mean.col(b) = bound.outputs.col(static_cast<Eigen::Index>(o));
+    }
+  }
+  l.temperature_K.resize(n_rows, n_bodies);
+  l.hall_K.resize(n_rows);
+  Eigen::VectorXd held;  // coefficients that the modes at hand were made with
+  Eigen::MatrixXd vectors;
+  const Eigen::MatrixXd warmer = kStart_K * twin.warmer_bodies();
+  for (Eigen::Index i = 0; i < n_rows; ++i) {
+    const Eigen::Index row = rows[static_cast<std::size_t>(i)];
+    const double t_s = run.time_s[static_cast<std::size_t>(row)];
+    const Eigen::VectorXd at = z.col(run.row_in_grid[static_cast<std::size_t>(row)]);
+    l.course.time_s.push_back(t_s);
+    l.temperature_K.row(i) = at.transpose() * mean;
+    l.hall_K[i] = bound.hall.at(t_s);
+    if (i + 1 == n_rows) break;
+    const double next_s = run.time_s[static_cast<std::size_t>(rows[static_cast<std::size_t>(i + 1)])];
+    const double middle_s = 0.5 * (t_s + next_s);
+    const Eigen::VectorXd now = coefficients(
+        system,
+        {.drive = bound.cyclogram.drive(middle_s), .hall_K = bound.hall.at(middle_s), .time_s = middle_s, .run = run.name},
+        at);
+    const double tiny = 1e-9 * std::max(1e-300, now.cwiseAbs().maxCoeff());
+    const bool is_same = held.size() > 0 && ((now - held).array().abs() <= kSameModes * held.array().abs() + tiny).all();
+    if (!is_same) {
+      Eigen::MatrixXd k = system.conduction;
+      for (std::size_t e = 0; e < system.exchanges.size(); ++e)
+        k += now[static_cast<Eigen::Index>(e)] * system.exchanges[e].matrix;
+      const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (k + k.transpose()), system.mass);
+      ModalCourse::Modes m;
+      m.rate_1_s = eigen.eigenvalues();
+      const Eigen::MatrixXd& v = eigen.eigenvectors();
+      m.load = v.transpose() * load;
+      m.observe = v.transpose() * observe;
+      m.mean = v.transpose() * mean;
+      if (vectors.size() > 0) m.from = v.transpose() * system.mass * vectors;
+      if (vectors.size() == 0) m.start = v.transpose() * system.mass * warmer;
+      vectors = v;
+      held = now;
+      l.course.modes.push_back(std::move(m));
+    }
+    l.course.of_interval.push_back(l.course.modes.size() - 1);
+  }
+  return l;
+}
+
+double mean_difference(double first_K, double second_K) {
+  const double ratio = first_K / second_K;
+  return ratio > 0.0 && std::abs(ratio - 1.0) > 1e-6 ? (first_K - second_K) / std::log(ratio) : 0.5 * (first_K + second_K);
+}
+
+}  // namespace driftwright::diagnosis
