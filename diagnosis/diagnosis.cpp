@@ -362,8 +362,8 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     Cause& cause = d.causes[c];
     cause.is_written = held.keeps_claim[c] && held.keeps_numbers;
     if (!d.search.findings[c].is_named) continue;
-    if (!held.keeps_claim[c] || held.claim_nats[c] <= 0.0) {
-      cause.doubt = "rows that were kept out are not predicted better with it";
+    if (!held.keeps_claim[c]) {
+      cause.doubt = "rows that were kept out are predicted worse with it";
       continue;
     }
     cause.standing = cause.alternatives.empty() ? Standing::kNamed : Standing::kAmbiguous;
@@ -538,10 +538,9 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.holdout = held.how;
   d.gain = held.channels;
   give_standing(d, held);
-  const bool none_is_kept = std::none_of(held.keeps_claim.begin(), held.keeps_claim.end(), [](char k) { return k != 0; });
   const bool is_any_named =
       std::any_of(d.search.findings.begin(), d.search.findings.end(), [](const Finding& f) { return f.is_named; });
-  if (is_any_named && none_is_kept) {
+  if (is_any_named && held.fails) {
     if (!d.unexplained) d.unexplained = failed_held_out(d.gain);
     d.unexplained->fails_held_out = true;
   }

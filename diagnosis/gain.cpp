@@ -18,6 +18,9 @@ constexpr double kNoSolution = -1e6;   // nats of a fold that no numbers fit
 // What a kept-out record has of its own, such as its hall, is in the misses and says nothing of a claim: they count where likelihood is not clear.
 constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorse = 1.1;            // of the squares
+// Where the scenario's own numbers can do what a claim does, if they go far enough, kept-out rows are predicted alike with it and without; then it is the
+// evidence of all rows that counts how far they had to go.
+constexpr double kAlike = 3.0;  // nats
 
 /// Rows that numbers are fitted to, and the others. Both have all runs; readings that are not theirs are missing.
 struct Fold {
@@ -144,6 +147,12 @@ class Judge {
   }
   [[nodiscard]] std::vector<Prediction> written() const { return std::vector<Prediction>(folds_.size(), written_); }
 
+  /// Whether some claims miss kept-out rows by more than fewer of them do, and likelihood does not clearly say otherwise.
+  [[nodiscard]] bool is_worse(Subset claims, Subset fewer) {
+    return judged(fewer).log_predictive - judged(claims).log_predictive > -kSurelyLikelier &&
+           squares_over_noise(judged(claims).predicted) > kWorse * squares_over_noise(judged(fewer).predicted);
+  }
+
   /// Squares of kept-out misses over those of noise, not whitened: what a user sees of them.
   [[nodiscard]] double squares_over_noise(const std::vector<Prediction>& predicted) const {
     double sum = 0.0;
@@ -231,15 +240,13 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   // What kept-out rows are better off without is taken out, the worst first.
   Subset kept = all;
   while (kept != 0) {
-    const double squares = judge.squares_over_noise(judge.judged(kept).predicted);
     Subset best = kept;
-    double most = 0.0;  // nats gained by taking it out
+    double most = kAlike;  // nats gained by taking it out
     for (std::size_t c = 0; c < n_claims; ++c) {
       const Subset without = kept & ~(1U << c);
       if (without == kept) continue;
       const double nats = judge.judged(without).log_predictive - judge.judged(kept).log_predictive;
-      const bool is_worse =
-          nats > -kSurelyLikelier && squares > kWorse * judge.squares_over_noise(judge.judged(without).predicted);
+      const bool is_worse = judge.is_worse(kept, without);
       if (nats > most || (is_worse && best == kept)) {
         most = std::max(most, nats);
         best = without;
@@ -248,6 +255,8 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     if (best == kept) break;
     kept = best;
   }
+  held.fails = all != 0 && (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier ||
+                            judge.is_worse(all, 0));
   for (std::size_t c = 0; c < n_claims; ++c) held.keeps_claim.push_back(((kept >> c) & 1U) != 0);
   const std::vector<Prediction> written = judge.written();
   held.keeps_numbers = judge.squares_over_noise(judge.judged(kept).predicted) <= judge.squares_over_noise(written);

@@ -10,7 +10,8 @@ struct HeldOut {
   std::vector<ChannelGain> channels;  ///< of the claims that are kept
   /// Per claim: how much likelier the kept-out rows are with it than without it, those fitted given, whatever is not known of all numbers counted in [nats].
   std::vector<double> claim_nats;
-  std::vector<char> keeps_claim;  ///< per claim: kept-out rows are predicted better with it
+  std::vector<char> keeps_claim;  ///< per claim: kept-out rows are not predicted worse with it
+  bool fails = false;             ///< the claims together predict kept-out rows clearly worse than none of them does
   bool keeps_numbers =
       true;  ///< false: the scenario as written predicts kept-out rows better than any numbers that were fitted
 };

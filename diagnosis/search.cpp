@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <sstream>
 
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
@@ -20,6 +22,13 @@ constexpr int kMostTurns = 6;
 constexpr double kSettled = 0.05;  // of Φ
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
+
+constexpr double kSame = 2.0;  // squares of whitened readings: one nat
+
+// What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full.
+constexpr double kHopeless = 0.5, kHope = 8.0;
+constexpr std::size_t kTogether = 4;  // fits between two looks at that
+constexpr std::size_t kMostKnown = 64;
 
 constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which other numbers grow
 
@@ -65,6 +74,23 @@ Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return both;
 }
 
+/// The bodies that a place names.
+std::set<std::string> bodies_in(const std::string& where) {
+  std::set<std::string> names;
+  std::istringstream list(where);
+  for (std::string name; std::getline(list, name, ',');) {
+    if (name != effects::kHallName) names.insert(name);
+  }
+  return names;
+}
+
+/// Whether two claims say of the same bodies, in other words, what no reading could tell apart: a window that lasts to the end, heat from a time on.
+bool says_the_same(const Fitter& fitter, const Candidate& a, const Fit& fit_a, const Candidate& b, const Fit& fit_b) {
+  if (bodies_in(a.where) != bodies_in(b.where)) return false;
+  const Comparison& c = fitter.comparison();
+  return (c.whitened(fit_a.prediction) - c.whitened(fit_b.prediction)).squaredNorm() < kSame;
+}
+
 /// What one law of a candidate costs for being one of several; how rare it is, a fit counts itself.
 double law_price(const std::vector<Candidate>& candidates, std::size_t candidate) {
   return std::log(static_cast<double>(candidates[candidate].variants.size()));
@@ -75,10 +101,33 @@ struct Fitted {
   Fit fit;
 };
 
+/// Fits of hypotheses, the last one of their claims added last. What was fitted once need not be fitted again where the search comes by once more.
+class KnownFits {
+ public:
+  using Laws = std::vector<std::pair<std::size_t, std::size_t>>;  ///< candidate and variant of each claim, in order
+  [[nodiscard]] static Laws laws_of(const Hypothesis& hypothesis) {
+    Laws laws;
+    for (const Claim& c : hypothesis) laws.emplace_back(c.candidate, c.variant);
+    return laws;
+  }
+  [[nodiscard]] const Fit* find(const Hypothesis& hypothesis) const {
+    const auto known = fits_.find(laws_of(hypothesis));
+    return known == fits_.end() ? nullptr : &known->second;
+  }
+  void keep(const Hypothesis& hypothesis, const Fit& fit) {
+    if (fits_.size() >= kMostKnown) fits_.clear();
+    fits_[laws_of(hypothesis)] = fit;
+  }
+
+ private:
+  std::map<Laws, Fit> fits_;
+};
+
 /// The best candidates on top of a hypothesis, fitted in full, best first.
+/// @param known  null: all are fitted anew, from where scatter was settled last
 std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                    const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit,
-                                   int n) {
+                                   int n, KnownFits* known) {
   if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
   std::vector<Score> list = scores(fitter, candidates, columns, base, base_fit);
   std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
@@ -89,14 +138,31 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
     if (n_same < 2) chosen.push_back(s);
     if (static_cast<int>(chosen.size()) >= n) break;
   }
-  std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
   const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
-  for (const Score& s : chosen) jobs.emplace_back(with(base, claim_of(candidates, s)), joined(base_x, s.start));
-  std::vector<Fit> fits = fit_all(fitter, jobs);
   std::vector<Fitted> fitted;
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    fits[i].log_evidence -= law_price(candidates, chosen[i].candidate);
-    fitted.push_back({jobs[i].first.back(), std::move(fits[i])});
+  double best_gain = 0.0;  // of those fitted
+  for (std::size_t from = 0; from < chosen.size() && chosen[from].gain > kHopeless * best_gain - kHope;) {
+    std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
+    std::vector<Fitted> batch;
+    for (; from < chosen.size() && jobs.size() < kTogether; ++from) {
+      const Score& s = chosen[from];
+      Hypothesis tried = with(base, claim_of(candidates, s));
+      if (const Fit* fit = known ? known->find(tried) : nullptr) {
+        batch.push_back({tried.back(), *fit});
+      } else {
+        jobs.emplace_back(std::move(tried), joined(base_x, s.start));
+      }
+    }
+    std::vector<Fit> fits = fit_all(fitter, jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (known) known->keep(jobs[i].first, fits[i]);
+      batch.push_back({jobs[i].first.back(), std::move(fits[i])});
+    }
+    for (Fitted& f : batch) {
+      best_gain = std::max(best_gain, f.fit.log_evidence - base_fit.log_evidence);
+      f.fit.log_evidence -= law_price(candidates, f.claim.candidate);
+      fitted.push_back(std::move(f));
+    }
   }
   std::erase_if(fitted, [&](const Fitted& f) {  // nobody would mend a factor so near to one
     const Knob& size = f.claim.knobs[0];
@@ -276,6 +342,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   Fit weighed_at = best_fit;
   if (is_bent) {
     weighed_at = fit_at_zero(fitter);
+    weighed_at.log_evidence = best_fit.log_evidence;
   } else {
     settle_well(fitter, {}, best_fit);
     weighed_at = best_fit;
@@ -292,6 +359,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     return std::max(result.chance.gain_at(options.wrongly_suspected), options.least_gain.at(claim));
   };
   double best_value = best_fit.log_evidence;
+  KnownFits known;
 
   const auto exchange = [&] {  // each for a better one, until none is; true where something changed
     bool any = false;
@@ -300,7 +368,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       for (std::size_t i = 0; i < best.size(); ++i) {
         const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
         const Fit fit = fit_all(fitter, {{others, x}}).front();
-        const std::vector<Fitted> replacements = best_additions(fitter, candidates, columns, others, fit, options.refits);
+        const std::vector<Fitted> replacements = best_additions(fitter, candidates, columns, others, fit, options.refits, &known);
         if (replacements.empty()) continue;
         const Hypothesis exchanged = with(others, replacements.front().claim);
         const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
@@ -318,11 +386,11 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   for (int round = 0; round < options.most_effects; ++round) {
     say(fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
     std::vector<Fitted> additions =
-        best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits);
+        best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits, &known);
     if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself
       fitter.settle({}, best_fit);
       const std::vector<Signature> there = signatures(fitter, candidates, laws_of(candidates), {}, best_fit);
-      for (Fitted& f : best_additions(fitter, candidates, there, best, best_fit, options.refits))
+      for (Fitted& f : best_additions(fitter, candidates, there, best, best_fit, options.refits, nullptr))
         additions.push_back(std::move(f));
       std::stable_sort(additions.begin(), additions.end(),
                        [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
@@ -370,9 +438,10 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       continue;
     }
     Finding finding{best[i], best_value - without_value, false, {}};
-    for (Fitted& f : best_additions(fitter, candidates, columns, others, fit, options.refits)) {
+    for (Fitted& f : best_additions(fitter, candidates, columns, others, fit, options.refits, &known)) {
       const double value = evidence(f.fit, with(others, f.claim)) - laws_price(candidates, others);
       if (f.claim.candidate == best[i].candidate || value < best_value - options.cannot_tell) continue;
+      if (says_the_same(fitter, candidates[best[i].candidate], best_fit, candidates[f.claim.candidate], f.fit)) continue;
       finding.alternatives.push_back({std::move(f.claim), std::move(f.fit), value - without_value});
     }
     result.findings.push_back(std::move(finding));
