@@ -20,6 +20,7 @@ Json json_of(const diagnosis::Cause& c) {
                {"parameters", Json::array()}};
   if (!c.doubt.empty()) json["doubt"] = c.doubt;
   json["written"] = c.is_written;
+  if (c.n_searched > 0) json["found_again"] = {{"searches", c.n_searched}, {"found", c.n_again}};
   for (const auto& p : c.parameters) json["parameters"].push_back(json_of(p));
   json["log_evidence_gain"] = c.log_evidence_gain;
   json["alternatives"] = Json::array();
@@ -135,6 +136,8 @@ Json diagnosis_json(const diagnosis::Diagnosis& d) {
   for (const auto& e : d.calibrated) {
     Json entry = json_of(e);
     entry["sigmas_of_prior"] = e.deviation;
+    entry["known_to"] = e.known_to;
+    entry["known_to_unit"] = e.is_share ? "of its logarithm" : e.unit;
     json["calibrated"].push_back(entry);
   }
   json["waveforms"] = Json::array();

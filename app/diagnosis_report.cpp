@@ -48,6 +48,11 @@ void add_causes(const diagnosis::Diagnosis& d, Blocks& blocks) {
                                 c.is_written ? ""
                                              : "It is not written into extended.yaml: rows that were kept out "
                                                "are predicted better without it.")});
+    if (c.n_searched > 0)
+      blocks.emplace_back(Paragraph{fmt::format(
+          "The search was made again {} without a part of the rows; it found this effect at this place {}.",
+          c.n_searched == 1 ? "once" : fmt::format("{} times", c.n_searched),
+          c.n_again == 0 ? "in none of them" : c.n_again == c.n_searched ? "each time" : fmt::format("{} of them", c.n_again))});
     Table table{
         .caption = c.alternatives.empty()
                        ? "Gain: logarithm of how much more probable the data are with it than without, after the "
@@ -256,12 +261,13 @@ Table numbers_table(const diagnosis::Diagnosis& d) {
   Table table{
       .caption =
           "The scenario's uncertain numbers as fitted. Moved: from what the scenario says, in standard deviations of "
-          "what is known of it (10 %, exponents 3 %).",
-      .headers = {"number", "fitted", "95 % interval", "unit", "moved [sigmas]"},
+          "what is known of it: the scenario's `known_to`, else 10 %, exponents 3 %, the hall 0.3 K.",
+      .headers = {"number", "fitted", "95 % interval", "unit", "known to", "moved [sigmas]"},
       .rows = {}};
   for (const diagnosis::Estimate& e : d.calibrated) {
     table.rows.push_back(
-        {e.name, fmt::format("{:.4g}", e.value), interval_text(e), e.unit, fmt::format("{:+.2f}", e.deviation)});
+        {e.name, fmt::format("{:.4g}", e.value), interval_text(e), e.unit, known_to_text(e),
+                          fmt::format("{:+.2f}", e.deviation)});
   }
   return table;
 }

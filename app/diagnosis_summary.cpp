@@ -40,6 +40,10 @@ std::string columns(const std::vector<std::vector<std::string>>& rows, bool ends
 std::string value_text(const Estimate& e) {
   return fmt::format("{:.4g}{}", e.value, unit_of(e));
 }
+std::string known_to_text(const Estimate& e) {
+  return e.is_share ? fmt::format("{:.3g} %", 100.0 * e.known_to) : fmt::format("{:.3g} {}", e.known_to, e.unit);
+}
+
 std::string interval_text(const Estimate& e) {
   const double a = e.low, b = e.high;
   return fmt::format("{:.3g} to {:.3g}", std::min(a, b), std::max(a, b));
@@ -112,9 +116,10 @@ std::string summary_text(const diagnosis::Diagnosis& d) {
 }
 
 std::string numbers_text(const diagnosis::Diagnosis& d) {
-  std::vector<std::vector<std::string>> rows = {{"number", "fitted", "95 % interval", "unit", "moved [sigmas]"}};
+  std::vector<std::vector<std::string>> rows = {{"number", "fitted", "95 % interval", "unit", "known to", "moved [sigmas]"}};
   for (const Estimate& e : d.calibrated)
-    rows.push_back({e.name, fmt::format("{:.4g}", e.value), interval_text(e), e.unit, fmt::format("{:+.2f}", e.deviation)});
+    rows.push_back({e.name, fmt::format("{:.4g}", e.value), interval_text(e), e.unit, known_to_text(e),
+                    fmt::format("{:+.2f}", e.deviation)});
   return columns(rows);
 }
 

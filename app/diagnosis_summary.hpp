@@ -8,6 +8,8 @@ namespace driftwright::app {
 
 /// "14.3 W/(m^2 K)"; times as minutes.
 [[nodiscard]] std::string value_text(const diagnosis::Estimate& estimate);
+/// How well a calibrated number is known before the records: "10 %", "0.3 K".
+[[nodiscard]] std::string known_to_text(const diagnosis::Estimate& estimate);
 /// "13.1 to 15.6", in the unit of value_text().
 [[nodiscard]] std::string interval_text(const diagnosis::Estimate& estimate);
 /// All numbers of a cause with their intervals, or "" for one without.

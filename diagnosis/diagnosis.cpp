@@ -33,6 +33,9 @@ constexpr double kBeyondBelief = 2.0;         // mean square of how far the scen
 constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
 constexpr double kSureCause = 20.0;           // nats: no smaller rest hides it
 constexpr double kRestOfCause = 0.35;         // of what the causes explain: more left, and they are not what is wrong
+constexpr double kMostWork = 1.5e8;           // about a minute
+constexpr double kSmallMachine = 15.0;        // unknowns, below which a prediction costs the same
+constexpr double kNotLinear = 6.0;            // of what one of a linear machine costs
 constexpr double kHallFault_K = 2.0;          // 1 sigma of a hall that was recorded wrongly
 constexpr double kTooFar = 3.5;               // sigmas of its prior: a number beyond is a cause
 
@@ -210,9 +213,10 @@ std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResu
   Unexplained u;
   for (const Leftover& l : list) {
     const bool stands_out = l.sigmas() > kStandsOut || (together > kStandsOutTogether && l.sigmas() > 3.0);
-    const bool is_large = l.rms >= kWorthNaming * noise.at(l.channel).total();
-    if (!(stands_out && is_large) && l.jump_squares < kJump) continue;
-    u.nats += 0.5 * std::max(l.squares - l.n_curves, l.jump_squares);
+    const double worth_naming = kWorthNaming * noise.at(l.channel).total();
+    const bool jumps = l.jump_squares >= kJump && l.jump >= worth_naming;
+    if (!(stands_out && l.rms >= worth_naming) && !jumps) continue;
+    u.nats += 0.5 * std::max(l.squares - l.n_curves, jumps ? l.jump_squares : 0.0);
     u.channels.push_back({l.channel,
                           l.unit == "K"   ? "K"
                           : l.unit == "m" ? "um"
@@ -298,7 +302,7 @@ Unexplained failed_held_out(const std::vector<ChannelGain>& gain) {
 Written written_of(const Fitter& fitter, const SearchResult& result, const HeldOut& held, Twin::Workspace& workspace) {
   Written w{.hypothesis = result.hypothesis, .causes = {}, .fit = result.fit, .keeps_numbers = held.keeps_numbers};
   std::vector<std::size_t> dropped;
-  for (std::size_t c = 0; c < result.hypothesis.size(); ++c) (held.keeps_claim[c] ? w.causes : dropped).push_back(c);
+  for (std::size_t c = 0; c < result.hypothesis.size(); ++c) (held.writes_claim[c] ? w.causes : dropped).push_back(c);
   if (dropped.empty()) return w;
   const Remainder rest = without_claims(result.hypothesis, dropped, fitter.n_nuisance());
   w.hypothesis = rest.hypothesis;
@@ -326,7 +330,7 @@ std::vector<Estimate> calibrated_numbers(const Fitter& fitter, const Fit& fit, c
     if (turned.size() > twin.n_own_effects() && turned.back().words.contains("displacement"))
       of = turned.back().words.at("displacement").empty() ? "" : " of " + turned.back().words.at("displacement");
     numbers.push_back({fmt::format("{} {} {}{}", k.effect, k.where, k.name, of), k.unit, k.value(x), k.value(x - 1.96 * sd),
-                       k.value(x + 1.96 * sd), x / known_to[i]});
+                       k.value(x + 1.96 * sd), x / known_to[i], known_to[i], k.scale == Knob::Scale::kLog});
   }
   return numbers;
 }
@@ -356,11 +360,21 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
   return causes;
 }
 
+/// Laws times readings times records times what a prediction costs: how long searching once without each record would take.
+double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
+  const auto& system = fitter.twin().machine().system;
+  const double size = std::max(1.0, system.size() / kSmallMachine) * (system.is_linear() ? 1.0 : kNotLinear);
+  return static_cast<double>(laws_of(list).size()) * static_cast<double>(fitter.comparison().n()) *
+         static_cast<double>(fitter.runs().size()) * size;
+}
+
 /// How surely each claim is a cause.
 void give_standing(Diagnosis& d, const HeldOut& held) {
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     Cause& cause = d.causes[c];
-    cause.is_written = held.keeps_claim[c] && held.keeps_numbers;
+    cause.is_written = held.writes_claim[c] && held.keeps_numbers;
+    cause.n_searched = held.n_searched;
+    if (held.n_searched > 0) cause.n_again = held.n_again[c];
     if (!d.search.findings[c].is_named) continue;
     if (!held.keeps_claim[c]) {
       cause.doubt = "rows that were kept out are predicted worse with it";
@@ -530,7 +544,14 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.causes.push_back(std::move(cause));
   }
   say("measuring the gain");
-  const HeldOut held = held_out_gain(fitter, d.search, d.noise);
+  SearchAgain search_again;
+  if (search_work(fitter, list) <= kMostWork) {
+    search_again = [&](Fitter& without) {
+      say("searching again without a record");
+      return search(without, standing, how, [](const std::string&) {});
+    };
+  }
+  const HeldOut held = held_out_gain(fitter, d.search, d.noise, search_again);
   d.written = written_of(fitter, d.search, held, workspace);
   d.extended = d.written.keeps_numbers ? d.written.fit.prediction : d.as_written;
   d.calibrated = calibrated_numbers(fitter, d.written.fit, known_to);

@@ -25,7 +25,10 @@ enum class Standing {
 struct Estimate {
   std::string name, unit;
   double value = 0.0, low = 0.0, high = 0.0;
-  double deviation = 0.0;  ///< from what the scenario says, in standard deviations of its prior; of calibrated numbers
+  // Of calibrated numbers:
+  double deviation = 0.0;  ///< from what the scenario says, in standard deviations of its prior
+  double known_to = 0.0;   ///< 1 sigma of that: of the logarithm where is_share, else in the unit
+  bool is_share = false;
 };
 
 struct Cause {
@@ -35,7 +38,8 @@ struct Cause {
   std::vector<Cause> alternatives;
   Standing standing = Standing::kSuspected;
   std::string doubt = {};  ///< why it is only suspected, a clause; "" where it is not
-  bool is_written = true;  ///< whether extended.yaml has it: it predicts kept-out rows better than without
+  bool is_written = true;  ///< whether extended.yaml has it: it does no harm to kept-out rows
+  int n_searched = 0, n_again = 0;  ///< searches without a part of the rows, and in how many of them it was found again
 };
 
 /// What extended.yaml holds: claims that predict kept-out rows better, and the scenario's own numbers as fitted beside them.

@@ -21,10 +21,14 @@ constexpr double kWorse = 1.1;            // of the squares
 // Where the scenario's own numbers can do what a claim does, if they go far enough, kept-out rows are predicted alike with it and without; then it is the
 // evidence of all rows that counts how far they had to go.
 constexpr double kAlike = 3.0;  // nats
+constexpr double kWorseUnforeseen = 1.1;  // of the squares
 
 /// Rows that numbers are fitted to, and the others. Both have all runs; readings that are not theirs are missing.
 struct Fold {
   std::vector<MeasuredRun> fitted, kept_out;
+  std::optional<std::size_t> run = {};  ///< that is kept out whole
+  bool is_ahead = false;                ///< the end of the only run
+  [[nodiscard]] bool is_searched() const { return run || is_ahead; }
 };
 
 Fold fold_of(const std::vector<MeasuredRun>& runs, const std::function<bool(std::size_t run, double t_s)>& is_kept_out) {
@@ -66,15 +70,13 @@ Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace
           fold_of(runs, [&](std::size_t r, double t_s) { return r == run && static_cast<int>(t_s / block_s) % 2 == odd; }));
   };
   if (runs.size() == 1) {
+    const double from_s = kFitted * runs[0].time_s.back();
+    folds.list.push_back(fold_of(runs, [&](std::size_t, double t_s) { return t_s > from_s; }));
+    folds.list.back().is_ahead = true;
+    folds.how = "the last third of the only record, predicted with numbers fitted to the first two thirds";
     if (std::any_of(result.hypothesis.begin(), result.hypothesis.end(), has_time)) {
       by_blocks(0);
-      folds.how = fmt::format(
-          "sixths of the only record, every other one predicted with numbers fitted to the rest, for something happened in "
-          "it");
-    } else {
-      const double from_s = kFitted * runs[0].time_s.back();
-      folds.list.push_back(fold_of(runs, [&](std::size_t, double t_s) { return t_s > from_s; }));
-      folds.how = "the last third of the only record, predicted with numbers fitted to the first two thirds";
+      folds.how += "; and sixths of it, every other one kept out, for something happened in it";
     }
   } else {
     std::vector<char> happened(runs.size(), 0);  // something in this run alone
@@ -88,6 +90,7 @@ Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace
         by_blocks(out);
       } else {
         folds.list.push_back(fold_of(runs, [&](std::size_t r, double) { return r == out; }));
+        folds.list.back().run = out;
       }
     }
     folds.how = fmt::format("each of the {} records in turn, predicted with numbers fitted to the others{}", runs.size(),
@@ -95,7 +98,6 @@ Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace
                                 ? "; of a record in which alone something happened, sixths, every other one kept out"
                                 : "");
   }
-  folds.how += "; which effect it is was decided on all rows";
   return folds;
 }
 
@@ -118,6 +120,8 @@ class Judge {
     /// Logarithm of the probability of the kept-out rows, the fitted ones given, summed over the folds; up to what all claims share:
     /// the evidence of all rows less that of the fitted ones.
     double log_predictive = 0.0;
+    Hypothesis hypothesis = {};
+    std::vector<Eigen::VectorXd> x = {};  ///< of each fold's fit; empty where there is none
   };
   const Judged& judged(Subset claims) {
     const auto known = judged_.find(claims);
@@ -138,12 +142,51 @@ class Judge {
             fits[f] = Fit{};
         });
     Judged j;
+    j.hypothesis = rest.hypothesis;
     for (std::size_t f = 0; f < folds_.size(); ++f) {
       const bool is_solved = !fits[f].prediction.empty() && !fits.back().prediction.empty();
       j.log_predictive += is_solved ? fits.back().log_evidence - fits[f].log_evidence : kNoSolution;
+      j.x.push_back(fits[f].x);
       j.predicted.push_back(fits[f].prediction.empty() ? written_ : std::move(fits[f].prediction));
     }
     return judged_.emplace(claims, std::move(j)).first->second;
+  }
+  /// The same where nobody knows what happens in a run that is kept out whole, as nobody would of one still to come: no window of time is open in it.
+  [[nodiscard]] std::vector<Prediction> unforeseen(Subset claims) {
+    const Judged& j = judged(claims);
+    std::vector<Prediction> predicted = j.predicted;
+    for (std::size_t f = 0; f < folds_.size(); ++f) {
+      if (folds_[f].run && j.x[f].size() > 0)
+        predicted[f][*folds_[f].run] = ahead(j.hypothesis, j.x[f], *folds_[f].run);
+    }
+    return predicted;
+  }
+  /// What comes of the search made again without the kept-out rows; of a fold of blocks, in which something happened, what the claims make of it.
+  struct Refound {
+    std::vector<Prediction> extended, calibrated;
+    std::vector<int> n_again;  ///< per claim: in how many of the searches the same effect was found at the same place
+    int n_searched = 0;
+  };
+  [[nodiscard]] Refound refound(const SearchAgain& search_again, Subset kept) {
+    Refound found{judged(kept).predicted, judged(0).predicted, std::vector<int>(result_.hypothesis.size(), 0), 0};
+    for (std::size_t f = 0; f < folds_.size(); ++f) {
+      if (!folds_[f].is_searched()) continue;
+      Fitter fitter(whole_, folds_[f].fitted);
+      SearchResult again;
+      if (!has_solution([&] { again = search_again(fitter); })) continue;
+      ++found.n_searched;
+      found.calibrated[f] = again.without.prediction;
+      found.extended[f] = again.fit.prediction;
+      if (folds_[f].run) found.extended[f][*folds_[f].run] = ahead(again.hypothesis, again.fit.x, *folds_[f].run);
+      for (std::size_t c = 0; c < result_.hypothesis.size(); ++c) {
+        const Candidate& known = result_.candidates[result_.hypothesis[c].candidate];
+        found.n_again[c] += std::any_of(again.hypothesis.begin(), again.hypothesis.end(), [&](const Claim& claim) {
+          const Candidate& other = again.candidates[claim.candidate];
+          return other.effect == known.effect && other.where == known.where;
+        });
+      }
+    }
+    return found;
   }
   [[nodiscard]] std::vector<Prediction> written() const { return std::vector<Prediction>(folds_.size(), written_); }
 
@@ -174,6 +217,19 @@ class Judge {
   }
 
  private:
+  /// A run as it is predicted where no window of time is known of it.
+  [[nodiscard]] Eigen::MatrixXd ahead(const Hypothesis& hypothesis, const Eigen::VectorXd& x, std::size_t r) const {
+    const MeasuredRun& run = whole_.runs()[r];
+    TwinState state = whole_.state(hypothesis, x);
+    std::erase_if(state, [&](const effects::Effect& e) { return e.in == run.name && e.tables.contains("windows"); });
+    Twin::Workspace workspace(whole_.twin());
+    Eigen::MatrixXd readings = written_[r];
+    (void)has_solution([&] { readings = whole_.twin().read(state, run, whole_.twin().respond(state, run, workspace)); });
+    for (std::size_t l = 0; l < whole_.linear().size(); ++l)
+      readings += x[static_cast<Eigen::Index>(whole_.scatter().size() + l)] * whole_.linear()[l][r];
+    return readings;
+  }
+
   const Fitter& whole_;
   const SearchResult& result_;
   const std::map<std::string, NoiseModel>& noise_;
@@ -223,7 +279,8 @@ std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, con
 
 }  // namespace
 
-HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise) {
+HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
+                      const SearchAgain& search_again) {
   HeldOut held;
   const std::size_t n_claims = result.hypothesis.size();
   Folds folds;
@@ -258,10 +315,33 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   held.fails = all != 0 && (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier ||
                             judge.is_worse(all, 0));
   for (std::size_t c = 0; c < n_claims; ++c) held.keeps_claim.push_back(((kept >> c) & 1U) != 0);
+  // What comes again and again at times that nobody knows ahead is true of these records, and of no use for those to come.
+  for (std::size_t c = 0; c < n_claims; ++c) {
+    const Subset without = kept & ~(1U << c);
+    const Claim& claim = result.hypothesis[c];
+    if (without == kept || !claim.happens) continue;
+    if (judge.squares_over_noise(judge.unforeseen(kept)) <=
+        kWorseUnforeseen * judge.squares_over_noise(judge.unforeseen(without)))
+      continue;
+    kept = without;
+  }
   const std::vector<Prediction> written = judge.written();
-  held.keeps_numbers = judge.squares_over_noise(judge.judged(kept).predicted) <= judge.squares_over_noise(written);
-  held.channels = channel_gains(fitter.runs(), noise, judge, written, judge.judged(0).predicted,
-                                held.keeps_numbers ? judge.judged(kept).predicted : written);
+  std::vector<Prediction> extended = judge.unforeseen(kept), calibrated = judge.judged(0).predicted;
+  if (search_again) {
+    Judge::Refound again = judge.refound(search_again, kept);
+    calibrated = std::move(again.calibrated);
+    // A search that finds what does harm to rows it has not seen would do so to records that are still to come.
+    if (kept != 0 && judge.squares_over_noise(again.extended) > kWorse * judge.squares_over_noise(calibrated)) kept = 0;
+    extended = kept != 0 ? std::move(again.extended) : calibrated;
+    held.how += "; the search for what is wrong was made again without them";
+    held.n_searched = again.n_searched;
+    held.n_again = std::move(again.n_again);
+  } else {
+    held.how += "; which effect it is was decided on all rows";
+  }
+  for (std::size_t c = 0; c < n_claims; ++c) held.writes_claim.push_back(((kept >> c) & 1U) != 0);
+  held.keeps_numbers = judge.squares_over_noise(extended) <= judge.squares_over_noise(written);
+  held.channels = channel_gains(fitter.runs(), noise, judge, written, calibrated, held.keeps_numbers ? extended : written);
   return held;
 }
 

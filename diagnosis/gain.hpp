@@ -11,15 +11,24 @@ struct HeldOut {
   /// Per claim: how much likelier the kept-out rows are with it than without it, those fitted given, whatever is not known of all numbers counted in [nats].
   std::vector<double> claim_nats;
   std::vector<char> keeps_claim;  ///< per claim: kept-out rows are not predicted worse with it
+  /// Per claim: it is worth writing. Not so what happens in several records at times that nobody knows ahead, where a record whose times are not known is
+  /// predicted worse by what was fitted beside it; nor anything, where a search without the kept-out rows finds what does harm to them.
+  std::vector<char> writes_claim;
+  /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place.
+  int n_searched = 0;
+  std::vector<int> n_again = {};
   bool fails = false;             ///< the claims together predict kept-out rows clearly worse than none of them does
   bool keeps_numbers =
       true;  ///< false: the scenario as written predicts kept-out rows better than any numbers that were fitted
 };
 
+/// A search for what is wrong, with the readings that a fitter has.
+using SearchAgain = std::function<SearchResult(Fitter&)>;
+
 /// Each run in turn is predicted with numbers fitted to the others; of a single run the last third with those of the rest. What happened in one run alone, or
-/// at a time of the only one, is judged on blocks of it, every other one kept out. Each time all numbers are fitted anew, by the same search for the most probable
-/// ones; which claims there are was decided on all rows.
+/// at a time of the only one, is judged on blocks of it, every other one kept out. Each time all numbers are fitted anew.
+/// @param search_again  makes the search again without the rows of each run, or of the last third; null: which claims there are was decided on all rows
 [[nodiscard]] HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result,
-                                    const std::map<std::string, NoiseModel>& noise);
+                                    const std::map<std::string, NoiseModel>& noise, const SearchAgain& search_again);
 
 }  // namespace driftwright::diagnosis

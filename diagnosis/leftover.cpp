@@ -28,7 +28,7 @@ std::vector<Leftover> leftovers(const std::vector<MeasuredRun>& runs, const Pred
     const Eigen::VectorXd xr = x.transpose() * r, amplitude = normal.llt().solve(xr);
     auto found = std::find_if(list.begin(), list.end(), [&](const Leftover& l) { return l.channel == block.channel; });
     if (found == list.end()) {
-      list.push_back({block.channel, run.find(block.channel)->unit, 0.0, 0.0, 0.0, 0.0});
+      list.push_back({.channel = block.channel, .unit = run.find(block.channel)->unit});
       n_rows.push_back(0.0);
       found = list.end() - 1;
     }
@@ -41,7 +41,11 @@ std::vector<Leftover> leftovers(const std::vector<MeasuredRun>& runs, const Pred
       step.tail(curves.rows() - from).setOnes();
       comparison.whitener(b).apply(step, whitened);
       const double square = whitened.squaredNorm();
-      if (square > 1e-12) found->jump_squares = std::max(found->jump_squares, std::pow(whitened.dot(r), 2) / square);
+      if (!(square > 1e-12)) continue;
+      const double size = whitened.dot(r) / square;
+      if (size * size * square <= found->jump_squares) continue;
+      found->jump_squares = size * size * square;
+      found->jump = std::abs(size);
     }
     n_rows[static_cast<std::size_t>(found - list.begin())] += static_cast<double>(curves.rows());
   }

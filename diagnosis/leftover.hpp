@@ -12,6 +12,7 @@ struct Leftover {
   double n_curves = 0.0;
   double rms = 0.0;           ///< of that part, in the channel's SI unit
   double jump_squares = 0.0;  ///< what the best single step at any row would take off the whitened squares
+  double jump = 0.0;          ///< size of that step, in the same unit
   [[nodiscard]] double sigmas() const;
 };
 /// One entry a channel, all runs together, worst first. @param noise  by channel

@@ -1,13 +1,30 @@
 #include "diagnosis/scatter.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kScatter = 0.10;  // of what is not in the scenario as a number of an effect
-
 constexpr double kHall_K = 0.3;
+constexpr double kLargestStep = 0.1;  // of a logarithm, for differences: half of what it is known to, but never more
+
+double step_of(double known_to) {
+  return std::min(0.5 * known_to, kLargestStep);
+}
+
+/// How well heat capacity, conductivity or expansion of a body is known.
+double known_of_body(const Twin& twin, const std::string& property, const std::string& body) {
+  for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {
+    const effects::Effect& e = twin.as_written()[i];
+    if (e.kind->key == "node" && e.place == body && property == "heat_capacity")
+      return effects::known_to(e.known_to, "capacity", effects::kBodyScatter);
+  }
+  for (const scenarios::MaterialEntry& m : twin.augmented().model.materials) {
+    if (m.region == body) return effects::known_to(m.known_to, property, effects::kBodyScatter);
+  }
+  return effects::kBodyScatter;
+}
 
 }  // namespace
 
@@ -36,14 +53,16 @@ std::vector<Knob> scatter(const Twin& twin) {
     for (std::size_t p = 0; p < e.kind->parameters.size(); ++p) {
       const effects::Parameter& parameter = e.kind->parameters[p];
       if (parameter.scatter == 0.0 || std::isnan(e.values[p]) || e.values[p] == 0.0) continue;
+      const double known_to = effects::known_to(e.known_to, parameter.name, parameter.scatter);
+      if (known_to == 0.0) continue;
       knobs.push_back({.effect = parameter.finding,
                        .where = effects::where_of(e),
                        .name = parameter.name,
                        .unit = parameter.unit,
                        .scale = Knob::Scale::kLog,
                        .nominal = e.values[p],
-                       .prior_sd = parameter.scatter,
-                       .step = 0.5 * parameter.scatter,
+                       .prior_sd = known_to,
+                       .step = step_of(known_to),
                        .low = parameter.low,
                        .high = parameter.high,
                        .set = [i, p](TwinState& s, double value) { s[i].values[p] = value; }});
@@ -55,8 +74,9 @@ std::vector<Knob> scatter(const Twin& twin) {
     for (const effects::Doubt& d : kind.doubts(scene)) {
       if (!d.scatters) continue;
       Knob size = knobs_of(d).front();
-      size.prior_sd = kScatter;
-      size.step = 0.5 * kScatter;
+      size.prior_sd = known_of_body(twin, d.finding, d.where);
+      if (size.prior_sd == 0.0) continue;
+      size.step = step_of(size.prior_sd);
       knobs.push_back(std::move(size));
     }
   }

@@ -228,9 +228,18 @@ Effect read_effect(const ConfigMap& in) {
   for (const Table& t : kind.tables) read_table(in, t, effect);
   for (const Mention& m : kind.mentions) read_mention(in, m, effect);
   read_timing(in, effect);
+  effect.known_to = read_known_to(in, kind.known_roughly());
   in.reject_unknown_keys();
   if (kind.check) kind.check(effect, in);
   return effect;
+}
+
+std::vector<std::string> EffectKind::known_roughly() const {
+  std::vector<std::string> names;
+  for (const Parameter& p : parameters) {
+    if (p.scatter > 0.0 || p.is_of_body) names.push_back(p.name);
+  }
+  return names;
 }
 
 const EffectKind& kind_of(const std::string& key) {

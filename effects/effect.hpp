@@ -11,6 +11,7 @@
 #include "base/config_map.hpp"
 #include "effects/drive_change.hpp"
 #include "effects/heat_balance.hpp"
+#include "effects/known_to.hpp"
 #include "effects/material_factor.hpp"
 #include "effects/reading_chain.hpp"
 
@@ -20,6 +21,9 @@ namespace driftwright::effects {
 /// A law is named as in heat_flows.csv: the heat or exchange of another effect.
 enum class Place { kRegion, kSurface, kJoint, kNode, kHall, kSensor, kDisplacement, kClock, kSpindle, kLaw };
 [[nodiscard]] const char* place_key(Place place);
+
+/// How well heat capacity, conductivity and expansion of a body are known where a scenario does not say it.
+inline constexpr double kBodyScatter = 0.10;
 
 /// How one number of an effect that is written may be wrong beyond its scatter, where not the law as a whole is doubted.
 enum class Doubted { kNo, kFactor, kShift };
@@ -37,6 +41,7 @@ struct Parameter {
   std::string finding = {};  ///< key of the effect that a value far outside its scatter is called
   Doubted doubted = Doubted::kNo;
   double shift_sd = 0.0;  ///< 1 sigma of a doubted shift, in `unit`
+  bool is_of_body = false;  ///< calibrated by a factor on the heat capacity of its place, which is known to kBodyScatter
 };
 /// Value of a parameter that was left out; Effect::has() asks for it.
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
@@ -118,6 +123,8 @@ struct EffectKind {
   std::string exchange_finding =
       {};  ///< key of the effect that another factor on its exchanges is called; "": they are not doubted as a whole
 
+  /// Names of the numbers that a diagnosis calibrates.
+  [[nodiscard]] std::vector<std::string> known_roughly() const;
   /// Whether it acts on instruments alone: the machine itself does not notice.
   [[nodiscard]] bool is_of_readings() const { return change_readings && !contribute && !change_laws && !change_drive; }
 };
@@ -137,6 +144,7 @@ struct Effect {
   std::map<std::string, TimeSeries> tables = {};  ///< argument in `time_s` whatever its unit; those given
   double from_s = 0.0, until_s = kNever_s;        ///< when it acts, `until` excluded; of Timing::kInTime
   std::string in = {};                            ///< cyclogram during which; "": in each
+  KnownTo known_to = {};                          ///< of its values, where the scenario says it
   Where where = {};                               ///< in the scenario, for errors that show only once the mesh is there
 
   /// Value by parameter name, in the parameter's unit. @throws std::logic_error  for a name the kind has not

@@ -14,7 +14,7 @@ EffectKind lumped_node() {
           .title = "lumped body with one temperature: a rotor, a tank, a motor",
           .law = "C dT/dt = sum of what links, films, sources and circuits bring",
           .places = {Place::kNode},
-          .parameters = {{"capacity", "J/K", 1e-6, 1e12, {}, "heat capacity"}},
+          .parameters = {{"capacity", "J/K", 1e-6, 1e12, {}, "heat capacity", 0.0, {}, Doubted::kNo, 0.0, true}},
           .contribute = contribute};
 }
 

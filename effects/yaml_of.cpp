@@ -71,6 +71,7 @@ std::string yaml_of(const Effect& e) {
   if (e.from_s > 0.0) add("from", quantity(e.from_s, "s"));
   if (e.until_s < kNever_s) add("until", quantity(e.until_s, "s"));
   if (!e.in.empty()) add("in", word(e.in));
+  if (!e.known_to.empty()) add("known_to", yaml_of(e.known_to));
   return text + "}";
 }
 

@@ -15,19 +15,27 @@
 namespace driftwright::scenarios {
 namespace {
 
-/// `materials:` maps each region to a name of the library or to a map of values.
+/// `materials:` maps each region to a name of the library or to a map: of values, or of such a name and how well it is known.
 std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
   std::vector<std::string> names;
   for (const auto& [name, material] : solver::material_library()) names.push_back(name);
   std::vector<MaterialEntry> entries;
   for (const std::string& region : in.keys()) {
-    solver::Material material;
-    if (in.is_map(region)) {
-      material = solver::read_material(in.map(region));
-    } else {
-      material = solver::material_library().at(in.choice(region, names));
+    MaterialEntry& entry = entries.emplace_back();
+    entry.region = region;
+    entry.where = in.where(region);
+    if (!in.is_map(region)) {
+      entry.material = solver::material_library().at(in.choice(region, names));
+      continue;
     }
-    entries.push_back({region, material, in.where(region)});
+    const ConfigMap values = in.map(region);
+    entry.known_to = effects::read_known_to(values, {"conductivity", "heat_capacity", "expansion"});
+    if (values.has("like")) {
+      entry.material = solver::material_library().at(values.choice("like", names));
+      values.reject_unknown_keys();
+    } else {
+      entry.material = solver::read_material(values);
+    }
   }
   return entries;
 }

@@ -31,7 +31,8 @@ namespace driftwright::scenarios {
 struct MaterialEntry {
   std::string region;
   solver::Material material;
-  Where where;
+  effects::KnownTo known_to = {};  ///< of conductivity, heat_capacity, expansion
+  Where where = {};
 };
 
 /// The state at t = 0.

@@ -1,0 +1,56 @@
+#include "effects/known_to.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace driftwright::effects {
+namespace {
+
+constexpr const char* kKey = "known_to";
+
+double read_share(const ConfigMap& in, const std::string& key) {
+  const std::string text = in.text(key);
+  if (text == "fixed") return 0.0;
+  if (text == "guess") return kGuess;
+  if (text.empty() || !(text.front() >= '0' && text.front() <= '9'))
+    in.fail(key, fmt::format("'{}' is not how well a number is known; a share such as 20 %, `guess` (a factor of 2) or `fixed` is wanted", text));
+  return in.quantity(key, "1", 1e-3, 2.0);
+}
+
+std::string word(double share) {
+  return share == 0.0 ? "fixed" : share == kGuess ? "guess" : fmt::format("{:.12g} %", 100.0 * share);
+}
+
+}  // namespace
+
+KnownTo read_known_to(const ConfigMap& in, const std::vector<std::string>& names) {
+  if (!in.has(kKey)) return {};
+  if (names.empty()) in.fail(kKey, "none of its numbers is one that a diagnosis calibrates");
+  if (!in.is_map(kKey)) return {{"", read_share(in, kKey)}};
+  const ConfigMap by_name = in.map(kKey);
+  KnownTo said;
+  for (const std::string& name : by_name.keys()) {
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      by_name.fail(name, fmt::format("a number that a diagnosis calibrates is wanted: {}", fmt::join(names, ", ")));
+    said[name] = read_share(by_name, name);
+  }
+  return said;
+}
+
+double known_to(const KnownTo& said, const std::string& name, double otherwise) {
+  for (const std::string& key : {name, std::string()}) {
+    if (const auto found = said.find(key); found != said.end()) return found->second;
+  }
+  return otherwise;
+}
+
+std::string yaml_of(const KnownTo& said) {
+  if (said.size() == 1 && said.begin()->first.empty()) return word(said.begin()->second);
+  std::string text;
+  for (const auto& [name, share] : said) text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", name, word(share));
+  return "{" + text + "}";
+}
+
+}  // namespace driftwright::effects
