@@ -74,8 +74,9 @@ TEST(KnownTo, OfAMaterialIsThatOfItsBody) {
   std::string text{std::istreambuf_iterator<char>(shipped), {}};
   const std::string plain = "  base: mineral_casting\n";
   ASSERT_NE(text.find(plain), std::string::npos);
-  const std::string part = "mesh: parts/";
-  text.replace(text.find(part), part.size(), "mesh: " + std::filesystem::absolute("scenarios/parts").string() + "/");
+  const std::string parts = "parts/", there = std::filesystem::absolute("scenarios/parts").string() + "/";
+  for (std::size_t at = text.find(parts); at != std::string::npos; at = text.find(parts, at + there.size()))
+    text.replace(at, parts.size(), there);
   text.replace(text.find(plain), plain.size(), "  base: {like: mineral_casting, known_to: {conductivity: 2 %, expansion: fixed}}\n");
   const std::string path = write_file("known_material.yaml", text);
   try {

@@ -1,0 +1,164 @@
+#include "diagnosis/happening.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/time_windows.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kShortest_s = 1.0;       // of a window that another length has shortened
+constexpr double kTurnsGoOn = 2.0;        // of the longest run: how long turns are written for
+
+/// Whether the twin's reduced machine holds for such an exchange.
+bool holds(const Twin& twin, const effects::Effect& window) {
+  const solver::ExchangePlace asked = solver::place_of(effects::heat_balance({window}).exchanges.front());
+  const auto& exchanges = twin.machine().system.exchanges;
+  return std::any_of(exchanges.begin(), exchanges.end(), [&](const auto& e) { return e.place == asked; });
+}
+
+/// How much longer all windows are than they were seen to be.
+effects::DoubtedNumber longer_by(double sd_min, const std::vector<effects::Effect>& before) {
+  effects::DoubtedNumber longer = effects::doubted("longer", "min", sd_min, 0.1 * sd_min);
+  longer.set = [before](std::span<effects::Effect> added, double value) {
+    for (std::size_t i = 0; i < added.size(); ++i) {
+      const TimeSeries& seen_rows = before[i].tables.at("windows");
+      TimeSeries& rows = added[i].tables.at("windows");
+      for (std::size_t k = 0; k < rows.value.size(); ++k) {
+        const double next_s = k + 1 < rows.time_s.size() ? rows.time_s[k + 1] : 1e9;
+        rows.value[k] = std::clamp(seen_rows.value[k] + 60.0 * value, rows.time_s[k] + kShortest_s, next_s);
+      }
+    }
+  };
+  return longer;
+}
+
+/// Begin, length and period of windows that repeat, each known to about a row.
+std::vector<effects::DoubtedNumber> times_of_turns(const Happening& h, double row_min) {
+  const double begin_min = h.in.front().second.front().first / 60.0,
+               length_min = (h.in.front().second.front().second - h.in.front().second.front().first) / 60.0;
+  effects::DoubtedNumber begin = effects::doubted("begin", "min", 2.0 * row_min, 0.2 * row_min, begin_min);
+  begin.low = 0.0;
+  begin.set = [](std::span<effects::Effect> added, double value) {
+    TimeSeries& rows = added[0].tables.at("windows");
+    rows = {{60.0 * value}, {60.0 * value + rows.value[0] - rows.time_s[0]}};
+  };
+  effects::DoubtedNumber length = effects::doubted("length", "min", 2.0 * row_min, 0.2 * row_min, length_min);
+  length.low = kShortest_s / 60.0;
+  length.high = h.every_s / 60.0;
+  length.set = [](std::span<effects::Effect> added, double value) {
+    TimeSeries& rows = added[0].tables.at("windows");
+    rows.value[0] = rows.time_s[0] + 60.0 * value;
+  };
+  effects::DoubtedNumber every = effects::doubted("every", "min", row_min, 0.1 * row_min, h.every_s / 60.0);
+  every.low = length_min;
+  every.set = [](std::span<effects::Effect> added, double value) {
+    const TimeSeries& rows = added[0].tables.at("windows");
+    added[0].set("every", std::max(60.0 * value, rows.value[0] - rows.time_s[0]));
+  };
+  return {begin, length, every};
+}
+
+/// One window alone: when it begins and how long it lasts are numbers of its own, and pay for themselves.
+std::optional<Event> one_event(const effects::DoubtScene& scene, const Happening& h, const effects::Effect& window,
+                               const effects::DoubtedNumber& size) {
+  const auto& [run, windows] = h.in.front();
+  const auto [begin_s, end_s] = windows.front();
+  if (!(end_s - begin_s > kShortest_s)) return std::nullopt;
+  const auto of_run = std::find_if(scene.runs.begin(), scene.runs.end(), [&](const auto& r) { return r.name == run->name; });
+  const std::string what = h.other ? effects::kLid : "heat for a while";
+  Event event{.doubt = effects::one_window(*of_run, window, size, h.size, what), .price_nats = 0.0};
+  const std::vector<effects::DoubtedNumber>& n = event.doubt.numbers;
+  event.doubt.grid = {{begin_s - n[1].nominal, (end_s - begin_s) / 60.0 - n[2].nominal}};
+  return event;
+}
+
+}  // namespace
+
+std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::Body& a, const effects::Body& b) {
+  const bool is_turned = b.kind != effects::BodyKind::kNode;
+  if (is_turned && a.kind != effects::BodyKind::kNode) return std::nullopt;
+  effects::Effect window = effects::make_effect("exchange_window", is_turned ? b : a);
+  window.set("conductance", 0.0);
+  window.references["surrounding"] = is_turned ? a : b;
+  window.tables["windows"] = {{0.0}, {1.0}};
+  const bool joins_nodes = a.kind == effects::BodyKind::kNode && b.kind == effects::BodyKind::kNode;
+  if (!joins_nodes && !holds(twin, window)) return std::nullopt;
+  return window;
+}
+
+double row_s(const MeasuredRun& run) {
+  return run.time_s.back() / static_cast<double>(run.time_s.size() - 1);
+}
+
+std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& h) {
+  effects::Effect window = effects::make_effect("heat_window", h.body);
+  if (h.other) {
+    const auto between = exchange_window(twin, h.body, *h.other);
+    if (!between) return std::nullopt;
+    window = *between;
+  }
+  const double sd = (h.other ? kUnknownExchange : 1.0) * scene.unknown_heat_W();
+  effects::DoubtedNumber size = effects::doubted(h.other ? "conductance" : "power", h.other ? "W/K" : "W", sd, 0.05 * sd);
+  if (h.other || h.size > 0.0) size.low = 0.0;
+  const std::string where =
+      h.other && !(*h.other == effects::hall()) ? h.body.name + "," + h.other->name : h.body.name;
+  const double trial = std::clamp(h.size, -sd, sd);
+  if (trial == 0.0 || trial < size.low) return std::nullopt;
+  if (h.every_s == 0.0 && h.in.size() == 1 && h.in.front().second.size() == 1) {
+    auto event = one_event(scene, h, window, size);
+    if (event) {
+      event->doubt.where = where;
+      event->doubt.trial = trial;
+    }
+    return event;
+  }
+  Event event{.doubt = {}, .price_nats = h.price_nats};
+  effects::Doubt& d = event.doubt;
+  std::size_t n_windows = 0;
+  double longest_row_s = 0.0;
+  std::vector<std::string> times;
+  for (const auto& [run, windows] : h.in) {
+    effects::Effect in_run = window;
+    if (h.every_s == 0.0) in_run.in = run->name;
+    TimeSeries& rows = in_run.tables["windows"];
+    rows = {};
+    for (const auto& [begin_s, end_s] : windows) {
+      if (!(end_s - begin_s > kShortest_s)) continue;
+      rows.time_s.push_back(std::round(begin_s));
+      rows.value.push_back(std::max(std::round(begin_s) + 1.0, std::round(end_s)));
+      times.push_back(fmt::format("{:.1f} to {:.1f}", begin_s / 60.0, end_s / 60.0));
+      ++n_windows;
+    }
+    if (rows.time_s.empty()) continue;
+    longest_row_s = std::max(longest_row_s, row_s(*run));
+    if (h.every_s > 0.0) {
+      in_run.set("every", h.every_s);
+      in_run.set("until_time", kTurnsGoOn * scene.longest_s());
+    }
+    d.added.push_back(std::move(in_run));
+  }
+  if (n_windows == 0) return std::nullopt;
+  d.numbers = {size};
+  if (h.every_s > 0.0) {
+    for (effects::DoubtedNumber& n : times_of_turns(h, longest_row_s / 60.0)) d.numbers.push_back(std::move(n));
+  } else {
+    d.numbers.push_back(longer_by(longest_row_s / 60.0, d.added));
+  }
+  d.finding = window.kind->key;
+  d.where = where;
+  const std::string to = h.other ? ", to " + h.other->name : std::string();
+  d.law = h.every_s > 0.0 ? fmt::format("windows that repeat every {:.1f} min{}: {} min of each turn", h.every_s / 60.0, to,
+                                        times.front())
+                          : fmt::format("{}, seen in the waveform{}: {} min",
+                                        n_windows == 1 ? std::string("a window") : fmt::format("{} windows of one size", n_windows),
+                                        to, fmt::join(times, ", "));
+  d.trial = trial;
+  return event;
+}
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,33 @@
+#pragma once
+// Windows of one size, wherever they are, and the doubt that they make: heat in a body or an exchange with another one.
+
+#include "diagnosis/event_candidates.hpp"
+
+namespace driftwright::diagnosis {
+
+using Times = std::vector<std::pair<double, double>>;  ///< beginnings and ends [s]
+
+/// Windows of one size, wherever they are.
+struct Happening {
+  effects::Body body;
+  std::optional<effects::Body> other = {};             ///< an exchange with it; else heat
+  std::vector<std::pair<const MeasuredRun*, Times>> in = {};  ///< each run that has some; no run: all of them, one window in each turn
+  double every_s = 0.0;                                ///< of windows that repeat
+  double size = 0.0;                                   ///< W or W/K
+  double price_nats = 0.0;
+};
+
+/// 1 sigma of a conductance that nobody knows of, per W of heat that nobody knows of [W/K].
+inline constexpr double kUnknownExchange = 0.2;
+
+/// The window of an exchange between two bodies, either end of which may be the one that stands first. None between two regions, or where the twin has no
+/// place for it.
+[[nodiscard]] std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::Body& a, const effects::Body& b);
+
+/// From row to row [s], on average.
+[[nodiscard]] double row_s(const MeasuredRun& run);
+
+/// @returns  nothing where there is no window, or none of a size that is allowed
+[[nodiscard]] std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& happening);
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,167 @@
+#include "diagnosis/window_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "diagnosis/happening.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr Eigen::Index kCells = 60;  // of a run, in which windows are looked for first
+constexpr Eigen::Index kFiner = 12;  // parts of two of them about an edge
+
+/// What drives heat through a place from row to row: 1, or a difference of temperatures [K].
+Eigen::VectorXd carrier_of(const SeenRun& run, const WindowPlace& place, std::size_t n_bodies) {
+  const Eigen::Index n = run.decay.cols();
+  Eigen::VectorXd carrier = Eigen::VectorXd::Ones(n);
+  if (!place.other) return carrier;
+  const Eigen::MatrixXd& warm_K = run.linear.temperature_K;
+  const auto at = [&](Eigen::Index row) {
+    const double other_K =
+        *place.other == n_bodies ? run.linear.hall_K[row] : warm_K(row, static_cast<Eigen::Index>(*place.other));
+    return other_K - warm_K(row, static_cast<Eigen::Index>(place.body));
+  };
+  for (Eigen::Index k = 0; k < n; ++k) carrier[k] = mean_difference(at(k), at(k + 1));
+  return carrier;
+}
+
+/// Whitened readings, condensed, of a unit through a place in each cell of a run, n_rows x n_cells. @param edges  rows between the cells
+Eigen::MatrixXd columns_of(const Comparison& comparison, const SeenRun& run, const WindowPlace& place, std::size_t n_bodies,
+                           const std::vector<Eigen::Index>& edges) {
+  const ModalCourse& course = run.linear.course;
+  const Eigen::Index n_steps = run.decay.cols(), n_modes = run.decay.rows();
+  const Eigen::VectorXd carrier = carrier_of(run, place, n_bodies);
+  Eigen::MatrixXd load(n_modes, n_steps);
+  for (Eigen::Index k = 0; k < n_steps; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const ModalCourse::Modes& m = course.modes[course.of_interval[i]];
+    const double dt_s = course.time_s[i + 1] - course.time_s[i];
+    Eigen::VectorXd b = m.load.col(static_cast<Eigen::Index>(place.body));
+    if (place.other && *place.other < n_bodies) b -= m.load.col(static_cast<Eigen::Index>(*place.other));
+    for (Eigen::Index j = 0; j < n_modes; ++j) {
+      const double x = dt_s * m.rate_1_s[j];
+      load(j, k) = carrier[k] * b[j] * (std::abs(x) < 1e-9 ? dt_s : (1.0 - run.decay(j, k)) / m.rate_1_s[j]);
+    }
+  }
+  const auto n_channels = course.modes.front().observe.cols();
+  const auto n_cells = static_cast<Eigen::Index>(edges.size()) - 1;
+  Eigen::MatrixXd columns(run.n_rows, n_cells), readings(n_channels, n_steps + 1);
+  Eigen::VectorXd whitened;
+  for (Eigen::Index c = 0; c < n_cells; ++c) {
+    const Eigen::Index from = edges[static_cast<std::size_t>(c)], to = edges[static_cast<std::size_t>(c + 1)];
+    readings.setZero();
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(n_modes);
+    for (Eigen::Index k = from; k < n_steps; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const ModalCourse::Modes& m = course.modes[course.of_interval[i]];
+      if (k > from && course.of_interval[i] != course.of_interval[i - 1]) a = (m.from * a).eval();
+      a.array() *= run.decay.col(k).array();
+      if (k < to) a += load.col(k);
+      readings.col(k + 1).noalias() = m.observe.transpose() * a;
+    }
+    for (Eigen::Index channel = 0; channel < n_channels; ++channel) {
+      const auto b = static_cast<std::size_t>(run.first_block + channel);
+      const Comparison::Condensed& few = comparison.condensed_blocks()[b];
+      whitened.resize(comparison.blocks()[b].n);
+      comparison.whitener(b).apply(readings.row(channel).transpose(), whitened);
+      for (Eigen::Index k = 0; k < few.n; ++k) {
+        const auto together = whitened.segment(k * few.together, std::min(few.together, whitened.size() - k * few.together));
+        columns(few.first - run.first_row + k, c) = together.sum() / std::sqrt(static_cast<double>(together.size()));
+      }
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+SeenRun seen_run(const Fitter& fitter, const TwinState& state, std::size_t r, const std::vector<effects::Body>& bodies,
+                 Twin::Workspace& workspace) {
+  const MeasuredRun& run = fitter.runs()[r];
+  std::vector<Eigen::Index> rows(run.time_s.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  SeenRun s{.linear = linear_run(fitter.twin(), run, state, bodies, rows,
+                                 Eigen::VectorXd::Ones(static_cast<Eigen::Index>(run.channels.size())), workspace),
+            .decay = {}};
+  const ModalCourse& course = s.linear.course;
+  const auto n_steps = static_cast<Eigen::Index>(rows.size()) - 1;
+  s.decay.resize(course.modes.front().rate_1_s.size(), n_steps);
+  for (Eigen::Index k = 0; k < n_steps; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    s.decay.col(k) = (-(run.time_s[i + 1] - run.time_s[i]) * course.modes[course.of_interval[i]].rate_1_s).array().exp();
+  }
+  const auto& blocks = fitter.comparison().blocks();
+  s.first_block = std::find_if(blocks.begin(), blocks.end(), [&](const auto& b) { return b.run == r; }) - blocks.begin();
+  for (auto b = static_cast<std::size_t>(s.first_block); b < blocks.size() && blocks[b].run == r; ++b) {
+    const Comparison::Condensed& c = fitter.comparison().condensed_blocks()[b];
+    if (s.n_rows == 0) s.first_row = c.first;
+    s.n_rows += c.n;
+  }
+  return s;
+}
+
+WindowEvidence evidence_of(const Fitter& fitter, const Projection& projection, const std::vector<SeenRun>& runs,
+                           const WindowPlace& place, std::size_t n_bodies, const Edges& edges) {
+  WindowEvidence e;
+  Eigen::Index n_cells = 0;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    WindowEvidence::Run run{n_cells, {}, row_s(fitter.runs()[r])};
+    for (Eigen::Index row : edges[r]) run.edge_s.push_back(fitter.runs()[r].time_s[static_cast<std::size_t>(row)]);
+    e.runs.push_back(std::move(run));
+    n_cells += static_cast<Eigen::Index>(edges[r].size()) - 1;
+  }
+  e.slope.resize(n_cells);
+  e.curvature = Eigen::MatrixXd::Zero(n_cells, n_cells);
+  Eigen::MatrixXd known(projection.slopes.cols(), n_cells);  // what the numbers known roughly have of each column
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const Eigen::MatrixXd columns = columns_of(fitter.comparison(), runs[r], place, n_bodies, edges[r]);
+    const Eigen::Index first = e.runs[r].first, n = columns.cols();
+    e.curvature.block(first, first, n, n).noalias() = columns.transpose() * columns;
+    known.middleCols(first, n).noalias() =
+        projection.slopes.middleRows(runs[r].first_row, runs[r].n_rows).transpose() * columns;
+    e.slope.segment(first, n).noalias() =
+        columns.transpose() * projection.rest.segment(runs[r].first_row, runs[r].n_rows);
+  }
+  e.curvature.noalias() -= known.transpose() * projection.factor.solve(known);
+  return e;
+}
+
+Edges coarse_edges(const std::vector<MeasuredRun>& runs) {
+  Edges edges;
+  for (const MeasuredRun& run : runs) {
+    const auto n_steps = static_cast<Eigen::Index>(run.time_s.size()) - 1;
+    const Eigen::Index n_cells = std::min(n_steps, kCells);
+    std::vector<Eigen::Index>& of_run = edges.emplace_back();
+    for (Eigen::Index c = 0; c <= n_cells; ++c) of_run.push_back(c * n_steps / n_cells);
+  }
+  return edges;
+}
+
+Edges finer_edges(const Edges& coarse, std::vector<FoundWindows::Window>& windows) {
+  std::vector<std::set<Eigen::Index>> rows;
+  for (const auto& of_run : coarse) rows.emplace_back(of_run.begin(), of_run.end());
+  for (const FoundWindows::Window& w : windows) {
+    const auto& of_run = coarse[w.run];
+    for (const Eigen::Index edge : {w.first, w.last}) {
+      const Eigen::Index from = of_run[static_cast<std::size_t>(std::max<Eigen::Index>(0, edge - 1))];
+      const Eigen::Index to = of_run[std::min(of_run.size() - 1, static_cast<std::size_t>(edge + 1))];
+      const Eigen::Index stride = std::max<Eigen::Index>(1, (to - from) / kFiner);
+      for (Eigen::Index row = from; row < to; row += stride) rows[w.run].insert(row);
+    }
+  }
+  Edges finer;
+  for (const auto& of_run : rows) finer.emplace_back(of_run.begin(), of_run.end());
+  for (FoundWindows::Window& w : windows) {
+    const auto index = [&](Eigen::Index edge) {
+      const auto& fine = finer[w.run];
+      return std::lower_bound(fine.begin(), fine.end(), coarse[w.run][static_cast<std::size_t>(edge)]) - fine.begin();
+    };
+    w = {w.run, index(w.first), index(w.last)};
+  }
+  return finer;
+}
+
+}  // namespace driftwright::diagnosis

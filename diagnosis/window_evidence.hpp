@@ -1,0 +1,39 @@
+#pragma once
+// What the whitened readings say of something that acts for a while in a body, or between two, cell of time by cell of time: linear theory about a fit.
+
+#include "diagnosis/fit.hpp"
+#include "diagnosis/linear_run.hpp"
+#include "diagnosis/projection.hpp"
+#include "diagnosis/window_search.hpp"
+
+namespace driftwright::diagnosis {
+
+/// Where something may act for a while: heat in a body, or an exchange of two. Bodies are numbered as those that the runs were seen with.
+struct WindowPlace {
+  std::size_t body = 0;
+  std::optional<std::size_t> other = {};  ///< n_bodies: the hall
+};
+
+/// A run as linear theory sees it.
+struct SeenRun {
+  LinearRun linear;
+  Eigen::MatrixXd decay;  ///< of each mode from row to row, modes x rows - 1
+  Eigen::Index first_block = 0, first_row = 0, n_rows = 0;  ///< in the comparison, and of its whitened readings, condensed
+};
+
+/// @param state  about which the machine is linear
+/// @throws SolveError  where it has no solution
+[[nodiscard]] SeenRun seen_run(const Fitter& fitter, const TwinState& state, std::size_t run,
+                               const std::vector<effects::Body>& bodies, Twin::Workspace& workspace);
+
+using Edges = std::vector<std::vector<Eigen::Index>>;  ///< rows between the cells of each run
+/// Some sixty cells a run.
+[[nodiscard]] Edges coarse_edges(const std::vector<MeasuredRun>& runs);
+/// Finer cells about the edges of windows, and the windows in these.
+[[nodiscard]] Edges finer_edges(const Edges& coarse, std::vector<FoundWindows::Window>& windows);
+
+/// @param projection  of a fit, its readings condensed
+[[nodiscard]] WindowEvidence evidence_of(const Fitter& fitter, const Projection& projection, const std::vector<SeenRun>& runs,
+                                         const WindowPlace& place, std::size_t n_bodies, const Edges& edges);
+
+}  // namespace driftwright::diagnosis
