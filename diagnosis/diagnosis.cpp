@@ -1,38 +1,25 @@
 #include "diagnosis/diagnosis.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <memory>
 
-#include "diagnosis/gain.hpp"
 #include "diagnosis/interval.hpp"
-#include "diagnosis/latent_heat.hpp"
-#include "diagnosis/leftover.hpp"
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/scatter.hpp"
+#include "diagnosis/unexplained.hpp"
+#include "diagnosis/verdict.hpp"
 #include "diagnosis/warm_start.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
 constexpr int kFewestReadings = 150;  // of all channels together: below, a verdict would be guessing
-constexpr double kStandsOut = 7.0;    // sigmas of one channel's leftover
-constexpr double kStandsOutTogether = 6.0;
-constexpr double kJump =
-    27.0;  // squares that one step somewhere may take off by chance: exp(-13.5) times some thousand rows
-constexpr double kRough = 3.0;                // leftover over noise: a model that no effect mends
-constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
-constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
 constexpr double kUnnamed = 3.0;              // nats by which one cause without a name must be better than those with one
 constexpr double kBeyondBelief = 2.0;         // mean square of how far the scenario's numbers moved, in their sigmas
-constexpr double kWorthNaming = 0.35;         // of the noise: less is no use to anybody
-constexpr double kSureCause = 20.0;           // nats: no smaller rest hides it
-constexpr double kRestOfCause = 0.35;         // of what the causes explain: more left, and they are not what is wrong
 constexpr double kMostWork = 1.5e8;           // about a minute
 constexpr double kSmallMachine = 15.0;        // unknowns, below which a prediction costs the same
 constexpr double kNotLinear = 6.0;            // of what one of a linear machine costs
@@ -92,210 +79,6 @@ std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, do
     columns.push_back(std::move(column));
   }
   return columns;
-}
-
-std::string words(const Cause& c) {
-  std::vector<std::string> numbers;
-  for (const Estimate& p : c.parameters) {
-    if (p.name == "at_speed") continue;  // the law says it
-    numbers.push_back(
-        fmt::format("{} {:.3g}{} ({:.3g} to {:.3g})", p.name, p.value, p.unit == "1" ? "" : " " + p.unit, p.low, p.high));
-  }
-  return fmt::format("{} at {} ({}){}{}", c.effect, c.where, c.law, numbers.empty() ? "" : ": ", fmt::join(numbers, ", "));
-}
-
-/// One cause without a name, in words.
-std::string words(const Unnamed& u) {
-  const char* what = u.quantity == Unnamed::Quantity::kHeat   ? "heat in"
-                     : u.quantity == Unnamed::Quantity::kHall ? "another temperature of the"
-                                                              : "an error of the reading";
-  const char* course = u.follows == "nothing" ? "constant" : "following";
-  return fmt::format("One cause that the catalogue has no name for explains it better ({:.0f} nats) than {}: {} {}, {}{}",
-                     u.log_evidence_gain,
-                     u.instead_of.size() > 1 ? fmt::format("{} named ones", u.instead_of.size()) : "a named one", what,
-                     u.where, course, u.follows == "nothing" ? "" : " " + u.follows);
-}
-
-/// What is left beside the causes, in a sentence.
-std::string rest_words(const Unexplained& u) {
-  return fmt::format("Beside it {:.2g} {} RMS that is not noise is left at {}", u.channels.front().rms,
-                     u.channels.front().unit, u.channels.front().name);
-}
-
-/// Machines without fault per one at which chance offers as much.
-std::string odds_words(const Diagnosis& d, const Cause& c) {
-  const double share = d.search.chance.share_above(c.log_evidence_gain);
-  return share < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / share);
-}
-
-std::string reason_of(const Diagnosis& d) {
-  std::vector<std::string> parts;
-  for (const Cause& c : d.causes) {
-    std::string text = words(c);
-    if (c.standing == Standing::kSuspected)
-      text = fmt::format("suspected{}{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, odds_words(d, c), text);
-    if (!c.alternatives.empty()) {
-      std::vector<std::string> others;
-      for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, a.where));
-      text += fmt::format("; the data cannot tell it from {}", fmt::join(others, " or "));
-    }
-    parts.push_back(text);
-  }
-  std::string text = fmt::format("{}", fmt::join(parts, "; and "));
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  switch (d.verdict) {
-    case Verdict::kConsistent:
-      return fmt::format(
-          "The scenario's numbers, within what is known of them, explain the measurement; none of {} candidates is wanted.",
-          d.n_candidates);
-    case Verdict::kUnexplained:
-      if (d.causes.empty()) {
-        return fmt::format(
-            "The measurement holds more than scatter and noise, and none of {} candidates explains it{}.", d.n_candidates,
-            d.unexplained && !d.unexplained->channels.empty() ? ", most of all in " + d.unexplained->channels.front().name
-                                                              : "");
-      }
-      if (d.unexplained && d.unexplained->fails_held_out) {
-        return fmt::format("What fits best predicts kept-out data worse than no cause does, most of all {}: {}.",
-                           d.unexplained->channels.front().name, text);
-      }
-      if (d.unexplained && d.unexplained->one_cause) {
-        return fmt::format("{}. The best of the catalogue: {}.", words(*d.unexplained->one_cause), text);
-      }
-      return fmt::format("Something is left that no candidate explains, {:.2g} {} RMS at {}; the best so far: {}.",
-                         d.unexplained->channels.front().rms, d.unexplained->channels.front().unit,
-                         d.unexplained->channels.front().name, text);
-    default:
-      return text + "." + (d.unexplained ? " " + rest_words(*d.unexplained) + "." : "");
-  }
-}
-
-/// Noise without the benefit of smooth curves: what an AR(1) of some minutes could explain is not called unexplained.
-std::map<std::string, NoiseModel> widest_noise(const Fitter& fitter, const Fit& fit,
-                                               const std::map<std::string, NoiseModel>& noise) {
-  std::map<std::string, std::vector<NoiseSeries>> series;
-  for (std::size_t r = 0; r < fitter.runs().size(); ++r) {
-    const MeasuredRun& run = fitter.runs()[r];
-    for (const MeasuredChannel& c : run.channels) {
-      const auto n = static_cast<Eigen::Index>(run.time_s.size());
-      series[c.name].push_back(
-          {run.time_s, c.value - fit.prediction[r].row(c.output).transpose(), Eigen::MatrixXd::Ones(n, 1)});
-    }
-  }
-  std::map<std::string, NoiseModel> widest;
-  for (const auto& [name, list] : series) {
-    const NoiseModel wide = estimate_noise(list, noise.at(name).white);
-    widest[name] = wide.total() < kNoiseCanBeWider * noise.at(name).total() ? wide : noise.at(name);
-  }
-  return widest;
-}
-
-/// Noise with what the model misses as a slow part of it, where that is far more than the noise: readings of a model so wrong weigh no more.
-std::optional<std::map<std::string, NoiseModel>> models_own_error(const Fitter& fitter, const SearchResult& result,
-                                                                  const std::map<std::string, NoiseModel>& noise) {
-  std::map<std::string, NoiseModel> rough = noise;
-  bool is_rough = false;
-  for (const Leftover& l : leftovers(fitter.runs(), result.fit.prediction, noise)) {
-    if (l.rms < kRough * noise.at(l.channel).total()) continue;
-    rough[l.channel].correlated = std::hypot(noise.at(l.channel).correlated, l.rms);
-    rough[l.channel].time_s = kModelErrorTime_s;
-    is_rough = true;
-  }
-  if (!is_rough) return std::nullopt;
-  return rough;
-}
-
-std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResult& result,
-                                          const std::map<std::string, NoiseModel>& noise) {
-  const std::vector<Leftover> list =
-      leftovers(fitter.runs(), result.fit.prediction, widest_noise(fitter, result.fit, noise));
-  const double together = sigmas(list);
-  Unexplained u;
-  for (const Leftover& l : list) {
-    const bool stands_out = l.sigmas() > kStandsOut || (together > kStandsOutTogether && l.sigmas() > 3.0);
-    const double worth_naming = kWorthNaming * noise.at(l.channel).total();
-    const bool jumps = l.jump_squares >= kJump && l.jump >= worth_naming;
-    if (!(stands_out && l.rms >= worth_naming) && !jumps) continue;
-    u.nats += 0.5 * std::max(l.squares - l.n_curves, jumps ? l.jump_squares : 0.0);
-    u.channels.push_back({l.channel,
-                          l.unit == "K"   ? "K"
-                          : l.unit == "m" ? "um"
-                                          : "urad",
-                          (l.unit == "K" ? 1.0 : 1e6) * l.rms, l.sigmas()});
-  }
-  if (u.channels.empty()) return std::nullopt;
-  const bool only_displacements =
-      std::none_of(u.channels.begin(), u.channels.end(), [](const auto& c) { return c.unit == "K"; });
-  if (!only_displacements) {
-    if (const auto latent = latent_heat(fitter, result.hypothesis, result.fit); latent && latent->explained > 0.3) {
-      u.heat_would_sit_in = latent->body;
-      u.time_s = latent->time_s;
-      u.heat_W = latent->heat_W;
-      u.correlates_with = latent->correlates_with;
-      u.correlation = latent->correlation;
-      return u;
-    }
-  }
-  const MeasuredRun& run = fitter.runs().front();
-  if (const MeasuredChannel* c = run.find(u.channels.front().name)) {
-    Eigen::VectorXd r = c->value - result.fit.prediction[0].row(c->output).transpose();
-    for (Eigen::Index i = 0; i < r.size(); ++i) {
-      if (std::isnan(r[i])) r[i] = 0.0;
-    }
-    std::tie(u.correlates_with, u.correlation) = resembles(run, r);
-  }
-  return u;
-}
-
-/// Where the claims act that one cause without a name explains better, and what that cause looks like.
-Unexplained explained_better(const Fitter& fitter, const SearchResult& result, const Unnamed& unnamed,
-                             const std::map<std::string, NoiseModel>& noise) {
-  const Remainder rest = without_claims(result.hypothesis, unnamed.instead_of, fitter.n_nuisance());
-  Twin::Workspace workspace(fitter.twin());
-  const Prediction without = fitter.predict(rest.hypothesis, result.fit.x(rest.x), workspace);
-  std::map<std::string, std::pair<double, double>> squares;  // of what the claims do; rows
-  for (std::size_t r = 0; r < fitter.runs().size(); ++r) {
-    for (const MeasuredChannel& c : fitter.runs()[r].channels) {
-      auto& [sum, rows] = squares[c.name];
-      sum += (result.fit.prediction[r].row(c.output) - without[r].row(c.output)).squaredNorm();
-      rows += static_cast<double>(without[r].cols());
-    }
-  }
-  Unexplained u;
-  for (const auto& [name, square] : squares) {
-    const std::string& unit = fitter.runs().front().find(name) ? fitter.runs().front().find(name)->unit : "K";
-    const double rms = std::sqrt(square.first / square.second);
-    u.channels.push_back({name,
-                          unit == "K"   ? "K"
-                          : unit == "m" ? "um"
-                                        : "urad",
-                          (unit == "K" ? 1.0 : 1e6) * rms,
-                          square.first / std::pow(noise.at(name).total(), 2) / std::sqrt(2.0 * square.second)});
-  }
-  std::stable_sort(u.channels.begin(), u.channels.end(),
-                   [](const auto& a, const auto& b) { return a.times_noise > b.times_noise; });
-  u.channels.resize(1);
-  Eigen::VectorXd course =
-      Eigen::Map<const Eigen::VectorXd>(unnamed.value.data(), static_cast<Eigen::Index>(unnamed.value.size()));
-  std::tie(u.correlates_with, u.correlation) = resembles(fitter.runs().front(), course);
-  if (unnamed.quantity == Unnamed::Quantity::kHeat) {
-    u.heat_would_sit_in = unnamed.where;
-    u.time_s = unnamed.time_s;
-    u.heat_W = unnamed.value;
-  }
-  return u;
-}
-
-/// Causes that fit all data and predict kept-out ones worse than no cause does.
-Unexplained failed_held_out(const std::vector<ChannelGain>& gain) {
-  const auto worst = std::max_element(gain.begin(), gain.end(), [](const ChannelGain& a, const ChannelGain& b) {
-    return a.rmse_calibrated * b.noise_floor < b.rmse_calibrated * a.noise_floor;
-  });
-  Unexplained u;
-  u.channels.push_back(
-      {worst->name, worst->unit, worst->rmse_calibrated, worst->rmse_calibrated / std::max(1e-12, worst->noise_floor)});
-  u.fails_held_out = true;
-  return u;
 }
 
 /// Claims that kept-out rows are predicted better with, and all numbers fitted beside them alone.
@@ -368,72 +151,7 @@ double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
          static_cast<double>(fitter.runs().size()) * size;
 }
 
-/// How surely each claim is a cause.
-void give_standing(Diagnosis& d, const HeldOut& held) {
-  for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
-    Cause& cause = d.causes[c];
-    cause.is_written = held.writes_claim[c] && held.keeps_numbers;
-    cause.n_searched = held.n_searched;
-    if (held.n_searched > 0) cause.n_again = held.n_again[c];
-    if (!d.search.findings[c].is_named) continue;
-    if (!held.keeps_claim[c]) {
-      cause.doubt = "rows that were kept out are predicted worse with it";
-      continue;
-    }
-    cause.standing = cause.alternatives.empty() ? Standing::kNamed : Standing::kAmbiguous;
-  }
-}
-
-/// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
-bool rest_rules(const Diagnosis& d) {
-  if (!d.unexplained) return false;
-  if (d.causes.empty() || d.unexplained->one_cause || d.unexplained->fails_held_out) return true;
-  double explained = 0.0;
-  for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
-  return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
-}
-
-Verdict verdict_of(const Diagnosis& d) {
-  if (rest_rules(d)) return Verdict::kUnexplained;
-  const auto is_any = [&](Standing s) {
-    return std::any_of(d.causes.begin(), d.causes.end(), [&](const Cause& c) { return c.standing == s; });
-  };
-  if (is_any(Standing::kAmbiguous)) return Verdict::kAmbiguous;
-  if (is_any(Standing::kNamed)) return Verdict::kNamed;
-  return d.causes.empty() ? Verdict::kConsistent : Verdict::kSuspected;
-}
-
 }  // namespace
-
-const char* word(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kConsistent:
-      return "consistent";
-    case Verdict::kSuspected:
-      return "suspected";
-    case Verdict::kNamed:
-      return "named";
-    case Verdict::kAmbiguous:
-      return "ambiguous";
-    case Verdict::kUnexplained:
-      return "unexplained";
-    case Verdict::kInsufficientData:
-      return "insufficient_data";
-  }
-  return "";
-}
-
-const char* word(Standing standing) {
-  switch (standing) {
-    case Standing::kSuspected:
-      return "suspected";
-    case Standing::kAmbiguous:
-      return "ambiguous";
-    case Standing::kNamed:
-      return "named";
-  }
-  return "";
-}
 
 Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
                    const DiagnosisOptions& options, const std::function<void(const std::string&)>& say) {

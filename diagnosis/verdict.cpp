@@ -1,0 +1,157 @@
+#include "diagnosis/verdict.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kSureCause = 20.0;    // nats: no smaller rest hides it
+constexpr double kRestOfCause = 0.35;  // of what the causes explain: more left, and they are not what is wrong
+
+std::string words(const Cause& c) {
+  std::vector<std::string> numbers;
+  for (const Estimate& p : c.parameters) {
+    if (p.name == "at_speed") continue;  // the law says it
+    numbers.push_back(
+        fmt::format("{} {:.3g}{} ({:.3g} to {:.3g})", p.name, p.value, p.unit == "1" ? "" : " " + p.unit, p.low, p.high));
+  }
+  return fmt::format("{} at {} ({}){}{}", c.effect, c.where, c.law, numbers.empty() ? "" : ": ", fmt::join(numbers, ", "));
+}
+
+/// One cause without a name, in words.
+std::string words(const Unnamed& u) {
+  const char* what = u.quantity == Unnamed::Quantity::kHeat   ? "heat in"
+                     : u.quantity == Unnamed::Quantity::kHall ? "another temperature of the"
+                                                              : "an error of the reading";
+  const char* course = u.follows == "nothing" ? "constant" : "following";
+  return fmt::format("One cause that the catalogue has no name for explains it better ({:.0f} nats) than {}: {} {}, {}{}",
+                     u.log_evidence_gain,
+                     u.instead_of.size() > 1 ? fmt::format("{} named ones", u.instead_of.size()) : "a named one", what,
+                     u.where, course, u.follows == "nothing" ? "" : " " + u.follows);
+}
+
+/// What is left beside the causes, in a sentence.
+std::string rest_words(const Unexplained& u) {
+  return fmt::format("Beside it {:.2g} {} RMS that is not noise is left at {}", u.channels.front().rms,
+                     u.channels.front().unit, u.channels.front().name);
+}
+
+/// Machines without fault per one at which chance offers as much.
+std::string odds_words(const Diagnosis& d, const Cause& c) {
+  const double share = d.search.chance.share_above(c.log_evidence_gain);
+  return share < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / share);
+}
+
+/// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
+bool rest_rules(const Diagnosis& d) {
+  if (!d.unexplained) return false;
+  if (d.causes.empty() || d.unexplained->one_cause || d.unexplained->fails_held_out) return true;
+  double explained = 0.0;
+  for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
+  return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
+}
+
+}  // namespace
+
+std::string reason_of(const Diagnosis& d) {
+  std::vector<std::string> parts;
+  for (const Cause& c : d.causes) {
+    std::string text = words(c);
+    if (c.standing == Standing::kSuspected)
+      text = fmt::format("suspected{}{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, odds_words(d, c), text);
+    if (!c.alternatives.empty()) {
+      std::vector<std::string> others;
+      for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, a.where));
+      text += fmt::format("; the data cannot tell it from {}", fmt::join(others, " or "));
+    }
+    parts.push_back(text);
+  }
+  std::string text = fmt::format("{}", fmt::join(parts, "; and "));
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  switch (d.verdict) {
+    case Verdict::kConsistent:
+      return fmt::format(
+          "The scenario's numbers, within what is known of them, explain the measurement; none of {} candidates is wanted.",
+          d.n_candidates);
+    case Verdict::kUnexplained:
+      if (d.causes.empty()) {
+        return fmt::format(
+            "The measurement holds more than scatter and noise, and none of {} candidates explains it{}.", d.n_candidates,
+            d.unexplained && !d.unexplained->channels.empty() ? ", most of all in " + d.unexplained->channels.front().name
+                                                              : "");
+      }
+      if (d.unexplained && d.unexplained->fails_held_out) {
+        return fmt::format("What fits best predicts kept-out data worse than no cause does, most of all {}: {}.",
+                           d.unexplained->channels.front().name, text);
+      }
+      if (d.unexplained && d.unexplained->one_cause) {
+        return fmt::format("{}. The best of the catalogue: {}.", words(*d.unexplained->one_cause), text);
+      }
+      return fmt::format("Something is left that no candidate explains, {:.2g} {} RMS at {}; the best so far: {}.",
+                         d.unexplained->channels.front().rms, d.unexplained->channels.front().unit,
+                         d.unexplained->channels.front().name, text);
+    default:
+      return d.unexplained ? fmt::format("{}. {}.", text, rest_words(*d.unexplained)) : fmt::format("{}.", text);
+  }
+}
+
+void give_standing(Diagnosis& d, const HeldOut& held) {
+  for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
+    Cause& cause = d.causes[c];
+    cause.is_written = held.writes_claim[c] && held.keeps_numbers;
+    cause.n_searched = held.n_searched;
+    if (held.n_searched > 0) cause.n_again = held.n_again[c];
+    if (!d.search.findings[c].is_named) continue;
+    if (!held.keeps_claim[c]) {
+      cause.doubt = "rows that were kept out are predicted worse with it";
+      continue;
+    }
+    cause.standing = cause.alternatives.empty() ? Standing::kNamed : Standing::kAmbiguous;
+  }
+}
+
+Verdict verdict_of(const Diagnosis& d) {
+  if (rest_rules(d)) return Verdict::kUnexplained;
+  const auto is_any = [&](Standing s) {
+    return std::any_of(d.causes.begin(), d.causes.end(), [&](const Cause& c) { return c.standing == s; });
+  };
+  if (is_any(Standing::kAmbiguous)) return Verdict::kAmbiguous;
+  if (is_any(Standing::kNamed)) return Verdict::kNamed;
+  return d.causes.empty() ? Verdict::kConsistent : Verdict::kSuspected;
+}
+
+const char* word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kConsistent:
+      return "consistent";
+    case Verdict::kSuspected:
+      return "suspected";
+    case Verdict::kNamed:
+      return "named";
+    case Verdict::kAmbiguous:
+      return "ambiguous";
+    case Verdict::kUnexplained:
+      return "unexplained";
+    case Verdict::kInsufficientData:
+      return "insufficient_data";
+  }
+  return "";
+}
+
+const char* word(Standing standing) {
+  switch (standing) {
+    case Standing::kSuspected:
+      return "suspected";
+    case Standing::kAmbiguous:
+      return "ambiguous";
+    case Standing::kNamed:
+      return "named";
+  }
+  return "";
+}
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,14 @@
+#pragma once
+// From causes, kept-out rows and what is left to a verdict, and the verdict in words.
+
+#include "diagnosis/gain.hpp"
+
+namespace driftwright::diagnosis {
+
+/// How surely each claim is a cause: sets their standing, doubt and whether they are written.
+void give_standing(Diagnosis& d, const HeldOut& held);
+/// Of causes whose standing is known and of what is left beside them.
+[[nodiscard]] Verdict verdict_of(const Diagnosis& d);
+[[nodiscard]] std::string reason_of(const Diagnosis& d);
+
+}  // namespace driftwright::diagnosis
