@@ -20,7 +20,7 @@ namespace {
 constexpr int kFewestReadings = 150;  // of all channels together: below, a verdict would be guessing
 constexpr double kUnnamed = 3.0;              // nats by which one cause without a name must be better than those with one
 constexpr double kBeyondBelief = 2.0;         // mean square of how far the scenario's numbers moved, in their sigmas
-constexpr double kMostWork = 1.5e8;           // about a minute
+constexpr double kMostWork = 2e7;             // some ten seconds
 constexpr double kSmallMachine = 15.0;        // unknowns, below which a prediction costs the same
 constexpr double kNotLinear = 6.0;            // of what one of a linear machine costs
 constexpr double kHallFault_K = 2.0;          // 1 sigma of a hall that was recorded wrongly

@@ -30,6 +30,8 @@ constexpr double kHopeless = 0.5, kHope = 8.0;
 constexpr std::size_t kTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
 
+constexpr double kRareOrChosen = 5.0;  // nats of a claim's price: several windows that were chosen to make it
+
 constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which other numbers grow
 
 Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
@@ -448,9 +450,10 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     ++i;
   }
   const double named_from = result.chance.gain_at(options.wrongly_named);
-  for (Finding& f : result.findings)
-    f.is_named =
-        f.log_evidence_gain >= std::max(named_from, best.size() > 1 ? options.least_named_beside : options.least_named);
+  for (Finding& f : result.findings) {
+    const bool wants_more = best.size() > 1 || f.claim.price_nats > kRareOrChosen;
+    f.is_named = f.log_evidence_gain >= std::max(named_from, wants_more ? options.least_named_beside : options.least_named);
+  }
   result.candidates = std::move(candidates);
   result.hypothesis = std::move(best);
   result.fit = std::move(best_fit);

@@ -24,7 +24,7 @@ struct SearchOptions {
   /// without fault, a fault that is not quite of a law of the catalogue leaves something, and few machines are wrong in three ways.
   std::vector<double> least_gain = {0.5, 3.0, 12.0};
   double least_named = 4.0;         ///< nor anything below, however little chance has to offer: it is even odds
-  double least_named_beside = 8.0;  ///< one of several is not named below
+  double least_named_beside = 8.0;  ///< one of several is not named below, nor one whose times were chosen to make it
   /// Two claims whose evidence differs by less than this cannot be told apart.
   double cannot_tell = 3.0;
   int refits = 16;  ///< candidates of each round that are fitted in full

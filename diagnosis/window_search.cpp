@@ -12,6 +12,8 @@ using Window = FoundWindows::Window;
 constexpr double kOfAWindow = 5.0;  // nats that one more must bring while the others are looked for
 constexpr std::size_t kMostWindows = 24;
 constexpr int kMostTurns = 40;
+// Several windows that are open for most of the time draw any slow course: one of several is no longer than this share of its run.
+constexpr double kLongestOfSeveral = 0.3;
 constexpr double kFewestTurns = 3.0;  // of the longest run: fewer do not repeat
 constexpr double kShortestCells = 3.0;
 
@@ -84,6 +86,7 @@ class Searcher {
       for (Eigen::Index i = 0; i < n_cells; ++i) {
         for (Eigen::Index j = i + 1; j <= n_cells && !taken[static_cast<std::size_t>(first + j - 1)]; ++j) {
           if (i == 0 && j == n_cells) continue;  // throughout: no window
+          if (!set.empty() && is_long({r, i, j})) break;
           const Eigen::Index a = first + i, b = first + j;
           const Sums with{now.slope + slope_[b] - slope_[a],
                           now.curvature + 2.0 * (cross[b] - cross[a]) + square_(b, b) - 2.0 * square_(a, b) + square_(a, a)};
@@ -92,6 +95,13 @@ class Searcher {
       }
     }
     return best;
+  }
+
+  /// Whether a window is too long to be one of several.
+  [[nodiscard]] bool is_long(const Window& w) const {
+    const std::vector<double>& edge_s = e_.runs[w.run].edge_s;
+    const double length_s = edge_s[static_cast<std::size_t>(w.last)] - edge_s[static_cast<std::size_t>(w.first)];
+    return length_s > kLongestOfSeveral * (edge_s.back() - edge_s.front());
   }
 
   /// Price of the times of a set: each of them could have been anywhere, and some places would do as well as this one.
@@ -175,13 +185,14 @@ class Turns {
 
 }  // namespace
 
-std::optional<FoundWindows> find_windows(const WindowEvidence& evidence, std::vector<Window> start) {
-  const Searcher searcher(evidence);
-  std::vector<Window> set = std::move(start);
+namespace {
+
+/// @param most  windows
+std::optional<FoundWindows> grow(const Searcher& searcher, std::vector<Window> set, std::size_t most) {
   double value = set.empty() ? 0.0 : searcher.nats(searcher.sums(set)) - kOfAWindow * static_cast<double>(set.size());
   for (int turn = 0; turn < kMostTurns; ++turn) {
     bool changed = false;
-    if (set.size() < kMostWindows) {
+    if (set.size() < most) {
       const Searcher::Addition more = searcher.best_addition(set);
       if (const double with = more.nats - kOfAWindow * static_cast<double>(set.size() + 1); with > value + 1e-6) {
         set.push_back(more.window);
@@ -209,6 +220,8 @@ std::optional<FoundWindows> find_windows(const WindowEvidence& evidence, std::ve
     if (!changed) break;
   }
   if (set.empty()) return std::nullopt;
+  if (set.size() > 1 && std::any_of(set.begin(), set.end(), [&](const Window& w) { return searcher.is_long(w); }))
+    return grow(searcher, {}, 1);
   FoundWindows best = searcher.found(set);
   for (std::size_t k = 0; best.windows.size() > 1 && k < best.windows.size();) {  // what does not earn the price of its times
     std::vector<Window> others = best.windows;
@@ -224,6 +237,12 @@ std::optional<FoundWindows> find_windows(const WindowEvidence& evidence, std::ve
     return a.run != b.run ? a.run < b.run : a.first < b.first;
   });
   return best;
+}
+
+}  // namespace
+
+std::optional<FoundWindows> find_windows(const WindowEvidence& evidence, std::vector<Window> start) {
+  return grow(Searcher(evidence), std::move(start), kMostWindows);
 }
 
 std::optional<FoundTurns> find_turns(const WindowEvidence& evidence) {

@@ -11,6 +11,10 @@ constexpr double kCapacitySd = 1.5;  // of the logarithm: from a fifth to five t
 constexpr double kTrial = 0.1;       // of a typical conductance
 constexpr double kRare = 4.0;  // nats; with little capacity a body between is a path to the hall, which is the simpler one
 constexpr double kTimeConstants[] = {0.03, 0.12, 0.5};  // tried first, of the longest record
+constexpr double kFollowTrial = 0.1, kLeast = 1e-4;     // of the capacity of its body
+constexpr double kTimeSd = 2.0;                         // of the logarithm
+constexpr double kTypicalTime = 0.1;                    // of the longest record
+constexpr double kFollowTimes[] = {0.01, 0.04, 0.15, 0.6};
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double link_W_K = e["conductance"], to_hall_W_K = e["hall_conductance"];
@@ -20,6 +24,30 @@ void contribute(const Effect& e, HeatBalance& balance) {
       e.name() + " - " + own, e.body(), [=](const Inputs&) { return link_W_K; }, own));
   if (e.has("hall_conductance"))
     balance.exchanges.push_back(make_link(e.name() + " - hall", node(own), [=](const Inputs&) { return to_hall_W_K; }));
+}
+
+/// One that is as warm as its body, or that hardly notices it: how much it stores and how fast it follows is what readings tell, and a conductance, which the
+/// priors of paths of heat are about, may be anything.
+Doubt following(const DoubtScene::Material& m, double longest_s) {
+  DoubtedNumber capacity = doubted("capacity", "J/K", m.capacity_J_K, kFollowTrial * m.capacity_J_K);
+  capacity.low = 0.0;
+  capacity.set = [least_J_K = kLeast * m.capacity_J_K](std::span<Effect> added, double value) {
+    added[0].set("capacity", std::max(value, least_J_K));  // a body is never without any
+  };
+  DoubtedNumber behind = doubted("time_constant", "min", kTimeSd, 0.1, kTypicalTime * longest_s / 60.0);
+  behind.is_log = true;
+  behind.set = [](std::span<Effect> added, double value) {
+    added[0].set("conductance", added[0]["capacity"] / (60.0 * value));
+  };
+  Doubt d{.finding = "hidden_body",
+          .where = m.body.name,
+          .law = "a body that follows it behind a time constant",
+          .added = {make_effect("hidden_body", m.body, {{"capacity", kLeast * m.capacity_J_K}, {"conductance", 0.0}})},
+          .numbers = {capacity, behind},
+          .trial = kFollowTrial * m.capacity_J_K,
+          .grid = {}};
+  for (double share : kFollowTimes) d.grid.push_back({std::log(share / kTypicalTime)});
+  return d;
 }
 
 /// A body at each region and node: what it exchanges and stores, and in a second law its own way to the hall.
@@ -46,6 +74,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     behind.numbers[1].grows_with_size = true;
     for (double share : kTimeConstants) behind.grid.push_back({std::log(behind.trial * share * longest_s / m.capacity_J_K)});
     list.push_back(behind);
+    list.push_back(following(m, longest_s));
 
     Doubt between = std::move(behind);
     between.law = "a body between it and the hall";

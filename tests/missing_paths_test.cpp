@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "{type: hidden_body, node: head, capacity: 25 kJ/K, conductance: 6 W/K}",
                 "hidden_body",
                 "head",
-                {6.0, 25e3},
+                {25e3, 25e3 / 6.0 / 60.0},  // capacity, and the time constant in min
                 0.15},
         Missing{"hidden_body_with_a_way_out",
                 "{type: hidden_body, node: spindle, capacity: 12 kJ/K, conductance: 5 W/K, "
