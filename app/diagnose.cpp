@@ -26,7 +26,7 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
     for (const diagnosis::Cause& a : c.alternatives) head.push_back(fmt::format("    or {} at {}", a.effect, a.where));
   }
   if (!d.written.keeps_numbers)
-    head.emplace_back("  rows that were kept out are predicted best by the scenario as it was: nothing is written in");
+    head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
   for (const std::string& path : options.measured) head.push_back("  measured: " + path);
   if (d.written.keeps_numbers)
     head.emplace_back(options.causes_only

@@ -46,8 +46,10 @@ void add_causes(const diagnosis::Diagnosis& d, Blocks& blocks) {
       blocks.emplace_back(
           Paragraph{fmt::format("{}{}", c.doubt.empty() ? "" : "Only suspected, since " + c.doubt + ". ",
                                 c.is_written ? ""
-                                             : "It is not written into extended.yaml: rows that were kept out "
-                                               "are predicted better without it.")});
+                                             : fmt::format("It is not written into extended.yaml: {}.",
+                                                           d.written.why_nothing.empty()
+                                                               ? "rows that were kept out are predicted better without it"
+                                                               : d.written.why_nothing))});
     if (c.n_searched > 0)
       blocks.emplace_back(Paragraph{fmt::format(
           "The search was made again {} without a part of the rows; it found this effect at this place {}.",

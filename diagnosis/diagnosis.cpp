@@ -143,6 +143,18 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
   return causes;
 }
 
+/// Of one record of a machine that is wrong in a way that nothing explains: what was fitted to it held for its own rows alone wherever that was tried (docs/measured.md).
+void write_nothing(Diagnosis& d) {
+  d.written.keeps_numbers = false;
+  d.written.why_nothing = "a single record of which something is left that nothing explains says too little of others";
+  d.extended = d.as_written;
+  for (Cause& c : d.causes) c.is_written = false;
+  for (ChannelGain& g : d.gain) {
+    g.rmse_after = g.rmse_before;
+    g.peak_after = g.peak_before;
+  }
+}
+
 /// Laws times readings times records times what a prediction costs: how long searching once without each record would take.
 double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
   const auto& system = fitter.twin().machine().system;
@@ -271,6 +283,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   }
   const HeldOut held = held_out_gain(fitter, d.search, d.noise, search_again);
   d.written = written_of(fitter, d.search, held, workspace);
+  if (!d.written.keeps_numbers) d.written.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
   d.extended = d.written.keeps_numbers ? d.written.fit.prediction : d.as_written;
   d.calibrated = calibrated_numbers(fitter, d.written.fit, known_to);
   for (Cause& c : moved_numbers(d)) d.causes.push_back(std::move(c));
@@ -289,6 +302,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       if (c.standing != Standing::kSuspected && c.doubt.empty()) c.doubt = "more is left than it explains";
       c.standing = Standing::kSuspected;
     }
+    if (runs.size() == 1 && options.most_effects > 0 && d.written.keeps_numbers) write_nothing(d);
   }
   if (std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); })) {
     say("choosing an experiment");

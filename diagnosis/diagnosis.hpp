@@ -47,8 +47,8 @@ struct Written {
   Hypothesis hypothesis;
   std::vector<std::size_t> causes;  ///< of Diagnosis::causes, one a claim
   Fit fit;
-  bool keeps_numbers =
-      true;  ///< false: the scenario as written predicts kept-out rows better than what was fitted; nothing is written
+  bool keeps_numbers = true;  ///< false: nothing is written
+  std::string why_nothing = {};  ///< then: why, a clause
 };
 
 /// Residuals of a channel in three states of the model.
