@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "app/diagnosis_files.hpp"
 #include "app/diagnosis_json.hpp"
 #include "app/diagnosis_report.hpp"
 #include "app/diagnosis_summary.hpp"
+#include "app/end_request.hpp"
 #include "app/measured_iso230_3.hpp"
 #include "app/results.hpp"
 #include "diagnosis/event_candidates.hpp"
@@ -55,8 +58,12 @@ void diagnose(const DiagnoseOptions& options) {
       throw InputError(fmt::format("--without {}: no candidate has that key; there are {}", key, fmt::join(keys, ", ")));
     }
   }
-  diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how,
-                                               [&](const std::string& work) { progress.begin(work); });
+  const Listener listener{.on_begin = [&](const std::string& work) { progress.begin(work); },
+                          .on_share = [&](double share) { progress.update(share); },
+                          .wants_end_now = EndRequest::is_made};
+  std::optional<EndRequest> end_request(std::in_place);
+  diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);
+  end_request.reset();
   progress.begin("writing");
   std::string difference;
   std::vector<diagnosis::StatedChange> changes;  // in the order in which the fit makes them
@@ -77,6 +84,8 @@ void diagnose(const DiagnoseOptions& options) {
   fmt::print("{}{}{}", summary_text(d), one_mesh_text(m), not_written_text("extended.yaml", extended));
   fmt::print("results in {}: report.html, diagnosis.json, extended.yaml, extended.diff{}\n", shown_path(folder.target()),
              has_mesh ? ", residual_source.vtu" : "");
+  std::fflush(stdout);
+  if (!d.ended_at.empty()) throw EndedEarly(fmt::format("ended at \"{}\": the diagnosis is incomplete", d.ended_at));
 }
 
 }  // namespace driftwright::app

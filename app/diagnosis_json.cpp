@@ -123,6 +123,8 @@ Json diagnosis_json(const diagnosis::Diagnosis& d) {
                         {"rmse_before", g.rmse_before},
                         {"rmse_calibrated", g.rmse_calibrated},
                         {"rmse_after", g.rmse_after},
+                        {"rmse_regression_drive", g.rmse_of_drive},
+                        {"rmse_regression_readings", g.rmse_of_readings},
                         {"rmse_written", std::isnan(g.rmse_written) ? Json() : Json(g.rmse_written)},
                         {"peak_before", g.peak_before},
                         {"peak_after", g.peak_after},
@@ -144,7 +146,15 @@ Json diagnosis_json(const diagnosis::Diagnosis& d) {
   for (const auto& w : d.waveforms) {
     if (w.shape.shape != diagnosis::Shape::kNothing) json["waveforms"].push_back(json_of(w));
   }
+  json["complete"] = d.ended_at.empty();
   json["weighed_by_model_error"] = d.weighed_by_model_error;
+  json["process_noise"] = Json();
+  if (d.wander) {
+    Json bodies = Json::array();
+    for (const auto& b : d.wander->bodies)
+      bodies.push_back({{"where", b.body.name}, {"standard_deviation_W", b.sd_W}, {"share", b.share}});
+    json["process_noise"] = {{"stays_alike_min", d.wander->time_s / 60.0}, {"bodies", bodies}};
+  }
   json["n_candidates"] = d.n_candidates;
   // evidence that the best candidate has where nothing is wrong: at one machine in two, in a hundred, in ten thousand
   json["chance"] = {{"median", d.search.chance.gain_at(0.5)},

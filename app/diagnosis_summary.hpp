@@ -19,6 +19,8 @@ namespace driftwright::app {
 
 /// Verdict, causes, gain, what is left and what is wrong with the data, as lines of a terminal; ends with a line break.
 [[nodiscard]] std::string summary_text(const diagnosis::Diagnosis& d);
+/// Where a regression that knows nothing of the machine predicts kept-out rows better than what is written, a sentence; else "".
+[[nodiscard]] std::string better_regression_text(const diagnosis::Diagnosis& d);
 /// Why the numbers alone do not explain a measurement that a search without effects was made on; "" where they do.
 /// @param candidates  those that the scores number
 [[nodiscard]] std::string calibration_warning(const diagnosis::Diagnosis& d,

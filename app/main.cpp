@@ -17,7 +17,7 @@ namespace {
 
 using namespace driftwright;
 
-enum ExitCode { kDone = 0, kOurBug = 1, kWrongInput = 2, kNumericsGaveUp = 3 };
+enum ExitCode { kDone = 0, kOurBug = 1, kWrongInput = 2, kNumericsGaveUp = 3, kEndedEarly = 130 };
 
 /// Adds a verb with the options that all have; `example` ends its help, `input` is what its file describes.
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example,
@@ -240,6 +240,9 @@ int main(int argc, char** argv) {
   } catch (const SolveError& e) {
     fmt::print(stderr, "the numerics gave up: {}\n", e.what());
     return kNumericsGaveUp;
+  } catch (const EndedEarly& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return kEndedEarly;
   } catch (const std::exception& e) {
     fmt::print(stderr, "internal error: {}\n", e.what());
     return kOurBug;

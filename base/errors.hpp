@@ -1,5 +1,5 @@
 #pragma once
-// The three ways a command can end badly. Each is an exception type with its own exit code.
+// The ways a command can end badly. Each is an exception type with its own exit code.
 
 #include <stdexcept>
 #include <string>
@@ -26,6 +26,12 @@ class InputError : public std::runtime_error {
 
 /// The numerics gave up. Exit code 3. The message names time, step, residual or flag, and what to try.
 class SolveError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The user ended the work before it was complete (Ctrl-C), and what was known is written. Exit code 130.
+class EndedEarly : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

@@ -11,14 +11,22 @@ namespace driftwright::diagnosis {
 /// Outputs of all runs, each n_outputs x n_times.
 using Prediction = std::vector<Eigen::MatrixXd>;
 
+/// What readings of a run have beside the noise of each channel, in several channels at once: a root R of its covariance, so that the readings of
+/// all channels have the covariance of their noise and R R'. By run, (n_channels n_times) x n_pieces, channel after channel; no columns: nothing.
+using SharedNoise = std::vector<Eigen::MatrixXd>;
+
 class Comparison {
  public:
-  /// @param noise  by channel; one for each that is measured
-  Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise);
+  /// @param noise   by channel; one for each that is measured
+  /// @param shared  unless empty, of each run
+  Comparison(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise,
+             const SharedNoise& shared = {});
 
   [[nodiscard]] Eigen::Index n() const { return n_; }
   /// W y of a prediction, or of a difference of two.
   [[nodiscard]] Eigen::VectorXd whitened(const Prediction& prediction) const;
+  /// The same of one run. @param readings  of its channels, in their order, n_channels x n_times. @param whitened  as many rows as n_of(run)
+  void whiten(std::size_t run, const Eigen::Ref<const Eigen::MatrixXd>& readings, Eigen::Ref<Eigen::VectorXd> whitened) const;
   /// W of what was measured.
   [[nodiscard]] const Eigen::VectorXd& measured() const { return measured_; }
 
@@ -29,20 +37,40 @@ class Comparison {
     Eigen::Index first, n;  ///< of the whitened vector
   };
   [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
+  /// Of one channel's own noise.
   [[nodiscard]] const Whitener& whitener(std::size_t block) const { return whiteners_[block]; }
+  [[nodiscard]] Eigen::Index first_of(std::size_t run) const { return runs_[run].first; }  ///< of the whitened vector
+  [[nodiscard]] Eigen::Index n_of(std::size_t run) const { return runs_[run].n; }
 
-  /// Where the readings of a block are once neighbours are taken together: what moves slowly is told by fewer of them. A block that has at least
-  /// twice kEnough readings has kEnough or a few more; a shorter one all that it had.
-  struct Condensed {
-    Eigen::Index first, n, together;
-  };
+  /// What moves slowly is told by fewer readings. A block that has at least twice as many as these has so many or a few more once neighbours are
+  /// taken together; a shorter one all that it had.
   static constexpr Eigen::Index kEnough = 200;
-  [[nodiscard]] const std::vector<Condensed>& condensed_blocks() const { return condensed_; }
   [[nodiscard]] Eigen::Index n_condensed() const { return condensed_.empty() ? 0 : condensed_.back().first + condensed_.back().n; }
   /// Whitened readings, a column each, with neighbours summed over the root of their number: noise stays of variance 1.
   [[nodiscard]] Eigen::MatrixXd condensed(const Eigen::Ref<const Eigen::MatrixXd>& whitened) const;
+  /// The same of one run alone.
+  [[nodiscard]] Eigen::VectorXd condensed(std::size_t run, const Eigen::Ref<const Eigen::VectorXd>& whitened) const;
+  /// Where a run's are, and how many. @return first, n
+  [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> condensed_rows(std::size_t run) const;
 
  private:
+  /// Where the readings of a block are once neighbours are taken together.
+  struct Condensed {
+    Eigen::Index first, n, together;
+  };
+  void condense(std::size_t first_block, std::size_t n_blocks, const Eigen::Ref<const Eigen::MatrixXd>& whitened,
+                Eigen::Ref<Eigen::MatrixXd> few) const;
+  /// I - Q diag(taken) Q' whitens what a run's channels share, once each channel's own noise is white.
+  struct Run {
+    std::size_t first_block = 0, n_blocks = 0;
+    Eigen::Index first = 0, n = 0;
+    Eigen::MatrixXd q;
+    Eigen::VectorXd taken;
+  };
+  void take_shared(Run& run, const Eigen::MatrixXd& root);
+  void without_shared(const Run& run, Eigen::Ref<Eigen::VectorXd> whitened) const;
+
+  std::vector<Run> runs_;
   std::vector<Block> blocks_;
   std::vector<Whitener> whiteners_;
   std::vector<Condensed> condensed_;

@@ -34,17 +34,20 @@ Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::In
 
 /// A claim of a hypothesis in numbers.
 Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const Hypothesis& hypothesis, std::size_t claim,
-               const Fit& fit, double gain, Twin::Workspace& workspace) {
+               const Fit& fit, double gain, Twin::Workspace& workspace, const Listener& listener) {
   const Claim& of = hypothesis[claim];
   const Variant& variant = list[of.candidate].variants[of.variant];
   Cause c{list[of.candidate].effect, list[of.candidate].where, variant.law, {}, gain, {}};
   const Eigen::Index first = first_of(hypothesis, claim, fitter.n_nuisance());
   for (std::size_t k = 0; k < of.knobs.size() && !of.all_or_nothing; ++k) {
     const Knob& knob = of.knobs[k];
-    const Interval x = profile_interval(fitter, hypothesis, fit, claim, k, workspace);
+    const auto at = first + static_cast<Eigen::Index>(k);
+    const double sd = std::sqrt(std::max(0.0, fit.covariance(at, at)));
+    const Interval x = listener.wants_end() ? Interval{fit.x[at] - 1.96 * sd, fit.x[at] + 1.96 * sd}
+                                            : profile_interval(fitter, hypothesis, fit, claim, k, workspace);
     const double scale = knob.is_time ? 60.0 : 1.0;
     c.parameters.push_back({knob.name, knob.is_time ? "min" : knob.unit,
-                            knob.value(fit.x[first + static_cast<Eigen::Index>(k)]) / scale, knob.value(x.low) / scale,
+                            knob.value(fit.x[at]) / scale, knob.value(x.low) / scale,
                             knob.value(x.high) / scale});
   }
   if (variant.at_speed_rpm > 0.0) {
@@ -155,6 +158,19 @@ void write_nothing(Diagnosis& d) {
   }
 }
 
+/// Of a diagnosis that was ended: what stands so far is said, and that it was not judged.
+void leave_incomplete(Diagnosis& d, const std::string& stage) {
+  d.ended_at = stage;
+  for (Cause& c : d.causes) {
+    c.standing = Standing::kSuspected;
+    c.doubt = "the diagnosis was ended before it was complete";
+  }
+  if (d.verdict == Verdict::kConsistent) d.verdict = Verdict::kInsufficientData;
+  if (d.verdict == Verdict::kNamed || d.verdict == Verdict::kAmbiguous) d.verdict = Verdict::kSuspected;
+  d.reason = fmt::format("Ended at \"{}\", before it was complete. {}", stage,
+                         d.causes.empty() ? "Nothing stands up so far." : "So far: " + reason_of(d));
+}
+
 /// Laws times readings times records times what a prediction costs: how long searching once without each record would take.
 double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
   const auto& system = fitter.twin().machine().system;
@@ -166,8 +182,14 @@ double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
 }  // namespace
 
 Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
-                   const DiagnosisOptions& options, const std::function<void(const std::string&)>& say) {
+                   const DiagnosisOptions& options, const Listener& waiting) {
   Diagnosis d;
+  std::string stage;
+  Listener listener = waiting;
+  listener.on_begin = [&](const std::string& work) {
+    if (!waiting.wants_end()) stage = work;
+    waiting.begin(work);
+  };
   for (const MeasuredRun& run : runs) {
     for (const DataFinding& f : run.findings)
       d.data.push_back({f.channel, runs.size() > 1 ? run.name + ": " + f.what : f.what, f.leaves_out});
@@ -181,10 +203,11 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
 
   d.scatter = scatter(twin);
   for (Knob& k : hall_scatter(runs)) d.scatter.push_back(std::move(k));
-  say(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
+  listener.begin(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
   const auto fresh_fitter = [&] {
     return std::make_unique<Fitter>(twin, runs, d.scatter,
-                                    unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()));
+                                    unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()),
+                                    listener);
   };
   auto own_fitter = fresh_fitter();
   Twin::Workspace workspace(twin);
@@ -192,16 +215,16 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.noise = estimate_noise(runs, d.as_written, options.floor);
   for (int pass = 0; pass < 2; ++pass) {
     own_fitter->set_noise(d.noise);
-    d.search = search(*own_fitter, standing, how, say);
+    d.search = search(*own_fitter, standing, how, listener);
     const auto sharper = estimate_noise(runs, d.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(),
                                         [&](const auto& s) { return s.second.total() < 0.9 * d.noise.at(s.first).total(); });
-    if (!is_sharper || pass == 1) break;
+    if (!is_sharper || pass == 1 || listener.wants_end()) break;
     for (const auto& [name, noise] : sharper) {
       if (noise.total() < d.noise.at(name).total()) d.noise[name] = noise;
     }
   }
-  say("looking at what is left");
+  listener.begin("looking at what is left");
   const auto what_is_left = [&]() -> std::optional<Unexplained> {
     const Fitter& f = *own_fitter;
     std::optional<Unexplained> left = unexplained_of(f, d.search, d.noise);
@@ -217,11 +240,20 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     return unexplained_of(again, same, d.noise);
   };
   d.unexplained = what_is_left();
-  if (const auto rough = d.unexplained ? models_own_error(*own_fitter, d.search, d.noise) : std::nullopt) {
-    say("weighing again by what the model misses");
+  if (d.unexplained && !listener.wants_end() && models_own_error(runs, d.search.fit.prediction, d.noise)) {
+    listener.begin("weighing again by what the model misses");
+    std::map<std::string, NoiseModel> rough = d.noise;
+    std::shared_ptr<const SharedNoise> shared;
+    (void)has_solution([&] {
+      const TwinState state = own_fitter->state(d.search.hypothesis, d.search.fit.x);
+      d.wander = heat_wander(*own_fitter, state, d.search.fit.prediction, workspace);
+      if (d.wander) shared = std::make_shared<const SharedNoise>(std::move(d.wander->readings));
+    });
+    const Prediction& best = d.wander ? d.wander->prediction : d.search.fit.prediction;
+    if (const auto error = models_own_error(runs, best, d.noise)) rough = *error;
     own_fitter = fresh_fitter();
-    own_fitter->set_noise(*rough);
-    d.search = search(*own_fitter, standing, how, say);
+    own_fitter->set_noise(rough, shared);
+    d.search = search(*own_fitter, standing, how, listener);
     d.weighed_by_model_error = true;
     if (auto left = unexplained_of(*own_fitter, d.search, d.noise)) d.unexplained = std::move(left);
   }
@@ -236,52 +268,55 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.scatter[i].prior_sd = d.scatter[i].scale == Knob::Scale::kLog ? effects::kFactorSd : kHallFault_K;
   }
   if (!d.moved.empty()) {
-    const std::map<std::string, NoiseModel> noise = own_fitter->noise();
+    const auto before = std::move(own_fitter);
     own_fitter = fresh_fitter();
-    own_fitter->set_noise(noise);
+    own_fitter->set_noise(before->noise(), before->shared_noise());
     own_fitter->settle(d.search.hypothesis, d.search.fit);
     const Eigen::Index n_n = own_fitter->n_nuisance();
     d.search.fit = own_fitter->fit(d.search.hypothesis, d.search.fit.x.tail(d.search.fit.x.size() - n_n), workspace);
     (void)has_solution([&] { d.search.without = own_fitter->fit({}, Eigen::VectorXd(0), workspace); });
   }
   const Fitter& fitter = *own_fitter;
-  if (auto unnamed = best_unnamed(fitter, list, d.search.hypothesis, d.search.fit);
-      unnamed && unnamed->log_evidence_gain > kUnnamed) {
+  listener.begin("one cause without a name");
+  auto unnamed = listener.wants_end() ? std::nullopt : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
+  if (unnamed && unnamed->log_evidence_gain > kUnnamed) {
     if (!d.unexplained) d.unexplained = explained_better(fitter, d.search, *unnamed, d.noise);
     d.unexplained->one_cause = std::move(unnamed);
   }
   d.scatter_alone = d.search.without.prediction;
-  say("waveforms of what is missing");
-  if (!d.scatter_alone.empty()) {
+  listener.begin("waveforms of what is missing");
+  if (!d.scatter_alone.empty() && !listener.wants_end()) {
     // where a loud cause bent the numbers beyond belief, heats would be told of another machine
     const Eigen::VectorXd& x = d.search.without.x;
     const bool is_bent = x.cwiseQuotient(fitter.nuisance_sd()).squaredNorm() > kBeyondBelief * static_cast<double>(x.size());
     (void)has_solution([&] {
-      d.waveforms = is_bent ? waveforms(twin, runs, twin.as_written(), d.as_written)
-                            : waveforms(twin, runs, fitter.state({}, x), d.scatter_alone);
+      d.waveforms = is_bent ? waveforms(twin, runs, twin.as_written(), d.as_written, listener)
+                            : waveforms(twin, runs, fitter.state({}, x), d.scatter_alone, listener);
     });
   }
 
+  listener.begin("intervals");
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
+    listener.share(static_cast<double>(c) / static_cast<double>(d.search.findings.size()));
     const Finding& f = d.search.findings[c];
-    Cause cause = cause_of(list, fitter, d.search.hypothesis, c, d.search.fit, f.log_evidence_gain, workspace);
+    Cause cause = cause_of(list, fitter, d.search.hypothesis, c, d.search.fit, f.log_evidence_gain, workspace, listener);
     for (const Finding::Alternative& a : f.alternatives) {
       Hypothesis other = d.search.hypothesis;
       other.erase(other.begin() + static_cast<std::ptrdiff_t>(c));
       other.push_back(a.claim);
-      cause.alternatives.push_back(cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, workspace));
+      cause.alternatives.push_back(cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, workspace, listener));
     }
     d.causes.push_back(std::move(cause));
   }
-  say("measuring the gain");
+  listener.begin("measuring the gain");
   SearchAgain search_again;
   if (search_work(fitter, list) <= kMostWork) {
     search_again = [&](Fitter& without) {
-      say("searching again without a record");
-      return search(without, standing, how, [](const std::string&) {});
+      listener.begin("searching again without a record");
+      return search(without, standing, how, listener.within());
     };
   }
-  const HeldOut held = held_out_gain(fitter, d.search, d.noise, search_again);
+  const HeldOut held = held_out_gain(fitter, d.search, d.noise, search_again, listener);
   d.written = written_of(fitter, d.search, held, workspace);
   if (!d.written.keeps_numbers) d.written.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
   d.extended = d.written.keeps_numbers ? d.written.fit.prediction : d.as_written;
@@ -304,13 +339,16 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     }
     if (runs.size() == 1 && options.most_effects > 0 && d.written.keeps_numbers) write_nothing(d);
   }
-  if (std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); })) {
-    say("choosing an experiment");
+  const bool is_open =
+      std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
+  if (is_open && !listener.wants_end()) {
+    listener.begin("choosing an experiment");
     d.experiment = propose_experiment(fitter, d.search);
   }
   d.reason = d.verdict == Verdict::kInsufficientData
                  ? what_is_missing(twin, runs, static_cast<int>(n_readings), kFewestReadings)
                  : reason_of(d);
+  if (listener.wants_end()) leave_incomplete(d, stage);
   return d;
 }
 

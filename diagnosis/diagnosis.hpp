@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "diagnosis/experiment.hpp"
+#include "diagnosis/heat_wander.hpp"
 #include "diagnosis/search.hpp"
 #include "diagnosis/unnamed.hpp"
 #include "diagnosis/waveform.hpp"
@@ -59,6 +60,8 @@ struct ChannelGain {
          rmse_after =
              0.0;  ///< as written; scatter alone; what extended.yaml holds, fitted without them: on rows that were kept out
   double peak_before = 0.0, peak_after = 0.0;
+  /// Of regressions that know nothing of the machine, on the same kept-out rows (plain_regression.hpp): what drove it and the hall; thermometers too.
+  double rmse_of_drive = 0.0, rmse_of_readings = 0.0;
   double rmse_written =
       0.0;  ///< of the file extended.yaml over the whole of all records, its own rows; NaN where nobody simulated it
 };
@@ -88,7 +91,9 @@ struct Diagnosis {
   std::optional<Unexplained> unexplained;
   /// Causes, intervals and gains count what the model misses as noise: it misses far more than noise, whatever is claimed.
   bool weighed_by_model_error = false;
-  std::string holdout;  ///< how the gain was held out
+  std::optional<HeatWander> wander;  ///< where it is weighed by that: heat that comes and goes in bodies; its readings are moved from
+  std::string ended_at;              ///< what was being done when somebody wanted an end; empty: it is complete
+  std::string holdout;               ///< how the gain was held out
   std::vector<ChannelGain> gain;
   /// What the scenario with its numbers fitted, and no cause, misses over time, body by body and displacement by displacement.
   std::vector<Waveform> waveforms;
@@ -111,9 +116,10 @@ struct DiagnosisOptions {
   NoiseFloor floor;
 };
 
-/// @param coarse  the same machine on a coarser mesh, or null: what its mesh does is no finding
-/// @param runs    at least one
+/// @param coarse    the same machine on a coarser mesh, or null: what its mesh does is no finding
+/// @param runs      at least one
+/// @param listener  once it wants an end, the diagnosis says what is known so far, and that it is incomplete
 [[nodiscard]] Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
-                                 const DiagnosisOptions& options, const std::function<void(const std::string&)>& say);
+                                 const DiagnosisOptions& options, const Listener& listener = {});
 
 }  // namespace driftwright::diagnosis

@@ -17,14 +17,14 @@ constexpr double kWorthRefining = -8.0, kWorthTrying = 0.0;  // nats by linear t
 
 }  // namespace
 
-std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>& runs) {
+std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>& runs, const Listener& listener) {
   std::vector<Waveform> list;
   const bool is_solved = has_solution([&] {
     Twin::Workspace workspace(twin);
     Prediction prediction;
     for (const MeasuredRun& run : runs)
       prediction.push_back(twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace)));
-    list = waveforms(twin, runs, twin.as_written(), prediction);
+    list = waveforms(twin, runs, twin.as_written(), prediction, listener);
   });
   if (!is_solved) return {};
   struct Seen {
@@ -61,7 +61,7 @@ std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>&
 }
 
 std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit,
-                                 const Projection& projection) {
+                                 const Projection& projection, const Listener& listener) {
   const Twin& twin = fitter.twin();
   const effects::DoubtScene scene = scene_of(twin, fitter.runs());
   const std::vector<effects::Body> bodies = bodies_of(scene);
@@ -117,7 +117,8 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
         h.size = found->size;
         h.price_nats = found->price_nats;
         of_place[p].push_back(std::move(h));
-      });
+      },
+      listener);
   std::vector<Event> events;
   for (const std::vector<Happening>& list : of_place) {
     for (const Happening& h : list) {

@@ -1,6 +1,7 @@
 #pragma once
 // Events that come again and again, as one cause: windows of one size, in one run or in several.
 
+#include "base/listener.hpp"
 #include "diagnosis/fit.hpp"
 #include "diagnosis/projection.hpp"
 #include "effects/doubt.hpp"
@@ -17,13 +18,14 @@ inline constexpr const char* kEventKeys[] = {"exchange_window", "heat_window"};
 
 /// Where the waveform of a body, missing in the twin as written, has windows, in all runs together; each of their times at the price of all rows that it could
 /// have been at.
-[[nodiscard]] std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>& runs);
+[[nodiscard]] std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>& runs,
+                                             const Listener& listener = {});
 
 /// Those that the whitened readings ask for beside a fit, by linear theory, in any body and between any two, what is known roughly taken off first
 /// (window_search.hpp).
 /// @param projection  of the fit, its readings condensed
 /// @throws SolveError  where the fit's state has no solution
 [[nodiscard]] std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit,
-                                               const Projection& projection);
+                                               const Projection& projection, const Listener& listener = {});
 
 }  // namespace driftwright::diagnosis

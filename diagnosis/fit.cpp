@@ -91,11 +91,11 @@ Remainder without_claims(const Hypothesis& hypothesis, const std::vector<std::si
 }
 
 Fitter::Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter,
-               std::vector<Prediction> linear)
+               std::vector<Prediction> linear, const Listener& listener)
     : twin_(twin), runs_(runs), scatter_(std::move(scatter)), linear_(std::move(linear)) {
   nuisance_ = Eigen::VectorXd::Zero(n_nuisance());
-  Eigen::VectorXd x = nuisance_;
-  take_slopes({}, x);
+  const Eigen::VectorXd x = nuisance_;
+  take_slopes({}, x, {.on_begin = {}, .on_share = listener.on_share, .wants_end_now = {}});
 }
 
 Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
@@ -105,7 +105,7 @@ Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
       linear_(other.linear_),
       nuisance_(other.nuisance_),
       differences_(other.differences_) {
-  set_noise(other.noise_);
+  set_noise(other.noise_, other.shared_);
 }
 
 Eigen::VectorXd Fitter::nuisance_sd() const {
@@ -207,7 +207,7 @@ Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
   throw SolveError(fmt::format("the machine has no solution beside {} of {}", scatter_[which].name, scatter_[which].where));
 }
 
-void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x) {
+void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Listener& listener) {
   std::vector<Prediction> differences(scatter_.size());
   Prediction base;
   Courses about;
@@ -218,7 +218,8 @@ void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x)
   }
   for_each_index(
       scatter_.size(), [&] { return Twin::Workspace(twin_); },
-      [&](std::size_t i, Twin::Workspace& workspace) { differences[i] = slope(hypothesis, x, base, about, i, workspace); });
+      [&](std::size_t i, Twin::Workspace& workspace) { differences[i] = slope(hypothesis, x, base, about, i, workspace); },
+      listener);
   differences_ = std::move(differences);
 }
 
@@ -232,9 +233,10 @@ void Fitter::whiten_slopes() {
   squares_.noalias() = slopes_.transpose() * slopes_;
 }
 
-void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise) {
+void Fitter::set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared) {
   noise_ = noise;
-  comparison_.emplace(runs_, noise);
+  shared_ = std::move(shared);
+  comparison_.emplace(runs_, noise, shared_ ? *shared_ : SharedNoise{});
   whiten_slopes();
 }
 

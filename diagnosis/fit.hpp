@@ -7,8 +7,10 @@
 // The second term is what more freedom costs (Laplace's approximation of the marginal likelihood).
 // Source: MacKay, Neural Computation 4 (1992) 415-447; Gauss-Newton with step control.
 
+#include <memory>
 #include <optional>
 
+#include "base/listener.hpp"
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/comparison.hpp"
 
@@ -49,14 +51,16 @@ struct Fit {
 /// Fits hypotheses to runs. Scatter's slopes are taken once at the scenario's numbers and once again by settle().
 class Fitter {
  public:
-  /// @param linear  further columns [per run: n_outputs x n_times] with an unknown amplitude of standard deviation 1
-  Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter, std::vector<Prediction> linear);
+  /// @param linear    further columns [per run: n_outputs x n_times] with an unknown amplitude of standard deviation 1
+  /// @param listener  told how many of scatter's slopes are there; its wish for an end is not heard
+  Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter, std::vector<Prediction> linear,
+         const Listener& listener = {});
 
   /// The same with other readings: some of them left out, the noise as it is. @param runs  with the same rows, the missing ones NaN; outlive it
   Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs);
 
-  /// Whitens anew. @param noise  by channel
-  void set_noise(const std::map<std::string, NoiseModel>& noise);
+  /// Whitens anew. @param noise  by channel. @param shared  what channels of a run have together; empty: nothing
+  void set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared = {});
   /// Takes scatter's slopes at a fit of a hypothesis: later fits of others start there.
   void settle(const Hypothesis& hypothesis, const Fit& at);
 
@@ -72,6 +76,7 @@ class Fitter {
   [[nodiscard]] const std::vector<Prediction>& linear() const { return linear_; }
   [[nodiscard]] const Comparison& comparison() const { return *comparison_; }
   [[nodiscard]] const std::map<std::string, NoiseModel>& noise() const { return noise_; }  ///< by channel
+  [[nodiscard]] const std::shared_ptr<const SharedNoise>& shared_noise() const { return shared_; }  ///< null: none
   [[nodiscard]] const std::vector<MeasuredRun>& runs() const { return runs_; }
   [[nodiscard]] const Twin& twin() const { return twin_; }
   /// W f's slopes by scatter and linear columns.
@@ -107,7 +112,7 @@ class Fitter {
   /// Slope of the readings by one of scatter's numbers. @param base, about  at x
   [[nodiscard]] Prediction slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
                                  const Courses& about, std::size_t which, Twin::Workspace& workspace) const;
-  void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x);
+  void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Listener& listener = {});
   /// W f's slopes by scatter and linear columns at an x far from where scatter was settled.
   [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const;
   void whiten_slopes();
@@ -117,6 +122,7 @@ class Fitter {
   std::vector<Knob> scatter_;
   std::vector<Prediction> linear_;
   std::map<std::string, NoiseModel> noise_;
+  std::shared_ptr<const SharedNoise> shared_;
   std::optional<Comparison> comparison_;
   Eigen::VectorXd nuisance_;             ///< where it was settled
   std::vector<Prediction> differences_;  ///< of readings by scatter, not whitened

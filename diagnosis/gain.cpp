@@ -8,6 +8,7 @@
 
 #include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
+#include "diagnosis/plain_regression.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -167,10 +168,12 @@ class Judge {
     std::vector<int> n_again;  ///< per claim: in how many of the searches the same effect was found at the same place
     int n_searched = 0;
   };
-  [[nodiscard]] Refound refound(const SearchAgain& search_again, Subset kept) {
+  [[nodiscard]] Refound refound(const SearchAgain& search_again, Subset kept, const Listener& listener) {
     Refound found{judged(kept).predicted, judged(0).predicted, std::vector<int>(result_.hypothesis.size(), 0), 0};
     for (std::size_t f = 0; f < folds_.size(); ++f) {
       if (!folds_[f].is_searched()) continue;
+      if (listener.wants_end()) break;
+      listener.share(static_cast<double>(f) / static_cast<double>(folds_.size()));
       Fitter fitter(whole_, folds_[f].fitted);
       SearchResult again;
       if (!has_solution([&] { again = search_again(fitter); })) continue;
@@ -187,6 +190,13 @@ class Judge {
       }
     }
     return found;
+  }
+  /// What regressions without a machine make of the folds.
+  [[nodiscard]] std::vector<Prediction> regressed(Regressors regressors) const {
+    std::vector<Prediction> predicted;
+    for (const Fold& fold : folds_)
+      predicted.push_back(plain_regression(whole_.runs(), fold.fitted, static_cast<int>(written_.front().rows()), regressors));
+    return predicted;
   }
   [[nodiscard]] std::vector<Prediction> written() const { return std::vector<Prediction>(folds_.size(), written_); }
 
@@ -271,16 +281,33 @@ std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, con
     });
     for (std::size_t i = 0; i < gains.size(); ++i) gains[i].*rmse = std::sqrt(gains[i].*rmse / std::max(1.0, n_rows[i]));
   };
+  add(judge.regressed(Regressors::kDrive), &ChannelGain::rmse_of_drive, nullptr);
+  add(judge.regressed(Regressors::kDriveAndReadings), &ChannelGain::rmse_of_readings, nullptr);
   add(written, &ChannelGain::rmse_before, &ChannelGain::peak_before);
   add(calibrated, &ChannelGain::rmse_calibrated, nullptr);
   add(extended, &ChannelGain::rmse_after, &ChannelGain::peak_after);
   return gains;
 }
 
+/// Where nobody waited for it.
+HeldOut not_held_out(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise) {
+  HeldOut held;
+  held.how = "the rows that were fitted to: the diagnosis was ended before any were kept out";
+  held.claim_nats.assign(result.hypothesis.size(), 0.0);
+  held.keeps_claim.assign(result.hypothesis.size(), 1);
+  held.writes_claim.assign(result.hypothesis.size(), 0);
+  held.keeps_numbers = false;
+  const Judge judge(fitter, result, noise, {{.fitted = fitter.runs(), .kept_out = fitter.runs()}});
+  held.channels =
+      channel_gains(fitter.runs(), noise, judge, judge.written(), {result.without.prediction}, {result.fit.prediction});
+  return held;
+}
+
 }  // namespace
 
 HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
-                      const SearchAgain& search_again) {
+                      const SearchAgain& search_again, const Listener& listener) {
+  if (listener.wants_end()) return not_held_out(fitter, result, noise);
   HeldOut held;
   const std::size_t n_claims = result.hypothesis.size();
   Folds folds;
@@ -328,7 +355,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   const std::vector<Prediction> written = judge.written();
   std::vector<Prediction> extended = judge.unforeseen(kept), calibrated = judge.judged(0).predicted;
   if (search_again) {
-    Judge::Refound again = judge.refound(search_again, kept);
+    Judge::Refound again = judge.refound(search_again, kept, listener);
     calibrated = std::move(again.calibrated);
     // A search that finds what does harm to rows it has not seen would do so to records that are still to come.
     if (kept != 0 && judge.squares_over_noise(again.extended) > kWorse * judge.squares_over_noise(calibrated)) kept = 0;

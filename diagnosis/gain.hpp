@@ -28,7 +28,9 @@ using SearchAgain = std::function<SearchResult(Fitter&)>;
 /// Each run in turn is predicted with numbers fitted to the others; of a single run the last third with those of the rest. What happened in one run alone, or
 /// at a time of the only one, is judged on blocks of it, every other one kept out. Each time all numbers are fitted anew.
 /// @param search_again  makes the search again without the rows of each run, or of the last third; null: which claims there are was decided on all rows
+/// @param listener      once it wants an end, the misses are those of rows that were fitted to, and nothing is worth writing
 [[nodiscard]] HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result,
-                                    const std::map<std::string, NoiseModel>& noise, const SearchAgain& search_again);
+                                    const std::map<std::string, NoiseModel>& noise, const SearchAgain& search_again,
+                                    const Listener& listener = {});
 
 }  // namespace driftwright::diagnosis

@@ -105,7 +105,43 @@ LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& 
     }
     l.course.of_interval.push_back(l.course.modes.size() - 1);
   }
+  l.decay.resize(system.size(), n_rows - 1);
+  for (Eigen::Index k = 0; k + 1 < n_rows; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double dt_s = l.course.time_s[i + 1] - l.course.time_s[i];
+    l.decay.col(k) = (-dt_s * l.course.modes[l.course.of_interval[i]].rate_1_s).array().exp();
+  }
   return l;
+}
+
+Eigen::MatrixXd modal_gain(const LinearRun& run, const Eigen::VectorXd& bodies, const Eigen::VectorXd& carrier) {
+  Eigen::MatrixXd gain(run.decay.rows(), run.decay.cols());
+  for (Eigen::Index k = 0; k < gain.cols(); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const ModalCourse::Modes& m = run.course.modes[run.course.of_interval[i]];
+    const double dt_s = run.course.time_s[i + 1] - run.course.time_s[i];
+    const Eigen::VectorXd load = m.load * bodies;
+    for (Eigen::Index j = 0; j < gain.rows(); ++j) {
+      const double x = dt_s * m.rate_1_s[j];
+      gain(j, k) = carrier[k] * load[j] * (std::abs(x) < 1e-9 ? dt_s : (1.0 - run.decay(j, k)) / m.rate_1_s[j]);
+    }
+  }
+  return gain;
+}
+
+Eigen::MatrixXd response(const LinearRun& run, const Eigen::MatrixXd& gain, Eigen::Index from, Eigen::Index to) {
+  const ModalCourse& course = run.course;
+  Eigen::MatrixXd readings = Eigen::MatrixXd::Zero(course.modes.front().observe.cols(), gain.cols() + 1);
+  Eigen::VectorXd a = Eigen::VectorXd::Zero(gain.rows());
+  for (Eigen::Index k = from; k < gain.cols(); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const ModalCourse::Modes& m = course.modes[course.of_interval[i]];
+    if (k > from && course.of_interval[i] != course.of_interval[i - 1]) a = (m.from * a).eval();
+    a.array() *= run.decay.col(k).array();
+    if (k < to) a += gain.col(k);
+    readings.col(k + 1).noalias() = m.observe.transpose() * a;
+  }
+  return readings;
 }
 
 double mean_difference(double first_K, double second_K) {

@@ -10,6 +10,7 @@ struct LinearRun {
   ModalCourse course;             ///< loads: 1 W in each body; its start: each body known to 0.3 K
   Eigen::MatrixXd temperature_K;  ///< predicted mean of each body over the reference, rows x bodies
   Eigen::VectorXd hall_K;         ///< over the reference
+  Eigen::MatrixXd decay;          ///< of each mode from row to row, modes x rows - 1
 };
 
 /// The bodies that heat may be missing in: regions and nodes, not the hall.
@@ -21,6 +22,13 @@ struct LinearRun {
 [[nodiscard]] LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& state,
                                    const std::vector<effects::Body>& bodies, const std::vector<Eigen::Index>& rows,
                                    const Eigen::VectorXd& scale, Twin::Workspace& workspace);
+
+/// What each mode gains from row to row by heat in bodies. @param bodies  W in each where the carrier is 1; as many as linear_run() was given
+/// @param carrier  from each row to the next. @return  modes x rows - 1
+[[nodiscard]] Eigen::MatrixXd modal_gain(const LinearRun& run, const Eigen::VectorXd& bodies, const Eigen::VectorXd& carrier);
+
+/// What gains of the modes from one row to another do to the channels, over their scale. @return n_channels x n_rows
+[[nodiscard]] Eigen::MatrixXd response(const LinearRun& run, const Eigen::MatrixXd& gain, Eigen::Index from, Eigen::Index to);
 
 /// Mean of a temperature difference from row to row: where an exchange is strong it falls exponentially, and its mean is the logarithmic one.
 [[nodiscard]] double mean_difference(double first_K, double second_K);

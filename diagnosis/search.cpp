@@ -29,6 +29,9 @@ constexpr double kSame = 2.0;  // squares of whitened readings: one nat
 constexpr double kHopeless = 0.5, kHope = 8.0;
 constexpr std::size_t kTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
+// Laws of one candidate that are fitted in full: of one with many, such as a state of running in any of the records, more.
+constexpr int kMostOfOne = 2, kMostOfMany = 4;
+constexpr std::size_t kManyLaws = 6;
 
 constexpr double kRareOrChosen = 5.0;  // nats of a claim's price: several windows that were chosen to make it
 
@@ -129,21 +132,23 @@ class KnownFits {
 /// @param known  null: all are fitted anew, from where scatter was settled last
 std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                    const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit,
-                                   int n, KnownFits* known) {
+                                   int n, KnownFits* known, const Listener& listener) {
   if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
   std::vector<Score> list = scores(fitter, candidates, columns, base, base_fit);
   std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
   std::vector<Score> chosen;
-  for (const Score& s : list) {  // a second law of a good candidate counts as well, but only a few
+  for (const Score& s : list) {  // another law of a good candidate counts as well, but only a few
     const auto n_same =
         std::count_if(chosen.begin(), chosen.end(), [&](const Score& c) { return c.candidate == s.candidate; });
-    if (n_same < 2) chosen.push_back(s);
+    if (n_same < (candidates[s.candidate].variants.size() > kManyLaws ? kMostOfMany : kMostOfOne)) chosen.push_back(s);
     if (static_cast<int>(chosen.size()) >= n) break;
   }
   const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
   std::vector<Fitted> fitted;
   double best_gain = 0.0;  // of those fitted
   for (std::size_t from = 0; from < chosen.size() && chosen[from].gain > kHopeless * best_gain - kHope;) {
+    if (listener.wants_end()) break;
+    listener.share(static_cast<double>(from) / static_cast<double>(chosen.size()));
     std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
     std::vector<Fitted> batch;
     for (; from < chosen.size() && jobs.size() < kTogether; ++from) {
@@ -231,7 +236,8 @@ std::vector<Law> laws_of(const std::vector<Candidate>& candidates) {
 }
 
 std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                  const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit) {
+                                  const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
+                                  const Listener& listener) {
   const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
   std::vector<std::vector<Signature>> lists(laws.size());
   Prediction responses;
@@ -269,7 +275,8 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
           if (!column.allFinite() || !(column.squaredNorm() > 1e-12)) continue;
           lists[j].push_back({laws[j].candidate, laws[j].variant, std::move(claim), std::move(column)});
         }
-      });
+      },
+      listener);
   std::vector<Signature> all;
   for (auto& list : lists) {
     for (Signature& s : list) all.push_back(std::move(s));
@@ -319,7 +326,7 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
 }
 
 SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
-                    const std::function<void(const std::string&)>& say) {
+                    const Listener& listener) {
   SearchResult result;
   double price = 0.0;
   const auto add = [&](const std::vector<Event>& events) {
@@ -334,7 +341,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   };
 
   Hypothesis best;
-  say("fitting the scenario's own numbers");
+  listener.begin("fitting the scenario's own numbers");
   Fit best_fit = fit_all(fitter, {{{}, Eigen::VectorXd(0)}}).front();
   if (best_fit.prediction.empty())
     throw SolveError("the scenario's own numbers cannot be fitted: the machine has no solution near them");
@@ -350,11 +357,11 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     weighed_at = best_fit;
   }
   result.without = best_fit;
-  say("looking for windows of time");
-  add(events_seen(fitter.twin(), fitter.runs()));
-  add(events_beside(fitter, {}, weighed_at, projection_of(fitter, {}, weighed_at)));
-  say(fmt::format("signatures of {} candidates", candidates.size()));
-  std::vector<Signature> columns = signatures(fitter, candidates, laws_of(candidates), {}, weighed_at);
+  listener.begin("looking for windows of time");
+  add(events_seen(fitter.twin(), fitter.runs(), listener));
+  add(events_beside(fitter, {}, weighed_at, projection_of(fitter, {}, weighed_at), listener));
+  listener.begin(fmt::format("signatures of {} candidates", candidates.size()));
+  std::vector<Signature> columns = signatures(fitter, candidates, laws_of(candidates), {}, weighed_at, listener);
   result.scores = scores(fitter, candidates, columns, {}, weighed_at);
   result.chance = chance_of(fitter, candidates, columns, weighed_at);
   const auto must_gain = [&](std::size_t claim) {  // counted from 0
@@ -365,12 +372,12 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
 
   const auto exchange = [&] {  // each for a better one, until none is; true where something changed
     bool any = false;
-    for (int turn = 0; turn < 3; ++turn) {
+    for (int turn = 0; turn < 3 && !listener.wants_end(); ++turn) {
       bool changed = false;
       for (std::size_t i = 0; i < best.size(); ++i) {
         const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
         const Fit fit = fit_all(fitter, {{others, x}}).front();
-        const std::vector<Fitted> replacements = best_additions(fitter, candidates, columns, others, fit, options.refits, &known);
+        const std::vector<Fitted> replacements = best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener);
         if (replacements.empty()) continue;
         const Hypothesis exchanged = with(others, replacements.front().claim);
         const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
@@ -385,14 +392,14 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     }
     return any;
   };
-  for (int round = 0; round < options.most_effects; ++round) {
-    say(fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
+  for (int round = 0; round < options.most_effects && !listener.wants_end(); ++round) {
+    listener.begin(fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
     std::vector<Fitted> additions =
-        best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits, &known);
+        best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits, &known, listener);
     if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself
       fitter.settle({}, best_fit);
-      const std::vector<Signature> there = signatures(fitter, candidates, laws_of(candidates), {}, best_fit);
-      for (Fitted& f : best_additions(fitter, candidates, there, best, best_fit, options.refits, nullptr))
+      const std::vector<Signature> there = signatures(fitter, candidates, laws_of(candidates), {}, best_fit, listener);
+      for (Fitted& f : best_additions(fitter, candidates, there, best, best_fit, options.refits, nullptr, listener))
         additions.push_back(std::move(f));
       std::stable_sort(additions.begin(), additions.end(),
                        [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
@@ -407,24 +414,24 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     settle_well(fitter, best, best_fit);  // what comes next starts from here
     best_value = evidence(best_fit, best) - laws_price(candidates, best);
     if (is_bent) {
-      columns = signatures(fitter, candidates, laws_of(candidates), best, best_fit);
+      columns = signatures(fitter, candidates, laws_of(candidates), best, best_fit, listener);
     } else if (round == 0) {  // windows that the first cause hid
-      const std::vector<Law> more = add(events_beside(fitter, best, best_fit, projection_of(fitter, best, best_fit)));
+      const std::vector<Law> more = add(events_beside(fitter, best, best_fit, projection_of(fitter, best, best_fit), listener));
       for (Signature& s : signatures(fitter, candidates, more, best, best_fit)) columns.push_back(std::move(s));
       best_value = evidence(best_fit, best) - laws_price(candidates, best);
     }
     exchange();
   }
-  for (int turn = 0; turn < 2 && !best.empty(); ++turn) {
-    say("settling the numbers");
+  for (int turn = 0; turn < 2 && !best.empty() && !listener.wants_end(); ++turn) {
+    listener.begin("settling the numbers");
     settle_well(fitter, best, best_fit);
     best_value = evidence(best_fit, best) - laws_price(candidates, best);
-    columns = signatures(fitter, candidates, laws_of(candidates), best, best_fit);
+    columns = signatures(fitter, candidates, laws_of(candidates), best, best_fit, listener);
     if (!exchange()) break;
   }
 
   // Prune, and look for others in each one's place.
-  say(best.empty() ? "nothing to add" : "looking for other explanations");
+  listener.begin(best.empty() ? "nothing to add" : "looking for other explanations");
   for (std::size_t i = 0; i < best.size();) {
     const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
     Fit fit = fit_all(fitter, {{others, x}}).front();
@@ -440,7 +447,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       continue;
     }
     Finding finding{best[i], best_value - without_value, false, {}};
-    for (Fitted& f : best_additions(fitter, candidates, columns, others, fit, options.refits, &known)) {
+    for (Fitted& f : best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener)) {
       const double value = evidence(f.fit, with(others, f.claim)) - laws_price(candidates, others);
       if (f.claim.candidate == best[i].candidate || value < best_value - options.cannot_tell) continue;
       if (says_the_same(fitter, candidates[best[i].candidate], best_fit, candidates[f.claim.candidate], f.fit)) continue;

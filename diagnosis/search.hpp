@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "base/listener.hpp"
 #include "diagnosis/fit.hpp"
 
 namespace driftwright::diagnosis {
@@ -57,7 +58,8 @@ struct Law {
 [[nodiscard]] std::vector<Law> laws_of(const std::vector<Candidate>& candidates);
 /// Those of some laws, on top of a fit. They change little with what else is claimed.
 [[nodiscard]] std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                                const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit);
+                                                const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
+                                                const Listener& listener = {});
 
 /// How much evidence a candidate would bring on top of a fit: what the linear theory says.
 struct Score {
@@ -77,9 +79,9 @@ struct SearchResult {
 };
 
 /// @param candidates  windows that the readings ask for are added
-/// @param say         is told what goes on
+/// @param listener    once it wants an end, what has stood up so far is the result
 [[nodiscard]] SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
-                                  const std::function<void(const std::string&)>& say);
+                                  const Listener& listener);
 
 /// The best shape of each law of each candidate, best first.
 [[nodiscard]] std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,

@@ -39,11 +39,12 @@ std::map<std::string, NoiseModel> widest_noise(const Fitter& fitter, const Fit& 
 
 }  // namespace
 
-std::optional<std::map<std::string, NoiseModel>> models_own_error(const Fitter& fitter, const SearchResult& result,
+std::optional<std::map<std::string, NoiseModel>> models_own_error(const std::vector<MeasuredRun>& runs,
+                                                                  const Prediction& prediction,
                                                                   const std::map<std::string, NoiseModel>& noise) {
   std::map<std::string, NoiseModel> rough = noise;
   bool is_rough = false;
-  for (const Leftover& l : leftovers(fitter.runs(), result.fit.prediction, noise)) {
+  for (const Leftover& l : leftovers(runs, prediction, noise)) {
     if (l.rms < kRough * noise.at(l.channel).total()) continue;
     rough[l.channel].correlated = std::hypot(noise.at(l.channel).correlated, l.rms);
     rough[l.channel].time_s = kModelErrorTime_s;

@@ -10,7 +10,7 @@ namespace driftwright::diagnosis {
                                                         const std::map<std::string, NoiseModel>& noise);
 /// Noise with what the model misses as a slow part of it, where that is far more than the noise: readings of a model so wrong weigh no more.
 [[nodiscard]] std::optional<std::map<std::string, NoiseModel>> models_own_error(
-    const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise);
+    const std::vector<MeasuredRun>& runs, const Prediction& prediction, const std::map<std::string, NoiseModel>& noise);
 /// Where the claims act that one cause without a name explains better, and what that cause looks like.
 [[nodiscard]] Unexplained explained_better(const Fitter& fitter, const SearchResult& result, const Unnamed& unnamed,
                                            const std::map<std::string, NoiseModel>& noise);

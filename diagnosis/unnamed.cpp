@@ -276,7 +276,7 @@ std::vector<Subset> subsets_of(const Fitter& fitter, const std::vector<Candidate
 }  // namespace
 
 std::optional<Unnamed> best_unnamed(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                    const Hypothesis& hypothesis, const Fit& fit) {
+                                    const Hypothesis& hypothesis, const Fit& fit, const Listener& listener) {
   if (hypothesis.empty()) return std::nullopt;
   const std::vector<Place> places = places_of(scene_of(fitter.twin(), fitter.runs()), fitter.twin());
   const std::vector<Piece> pieces = pieces_of(fitter.runs());
@@ -324,7 +324,9 @@ std::optional<Unnamed> best_unnamed(const Fitter& fitter, const std::vector<Cand
             }
           }
         }
-      });
+      },
+      listener);
+  if (listener.wants_end()) return std::nullopt;
   const auto found = std::max_element(best.begin(), best.end(), [](const Unnamed& a, const Unnamed& b) {
     return a.log_evidence_gain < b.log_evidence_gain;
   });

@@ -23,8 +23,9 @@ struct Unnamed {
   std::vector<double> time_s, value;    ///< of the first run's rows [W, K, m, rad]
 };
 
-/// The best one in the place of some claims or of all, or nothing where there is no claim.
+/// The best one in the place of some claims or of all, or nothing where there is no claim, or where the listener wants an end.
 [[nodiscard]] std::optional<Unnamed> best_unnamed(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                                  const Hypothesis& hypothesis, const Fit& fit);
+                                                  const Hypothesis& hypothesis, const Fit& fit,
+                                                  const Listener& listener = {});
 
 }  // namespace driftwright::diagnosis

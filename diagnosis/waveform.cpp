@@ -213,7 +213,7 @@ std::vector<NamedCourse> recorded_courses(const MeasuredRun& run) {
 }
 
 std::vector<Waveform> waveforms(const Twin& twin, const std::vector<MeasuredRun>& runs, const TwinState& state,
-                                const Prediction& prediction) {
+                                const Prediction& prediction, const Listener& listener) {
   const effects::DoubtScene scene = scene_of(twin, runs);
   const std::vector<effects::Body> bodies = bodies_of(scene);
   const double typical_W = kTypicalShare * scene.unknown_heat_W();
@@ -240,7 +240,8 @@ std::vector<Waveform> waveforms(const Twin& twin, const std::vector<MeasuredRun>
     }
     std::vector<HeatCourse> of_body(bodies.size());
     for_each_index(
-        bodies.size(), [] { return 0; }, [&](std::size_t b, int) { of_body[b] = heat_of(asked, b); });
+        bodies.size(), [] { return 0; }, [&](std::size_t b, int) { of_body[b] = heat_of(asked, b); }, listener);
+    if (listener.wants_end()) return {};
     std::stable_sort(of_body.begin(), of_body.end(), [](const HeatCourse& a, const HeatCourse& b) {
       return a.wave.log_likelihood_gain > b.wave.log_likelihood_gain;
     });
@@ -253,7 +254,9 @@ std::vector<Waveform> waveforms(const Twin& twin, const std::vector<MeasuredRun>
           const std::size_t other = i / n_best;
           if (other != heat.body && heat.wave.log_likelihood_gain > kLeast_nats)
             exchanges[i] = conductance_of(asked, heat, other);
-        });
+        },
+        listener);
+    if (listener.wants_end()) return {};
     for (std::size_t i = 0; i < of_body.size(); ++i) {
       std::vector<Waveform> descriptions = {std::move(of_body[i].wave)};
       for (std::size_t other = bodies.size() + 1; i < n_best && other-- > 0;) {  // the hall first

@@ -31,9 +31,10 @@ struct Waveform {
 /// and at least the channel's step.
 /// @param state       what the prediction is of; the machine is linear about it
 /// @param prediction  readings of all runs
+/// @param listener    once it wants an end, nothing comes of it
 /// @throws SolveError  where the state has no solution
 [[nodiscard]] std::vector<Waveform> waveforms(const Twin& twin, const std::vector<MeasuredRun>& runs, const TwinState& state,
-                                              const Prediction& prediction);
+                                              const Prediction& prediction, const Listener& listener = {});
 
 /// What a record has beside readings, and its readings: one value a row, to the next one where it drives. @param n_rows  the first ones alone
 [[nodiscard]] std::vector<NamedCourse> recorded_courses(const MeasuredRun& run);

@@ -15,7 +15,7 @@ constexpr Eigen::Index kFiner = 12;  // parts of two of them about an edge
 
 /// What drives heat through a place from row to row: 1, or a difference of temperatures [K].
 Eigen::VectorXd carrier_of(const SeenRun& run, const WindowPlace& place, std::size_t n_bodies) {
-  const Eigen::Index n = run.decay.cols();
+  const Eigen::Index n = run.linear.decay.cols();
   Eigen::VectorXd carrier = Eigen::VectorXd::Ones(n);
   if (!place.other) return carrier;
   const Eigen::MatrixXd& warm_K = run.linear.temperature_K;
@@ -31,47 +31,17 @@ Eigen::VectorXd carrier_of(const SeenRun& run, const WindowPlace& place, std::si
 /// Whitened readings, condensed, of a unit through a place in each cell of a run, n_rows x n_cells. @param edges  rows between the cells
 Eigen::MatrixXd columns_of(const Comparison& comparison, const SeenRun& run, const WindowPlace& place, std::size_t n_bodies,
                            const std::vector<Eigen::Index>& edges) {
-  const ModalCourse& course = run.linear.course;
-  const Eigen::Index n_steps = run.decay.cols(), n_modes = run.decay.rows();
-  const Eigen::VectorXd carrier = carrier_of(run, place, n_bodies);
-  Eigen::MatrixXd load(n_modes, n_steps);
-  for (Eigen::Index k = 0; k < n_steps; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const ModalCourse::Modes& m = course.modes[course.of_interval[i]];
-    const double dt_s = course.time_s[i + 1] - course.time_s[i];
-    Eigen::VectorXd b = m.load.col(static_cast<Eigen::Index>(place.body));
-    if (place.other && *place.other < n_bodies) b -= m.load.col(static_cast<Eigen::Index>(*place.other));
-    for (Eigen::Index j = 0; j < n_modes; ++j) {
-      const double x = dt_s * m.rate_1_s[j];
-      load(j, k) = carrier[k] * b[j] * (std::abs(x) < 1e-9 ? dt_s : (1.0 - run.decay(j, k)) / m.rate_1_s[j]);
-    }
-  }
-  const auto n_channels = course.modes.front().observe.cols();
+  Eigen::VectorXd bodies = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_bodies));
+  bodies[static_cast<Eigen::Index>(place.body)] = 1.0;
+  if (place.other && *place.other < n_bodies) bodies[static_cast<Eigen::Index>(*place.other)] = -1.0;
+  const Eigen::MatrixXd gain = modal_gain(run.linear, bodies, carrier_of(run, place, n_bodies));
   const auto n_cells = static_cast<Eigen::Index>(edges.size()) - 1;
-  Eigen::MatrixXd columns(run.n_rows, n_cells), readings(n_channels, n_steps + 1);
-  Eigen::VectorXd whitened;
+  Eigen::MatrixXd columns(run.n_rows, n_cells);
+  Eigen::VectorXd whitened(comparison.n_of(run.number));
   for (Eigen::Index c = 0; c < n_cells; ++c) {
     const Eigen::Index from = edges[static_cast<std::size_t>(c)], to = edges[static_cast<std::size_t>(c + 1)];
-    readings.setZero();
-    Eigen::VectorXd a = Eigen::VectorXd::Zero(n_modes);
-    for (Eigen::Index k = from; k < n_steps; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      const ModalCourse::Modes& m = course.modes[course.of_interval[i]];
-      if (k > from && course.of_interval[i] != course.of_interval[i - 1]) a = (m.from * a).eval();
-      a.array() *= run.decay.col(k).array();
-      if (k < to) a += load.col(k);
-      readings.col(k + 1).noalias() = m.observe.transpose() * a;
-    }
-    for (Eigen::Index channel = 0; channel < n_channels; ++channel) {
-      const auto b = static_cast<std::size_t>(run.first_block + channel);
-      const Comparison::Condensed& few = comparison.condensed_blocks()[b];
-      whitened.resize(comparison.blocks()[b].n);
-      comparison.whitener(b).apply(readings.row(channel).transpose(), whitened);
-      for (Eigen::Index k = 0; k < few.n; ++k) {
-        const auto together = whitened.segment(k * few.together, std::min(few.together, whitened.size() - k * few.together));
-        columns(few.first - run.first_row + k, c) = together.sum() / std::sqrt(static_cast<double>(together.size()));
-      }
-    }
+    comparison.whiten(run.number, response(run.linear, gain, from, to), whitened);
+    columns.col(c) = comparison.condensed(run.number, whitened);
   }
   return columns;
 }
@@ -83,23 +53,10 @@ SeenRun seen_run(const Fitter& fitter, const TwinState& state, std::size_t r, co
   const MeasuredRun& run = fitter.runs()[r];
   std::vector<Eigen::Index> rows(run.time_s.size());
   std::iota(rows.begin(), rows.end(), 0);
-  SeenRun s{.linear = linear_run(fitter.twin(), run, state, bodies, rows,
-                                 Eigen::VectorXd::Ones(static_cast<Eigen::Index>(run.channels.size())), workspace),
-            .decay = {}};
-  const ModalCourse& course = s.linear.course;
-  const auto n_steps = static_cast<Eigen::Index>(rows.size()) - 1;
-  s.decay.resize(course.modes.front().rate_1_s.size(), n_steps);
-  for (Eigen::Index k = 0; k < n_steps; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    s.decay.col(k) = (-(run.time_s[i + 1] - run.time_s[i]) * course.modes[course.of_interval[i]].rate_1_s).array().exp();
-  }
-  const auto& blocks = fitter.comparison().blocks();
-  s.first_block = std::find_if(blocks.begin(), blocks.end(), [&](const auto& b) { return b.run == r; }) - blocks.begin();
-  for (auto b = static_cast<std::size_t>(s.first_block); b < blocks.size() && blocks[b].run == r; ++b) {
-    const Comparison::Condensed& c = fitter.comparison().condensed_blocks()[b];
-    if (s.n_rows == 0) s.first_row = c.first;
-    s.n_rows += c.n;
-  }
+  SeenRun s{.number = r,
+            .linear = linear_run(fitter.twin(), run, state, bodies, rows,
+                                 Eigen::VectorXd::Ones(static_cast<Eigen::Index>(run.channels.size())), workspace)};
+  std::tie(s.first_row, s.n_rows) = fitter.comparison().condensed_rows(r);
   return s;
 }
 

@@ -16,9 +16,9 @@ struct WindowPlace {
 
 /// A run as linear theory sees it.
 struct SeenRun {
+  std::size_t number = 0;
   LinearRun linear;
-  Eigen::MatrixXd decay;  ///< of each mode from row to row, modes x rows - 1
-  Eigen::Index first_block = 0, first_row = 0, n_rows = 0;  ///< in the comparison, and of its whitened readings, condensed
+  Eigen::Index first_row = 0, n_rows = 0;  ///< of the whitened readings, condensed
 };
 
 /// @param state  about which the machine is linear

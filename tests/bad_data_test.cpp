@@ -163,7 +163,7 @@ TEST(WarmStart, IsAFindingAndNoCause) {
   ASSERT_EQ(b.runs[0].start_K.size(), 2);
   EXPECT_NEAR(b.runs[0].start_K[0], 13.0, 0.3);
   EXPECT_NEAR(b.runs[0].start_K[1], 9.0, 0.3);
-  const Diagnosis d = diagnose(*b.twin, nullptr, b.runs, {}, [](const std::string&) {});
+  const Diagnosis d = diagnose(*b.twin, nullptr, b.runs, {});
   EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
 }
 
@@ -176,7 +176,7 @@ TEST(WarmStart, OfABodyWithoutThermometerIsFitted) {
   find_warm_starts(b.runs, *b.twin);
   EXPECT_NEAR(b.runs[0].start_K[1], 9.1, 0.5);  // 0.7 of its neighbour: that is all a first reading says
   EXPECT_FALSE(start_columns(*b.twin, b.runs).empty());
-  const Diagnosis d = diagnose(*b.twin, nullptr, b.runs, {}, [](const std::string&) {});
+  const Diagnosis d = diagnose(*b.twin, nullptr, b.runs, {});
   EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
 }
 

@@ -87,7 +87,7 @@ TEST(Chance, IsMetByMachinesWithoutFault) {
     app::Progress progress;
     const app::MeasuredTwin m = app::open_measured_twin(scenarios::read_scenario(scenario), "diagnose",
                                                         records_of(truth, random, fmt::format("r{}", i)), progress);
-    const Diagnosis d = diagnose(*m.twin, nullptr, m.runs, m.how, [](const std::string&) {});
+    const Diagnosis d = diagnose(*m.twin, nullptr, m.runs, m.how);
     const std::vector<Candidate> list = d.search.candidates;
     double best = -1e300;
     for (const Score& s : d.search.scores) {

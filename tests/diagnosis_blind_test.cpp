@@ -34,7 +34,7 @@ Told told(const std::filesystem::path& folder) {
   app::Progress progress;
   app::MeasuredTwin m = app::open_measured_twin(scenario, "diagnose", measured, progress);
   if (t.truth["without"].is_string()) m.how.without.insert(t.truth["without"].get<std::string>());
-  t.diagnosis = diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, [](const std::string&) {});
+  t.diagnosis = diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how);
   std::filesystem::remove_all(folder.parent_path());
   return t;
 }

@@ -66,7 +66,7 @@ struct Beside {
   [[nodiscard]] Diagnosis diagnosed(int most_effects = 3) const {
     DiagnosisOptions how;
     how.most_effects = most_effects;
-    return diagnose(*twin, nullptr, runs, how, [](const std::string&) {});
+    return diagnose(*twin, nullptr, runs, how);
   }
 };
 
