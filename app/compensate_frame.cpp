@@ -8,13 +8,14 @@
 
 #include "app/table_strategy.hpp"
 #include "app/validation_study.hpp"
-#include "compensation/observability.hpp"
-#include "compensation/regression.hpp"
-#include "compensation/sensor_selection.hpp"
-#include "compensation/thermometers.hpp"
+#include "compensation/predictors/observability.hpp"
+#include "compensation/predictors/regression.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
+#include "compensation/sensors/thermometers.hpp"
 #include "output/html_report.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "machine/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 
 namespace driftwright::app {

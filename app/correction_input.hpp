@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/quadrature.hpp"
+#include "compensation/injector/quadrature.hpp"
 
 namespace driftwright::app {
 

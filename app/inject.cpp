@@ -17,7 +17,7 @@
 #include "app/version.hpp"
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
-#include "compensation/axis_loop.hpp"
+#include "compensation/injector/axis_loop.hpp"
 #include "output/signal_files.hpp"
 
 namespace driftwright::app {

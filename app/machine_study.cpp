@@ -6,10 +6,10 @@
 
 #include "app/planner.hpp"
 #include "app/thermal_modes.hpp"
-#include "compensation/fitted_formulas.hpp"
-#include "compensation/formula_predictor.hpp"
-#include "compensation/thermometers.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "compensation/predictors/fitted_formulas.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
+#include "compensation/sensors/thermometers.hpp"
+#include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::app {
 namespace {

@@ -4,13 +4,13 @@
 #include <optional>
 
 #include "app/results.hpp"
-#include "compensation/axis_loop.hpp"
-#include "compensation/correction.hpp"
-#include "compensation/deployed_predictor.hpp"
-#include "compensation/grey_relational.hpp"
-#include "compensation/modal_predictor.hpp"
-#include "compensation/regression.hpp"
-#include "compensation/temperature_ambiguity.hpp"
+#include "compensation/injector/axis_loop.hpp"
+#include "compensation/judging/correction.hpp"
+#include "compensation/predictors/deployed_predictor.hpp"
+#include "compensation/sensors/grey_relational.hpp"
+#include "compensation/predictors/modal_predictor.hpp"
+#include "compensation/predictors/regression.hpp"
+#include "compensation/judging/temperature_ambiguity.hpp"
 
 namespace driftwright::app {
 

@@ -11,7 +11,7 @@
 #include "app/version.hpp"
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
-#include "scenarios/read_schedule.hpp"
+#include "scenarios/reader/read_schedule.hpp"
 
 namespace {
 

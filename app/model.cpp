@@ -6,10 +6,10 @@
 
 #include "app/version.hpp"
 #include "base/file_bytes.hpp"
-#include "scenarios/as_recorded.hpp"
-#include "scenarios/machine_key.hpp"
-#include "scenarios/machine_store.hpp"
-#include "scenarios/ways_out.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "machine/machine_key.hpp"
+#include "machine/machine_store.hpp"
+#include "machine/ways_out.hpp"
 
 namespace driftwright::app {
 

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "app/progress.hpp"
-#include "scenarios/reduced_machine.hpp"
+#include "machine/reduced_machine.hpp"
 
 namespace driftwright::app {
 

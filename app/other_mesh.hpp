@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "scenarios/read_mesh.hpp"
+#include "scenarios/reader/read_mesh.hpp"
 
 namespace driftwright::app {
 

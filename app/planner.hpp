@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "compensation/schedule_policy.hpp"
-#include "scenarios/scenario.hpp"
+#include "compensation/schedule/schedule_policy.hpp"
+#include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::app {
 

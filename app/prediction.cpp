@@ -9,9 +9,9 @@
 
 #include "base/mapped_record.hpp"
 #include "base/quantity.hpp"
-#include "compensation/interpolate.hpp"
-#include "scenarios/as_recorded.hpp"
-#include "scenarios/read_cyclogram.hpp"
+#include "compensation/sensors/interpolate.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
 
 namespace driftwright::app {
 namespace {

@@ -4,8 +4,8 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/results.hpp"
-#include "compensation/iso230_3.hpp"
-#include "scenarios/job_series.hpp"
+#include "compensation/judging/iso230_3.hpp"
+#include "machine/job_series.hpp"
 
 namespace driftwright::app {
 

@@ -9,10 +9,10 @@
 
 #include "app/planner.hpp"
 #include "base/random.hpp"
-#include "compensation/correction.hpp"
-#include "compensation/driven_predictor.hpp"
-#include "compensation/model_scatter.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "compensation/judging/correction.hpp"
+#include "compensation/predictors/driven_predictor.hpp"
+#include "compensation/judging/model_scatter.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::app {

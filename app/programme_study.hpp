@@ -4,10 +4,10 @@
 #include <functional>
 
 #include "app/results.hpp"
-#include "compensation/assembled_curves.hpp"
-#include "compensation/deployed_predictor.hpp"
-#include "compensation/identified_modes.hpp"
-#include "compensation/scaled_modes.hpp"
+#include "compensation/predictors/assembled_curves.hpp"
+#include "compensation/predictors/deployed_predictor.hpp"
+#include "compensation/predictors/identified_modes.hpp"
+#include "compensation/predictors/scaled_modes.hpp"
 
 namespace driftwright::app {
 

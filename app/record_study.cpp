@@ -12,12 +12,12 @@
 #include "app/run_up.hpp"
 #include "base/errors.hpp"
 #include "base/mapped_record.hpp"
-#include "compensation/product_sums.hpp"
-#include "compensation/regression_quality.hpp"
-#include "scenarios/as_recorded.hpp"
-#include "scenarios/record_part.hpp"
-#include "scenarios/record_runs.hpp"
-#include "scenarios/recorded_run.hpp"
+#include "compensation/sensors/product_sums.hpp"
+#include "compensation/predictors/regression_quality.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/record_part.hpp"
+#include "scenarios/reader/record_runs.hpp"
+#include "scenarios/reader/recorded_run.hpp"
 
 namespace driftwright::app {
 namespace {

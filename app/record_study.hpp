@@ -5,8 +5,8 @@
 
 #include "app/verbs.hpp"
 #include "base/record.hpp"
-#include "compensation/observed_run.hpp"
-#include "scenarios/scenario.hpp"
+#include "compensation/predictors/observed_run.hpp"
+#include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::app {
 
@@ -17,9 +17,9 @@ struct StudyRecords {
   std::vector<std::string> findings;  ///< what is wrong with drive and hall, a sentence each
 };
 
-/// Reads the records, or parts of them (scenarios/record_part.hpp), and checks that they have the study's target. Drive and hall are what the
+/// Reads the records, or parts of them (scenarios/reader/record_part.hpp), and checks that they have the study's target. Drive and hall are what the
 /// scenario's effects say of the recorded ones. A part goes on from what came before it in its record. A single record to train on is cut
-/// into runs at rests of its drive (scenarios/record_runs.hpp).
+/// into runs at rests of its drive (scenarios/reader/record_runs.hpp).
 /// @throws InputError  for a missing file or channel, and when rows are given twice: trained on and judged by, or trained on twice
 /// @param hall  null: the hall is read from the channel that all records have it in; else from this one alone, "" for none
 [[nodiscard]] StudyRecords read_records(const scenarios::Scenario& scenario, const RecordOptions& options,

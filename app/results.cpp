@@ -8,8 +8,9 @@
 
 #include "app/version.hpp"
 #include "base/quantity.hpp"
-#include "scenarios/as_recorded.hpp"
-#include "scenarios/heat_flow_record.hpp"
+#include "machine/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "machine/heat_flow_record.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/stress.hpp"
 

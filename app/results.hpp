@@ -8,7 +8,7 @@
 #include "app/verbs.hpp"
 #include "output/field_series.hpp"
 #include "output/results_folder.hpp"
-#include "scenarios/machine.hpp"
+#include "machine/machine.hpp"
 
 namespace driftwright::app {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compensation/quadrature.hpp"
+#include "compensation/injector/quadrature.hpp"
 
 namespace driftwright::app {
 

@@ -6,7 +6,7 @@
 #include "app/table_study.hpp"
 #include "app/verbs.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/ways_out.hpp"
+#include "machine/ways_out.hpp"
 
 namespace driftwright::app {
 

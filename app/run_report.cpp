@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "app/iso230_3_report.hpp"
-#include "scenarios/heat_flow_record.hpp"
+#include "machine/heat_flow_record.hpp"
 
 namespace driftwright::app {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "app/table_report.hpp"
 #include "base/quantity.hpp"
-#include "compensation/frame_programs.hpp"
+#include "compensation/frames/frame_programs.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/ways_out.hpp"
+#include "machine/ways_out.hpp"
 
 namespace driftwright::app {
 

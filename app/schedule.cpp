@@ -11,7 +11,7 @@
 #include "app/verbs.hpp"
 #include "base/file_bytes.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/read_cyclogram.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
 
 namespace driftwright::app {
 namespace {

@@ -4,9 +4,9 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "app/prediction.hpp"
-#include "base/nc_program.hpp"
-#include "compensation/iso230_3.hpp"
-#include "compensation/program_series.hpp"
+#include "nc/program.hpp"
+#include "compensation/judging/iso230_3.hpp"
+#include "compensation/schedule/program_series.hpp"
 #include "output/html_report.hpp"
 
 namespace driftwright::app {

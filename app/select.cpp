@@ -7,10 +7,10 @@
 #include "app/record_study.hpp"
 #include "app/results.hpp"
 #include "app/validation_study.hpp"
-#include "compensation/drift_model.hpp"
-#include "compensation/ranking_stability.hpp"
-#include "compensation/regression_quality.hpp"
-#include "compensation/sensor_selection.hpp"
+#include "compensation/predictors/drift_model.hpp"
+#include "compensation/sensors/ranking_stability.hpp"
+#include "compensation/predictors/regression_quality.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
 #include "output/json_text.hpp"
 
 namespace driftwright::app {

@@ -8,7 +8,7 @@
 #include "app/run_report.hpp"
 #include "app/verbs.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/reduced_files.hpp"
+#include "machine/reduced_files.hpp"
 
 namespace driftwright::app {
 namespace {

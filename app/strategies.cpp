@@ -10,13 +10,13 @@
 #include <memory>
 
 #include "base/errors.hpp"
-#include "compensation/fitted_formulas.hpp"
-#include "compensation/formula_predictor.hpp"
-#include "compensation/memory_regression.hpp"
-#include "compensation/observability.hpp"
-#include "compensation/past_drift.hpp"
-#include "compensation/score.hpp"
-#include "compensation/sensor_selection.hpp"
+#include "compensation/predictors/fitted_formulas.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
+#include "compensation/predictors/memory_regression.hpp"
+#include "compensation/predictors/observability.hpp"
+#include "compensation/predictors/past_drift.hpp"
+#include "compensation/predictors/score.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::app {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
-#include "compensation/deployed_predictor.hpp"
-#include "compensation/grey_relational.hpp"
-#include "compensation/observer.hpp"
+#include "compensation/predictors/deployed_predictor.hpp"
+#include "compensation/sensors/grey_relational.hpp"
+#include "compensation/predictors/observer.hpp"
 
 namespace driftwright::app {
 

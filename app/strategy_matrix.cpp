@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "base/errors.hpp"
-#include "compensation/drift_model.hpp"
+#include "compensation/predictors/drift_model.hpp"
 
 namespace driftwright::app {
 namespace {

@@ -2,8 +2,8 @@
 // Strategies x conditions: what each leaves of the drift on runs that it was not fitted on, and whether it may go on a machine.
 
 #include "app/strategies.hpp"
-#include "compensation/score.hpp"
-#include "compensation/thermometers.hpp"
+#include "compensation/predictors/score.hpp"
+#include "compensation/sensors/thermometers.hpp"
 
 namespace driftwright::app {
 

@@ -10,7 +10,7 @@
 
 #include "app/iso230_3_report.hpp"
 #include "compensation/control/control_files.hpp"
-#include "compensation/formula_predictor.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
 #include "output/csv_row.hpp"
 #include "output/drift_model_c.hpp"
 #include "output/drift_model_files.hpp"

@@ -6,7 +6,8 @@
 #include <optional>
 
 #include "base/quantity.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "machine/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_transient.hpp"

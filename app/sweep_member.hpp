@@ -2,8 +2,8 @@
 // One member of a sweep: from a scenario and its machine to the numbers of its row.
 
 #include "base/record.hpp"
-#include "scenarios/reduced_machine.hpp"
-#include "scenarios/sweep_plan.hpp"
+#include "machine/reduced_machine.hpp"
+#include "scenarios/reader/sweep_plan.hpp"
 
 namespace driftwright::app {
 

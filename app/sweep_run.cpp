@@ -11,7 +11,7 @@
 #include "app/model.hpp"
 #include "app/sweep_member.hpp"
 #include "output/csv_row.hpp"
-#include "scenarios/machine_key.hpp"
+#include "machine/machine_key.hpp"
 
 namespace driftwright::app {
 namespace {

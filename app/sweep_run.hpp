@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "scenarios/sweep_plan.hpp"
+#include "scenarios/reader/sweep_plan.hpp"
 
 namespace driftwright::app {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/quantity.hpp"
-#include "compensation/thermometers.hpp"
+#include "compensation/sensors/thermometers.hpp"
 
 namespace driftwright::app {
 namespace {

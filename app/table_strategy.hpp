@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "app/table_study.hpp"
-#include "compensation/model_scatter.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "compensation/judging/model_scatter.hpp"
+#include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::app {
 

@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "app/table_strategy.hpp"
-#include "compensation/even_growth.hpp"
-#include "compensation/interpolate.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "compensation/frames/even_growth.hpp"
+#include "compensation/sensors/interpolate.hpp"
+#include "machine/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/transient.hpp"
 

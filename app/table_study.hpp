@@ -2,9 +2,9 @@
 // What `run` does with a scenario's `table:`: the table's errors over the run, and every correction of them through the frame.
 
 #include "app/results.hpp"
-#include "compensation/hall_models.hpp"
-#include "compensation/table_shift.hpp"
-#include "scenarios/read_table.hpp"
+#include "compensation/frames/hall_models.hpp"
+#include "compensation/frames/table_shift.hpp"
+#include "scenarios/reader/read_table.hpp"
 
 namespace driftwright::app {
 

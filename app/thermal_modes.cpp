@@ -1,7 +1,8 @@
 #include "app/thermal_modes.hpp"
 
-#include "compensation/driven_predictor.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "compensation/predictors/driven_predictor.hpp"
+#include "machine/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::app {
 

@@ -2,7 +2,7 @@
 // What the thermal modes of a scenario's model tell of a cyclogram before it is run: its record, and its drift as a predictor.
 
 #include "app/model.hpp"
-#include "compensation/deployed_predictor.hpp"
+#include "compensation/predictors/deployed_predictor.hpp"
 
 namespace driftwright::app {
 

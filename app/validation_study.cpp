@@ -10,9 +10,10 @@
 
 #include "base/quantity.hpp"
 #include "base/random.hpp"
-#include "compensation/model_scatter.hpp"
-#include "compensation/thermometers.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "compensation/judging/model_scatter.hpp"
+#include "compensation/sensors/thermometers.hpp"
+#include "machine/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 
 namespace driftwright::app {

@@ -4,7 +4,7 @@
 #include "app/model.hpp"
 #include "app/record_study.hpp"
 #include "app/strategy_matrix.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::app {
 

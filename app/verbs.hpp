@@ -24,7 +24,7 @@ struct SimulateOptions : CommonOptions {
 void simulate(const SimulateOptions& options);
 
 struct PredictOptions : CommonOptions {
-  std::string cyclogram;    ///< a name of the scenario, or a record CSV (scenarios/read_cyclogram.hpp)
+  std::string cyclogram;    ///< a name of the scenario, or a record CSV (scenarios/reader/read_cyclogram.hpp)
   std::string start;        ///< what the machine did before, a record CSV or a cyclogram of the scenario; empty: its start
   std::string after_pause;  ///< at rest between that and the cyclogram, such as "30 min"; empty: none
   std::string model;        ///< reduced, full; empty: predicting_model() of app/prediction.hpp

@@ -8,8 +8,9 @@
 #include "app/measured_twin.hpp"
 #include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
-#include "scenarios/as_recorded.hpp"
-#include "scenarios/machine.hpp"
+#include "machine/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "machine/machine.hpp"
 #include "solver/transient.hpp"
 #include "tests/temporary_file.hpp"
 

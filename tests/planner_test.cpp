@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "compensation/correction.hpp"
+#include "compensation/judging/correction.hpp"
 
 namespace driftwright::app {
 namespace {

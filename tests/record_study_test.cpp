@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/fitted_formulas.hpp"
-#include "compensation/sensor_selection.hpp"
+#include "compensation/predictors/fitted_formulas.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
 #include "tests/sensor_records.hpp"
 #include "tests/temporary_file.hpp"
 
