@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
+#include "machine/ways_out.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/shape.hpp"
 #include "scenarios/reader/felt_run.hpp"
-#include "machine/ways_out.hpp"
 #include "solver/steady_state.hpp"
 
 namespace driftwright::scenarios {

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "base/file_bytes.hpp"
-#include "scenarios/reader/felt_run.hpp"
 #include "machine/machine.hpp"
+#include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::scenarios {
 namespace {

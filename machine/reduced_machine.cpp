@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "scenarios/reader/felt_run.hpp"
 #include "machine/body_parts.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/conduction_factor.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/steady_state.hpp"

@@ -2,8 +2,8 @@
 
 #include "base/config_map.hpp"
 #include "base/config_text.hpp"
-#include "output/json_value.hpp"
 #include "machine/reduced_files.hpp"
+#include "output/json_value.hpp"
 
 namespace driftwright::output {
 namespace {

@@ -1,7 +1,6 @@
 // Machines whose record, instruments or materials are wrong: from YAML to records known by hand.
 
 #include "machine/as_recorded.hpp"
-#include "scenarios/reader/felt_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +8,7 @@
 #include <cmath>
 
 #include "machine/reduced_machine.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/column_and_head.hpp"
 

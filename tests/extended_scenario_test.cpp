@@ -9,8 +9,8 @@
 
 #include "diagnosis/scatter.hpp"
 #include "machine/as_recorded.hpp"
-#include "scenarios/reader/felt_run.hpp"
 #include "machine/machine.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/column_and_head.hpp"
 

@@ -6,8 +6,8 @@
 #include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "machine/as_recorded.hpp"
-#include "scenarios/reader/felt_run.hpp"
 #include "machine/machine.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/temporary_file.hpp"
 

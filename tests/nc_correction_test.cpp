@@ -1,10 +1,9 @@
 // Offsets put into NC programs: where they may stand, and every byte of what is written.
 
-#include "nc/correction.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "nc/correction.hpp"
 #include "nc/places.hpp"
 #include "nc/program.hpp"
 #include "tests/temporary_file.hpp"

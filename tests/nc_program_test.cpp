@@ -1,7 +1,5 @@
 // NC programs against times and travels computed by hand.
 
-#include "nc/program.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <numbers>
 
 #include "nc/arc.hpp"
+#include "nc/program.hpp"
 #include "nc/sections.hpp"
 #include "tests/temporary_file.hpp"
 

@@ -11,8 +11,8 @@
 #include <random>
 #include <sstream>
 
-#include "nc/program.hpp"
 #include "compensation/sensors/interpolate.hpp"
+#include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::compensation {

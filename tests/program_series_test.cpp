@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nc/program.hpp"
 #include "compensation/sensors/interpolate.hpp"
+#include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::compensation {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "nc/program.hpp"
 #include "machine/machine.hpp"
+#include "nc/program.hpp"
 #include "scenarios/reader/read_hall.hpp"
 #include "scenarios/reader/recorded_run.hpp"
 #include "tests/temporary_file.hpp"

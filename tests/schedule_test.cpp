@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/sensors/interpolate.hpp"
 #include "compensation/schedule/schedule_policy.hpp"
+#include "compensation/sensors/interpolate.hpp"
 
 namespace driftwright::compensation {
 namespace {

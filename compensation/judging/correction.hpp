@@ -1,14 +1,14 @@
 #pragma once
 // A predicted drift put into the machine by the encoder's periods or by a plan, and what is left. Corrections that follow readings live are
-// scored by judge() (app/strategy_matrix.hpp), those of a simulated axis by run_axis_loop() (axis_loop.hpp).
+// scored by judge() (strategy_matrix.hpp), those of a simulated axis by run_axis_loop() (axis_loop.hpp).
 
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "compensation/schedule/schedule_policy.hpp"
 #include "compensation/predictors/score.hpp"
+#include "compensation/schedule/schedule_policy.hpp"
 
 namespace driftwright::compensation {
 

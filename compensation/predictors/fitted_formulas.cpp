@@ -10,8 +10,8 @@
 #include <numeric>
 
 #include "base/errors.hpp"
-#include "compensation/sensors/product_sums.hpp"
 #include "compensation/predictors/term_columns.hpp"
+#include "compensation/sensors/product_sums.hpp"
 
 namespace driftwright::compensation {
 namespace {

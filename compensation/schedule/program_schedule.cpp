@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "nc/places.hpp"
 #include "compensation/sensors/interpolate.hpp"
+#include "nc/places.hpp"
 
 namespace driftwright::compensation {
 namespace {

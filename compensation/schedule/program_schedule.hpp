@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "nc/correction.hpp"
 #include "compensation/schedule/schedule_policy.hpp"
+#include "nc/correction.hpp"
 
 namespace driftwright::compensation {
 

@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "base/mapped_record.hpp"
-#include "nc/sections.hpp"
 #include "base/quantity.hpp"
+#include "nc/sections.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/recorded_run.hpp"
 

@@ -359,4 +359,17 @@ Scenario read_scenario(const ConfigMap& in) {
   return scenario;
 }
 
+const MachineModel& require_machine(const Scenario& scenario, const std::string& verb) {
+  if (scenario.machine) return *scenario.machine;
+  throw InputError(
+      fmt::format("{}: `{}` needs the key `machine`; this scenario is about measured records alone (select, validate)",
+                  scenario.path, verb));
+}
+
+const Study& require_study(const Scenario& scenario, const std::string& verb) {
+  if (scenario.study) return *scenario.study;
+  throw InputError(
+      fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit", scenario.path, verb));
+}
+
 }  // namespace driftwright::scenarios

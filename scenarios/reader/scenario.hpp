@@ -20,8 +20,8 @@
 #include "scenarios/reader/read_mesh.hpp"
 #include "scenarios/reader/read_outputs.hpp"
 #include "scenarios/reader/read_schedule.hpp"
-#include "scenarios/reader/validation.hpp"
 #include "scenarios/reader/read_table.hpp"
+#include "scenarios/reader/validation.hpp"
 #include "solver/material.hpp"
 #include "solver/transient.hpp"
 
@@ -125,5 +125,9 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram);
 [[nodiscard]] Scenario read_scenario(const std::string& path);
 /// The same from the map at the top of a scenario, which may have been edited.
 [[nodiscard]] Scenario read_scenario(const ConfigMap& in);
+
+/// The scenario's machine, or its study. @param verb  that needs it. @throws InputError  where there is none
+[[nodiscard]] const MachineModel& require_machine(const Scenario& scenario, const std::string& verb);
+[[nodiscard]] const Study& require_study(const Scenario& scenario, const std::string& verb);
 
 }  // namespace driftwright::scenarios
