@@ -29,9 +29,6 @@ constexpr double kSame = 2.0;  // squares of whitened readings: one nat
 constexpr double kHopeless = 0.5, kHope = 8.0;
 constexpr std::size_t kTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
-// Laws of one candidate that are fitted in full: of one with many, such as a state of running in any of the records, more.
-constexpr int kMostOfOne = 2, kMostOfMany = 4;
-constexpr std::size_t kManyLaws = 6;
 
 constexpr double kRareOrChosen = 5.0;  // nats of a claim's price: several windows that were chosen to make it
 
@@ -137,10 +134,10 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
   std::vector<Score> list = scores(fitter, candidates, columns, base, base_fit);
   std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
   std::vector<Score> chosen;
-  for (const Score& s : list) {  // another law of a good candidate counts as well, but only a few
+  for (const Score& s : list) {  // a second law of a good candidate counts as well, but only a few
     const auto n_same =
         std::count_if(chosen.begin(), chosen.end(), [&](const Score& c) { return c.candidate == s.candidate; });
-    if (n_same < (candidates[s.candidate].variants.size() > kManyLaws ? kMostOfMany : kMostOfOne)) chosen.push_back(s);
+    if (n_same < 2) chosen.push_back(s);
     if (static_cast<int>(chosen.size()) >= n) break;
   }
   const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
