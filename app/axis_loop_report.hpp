@@ -4,9 +4,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "compensation/axis_loop.hpp"
+#include "compensation/injector/axis_loop.hpp"
 #include "output/html_report.hpp"
-#include "scenarios/read_axis_loop.hpp"
+#include "scenarios/reader/read_axis_loop.hpp"
 
 namespace driftwright::app {
 

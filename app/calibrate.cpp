@@ -14,15 +14,16 @@ namespace driftwright::app {
 
 void calibrate(const CalibrateOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  (void)require_machine(scenario, "calibrate");
+  (void)scenarios::require_machine(scenario, "calibrate");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  MeasuredTwin m = open_measured_twin(scenario, "calibrate", options.measured, progress);
+  studies::MeasuredTwin m = studies::open_measured_twin(scenario, "calibrate", options.measured, progress.listener());
   m.how.most_effects = 0;
   const Listener listener{.on_begin = [&](const std::string& work) { progress.begin(work); },
                           .on_share = [&](double share) { progress.update(share); },
                           .wants_end_now = {}};
-  const diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);
+  const diagnosis::Diagnosis d =
+      diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);
   progress.begin("writing");
   const std::string warning = calibration_warning(d, d.search.candidates);
   std::vector<std::string> head = {
@@ -44,8 +45,8 @@ void calibrate(const CalibrateOptions& options) {
   progress.end();
   fmt::print("{}\n", numbers_text(d));
   if (!warning.empty()) fmt::print("warning: {}\n", warning);
-  fmt::print("{}{}results in {}: report.html, calibration.json, calibrated.yaml, calibrated.diff\n", one_mesh_text(m),
-             not_written_text("calibrated.yaml", calibrated), shown_path(folder.target()));
+  fmt::print("{}{}results in {}: report.html, calibration.json, calibrated.yaml, calibrated.diff\n",
+             studies::one_mesh_text(m), not_written_text("calibrated.yaml", calibrated), shown_path(folder.target()));
 }
 
 }  // namespace driftwright::app

@@ -7,23 +7,23 @@
 
 #include "app/compensate_frame.hpp"
 #include "app/iso230_3_report.hpp"
-#include "app/planner.hpp"
-#include "app/record_study.hpp"
 #include "app/results.hpp"
-#include "app/thermal_modes.hpp"
-#include "app/validation_study.hpp"
-#include "compensation/axis_loop.hpp"
-#include "compensation/correction.hpp"
-#include "compensation/drift_model.hpp"
-#include "compensation/formula_predictor.hpp"
-#include "compensation/observer.hpp"
+#include "compensation/injector/axis_loop.hpp"
+#include "compensation/judging/correction.hpp"
+#include "compensation/predictors/drift_model.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
+#include "compensation/predictors/observer.hpp"
+#include "machine/ways_out.hpp"
 #include "output/html_report.hpp"
 #include "output/json_text.hpp"
 #include "output/json_value.hpp"
 #include "output/predictor_file.hpp"
-#include "scenarios/as_recorded.hpp"
-#include "scenarios/record_part.hpp"
-#include "scenarios/ways_out.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/record_part.hpp"
+#include "studies/planner.hpp"
+#include "studies/record_study.hpp"
+#include "studies/thermal_modes.hpp"
+#include "studies/validation_study.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -41,9 +41,9 @@ struct Outcome {
 };
 
 /// The model's thermal modes, with laws of temperature frozen in the mean drive of the cyclogram that they are to foretell.
-ModalPredictor modes_for(const Scenario& scenario, const Model& model, const Cyclogram& cyclogram) {
+ModalPredictor modes_for(const Scenario& scenario, const scenarios::Model& model, const Cyclogram& cyclogram) {
   const Cyclogram felt = scenarios::felt_run(*scenario.machine, cyclogram).cyclogram;
-  return modal_predictors(scenario, model, scenario.study->thermal_modes, mean_drive({&felt})).completed;
+  return scenarios::modal_predictors(scenario, model, scenario.study->thermal_modes, mean_drive({&felt})).completed;
 }
 
 output::PredictorFile from_file(const Scenario& scenario, const std::string& path) {
@@ -125,7 +125,7 @@ void require_model_follows(const Scenario& scenario, const DeployedPredictor& d,
   if (d.hall != hall)
     throw InputError(fmt::format("'{}' takes the hall from {}, which {} does not have", d.name,
                                  d.hall.empty() ? "the scenario" : "the channel '" + d.hall + "'", run.readings.source));
-  if (const std::string why = why_no_model_follows(*scenario.machine, run); !why.empty())
+  if (const std::string why = studies::why_no_model_follows(*scenario.machine, run); !why.empty())
     throw InputError(fmt::format("'{}' cannot follow this record: {}", d.name, why));
 }
 
@@ -169,7 +169,7 @@ std::vector<double> judged(const Outcome& o, const std::vector<double>& values) 
 /// The correction itself, as `validate` judges it.
 Outcome through_none(const DeployedPredictor& d, const ObservedRun& run) {
   const std::vector<double>& drift_um = run.readings.at(d.target).values;
-  Judgement j = judge(d, run, drift_um);
+  compensation::Judgement j = compensation::judge(d, run, drift_um);
   return {.time_s = run.readings.time_s,
           .drift_um = drift_um,
           .predicted_um = std::move(j.correction_um),
@@ -210,7 +210,7 @@ Outcome through_schedule(const Scenario& scenario, const DeployedPredictor& d, c
   const double tolerance_um = scenario.study->tolerance_um,
                margin_um = std::min(d.interval_um.value_or(0.0), 0.5 * tolerance_um);
   const CorrectedRun corrected = correct_by_schedule({run.readings.time_s, drift_um, boundaries_s, tolerance_um}, ahead_um,
-                                                     margin_um, planner_of(scenario));
+                                                     margin_um, studies::planner_of(scenario));
   return {.time_s = run.readings.time_s,
           .drift_um = drift_um,
           .predicted_um = ahead_um,
@@ -276,16 +276,16 @@ std::string corrected_csv(const Outcome& o, const std::vector<std::string>& comm
 void compensate(const CompensateOptions& options) {
   const Scenario scenario = scenarios::read_scenario(options.scenario);
   if (options.through == "frame") {
-    (void)require_machine(scenario, "compensate");
+    (void)scenarios::require_machine(scenario, "compensate");
     return compensate_through_frame(scenario, options);
   }
-  const scenarios::Study& study = require_study(scenario, "compensate");
+  const scenarios::Study& study = scenarios::require_study(scenario, "compensate");
   const bool is_measured = !options.measured.empty();
   if (is_measured && (options.through != "none" || !options.cyclogram.empty() || options.model == "modes"))
     throw InputError(
         "--measured goes with --through none and a predictor's file, and without --cyclogram: a record says what happened");
   if (!options.after.empty()) require_continues(scenario, options);
-  if (!is_measured) (void)require_machine(scenario, "compensate");
+  if (!is_measured) (void)scenarios::require_machine(scenario, "compensate");
   std::optional<DeployedPredictor> predictor;
   Json judged_as;
   if (options.model != "modes") {
@@ -310,7 +310,7 @@ void compensate(const CompensateOptions& options) {
     RecordOptions measured;
     if (!options.after.empty()) measured.test.push_back(options.after);
     measured.test.push_back(options.measured);
-    StudyRecords records = read_records(scenario, measured, &predictor->hall);
+    studies::StudyRecords records = studies::read_records(scenario, measured, &predictor->hall);
     for (const std::vector<std::string>* notes : {&records.notes, &records.findings}) {
       for (const std::string& note : *notes) fmt::print("note: {}\n", note);
     }
@@ -322,15 +322,15 @@ void compensate(const CompensateOptions& options) {
                       options.measured, options.after));
     require_model_follows(scenario, *predictor, run, records.hall);
   } else {
-    const Model model = open_model(scenario, {cyclogram}, progress, false);
+    const scenarios::Model model = scenarios::open_model(scenario, {cyclogram}, progress.listener(), false);
     if (const scenarios::Machine* full = model.full())
       scenarios::require_ways_out(full->placed.mesh, full->placed.balance, scenario.machine->where);
     // a predictor knows what is recorded, as in validate_strategies(), and not what the scenario's effects make of it
     run = {*cyclogram, scenario.machine->hall,
-           std::move(simulate_cyclograms(scenario, model, {cyclogram}, progress, 0, nullptr).front().record)};
+           std::move(scenarios::simulate_cyclograms(scenario, model, {cyclogram}, progress.listener()).front().record)};
     if (options.through == "none" && predictor) {
       std::optional<Record> read;
-      if (scenario.validation) read = as_judged(*scenario.validation, cyclogram->name, run.readings);
+      if (scenario.validation) read = studies::as_judged(*scenario.validation, cyclogram->name, run.readings);
       if (read) {
         fmt::print("note: thermometers read with noise and steps, as in this run of `validate`\n");
       } else {
@@ -340,15 +340,16 @@ void compensate(const CompensateOptions& options) {
       if (read) run.readings = std::move(*read);
     }
     if (!predictor) {
-      predictor = by_thermal_modes(*scenario.machine, model.outputs(), modes_for(scenario, model, *cyclogram), study.target);
+      predictor = studies::by_thermal_modes(*scenario.machine, model.outputs(), modes_for(scenario, model, *cyclogram),
+                                            study.target);
       predictor->name = fmt::format("{} thermal modes in the mean drive", study.thermal_modes);
     }
     if (options.through == "schedule") {
       // a formula reads temperatures that the modes foretell; anything else has drive and hall alone
       ObservedRun known{*cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}};
       if (as_formula(*predictor->predictor))
-        known.readings = foretold_record(*scenario.machine, model.outputs(), modes_for(scenario, model, *cyclogram),
-                                         *cyclogram, run.readings.time_s);
+        known.readings = studies::foretold_record(*scenario.machine, model.outputs(), modes_for(scenario, model, *cyclogram),
+                                                  *cyclogram, run.readings.time_s);
       ahead_um = ahead(*predictor->predictor, known);
     }
   }

@@ -6,16 +6,18 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "app/table_strategy.hpp"
-#include "app/validation_study.hpp"
-#include "compensation/observability.hpp"
-#include "compensation/regression.hpp"
-#include "compensation/sensor_selection.hpp"
-#include "compensation/thermometers.hpp"
+#include "app/results.hpp"
+#include "compensation/predictors/observability.hpp"
+#include "compensation/predictors/regression.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
+#include "compensation/sensors/thermometers.hpp"
+#include "machine/as_recorded.hpp"
 #include "output/html_report.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
+#include "studies/table_strategy.hpp"
+#include "studies/validation_study.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -42,10 +44,10 @@ struct Believed {
 };
 
 /// The model as it is, to be made wrong as `run` makes its own.
-Physics physics_for(const Scenario& scenario, const Model& model, int repetition) {
-  std::optional<Physics> physics = physics_of(scenario, model, 0.0, 0);
+compensation::Physics physics_for(const Scenario& scenario, const scenarios::Model& model, int repetition) {
+  std::optional<compensation::Physics> physics = studies::physics_of(scenario, model, 0.0, 0);
   if (physics) {
-    physics->system = wrong_system(std::move(physics->system), *scenario.table, repetition);
+    physics->system = studies::wrong_system(std::move(physics->system), *scenario.table, repetition);
     return *std::move(physics);
   }
   throw InputError(
@@ -53,26 +55,26 @@ Physics physics_for(const Scenario& scenario, const Model& model, int repetition
       "this predictor wants a linear reduced model: `solver: {model: reduced}`, and no law that follows temperatures");
 }
 
-Errors rings_of(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt, solver::Trajectory run,
-                int repetition) {
-  SimulatedRun simulated;
+Errors rings_of(const Scenario& scenario, const scenarios::Model& model, const scenarios::FeltRun& felt,
+                solver::Trajectory run, int repetition) {
+  scenarios::SimulatedRun simulated;
   simulated.record = scenarios::as_recorded(*scenario.machine, run, model.outputs(), felt.cyclogram);
   simulated.trajectory = std::move(run);
-  return table_run(scenario, std::move(simulated), wrong_expansions(*scenario.table, repetition)).rings_m;
+  return studies::table_run(scenario, std::move(simulated), studies::wrong_expansions(*scenario.table, repetition)).rings_m;
 }
 
-Believed by_modes(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt,
+Believed by_modes(const Scenario& scenario, const scenarios::Model& model, const scenarios::FeltRun& felt,
                   const std::vector<double>& times_s, int repetition) {
-  const Physics p = physics_for(scenario, model, repetition);
+  const compensation::Physics p = physics_for(scenario, model, repetition);
   return {"thermal modes of a model that is off, from the hall alone",
           rings_of(scenario, model, felt,
                    solver::simulate(p.system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, p.start),
                    repetition)};
 }
 
-Believed by_observer(const Scenario& scenario, const Model& model, const scenarios::FeltRun& felt, const Record& readings,
-                     int repetition) {
-  const Physics p = physics_for(scenario, model, repetition);
+Believed by_observer(const Scenario& scenario, const scenarios::Model& model, const scenarios::FeltRun& felt,
+                     const Record& readings, int repetition) {
+  const compensation::Physics p = physics_for(scenario, model, repetition);
   const std::vector<std::string> sensors = thermometers_of(scenario);
   const Thermometers& instrument = scenario.table->instrument;
   const double reading_K = std::hypot(instrument.noise_K, instrument.resolution_K / std::sqrt(12.0));  // of rounding
@@ -88,7 +90,7 @@ Believed by_observer(const Scenario& scenario, const Model& model, const scenari
 }
 
 /// Each coordinate of each ring as a regression on a few thermometers, fitted to rings measured in the training time.
-Believed by_regression(const Scenario& scenario, const TableRun& truth, const Record& readings, int repetition) {
+Believed by_regression(const Scenario& scenario, const studies::TableRun& truth, const Record& readings, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
   std::vector<std::string> sensors = thermometers_of(scenario);
   const auto n_rings = truth.rings_m.front().cols();
@@ -96,7 +98,7 @@ Believed by_regression(const Scenario& scenario, const TableRun& truth, const Re
       .source = "rings measured from " + fmt::format("{:g} h on", s.train_from_s / 3600.0), .time_s = {}, .channels = {}};
   for (const std::string& name : sensors) training.channels.push_back({name, "degC", {}});
   for (Eigen::Index k = 0; k < 3 * n_rings; ++k) training.channels.push_back({fmt::format("ring_{}", k), "um", {}});
-  const TableTraining measured = train(truth, s, repetition);
+  const studies::TableTraining measured = studies::train(truth, s, repetition);
   for (std::size_t m = 0; m < measured.rows.size(); ++m) {
     training.time_s.push_back(readings.time_s[measured.rows[m]]);
     for (std::size_t c = 0; c < sensors.size(); ++c)
@@ -137,14 +139,14 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
   const Cyclogram& cyclogram = scenario.cyclogram(s.cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const Model model = open_model(scenario, {&cyclogram}, progress, false);
-  TableRun truth =
-      table_run(scenario, std::move(simulate_cyclograms(scenario, model, {&cyclogram}, progress, 0, nullptr).front()));
+  const scenarios::Model model = scenarios::open_model(scenario, {&cyclogram}, progress.listener(), false);
+  studies::TableRun truth = studies::table_run(
+      scenario, std::move(scenarios::simulate_cyclograms(scenario, model, {&cyclogram}, progress.listener()).front()));
   progress.begin("correcting");
   const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, cyclogram);
   std::vector<Believed> believed;
-  for (int k = 0; k < kTableRepetitions; ++k) {
-    const Record readings = table_readings(scenario, felt, truth.record, k);
+  for (int k = 0; k < studies::kTableRepetitions; ++k) {
+    const Record readings = studies::table_readings(scenario, felt, truth.record, k);
     believed.push_back(options.model == "modes"      ? by_modes(scenario, model, felt, readings.time_s, k)
                        : options.model == "observer" ? by_observer(scenario, model, felt, readings, k)
                                                      : by_regression(scenario, truth, readings, k));
@@ -163,14 +165,14 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
   for (const scenarios::TableRing& ring : s.rings) places.push_back(ring.at_m);
   const auto predicted_m = [&](int k) { return first(believed[static_cast<std::size_t>(k)].rings_m); };
   const auto left = [&](const Errors& at_rings_m) { return through_frame(table, places, at_rings_m).left_m; };
-  const auto plan = [&](int k) { return ring_plan(s, s.every_s, k); };
-  const std::vector<TableStrategy> rows = {repeated("none", [&](int) { return table.error_m; }),
-                                           repeated(fmt::format("rings every {:g} min", s.every_s / 60.0),
-                                                    [&](int k) { return left(held_rings(table.time_s, rings_m, plan(k))); }),
-                                           repeated(options.model, [&](int k) { return left(predicted_m(k)); }),
-                                           repeated(fmt::format("rings, {} between", options.model), [&](int k) {
-                                             return left(carried_rings(table.time_s, rings_m, predicted_m(k), plan(k)));
-                                           })};
+  const auto plan = [&](int k) { return studies::ring_plan(s, s.every_s, k); };
+  const std::vector<studies::TableStrategy> rows = {
+      studies::repeated("none", [&](int) { return table.error_m; }),
+      studies::repeated(fmt::format("rings every {:g} min", s.every_s / 60.0),
+                        [&](int k) { return left(held_rings(table.time_s, rings_m, plan(k))); }),
+      studies::repeated(options.model, [&](int k) { return left(predicted_m(k)); }),
+      studies::repeated(fmt::format("rings, {} between", options.model),
+                        [&](int k) { return left(carried_rings(table.time_s, rings_m, predicted_m(k), plan(k))); })};
 
   Json summary = {{"program", "driftwright"}, {"version", folder.made_by().version}, {"scenario", folder.made_by().scenario},
                   {"model", options.model},   {"predictor", believed.front().words}, {"through", "frame"}};
@@ -186,7 +188,7 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
   output::Plot plot{
       .title = "Largest position error on the table", .x_label = "time [h]", .y_label = "error [um]", .series = {}};
   std::string csv = "time_s", text;
-  for (const TableStrategy& row : rows) {
+  for (const studies::TableStrategy& row : rows) {
     const double removed = 100.0 * (1.0 - row.peak.position_m / rows.front().peak.position_m);
     summary["corrections"].push_back({{"name", row.name},
                                       {"x_um", 1e6 * row.peak.x_m},
@@ -206,13 +208,14 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
   csv += "\n";
   for (std::size_t i = 0; i < table.time_s.size(); ++i) {
     csv += fmt::format("{:.7g}", table.time_s[i]);
-    for (const TableStrategy& row : rows) csv += fmt::format(",{:.7g}", row.course_um[i]);
+    for (const studies::TableStrategy& row : rows) csv += fmt::format(",{:.7g}", row.course_um[i]);
     csv += "\n";
   }
   output::Report page{
       .title = fmt::format("{}: the table's frame driven by {}", scenario.name, options.model),
       .subtitle = fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario),
-      .blocks = {output::Paragraph{believed.front().words + fmt::format(". {}", instrument_words(s))}, shown, plot}};
+      .blocks = {output::Paragraph{believed.front().words + fmt::format(". {}", studies::instrument_words(s))}, shown,
+                 plot}};
   folder.write_text("corrected.csv", csv);
   folder.write_text("summary.json", output::json_text(summary));
   folder.write_text("report.html", output::render_html(page));

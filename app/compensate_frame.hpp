@@ -2,7 +2,7 @@
 // Predictors through the table's frame, beside the ring measurement.
 
 #include "app/verbs.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::app {
 

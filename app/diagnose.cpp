@@ -28,8 +28,7 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
                                c.parameters.empty() ? "" : ": ", parameters_text(c)));
     for (const diagnosis::Cause& a : c.alternatives) head.push_back(fmt::format("    or {} at {}", a.effect, a.where));
   }
-  if (!d.written.keeps_numbers)
-    head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
+  if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
   for (const std::string& path : options.measured) head.push_back("  measured: " + path);
   if (d.written.keeps_numbers)
     head.emplace_back(options.causes_only
@@ -44,10 +43,10 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
 
 void diagnose(const DiagnoseOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  (void)require_machine(scenario, "diagnose");
+  (void)scenarios::require_machine(scenario, "diagnose");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  MeasuredTwin m = open_measured_twin(scenario, "diagnose", options.measured, progress);
+  studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", options.measured, progress.listener());
   m.how.without = {options.without.begin(), options.without.end()};
   if (!options.without.empty()) {
     std::set<std::string> keys;
@@ -62,7 +61,8 @@ void diagnose(const DiagnoseOptions& options) {
                           .on_share = [&](double share) { progress.update(share); },
                           .wants_end_now = EndRequest::is_made};
   std::optional<EndRequest> end_request(std::in_place);
-  diagnosis::Diagnosis d = diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);
+  diagnosis::Diagnosis d =
+      diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);
   end_request.reset();
   progress.begin("writing");
   std::string difference;
@@ -81,7 +81,7 @@ void diagnose(const DiagnoseOptions& options) {
   folder.write_text("report.html", output::render_html(diagnosis_report(page, folder.made_by())));
   folder.commit();
   progress.end();
-  fmt::print("{}{}{}", summary_text(d), one_mesh_text(m), not_written_text("extended.yaml", extended));
+  fmt::print("{}{}{}", summary_text(d), studies::one_mesh_text(m), not_written_text("extended.yaml", extended));
   fmt::print("results in {}: report.html, diagnosis.json, extended.yaml, extended.diff{}\n", shown_path(folder.target()),
              has_mesh ? ", residual_source.vtu" : "");
   std::fflush(stdout);

@@ -54,7 +54,7 @@ std::vector<StatedChange> stated_scatter(const diagnosis::Diagnosis& d, bool cau
   return changes;
 }
 
-diagnosis::ExtendedScenario write_scenario(const std::string& stem, const MeasuredTwin& m,
+diagnosis::ExtendedScenario write_scenario(const std::string& stem, const studies::MeasuredTwin& m,
                                            const std::vector<StatedChange>& changes, const std::vector<std::string>& head,
                                            output::ResultsFolder& folder, std::string* difference) {
   diagnosis::ExtendedScenario extended = diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, changes, head);
@@ -76,7 +76,7 @@ diagnosis::ExtendedScenario write_scenario(const std::string& stem, const Measur
   return extended;
 }
 
-void simulate_written(const MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d) {
+void simulate_written(const studies::MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d) {
   const diagnosis::TwinState state = scenarios::read_scenario(path).machine->effects;
   const diagnosis::Twin& twin = *m.twin;
   diagnosis::Twin::Workspace workspace(twin);

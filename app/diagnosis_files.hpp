@@ -1,9 +1,9 @@
 #pragma once
 // What a diagnosis writes beside its report: the extended scenario, its difference to the user's, and where heat would be missing.
 
-#include "app/measured_twin.hpp"
 #include "diagnosis/extended_scenario.hpp"
 #include "output/results_folder.hpp"
+#include "studies/measured_twin.hpp"
 
 namespace driftwright::app {
 
@@ -15,14 +15,14 @@ namespace driftwright::app {
 /// Writes <stem>.yaml and <stem>.diff and reads the scenario back; where that fails, `not_written` says so, too.
 /// @param head  comment lines for the top of the scenario
 /// @param difference  unless null, the text of the .diff
-[[nodiscard]] diagnosis::ExtendedScenario write_scenario(const std::string& stem, const MeasuredTwin& m,
+[[nodiscard]] diagnosis::ExtendedScenario write_scenario(const std::string& stem, const studies::MeasuredTwin& m,
                                                          const std::vector<diagnosis::StatedChange>& changes,
                                                          const std::vector<std::string>& head, output::ResultsFolder& folder,
                                                          std::string* difference);
 
 /// Runs the file that was written over the whole of each record, by the twin, with the effects as the file has them: ChannelGain::rmse_written.
 /// @throws InputError  as read_scenario()
-void simulate_written(const MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d);
+void simulate_written(const studies::MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d);
 
 /// Best claim of missing heat in a region or lumped node, on top of scatter alone.
 struct MissingHeat {

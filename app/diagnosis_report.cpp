@@ -51,10 +51,12 @@ void add_causes(const diagnosis::Diagnosis& d, Blocks& blocks) {
                                                                ? "rows that were kept out are predicted better without it"
                                                                : d.written.why_nothing))});
     if (c.n_searched > 0)
-      blocks.emplace_back(Paragraph{fmt::format(
-          "The search was made again {} without a part of the rows; it found this effect at this place {}.",
-          c.n_searched == 1 ? "once" : fmt::format("{} times", c.n_searched),
-          c.n_again == 0 ? "in none of them" : c.n_again == c.n_searched ? "each time" : fmt::format("{} of them", c.n_again))});
+      blocks.emplace_back(Paragraph{
+          fmt::format("The search was made again {} without a part of the rows; it found this effect at this place {}.",
+                      c.n_searched == 1 ? "once" : fmt::format("{} times", c.n_searched),
+                      c.n_again == 0              ? "in none of them"
+                      : c.n_again == c.n_searched ? "each time"
+                                                  : fmt::format("{} of them", c.n_again))});
     Table table{
         .caption = c.alternatives.empty()
                        ? "Gain: logarithm of how much more probable the data are with it than without, after the "
@@ -106,9 +108,10 @@ void add_unexplained(const diagnosis::Unexplained& u, Blocks& blocks) {
 }
 
 void add_wander(const diagnosis::HeatWander& wander, Blocks& blocks) {
-  Table table{.caption = fmt::format("Where the model errs: heat that comes and goes in its bodies, alike for about {:.0f} min, as it would "
-                                     "explain what the first search left. Causes are weighed beside this process noise.",
-                                     wander.time_s / 60.0),
+  Table table{.caption = fmt::format(
+                  "Where the model errs: heat that comes and goes in its bodies, alike for about {:.0f} min, as it would "
+                  "explain what the first search left. Causes are weighed beside this process noise.",
+                  wander.time_s / 60.0),
               .headers = {"body", "heat, 1 sigma [W]", "share of what it does to the readings [%]"},
               .rows = {}};
   for (const auto& b : wander.bodies)
@@ -207,11 +210,12 @@ void add_gain(const diagnosis::Diagnosis& d, Blocks& blocks) {
       .caption = fmt::format(
           "Root mean square and peak of measured minus simulated. Held out: {}. Noise floor: what the "
           "readings scatter by themselves. Regression: ridge on memories of speed, ambient and whatever else drives, "
-          "which knows nothing of the machine; then with readings of thermometers too. The file: what extended.yaml gives over the whole of all records, to which its "
+          "which knows nothing of the machine; then with readings of thermometers too. The file: what extended.yaml gives "
+          "over the whole of all records, to which its "
           "numbers were fitted.",
           d.holdout),
-      .headers = {"channel", "unit", "as written", "scatter alone", "extended", "regression", "with thermometers", "noise floor",
-                  "peak before", "peak after", "the file, all rows"},
+      .headers = {"channel", "unit", "as written", "scatter alone", "extended", "regression", "with thermometers",
+                  "noise floor", "peak before", "peak after", "the file, all rows"},
       .rows = {}};
   for (const auto& g : d.gain) {
     table.rows.push_back({g.name, g.unit, fmt::format("{:.3g}", g.rmse_before), fmt::format("{:.3g}", g.rmse_calibrated),
@@ -281,8 +285,7 @@ Table numbers_table(const diagnosis::Diagnosis& d) {
       .headers = {"number", "fitted", "95 % interval", "unit", "known to", "moved [sigmas]"},
       .rows = {}};
   for (const diagnosis::Estimate& e : d.calibrated) {
-    table.rows.push_back(
-        {e.name, fmt::format("{:.4g}", e.value), interval_text(e), e.unit, known_to_text(e),
+    table.rows.push_back({e.name, fmt::format("{:.4g}", e.value), interval_text(e), e.unit, known_to_text(e),
                           fmt::format("{:+.2f}", e.deviation)});
   }
   return table;

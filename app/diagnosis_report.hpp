@@ -8,7 +8,7 @@ namespace driftwright::app {
 
 /// What the page shows beside the diagnosis itself.
 struct DiagnosisPage {
-  const MeasuredTwin& measured;
+  const studies::MeasuredTwin& measured;
   const diagnosis::Diagnosis& diagnosis;
   const std::vector<diagnosis::Candidate>& candidates;  ///< those that the scores number
   const diagnosis::ExtendedScenario& extended;

@@ -11,7 +11,7 @@ namespace {
 
 using diagnosis::Estimate;
 
-constexpr double kTooFar = 3.5;        // sigmas: beyond, a number is an effect
+constexpr double kTooFar = 3.5;          // sigmas: beyond, a number is an effect
 constexpr double kClearlyBetter = 0.95;  // of the RMSE
 
 std::string unit_of(const Estimate& e) {
@@ -106,21 +106,24 @@ std::string summary_text(const diagnosis::Diagnosis& d) {
   }
   if (d.wander) {
     text += fmt::format(
-        "\nwhere the model errs: heat that comes and goes in its bodies and stays alike for about {:.0f} min would explain it; causes are weighed "
-        "beside it\n", d.wander->time_s / 60.0);
+        "\nwhere the model errs: heat that comes and goes in its bodies and stays alike for about {:.0f} min would explain "
+        "it; causes are weighed "
+        "beside it\n",
+        d.wander->time_s / 60.0);
     std::vector<std::vector<std::string>> rows = {{"body", "heat, 1 sigma [W]", "share of what it does to the readings"}};
     for (const auto& b : d.wander->bodies)
       rows.push_back({b.body.name, fmt::format("{:.2g}", b.sd_W), fmt::format("{:.0f} %", 100.0 * b.share)});
     text += columns(rows);
   }
   text += fmt::format("\nrms of measured minus simulated; {}\n", d.holdout);
-  std::vector<std::vector<std::string>> rows = {
-      {"channel", "unit", "as written", "scatter alone", "extended", "regression", "noise", "peak before", "after", "the file, all rows"}};
+  std::vector<std::vector<std::string>> rows = {{"channel", "unit", "as written", "scatter alone", "extended", "regression",
+                                                 "noise", "peak before", "after", "the file, all rows"}};
   for (const auto& g : d.gain) {
-    rows.push_back({g.name, g.unit, fmt::format("{:.3g}", g.rmse_before), fmt::format("{:.3g}", g.rmse_calibrated),
-                    fmt::format("{:.3g}", g.rmse_after), fmt::format("{:.3g}", std::min(g.rmse_of_drive, g.rmse_of_readings)),
-                    fmt::format("{:.3g}", g.noise_floor), fmt::format("{:.3g}", g.peak_before), fmt::format("{:.3g}", g.peak_after),
-                    std::isnan(g.rmse_written) ? "" : fmt::format("{:.3g}", g.rmse_written)});
+    rows.push_back(
+        {g.name, g.unit, fmt::format("{:.3g}", g.rmse_before), fmt::format("{:.3g}", g.rmse_calibrated),
+         fmt::format("{:.3g}", g.rmse_after), fmt::format("{:.3g}", std::min(g.rmse_of_drive, g.rmse_of_readings)),
+         fmt::format("{:.3g}", g.noise_floor), fmt::format("{:.3g}", g.peak_before), fmt::format("{:.3g}", g.peak_after),
+         std::isnan(g.rmse_written) ? "" : fmt::format("{:.3g}", g.rmse_written)});
   }
   text += columns(rows);
   if (const std::string better = better_regression_text(d); !better.empty()) text += "  " + better + "\n";

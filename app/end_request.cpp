@@ -11,7 +11,8 @@ namespace {
 std::atomic<bool> made = false;
 static_assert(std::atomic<bool>::is_always_lock_free);  // else no handler may touch it
 
-constexpr std::string_view kHeard = "\nending; what is known so far will be written (once more ends at once and writes nothing)\n";
+constexpr std::string_view kHeard =
+    "\nending; what is known so far will be written (once more ends at once and writes nothing)\n";
 
 void ask(int) {
   made = true;

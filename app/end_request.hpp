@@ -16,7 +16,8 @@ class EndRequest {
   [[nodiscard]] static bool is_made();
 
  private:
-  struct sigaction interrupt_before_ {}, terminate_before_ {};
+  struct sigaction interrupt_before_ {
+  }, terminate_before_{};
 };
 
 }  // namespace driftwright::app

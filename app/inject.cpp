@@ -11,13 +11,13 @@
 #include <system_error>
 #include <utility>
 
-#include "app/correction_input.hpp"
-#include "app/row_pipe.hpp"
 #include "app/verbs.hpp"
-#include "app/version.hpp"
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
-#include "compensation/axis_loop.hpp"
+#include "base/version.hpp"
+#include "compensation/injector/axis_loop.hpp"
+#include "compensation/injector/correction_input.hpp"
+#include "compensation/injector/row_pipe.hpp"
 #include "output/signal_files.hpp"
 
 namespace driftwright::app {
@@ -176,7 +176,7 @@ class Filter {
 
   void run() {
     std::signal(SIGPIPE, SIG_IGN);  // write() tells
-    RowReader reader(STDIN_FILENO);
+    compensation::RowReader reader(STDIN_FILENO);
     bool wanted = true;
     while (wanted) {
       const std::span<const Lines> rows = reader.next();
@@ -184,13 +184,14 @@ class Filter {
       if (n_rows_ == 0) begin(rows.front(), reader.has_index());
       correction_.poll();
       pass_on(rows);
-      wanted = rules_.bypass ? write_bytes(STDOUT_FILENO, reader.bytes()) : write_rows(STDOUT_FILENO, out_, has_index_);
+      wanted = rules_.bypass ? compensation::write_bytes(STDOUT_FILENO, reader.bytes())
+                             : compensation::write_rows(STDOUT_FILENO, out_, has_index_);
     }
     if (n_rows_ == 0) begin(0, false);
     std::vector<Lines> rest;
     injector_.finish(rest);
     take(rest, last_in_);
-    if (wanted) wanted = write_rows(STDOUT_FILENO, rest, has_index_);
+    if (wanted) wanted = compensation::write_rows(STDOUT_FILENO, rest, has_index_);
     end();
   }
 
@@ -284,7 +285,7 @@ class Filter {
   InsertionRules rules_;
   Counting counting_;
   double row_s_;
-  CorrectionInput correction_;
+  compensation::CorrectionInput correction_;
   CountConverter converter_;
   RowInjector injector_;
   SideFiles files_;

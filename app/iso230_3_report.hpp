@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/iso230_3.hpp"
+#include "compensation/judging/iso230_3.hpp"
 #include "output/html_report.hpp"
 
 namespace driftwright::app {

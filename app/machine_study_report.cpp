@@ -20,7 +20,7 @@ using output::Series;
 using output::Table;
 using output::Verdict;
 
-Verdict verdict(const scenarios::Study& settings, const MachineStudy& study) {
+Verdict verdict(const scenarios::Study& settings, const studies::MachineStudy& study) {
   const auto of_target = study.of_channel(settings.target);
   const auto best = *std::min_element(of_target.begin(), of_target.end(), [](const CorrectedRun* a, const CorrectedRun* b) {
     return a->after.peak_abs < b->after.peak_abs;
@@ -40,7 +40,7 @@ Verdict verdict(const scenarios::Study& settings, const MachineStudy& study) {
           text};
 }
 
-Table strategies_table(const MachineStudy& study) {
+Table strategies_table(const studies::MachineStudy& study) {
   Table table{.caption =
                   "Peak and RMS of the drift before correction and of what is left after it, on the judged "
                   "cyclogram. The injector acts on thermometer readings of the run; a schedule is planned ahead, on the "
@@ -57,7 +57,7 @@ Table strategies_table(const MachineStudy& study) {
   return table;
 }
 
-Plot residual_plot(const std::string& channel, const scenarios::Scenario& scenario, const MachineStudy& study) {
+Plot residual_plot(const std::string& channel, const scenarios::Scenario& scenario, const studies::MachineStudy& study) {
   const Record& record = study.judged.record;
   const double tolerance_um = scenario.study->tolerance_um;
   Plot plot{.title = channel + " before and after correction",
@@ -73,7 +73,7 @@ Plot residual_plot(const std::string& channel, const scenarios::Scenario& scenar
 }
 
 /// δ over T: one curve per cyclogram; were drift a function of temperature they would coincide.
-Plot drift_over_temperature(const std::string& sensor, const std::string& target, const MachineStudy& study) {
+Plot drift_over_temperature(const std::string& sensor, const std::string& target, const studies::MachineStudy& study) {
   Plot plot{.title = "Drift over temperature at " + sensor,
             .x_label = sensor + " [degC]",
             .y_label = target + " [um]",
@@ -81,12 +81,12 @@ Plot drift_over_temperature(const std::string& sensor, const std::string& target
   const auto add = [&](const Record& r) {
     plot.series.push_back({.label = r.source, .x = r.at(sensor).values, .y = r.at(target).values});
   };
-  for (const SimulatedRun& run : study.train) add(run.record);
+  for (const scenarios::SimulatedRun& run : study.train) add(run.record);
   add(study.judged.record);
   return plot;
 }
 
-Table ranking_table(const MachineStudy& study) {
+Table ranking_table(const studies::MachineStudy& study) {
   Table table{.caption = "Grey relational grade of each thermometer against the target. " + study.ranking.reason,
               .headers = {"rank", "sensor", "grade [-]", "chosen"},
               .rows = {}};
@@ -100,7 +100,7 @@ Table ranking_table(const MachineStudy& study) {
   return table;
 }
 
-Table regression_table(const MachineStudy& study) {
+Table regression_table(const studies::MachineStudy& study) {
   Table table{.caption =
                   "Multiple linear regression (QR) on the training records; RMS is that of its residual "
                   "there. A condition number far above 100 says that the chosen sensors tell the same story twice.",
@@ -118,12 +118,12 @@ Table regression_table(const MachineStudy& study) {
   return table;
 }
 
-Table modal_table(const MachineStudy& study) {
+Table modal_table(const studies::MachineStudy& study) {
   Table table{.caption = "Largest difference between the modal model and the full model on the judged cyclogram.",
               .headers = {"basis", "worst sensor", "temperature [K]"},
               .rows = {}};
   for (const std::string& d : study.displacements) table.headers.push_back(d + " [um]");
-  for (const ModalError& e : study.modal_errors) {
+  for (const studies::ModalError& e : study.modal_errors) {
     std::vector<std::string> row = {
         fmt::format("modes ({}) {}", e.n_modes, e.with_steady_responses ? "and steady responses" : "alone"), e.worst_sensor,
         fmt::format("{:.3f}", e.worst_temperature_K)};
@@ -133,7 +133,7 @@ Table modal_table(const MachineStudy& study) {
   return table;
 }
 
-void add_ambiguity(output::Report& report, const std::string& target, const MachineStudy& study) {
+void add_ambiguity(output::Report& report, const std::string& target, const studies::MachineStudy& study) {
   const auto& [sensor, a] = study.ambiguities.front();
   report.blocks.emplace_back(Heading{"Drift is not a function of temperature"});
   report.blocks.emplace_back(
@@ -164,8 +164,8 @@ void add_ambiguity(output::Report& report, const std::string& target, const Mach
 
 }  // namespace
 
-output::Report study_report(const scenarios::Scenario& scenario, const Model& model, const MachineStudy& study,
-                            const output::Provenance& made_by) {
+output::Report study_report(const scenarios::Scenario& scenario, const scenarios::Model& model,
+                            const studies::MachineStudy& study, const output::Provenance& made_by) {
   const scenarios::Study& settings = *scenario.study;
   const Cyclogram& judged = scenario.cyclogram(settings.judge);
   output::Report report{
@@ -213,7 +213,7 @@ output::Report study_report(const scenarios::Scenario& scenario, const Model& mo
   add(Heading{"Correction schedules"});
   add(output::Preformatted{schedule_text(study)});
   add(Heading{"Training cyclograms"});
-  for (const SimulatedRun& run : study.train) {
+  for (const scenarios::SimulatedRun& run : study.train) {
     Plot plot = channels_plot(run.record.source, "displacement [um]", run.record, study.displacements,
                               scenario.cyclogram(run.record.source));
     plot.half_width = true;

@@ -42,7 +42,7 @@ Json json_of(const compensation::Crossing& c) {
 
 }  // namespace
 
-std::string terminal_summary(const scenarios::Scenario& scenario, const MachineStudy& study) {
+std::string terminal_summary(const scenarios::Scenario& scenario, const studies::MachineStudy& study) {
   const scenarios::Study& settings = *scenario.study;
   std::string text =
       fmt::format("{}: judged on '{}', fitted on {}\n", scenario.name, settings.judge, fmt::join(settings.train, ", "));
@@ -67,8 +67,8 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
   text += fmt::format("  sensors chosen for the regression: {} (grey relational grade {:.3f} to {:.3f})\n",
                       fmt::join(study.regressions.front().inputs, ", "), *study.ranking.channels.front().grade,
                       study.ranking.channels[study.regressions.front().inputs.size() - 1].grade.value());
-  const ModalError& bare = study.modal_errors.front();
-  const ModalError& full = study.modal_errors.back();
+  const studies::ModalError& bare = study.modal_errors.front();
+  const studies::ModalError& full = study.modal_errors.back();
   text += fmt::format(
       "  {} thermal modes miss the full model by {:.2f} K (at {}); with steady responses by {:.2f} K (the judged machine's "
       "own modes)\n",
@@ -81,7 +81,7 @@ std::string terminal_summary(const scenarios::Scenario& scenario, const MachineS
   return text;
 }
 
-Json summary_json(const scenarios::Scenario& scenario, const Model& model, const MachineStudy& study,
+Json summary_json(const scenarios::Scenario& scenario, const scenarios::Model& model, const studies::MachineStudy& study,
                   const output::Provenance& made_by) {
   const scenarios::Study& settings = *scenario.study;
   Json j = {
@@ -108,7 +108,7 @@ Json summary_json(const scenarios::Scenario& scenario, const Model& model, const
   for (const auto& r : study.regressions) j["regressions"].push_back(json_of(r));
   j["modal"] = {{"time_constants_min", Json::array()}, {"errors_against_full_model", Json::array()}};
   for (double tau_s : study.modal_time_constant_s) j["modal"]["time_constants_min"].push_back(tau_s / 60.0);
-  for (const ModalError& e : study.modal_errors) {
+  for (const studies::ModalError& e : study.modal_errors) {
     Json error = {{"n_modes", e.n_modes},
                   {"with_steady_responses", e.with_steady_responses},
                   {"worst_sensor", e.worst_sensor},
@@ -127,7 +127,7 @@ Json summary_json(const scenarios::Scenario& scenario, const Model& model, const
     j["iso_230_3"].push_back(figures);
   };
   add_iso(settings.judge, study.judged.record);
-  for (const SimulatedRun& run : study.train) add_iso(run.record.source, run.record);
+  for (const scenarios::SimulatedRun& run : study.train) add_iso(run.record.source, run.record);
   j["drift_at_one_temperature"] = Json::array();
   for (const auto& [sensor, a] : study.ambiguities) {
     j["drift_at_one_temperature"].push_back({{"sensor", sensor},
@@ -139,7 +139,7 @@ Json summary_json(const scenarios::Scenario& scenario, const Model& model, const
   return j;
 }
 
-std::string schedule_text(const MachineStudy& study) {
+std::string schedule_text(const studies::MachineStudy& study) {
   std::string text =
       "# Correction schedules: one line per operation, n-{intervals in min}-{corrections in um, "
       "increments}.\n"

@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <exception>
 
+#include "app/cli_documents.hpp"
+#include "app/library_settings.hpp"
 #include "app/verbs.hpp"
-#include "app/version.hpp"
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
-#include "scenarios/read_schedule.hpp"
+#include "base/version.hpp"
+#include "scenarios/reader/read_schedule.hpp"
 
 namespace {
 
@@ -102,11 +104,29 @@ void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  app::restart_with_library_settings(argv);
   CLI::App cli{"Driftwright: digital twin of a machine tool's thermal behaviour"};
-  cli.set_version_flag("--version", app::kVersion);
+  cli.set_version_flag("--version", kVersion);
   cli.require_subcommand(1);
+  cli.add_flag_callback(
+         "--man",
+         [&] {
+           fmt::print("{}", app::man_page(cli, kVersion));
+           throw CLI::Success();
+         },
+         "print the manual page: driftwright --man | man -l -")
+      ->trigger_on_parse();
+  cli.add_option_function<std::string>(
+         "--completion",
+         [&](const std::string& shell) {
+           fmt::print("{}", shell == "zsh" ? app::zsh_completion(cli) : app::bash_completion(cli));
+           throw CLI::Success();
+         },
+         "print completions for a shell: bash or zsh")
+      ->check(CLI::IsMember({"bash", "zsh"}))
+      ->trigger_on_parse();
   cli.footer(
-      "Exit codes: 0 done, 2 the input is wrong, 3 the numerics gave up, 1 a bug of ours.\nExample:\n  "
+      "Exit codes: 0 done, 2 the input is wrong, 3 the numerics gave up, 130 ended by Ctrl-C, 1 a bug of ours.\nExample:\n  "
       "driftwright run scenarios/fp3_spindle.yaml");
 
   app::CommonOptions run, check, mesh;

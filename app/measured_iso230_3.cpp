@@ -4,7 +4,7 @@
 
 namespace driftwright::app {
 
-std::vector<Iso230Run> measured_iso230_3(const MeasuredTwin& measured) {
+std::vector<Iso230Run> measured_iso230_3(const studies::MeasuredTwin& measured) {
   std::vector<Iso230Run> list;
   for (const diagnosis::MeasuredRun& run : measured.runs) {
     // read again: ranges are of what was recorded, and the diagnosis keeps what it compares with a model

@@ -2,13 +2,13 @@
 // The figures of ISO 230-3 of measured records, as `diagnose` and `calibrate` show them.
 
 #include "app/iso230_3_report.hpp"
-#include "app/measured_twin.hpp"
+#include "studies/measured_twin.hpp"
 
 namespace driftwright::app {
 
 /// Of each record by its file's name: all displacements and tilts in it, as recorded. A run that begins warm has none, for the test begins in
 /// balance.
 /// @throws InputError  for a record that can no longer be read
-[[nodiscard]] std::vector<Iso230Run> measured_iso230_3(const MeasuredTwin& measured);
+[[nodiscard]] std::vector<Iso230Run> measured_iso230_3(const studies::MeasuredTwin& measured);
 
 }  // namespace driftwright::app

@@ -10,7 +10,7 @@ namespace driftwright::app {
 
 void mesh(const CommonOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  const scenarios::MachineModel& model = require_machine(scenario, "mesh");
+  const scenarios::MachineModel& model = scenarios::require_machine(scenario, "mesh");
   if (std::holds_alternative<scenarios::LumpedMachine>(model.mesh))
     throw InputError(model.where, "a lumped machine has no mesh");
   output::ResultsFolder folder = open_results(options, scenario.name);

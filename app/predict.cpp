@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/iso230_3_report.hpp"
-#include "app/prediction.hpp"
 #include "app/run_report.hpp"
 #include "app/verbs.hpp"
 #include "output/json_text.hpp"
+#include "studies/prediction.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -34,13 +34,13 @@ std::vector<Course> courses_of(const Record& record) {
   return courses;
 }
 
-nlohmann::ordered_json summary_json(const Prediction& prediction, const std::string& cyclogram, double duration_s,
+nlohmann::ordered_json summary_json(const studies::Prediction& prediction, const std::string& cyclogram, double duration_s,
                                     const compensation::Iso230Figures& iso, const output::Provenance& made_by) {
   using Json = nlohmann::ordered_json;
   Json j = {{"program", "driftwright"}, {"version", made_by.version},        {"scenario", made_by.scenario},
             {"cyclogram", cyclogram},   {"duration_min", duration_s / 60.0}, {"predicted_by", prediction.predicted_by}};
   j["started_from"] = prediction.started_from.empty() ? Json() : Json(prediction.started_from);
-  j["start_checks"] = start_checks_json(prediction);
+  j["start_checks"] = studies::start_checks_json(prediction);
   j["channels"] = Json::array();
   for (const Course& c : courses_of(prediction.record)) {
     j["channels"].push_back(
@@ -51,7 +51,7 @@ nlohmann::ordered_json summary_json(const Prediction& prediction, const std::str
 }
 
 output::Report prediction_report(const scenarios::Scenario& scenario, const Cyclogram& cyclogram,
-                                 const Prediction& prediction, const compensation::Iso230Figures& iso,
+                                 const studies::Prediction& prediction, const compensation::Iso230Figures& iso,
                                  const output::Provenance& made_by) {
   output::Report report{.title = fmt::format("{}: predicted drift of {}", scenario.name, cyclogram.name),
                         .subtitle = fmt::format("Driftwright {}, scenario {}; predicted by the {}{}", made_by.version,
@@ -67,15 +67,15 @@ output::Report prediction_report(const scenarios::Scenario& scenario, const Cycl
 
 void predict(const PredictOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  (void)require_machine(scenario, "predict");
-  const Cyclogram cyclogram = named_cyclogram(scenario, options.cyclogram);
+  (void)scenarios::require_machine(scenario, "predict");
+  const Cyclogram cyclogram = studies::named_cyclogram(scenario, options.cyclogram);
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const Prediction prediction = predict_drift(
-      scenario, cyclogram, {.start = options.start, .after_pause = options.after_pause, .model = options.model}, progress,
-      "predict");
+  const studies::Prediction prediction = studies::predict_drift(
+      scenario, cyclogram, {.start = options.start, .after_pause = options.after_pause, .model = options.model},
+      progress.listener(), "predict");
   const std::string after = prediction.started_from.empty() ? "" : " after " + prediction.started_from;
-  const compensation::Iso230Figures iso = iso_figures(prediction);
+  const compensation::Iso230Figures iso = studies::iso_figures(prediction);
   folder.write_text("record.csv",
                     record_csv(prediction.record,
                                provenance_lines(folder.made_by(), fmt::format("{}{}, predicted by the {}", options.cyclogram,
@@ -88,7 +88,7 @@ void predict(const PredictOptions& options) {
   progress.end();
   fmt::print("{}, {:.0f} min{}, predicted by the {}\n", options.cyclogram, cyclogram.duration_s() / 60.0, after,
              prediction.predicted_by);
-  fmt::print("{}", start_check_text(prediction));
+  fmt::print("{}", studies::start_check_text(prediction));
   for (const Course& c : courses_of(prediction.record)) {
     fmt::print("  {:<12} peak {:7.1f} {} at {:.0f} min, {:7.1f} {} at the end\n", c.name, c.peak, c.unit, c.peak_s / 60.0,
                c.end, c.unit);

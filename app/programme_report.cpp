@@ -12,21 +12,22 @@ using compensation::CyclogramType;
 
 struct Group {
   std::string name;
-  std::function<bool(const JudgedCyclogram&)> holds;
+  std::function<bool(const studies::JudgedCyclogram&)> holds;
 };
 
-std::vector<Group> groups(const ProgrammeStudy& study) {
+std::vector<Group> groups(const studies::ProgrammeStudy& study) {
   std::vector<Group> list;
   for (const CyclogramType type : {CyclogramType::kContinuous, CyclogramType::kStepwiseUp, CyclogramType::kIntermittent,
                                    CyclogramType::kStepwiseDown, CyclogramType::kChaotic}) {
-    list.push_back({compensation::word(type), [type](const JudgedCyclogram& j) { return !j.is_random && j.type == type; }});
+    list.push_back(
+        {compensation::word(type), [type](const studies::JudgedCyclogram& j) { return !j.is_random && j.type == type; }});
   }
-  list.push_back({"random", [](const JudgedCyclogram& j) { return j.is_random; }});
+  list.push_back({"random", [](const studies::JudgedCyclogram& j) { return j.is_random; }});
   std::erase_if(list, [&](const Group& g) { return std::none_of(study.judged.begin(), study.judged.end(), g.holds); });
   return list;
 }
 
-output::Table error_table(const ProgrammeStudy& study, bool in_percent) {
+output::Table error_table(const studies::ProgrammeStudy& study, bool in_percent) {
   output::Table table{.caption = in_percent
                                      ? "Largest / mean error in % of max(peak of that axis, 10 % of the peak of the vector)."
                                      : "Largest / mean error in um, tilts in urad.",
@@ -40,7 +41,7 @@ output::Table error_table(const ProgrammeStudy& study, bool in_percent) {
       std::vector<std::string> row = {is_first ? p.name() : "", g.name, ""};
       is_first = false;
       for (std::size_t c = 0; c < study.channels.name.size(); ++c) {
-        const Summary s = summary(study, p, c, g.holds);
+        const studies::Summary s = studies::summary(study, p, c, g.holds);
         row[2] = fmt::format("{}", s.n);
         row.push_back(in_percent ? fmt::format("{:.2f} / {:.2f}", s.largest_percent, s.mean_percent)
                                  : fmt::format("{:.2f} / {:.2f}", s.largest, s.mean));
@@ -51,8 +52,8 @@ output::Table error_table(const ProgrammeStudy& study, bool in_percent) {
   return table;
 }
 
-output::Plot course(const ProgrammeStudy& study, std::size_t cyclogram, std::size_t channel) {
-  const JudgedCyclogram& j = study.judged[cyclogram];
+output::Plot course(const studies::ProgrammeStudy& study, std::size_t cyclogram, std::size_t channel) {
+  const studies::JudgedCyclogram& j = study.judged[cyclogram];
   std::vector<double> t_min;
   for (double t_s : j.time_s) t_min.push_back(t_s / 60.0);
   const auto row = [&](const Eigen::MatrixXd& rows) {
@@ -78,7 +79,7 @@ output::Plot course(const ProgrammeStudy& study, std::size_t cyclogram, std::siz
 
 }  // namespace
 
-output::Report programme_report(const scenarios::Scenario& scenario, const ProgrammeStudy& study,
+output::Report programme_report(const scenarios::Scenario& scenario, const studies::ProgrammeStudy& study,
                                 const output::Provenance& made_by) {
   output::Report page{.title = scenario.name + ": predictors of drift side by side",
                       .subtitle = fmt::format("Driftwright {}, scenario {}", made_by.version, made_by.scenario),
@@ -143,13 +144,13 @@ output::Report programme_report(const scenarios::Scenario& scenario, const Progr
   return page;
 }
 
-nlohmann::ordered_json programme_json(const ProgrammeStudy& study, const output::Provenance& made_by) {
+nlohmann::ordered_json programme_json(const studies::ProgrammeStudy& study, const output::Provenance& made_by) {
   nlohmann::ordered_json j = {{"program", "driftwright"}, {"version", made_by.version}, {"scenario", made_by.scenario}};
   for (const auto& p : study.predictors) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     for (const Group& g : groups(study)) {
       for (std::size_t c = 0; c < study.channels.name.size(); ++c) {
-        const Summary s = summary(study, p, c, g.holds);
+        const studies::Summary s = studies::summary(study, p, c, g.holds);
         rows.push_back({{"cyclograms", g.name},
                         {"n", s.n},
                         {"channel", study.channels.name[c]},
@@ -179,12 +180,12 @@ nlohmann::ordered_json programme_json(const ProgrammeStudy& study, const output:
   return j;
 }
 
-std::string programme_csv(const ProgrammeStudy& study) {
+std::string programme_csv(const studies::ProgrammeStudy& study) {
   std::string text = "predictor,cyclogram,type,channel,unit,peak,largest,mean,percent_of,largest_percent,mean_percent\n";
   for (const auto& p : study.predictors) {
     for (std::size_t i = 0; i < study.judged.size(); ++i) {
       for (std::size_t c = 0; c < study.channels.name.size(); ++c) {
-        const PredictionError& e = p.errors[i][c];
+        const studies::PredictionError& e = p.errors[i][c];
         text += fmt::format("\"{}\",{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", p.name(),
                             study.judged[i].cyclogram.name, compensation::word(study.judged[i].type), study.channels.name[c],
                             study.channels.unit[c], e.peak, e.largest, e.mean, e.of, e.largest_percent(), e.mean_percent());
@@ -194,7 +195,7 @@ std::string programme_csv(const ProgrammeStudy& study) {
   return text;
 }
 
-std::string programme_text(const ProgrammeStudy& study) {
+std::string programme_text(const studies::ProgrammeStudy& study) {
   std::string text =
       fmt::format("{} cyclograms; largest error in % of max(peak of the axis, 10 % of the vector's)\n", study.judged.size());
   std::size_t width = 0;
@@ -205,7 +206,8 @@ std::string programme_text(const ProgrammeStudy& study) {
   for (const auto& p : study.predictors) {
     text += fmt::format("  {:<{}}", p.name(), width);
     for (std::size_t c = 0; c < study.channels.name.size(); ++c)
-      text += fmt::format("  {:8.2f}", summary(study, p, c, [](const JudgedCyclogram&) { return true; }).largest_percent);
+      text += fmt::format(
+          "  {:8.2f}", studies::summary(study, p, c, [](const studies::JudgedCyclogram&) { return true; }).largest_percent);
     text += "\n";
   }
   if (!study.error_by_modes.empty()) {
@@ -219,7 +221,7 @@ std::string programme_text(const ProgrammeStudy& study) {
   return text;
 }
 
-std::string schedule_text(const ProgrammeStudy& study) {
+std::string schedule_text(const studies::ProgrammeStudy& study) {
   std::string text;
   for (const auto& s : study.scheduled) {
     if (s.n_cyclograms == 0) continue;

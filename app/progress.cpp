@@ -18,6 +18,12 @@ void Progress::end() {
   work_.clear();
 }
 
+Listener Progress::listener() {
+  return {.on_begin = [this](const std::string& work) { begin(work); },
+          .on_share = [this](double share) { update(share); },
+          .wants_end_now = {}};
+}
+
 void Progress::begin(const std::string& work) {
   work_ = work;
   shown_percent_ = -1;

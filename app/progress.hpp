@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "base/listener.hpp"
+
 namespace driftwright::app {
 
 /// One line on standard error that is rewritten as work goes on and erased at the end.
@@ -17,6 +19,8 @@ class Progress {
   void begin(const std::string& work);
   /// Share of it that is done, 0 to 1.
   void update(double share);
+  /// Hears of all that is done. Must not outlive this.
+  [[nodiscard]] Listener listener();
   /// Erases the line; call before anything else is printed.
   void end();
 

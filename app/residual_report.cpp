@@ -29,7 +29,7 @@ struct Curves {
   double noise = 0.0;
 };
 
-Curves curves_of(const MeasuredTwin& m, const diagnosis::Diagnosis& d, std::size_t r, const MeasuredChannel& c) {
+Curves curves_of(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d, std::size_t r, const MeasuredChannel& c) {
   const bool is_temperature = c.unit == "K";
   const double scale = is_temperature ? 1.0 : 1e6;
   const double zero = is_temperature ? m.twin->reference_K() - kZeroCelsius_K : 0.0;
@@ -133,7 +133,7 @@ void add_likenesses(const std::string& channel, const ResidualStructure& s, Tabl
 
 }  // namespace
 
-void add_residuals(const MeasuredTwin& m, const diagnosis::Diagnosis& d, const std::string& after,
+void add_residuals(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d, const std::string& after,
                    std::vector<output::ReportBlock>& blocks) {
   for (std::size_t r = 0; r < m.runs.size(); ++r) {
     const MeasuredRun& run = m.runs[r];

@@ -3,12 +3,11 @@
 
 #include <string>
 
-#include "app/model.hpp"
 #include "app/progress.hpp"
 #include "app/verbs.hpp"
+#include "machine/simulated_run.hpp"
 #include "output/field_series.hpp"
 #include "output/results_folder.hpp"
-#include "scenarios/machine.hpp"
 
 namespace driftwright::app {
 
@@ -25,39 +24,10 @@ namespace driftwright::app {
 /// A path as the user would type it: relative to the current folder where it lies below it.
 [[nodiscard]] std::string shown_path(const std::filesystem::path& path);
 
-/// The scenario's machine, or an InputError that says that the verb needs one.
-[[nodiscard]] const scenarios::MachineModel& require_machine(const scenarios::Scenario& scenario, const std::string& verb);
-[[nodiscard]] const scenarios::Study& require_study(const scenarios::Scenario& scenario, const std::string& verb);
-
 /// What the terminal says of a series too long for its format, a line of its own; empty otherwise.
 [[nodiscard]] std::string fields_note(const output::FieldSeries& fields);
 
-/// A simulated cyclogram.
-struct SimulatedRun {
-  Record record;
-  solver::Trajectory trajectory;
-};
-
-/// Runs one cyclogram.
-/// @param machine   the scenario's, or one that differs from it in the hall
-/// @param from      state of the model at t = 0
-/// @param times_s   of the outputs, within the cyclogram
-/// @param at_output called at each of them
-[[nodiscard]] SimulatedRun simulate_run(const scenarios::MachineModel& machine, const solver::TransientOptions& options,
-                                        const Model& model, const Eigen::VectorXd& from, const Cyclogram& cyclogram,
-                                        const std::vector<double>& times_s, const solver::OutputCallback& at_output = {});
-
-/// The state of the model at t = 0, by the scenario's `start`, over the reference temperature [K]; reduced for a reduced model.
-[[nodiscard]] Eigen::VectorXd start_of(const scenarios::MachineModel& machine, const Model& model);
-/// The state "1 K warmer everywhere".
-[[nodiscard]] const Eigen::VectorXd& ones_of(const Model& model);
-
-/// Runs cyclograms from the scenario's start on, side by side on all cores, with one progress line for all.
-/// @param with_fields  index of the cyclogram whose whole fields go to `fields` every `fields_every` and at its end
-/// @param fields       or nullptr
-[[nodiscard]] std::vector<SimulatedRun> simulate_cyclograms(const scenarios::Scenario& scenario, const Model& model,
-                                                            const std::vector<const Cyclogram*>& cyclograms,
-                                                            Progress& progress, std::size_t with_fields,
-                                                            output::FieldSeries* fields);
+/// Writes whole fields of one cyclogram, the first unless told, to a series. @param fields  null: nobody wants any
+[[nodiscard]] scenarios::FieldSink sink_of(output::FieldSeries* fields, std::size_t cyclogram = 0);
 
 }  // namespace driftwright::app

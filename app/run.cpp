@@ -3,35 +3,36 @@
 #include <nlohmann/json.hpp>
 
 #include "app/machine_study_output.hpp"
-#include "app/table_study.hpp"
 #include "app/verbs.hpp"
+#include "machine/ways_out.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/ways_out.hpp"
+#include "studies/table_study.hpp"
 
 namespace driftwright::app {
 
 void run(const CommonOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   if (scenario.table) return run_table(options, scenario);
-  const scenarios::MachineModel& model = require_machine(scenario, "run");
-  (void)require_study(scenario, "run");
+  const scenarios::MachineModel& model = scenarios::require_machine(scenario, "run");
+  (void)scenarios::require_study(scenario, "run");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
-  const Model machine = open_model(scenario, {}, progress, wants_fields);
+  const scenarios::Model machine = scenarios::open_model(scenario, {}, progress.listener(), wants_fields);
   if (const scenarios::Machine* full = machine.full()) {  // thermal modes need them
     scenarios::require_ways_out(full->placed.mesh, full->placed.balance, model.where);
   }
 
   std::optional<output::FieldSeries> fields;
   if (machine.mesh().n_nodes() > 0 && wants_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
-  const MachineStudy study = study_machine(scenario, machine, progress, fields ? &*fields : nullptr);
+  const studies::MachineStudy study =
+      studies::study_machine(scenario, machine, progress.listener(), sink_of(fields ? &*fields : nullptr));
   if (fields) fields->finish();
   progress.begin("writing results");
   folder.write_text(
       "record.csv",
       record_csv(study.judged.record, provenance_lines(folder.made_by(), "judged cyclogram " + scenario.study->judge)));
-  for (const SimulatedRun& run : study.train) {
+  for (const scenarios::SimulatedRun& run : study.train) {
     folder.write_text("records/" + run.record.source + ".csv",
                       record_csv(run.record, provenance_lines(folder.made_by(), "training cyclogram " + run.record.source)));
   }

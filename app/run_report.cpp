@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "app/iso230_3_report.hpp"
-#include "scenarios/heat_flow_record.hpp"
+#include "machine/heat_flow_record.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -31,7 +31,7 @@ std::string words(FlowKind kind) {
 }
 
 /// Region of an unknown, or the name of the lumped node.
-std::string place_of(int unknown, const Model& model) {
+std::string place_of(int unknown, const scenarios::Model& model) {
   const mesh::Mesh& mesh = model.mesh();
   if (unknown >= mesh.n_nodes()) return "node " + model.balance.nodes[unknown - mesh.n_nodes()].name;
   for (int c = 0; c < mesh.cells.size(); ++c) {
@@ -153,7 +153,7 @@ Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram) {
   return plot;
 }
 
-Table overshoot_table(const solver::Trajectory& run, const Model& model) {
+Table overshoot_table(const solver::Trajectory& run, const scenarios::Model& model) {
   Table table{.caption =
                   "Where temperatures left the bounds that conduction keeps, beside a jump that is sharper than the mesh "
                   "(consistent mass matrix); the largest of each jump, above the solver's tolerance.",
@@ -166,7 +166,7 @@ Table overshoot_table(const solver::Trajectory& run, const Model& model) {
   return table;
 }
 
-std::string overshoot_text(const solver::Trajectory& run, const Model& model) {
+std::string overshoot_text(const solver::Trajectory& run, const scenarios::Model& model) {
   if (run.overshoots.empty()) return "";
   const auto worst = std::max_element(run.overshoots.begin(), run.overshoots.end(),
                                       [](const auto& a, const auto& b) { return a.amount_K < b.amount_K; });
@@ -174,9 +174,9 @@ std::string overshoot_text(const solver::Trajectory& run, const Model& model) {
                      place_of(worst->unknown, model), worst->time_s - worst->jump_s, worst->jump_s / 60.0);
 }
 
-output::Report simulation_report(const scenarios::Scenario& scenario, const Model& model,
-                                 const std::vector<const Cyclogram*>& cyclograms, const std::vector<SimulatedRun>& runs,
-                                 const output::Provenance& made_by) {
+output::Report simulation_report(const scenarios::Scenario& scenario, const scenarios::Model& model,
+                                 const std::vector<const Cyclogram*>& cyclograms,
+                                 const std::vector<scenarios::SimulatedRun>& runs, const output::Provenance& made_by) {
   output::Report report{.title = scenario.name + ": simulation",
                         .subtitle = fmt::format("Driftwright {}, scenario {}; {} nodes, {} cells, {} lumped nodes; {}",
                                                 made_by.version, made_by.scenario, model.mesh().n_nodes(),

@@ -27,13 +27,14 @@ void add_channel_plots(output::Report& report, const Record& record, const Cyclo
 [[nodiscard]] output::Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram);
 
 /// Where temperatures left the bounds of conduction: each jump's largest overshoot with its region; empty rows for none.
-[[nodiscard]] output::Table overshoot_table(const solver::Trajectory& run, const Model& model);
+[[nodiscard]] output::Table overshoot_table(const solver::Trajectory& run, const scenarios::Model& model);
 /// The largest of all, in a line; "" for none.
-[[nodiscard]] std::string overshoot_text(const solver::Trajectory& run, const Model& model);
+[[nodiscard]] std::string overshoot_text(const solver::Trajectory& run, const scenarios::Model& model);
 
 /// The report of `simulate`: each cyclogram's channels, figures of ISO 230-3, heat flows and overshoots.
-[[nodiscard]] output::Report simulation_report(const scenarios::Scenario& scenario, const Model& model,
+[[nodiscard]] output::Report simulation_report(const scenarios::Scenario& scenario, const scenarios::Model& model,
                                                const std::vector<const Cyclogram*>& cyclograms,
-                                               const std::vector<SimulatedRun>& runs, const output::Provenance& made_by);
+                                               const std::vector<scenarios::SimulatedRun>& runs,
+                                               const output::Provenance& made_by);
 
 }  // namespace driftwright::app

@@ -2,17 +2,18 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/results.hpp"
 #include "app/table_report.hpp"
 #include "base/quantity.hpp"
-#include "compensation/frame_programs.hpp"
+#include "compensation/frames/frame_programs.hpp"
+#include "machine/ways_out.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/ways_out.hpp"
 
 namespace driftwright::app {
 
 namespace {
 
-compensation::FrameProgram frame_program(const scenarios::TableSettings& s, const TableStudy& study,
+compensation::FrameProgram frame_program(const scenarios::TableSettings& s, const studies::TableStudy& study,
                                          const output::Provenance& made_by) {
   compensation::FrameProgram program{.frame = study.frame, .control = study.control, .against_dk = s.against_dk};
   for (const scenarios::TableRing& ring : s.rings) program.rings.push_back({ring.name, ring.at_m});
@@ -34,12 +35,13 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
-  const Model machine = open_model(scenario, {}, progress, wants_fields);
+  const scenarios::Model machine = scenarios::open_model(scenario, {}, progress.listener(), wants_fields);
   if (const scenarios::Machine* full = machine.full())
     scenarios::require_ways_out(full->placed.mesh, full->placed.balance, scenario.machine->where);
   std::optional<output::FieldSeries> fields;
   if (wants_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
-  const TableStudy study = study_table(scenario, machine, progress, fields ? &*fields : nullptr);
+  const studies::TableStudy study =
+      studies::study_table(scenario, machine, progress.listener(), sink_of(fields ? &*fields : nullptr));
   if (fields) fields->finish();
   progress.begin("writing results");
   const auto comments = [&](const std::string& what) { return provenance_lines(folder.made_by(), what); };

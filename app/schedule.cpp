@@ -6,12 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "app/planner.hpp"
+#include "app/results.hpp"
 #include "app/schedule_report.hpp"
 #include "app/verbs.hpp"
 #include "base/file_bytes.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/read_cyclogram.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
+#include "studies/planner.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -30,7 +31,7 @@ NcDialect dialect_of(const std::string& name) {
 }
 
 /// Times of one part from its start. Durations added up in another order end elsewhere by rounding: the last sample is the end.
-std::vector<double> part_times_s(const Prediction& prediction, const scenarios::PartRows& rows, double end_s) {
+std::vector<double> part_times_s(const studies::Prediction& prediction, const scenarios::PartRows& rows, double end_s) {
   const std::vector<double>& all_s = prediction.record.time_s;
   std::vector<double> time_s;
   for (std::size_t i = rows.first; i <= rows.last; ++i) time_s.push_back(all_s[i] - all_s[rows.first]);
@@ -70,7 +71,7 @@ void correct(CorrectedSeries& series, const std::string& bytes) {
       throw std::logic_error("parts of one program with other rows");
     parts.push_back(axes_of(series, part));
   }
-  const compensation::ProgramScheduleOptions how{.policy = policy_of(settings.policy), .split = series.split};
+  const compensation::ProgramScheduleOptions how{.policy = studies::policy_of(settings.policy), .split = series.split};
   for (compensation::SharedPlan& shared : compensation::plan_series(series.program.steps, time_s, parts, how)) {
     CorrectedProgram program{.file = corrected_file(series.file, shared, rows.size()), .shared = {}, .corrected = {}};
     program.corrected =
@@ -85,7 +86,7 @@ void correct(CorrectedSeries& series, const std::string& bytes) {
 
 void schedule(const ScheduleVerbOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  (void)require_machine(scenario, "schedule");
+  (void)scenarios::require_machine(scenario, "schedule");
   CorrectedSeries series{.file = std::filesystem::path(options.program).filename().string(),
                          .settings = require_schedule(scenario),
                          .split = options.split};
@@ -103,19 +104,19 @@ void schedule(const ScheduleVerbOptions& options) {
   if (series.cyclogram.sections.empty())
     throw InputError(fmt::format("{}: the program takes no time; there is no drift to correct", options.program));
   scenarios::check_cyclogram(scenario, series.cyclogram);
-  const PredictionOptions asked{.start = options.start,
-                                .after_pause = options.after_pause,
-                                .parts = options.parts,
-                                .between = options.between,
-                                .model = options.model};
+  const studies::PredictionOptions asked{.start = options.start,
+                                         .after_pause = options.after_pause,
+                                         .parts = options.parts,
+                                         .between = options.between,
+                                         .model = options.model};
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  series.prediction = predict_drift(scenario, series.cyclogram, asked, progress, "schedule");
-  const Prediction& prediction = series.prediction;
+  series.prediction = studies::predict_drift(scenario, series.cyclogram, asked, progress.listener(), "schedule");
+  const studies::Prediction& prediction = series.prediction;
   if (series.is_series())
     series.between_s =
         prediction.record.time_s[prediction.parts[1].first] - prediction.record.time_s[prediction.parts[0].last];
-  series.iso = iso_figures(prediction);
+  series.iso = studies::iso_figures(prediction);
   progress.begin("planning corrections");
   correct(series, bytes);
   const std::string what = fmt::format("predicted by the {} for {}{}{}", prediction.predicted_by, options.program,

@@ -277,7 +277,7 @@ std::string schedule_terminal(const CorrectedSeries& series) {
     n_stretches += program.shared.plan.long_stretches.size();
   }
   std::string text = fmt::format("{}, {}{}\n{}  drift predicted by the {}\n  policy {}, written for {}{}\n", series.file,
-                                 extent_words(series), start_words(series), start_check_text(series.prediction),
+                                 extent_words(series), start_words(series), studies::start_check_text(series.prediction),
                                  series.prediction.predicted_by, series.settings.policy, series.settings.dialect,
                                  n_divided > 0 ? fmt::format("; {} block(s) divided", n_divided) : "");
   for (const CorrectedProgram& program : series.programs) {
@@ -355,7 +355,7 @@ nlohmann::ordered_json schedule_json(const CorrectedSeries& series, const output
             {"between_min", series.between_s / 60.0},
             {"predicted_by", series.prediction.predicted_by}};
   j["started_from"] = series.prediction.started_from.empty() ? Json() : Json(series.prediction.started_from);
-  j["start_checks"] = start_checks_json(series.prediction);
+  j["start_checks"] = studies::start_checks_json(series.prediction);
   j["policy"] = series.settings.policy;
   j["dialect"] = series.settings.dialect;
   j["corrected"] = Json::array();

@@ -3,11 +3,12 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "app/prediction.hpp"
-#include "base/nc_program.hpp"
-#include "compensation/iso230_3.hpp"
-#include "compensation/program_series.hpp"
+#include "app/results.hpp"
+#include "compensation/judging/iso230_3.hpp"
+#include "compensation/schedule/program_series.hpp"
+#include "nc/program.hpp"
 #include "output/html_report.hpp"
+#include "studies/prediction.hpp"
 
 namespace driftwright::app {
 
@@ -25,7 +26,7 @@ struct CorrectedSeries {
   bool split = false;
   NcProgram program = {};
   Cyclogram cyclogram = {};  ///< of one part
-  Prediction prediction = {};
+  studies::Prediction prediction = {};
   double between_s = 0.0;
   std::vector<CorrectedProgram> programs = {};  ///< by their parts
   compensation::Iso230Figures iso = {};

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "app/record_study.hpp"
 #include "app/results.hpp"
-#include "app/validation_study.hpp"
-#include "compensation/drift_model.hpp"
-#include "compensation/ranking_stability.hpp"
-#include "compensation/regression_quality.hpp"
-#include "compensation/sensor_selection.hpp"
+#include "compensation/predictors/drift_model.hpp"
+#include "compensation/predictors/regression_quality.hpp"
+#include "compensation/sensors/ranking_stability.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
 #include "output/json_text.hpp"
+#include "studies/record_study.hpp"
+#include "studies/validation_study.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -55,12 +55,12 @@ struct Chosen {
 
 void select(const RecordOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  const scenarios::Study& settings = require_study(scenario, "select");
-  const StudyRecords read = read_records(scenario, options);
-  const std::vector<Record> training = own_records(read.train);
-  const std::vector<std::string> all = candidate_sensors(settings, training.front()),
-                                 candidates = usable_sensors(training, all);
-  std::vector<std::string> warnings = sensor_warnings(whole_records(read.train, settings.target), all);
+  const scenarios::Study& settings = scenarios::require_study(scenario, "select");
+  const studies::StudyRecords read = studies::read_records(scenario, options);
+  const std::vector<Record> training = studies::own_records(read.train);
+  const std::vector<std::string> all = studies::candidate_sensors(settings, training.front()),
+                                 candidates = studies::usable_sensors(training, all);
+  std::vector<std::string> warnings = studies::sensor_warnings(studies::whole_records(read.train, settings.target), all);
   warnings.insert(warnings.begin(), read.notes.begin(), read.notes.end());
   std::vector<Record> records;
   for (const ObservedRun& run : read.train)

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/iso230_3_report.hpp"
-#include "app/prediction.hpp"
 #include "app/run_report.hpp"
 #include "app/verbs.hpp"
+#include "machine/reduced_files.hpp"
 #include "output/json_text.hpp"
-#include "scenarios/reduced_files.hpp"
+#include "studies/prediction.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -19,7 +19,7 @@ std::vector<Cyclogram> asked_cyclograms(const scenarios::Scenario& scenario, con
   if (names.empty()) return scenario.cyclograms;
   std::vector<Cyclogram> asked;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    asked.push_back(named_cyclogram(scenario, names[i]));
+    asked.push_back(studies::named_cyclogram(scenario, names[i]));
     for (std::size_t k = 0; k < i; ++k) {
       if (asked[k].name == asked[i].name)
         throw InputError(
@@ -30,8 +30,8 @@ std::vector<Cyclogram> asked_cyclograms(const scenarios::Scenario& scenario, con
   return asked;
 }
 
-nlohmann::ordered_json summary_json(const Model& machine, const std::vector<const Cyclogram*>& cyclograms,
-                                    const std::vector<SimulatedRun>& runs,
+nlohmann::ordered_json summary_json(const scenarios::Model& machine, const std::vector<const Cyclogram*>& cyclograms,
+                                    const std::vector<scenarios::SimulatedRun>& runs,
                                     const std::vector<compensation::Iso230Figures>& iso, const output::Provenance& made_by) {
   using Json = nlohmann::ordered_json;
   Json j = {{"program", "driftwright"},
@@ -58,7 +58,7 @@ nlohmann::ordered_json summary_json(const Model& machine, const std::vector<cons
 
 void simulate(const SimulateOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  const scenarios::MachineModel& model = require_machine(scenario, "simulate");
+  const scenarios::MachineModel& model = scenarios::require_machine(scenario, "simulate");
   const std::vector<Cyclogram> asked = asked_cyclograms(scenario, options.cyclograms);
   std::vector<const Cyclogram*> cyclograms;
   for (const Cyclogram& c : asked) cyclograms.push_back(&c);
@@ -67,17 +67,17 @@ void simulate(const SimulateOptions& options) {
   // Whole fields of one cyclogram only: several would fill the disk and mix in one list of times.
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
   const bool writes_fields = wants_fields && cyclograms.size() == 1;
-  const Model machine = open_model(scenario, cyclograms, progress, writes_fields);
+  const scenarios::Model machine = scenarios::open_model(scenario, cyclograms, progress.listener(), writes_fields);
   std::optional<output::FieldSeries> fields;
   const bool has_mesh = machine.mesh().n_nodes() > 0;
   if (has_mesh && writes_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
-  const std::vector<SimulatedRun> runs =
-      simulate_cyclograms(scenario, machine, cyclograms, progress, 0, fields ? &*fields : nullptr);
+  const std::vector<scenarios::SimulatedRun> runs = scenarios::simulate_cyclograms(
+      scenario, machine, cyclograms, progress.listener(), sink_of(fields ? &*fields : nullptr));
   if (fields) fields->finish();
   std::string summary;
   std::vector<compensation::Iso230Figures> iso;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const SimulatedRun& run = runs[i];
+    const scenarios::SimulatedRun& run = runs[i];
     const Cyclogram* cyclogram = cyclograms[i];
     iso.push_back(compensation::iso230_3_figures(run.record));
     const std::string file = cyclograms.size() == 1 ? "record.csv" : "records/" + cyclogram->name + ".csv";

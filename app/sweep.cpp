@@ -4,10 +4,10 @@
 
 #include "app/results.hpp"
 #include "app/sweep_report.hpp"
-#include "app/sweep_run.hpp"
 #include "app/verbs.hpp"
-#include "app/version.hpp"
+#include "base/version.hpp"
 #include "output/rows_under_way.hpp"
+#include "studies/sweep_run.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -49,8 +49,8 @@ void simulate_missing(const SweepPlan& plan, const std::vector<std::size_t>& mem
       missing.size() == members.size() ? "" : fmt::format(", {} are there already", members.size() - missing.size()));
   progress.begin(work);
   std::size_t n_done = 0, n_failed = 0;
-  run_members(plan, missing, [&](const MemberOutcome& outcome) {
-    const std::string row = table_row(plan, outcome);
+  studies::run_members(plan, missing, [&](const studies::MemberOutcome& outcome) {
+    const std::string row = studies::table_row(plan, outcome);
     file.append(row);
     rows.emplace(outcome.member + 1, row);
     if (!outcome.failure.empty() && n_failed++ < kMostTold) {
@@ -89,7 +89,8 @@ void write_table(const SweepOptions& options, const SweepPlan& plan, const Numbe
 
 /// @throws SolveError  so that a script sees it
 void fail_where_members_failed(const NumberedRows& rows, const fs::path& table) {
-  const auto n_failed = std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !is_done(row.second); });
+  const auto n_failed =
+      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return !studies::is_done(row.second); });
   if (n_failed == 0) return;
   throw SolveError(
       fmt::format("{} of {} members failed; the column `status` of {} says why", n_failed, rows.size(), shown_path(table)));

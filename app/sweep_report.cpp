@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "app/sweep_run.hpp"
-#include "output/csv_row.hpp"
+#include "base/csv_row.hpp"
+#include "studies/sweep_run.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -148,14 +148,14 @@ SweepColumns sweep_columns(const SweepPlan& plan, const output::NumberedRows& ro
   columns.varied.resize(plan.variations.size());
   columns.results.resize(plan.collect.size());
   for (const auto& [number, row] : rows) {
-    const std::vector<std::string> cells = output::csv_cells(row);
+    const std::vector<std::string> cells = csv_cells(row);
     for (std::size_t i = 0; i < plan.variations.size(); ++i) {
       const Variation& v = plan.variations[i];
       columns.varied[i].push_back(v.is_number ? number_of(cells.at(1 + i)) : position_of(v, cells.at(1 + i)));
     }
     for (std::size_t i = 0; i < plan.collect.size(); ++i)
       columns.results[i].push_back(number_of(cells.at(1 + plan.variations.size() + i)));
-    columns.n_failed += is_done(row) ? 0 : 1;
+    columns.n_failed += studies::is_done(row) ? 0 : 1;
   }
   return columns;
 }
@@ -183,8 +183,8 @@ output::Report sweep_report(const SweepPlan& plan, const output::NumberedRows& r
                         "The column `status` of sweep.csv says why; all else here is about the others."});
     Table failures{.caption = "Members that failed.", .headers = {"member", "why"}, .rows = {}};
     for (const auto& [number, row] : rows) {
-      if (!is_done(row) && failures.rows.size() < kMostFailures)
-        failures.rows.push_back({std::to_string(number), output::csv_cells(row).back()});
+      if (!studies::is_done(row) && failures.rows.size() < kMostFailures)
+        failures.rows.push_back({std::to_string(number), csv_cells(row).back()});
     }
     add(std::move(failures));
   }

@@ -4,7 +4,7 @@
 #include "output/html_report.hpp"
 #include "output/results_folder.hpp"
 #include "output/rows_under_way.hpp"
-#include "scenarios/sweep_plan.hpp"
+#include "scenarios/reader/sweep_plan.hpp"
 
 namespace driftwright::app {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/run_report.hpp"
-#include "app/table_strategy.hpp"
 #include "base/quantity.hpp"
+#include "studies/table_strategy.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -35,12 +35,12 @@ std::vector<double> hours(const std::vector<double>& time_s) {
   return t_h;
 }
 
-const TableStrategy& strategy(const TableStudy& study, const std::string& name) {
+const studies::TableStrategy& strategy(const studies::TableStudy& study, const std::string& name) {
   return *std::find_if(study.strategies.begin(), study.strategies.end(), [&](const auto& s) { return s.name == name; });
 }
 
-Plot series_plot(const scenarios::Scenario& scenario, const TableStudy& study) {
-  const TableRun& run = study.run;
+Plot series_plot(const scenarios::Scenario& scenario, const studies::TableStudy& study) {
+  const studies::TableRun& run = study.run;
   std::vector<double> x_um, table_um, scale_um;  // the latter since the start: from 20 degC on they would dwarf the rest
   for (std::size_t i = 0; i < run.table_only_x_um.size(); ++i) {
     table_um.push_back(run.table_only_x_um[i] - run.table_only_x_um[0]);
@@ -64,7 +64,7 @@ Plot series_plot(const scenarios::Scenario& scenario, const TableStudy& study) {
   return plot;
 }
 
-Plot temperatures_plot(const scenarios::Scenario& scenario, const TableStudy& study) {
+Plot temperatures_plot(const scenarios::Scenario& scenario, const studies::TableStudy& study) {
   Plot plot{.title = "Temperatures", .x_label = "time [h]", .y_label = "temperature [degC]"};
   for (const auto& sensor : scenario.machine->sensors) {
     plot.series.push_back(
@@ -73,20 +73,20 @@ Plot temperatures_plot(const scenarios::Scenario& scenario, const TableStudy& st
   return plot;
 }
 
-Plot strategies_plot(const TableStudy& study) {
+Plot strategies_plot(const studies::TableStudy& study) {
   std::vector<double> t_h = hours(study.run.table.time_s);
   t_h.resize(study.n_judged);
   Plot plot{.title = "Largest position error anywhere on the table", .x_label = "time [h]", .y_label = "error [um]"};
   for (const char* name : {"none", "hall temperature", "model alone", "rings", "rings, thermometers between",
                            "rings and model of the whole table"}) {
-    const TableStrategy& s = strategy(study, name);
+    const studies::TableStrategy& s = strategy(study, name);
     plot.series.push_back({.label = name, .x = t_h, .y = s.course_um});
   }
   return plot;
 }
 
 /// Error along X over the table's length at the end of the judged time, without and with the frame of the last measurement.
-Plot profile_plot(const scenarios::Scenario& scenario, const TableStudy& study) {
+Plot profile_plot(const scenarios::Scenario& scenario, const studies::TableStudy& study) {
   const auto n_x = static_cast<std::size_t>(scenario.table->n_x),
              row = n_x * static_cast<std::size_t>(scenario.table->n_y / 2);
   std::vector<double> x_m, before_um, after_um;
@@ -105,14 +105,14 @@ Plot profile_plot(const scenarios::Scenario& scenario, const TableStudy& study) 
                      {.label = "with the frame of the last measurement", .x = x_m, .y = after_um}}};
 }
 
-Table strategies_table(const TableStudy& study) {
+Table strategies_table(const studies::TableStudy& study) {
   Table table{
       .caption =
           "Largest errors anywhere on the table in the judged time, median of five repetitions (other noise, another "
           "wrong model); 'all' is the length of the error vector.",
       .headers = {"correction", "X [um]", "Y [um]", "Z [um]", "all [um]", "worst of five", "less X [%]", "less [%]"}};
   const auto& none = study.strategies.front().peak;
-  for (const TableStrategy& s : study.strategies) {
+  for (const studies::TableStrategy& s : study.strategies) {
     table.rows.push_back({s.name, um(s.peak.x_m), um(s.peak.y_m), um(s.peak.z_m), um(s.peak.position_m),
                           um(s.worst.position_m), fmt::format("{:.0f}", less_percent(s.peak.x_m, none.x_m)),
                           fmt::format("{:.0f}", less_percent(s.peak.position_m, none.position_m))});
@@ -120,16 +120,16 @@ Table strategies_table(const TableStudy& study) {
   return table;
 }
 
-Table intervals_table(const TableStudy& study) {
+Table intervals_table(const studies::TableStudy& study) {
   Table table{.caption = "Largest position error against the time between two measurements of the rings.",
               .headers = {"every [min]", "rings [um]", "rings, thermometers between [um]",
                           "rings and model of the whole table [um]"}};
-  for (const IntervalRow& row : study.intervals)
+  for (const studies::IntervalRow& row : study.intervals)
     table.rows.push_back({fmt::format("{:.0f}", row.every_s / 60.0), um(row.rings_m), um(row.warmth_m), um(row.carried_m)});
   return table;
 }
 
-Table hall_table(const TableStudy& study) {
+Table hall_table(const studies::TableStudy& study) {
   Table table{.caption = "What the published readings of X carry: each model fitted to all, and to all but one in turn.",
               .headers = {"model", "numbers fitted", "misfit [um]", "left out [um]", "R^2", "parameters (95 %)"}};
   for (const auto& m : study.hall_models) {
@@ -142,7 +142,7 @@ Table hall_table(const TableStudy& study) {
 }
 
 /// The worst of a feed and motion over the three axes.
-ProbeErrors worst_of_axes(const TableStudy& study, double feed_m_s, const std::string& motion) {
+ProbeErrors worst_of_axes(const studies::TableStudy& study, double feed_m_s, const std::string& motion) {
   ProbeErrors worst;
   for (const ProbeRow& row : study.probe.rows) {
     if (row.feed_m_s != feed_m_s || row.motion != motion) continue;
@@ -153,7 +153,7 @@ ProbeErrors worst_of_axes(const TableStudy& study, double feed_m_s, const std::s
   return worst;
 }
 
-std::vector<std::string> motions(const TableStudy& study) {
+std::vector<std::string> motions(const studies::TableStudy& study) {
   std::vector<std::string> found;
   for (const ProbeRow& row : study.probe.rows) {
     if (std::find(found.begin(), found.end(), row.motion) == found.end()) found.push_back(row.motion);
@@ -161,7 +161,7 @@ std::vector<std::string> motions(const TableStudy& study) {
   return found;
 }
 
-Table probe_table(const scenarios::Scenario& scenario, const TableStudy& study) {
+Table probe_table(const scenarios::Scenario& scenario, const studies::TableStudy& study) {
   Table table{.caption =
                   "Largest distance of a touch from where slow touches put the surface, worst of the three axes [um]; feed "
                   "in mm/min.",
@@ -177,7 +177,7 @@ Table probe_table(const scenarios::Scenario& scenario, const TableStudy& study) 
   return table;
 }
 
-Plot probe_plot(const scenarios::Scenario& scenario, const TableStudy& study) {
+Plot probe_plot(const scenarios::Scenario& scenario, const studies::TableStudy& study) {
   std::vector<double> feed;
   for (double f : scenario.table->probe.feeds_m_s) feed.push_back(6e4 * f);
   Plot plot{.title = "Touches while braking", .x_label = "feed [mm/min]", .y_label = "largest error [um]"};
@@ -193,7 +193,7 @@ Plot probe_plot(const scenarios::Scenario& scenario, const TableStudy& study) {
   return plot;
 }
 
-Table calibration_table(const TableStudy& study) {
+Table calibration_table(const studies::TableStudy& study) {
   Table table{.caption = "Lag found by calibration touches.",
               .headers = {"axis", "N, whole cycles", "lag [cycles]", "standard error"}};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -204,7 +204,7 @@ Table calibration_table(const TableStudy& study) {
   return table;
 }
 
-Table shift_table(const TableStudy& study) {
+Table shift_table(const studies::TableStudy& study) {
   Table table{.caption = "What the probe alone does to TEMP_SHIFT and TEMP_SCALE, where nothing has moved.",
               .headers = {"touches a ring", "feed before, now [mm/min]", "reading", "TEMP_SHIFT worst [um]", "rms [um]",
                           "TEMP_SCALE worst [1e-6]"}};
@@ -216,9 +216,9 @@ Table shift_table(const TableStudy& study) {
   return table;
 }
 
-std::string interval_words(const TableStudy& study, double tolerance_m) {
+std::string interval_words(const studies::TableStudy& study, double tolerance_m) {
   const auto words = [&](bool with_model) {
-    const IntervalRow* row = longest_interval(study, tolerance_m, with_model);
+    const studies::IntervalRow* row = longest_interval(study, tolerance_m, with_model);
     return row ? fmt::format("every {:.0f} min", row->every_s / 60.0) : std::string("not even every 10 min");
   };
   return fmt::format("{:.0f} um anywhere on the table: rings {}, with the model between them {}", 1e6 * tolerance_m,
@@ -227,20 +227,20 @@ std::string interval_words(const TableStudy& study, double tolerance_m) {
 
 }  // namespace
 
-const IntervalRow* longest_interval(const TableStudy& study, double tolerance_m, bool with_model) {
-  const IntervalRow* longest = nullptr;
-  for (const IntervalRow& row : study.intervals) {
+const studies::IntervalRow* longest_interval(const studies::TableStudy& study, double tolerance_m, bool with_model) {
+  const studies::IntervalRow* longest = nullptr;
+  for (const studies::IntervalRow& row : study.intervals) {
     if ((with_model ? row.carried_m : row.rings_m) > tolerance_m) break;
     longest = &row;
   }
   return longest;
 }
 
-std::string table_terminal(const scenarios::Scenario& scenario, const TableStudy& study) {
+std::string table_terminal(const scenarios::Scenario& scenario, const studies::TableStudy& study) {
   const auto& none = study.strategies.front().peak;
   std::string text = fmt::format("{}: position error anywhere on the table within {:.0f} h, rings every {:.0f} min\n",
                                  scenario.name, scenario.table->judge_until_s / 3600.0, scenario.table->every_s / 60.0);
-  for (const TableStrategy& s : study.strategies) {
+  for (const studies::TableStrategy& s : study.strategies) {
     text +=
         fmt::format("  {:<34} {:6.1f} um ({:3.0f} % less), X {:6.1f} um ({:3.0f} % less)\n", s.name, 1e6 * s.peak.position_m,
                     less_percent(s.peak.position_m, none.position_m), 1e6 * s.peak.x_m, less_percent(s.peak.x_m, none.x_m));
@@ -260,7 +260,7 @@ std::string table_terminal(const scenarios::Scenario& scenario, const TableStudy
   return text;
 }
 
-nlohmann::ordered_json table_json(const scenarios::Scenario& scenario, const TableStudy& study,
+nlohmann::ordered_json table_json(const scenarios::Scenario& scenario, const studies::TableStudy& study,
                                   const output::Provenance& made_by) {
   nlohmann::ordered_json json = {{"program", "driftwright"},
                                  {"version", made_by.version},
@@ -268,7 +268,7 @@ nlohmann::ordered_json table_json(const scenarios::Scenario& scenario, const Tab
                                  {"judged_h", scenario.table->judge_until_s / 3600.0},
                                  {"rings_every_min", scenario.table->every_s / 60.0}};
   const auto& none = study.strategies.front().peak;
-  for (const TableStrategy& s : study.strategies) {
+  for (const studies::TableStrategy& s : study.strategies) {
     json["strategies"].push_back({{"name", s.name},
                                   {"x_um", 1e6 * s.peak.x_m},
                                   {"y_um", 1e6 * s.peak.y_m},
@@ -278,7 +278,7 @@ nlohmann::ordered_json table_json(const scenarios::Scenario& scenario, const Tab
                                   {"less_x_percent", less_percent(s.peak.x_m, none.x_m)},
                                   {"less_position_percent", less_percent(s.peak.position_m, none.position_m)}});
   }
-  for (const IntervalRow& row : study.intervals) {
+  for (const studies::IntervalRow& row : study.intervals) {
     json["intervals"].push_back({{"every_min", row.every_s / 60.0},
                                  {"rings_um", 1e6 * row.rings_m},
                                  {"rings_and_thermometers_um", 1e6 * row.warmth_m},
@@ -328,7 +328,7 @@ nlohmann::ordered_json table_json(const scenarios::Scenario& scenario, const Tab
   return json;
 }
 
-output::Report table_report(const scenarios::Scenario& scenario, const TableStudy& study,
+output::Report table_report(const scenarios::Scenario& scenario, const studies::TableStudy& study,
                             const output::Provenance& made_by) {
   output::Report report{
       .title = fmt::format("{}: correction of a table through the control's frame", scenario.name),
@@ -337,9 +337,9 @@ output::Report table_report(const scenarios::Scenario& scenario, const TableStud
                               made_by.version, made_by.scenario, scenario.table->judge_until_s / 3600.0,
                               scenario.table->every_s / 60.0, um(scenario.table->probe_noise_m))};
   const auto add = [&](auto block) { report.blocks.emplace_back(std::move(block)); };
-  const TableStrategy &none = study.strategies.front(), &rings = strategy(study, "rings"),
-                      &warmth = strategy(study, "rings, thermometers between"),
-                      &both = strategy(study, "rings and model of the whole table");
+  const studies::TableStrategy &none = study.strategies.front(), &rings = strategy(study, "rings"),
+                               &warmth = strategy(study, "rings, thermometers between"),
+                               &both = strategy(study, "rings and model of the whole table");
   add(output::Verdict{
       .kind = output::Verdict::Kind::kNeutral,
       .title = fmt::format(
@@ -349,7 +349,7 @@ output::Report table_report(const scenarios::Scenario& scenario, const TableStud
       .text = interval_words(study, scenario.table->tolerance_m) + "."});
   add(strategies_table(study));
   add(Paragraph{
-      instrument_words(*scenario.table) +
+      studies::instrument_words(*scenario.table) +
       " Thermometers between: what table and scales would do if each were evenly warm, with expansions as wrong as the "
       "model's and nothing fitted. They tell the scale of Y, too, which rings on one line do not. The minimax frame "
       "knows every error; no frame leaves 1 % less."});
@@ -376,10 +376,10 @@ output::Report table_report(const scenarios::Scenario& scenario, const TableStud
   return report;
 }
 
-std::string strategies_csv(const TableStudy& study, const std::vector<std::string>& comments) {
+std::string strategies_csv(const studies::TableStudy& study, const std::vector<std::string>& comments) {
   Record record{.source = "table", .time_s = study.run.table.time_s, .channels = {}};
   record.time_s.resize(study.n_judged);
-  for (const TableStrategy& s : study.strategies) {
+  for (const studies::TableStrategy& s : study.strategies) {
     std::string name = s.name;
     for (char& c : name) {
       if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
@@ -389,7 +389,7 @@ std::string strategies_csv(const TableStudy& study, const std::vector<std::strin
   return record_csv(record, comments);
 }
 
-std::string probe_csv(const TableStudy& study, const std::vector<std::string>& comments) {
+std::string probe_csv(const studies::TableStudy& study, const std::vector<std::string>& comments) {
   std::string text;
   for (const std::string& comment : comments) text += "# " + comment + "\n";
   text += "axis,motion,feed_mm_min,plain_um,latched_um,by_speed_um,whole_cycles_um,latch_and_increments_um\n";

@@ -4,12 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/programme_report.hpp"
-#include "app/record_study.hpp"
 #include "app/results.hpp"
 #include "app/strategy_report.hpp"
-#include "app/validation_study.hpp"
 #include "output/html_report.hpp"
 #include "output/json_text.hpp"
+#include "studies/record_study.hpp"
+#include "studies/validation_study.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -35,7 +35,7 @@ void validate_machine(const scenarios::Scenario& scenario, const CommonOptions& 
   }
   std::vector<const Cyclogram*> pointers;
   for (const Cyclogram& c : asked) pointers.push_back(&c);
-  const Model model = open_model(scenario, pointers, progress, false);
+  const scenarios::Model model = scenarios::open_model(scenario, pointers, progress.listener(), false);
   Json summary = provenance(folder.made_by());
   output::Report page{
       .title = scenario.name + ": strategies judged on cyclograms they were not fitted on",
@@ -43,7 +43,7 @@ void validate_machine(const scenarios::Scenario& scenario, const CommonOptions& 
       .blocks = {}};
   std::string text = model.words() + "\n";
   if (scenario.validation) {
-    const StrategyMatrix matrix = validate_strategies(scenario, model, progress);
+    const compensation::StrategyMatrix matrix = studies::validate_strategies(scenario, model, progress.listener());
     progress.begin("writing");
     summary["validation"] = strategy_json(matrix);
     page.blocks = strategy_blocks(matrix);
@@ -52,7 +52,7 @@ void validate_machine(const scenarios::Scenario& scenario, const CommonOptions& 
     text += strategy_text(matrix);
   }
   if (scenario.programme) {
-    const ProgrammeStudy study = study_programme(scenario, model, progress);
+    const studies::ProgrammeStudy study = studies::study_programme(scenario, model, progress.listener());
     progress.begin("writing");
     folder.write_text("programme.csv", programme_csv(study));
     const Json of_programme = programme_json(study, folder.made_by());
@@ -88,14 +88,16 @@ void validate(const RecordOptions& options) {
   for (const auto& [list, name] : {std::pair{&options.train, "--train"}, std::pair{&options.test, "--test"}}) {
     if (list->empty()) throw InputError(fmt::format("`validate` on records wants {} too, at least once", name));
   }
-  const scenarios::Study& settings = require_study(scenario, "validate");
-  StudyRecords records = read_records(scenario, options);
-  const std::vector<Record> training = whole_records(records.train, settings.target);
-  std::vector<std::string> warnings = sensor_warnings(training, candidate_sensors(settings, training.front()));
+  const scenarios::Study& settings = scenarios::require_study(scenario, "validate");
+  studies::StudyRecords records = studies::read_records(scenario, options);
+  const std::vector<Record> training = studies::whole_records(records.train, settings.target);
+  std::vector<std::string> warnings =
+      studies::sensor_warnings(training, studies::candidate_sensors(settings, training.front()));
   warnings.insert(warnings.begin(), records.notes.begin(), records.notes.end());
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress;
-  const StrategyMatrix matrix = validate_on_records(scenario, std::move(records), progress);
+  const compensation::StrategyMatrix matrix =
+      studies::validate_on_records(scenario, std::move(records), progress.listener());
   progress.end();
   warnings.insert(warnings.end(), matrix.findings.begin(), matrix.findings.end());
   Json summary = provenance(folder.made_by());

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "studies/record_study.hpp"
+
 namespace driftwright::app {
 
 /// What all verbs take.
@@ -24,10 +26,10 @@ struct SimulateOptions : CommonOptions {
 void simulate(const SimulateOptions& options);
 
 struct PredictOptions : CommonOptions {
-  std::string cyclogram;    ///< a name of the scenario, or a record CSV (scenarios/read_cyclogram.hpp)
+  std::string cyclogram;    ///< a name of the scenario, or a record CSV (scenarios/reader/read_cyclogram.hpp)
   std::string start;        ///< what the machine did before, a record CSV or a cyclogram of the scenario; empty: its start
   std::string after_pause;  ///< at rest between that and the cyclogram, such as "30 min"; empty: none
-  std::string model;        ///< reduced, full; empty: predicting_model() of app/prediction.hpp
+  std::string model;        ///< reduced, full; empty: predicting_model() of studies/prediction.hpp
 };
 void predict(const PredictOptions& options);
 
@@ -45,7 +47,7 @@ struct ScheduleVerbOptions : CommonOptions {
 void schedule(const ScheduleVerbOptions& options);
 
 struct InjectOptions {
-  std::string correction;        ///< table, FIFO or /dev/fd/N (app/correction_input.hpp)
+  std::string correction;        ///< table, FIFO or /dev/fd/N (compensation/injector/correction_input.hpp)
   std::string unit = "um";       ///< of numbers from a pipe: um or count
   std::string period;            ///< travel of one signal period, "4 um"; empty: corrections are in counts
   std::string row_time;          ///< time of a row, "1 ms"; empty: corrections are by row
@@ -60,10 +62,10 @@ struct InjectOptions {
 };
 void inject(const InjectOptions& options);
 
-struct RecordOptions : CommonOptions {
-  std::vector<std::string> train;  ///< record CSVs
-  std::vector<std::string> test;
-};
+/// `run` of a scenario with a table.
+void run_table(const CommonOptions& options, const scenarios::Scenario& scenario);
+
+struct RecordOptions : CommonOptions, studies::RecordPaths {};
 void select(const RecordOptions& options);
 void validate(const RecordOptions& options);
 

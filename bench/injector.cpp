@@ -9,8 +9,8 @@
 #include <chrono>
 #include <vector>
 
-#include "compensation/encoder.hpp"
-#include "compensation/pulse_injector.hpp"
+#include "compensation/injector/encoder.hpp"
+#include "compensation/injector/pulse_injector.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <chrono>
 #include <random>
 
-#include "scenarios/reduced_machine.hpp"
+#include "machine/reduced_machine.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_transient.hpp"
 

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "compensation/ranking_stability.hpp"
-#include "compensation/regression_quality.hpp"
-#include "compensation/sensor_selection.hpp"
+#include "compensation/sensors/ranking_stability.hpp"
+#include "compensation/predictors/regression_quality.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
 
 namespace {
 

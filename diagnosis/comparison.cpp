@@ -10,8 +10,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSlow_s = 1200.0;  // time constant of what instruments and integrators are off by
-constexpr double kNoMatter = 1e-3;    // variance of shared noise along a direction, in units of the channels' own
+constexpr double kSlow_s = 1200.0;           // time constant of what instruments and integrators are off by
+constexpr double kNoMatter = 1e-3;           // variance of shared noise along a direction, in units of the channels' own
 constexpr std::size_t kRowsForColumns = 60;  // fewer tell no noise from what follows them
 
 }  // namespace

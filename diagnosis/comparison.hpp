@@ -26,7 +26,8 @@ class Comparison {
   /// W y of a prediction, or of a difference of two.
   [[nodiscard]] Eigen::VectorXd whitened(const Prediction& prediction) const;
   /// The same of one run. @param readings  of its channels, in their order, n_channels x n_times. @param whitened  as many rows as n_of(run)
-  void whiten(std::size_t run, const Eigen::Ref<const Eigen::MatrixXd>& readings, Eigen::Ref<Eigen::VectorXd> whitened) const;
+  void whiten(std::size_t run, const Eigen::Ref<const Eigen::MatrixXd>& readings,
+              Eigen::Ref<Eigen::VectorXd> whitened) const;
   /// W of what was measured.
   [[nodiscard]] const Eigen::VectorXd& measured() const { return measured_; }
 
@@ -45,7 +46,9 @@ class Comparison {
   /// What moves slowly is told by fewer readings. A block that has at least twice as many as these has so many or a few more once neighbours are
   /// taken together; a shorter one all that it had.
   static constexpr Eigen::Index kEnough = 200;
-  [[nodiscard]] Eigen::Index n_condensed() const { return condensed_.empty() ? 0 : condensed_.back().first + condensed_.back().n; }
+  [[nodiscard]] Eigen::Index n_condensed() const {
+    return condensed_.empty() ? 0 : condensed_.back().first + condensed_.back().n;
+  }
   /// Whitened readings, a column each, with neighbours summed over the root of their number: noise stays of variance 1.
   [[nodiscard]] Eigen::MatrixXd condensed(const Eigen::Ref<const Eigen::MatrixXd>& whitened) const;
   /// The same of one run alone.

@@ -17,14 +17,14 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kFewestReadings = 150;  // of all channels together: below, a verdict would be guessing
-constexpr double kUnnamed = 3.0;              // nats by which one cause without a name must be better than those with one
-constexpr double kBeyondBelief = 2.0;         // mean square of how far the scenario's numbers moved, in their sigmas
-constexpr double kMostWork = 2e7;             // some ten seconds
-constexpr double kSmallMachine = 15.0;        // unknowns, below which a prediction costs the same
-constexpr double kNotLinear = 6.0;            // of what one of a linear machine costs
-constexpr double kHallFault_K = 2.0;          // 1 sigma of a hall that was recorded wrongly
-constexpr double kTooFar = 3.5;               // sigmas of its prior: a number beyond is a cause
+constexpr int kFewestReadings = 150;    // of all channels together: below, a verdict would be guessing
+constexpr double kUnnamed = 3.0;        // nats by which one cause without a name must be better than those with one
+constexpr double kBeyondBelief = 2.0;   // mean square of how far the scenario's numbers moved, in their sigmas
+constexpr double kMostWork = 2e7;       // some ten seconds
+constexpr double kSmallMachine = 15.0;  // unknowns, below which a prediction costs the same
+constexpr double kNotLinear = 6.0;      // of what one of a linear machine costs
+constexpr double kHallFault_K = 2.0;    // 1 sigma of a hall that was recorded wrongly
+constexpr double kTooFar = 3.5;         // sigmas of its prior: a number beyond is a cause
 
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
@@ -46,9 +46,8 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
     const Interval x = listener.wants_end() ? Interval{fit.x[at] - 1.96 * sd, fit.x[at] + 1.96 * sd}
                                             : profile_interval(fitter, hypothesis, fit, claim, k, workspace);
     const double scale = knob.is_time ? 60.0 : 1.0;
-    c.parameters.push_back({knob.name, knob.is_time ? "min" : knob.unit,
-                            knob.value(fit.x[at]) / scale, knob.value(x.low) / scale,
-                            knob.value(x.high) / scale});
+    c.parameters.push_back({knob.name, knob.is_time ? "min" : knob.unit, knob.value(fit.x[at]) / scale,
+                            knob.value(x.low) / scale, knob.value(x.high) / scale});
   }
   if (variant.at_speed_rpm > 0.0) {
     c.parameters.push_back({"at_speed", "rpm", variant.at_speed_rpm, variant.at_speed_rpm, variant.at_speed_rpm});
@@ -205,9 +204,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   for (Knob& k : hall_scatter(runs)) d.scatter.push_back(std::move(k));
   listener.begin(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
   const auto fresh_fitter = [&] {
-    return std::make_unique<Fitter>(twin, runs, d.scatter,
-                                    unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()),
-                                    listener);
+    return std::make_unique<Fitter>(
+        twin, runs, d.scatter, unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()), listener);
   };
   auto own_fitter = fresh_fitter();
   Twin::Workspace workspace(twin);
@@ -278,7 +276,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   }
   const Fitter& fitter = *own_fitter;
   listener.begin("one cause without a name");
-  auto unnamed = listener.wants_end() ? std::nullopt : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
+  auto unnamed =
+      listener.wants_end() ? std::nullopt : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
   if (unnamed && unnamed->log_evidence_gain > kUnnamed) {
     if (!d.unexplained) d.unexplained = explained_better(fitter, d.search, *unnamed, d.noise);
     d.unexplained->one_cause = std::move(unnamed);
@@ -304,7 +303,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       Hypothesis other = d.search.hypothesis;
       other.erase(other.begin() + static_cast<std::ptrdiff_t>(c));
       other.push_back(a.claim);
-      cause.alternatives.push_back(cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, workspace, listener));
+      cause.alternatives.push_back(
+          cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, workspace, listener));
     }
     d.causes.push_back(std::move(cause));
   }
@@ -318,7 +318,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   }
   const HeldOut held = held_out_gain(fitter, d.search, d.noise, search_again, listener);
   d.written = written_of(fitter, d.search, held, workspace);
-  if (!d.written.keeps_numbers) d.written.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
+  if (!d.written.keeps_numbers)
+    d.written.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
   d.extended = d.written.keeps_numbers ? d.written.fit.prediction : d.as_written;
   d.calibrated = calibrated_numbers(fitter, d.written.fit, known_to);
   for (Cause& c : moved_numbers(d)) d.causes.push_back(std::move(c));
@@ -339,8 +340,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     }
     if (runs.size() == 1 && options.most_effects > 0 && d.written.keeps_numbers) write_nothing(d);
   }
-  const bool is_open =
-      std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
+  const bool is_open = std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
   if (is_open && !listener.wants_end()) {
     listener.begin("choosing an experiment");
     d.experiment = propose_experiment(fitter, d.search);

@@ -38,8 +38,8 @@ struct Cause {
   double log_evidence_gain = 0.0;
   std::vector<Cause> alternatives;
   Standing standing = Standing::kSuspected;
-  std::string doubt = {};  ///< why it is only suspected, a clause; "" where it is not
-  bool is_written = true;  ///< whether extended.yaml has it: it does no harm to kept-out rows
+  std::string doubt = {};           ///< why it is only suspected, a clause; "" where it is not
+  bool is_written = true;           ///< whether extended.yaml has it: it does no harm to kept-out rows
   int n_searched = 0, n_again = 0;  ///< searches without a part of the rows, and in how many of them it was found again
 };
 
@@ -48,7 +48,7 @@ struct Written {
   Hypothesis hypothesis;
   std::vector<std::size_t> causes;  ///< of Diagnosis::causes, one a claim
   Fit fit;
-  bool keeps_numbers = true;  ///< false: nothing is written
+  bool keeps_numbers = true;     ///< false: nothing is written
   std::string why_nothing = {};  ///< then: why, a clause
 };
 
@@ -91,9 +91,10 @@ struct Diagnosis {
   std::optional<Unexplained> unexplained;
   /// Causes, intervals and gains count what the model misses as noise: it misses far more than noise, whatever is claimed.
   bool weighed_by_model_error = false;
-  std::optional<HeatWander> wander;  ///< where it is weighed by that: heat that comes and goes in bodies; its readings are moved from
-  std::string ended_at;              ///< what was being done when somebody wanted an end; empty: it is complete
-  std::string holdout;               ///< how the gain was held out
+  std::optional<HeatWander>
+      wander;            ///< where it is weighed by that: heat that comes and goes in bodies; its readings are moved from
+  std::string ended_at;  ///< what was being done when somebody wanted an end; empty: it is complete
+  std::string holdout;   ///< how the gain was held out
   std::vector<ChannelGain> gain;
   /// What the scenario with its numbers fitted, and no cause, misses over time, body by body and displacement by displacement.
   std::vector<Waveform> waveforms;

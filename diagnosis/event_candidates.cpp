@@ -112,7 +112,8 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
           const MeasuredRun& run = fitter.runs()[w.run];
           if (h.in.empty() || h.in.back().first != &run) h.in.push_back({&run, {}});
           const std::vector<double>& edge_s = second.runs[w.run].edge_s;
-          h.in.back().second.emplace_back(edge_s[static_cast<std::size_t>(w.first)], edge_s[static_cast<std::size_t>(w.last)]);
+          h.in.back().second.emplace_back(edge_s[static_cast<std::size_t>(w.first)],
+                                          edge_s[static_cast<std::size_t>(w.last)]);
         }
         h.size = found->size;
         h.price_nats = found->price_nats;

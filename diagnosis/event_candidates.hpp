@@ -9,7 +9,8 @@
 namespace driftwright::diagnosis {
 
 struct Event {
-  effects::Doubt doubt;     ///< windows of heat or of an exchange; its numbers: the size, and how much longer, or when they come again
+  effects::Doubt
+      doubt;  ///< windows of heat or of an exchange; its numbers: the size, and how much longer, or when they come again
   double price_nats = 0.0;  ///< of their times, which were read off the data
 };
 

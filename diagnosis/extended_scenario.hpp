@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diagnosis/search.hpp"
-#include "scenarios/scenario.hpp"
+#include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::diagnosis {
 

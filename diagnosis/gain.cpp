@@ -21,7 +21,7 @@ constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorse = 1.1;            // of the squares
 // Where the scenario's own numbers can do what a claim does, if they go far enough, kept-out rows are predicted alike with it and without; then it is the
 // evidence of all rows that counts how far they had to go.
-constexpr double kAlike = 3.0;  // nats
+constexpr double kAlike = 3.0;            // nats
 constexpr double kWorseUnforeseen = 1.1;  // of the squares
 
 /// Rows that numbers are fitted to, and the others. Both have all runs; readings that are not theirs are missing.
@@ -157,8 +157,7 @@ class Judge {
     const Judged& j = judged(claims);
     std::vector<Prediction> predicted = j.predicted;
     for (std::size_t f = 0; f < folds_.size(); ++f) {
-      if (folds_[f].run && j.x[f].size() > 0)
-        predicted[f][*folds_[f].run] = ahead(j.hypothesis, j.x[f], *folds_[f].run);
+      if (folds_[f].run && j.x[f].size() > 0) predicted[f][*folds_[f].run] = ahead(j.hypothesis, j.x[f], *folds_[f].run);
     }
     return predicted;
   }
@@ -195,7 +194,8 @@ class Judge {
   [[nodiscard]] std::vector<Prediction> regressed(Regressors regressors) const {
     std::vector<Prediction> predicted;
     for (const Fold& fold : folds_)
-      predicted.push_back(plain_regression(whole_.runs(), fold.fitted, static_cast<int>(written_.front().rows()), regressors));
+      predicted.push_back(
+          plain_regression(whole_.runs(), fold.fitted, static_cast<int>(written_.front().rows()), regressors));
     return predicted;
   }
   [[nodiscard]] std::vector<Prediction> written() const { return std::vector<Prediction>(folds_.size(), written_); }

@@ -17,7 +17,7 @@ struct HeldOut {
   /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place.
   int n_searched = 0;
   std::vector<int> n_again = {};
-  bool fails = false;             ///< the claims together predict kept-out rows clearly worse than none of them does
+  bool fails = false;  ///< the claims together predict kept-out rows clearly worse than none of them does
   bool keeps_numbers =
       true;  ///< false: the scenario as written predicts kept-out rows better than any numbers that were fitted
 };

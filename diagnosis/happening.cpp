@@ -11,8 +11,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kShortest_s = 1.0;       // of a window that another length has shortened
-constexpr double kTurnsGoOn = 2.0;        // of the longest run: how long turns are written for
+constexpr double kShortest_s = 1.0;  // of a window that another length has shortened
+constexpr double kTurnsGoOn = 2.0;   // of the longest run: how long turns are written for
 
 /// Whether the twin's reduced machine holds for such an exchange.
 bool holds(const Twin& twin, const effects::Effect& window) {
@@ -105,8 +105,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   const double sd = (h.other ? kUnknownExchange : 1.0) * scene.unknown_heat_W();
   effects::DoubtedNumber size = effects::doubted(h.other ? "conductance" : "power", h.other ? "W/K" : "W", sd, 0.05 * sd);
   if (h.other || h.size > 0.0) size.low = 0.0;
-  const std::string where =
-      h.other && !(*h.other == effects::hall()) ? h.body.name + "," + h.other->name : h.body.name;
+  const std::string where = h.other && !(*h.other == effects::hall()) ? h.body.name + "," + h.other->name : h.body.name;
   const double trial = std::clamp(h.size, -sd, sd);
   if (trial == 0.0 || trial < size.low) return std::nullopt;
   if (h.every_s == 0.0 && h.in.size() == 1 && h.in.front().second.size() == 1) {
@@ -152,11 +151,12 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   d.finding = window.kind->key;
   d.where = where;
   const std::string to = h.other ? ", to " + h.other->name : std::string();
-  d.law = h.every_s > 0.0 ? fmt::format("windows that repeat every {:.1f} min{}: {} min of each turn", h.every_s / 60.0, to,
-                                        times.front())
-                          : fmt::format("{}, seen in the waveform{}: {} min",
-                                        n_windows == 1 ? std::string("a window") : fmt::format("{} windows of one size", n_windows),
-                                        to, fmt::join(times, ", "));
+  d.law =
+      h.every_s > 0.0
+          ? fmt::format("windows that repeat every {:.1f} min{}: {} min of each turn", h.every_s / 60.0, to, times.front())
+          : fmt::format("{}, seen in the waveform{}: {} min",
+                        n_windows == 1 ? std::string("a window") : fmt::format("{} windows of one size", n_windows), to,
+                        fmt::join(times, ", "));
   d.trial = trial;
   return event;
 }

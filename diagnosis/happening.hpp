@@ -10,10 +10,11 @@ using Times = std::vector<std::pair<double, double>>;  ///< beginnings and ends 
 /// Windows of one size, wherever they are.
 struct Happening {
   effects::Body body;
-  std::optional<effects::Body> other = {};             ///< an exchange with it; else heat
-  std::vector<std::pair<const MeasuredRun*, Times>> in = {};  ///< each run that has some; no run: all of them, one window in each turn
-  double every_s = 0.0;                                ///< of windows that repeat
-  double size = 0.0;                                   ///< W or W/K
+  std::optional<effects::Body> other = {};  ///< an exchange with it; else heat
+  std::vector<std::pair<const MeasuredRun*, Times>> in =
+      {};                ///< each run that has some; no run: all of them, one window in each turn
+  double every_s = 0.0;  ///< of windows that repeat
+  double size = 0.0;     ///< W or W/K
   double price_nats = 0.0;
 };
 
@@ -22,7 +23,8 @@ inline constexpr double kUnknownExchange = 0.2;
 
 /// The window of an exchange between two bodies, either end of which may be the one that stands first. None between two regions, or where the twin has no
 /// place for it.
-[[nodiscard]] std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::Body& a, const effects::Body& b);
+[[nodiscard]] std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::Body& a,
+                                                             const effects::Body& b);
 
 /// From row to row [s], on average.
 [[nodiscard]] double row_s(const MeasuredRun& run);

@@ -10,10 +10,10 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr Eigen::Index kKnots = 24;   // of a run, between which heat is a straight line
-constexpr int kTurns = 30;            // of expectation and maximisation
-constexpr double kMatters = 0.02;     // of all that the bodies do
-constexpr double kShortest = 1.0;   // time constants that are tried, in distances of knots
+constexpr Eigen::Index kKnots = 24;  // of a run, between which heat is a straight line
+constexpr int kTurns = 30;           // of expectation and maximisation
+constexpr double kMatters = 0.02;    // of all that the bodies do
+constexpr double kShortest = 1.0;    // time constants that are tried, in distances of knots
 constexpr double kLongest = 64.0;
 
 /// Hats of 1 W about each knot, n_steps x kKnots: means from row to row.
@@ -36,8 +36,7 @@ Eigen::MatrixXd hats(const std::vector<double>& time_s) {
 Eigen::MatrixXd root_of_correlation(double spacing_s, double time_s) {
   Eigen::MatrixXd c(kKnots, kKnots);
   for (Eigen::Index i = 0; i < kKnots; ++i) {
-    for (Eigen::Index j = 0; j < kKnots; ++j)
-      c(i, j) = std::exp(-spacing_s * static_cast<double>(std::abs(i - j)) / time_s);
+    for (Eigen::Index j = 0; j < kKnots; ++j) c(i, j) = std::exp(-spacing_s * static_cast<double>(std::abs(i - j)) / time_s);
   }
   return c.llt().matrixL();
 }
@@ -112,7 +111,8 @@ Fitted fitted(const std::vector<Run>& runs, const std::vector<Eigen::MatrixXd>& 
         amplitude2[b] += u.segment(b * kKnots, kKnots).squaredNorm() + spread.segment(b * kKnots, kKnots).sum();
     }
     f.log_likelihood = log_likelihood;
-    if (turn < kTurns) f.variance_W2.array() *= amplitude2.array() / static_cast<double>(kKnots * static_cast<Eigen::Index>(runs.size()));
+    if (turn < kTurns)
+      f.variance_W2.array() *= amplitude2.array() / static_cast<double>(kKnots * static_cast<Eigen::Index>(runs.size()));
   }
   f.does.array() *= f.variance_W2.array();
   return f;
@@ -170,7 +170,8 @@ std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& sta
     wander.bodies.push_back({bodies[static_cast<std::size_t>(b)], std::sqrt(best.variance_W2[b]), best.does[b] / all});
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const MeasuredRun& run = fitter.runs()[r];
-    const auto n_times = static_cast<Eigen::Index>(run.time_s.size()), n_channels = static_cast<Eigen::Index>(run.channels.size());
+    const auto n_times = static_cast<Eigen::Index>(run.time_s.size()),
+               n_channels = static_cast<Eigen::Index>(run.channels.size());
     const Eigen::MatrixXd hat = hats(run.time_s), root = root_of_correlation(runs[r].spacing_s, best.time_s);
     Eigen::MatrixXd shared(n_channels * n_times, kKnots * static_cast<Eigen::Index>(kept.size()));
     Eigen::MatrixXd columns(runs[r].columns.rows(), shared.cols());
@@ -180,7 +181,8 @@ std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& sta
       Eigen::MatrixXd of_knot(shared.rows(), kKnots);
       for (Eigen::Index k = 0; k < kKnots; ++k) {
         const Eigen::MatrixXd readings = readings_of(seen[r], kept[i], bodies.size(), hat.col(k));
-        for (Eigen::Index c = 0; c < n_channels; ++c) of_knot.col(k).segment(c * n_times, n_times) = readings.row(c).transpose();
+        for (Eigen::Index c = 0; c < n_channels; ++c)
+          of_knot.col(k).segment(c * n_times, n_times) = readings.row(c).transpose();
       }
       shared.middleCols(first, kKnots) = sd_W * of_knot * root;
       columns.middleCols(first, kKnots) = sd_W * runs[r].columns.middleCols(kept[i] * kKnots, kKnots) * root;
@@ -189,7 +191,8 @@ std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& sta
     information.diagonal().array() += 1.0;
     const Eigen::VectorXd heat = shared * information.llt().solve(columns.transpose() * runs[r].residual);
     for (Eigen::Index c = 0; c < n_channels; ++c)
-      wander.prediction[r].row(run.channels[static_cast<std::size_t>(c)].output) += heat.segment(c * n_times, n_times).transpose();
+      wander.prediction[r].row(run.channels[static_cast<std::size_t>(c)].output) +=
+          heat.segment(c * n_times, n_times).transpose();
     wander.readings.push_back(std::move(shared));
   }
   return wander;

@@ -29,7 +29,7 @@ struct HeatWander {
 /// @param prediction  of it, whose misses are looked at, weighed by the fitter's comparison, which shares no noise
 /// @return nullopt where no heat is missing
 /// @throws SolveError  where the state has no solution
-[[nodiscard]] std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& state, const Prediction& prediction,
-                                                    Twin::Workspace& workspace);
+[[nodiscard]] std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& state,
+                                                    const Prediction& prediction, Twin::Workspace& workspace);
 
 }  // namespace driftwright::diagnosis

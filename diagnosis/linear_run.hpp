@@ -25,10 +25,12 @@ struct LinearRun {
 
 /// What each mode gains from row to row by heat in bodies. @param bodies  W in each where the carrier is 1; as many as linear_run() was given
 /// @param carrier  from each row to the next. @return  modes x rows - 1
-[[nodiscard]] Eigen::MatrixXd modal_gain(const LinearRun& run, const Eigen::VectorXd& bodies, const Eigen::VectorXd& carrier);
+[[nodiscard]] Eigen::MatrixXd modal_gain(const LinearRun& run, const Eigen::VectorXd& bodies,
+                                         const Eigen::VectorXd& carrier);
 
 /// What gains of the modes from one row to another do to the channels, over their scale. @return n_channels x n_rows
-[[nodiscard]] Eigen::MatrixXd response(const LinearRun& run, const Eigen::MatrixXd& gain, Eigen::Index from, Eigen::Index to);
+[[nodiscard]] Eigen::MatrixXd response(const LinearRun& run, const Eigen::MatrixXd& gain, Eigen::Index from,
+                                       Eigen::Index to);
 
 /// Mean of a temperature difference from row to row: where an exchange is strong it falls exponentially, and its mean is the logarithmic one.
 [[nodiscard]] double mean_difference(double first_K, double second_K);

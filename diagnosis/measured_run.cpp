@@ -12,7 +12,7 @@
 #include "diagnosis/record_faults.hpp"
 #include "diagnosis/stuck_sensor.hpp"
 #include "effects/recorded_column.hpp"
-#include "scenarios/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
 
 namespace driftwright::diagnosis {
 namespace {

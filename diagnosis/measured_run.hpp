@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/mapped_record.hpp"
-#include "scenarios/recorded_run.hpp"
+#include "scenarios/reader/recorded_run.hpp"
 #include "solver/thermal_system.hpp"
 
 namespace driftwright::diagnosis {

@@ -14,7 +14,7 @@ constexpr double kDriveLags_s[] = {0.0, 300.0, 1200.0, 4800.0};
 constexpr double kHallLags_s[] = {0.0, 3600.0, 14400.0};
 constexpr double kColumnLags_s[] = {0.0, 600.0, 3600.0};
 constexpr double kPenalties[] = {1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 1.0};
-constexpr Eigen::Index kParts = 8;   // of a single run
+constexpr Eigen::Index kParts = 8;     // of a single run
 constexpr double kStandsStill = 1e-9;  // variance over the mean square
 
 /// Behind a first-order lag that is settled at rest: of what drives, each value holds until the next row.
@@ -57,8 +57,8 @@ Eigen::MatrixXd drive_columns(const MeasuredRun& run) {
     hall[i] = run.hall.at(t_s);
   }
   std::vector<Eigen::VectorXd> columns;
-  for (const Eigen::VectorXd& drive : {speed, Eigen::VectorXd(speed.array().square()),
-                                       Eigen::VectorXd((speed.array() > 0.0).cast<double>())})
+  for (const Eigen::VectorXd& drive :
+       {speed, Eigen::VectorXd(speed.array().square()), Eigen::VectorXd((speed.array() > 0.0).cast<double>())})
     for (double lag_s : kDriveLags_s) columns.push_back(held_behind(drive, run.time_s, lag_s));
   for (double lag_s : kHallLags_s) columns.push_back(sampled_behind(hall, run.time_s, lag_s));
   for (const auto& [name, recorded] : beside_drive(run, 0.0)) {

@@ -11,8 +11,8 @@
 namespace driftwright::diagnosis {
 
 enum class Regressors {
-  kDrive,              ///< what drove the machine, and the hall
-  kDriveAndReadings,   ///< and readings of thermometers, that of the channel itself left out
+  kDrive,             ///< what drove the machine, and the hall
+  kDriveAndReadings,  ///< and readings of thermometers, that of the channel itself left out
 };
 
 /// @param runs    whole; readings are regressors where they are asked for

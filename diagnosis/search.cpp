@@ -128,8 +128,8 @@ class KnownFits {
 /// The best candidates on top of a hypothesis, fitted in full, best first.
 /// @param known  null: all are fitted anew, from where scatter was settled last
 std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                   const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit,
-                                   int n, KnownFits* known, const Listener& listener) {
+                                   const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit, int n,
+                                   KnownFits* known, const Listener& listener) {
   if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
   std::vector<Score> list = scores(fitter, candidates, columns, base, base_fit);
   std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
@@ -267,8 +267,7 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
                              : fitter.predict_beside(known, fit.prediction, tried, joined(fit.x, claim), space.workspace);
           });
           if (!is_solved) continue;
-          Eigen::VectorXd column =
-              fitter.comparison().condensed((fitter.comparison().whitened(p) - base) / v.trial_x);
+          Eigen::VectorXd column = fitter.comparison().condensed((fitter.comparison().whitened(p) - base) / v.trial_x);
           if (!column.allFinite() || !(column.squaredNorm() > 1e-12)) continue;
           lists[j].push_back({laws[j].candidate, laws[j].variant, std::move(claim), std::move(column)});
         }
@@ -374,7 +373,8 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       for (std::size_t i = 0; i < best.size(); ++i) {
         const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
         const Fit fit = fit_all(fitter, {{others, x}}).front();
-        const std::vector<Fitted> replacements = best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener);
+        const std::vector<Fitted> replacements =
+            best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener);
         if (replacements.empty()) continue;
         const Hypothesis exchanged = with(others, replacements.front().claim);
         const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
@@ -390,9 +390,10 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     return any;
   };
   for (int round = 0; round < options.most_effects && !listener.wants_end(); ++round) {
-    listener.begin(fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
-    std::vector<Fitted> additions =
-        best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit, options.refits, &known, listener);
+    listener.begin(
+        fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
+    std::vector<Fitted> additions = best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit,
+                                                   options.refits, &known, listener);
     if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself
       fitter.settle({}, best_fit);
       const std::vector<Signature> there = signatures(fitter, candidates, laws_of(candidates), {}, best_fit, listener);
@@ -413,7 +414,8 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     if (is_bent) {
       columns = signatures(fitter, candidates, laws_of(candidates), best, best_fit, listener);
     } else if (round == 0) {  // windows that the first cause hid
-      const std::vector<Law> more = add(events_beside(fitter, best, best_fit, projection_of(fitter, best, best_fit), listener));
+      const std::vector<Law> more =
+          add(events_beside(fitter, best, best_fit, projection_of(fitter, best, best_fit), listener));
       for (Signature& s : signatures(fitter, candidates, more, best, best_fit)) columns.push_back(std::move(s));
       best_value = evidence(best_fit, best) - laws_price(candidates, best);
     }

@@ -28,7 +28,7 @@ struct SearchOptions {
   double least_named_beside = 8.0;  ///< one of several is not named below, nor one whose times were chosen to make it
   /// Two claims whose evidence differs by less than this cannot be told apart.
   double cannot_tell = 3.0;
-  int refits = 16;  ///< candidates of each round that are fitted in full
+  int refits = 16;                     ///< candidates of each round that are fitted in full
   std::set<std::string> without = {};  ///< keys of effects that are not looked for
 };
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "scenarios/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"

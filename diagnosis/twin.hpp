@@ -5,7 +5,7 @@
 
 #include "diagnosis/knob.hpp"
 #include "diagnosis/measured_run.hpp"
-#include "scenarios/reduced_machine.hpp"
+#include "machine/reduced_machine.hpp"
 #include "solver/added_places.hpp"
 #include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"

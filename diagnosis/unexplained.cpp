@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kStandsOut = 7.0;  // sigmas of one channel's leftover
 constexpr double kStandsOutTogether = 6.0;
-constexpr double kJump = 27.0;  // squares that one step somewhere may take off by chance: exp(-13.5) times some thousand rows
+constexpr double kJump =
+    27.0;  // squares that one step somewhere may take off by chance: exp(-13.5) times some thousand rows
 constexpr double kRough = 3.0;                // leftover over noise: a model that no effect mends
 constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say

@@ -79,8 +79,7 @@ WindowEvidence evidence_of(const Fitter& fitter, const Projection& projection, c
     e.curvature.block(first, first, n, n).noalias() = columns.transpose() * columns;
     known.middleCols(first, n).noalias() =
         projection.slopes.middleRows(runs[r].first_row, runs[r].n_rows).transpose() * columns;
-    e.slope.segment(first, n).noalias() =
-        columns.transpose() * projection.rest.segment(runs[r].first_row, runs[r].n_rows);
+    e.slope.segment(first, n).noalias() = columns.transpose() * projection.rest.segment(runs[r].first_row, runs[r].n_rows);
   }
   e.curvature.noalias() -= known.transpose() * projection.factor.solve(known);
   return e;

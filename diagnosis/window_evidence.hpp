@@ -33,7 +33,8 @@ using Edges = std::vector<std::vector<Eigen::Index>>;  ///< rows between the cel
 [[nodiscard]] Edges finer_edges(const Edges& coarse, std::vector<FoundWindows::Window>& windows);
 
 /// @param projection  of a fit, its readings condensed
-[[nodiscard]] WindowEvidence evidence_of(const Fitter& fitter, const Projection& projection, const std::vector<SeenRun>& runs,
-                                         const WindowPlace& place, std::size_t n_bodies, const Edges& edges);
+[[nodiscard]] WindowEvidence evidence_of(const Fitter& fitter, const Projection& projection,
+                                         const std::vector<SeenRun>& runs, const WindowPlace& place, std::size_t n_bodies,
+                                         const Edges& edges);
 
 }  // namespace driftwright::diagnosis

@@ -114,7 +114,8 @@ class Searcher {
       for (const bool is_end : {false, true}) {
         double wide_s = 0.0;
         std::vector<Window> other = set;
-        for (Eigen::Index edge = is_end ? set[k].first + 1 : 0; edge <= (is_end ? n_of(set[k].run) : set[k].last - 1); ++edge) {
+        for (Eigen::Index edge = is_end ? set[k].first + 1 : 0; edge <= (is_end ? n_of(set[k].run) : set[k].last - 1);
+             ++edge) {
           (is_end ? other[k].last : other[k].first) = edge;
           const auto at = static_cast<std::size_t>(edge);
           const double from_s = at > 0 ? run.edge_s[at - 1] : run.edge_s[at];
@@ -223,7 +224,8 @@ std::optional<FoundWindows> grow(const Searcher& searcher, std::vector<Window> s
   if (set.size() > 1 && std::any_of(set.begin(), set.end(), [&](const Window& w) { return searcher.is_long(w); }))
     return grow(searcher, {}, 1);
   FoundWindows best = searcher.found(set);
-  for (std::size_t k = 0; best.windows.size() > 1 && k < best.windows.size();) {  // what does not earn the price of its times
+  for (std::size_t k = 0;
+       best.windows.size() > 1 && k < best.windows.size();) {  // what does not earn the price of its times
     std::vector<Window> others = best.windows;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
     if (FoundWindows without = searcher.found(std::move(others)); without.gain >= best.gain) {
@@ -233,9 +235,8 @@ std::optional<FoundWindows> grow(const Searcher& searcher, std::vector<Window> s
       ++k;
     }
   }
-  std::sort(best.windows.begin(), best.windows.end(), [](const Window& a, const Window& b) {
-    return a.run != b.run ? a.run < b.run : a.first < b.first;
-  });
+  std::sort(best.windows.begin(), best.windows.end(),
+            [](const Window& a, const Window& b) { return a.run != b.run ? a.run < b.run : a.first < b.first; });
   return best;
 }
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "compensation/control_tables.hpp"
+#include "compensation/predictors/control_tables.hpp"
 
 namespace driftwright::output {
 namespace {

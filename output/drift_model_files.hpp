@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "compensation/drift_model.hpp"
-#include "compensation/fail_safe.hpp"
+#include "compensation/predictors/drift_model.hpp"
+#include "compensation/predictors/fail_safe.hpp"
 
 namespace driftwright::output {
 

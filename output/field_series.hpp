@@ -10,14 +10,11 @@
 #include "base/fields_format.hpp"
 #include "mesh/mesh.hpp"
 #include "output/results_folder.hpp"
+#include "solver/stress.hpp"
 
 namespace driftwright::output {
 
-/// Stresses at the nodes.
-struct StressField {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> stress_MPa;  ///< rows xx, yy, zz, xy, yz, xz: VTK's order of a symmetric tensor
-  Eigen::VectorXd von_mises_MPa;
-};
+using solver::StressField;
 
 /// Writes one format; FieldSeries has checked what it gets. One source per format: vtk_fields, xdmf_fields.
 class FieldWriter {

@@ -2,8 +2,8 @@
 
 #include "base/config_map.hpp"
 #include "base/config_text.hpp"
+#include "machine/reduced_files.hpp"
 #include "output/json_value.hpp"
-#include "scenarios/reduced_files.hpp"
 
 namespace driftwright::output {
 namespace {

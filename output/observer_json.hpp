@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "compensation/observer.hpp"
+#include "compensation/predictors/observer.hpp"
 #include "effects/effect.hpp"
 
 namespace driftwright::output {

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "compensation/formula_predictor.hpp"
-#include "compensation/past_drift.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
+#include "compensation/predictors/past_drift.hpp"
 #include "output/formula_json.hpp"
 #include "output/json_value.hpp"
 #include "output/observer_json.hpp"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "compensation/deployed_predictor.hpp"
+#include "compensation/predictors/deployed_predictor.hpp"
 #include "effects/effect.hpp"
 #include "output/results_folder.hpp"
 

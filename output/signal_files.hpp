@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "compensation/quadrature.hpp"
+#include "compensation/injector/quadrature.hpp"
 
 namespace driftwright::output {
 

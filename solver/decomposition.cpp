@@ -80,9 +80,9 @@ std::vector<HeatFlow> flows_of(const ReducedSystem& system) {
   std::vector<HeatFlow> flows;
   for (const HeatSource& s : system.sources) flows.push_back({s.name, FlowKind::kSource});
   for (const auto& e : system.exchanges) {
-    flows.push_back({e.name, e.prescribes       ? FlowKind::kPrescribed
+    flows.push_back({e.name, e.prescribes         ? FlowKind::kPrescribed
                              : e.leaves_machine() ? FlowKind::kSurrounding
-                                                : FlowKind::kInternal});
+                                                  : FlowKind::kInternal});
   }
   return flows;
 }

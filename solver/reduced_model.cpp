@@ -51,9 +51,9 @@ ReducedSystem projected(const ThermalSystem<Matrix>& system, const Eigen::Matrix
   reduced.thermostats = system.thermostats;
   reduced.mass = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
   reduced.conduction = reduce(system.conduction);
-  for (const Probe& p : system.probes) 
+  for (const Probe& p : system.probes)
     reduced.probes.push_back({p.body, p.before, basis.transpose() * p.weights, p.hall_share, p.offset_K});
-  for (const HeatSource& s : system.sources) 
+  for (const HeatSource& s : system.sources)
     reduced.sources.push_back({s.name, s.body, basis.transpose() * s.load, s.power_W});
   for (const auto& e : system.exchanges) {
     reduced.exchanges.push_back(

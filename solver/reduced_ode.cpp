@@ -28,7 +28,8 @@ ReducedOde::ReducedOde(const ReducedSystem& system, const TimeSeries& hall)
       latest_(size()),
       heat_(n_),
       flow_W_(static_cast<Eigen::Index>(flows_.size())) {
-  if (!system.mass.isIdentity(1e-8)) throw std::logic_error("ReducedOde: a unit mass matrix is wanted, see with_unit_mass()");
+  if (!system.mass.isIdentity(1e-8))
+    throw std::logic_error("ReducedOde: a unit mass matrix is wanted, see with_unit_mass()");
   for (std::size_t s = 0; s < system.sources.size(); ++s) {
     if (system.sources[s].power_W.looks_at_state()) live_sources_.push_back({s, 0.0, {}});
   }

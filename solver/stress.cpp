@@ -122,4 +122,14 @@ NodalStress nodal_stress_Pa(const Mesh& mesh, const RegionMaterials& materials, 
   return result;
 }
 
+StressField stress_field(const mesh::Mesh& mesh, const RegionMaterials& materials, const Eigen::Matrix3Xd& displacement_m,
+                         const Eigen::VectorXd& theta_K) {
+  StressField field{1e-6 * nodal_stress_Pa(mesh, materials, displacement_m, theta_K), {}};
+  field.von_mises_MPa.resize(field.stress_MPa.cols());
+  for (Eigen::Index n = 0; n < field.stress_MPa.cols(); ++n) {
+    field.von_mises_MPa[n] = von_mises(field.stress_MPa.col(n));
+  }
+  return field;
+}
+
 }  // namespace driftwright::solver

@@ -33,4 +33,13 @@ using NodalStress = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 /// sqrt( ½[(σx-σy)² + (σy-σz)² + (σz-σx)²] + 3(τxy² + τyz² + τzx²) ), in the unit of the stress.
 [[nodiscard]] double von_mises(const Stress& stress);
 
+/// Stresses at the nodes.
+struct StressField {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> stress_MPa;  ///< rows xx, yy, zz, xy, yz, xz: VTK's order of a symmetric tensor
+  Eigen::VectorXd von_mises_MPa;
+};
+/// nodal_stress_Pa() with its von Mises stresses. Arguments as there.
+[[nodiscard]] StressField stress_field(const mesh::Mesh& mesh, const RegionMaterials& materials,
+                                       const Eigen::Matrix3Xd& displacement_m, const Eigen::VectorXd& theta_K);
+
 }  // namespace driftwright::solver

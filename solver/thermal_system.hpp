@@ -68,9 +68,10 @@ struct Exchange {
   Eigen::VectorXd flow = {};
   Eigen::VectorXd offset = {};  ///< o: ∫ N_i (T_air(z) - T_hall) dA where the hall is stratified, else empty [m^2 K]
   double offset_sum = 0.0;      ///< 1'o of the finite-element model
-  Eigen::VectorXd medium = {};  ///< of an exchange with a medium: G 1, whose multiple by the medium's temperature is o; else empty
-  double medium_sum = 0.0;      ///< 1'G 1
-  bool prescribes = false;      ///< it stands for a prescribed temperature (hold_by_exchanges())
+  Eigen::VectorXd medium =
+      {};  ///< of an exchange with a medium: G 1, whose multiple by the medium's temperature is o; else empty
+  double medium_sum = 0.0;  ///< 1'G 1
+  bool prescribes = false;  ///< it stands for a prescribed temperature (hold_by_exchanges())
 
   [[nodiscard]] bool reaches_hall() const { return hall_sum != 0.0; }
   /// To the hall or to a medium that is held at its temperature.

@@ -1,13 +1,14 @@
 // Machines whose record, instruments or materials are wrong: from YAML to records known by hand.
 
-#include "scenarios/as_recorded.hpp"
+#include "machine/as_recorded.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "scenarios/reduced_machine.hpp"
+#include "machine/reduced_machine.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/column_and_head.hpp"
 

@@ -1,6 +1,6 @@
 // The paper's method on a machine of one mode, where each of its rules is exact.
 
-#include "compensation/assembled_curves.hpp"
+#include "compensation/predictors/assembled_curves.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "compensation/axis_loop.hpp"
+#include "compensation/injector/axis_loop.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

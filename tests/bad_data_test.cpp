@@ -8,7 +8,7 @@
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/unit_check.hpp"
 #include "diagnosis/warm_start.hpp"
-#include "scenarios/machine.hpp"
+#include "machine/machine.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::diagnosis {

@@ -5,12 +5,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "app/measured_twin.hpp"
 #include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
-#include "scenarios/as_recorded.hpp"
-#include "scenarios/machine.hpp"
+#include "machine/as_recorded.hpp"
+#include "machine/machine.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
+#include "studies/measured_twin.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::diagnosis {
@@ -84,9 +85,8 @@ TEST(Chance, IsMetByMachinesWithoutFault) {
   for (int i = 0; i < kMachines; ++i) {
     Random random(11, static_cast<std::uint64_t>(i));
     const std::string truth = write_file("truth.yaml", machine(&random));
-    app::Progress progress;
-    const app::MeasuredTwin m = app::open_measured_twin(scenarios::read_scenario(scenario), "diagnose",
-                                                        records_of(truth, random, fmt::format("r{}", i)), progress);
+    const studies::MeasuredTwin m = studies::open_measured_twin(scenarios::read_scenario(scenario), "diagnose",
+                                                                records_of(truth, random, fmt::format("r{}", i)), {});
     const Diagnosis d = diagnose(*m.twin, nullptr, m.runs, m.how);
     const std::vector<Candidate> list = d.search.candidates;
     double best = -1e300;

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/record.hpp"
-#include "compensation/grey_relational.hpp"
+#include "compensation/sensors/grey_relational.hpp"
 #include "tests/command_line.hpp"
 
 namespace driftwright {

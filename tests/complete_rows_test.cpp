@@ -1,4 +1,4 @@
-#include "compensation/complete_rows.hpp"
+#include "compensation/sensors/complete_rows.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "compensation/correction.hpp"
+#include "compensation/judging/correction.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

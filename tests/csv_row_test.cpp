@@ -1,4 +1,4 @@
-#include "output/csv_row.hpp"
+#include "base/csv_row.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,9 +9,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "app/measured_twin.hpp"
 #include "blind/case.hpp"
 #include "diagnosis/diagnosis.hpp"
+#include "studies/measured_twin.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -31,8 +31,7 @@ Told told(const std::filesystem::path& folder) {
   for (const char* name : {"measured_1.csv", "measured_2.csv"}) {
     if (std::filesystem::exists(folder / name)) measured.push_back((folder / name).string());
   }
-  app::Progress progress;
-  app::MeasuredTwin m = app::open_measured_twin(scenario, "diagnose", measured, progress);
+  studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", measured, {});
   if (t.truth["without"].is_string()) m.how.without.insert(t.truth["without"].get<std::string>());
   t.diagnosis = diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how);
   std::filesystem::remove_all(folder.parent_path());

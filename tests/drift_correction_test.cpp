@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/errors.hpp"
-#include "compensation/drift_model.hpp"
-#include "compensation/fail_safe.hpp"
+#include "compensation/predictors/drift_model.hpp"
+#include "compensation/predictors/fail_safe.hpp"
 
 namespace driftwright::compensation {
 namespace {

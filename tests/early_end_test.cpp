@@ -34,9 +34,10 @@ solver: {output_interval: 60 s}
 
 /// Two records of the box with constant heat in its wall, which is found.
 const Beside& beside() {
-  static const Beside b(write_file("plain.yaml", kBox),
-                        noisy_records(write_file("truth.yaml", with_effect(kBox, "{type: heat_source, node: wall, power: 3 W, exponent: 0}")),
-                                      "box_", 60.0, 0.05, 0.1));
+  static const Beside b(
+      write_file("plain.yaml", kBox),
+      noisy_records(write_file("truth.yaml", with_effect(kBox, "{type: heat_source, node: wall, power: 3 W, exponent: 0}")),
+                    "box_", 60.0, 0.05, 0.1));
   return b;
 }
 
@@ -63,7 +64,8 @@ TEST(ADiagnosis, SaysWhatIsKnownWhereverItIsEnded) {
   for (std::size_t last = 0; last < all.size(); ++last) {
     SCOPED_TRACE(all[last]);
     std::size_t n_begun = 0;
-    const Listener listener{.on_begin = [&](const std::string&) { ++n_begun; }, .wants_end_now = [&] { return n_begun > last; }};
+    const Listener listener{.on_begin = [&](const std::string&) { ++n_begun; },
+                            .wants_end_now = [&] { return n_begun > last; }};
     const Diagnosis d = diagnose(*beside().twin, nullptr, beside().runs, {}, listener);
     EXPECT_NE(d.ended_at, "");
     EXPECT_NE(d.reason.find("before it was complete"), std::string::npos) << d.reason;

@@ -11,7 +11,7 @@
 #include "diagnosis/extended_scenario.hpp"
 #include "diagnosis/focus.hpp"
 #include "diagnosis/scatter.hpp"
-#include "scenarios/machine.hpp"
+#include "machine/machine.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::diagnosis {

@@ -12,8 +12,8 @@
 #include "diagnosis/experiment_check.hpp"
 #include "diagnosis/experiment_family.hpp"
 #include "diagnosis/scatter.hpp"
-#include "scenarios/machine.hpp"
-#include "scenarios/reduced_machine.hpp"
+#include "machine/machine.hpp"
+#include "machine/reduced_machine.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::diagnosis {

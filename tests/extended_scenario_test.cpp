@@ -8,8 +8,9 @@
 #include <functional>
 
 #include "diagnosis/scatter.hpp"
-#include "scenarios/as_recorded.hpp"
-#include "scenarios/machine.hpp"
+#include "machine/as_recorded.hpp"
+#include "machine/machine.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/column_and_head.hpp"
 

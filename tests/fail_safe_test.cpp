@@ -1,6 +1,6 @@
 // What stands between a predictor and the axis: every kind of broken sensor, and nothing where all is well.
 
-#include "compensation/fail_safe.hpp"
+#include "compensation/predictors/fail_safe.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/drift_model.hpp"
+#include "compensation/predictors/drift_model.hpp"
 #include "tests/sensor_records.hpp"
 
 namespace driftwright::compensation {

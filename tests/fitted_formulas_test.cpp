@@ -1,6 +1,6 @@
 // Each kind of regression against a closed form, against least squares where it must be that, and on laws known beforehand.
 
-#include "compensation/fitted_formulas.hpp"
+#include "compensation/predictors/fitted_formulas.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <set>
 
 #include "base/errors.hpp"
-#include "compensation/product_sums.hpp"
+#include "compensation/sensors/product_sums.hpp"
 #include "tests/sensor_records.hpp"
 
 namespace driftwright::compensation {

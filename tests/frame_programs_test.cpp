@@ -1,6 +1,6 @@
 // The thermal frame as programs of controls; LinuxCNC's is read by its own interpreter, where that is installed.
 
-#include "compensation/frame_programs.hpp"
+#include "compensation/frames/frame_programs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "base/errors.hpp"
-#include "scenarios/read_table.hpp"
+#include "scenarios/reader/read_table.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::compensation {

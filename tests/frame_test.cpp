@@ -1,13 +1,13 @@
 // The control's frames, and the thermal frame made of rings.
 
-#include "compensation/frame.hpp"
+#include "compensation/frames/frame.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
-#include "compensation/table_frame.hpp"
+#include "compensation/frames/table_frame.hpp"
 
 namespace driftwright::compensation {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "compensation/grey_relational.hpp"
-#include "compensation/ranking_stability.hpp"
+#include "compensation/sensors/grey_relational.hpp"
+#include "compensation/sensors/ranking_stability.hpp"
 #include "tests/sensor_records.hpp"
 
 namespace driftwright::compensation {

@@ -1,4 +1,4 @@
-#include "compensation/grey_relational.hpp"
+#include "compensation/sensors/grey_relational.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Names, signs and sums of the heat-flow record.
 
-#include "scenarios/heat_flow_record.hpp"
+#include "machine/heat_flow_record.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Modes identified from tests whose courses are sums of exponentials written down here.
 
-#include "compensation/identified_modes.hpp"
+#include "compensation/predictors/identified_modes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

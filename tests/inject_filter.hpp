@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "compensation/quadrature.hpp"
+#include "compensation/injector/quadrature.hpp"
 #include "tests/command_line.hpp"
 
 namespace driftwright {

@@ -1,4 +1,4 @@
-#include "compensation/injection_run.hpp"
+#include "compensation/injector/injection_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "compensation/interpolate.hpp"
+#include "compensation/sensors/interpolate.hpp"
 
 #include <gtest/gtest.h>
 

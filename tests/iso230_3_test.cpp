@@ -1,6 +1,6 @@
 // The figures of ISO 230-3 of a body that warms exponentially, d(t) = a (1 - exp(-t / tau)): closed form.
 
-#include "compensation/iso230_3.hpp"
+#include "compensation/judging/iso230_3.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

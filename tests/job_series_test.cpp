@@ -1,6 +1,6 @@
 // A run, a pause and parts, as one cyclogram.
 
-#include "scenarios/job_series.hpp"
+#include "machine/job_series.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

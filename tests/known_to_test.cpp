@@ -54,7 +54,8 @@ const Knob* knob(const std::vector<Knob>& list, const std::string& effect, const
 
 TEST(KnownTo, IsThePriorOfANumber) {
   const std::vector<std::string> records = records_of(machine("conductance: 12 W/K"));
-  const auto sd = [&](const std::string& link, const std::string& node, const std::string& effect, const std::string& where) {
+  const auto sd = [&](const std::string& link, const std::string& node, const std::string& effect,
+                      const std::string& where) {
     const Beside beside(write_file("known_to.yaml", machine(link, node)), records);
     const Knob* k = knob(scatter(*beside.twin), effect, where);
     return k ? k->prior_sd : 0.0;
@@ -77,7 +78,8 @@ TEST(KnownTo, OfAMaterialIsThatOfItsBody) {
   const std::string parts = "parts/", there = std::filesystem::absolute("scenarios/parts").string() + "/";
   for (std::size_t at = text.find(parts); at != std::string::npos; at = text.find(parts, at + there.size()))
     text.replace(at, parts.size(), there);
-  text.replace(text.find(plain), plain.size(), "  base: {like: mineral_casting, known_to: {conductivity: 2 %, expansion: fixed}}\n");
+  text.replace(text.find(plain), plain.size(),
+               "  base: {like: mineral_casting, known_to: {conductivity: 2 %, expansion: fixed}}\n");
   const std::string path = write_file("known_material.yaml", text);
   try {
     const scenarios::Scenario s = scenarios::read_scenario(path);

@@ -5,8 +5,9 @@
 
 #include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
-#include "scenarios/as_recorded.hpp"
-#include "scenarios/machine.hpp"
+#include "machine/as_recorded.hpp"
+#include "machine/machine.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
 #include "tests/temporary_file.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "scenarios/heat_flow_record.hpp"
-#include "scenarios/machine.hpp"
+#include "machine/heat_flow_record.hpp"
+#include "machine/machine.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::scenarios {

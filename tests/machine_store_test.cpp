@@ -1,6 +1,6 @@
 // Reduced machines on disk: what is found is what was kept, and nothing else is ever found.
 
-#include "scenarios/machine_store.hpp"
+#include "machine/machine_store.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <functional>
 
 #include "base/npy_file.hpp"
-#include "scenarios/machine_key.hpp"
-#include "scenarios/reduced_files.hpp"
+#include "machine/machine_key.hpp"
+#include "machine/reduced_files.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/reduced_transient.hpp"
 #include "tests/column_and_head.hpp"

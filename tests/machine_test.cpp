@@ -1,6 +1,6 @@
 // What indicators and tilts of the shipped machine read under rigid motions, known without any solver.
 
-#include "scenarios/machine.hpp"
+#include "machine/machine.hpp"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <functional>
 
-#include "scenarios/read_columns.hpp"
+#include "scenarios/reader/read_columns.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright {

@@ -1,6 +1,6 @@
 // Thermometers and memories against a truth of lags in closed form, against what cannot be predicted, and on a measured machine.
 
-#include "compensation/memory_regression.hpp"
+#include "compensation/predictors/memory_regression.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
-#include "compensation/score.hpp"
+#include "compensation/predictors/score.hpp"
 
 namespace driftwright::compensation {
 namespace {

@@ -1,6 +1,6 @@
 // The modal model of a machine with laws of temperature: frozen in the steady state of the mean drive.
 
-#include "compensation/modal_predictor.hpp"
+#include "compensation/predictors/modal_predictor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,11 @@
 // Offsets put into NC programs: where they may stand, and every byte of what is written.
 
-#include "base/nc_correction.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/nc_places.hpp"
-#include "base/nc_program.hpp"
+#include "nc/correction.hpp"
+#include "nc/places.hpp"
+#include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright {

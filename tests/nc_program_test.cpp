@@ -1,15 +1,14 @@
 // NC programs against times and travels computed by hand.
 
-#include "base/nc_program.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "base/nc_arc.hpp"
-#include "base/nc_sections.hpp"
+#include "nc/arc.hpp"
+#include "nc/program.hpp"
+#include "nc/sections.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright {

@@ -1,6 +1,6 @@
 // The observer on a machine of three lumped parts, whose every run has a closed form or an exact propagation.
 
-#include "compensation/observer.hpp"
+#include "compensation/predictors/observer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
-#include "compensation/model_scatter.hpp"
-#include "compensation/observability.hpp"
+#include "compensation/judging/model_scatter.hpp"
+#include "compensation/predictors/observability.hpp"
 #include "solver/propagator.hpp"
 
 namespace driftwright::compensation {

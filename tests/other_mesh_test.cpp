@@ -1,6 +1,6 @@
 // A second mesh of every machine that has a mesh size, and the twin that it gives `diagnose`.
 
-#include "app/other_mesh.hpp"
+#include "studies/other_mesh.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -8,12 +8,12 @@
 
 #include <cmath>
 
-#include "app/measured_twin.hpp"
 #include "mesh/gmsh_parts.hpp"
+#include "studies/measured_twin.hpp"
 #include "tests/column_and_head.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::app {
+namespace driftwright::studies {
 namespace {
 
 [[maybe_unused]] const bool kOwnStore =
@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 /// Nodes of a recipe's own mesh over those of the other, whose cells are `size` times as large.
 double n_nodes_ratio(const MeshRecipe& recipe, double size) {
-  const OtherMesh other = other_mesh(recipe, size);
+  const studies::OtherMesh other = studies::other_mesh(recipe, size);
   EXPECT_EQ(other.why_none, "");
   return static_cast<double>(scenarios::build_mesh(recipe).n_nodes()) /
          scenarios::build_mesh(other.recipe.value()).n_nodes();
@@ -46,7 +46,7 @@ std::string two_boxes_drawn() {
 
 // size^3 where cells fill the volume; thin walls and small parts keep their nodes whatever the size.
 TEST(OtherMesh, OfEveryRecipeWithASizeHasAnotherNumberOfNodes) {
-  const MeshRecipe mill = other_mesh(shipped("fp3_spindle.yaml"), 2.0).recipe.value();  // quick to mesh
+  const MeshRecipe mill = studies::other_mesh(shipped("fp3_spindle.yaml"), 2.0).recipe.value();  // quick to mesh
   mesh::ImportedMesh drawing;
   drawing.path = two_boxes_drawn();
   drawing.mesh_size_m = 0.012;
@@ -64,7 +64,7 @@ TEST(OtherMesh, OfEveryRecipeWithASizeHasAnotherNumberOfNodes) {
 
 TEST(OtherMesh, KeepsAllElse) {
   mesh::GantryTable table = std::get<mesh::GantryTable>(shipped("gantry_table.yaml"));
-  const auto other = std::get<mesh::GantryTable>(other_mesh(table, 1.25).recipe.value());
+  const auto other = std::get<mesh::GantryTable>(studies::other_mesh(table, 1.25).recipe.value());
   EXPECT_DOUBLE_EQ(other.mesh_size_m, 0.5);  // 400 mm as written
   EXPECT_EQ(other.table.length_m, table.table.length_m);
   EXPECT_EQ(other.element_order, table.element_order);
@@ -72,19 +72,19 @@ TEST(OtherMesh, KeepsAllElse) {
   drawing.path = "a.step";
   drawing.mesh_size_m = 0.02;
   drawing.mesh_size_of_region_m = {{"shaft", 0.01}};
-  const auto redrawn = std::get<mesh::ImportedMesh>(other_mesh(drawing, 1.25).recipe.value());
+  const auto redrawn = std::get<mesh::ImportedMesh>(studies::other_mesh(drawing, 1.25).recipe.value());
   EXPECT_DOUBLE_EQ(redrawn.mesh_size_m, 0.025);
   EXPECT_DOUBLE_EQ(redrawn.mesh_size_of_region_m.at("shaft"), 0.0125);
 }
 
 TEST(OtherMesh, IsNoneWhereThereIsNoSizeAndTheReasonIsSaid) {
-  const OtherMesh lumped = other_mesh(scenarios::LumpedMachine{}, 1.4);
+  const studies::OtherMesh lumped = studies::other_mesh(scenarios::LumpedMachine{}, 1.4);
   EXPECT_FALSE(lumped.recipe);
   EXPECT_THAT(lumped.why_none, HasSubstr("lumped"));
   for (const char* file : {"a.msh", "a.inp", "a.vtu"}) {
     mesh::ImportedMesh given;
     given.path = file;
-    const OtherMesh other = other_mesh(given, 1.4);
+    const studies::OtherMesh other = studies::other_mesh(given, 1.4);
     EXPECT_FALSE(other.recipe) << file;
     EXPECT_THAT(other.why_none, HasSubstr("node by node")) << file;
   }
@@ -124,10 +124,9 @@ std::string record() {
 
 TEST(MeasuredTwin, OfAGantryTableHasASecondMesh) {
   const auto scenario = scenarios::read_scenario(write_file("table.yaml", kTable));
-  Progress quiet;
-  const MeasuredTwin m = open_measured_twin(scenario, "diagnose", {record()}, quiet);
+  const studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", {record()}, {});
   ASSERT_TRUE(m.on_other_mesh);
-  EXPECT_EQ(one_mesh_text(m), "");
+  EXPECT_EQ(studies::one_mesh_text(m), "");
   EXPECT_NEAR(m.how.mesh_error_share, 1.0 / (1.4 * 1.4 - 1.0), 1e-12);
   EXPECT_NE(m.other->machine.n_unknowns, m.fine->machine.n_unknowns);
   RecordProperty("n_unknowns", fmt::format("{} {}", m.fine->machine.n_unknowns, m.other->machine.n_unknowns));
@@ -136,12 +135,12 @@ TEST(MeasuredTwin, OfAGantryTableHasASecondMesh) {
 TEST(MeasuredTwin, OfAMeshFromAFileSaysThatThereIsNoSecondOne) {
   fixtures::ColumnAndHead machine;
   const auto scenario = scenarios::read_scenario(fixtures::write_column_and_head(fresh_folder("given"), machine));
-  MeasuredTwin m;
+  studies::MeasuredTwin m;
   m.mesh = scenarios::build_mesh(scenario.machine->mesh);
-  m.why_one_mesh = other_mesh(scenario.machine->mesh, 1.4).why_none;
-  EXPECT_THAT(one_mesh_text(m), HasSubstr("node by node"));
-  EXPECT_THAT(one_mesh_text(m), HasSubstr("can pass for a cause"));
+  m.why_one_mesh = studies::other_mesh(scenario.machine->mesh, 1.4).why_none;
+  EXPECT_THAT(studies::one_mesh_text(m), HasSubstr("node by node"));
+  EXPECT_THAT(studies::one_mesh_text(m), HasSubstr("can pass for a cause"));
 }
 
 }  // namespace
-}  // namespace driftwright::app
+}  // namespace driftwright::studies

@@ -18,7 +18,8 @@ MeasuredRun growing(std::uint64_t seed) {
   for (int i = 0; i <= 600; ++i) run.time_s.push_back(60.0 * i);
   Random random(seed, 0);
   for (int section = 0; section < 10; ++section)
-    run.cyclogram.sections.push_back({.duration_s = 3600.0, .drive = {.speed_rpm = section % 2 ? 2000.0 * random.uniform() : 0.0}});
+    run.cyclogram.sections.push_back(
+        {.duration_s = 3600.0, .drive = {.speed_rpm = section % 2 ? 2000.0 * random.uniform() : 0.0}});
   run.hall = {{0.0}, {0.0}};
   Eigen::VectorXd growth(601), warm(601);
   double lagged = 0.0;
@@ -51,7 +52,8 @@ TEST(PlainRegression, DoesNotLookAtReadingsThatAreKeptOut) {
   MeasuredRun fitted = run, other = run;
   fitted.channels[0].value.tail(200).setConstant(std::nan(""));
   other.channels[0].value.tail(200).array() += 1e-3;
-  EXPECT_EQ(plain_regression({run}, {fitted}, 2, Regressors::kDrive)[0], plain_regression({other}, {fitted}, 2, Regressors::kDrive)[0]);
+  EXPECT_EQ(plain_regression({run}, {fitted}, 2, Regressors::kDrive)[0],
+            plain_regression({other}, {fitted}, 2, Regressors::kDrive)[0]);
 }
 
 TEST(PlainRegression, TakesThermometersWhereTheyAreAskedFor) {

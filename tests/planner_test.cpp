@@ -1,26 +1,26 @@
 // The policy of the block `schedule` is the one that judged plans are made by.
 
-#include "app/planner.hpp"
+#include "studies/planner.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "compensation/correction.hpp"
+#include "compensation/judging/correction.hpp"
 
-namespace driftwright::app {
+namespace driftwright::studies {
 namespace {
 
 using compensation::SchedulePolicy;
 
 TEST(Planner, ThePolicyOfTheScenarioPlans) {
   scenarios::Scenario scenario;
-  EXPECT_EQ(planner_of(scenario), SchedulePolicy::kMinimal);
+  EXPECT_EQ(studies::planner_of(scenario), SchedulePolicy::kMinimal);
   scenario.schedule.emplace();
   scenario.schedule->policy = "minimal";
-  EXPECT_EQ(planner_of(scenario), SchedulePolicy::kMinimal);
+  EXPECT_EQ(studies::planner_of(scenario), SchedulePolicy::kMinimal);
   scenario.schedule->policy = "paper";
-  ASSERT_EQ(planner_of(scenario), SchedulePolicy::kPaper);
+  ASSERT_EQ(studies::planner_of(scenario), SchedulePolicy::kPaper);
 
   // a drift of 0 to 45 um and a tolerance of 10 um: `paper` corrects by whole tolerances, `minimal` by as much as it needs
   std::vector<double> time_s, drift_um;
@@ -29,8 +29,8 @@ TEST(Planner, ThePolicyOfTheScenarioPlans) {
     drift_um.push_back(0.5 * i);
   }
   const std::vector<double> boundaries_s = {0.0, 5400.0};
-  const compensation::CorrectedRun paper =
-      compensation::correct_by_schedule({time_s, drift_um, boundaries_s, 10.0}, drift_um, 0.0, planner_of(scenario));
+  const compensation::CorrectedRun paper = compensation::correct_by_schedule({time_s, drift_um, boundaries_s, 10.0},
+                                                                             drift_um, 0.0, studies::planner_of(scenario));
   ASSERT_TRUE(paper.schedule);
   double corrected_um = 0.0;
   for (const compensation::Correction& c : paper.schedule->operations.front().corrections) {
@@ -41,4 +41,4 @@ TEST(Planner, ThePolicyOfTheScenarioPlans) {
 }
 
 }  // namespace
-}  // namespace driftwright::app
+}  // namespace driftwright::studies

@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "base/errors.hpp"
-#include "compensation/formula_predictor.hpp"
-#include "compensation/past_drift.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
+#include "compensation/predictors/past_drift.hpp"
 #include "tests/deployed_model.hpp"
 #include "tests/temporary_file.hpp"
 

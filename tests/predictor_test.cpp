@@ -1,6 +1,6 @@
 // Every predictor says of a row what it says of the whole run, and looks at nothing that lies behind it.
 
-#include "compensation/predictor.hpp"
+#include "compensation/predictors/predictor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/driven_predictor.hpp"
-#include "compensation/formula_predictor.hpp"
-#include "compensation/past_drift.hpp"
+#include "compensation/predictors/driven_predictor.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
+#include "compensation/predictors/past_drift.hpp"
 #include "tests/sensor_records.hpp"
 
 namespace driftwright::compensation {

@@ -1,6 +1,6 @@
 // Sets of sensors judged from sums alone, against fits made anew; and what is refused or passed over.
 
-#include "compensation/product_sums.hpp"
+#include "compensation/sensors/product_sums.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/regression.hpp"
+#include "compensation/predictors/regression.hpp"
 #include "tests/sensor_records.hpp"
 
 namespace driftwright::compensation {

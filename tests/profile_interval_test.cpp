@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "app/measured_twin.hpp"
 #include "base/random.hpp"
 #include "diagnosis/interval.hpp"
 #include "diagnosis/scatter.hpp"
+#include "studies/measured_twin.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::diagnosis {
@@ -41,9 +41,8 @@ cyclograms:
       text += fmt::format("{},0,20,{:.6f},{:.6f}\n", time_s, 20.0 + noise_K,
                           1e6 * ((time_s >= kShiftAt_s ? kShift_m : 0.0) + noise_m));
     }
-    app::Progress progress;
     m_.emplace(
-        app::open_measured_twin(scenarios::read_scenario(scenario), "diagnose", {write_file("idle.csv", text)}, progress));
+        studies::open_measured_twin(scenarios::read_scenario(scenario), "diagnose", {write_file("idle.csv", text)}, {}));
     list_ = candidates(*m_->twin, m_->runs, {});
     fitter_ = std::make_unique<Fitter>(*m_->twin, m_->runs, scatter(*m_->twin), std::vector<Prediction>{});
     fitter_->set_noise({{"t_body", {kNoise_K, 0.0, 0.0}}, {"tip_z", {kNoise_m, 0.0, 0.0}}});
@@ -55,7 +54,7 @@ cyclograms:
     return {};
   }
 
-  std::optional<app::MeasuredTwin> m_;
+  std::optional<studies::MeasuredTwin> m_;
   std::vector<Candidate> list_;
   std::unique_ptr<Fitter> fitter_;
 };

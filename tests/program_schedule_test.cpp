@@ -1,6 +1,6 @@
 // Corrections of whole programs, judged by following the corrected text as a control does.
 
-#include "compensation/program_schedule.hpp"
+#include "compensation/schedule/program_schedule.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <random>
 #include <sstream>
 
-#include "base/nc_program.hpp"
-#include "compensation/interpolate.hpp"
+#include "compensation/sensors/interpolate.hpp"
+#include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::compensation {

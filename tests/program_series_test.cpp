@@ -1,14 +1,14 @@
 // One program for parts that agree, and what a plan leaves of another part's drift.
 
-#include "compensation/program_series.hpp"
+#include "compensation/schedule/program_series.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/nc_program.hpp"
-#include "compensation/interpolate.hpp"
+#include "compensation/sensors/interpolate.hpp"
+#include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::compensation {

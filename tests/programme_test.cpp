@@ -1,6 +1,6 @@
 // The block `programme:` as it is read, and the cyclograms that come of it.
 
-#include "scenarios/programme.hpp"
+#include "scenarios/reader/programme.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "compensation/pulse_injector.hpp"
+#include "compensation/injector/pulse_injector.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "compensation/quadrature.hpp"
+#include "compensation/injector/quadrature.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

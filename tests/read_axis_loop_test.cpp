@@ -1,4 +1,4 @@
-#include "scenarios/read_axis_loop.hpp"
+#include "scenarios/reader/read_axis_loop.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "scenarios/read_cyclogram.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/nc_program.hpp"
-#include "scenarios/machine.hpp"
-#include "scenarios/read_hall.hpp"
-#include "scenarios/recorded_run.hpp"
+#include "machine/machine.hpp"
+#include "nc/program.hpp"
+#include "scenarios/reader/read_hall.hpp"
+#include "scenarios/reader/recorded_run.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::scenarios {

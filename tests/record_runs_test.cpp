@@ -1,6 +1,6 @@
 // Long records: parts of them, runs between rests, and what goes on from what came before.
 
-#include "scenarios/record_runs.hpp"
+#include "scenarios/reader/record_runs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <filesystem>
 
 #include "base/errors.hpp"
-#include "compensation/drift_model.hpp"
-#include "compensation/observed_run.hpp"
-#include "scenarios/record_part.hpp"
-#include "scenarios/recorded_run.hpp"
+#include "compensation/predictors/drift_model.hpp"
+#include "compensation/predictors/observed_run.hpp"
+#include "scenarios/reader/record_part.hpp"
+#include "scenarios/reader/recorded_run.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::scenarios {

@@ -1,6 +1,6 @@
 // Records that people bring: what is wrong with them is named before anything is fitted.
 
-#include "app/record_study.hpp"
+#include "studies/record_study.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,12 +8,12 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/fitted_formulas.hpp"
-#include "compensation/sensor_selection.hpp"
+#include "compensation/predictors/fitted_formulas.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
 #include "tests/sensor_records.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::app {
+namespace driftwright::studies {
 namespace {
 
 using ::testing::AllOf;
@@ -24,7 +24,7 @@ using ::testing::ThrowsMessage;
 
 TEST(SensorWarnings, NameWhatIsFlatMissingOrDouble) {
   std::vector<Record> records = {fixtures::sensor_record(1, 200, 6, 0.3), fixtures::sensor_record(2, 200, 6, 0.3)};
-  EXPECT_THAT(sensor_warnings(records, {"X1", "X2", "X3"}), IsEmpty());
+  EXPECT_THAT(studies::sensor_warnings(records, {"X1", "X2", "X3"}), IsEmpty());
   Random random(1);
   for (Record& r : records) {
     std::fill(r.channels[0].values.begin(), r.channels[0].values.end(), 21.5);
@@ -32,7 +32,7 @@ TEST(SensorWarnings, NameWhatIsFlatMissingOrDouble) {
     for (std::size_t i = 0; i < 200; ++i)
       r.channels[4].values[i] = 3.0 - 2.0 * r.channels[3].values[i] + 0.01 * random.normal();
   }
-  const std::vector<std::string> lines = sensor_warnings(records, fixtures::sensor_names(6));
+  const std::vector<std::string> lines = studies::sensor_warnings(records, fixtures::sensor_names(6));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("X1"), HasSubstr("21.5"), HasSubstr("flat"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("X2"), HasSubstr("25 %"))));
   EXPECT_THAT(lines, Contains(AllOf(HasSubstr("X4 and X5"), HasSubstr("move as one"))));
@@ -42,7 +42,8 @@ TEST(SensorWarnings, NameWhatIsFlatMissingOrDouble) {
 TEST(SensorWarnings, NameASensorThatNeverReads) {
   std::vector<Record> records = {fixtures::sensor_record(1, 50, 3, 0.3)};
   std::fill(records[0].channels[1].values.begin(), records[0].channels[1].values.end(), NAN);
-  EXPECT_THAT(sensor_warnings(records, fixtures::sensor_names(3)), Contains(AllOf(HasSubstr("X2"), HasSubstr("100 %"))));
+  EXPECT_THAT(studies::sensor_warnings(records, fixtures::sensor_names(3)),
+              Contains(AllOf(HasSubstr("X2"), HasSubstr("100 %"))));
 }
 
 struct Bad {
@@ -103,7 +104,7 @@ TEST(SensorWarnings, NameExchangedSensorsAndTheirRecord) {
     return r;
   };
   const auto named = [&](const std::vector<Record>& records) {
-    std::vector<std::string> lines = sensor_warnings(records, names);
+    std::vector<std::string> lines = studies::sensor_warnings(records, names);
     std::erase_if(lines, [](const std::string& line) { return line.find("exchanged") == std::string::npos; });
     return lines;
   };
@@ -114,4 +115,4 @@ TEST(SensorWarnings, NameExchangedSensorsAndTheirRecord) {
 }
 
 }  // namespace
-}  // namespace driftwright::app
+}  // namespace driftwright::studies

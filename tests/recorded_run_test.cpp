@@ -1,4 +1,4 @@
-#include "scenarios/recorded_run.hpp"
+#include "scenarios/reader/recorded_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

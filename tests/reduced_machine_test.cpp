@@ -1,6 +1,6 @@
 // A machine made small against the machine itself.
 
-#include "scenarios/reduced_machine.hpp"
+#include "machine/reduced_machine.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <thread>
 
+#include "base/csv_row.hpp"
 #include "base/record.hpp"
-#include "output/csv_row.hpp"
 #include "tests/column_and_head.hpp"
 #include "tests/command_line.hpp"
 
@@ -144,7 +144,7 @@ Table read_table(const fs::path& file) {
   Table rows;
   std::istringstream in(read_text(file));
   for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with("#")) rows.push_back(output::csv_cells(line));
+    if (!line.starts_with("#")) rows.push_back(csv_cells(line));
   }
   return rows;
 }

@@ -1,13 +1,13 @@
 // Standard errors, VIF, Durbin-Watson and R^2: certified values, hand arithmetic, and extended precision where sensors are alike.
 
-#include "compensation/regression_quality.hpp"
+#include "compensation/predictors/regression_quality.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "compensation/product_sums.hpp"
+#include "compensation/sensors/product_sums.hpp"
 #include "tests/sensor_records.hpp"
 
 namespace driftwright::compensation {

@@ -1,4 +1,4 @@
-#include "compensation/regression.hpp"
+#include "compensation/predictors/regression.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,13 +1,13 @@
 // A record that follows another, by hand.
 
-#include "app/run_up.hpp"
+#include "compensation/judging/run_up.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace driftwright::app {
+namespace driftwright::compensation {
 namespace {
 
 using ::testing::ElementsAre;
@@ -24,7 +24,8 @@ Record minutes(const std::string& source, int from, int to) {
 }
 
 TEST(RunUp, IsTheRowsBeforeWithoutTheTarget) {
-  const RunUp run = with_run_up(minutes("b", 3, 5), {minutes("x", 50, 60), minutes("a", 0, 3)}, "z");
+  const compensation::RunUp run =
+      compensation::with_run_up(minutes("b", 3, 5), {minutes("x", 50, 60), minutes("a", 0, 3)}, "z");
   EXPECT_EQ(run.follows, "a");
   EXPECT_THAT(run.record.time_s, ElementsAre(0, 60, 120, 180, 240));
   EXPECT_THAT(run.record.at("bed").values, ElementsAre(100, 101, 102, 103, 104));
@@ -37,7 +38,7 @@ TEST(RunUp, IsTheRowsBeforeWithoutTheTarget) {
 TEST(RunUp, FindsItsChannelsInAnyOrderAndReachesTwelveHoursBack) {
   Record before = minutes("a", 0, 2000);
   std::swap(before.channels[0], before.channels[1]);
-  const RunUp run = with_run_up(minutes("b", 2000, 2010), {before}, "z");
+  const compensation::RunUp run = compensation::with_run_up(minutes("b", 2000, 2010), {before}, "z");
   EXPECT_EQ(run.record.time_s.front(), 60.0 * (2000 - 720));
   EXPECT_EQ(run.record.at("speed").values.front(), 1280.0);
   EXPECT_EQ(run.record.n_samples(), 730u);
@@ -50,12 +51,12 @@ TEST(RunUp, IsNotFoundWhereClocksOrChannelsDiffer) {
   one_less.channels.pop_back();
   for (const Record& before :
        {minutes("long before", 0, 24), minutes("at the same time", 0, 31), minutes("later", 41, 50), other_unit, one_less}) {
-    const RunUp alone = with_run_up(run, {before}, "z");
+    const compensation::RunUp alone = compensation::with_run_up(run, {before}, "z");
     EXPECT_THAT(alone.follows, IsEmpty()) << before.source;
     EXPECT_EQ(alone.record.time_s, run.time_s);
   }
-  EXPECT_EQ(with_run_up(run, {minutes("a", 0, 26)}, "z").follows, "a");  // four rows are missing between them
+  EXPECT_EQ(compensation::with_run_up(run, {minutes("a", 0, 26)}, "z").follows, "a");  // four rows are missing between them
 }
 
 }  // namespace
-}  // namespace driftwright::app
+}  // namespace driftwright::compensation

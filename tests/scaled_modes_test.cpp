@@ -1,6 +1,6 @@
 // A model that is wrong in known factors, mended by noisy tests.
 
-#include "compensation/scaled_modes.hpp"
+#include "compensation/predictors/scaled_modes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "app/measured_twin.hpp"
 #include "diagnosis/fit.hpp"
 #include "diagnosis/scatter.hpp"
+#include "studies/measured_twin.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::diagnosis {
@@ -49,9 +49,9 @@ std::string record(const std::string& name, double rpm) {
 }
 
 TEST(ScatterSlopes, AreThoseOfRunsForEveryNumber) {
-  app::Progress progress;
-  const app::MeasuredTwin m = app::open_measured_twin(scenarios::read_scenario(write_file("two_bodies.yaml", kScenario)),
-                                                      "diagnose", {record("first", 3000), record("second", 1000)}, progress);
+  const studies::MeasuredTwin m =
+      studies::open_measured_twin(scenarios::read_scenario(write_file("two_bodies.yaml", kScenario)), "diagnose",
+                                  {record("first", 3000), record("second", 1000)}, {});
   const std::vector<Knob> knobs = scatter(*m.twin);
   ASSERT_GE(knobs.size(), 9u);
   Fitter fitter(*m.twin, m.runs, knobs, {});

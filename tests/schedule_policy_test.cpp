@@ -1,6 +1,6 @@
 // The policies of correction schedules: the paper's example, and the fewest changes against all plans there are.
 
-#include "compensation/schedule_policy.hpp"
+#include "compensation/schedule/schedule_policy.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <random>
 
 #include "base/errors.hpp"
-#include "compensation/interpolate.hpp"
+#include "compensation/sensors/interpolate.hpp"
 
 namespace driftwright::compensation {
 namespace {

@@ -1,6 +1,6 @@
 // Plans of a cyclogram, and the paper's notation of them.
 
-#include "compensation/schedule.hpp"
+#include "compensation/schedule/schedule.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/interpolate.hpp"
-#include "compensation/schedule_policy.hpp"
+#include "compensation/schedule/schedule_policy.hpp"
+#include "compensation/sensors/interpolate.hpp"
 
 namespace driftwright::compensation {
 namespace {

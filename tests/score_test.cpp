@@ -1,4 +1,4 @@
-#include "compensation/score.hpp"
+#include "compensation/predictors/score.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "scenarios/body_parts.hpp"
-#include "scenarios/reduced_machine.hpp"
+#include "machine/body_parts.hpp"
+#include "machine/reduced_machine.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/steady_state.hpp"
 #include "solver/transient.hpp"

@@ -1,6 +1,6 @@
 // A set of sensors known beforehand is found, by each selector in its own way.
 
-#include "compensation/sensor_selection.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

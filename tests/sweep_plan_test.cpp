@@ -1,6 +1,6 @@
 // Studies: what they vary, which members that makes, who shares what, and what is refused.
 
-#include "scenarios/sweep_plan.hpp"
+#include "scenarios/reader/sweep_plan.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

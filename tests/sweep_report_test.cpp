@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "app/sweep_member.hpp"
-#include "app/sweep_run.hpp"
+#include "studies/sweep_member.hpp"
+#include "studies/sweep_run.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -17,13 +17,13 @@ using scenarios::Scalar;
 TEST(ScalarOf, PeakIsFarthestFromNeutralWithItsSign) {
   const Channel channel{"a", "um", {0.0, 3.0, -5.0, 5.0, 1.0}};
   const Record record{"", {0, 10, 20, 30, 40}, {channel}};
-  EXPECT_EQ(scalar_of(record, channel, Scalar::kPeak, 0.0), -5.0) << "the first of equals";
-  EXPECT_EQ(scalar_of(record, channel, Scalar::kTimeOfPeak, 0.0), 20.0);
-  EXPECT_EQ(scalar_of(record, channel, Scalar::kPeak, -4.0), 5.0);
-  EXPECT_EQ(scalar_of(record, channel, Scalar::kTimeOfPeak, -4.0), 30.0);
-  EXPECT_EQ(scalar_of(record, channel, Scalar::kEnd, 0.0), 1.0);
-  EXPECT_EQ(scalar_of(record, channel, Scalar::kMin, 0.0), -5.0);
-  EXPECT_EQ(scalar_of(record, channel, Scalar::kMax, 0.0), 5.0);
+  EXPECT_EQ(studies::scalar_of(record, channel, Scalar::kPeak, 0.0), -5.0) << "the first of equals";
+  EXPECT_EQ(studies::scalar_of(record, channel, Scalar::kTimeOfPeak, 0.0), 20.0);
+  EXPECT_EQ(studies::scalar_of(record, channel, Scalar::kPeak, -4.0), 5.0);
+  EXPECT_EQ(studies::scalar_of(record, channel, Scalar::kTimeOfPeak, -4.0), 30.0);
+  EXPECT_EQ(studies::scalar_of(record, channel, Scalar::kEnd, 0.0), 1.0);
+  EXPECT_EQ(studies::scalar_of(record, channel, Scalar::kMin, 0.0), -5.0);
+  EXPECT_EQ(studies::scalar_of(record, channel, Scalar::kMax, 0.0), 5.0);
 }
 
 TEST(RankCorrelation, LooksAtOrderAlone) {
@@ -38,13 +38,14 @@ TEST(RankCorrelation, LooksAtOrderAlone) {
 TEST(TableRow, SaysWhyAMemberFailedOnOneLine) {
   scenarios::SweepPlan plan;
   plan.collect.resize(2);
-  const std::string good = table_row(plan, {.member = 4, .results = {1.25, -1.0 / 3}, .failure = "", .is_refused = false});
+  const std::string good =
+      studies::table_row(plan, {.member = 4, .results = {1.25, -1.0 / 3}, .failure = "", .is_refused = false});
   EXPECT_EQ(good, "5,1.25,-0.3333333,done");
-  EXPECT_TRUE(is_done(good));
+  EXPECT_TRUE(studies::is_done(good));
   const std::string bad =
-      table_row(plan, {.member = 0, .results = {}, .failure = "no, done\n  excerpt", .is_refused = true});
+      studies::table_row(plan, {.member = 0, .results = {}, .failure = "no, done\n  excerpt", .is_refused = true});
   EXPECT_EQ(bad, "1,,,\"refused: no, done\"");
-  EXPECT_FALSE(is_done(bad));
+  EXPECT_FALSE(studies::is_done(bad));
 }
 
 }  // namespace

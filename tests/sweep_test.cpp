@@ -10,8 +10,8 @@
 #include <chrono>
 #include <thread>
 
+#include "base/csv_row.hpp"
 #include "base/record.hpp"
-#include "output/csv_row.hpp"
 #include "tests/command_line.hpp"
 
 namespace driftwright {
@@ -50,7 +50,7 @@ Table read_table(const fs::path& file) {
   Table rows;
   std::istringstream in(read_text(file));
   for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with("#")) rows.push_back(output::csv_cells(line));
+    if (!line.starts_with("#")) rows.push_back(csv_cells(line));
   }
   return rows;
 }

@@ -9,7 +9,7 @@
 #include <map>
 #include <sstream>
 
-#include "compensation/frame_programs.hpp"
+#include "compensation/frames/frame_programs.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::compensation {

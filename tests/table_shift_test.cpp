@@ -1,6 +1,6 @@
 // A table's error over a shift, and what few readings of it carry.
 
-#include "compensation/table_shift.hpp"
+#include "compensation/frames/table_shift.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/even_growth.hpp"
-#include "compensation/hall_models.hpp"
-#include "compensation/minimax_frame.hpp"
+#include "compensation/frames/even_growth.hpp"
+#include "compensation/frames/hall_models.hpp"
+#include "compensation/frames/minimax_frame.hpp"
 
 namespace driftwright::compensation {
 namespace {

@@ -1,4 +1,4 @@
-#include "compensation/temperature_ambiguity.hpp"
+#include "compensation/judging/temperature_ambiguity.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "compensation/thermometers.hpp"
+#include "compensation/sensors/thermometers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/score.hpp"
+#include "compensation/predictors/score.hpp"
 
 namespace driftwright::compensation {
 namespace {

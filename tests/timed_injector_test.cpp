@@ -1,4 +1,4 @@
-#include "compensation/timed_injector.hpp"
+#include "compensation/injector/timed_injector.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/random.hpp"
-#include "compensation/encoder.hpp"
+#include "compensation/injector/encoder.hpp"
 
 namespace driftwright::compensation {
 namespace {

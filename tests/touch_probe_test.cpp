@@ -1,6 +1,6 @@
 // A touch probe that reports late, and how its lag is undone.
 
-#include "compensation/touch_probe.hpp"
+#include "compensation/frames/touch_probe.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
-#include "compensation/probe_study.hpp"
+#include "compensation/frames/probe_study.hpp"
 
 namespace driftwright::compensation {
 namespace {

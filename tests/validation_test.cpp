@@ -1,6 +1,6 @@
 // What strategies are judged on, as read; and what a study would be worth nothing with.
 
-#include "scenarios/validation.hpp"
+#include "scenarios/reader/validation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "blind/network.hpp"
-#include "scenarios/machine.hpp"
+#include "machine/machine.hpp"
 
 namespace driftwright::blind {
 

@@ -1,0 +1,32 @@
+#include "app/library_settings.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace driftwright::app {
+namespace {
+
+constexpr const char* kSpins = "10000";  // some microseconds
+
+/// @return whether it was missing
+bool set_missing(const char* name, const char* value) {
+  const char* present = std::getenv(name);
+  return !(present && *present) && setenv(name, value, 1) == 0;
+}
+
+}  // namespace
+
+void restart_with_library_settings(char** argv) {
+  bool is_new = false;
+  const char* policy = std::getenv("OMP_WAIT_POLICY");
+  if (!(policy && *policy)) is_new = set_missing("GOMP_SPINCOUNT", kSpins);
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+    is_new = set_missing("OPENBLAS_CORETYPE", "SKYLAKEX") || is_new;
+#endif
+  if (is_new) execv("/proc/self/exe", argv);  // comes back where it cannot
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,14 @@
+#pragma once
+// Settings that libraries read once, when they are loaded, and that make the program faster: OpenMP's waiting, OpenBLAS's kernels.
+
+namespace driftwright::app {
+
+/// Starts the program anew with those settings in its environment where they are missing; what the user set stays. Returns where nothing is
+/// missing, or where it cannot be started anew: it is then slower and as right. Call it first.
+///
+/// - GOMP_SPINCOUNT, unless OMP_WAIT_POLICY or itself is set: how long a thread that waits turns in a loop before it sleeps. The default of libgomp is
+///   milliseconds, which on a busy machine are taken from the thread that it waits for.
+/// - OPENBLAS_CORETYPE: OpenBLAS of Debian 12 takes processors younger than itself for old ones; SKYLAKEX it knows, and its kernels are as wide.
+void restart_with_library_settings(char** argv);
+
+}  // namespace driftwright::app

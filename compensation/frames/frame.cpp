@@ -1,0 +1,43 @@
+#include "compensation/frames/frame.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "base/errors.hpp"
+
+namespace driftwright::compensation {
+
+Frame frame_of(const FrameParts& parts) {
+  if (!parts.shift_m.allFinite() || !parts.rotation_rad.allFinite() || !parts.scale.allFinite())
+    throw RangeError("a frame's shift, rotation and scale must be finite");
+  Eigen::Vector3d scale = parts.scale;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(scale[axis] > 0.0))
+      throw RangeError(fmt::format("a frame's scale along {} is {:g}; above 0 is wanted", "XYZ"[axis], scale[axis]));
+    if (parts.mirror[axis]) scale[axis] = -scale[axis];
+  }
+  const auto about = [&](int axis) {
+    return Eigen::AngleAxisd(parts.rotation_rad[axis], Eigen::Vector3d::Unit(axis)).toRotationMatrix();
+  };
+  return {.linear = about(2) * about(1) * about(0) * scale.asDiagonal(), .shift_m = parts.shift_m};
+}
+
+Frame compose(const Frame& outer, const Frame& inner) {
+  return {.linear = outer.linear * inner.linear, .shift_m = outer.linear * inner.shift_m + outer.shift_m};
+}
+
+Frame inverse(const Frame& frame) {
+  const double volume = frame.linear.determinant();
+  if (!(std::abs(volume) > 1e-12)) throw RangeError("a frame that flattens space has no inverse");
+  const Eigen::Matrix3d back = frame.linear.inverse();
+  return {.linear = back, .shift_m = -back * frame.shift_m};
+}
+
+Frame active_frame(const FrameChain& chain) {
+  return compose(chain.base, compose(chain.settable, chain.programmable));
+}
+
+}  // namespace driftwright::compensation

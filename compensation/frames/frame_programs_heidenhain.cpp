@@ -1,0 +1,54 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "compensation/frames/frame_programs_text.hpp"
+
+namespace driftwright::compensation {
+
+std::vector<ProgramFile> heidenhain_frame(const FrameProgram& p) {
+  const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
+  const double bore_mm = 1e3 * (p.free_diameter_m + p.ball_diameter_m);  // the cycle takes the ball off itself
+  std::vector<std::string> blocks = {"BEGIN PGM THERMFRAME MM", "; " + p.made_by, "; " + last_numbers(p),
+                                     "; " + origin_words(p)};
+  const auto add = [&](std::string block) { blocks.push_back(std::move(block)); };
+  for (const char* block :
+       {"; By PGM CALL, with the probe called and the datum at machine zero. Q40 to Q43 keep the frame in force",
+        "; If the control itself stops in a touch no frame is in force: call again, or set cycles 7, 10, 26 to Q40 to Q43",
+        "FN 10: IF +Q42 NE +0 GOTO LBL 1", "FN 0: Q42 = +1", "LBL 1", "FN 0: Q44 = +1", "CYCL DEF 7.0 DATUM SHIFT",
+        "CYCL DEF 7.1 X+0", "CYCL DEF 7.2 Y+0", "CYCL DEF 7.3 Z+0", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0",
+        "CYCL DEF 26.0 AXIS-SPEC. SCALING", "CYCL DEF 26.1 X1 CCX+0 CCY+0"})
+    add(block);
+  for (std::size_t r = 0; r < 2; ++r) {
+    const auto& at = p.rings[r].at_m;
+    add(fmt::format(
+        "TCH PROBE 421 MEASURE HOLE ~\n    Q273={:+.4f} ~\n    Q274={:+.4f} ~\n    Q262={:+.3f} ~\n    Q325=+0 ~\n"
+        "    Q247=+90 ~\n    Q261={:+.4f} ~\n    Q320=+2 ~\n    Q260={:+.4f} ~\n    Q301=+0 ~\n"
+        "    Q275={:+.3f} ~\n    Q276={:+.3f} ~\n    Q279=+3 ~\n    Q280=+3 ~\n    Q281=+0 ~\n    Q309=+0 ~\n"
+        "    Q330=+0",
+        1e3 * at[0], 1e3 * at[1], bore_mm, 1e3 * (at[2] - p.depth_m), 1e3 * (at[2] + p.clearance_m), bore_mm + 1.0,
+        bore_mm - 1.0));
+    add(fmt::format("FN 11: IF +Q153 GT {:+.3f} GOTO LBL 99", bore_mm + 1.0));
+    add(fmt::format("FN 12: IF +Q153 LT {:+.3f} GOTO LBL 99", bore_mm - 1.0));
+    add(fmt::format("FN 0: Q{} = +Q151", 1 + 10 * r));
+    add(fmt::format("FN 0: Q{} = +Q152", 2 + 10 * r));
+  }
+  add(fmt::format("Q20 = ( Q11 - Q1 ) / {}", mm(b[0] - a[0])));
+  add(fmt::format("FN 11: IF +Q20 GT +{:.6f} GOTO LBL 99", 1.0 + kMostScale));
+  add(fmt::format("FN 12: IF +Q20 LT +{:.6f} GOTO LBL 99", 1.0 - kMostScale));
+  add(fmt::format("Q40 = Q1 - Q20 * ( {} )", mm(a[0])));  // the datum shift acts after the scale
+  add("FN 0: Q42 = +Q20");
+  add(fmt::format("Q43 = ATAN ( ( Q12 - Q2 ) / ( Q11 - Q1 ) ) - ( {:.9f} )",
+                  kDegrees * std::atan2(b[1] - a[1], b[0] - a[0])));
+  add(fmt::format("Q41 = ( Q2 + Q12 ) / 2 - ( {} ) - SIN Q43 * ( Q1 + Q11 ) / 2", mm(0.5 * (a[1] + b[1]))));
+  for (const char* block : {"FN 0: Q44 = +0", "LBL 99", "CYCL DEF 7.0 DATUM SHIFT", "CYCL DEF 7.1 X+Q40",
+                            "CYCL DEF 7.2 Y+Q41", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+Q43",
+                            "CYCL DEF 26.0 AXIS-SPEC. SCALING", "CYCL DEF 26.1 XQ42 CCX+0 CCY+0",
+                            "FN 9: IF +Q44 EQU +0 GOTO LBL 100", "FN 14: ERROR = 1000", "LBL 100", "END PGM THERMFRAME MM"})
+    add(block);
+  std::string text;
+  for (std::size_t i = 0; i < blocks.size(); ++i) text += fmt::format("{} {}\n", i, blocks[i]);
+  return {{"heidenhain/THERMFRAME.H", text}};
+}
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "compensation/frames/frame_programs_text.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+// A preview touches nothing and must not refuse: #<_task> is 0 there. M66 waits for what is queued, which ABORT would drop.
+std::string refusal(std::size_t label, const std::string& condition, const std::string& way_out, const std::string& words) {
+  return fmt::format(
+      "o{} if [[#<_task> EQ 1] AND [{}]]\n{}G54\nM66 E0 L0\n(ABORT, {}; the old G59.3 stays)\nM2\no{} endif\n", label,
+      condition, way_out, words, label);
+}
+
+// Touches into #base .. #base + 4, the middle into #base + 5 and #base + 6.
+std::string ring_touches(const FrameProgram& p, const ProgramRing& ring, std::size_t base) {
+  const auto& at = ring.at_m;
+  const std::string up = fmt::format("G0 Z{}\n", mm(at[2] + p.clearance_m));
+  const auto missing = [&](std::size_t i) {
+    return refusal(base + i, "#5070 EQ 0", up, fmt::format("ring {} missing", ring.name));
+  };
+  std::string text =
+      fmt::format("(ring {})\n{}G0 X{} Y{}\nG1 Z{} F2000\n", ring.name, up, mm(at[0]), mm(at[1]), mm(at[2] - p.depth_m));
+  for (std::size_t i = 0; i < 4; ++i) {
+    const int axis = i < 2 ? 0 : 1;
+    const double to_m = at[axis] + (i % 2 ? -1.0 : 1.0) * search_m(p);
+    text += fmt::format("G38.3 {}{} F{:.0f}\n{}#{} = #{}\nG1 X{} Y{} F2000\n", "XY"[axis], mm(to_m), p.feed_mm_min,
+                        missing(i), base + i, 5061 + axis, mm(at[0]), mm(at[1]));
+  }
+  text += fmt::format("G0 Z{}\nG0 X{}\nG38.3 Z{} F{:.0f}\n{}#{} = #5063\n{}", mm(at[2] + 5e-3),
+                      mm(at[0] + 0.5 * p.free_diameter_m + 8e-3), mm(at[2] - 3e-3), p.feed_mm_min, missing(4), base + 4, up);
+  text += refusal(base + 7, fmt::format("ABS[#{} - {}] GT {:g}", base + 4, mm(at[2]), 1e3 * kMostRise_m), "",
+                  fmt::format("height of ring {}: look at the length of the probe and the origin", ring.name));
+  for (std::size_t side : {base, base + 2}) {
+    text += refusal(side + 8, fmt::format("ABS[#{} - #{} - {}] GT 1", side, side + 1, mm(p.free_diameter_m)), "",
+                    fmt::format("ring {} touched at the wrong side", ring.name));
+  }
+  return text + fmt::format("#{} = [[#{} + #{}] / 2]\n#{} = [[#{} + #{}] / 2]\n", base + 5, base, base + 1, base + 6,
+                            base + 2, base + 3);
+}
+
+// The scale acts on the joint, after all offsets: what stands in G59.3 is the shift before it, turned and moved as G54 is.
+std::string therm_frame(const FrameProgram& p) {
+  const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
+  std::string text = fmt::format("(Driftwright: rings by G38.3, the thermal frame into G59.3)\n({})\n({})\n",
+                                 last_numbers(p), origin_words(p));
+  text +=
+      "(G59.3 becomes G54 with the correction; G54 stays. Programs to be corrected run in G59.3; after a change of G54 run "
+      "this anew)\n"
+      "(G59.2 is used for probing. T and M6 of the probe first: its length comes from the tool table)\n"
+      "G21 G90 G94 G17 G40\n";
+  text += refusal(90, "#5400 LE 0", "", "no probe in the spindle, its length is wanted");
+  text += refusal(91, "#5210 EQ 1", "", "G92 is in force, G92.1 first");
+  text +=
+      "G43\n"
+      "(#160: mm in the unit of the machine, which #5221 is in)\n"
+      "G10 L2 P8 X25.4\n"
+      "#160 = [25.4 / #5361]\n"
+      "G10 L2 P8 X0 Y0 Z0 R0\n"
+      "G59.2\n";
+  for (std::size_t r = 0; r < 2; ++r) text += ring_touches(p, p.rings[r], 100 + 20 * r);
+  text += fmt::format("(TEMP_SCALE)\n#150 = [[#125 - #105] / {}]\n", mm(b[0] - a[0]));
+  text += refusal(200, fmt::format("ABS[#150 - 1] GT {:.6f}", kMostScale), "",
+                  "no temperature does that, or the rings are swapped");
+  text += fmt::format("(TEMP_SHIFT)\n#151 = [#105 / #150 - {}]\n", mm(a[0]));
+  text += fmt::format("(turn in degrees)\n#152 = [ATAN[#126 - #106]/[#125 - #105] - {:.9f}]\n",
+                      kDegrees * std::atan2(b[1] - a[1], b[0] - a[0]));
+  text +=
+      fmt::format("(shift along y: what the turn leaves)\n#153 = [[#106 + #126] / 2 - {} - SIN[#152] * [#105 + #125] / 2]\n",
+                  mm(0.5 * (a[1] + b[1])));
+  text += fmt::format("(shift along z: the mean; LinuxCNC has no tilt)\n#154 = [[#104 + #124] / 2 - {}]\n",
+                      mm(0.5 * (a[2] + b[2])));
+  text +=
+      "(G54 of the user, turned and shifted with the table)\n"
+      "#155 = [#151 + #160 * [#5221 * COS[#152] - #5222 * SIN[#152]]]\n"
+      "#156 = [#153 + #160 * [#5221 * SIN[#152] + #5222 * COS[#152]]]\n"
+      "#157 = [#154 + #160 * #5223]\n"
+      "#158 = [#152 + #5230]\n"
+      "G10 L2 P9 X#155 Y#156 Z#157 R#158\n"
+      "G54\n"
+      "(the scale belongs into joint_0.comp, which is read as LinuxCNC starts)\n"
+      "M2\n";
+  return text;
+}
+
+// Trims [mm]: type 1 adds them to the joint's position.
+std::string joint_trims(const FrameProgram& p) {
+  std::string text;
+  constexpr int kRows = 21;
+  for (int i = 0; i < kRows; ++i) {
+    const double x_m = p.low_m + (p.high_m - p.low_m) * i / (kRows - 1), trim_m = (p.frame.x.scale - 1.0) * x_m;
+    text += fmt::format("{:.4f} {:.5f} {:.5f}\n", 1e3 * x_m, 1e3 * trim_m, 1e3 * trim_m);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<ProgramFile> linuxcnc_frame(const FrameProgram& p) {
+  return {{"linuxcnc/thermframe.ngc", therm_frame(p)}, {"linuxcnc/joint_0.comp", joint_trims(p)}};
+}
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include "base/quantity.hpp"
+#include "compensation/frames/frame_programs_text.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+// Names start with TF_: X1, Y1, Z1, I and TURN are taken by axes, interpolation and helices. No SAVE, which would take the new frame
+// away at the return; RINGMEAS has it, so that no G function of the caller changes.
+std::string therm_frame(const FrameProgram& p) {
+  const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
+  std::string text = fmt::format("PROC THERMFRAME(VAR INT TF_STATUS) DISPLOF\n; {}\n; {}\n; {}\n", p.made_by,
+                                 last_numbers(p), origin_words(p));
+  text +=
+      "; Call with the probe in the spindle and its D number active. TF_STATUS: 0, or the alarm; then the old frame stays.\n"
+      "; The caller declares it: EXTERN THERMFRAME(VAR INT), DEF INT STATUS, THERMFRAME(STATUS), IF STATUS<>0 ...\n"
+      "EXTERN RINGMEAS(REAL, REAL, REAL, VAR REAL, VAR REAL, VAR REAL, VAR INT)\n"
+      "DEF REAL TF_X1, TF_Y1, TF_Z1, TF_X2, TF_Y2, TF_Z2, TF_X1N, TF_Y1N, TF_Z1N, TF_X2N, TF_Y2N, TF_Z2N\n"
+      "DEF REAL TEMP_SCALE, TEMP_SHIFT, TF_TURN, TF_TILT\n"
+      "DEF FRAME TF_OLD, TF_OLDDATA, TF_NEW\n";
+  text += fmt::format("TF_X1={} TF_Y1={} TF_Z1={} TF_X2={} TF_Y2={} TF_Z2={}\n", mm(a[0]), mm(a[1]), mm(a[2]), mm(b[0]),
+                      mm(b[1]), mm(b[2]));
+  text += fmt::format(
+      "STOPRE\n"
+      "TF_OLD=$P_BFRAME\n"
+      "TF_OLDDATA=$P_UBFR\n"
+      "$P_UBFR=CTRANS()                        ; the old correction must not be measured again, nor come back with G500\n"
+      "$P_BFRAME=CTRANS()\n"
+      "RINGMEAS(TF_X1, TF_Y1, TF_Z1, TF_X1N, TF_Y1N, TF_Z1N, TF_STATUS)\n"
+      "IF TF_STATUS<>0 GOTOF REFUSED\n"
+      "RINGMEAS(TF_X2, TF_Y2, TF_Z2, TF_X2N, TF_Y2N, TF_Z2N, TF_STATUS)\n"
+      "IF TF_STATUS<>0 GOTOF REFUSED\n"
+      "IF ABS(TF_X2-TF_X1)<100 GOTOF IDENTICAL\n"
+      "TEMP_SCALE=(TF_X2N-TF_X1N)/(TF_X2-TF_X1)\n"
+      "IF TEMP_SCALE<0 GOTOF SWAPPED\n"
+      "IF ABS(TEMP_SCALE-1)>{:g} GOTOF NOHEAT\n"
+      "TEMP_SHIFT=TF_X1N/TEMP_SCALE-TF_X1\n"
+      "TF_TURN=ATAN2(TF_Y2N-TF_Y1N, TF_X2N-TF_X1N)-ATAN2(TF_Y2-TF_Y1, TF_X2-TF_X1)\n"
+      "TF_TILT=ATAN2(TF_Z2-TF_Z1, TF_X2-TF_X1)-ATAN2(TF_Z2N-TF_Z1N, TF_X2N-TF_X1N)\n"
+      "; shift first, then scale, then tilt and turn; frames chain from right to left\n"
+      "TF_NEW=CTRANS(Y,(TF_Y1N+TF_Y2N-TF_Y1-TF_Y2)/2-SIN(TF_TURN)*(TF_X1N+TF_X2N)/2,"
+      "Z,(TF_Z1N+TF_Z2N-TF_Z1-TF_Z2)/2+SIN(TF_TILT)*(TF_X1N+TF_X2N)/2)"
+      ":CROT(Z,TF_TURN,Y,TF_TILT):CSCALE(X,TEMP_SCALE):CTRANS(X,TEMP_SHIFT)\n"
+      "$P_UBFR=TF_NEW                          ; data management, $P_CHBFR[0]: the next G54 would lose it else\n"
+      "$P_BFRAME=TF_NEW\n"
+      "STOPRE\n"
+      "RET\n",
+      kMostScale);
+  const auto refusal = [](const char* label, int alarm, const char* words) {
+    return fmt::format("{}:\nTF_STATUS={}\nSETAL({})                            ; {}\nGOTOF REFUSED\n", label, alarm, alarm,
+                       words);
+  };
+  text += refusal("IDENTICAL", 65010, "rings identical") + refusal("SWAPPED", 65011, "rings swapped") +
+          refusal("NOHEAT", 65012, "no temperature does that");
+  text +=
+      "REFUSED:\n"
+      "$P_UBFR=TF_OLDDATA\n"
+      "$P_BFRAME=TF_OLD\n"
+      "STOPRE\n"
+      "M0\n"
+      "RET\n";
+  return text;
+}
+
+std::string ring_measurement(const FrameProgram& p) {
+  std::string text = fmt::format(
+      "PROC RINGMEAS(REAL TF_CX, REAL TF_CY, REAL TF_CZ, VAR REAL TF_FX, VAR REAL TF_FY, VAR REAL TF_FZ, VAR INT TF_STATUS) "
+      "SAVE "
+      "DISPLOF\n; {}\n; Centre of a ring by four touches, its height by one on its edge; by the tip of the probe, without "
+      "frames.\n",
+      p.made_by);
+  text +=
+      "DEF REAL TF_WALL[4]\n"
+      "TF_STATUS=0\n"
+      "IF $P_TOOL==0 GOTOF NOLENGTH\n"
+      "G500 G90 G71 G94\n"
+      "TRANS\n"
+      "$P_BFRAME=CTRANS()\n"
+      "IF ($P_ACTFRAME[X,TR]<>0) OR ($P_ACTFRAME[Y,TR]<>0) OR ($P_ACTFRAME[Z,TR]<>0) GOTOF OTHERFRAME\n"
+      "IF ($P_ACTFRAME[Z,RT]<>0) OR ($P_ACTFRAME[Y,RT]<>0) OR ($P_ACTFRAME[X,SC]<>1) GOTOF OTHERFRAME\n";
+  text += fmt::format("G0 Z=TF_CZ+{}\nG0 X=TF_CX Y=TF_CY\nG1 Z=TF_CZ-{} F2000\n", mm(p.clearance_m, 3), mm(p.depth_m, 3));
+  const char* sides[4] = {"X=TF_CX+", "X=TF_CX-", "Y=TF_CY+", "Y=TF_CY-"};
+  for (int i = 0; i < 4; ++i) {
+    text += fmt::format(
+        "MEAS=1 G1 {}{} F{:.0f}\nSTOPRE\nIF $AC_MEA[1]==0 GOTOF NORING\nTF_WALL[{}]=$AA_MW[{}]\nG1 X=TF_CX Y=TF_CY F2000\n",
+        sides[i], mm(search_m(p), 3), p.feed_mm_min, i, i < 2 ? 'X' : 'Y');
+  }
+  for (int i : {0, 2})
+    text += fmt::format("IF ABS(TF_WALL[{}]-TF_WALL[{}]-{})>1 GOTOF WRONGSIDE\n", i, i + 1, mm(p.free_diameter_m, 3));
+  text += fmt::format(
+      "G0 Z=TF_CZ+5\nG0 X=TF_CX+{}\nMEAS=1 G1 Z=TF_CZ-3 F{:.0f}\nSTOPRE\nIF $AC_MEA[1]==0 GOTOF NORING\n"
+      "IF ABS($AA_MW[Z]-TF_CZ)>{:g} GOTOF WRONGHEIGHT\n",
+      mm(0.5 * p.free_diameter_m + 8e-3, 3), p.feed_mm_min, 1e3 * kMostRise_m);
+  text += "TF_FX=(TF_WALL[0]+TF_WALL[1])/2\nTF_FY=(TF_WALL[2]+TF_WALL[3])/2\nTF_FZ=$AA_MW[Z]\nGOTOF AWAY\n";
+  const auto refusal = [](const char* label, int alarm, const char* words, const char* next) {
+    return fmt::format("{}:\nTF_STATUS={}\nSETAL({})                            ; {}\n{}\n", label, alarm, alarm, words,
+                       next);
+  };
+  text += refusal("NORING", 65013, "ring missing", "GOTOF AWAY") +
+          refusal("WRONGSIDE", 65014, "touched at the wrong side", "GOTOF AWAY") +
+          refusal("NOLENGTH", 65015, "no D number: the length of the probe is wanted", "RET") +
+          refusal("OTHERFRAME", 65016, "a global, system or external frame is in force", "RET") +
+          refusal("WRONGHEIGHT", 65017, "height: look at the length of the probe and the origin", "GOTOF AWAY");
+  text += fmt::format("AWAY:\nG0 Z=TF_CZ+{}\nRET\n", mm(p.clearance_m, 3));
+  return text;
+}
+
+std::string setting_data(const FrameProgram& p) {
+  const AxisTemperatureData data = data_at(p.control, p.temperature_K);
+  const double sign = p.against_dk ? -1.0 : 1.0;
+  const char sign_word = p.against_dk ? '-' : '+';
+  std::string text = fmt::format(
+      "; {}\n; Temperature compensation of X at {:.1f} degC: dK = K0 + tan_beta (P - P0), the axis moves by {}dK.\n",
+      p.made_by, p.temperature_K - kZeroCelsius_K, sign_word);
+  text += fmt::format(
+      "; The sign is the scenario's (axis_moves); the manual does not tell it. Check: SD43900=0.1, a dial gauge on the "
+      "standing "
+      "axis must go 0.1 mm\n; toward {}X; else set axis_moves: {} and write this file anew.\n",
+      sign_word, p.against_dk ? "by_dk" : "against_dk");
+  text += fmt::format(
+      "; tan_beta = {:.3f}e-6 /K (T - {:.2f} degC), K0 = {} mm {:+.6f} mm/K (T - T0); write both anew as T changes\n",
+      sign * 1e6 * p.control.slope_1_K, p.control.reference_K - kZeroCelsius_K, mm(sign * p.control.k0_m),
+      sign * 1e3 * p.control.k0_m_K);
+  text += fmt::format(
+      "; MD32760: {:g} of MD32000 {:.0f} mm/min, so that the axis follows at {:.0f} mm/min at most\n"
+      "; MD32750 acts after power-on only, MD32760 after NEWCONF; the setting data act at once. P0 is a machine coordinate\n"
+      "$MA_TEMP_COMP_TYPE[AX1]=3               ; MD32750: K0 and tan_beta\n"
+      "$MA_COMP_ADD_VELO_FACTOR[AX1]={:g}     ; MD32760\n"
+      "NEWCONF\n"
+      "$SA_TEMP_COMP_ABS_VALUE[AX1]={}     ; SD43900, K0 [mm]\n"
+      "$SA_TEMP_COMP_SLOPE[AX1]={:.6f}       ; SD43910, tan_beta\n"
+      "$SA_TEMP_COMP_REF_POSITION[AX1]={}  ; SD43920, P0 [mm]\n"
+      "M17\n",
+      p.slew, 6e4 * p.velocity_m_s, 6e4 * p.velocity_m_s * p.slew, p.slew, mm(sign * data.absolute_m, 3),
+      sign * data.slope + 0.0, mm(data.reference_m, 3));
+  return text;
+}
+
+}  // namespace
+
+std::vector<ProgramFile> siemens_frame(const FrameProgram& p) {
+  return {{"siemens/THERMFRAME.SPF", therm_frame(p)},
+          {"siemens/RINGMEAS.SPF", ring_measurement(p)},
+          {"siemens/THERMDATA.SPF", setting_data(p)}};
+}
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,57 @@
+#pragma once
+// What the lag of a probe leaves: touches at several feeds, and the thermal frame made of rings so measured.
+
+#include <string>
+#include <vector>
+
+#include "compensation/frames/ring_measurement.hpp"
+
+namespace driftwright::compensation {
+
+struct ProbeStudySettings {
+  ProbeSystem system = {};
+  std::vector<double> feeds_m_s = {};  ///< ascending
+  double reference_feed_m_s = 10e-3 / 60.0;
+  double deceleration_m_s2 = 0.3;
+  int touches = 100;  ///< of each kind at each feed
+  double ring_distance_m = 9.6;
+  double free_diameter_m = 0.05;
+  std::uint64_t seed = 1;
+};
+
+/// Largest distances from where the slow touches of the calibration put the surface [m].
+struct ProbeErrors {
+  double plain_m = 0.0;      ///< as the control sees it
+  double latched_m = 0.0;    ///< latch alone: the lag stays
+  double by_speed_m = 0.0;   ///< less N v T at the commanded feed
+  double whole_m = 0.0;      ///< less the increments of N cycles
+  double corrected_m = 0.0;  ///< latch and increments
+};
+
+struct ProbeRow {
+  int axis = 0;
+  double feed_m_s = 0.0;
+  std::string motion = {};  ///< "constant", "braking", "roll-over 16", "roll-over 32"
+  ProbeErrors worst = {};
+};
+
+/// Error of TEMP_SHIFT and TEMP_SCALE where nothing has moved between two measurements of the rings.
+struct ShiftRow {
+  std::string touches = {};  ///< "four" or "one" per ring and axis
+  double feed_before_m_s = 0.0, feed_now_m_s = 0.0;
+  std::string reading = {};
+  double worst_shift_m = 0.0, rms_shift_m = 0.0;
+  double worst_scale = 0.0;
+};
+
+struct ProbeStudy {
+  std::array<ProbeCalibration, 3> calibration;
+  std::vector<ProbeRow> rows;
+  std::vector<ShiftRow> shifts;
+};
+
+/// Calibrates each axis by touches at constant speed, then judges on others, whose seeds differ.
+/// @throws InputError, RangeError  as calibrate_probe() and touch()
+[[nodiscard]] ProbeStudy study_probe(const ProbeStudySettings& settings);
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,161 @@
+#include "compensation/injector/correction_input.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "base/errors.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, std::int64_t line, const std::string& message) {
+  throw InputError(fmt::format("{}:{}: {}", path, line, message));
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::optional<double> number(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// Quarter steps in one `unit`.
+double quarters_per(const std::string& unit, const CorrectionScale& scale, const std::string& path) {
+  if (unit == "count") return compensation::quarters_per_count(scale.counting);
+  if (!(scale.period_um > 0.0))
+    throw InputError(fmt::format(
+        "{}: a correction in um wants --period, the travel of one signal period, such as --period '4 um'", path));
+  return compensation::kQuartersPerPeriod / scale.period_um;
+}
+
+/// Beyond this a wish in quarter steps is a slip, and 64-bit counts are far from full.
+constexpr double kMostQuarters = 1e15;
+
+double checked_quarters(double quarters, const std::string& path, std::int64_t line) {
+  if (!(std::abs(quarters) <= kMostQuarters))
+    fail(path, line, fmt::format("{:g} quarter steps; at most {:g}", quarters, kMostQuarters));
+  return quarters;
+}
+
+}  // namespace
+
+CorrectionInput::CorrectionInput(const std::string& path, const CorrectionScale& scale) : path_(path), scale_(scale) {
+  struct stat status;
+  if (path == "-") throw InputError("--correction -: standard input has the rows; name a file, a FIFO or /dev/fd/3");
+  if (stat(path.c_str(), &status) != 0) throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
+  if (S_ISDIR(status.st_mode)) throw InputError(fmt::format("{}: is a folder; a file or a FIFO is wanted", path));
+  if (S_ISREG(status.st_mode)) {
+    if (scale.unit != "um")
+      throw InputError(fmt::format(
+          "--unit {} is for numbers from a pipe; {} is a table, whose second column tells by its name: end it in _{}",
+          scale.unit, path, scale.unit));
+    read_table();
+    return;
+  }
+  (void)quarters_per(scale.unit, scale, path);
+  pipe_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (pipe_ < 0) throw InputError(fmt::format("{}: {}", path, std::strerror(errno)));
+}
+
+CorrectionInput::~CorrectionInput() {
+  if (pipe_ >= 0) ::close(pipe_);
+}
+
+void CorrectionInput::read_table() {
+  std::ifstream file(path_);
+  if (!file) throw InputError(fmt::format("{}: cannot be read", path_));
+  double rows_per_unit = 0.0;  // 0: no header yet
+  bool by_row = false;
+  double quarters_per_unit = 0.0;
+  std::int64_t n_lines = 0;
+  double last_key = -std::numeric_limits<double>::infinity();
+  for (std::string line; std::getline(file, line);) {
+    ++n_lines;
+    const std::string_view text = trimmed(line);
+    if (text.empty() || text.starts_with('#')) continue;
+    const std::size_t comma = text.find(',');
+    if (comma == std::string_view::npos || text.find(',', comma + 1) != std::string_view::npos)
+      fail(path_, n_lines, fmt::format("'{}': two columns are wanted, such as 'row,correction_um'", text));
+    const std::string_view first = trimmed(text.substr(0, comma)), second = trimmed(text.substr(comma + 1));
+    if (rows_per_unit == 0.0) {
+      by_row = first == "row";
+      if (!by_row && first != "time_s" && first != "time_min")
+        fail(path_, n_lines, fmt::format("the first column is '{}'; row, time_s or time_min is wanted", first));
+      if (!by_row && !(scale_.row_s > 0.0))
+        fail(path_, n_lines, "a correction by time wants --row-time, the time of one row, such as --row-time '1 ms'");
+      rows_per_unit = by_row ? 1.0 : (first == "time_s" ? 1.0 : 60.0) / scale_.row_s;
+      const bool um = second.ends_with("_um");
+      if (!um && !second.ends_with("_count"))
+        fail(path_, n_lines, fmt::format("the second column is '{}'; its name must end in _um or _count", second));
+      quarters_per_unit = quarters_per(um ? "um" : "count", scale_, path_);
+      continue;
+    }
+    const auto key = number(first), value = number(second);
+    if (!key || !value) fail(path_, n_lines, fmt::format("'{}': two finite numbers are wanted", text));
+    if (by_row && (*key < 1.0 || *key != std::floor(*key)))
+      fail(path_, n_lines, fmt::format("row {}; a whole number from 1 on is wanted", first));
+    if (*key < 0.0) fail(path_, n_lines, fmt::format("time {}; 0 or later is wanted", first));
+    if (!(*key > last_key)) fail(path_, n_lines, fmt::format("{} does not come after the line before", first));
+    last_key = *key;
+    // row i stands for the time (i - 1) row_s
+    const double row = by_row ? *key : std::ceil(*key * rows_per_unit - 1e-6) + 1.0;
+    if (!(row < 9e18)) fail(path_, n_lines, fmt::format("{} lies beyond the last row that can be counted", first));
+    steps_.push_back({static_cast<std::int64_t>(row), checked_quarters(*value * quarters_per_unit, path_, n_lines)});
+  }
+  if (rows_per_unit == 0.0) fail(path_, n_lines, "no header; two columns are wanted, such as 'row,correction_um'");
+  if (steps_.empty()) fail(path_, n_lines, "no correction behind the header");
+}
+
+double CorrectionInput::quarters_at(std::int64_t row) {
+  while (next_ < steps_.size() && steps_[next_].row <= row) quarters_ = steps_[next_++].quarters;
+  return quarters_;
+}
+
+std::int64_t CorrectionInput::holds_until() const {
+  return next_ < steps_.size() ? steps_[next_].row - 1 : std::numeric_limits<std::int64_t>::max();
+}
+
+void CorrectionInput::poll() {
+  if (pipe_ < 0) return;
+  std::array<char, 4096> bytes;
+  constexpr int kMostReads = 256;  // as much as the largest pipe holds; who writes faster may not stop the rows
+  for (int i = 0; i < kMostReads; ++i) {
+    const ssize_t n = ::read(pipe_, bytes.data(), bytes.size());
+    if (n <= 0) return;  // nothing there by now, no writer yet, or the last one has gone: the correction stays
+    rest_.append(bytes.data(), static_cast<std::size_t>(n));
+    std::size_t begin = 0;
+    for (std::size_t end; (end = rest_.find('\n', begin)) != std::string::npos; begin = end + 1) {
+      ++n_lines_;
+      const std::string_view line = trimmed(std::string_view(rest_).substr(begin, end - begin));
+      const auto value = number(line);
+      if (!value) fail(path_, n_lines_, fmt::format("'{}': one finite number a line is wanted, in {}", line, scale_.unit));
+      quarters_ = checked_quarters(*value * quarters_per(scale_.unit, scale_, path_), path_, n_lines_);
+    }
+    rest_.erase(0, begin);
+    if (rest_.size() > bytes.size())
+      fail(path_, n_lines_ + 1, fmt::format("longer than {} characters; one number a line is wanted", bytes.size()));
+  }
+}
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,48 @@
+#pragma once
+// Rows "A B" or "A B index" of a live encoder signal as text: in from one file descriptor, out to another.
+
+#include <cstdint>
+#include <exception>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compensation/injector/quadrature.hpp"
+
+namespace driftwright::compensation {
+
+/// Reads rows of 0 and 1, two or three columns, the same number in all rows. Hands on what has arrived as soon as it is there.
+class RowReader {
+ public:
+  explicit RowReader(int file) : file_(file) {}
+
+  /// The rows that have arrived, at least one; none at the end. Waits until there is one. The loan lasts until the next call.
+  /// @throws InputError  with line and what is allowed, once the rows before it have been handed on
+  [[nodiscard]] std::span<const compensation::Lines> next();
+  /// The bytes of these rows' lines, as they came.
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+  [[nodiscard]] bool has_index() const { return n_columns_ == 3; }
+
+ private:
+  void take_line(const char* begin, const char* end);
+
+  int file_;
+  std::vector<compensation::Lines> rows_;
+  std::string bytes_;
+  std::string rest_;  // bytes of a line that has not ended
+  std::exception_ptr error_;
+  std::int64_t n_lines_ = 0;
+  int n_columns_ = 0;
+  bool at_end_ = false;
+};
+
+/// Writes bytes at once.
+/// @return false  when nobody reads any more
+/// @throws InputError  when they cannot be written for another reason, such as a full disk
+[[nodiscard]] bool write_bytes(int file, std::string_view bytes);
+
+/// Writes rows in that form, at once; returns and throws as write_bytes().
+[[nodiscard]] bool write_rows(int file, std::span<const compensation::Lines> rows, bool with_index);
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,49 @@
+#pragma once
+// The strategies that are judged side by side: what each is fitted on, what it predicts from, and what keeps it safe.
+
+#include <optional>
+#include <span>
+
+#include "compensation/predictors/deployed_predictor.hpp"
+#include "compensation/predictors/observer.hpp"
+#include "compensation/sensors/grey_relational.hpp"
+
+namespace driftwright::compensation {
+
+/// A linear model of the machine that strategies may use. It need not be right.
+struct Physics {
+  solver::ReducedSystem system;
+  Eigen::VectorXd start;      ///< state at the start of runs in a hall at `start_hall_K`
+  double start_hall_K = 0.0;  ///< minus the reference temperature
+};
+
+struct StrategySettings {
+  std::string target;                   ///< channel in um
+  std::vector<std::string> candidates;  ///< thermometers to choose from
+  int n_sensors = 4;
+  bool count_from_start = false;
+  Image image = Image::kAutomatic;  ///< of grey grades
+  std::string speed, hall;          ///< channels; empty: there is none
+  double reading_K = 0.1;           ///< 1 sigma of a thermometer, for the observer
+  double drift_um = 1.0;            ///< 1 sigma of the indicator in the training runs
+  std::optional<Physics> physics;
+  std::string without_physics = {};  ///< why there is none; empty: nobody asked for it
+};
+
+/// One that could not be fitted, and why.
+struct LeftOut {
+  std::string name, why;
+};
+
+struct FittedStrategies {
+  std::vector<DeployedPredictor> strategies;  ///< from the simplest to the most elaborate; baselines first
+  std::vector<LeftOut> left_out;
+};
+
+/// Fits all of them. @param training  with the target among the readings
+[[nodiscard]] FittedStrategies fit_strategies(const StrategySettings& settings, std::span<const ObservedRun> training);
+
+/// Name of the strategy that does nothing.
+inline constexpr const char* kNoCorrection = "no correction";
+
+}  // namespace driftwright::compensation

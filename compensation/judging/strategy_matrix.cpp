@@ -1,0 +1,370 @@
+#include "compensation/judging/strategy_matrix.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+#include "base/errors.hpp"
+#include "compensation/predictors/drift_model.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+using namespace compensation;
+
+constexpr double kHour_s = 3600.0;
+
+/// From row `first` on.
+double range_until(const std::vector<double>& time_s, const std::vector<double>& x, std::size_t first, double until_s) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t i = first; i < x.size() && time_s[i] - time_s[first] <= until_s; ++i) {
+    if (std::isnan(x[i])) continue;
+    low = std::min(low, x[i]);
+    high = std::max(high, x[i]);
+  }
+  return high >= low ? high - low : std::numeric_limits<double>::quiet_NaN();
+}
+
+struct Failure {
+  SensorFailure kind;
+  const char* word;
+};
+constexpr Failure kFailures[] = {{SensorFailure::kStuck, "stuck"},
+                                 {SensorFailure::kOpen, "open"},
+                                 {SensorFailure::kDetached, "fallen off"},
+                                 {SensorFailure::kRising, "drifting up"},
+                                 {SensorFailure::kFalling, "drifting down"}};
+
+/// The hall as a thermometer tells it that fails at a time. One that gives nothing new leaves its last reading; any other tells what it read then,
+/// and from there on as much more as its channel does. One that nobody knows stays unknown.
+/// @param readings  after the failure; @param channel  of the hall's thermometer in them
+TimeSeries failed_hall(const TimeSeries& hall, SensorFailure failure, double from_s, const Record& readings,
+                       const std::string& channel) {
+  if (hall.time_s.empty()) return hall;
+  TimeSeries told;
+  const auto add = [&](double t_s, double value) {
+    told.time_s.push_back(t_s);
+    told.value.push_back(value);
+  };
+  for (std::size_t i = 0; i < hall.time_s.size() && hall.time_s[i] < from_s; ++i) add(hall.time_s[i], hall.value[i]);
+  add(from_s, hall.at(from_s));
+  if (failure == SensorFailure::kStuck || failure == SensorFailure::kOpen) return told;
+  if (failure == SensorFailure::kRising || failure == SensorFailure::kFalling) {
+    const double rate_K_s = (failure == SensorFailure::kRising ? 1.0 : -1.0) * kSensorDrift_K_h / 3600.0;
+    for (double t_s : readings.time_s) {
+      if (t_s > from_s) add(t_s, hall.at(t_s) + rate_K_s * (t_s - from_s));
+    }
+    return told;
+  }
+  const std::vector<double>& read = readings.at(channel).values;  // of another place
+  double first = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const double t_s = readings.time_s[i];
+    if (t_s < from_s) {
+      if (std::isfinite(read[i])) first = read[i];
+    } else if (t_s > from_s && std::isfinite(read[i] - first)) {
+      add(t_s, hall.at(from_s) + read[i] - first);
+    }
+  }
+  return told;
+}
+
+/// The thermometer whose readings differ most from a sensor's over the run; "" where there is no other.
+std::string least_alike(const ObservedRun& run, const std::string& sensor, const std::vector<std::string>& candidates) {
+  const Channel& mine = run.readings.at(sensor);
+  std::string worst;
+  double most = 0.0;
+  for (const std::string& name : candidates) {
+    const Channel& other = run.readings.at(name);
+    if (name == sensor || other.unit != mine.unit) continue;
+    std::vector<double> apart;
+    for (std::size_t i = 0; i < mine.values.size(); ++i) apart.push_back(other.values[i] - mine.values[i]);
+    if (const double rms = score(apart).rmse; rms > most) {
+      most = rms;
+      worst = name;
+    }
+  }
+  return worst;
+}
+
+/// What to run one strategy on: the run as it is, and with each of its sensors failed in each way.
+std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings& settings,
+                                                            const DeployedPredictor& strategy,
+                                                            const JudgedRunOfMachine& judged) {
+  std::vector<std::pair<std::string, ObservedRun>> list = {{"", judged.run}};
+  if (!settings.fails_at || judged.season != settings.fails_in) return list;
+  const std::vector<double>& t = judged.run.readings.time_s;
+  const double start_s = t[judged.run.n_before], from_s = start_s + *settings.fails_at * (t.back() - start_s);
+  const auto add = [&](const std::string& words, const std::string& sensor, SensorFailure kind,
+                       const std::string& elsewhere) {
+    ObservedRun run = judged.run;
+    run.readings = with_failed_sensor(std::move(run.readings), sensor, kind, from_s, elsewhere);
+    for (const std::string& failed : {sensor, kind == SensorFailure::kSwapped ? elsewhere : sensor}) {
+      if (failed != settings.strategies.hall) continue;
+      run.hall = failed_hall(judged.run.hall, kind, from_s, run.readings, failed);
+      break;
+    }
+    list.emplace_back(words, std::move(run));
+  };
+  const std::vector<std::string>& sensors = strategy.sensors;
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    for (const Failure& failure : kFailures) {
+      if (failure.kind == SensorFailure::kDetached && (settings.elsewhere.empty() || settings.elsewhere == sensors[s]))
+        continue;
+      add(fmt::format("{} {}", sensors[s], failure.word), sensors[s], failure.kind, settings.elsewhere);
+    }
+    if (const std::string other = least_alike(judged.run, sensors[s], settings.strategies.candidates); !other.empty())
+      add(fmt::format("{} and {} exchanged", sensors[s], other), sensors[s], SensorFailure::kSwapped, other);
+  }
+  return list;
+}
+
+/// More than without correction, by RMS or by peak.
+bool is_worse_than_nothing(const Case& c) {
+  return c.after.rmse > c.before.rmse || c.after.peak_abs > c.before.peak_abs;
+}
+
+/// Of the cases that count and leave more than no correction would, the one with the most above it; null: none does.
+const Case* worst_beside_nothing(const JudgedStrategy& s, const std::function<bool(const Case&)>& counts) {
+  const auto excess_um = [](const Case& c) {
+    return std::max(c.after.peak_abs - c.before.peak_abs, c.after.rmse - c.before.rmse);
+  };
+  const Case* worst = nullptr;
+  for (const Case& c : s.cases) {
+    if (counts(c) && is_worse_than_nothing(c) && (!worst || excess_um(c) > excess_um(*worst))) worst = &c;
+  }
+  return worst;
+}
+
+std::string where_of(const StrategyMatrix& m, const Case& c) {
+  const JudgedRunOfMachine& run = m.runs[c.run];
+  return fmt::format("on '{}'{}{}", run.name, run.season.empty() ? "" : fmt::format(" ({})", run.season),
+                     c.failed.empty() ? "" : fmt::format(" with {}", c.failed));
+}
+
+template <class F>
+std::vector<std::string> each_once(const std::vector<JudgedRunOfMachine>& runs, F name) {
+  std::vector<std::string> names;
+  for (const JudgedRunOfMachine& r : runs) {
+    if (std::find(names.begin(), names.end(), name(r)) == names.end()) names.push_back(name(r));
+  }
+  return names;
+}
+
+}  // namespace
+
+void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
+  const double tolerance = m.settings.tolerance_um;
+  const Worst all = worst_of(s, [](const Case&) { return true; });
+  if (!all.peak) return;
+  const auto keeps = [&](const Case& c) { return c.after.peak_abs <= tolerance; };
+  // a little more than before while the drift passes through 0 is no harm
+  const auto harms = [&](const Case& c) { return c.after.peak_abs > tolerance && c.harm_um > tolerance; };
+  const Case* worse = worst_beside_nothing(s, [](const Case&) { return true; });
+  s.is_worse_than_nothing = worse != nullptr;
+  const Case* worse_beyond = worst_beside_nothing(s, [&](const Case& c) { return !keeps(c); });
+  const auto beside_nothing = [&](const Case& c) {
+    return fmt::format(
+        "more is left than without any correction, RMS {:.1f} instead of {:.1f} um and peak {:.1f} instead of {:.1f} um {}",
+        c.after.rmse, c.before.rmse, c.after.peak_abs, c.before.peak_abs, where_of(m, c));
+  };
+  if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
+    s.safety = Safety::kSafe;
+    s.why = fmt::format("{}never more than {:.1f} um left of the drift; the most {}{}",
+                        worse ? fmt::format("{}, inside the tolerance, though: ", beside_nothing(*worse)) : "",
+                        all.peak->after.peak_abs, where_of(m, *all.peak),
+                        m.runs.size() > 2
+                            ? ""
+                            : fmt::format("; only {} run{} tried", m.runs.size(), m.runs.size() == 1 ? " was" : "s were"));
+    return;
+  }
+  if (worse_beyond) {
+    s.safety = Safety::kUnsafe;
+    s.why = beside_nothing(*worse_beyond);
+    return;
+  }
+  const auto harm = std::max_element(s.cases.begin(), s.cases.end(), [&](const Case& a, const Case& b) {
+    return (harms(a) ? a.harm_um : 0.0) < (harms(b) ? b.harm_um : 0.0);
+  });
+  if (harms(*harm)) {
+    s.safety = Safety::kUnsafe;
+    s.why = fmt::format("it makes things worse, by up to {:.1f} um at one moment ({:.1f} um left of a peak of {:.1f} um) {}",
+                        harm->harm_um, harm->after.peak_abs, harm->before.peak_abs, where_of(m, *harm));
+    return;
+  }
+  const std::vector<std::string> seasons = seasons_of(m);
+  for (const std::string& family : families_of(m)) {
+    std::vector<std::string> kept;
+    for (const std::string& season : seasons) {
+      if (std::all_of(s.cases.begin(), s.cases.end(), [&](const Case& c) {
+            return !c.failed.empty() || m.runs[c.run].family != family || m.runs[c.run].season != season || keeps(c);
+          }))
+        kept.push_back(season);
+    }
+    if (kept.size() == seasons.size()) s.limits.push_back(family);
+    if (!kept.empty() && kept.size() < seasons.size())
+      s.limits.push_back(fmt::format("{} ({})", family, fmt::join(kept, ", ")));
+  }
+  if (!s.limits.empty() &&
+      !std::all_of(s.cases.begin(), s.cases.end(), [&](const Case& c) { return c.failed.empty() || keeps(c); }))
+    s.limits.emplace_back("all with sensors intact");
+  const std::string worst = fmt::format("{:.1f} um of {:.1f} um are left {}", all.peak->after.peak_abs,
+                                        all.peak->before.peak_abs, where_of(m, *all.peak));
+  s.safety = s.limits.empty() ? Safety::kUnsafe : Safety::kWithinLimits;
+  s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst : worst;
+  if (worse) s.why = fmt::format("{}, inside the tolerance, though; {}", beside_nothing(*worse), s.why);
+}
+
+std::vector<std::string> families_of(const StrategyMatrix& matrix) {
+  return each_once(matrix.runs, [](const JudgedRunOfMachine& r) { return r.family; });
+}
+
+std::vector<std::string> seasons_of(const StrategyMatrix& matrix) {
+  return each_once(matrix.runs, [](const JudgedRunOfMachine& r) { return r.season; });
+}
+
+Worst worst_of(const JudgedStrategy& strategy, const std::function<bool(const Case&)>& counts) {
+  Worst w;
+  int n = 0;
+  for (const Case& c : strategy.cases) {
+    if (!counts(c)) continue;
+    if (!w.peak || c.after.peak_abs > w.peak->after.peak_abs) w.peak = &c;
+    w.left = std::max(w.left, c.left());
+    w.rms_um = std::max(w.rms_um, c.after.rmse);
+    w.covered = std::min(w.covered, c.covered);
+    w.mean_covered += c.covered;
+    ++n;
+  }
+  if (n > 0) w.mean_covered /= n;
+  return w;
+}
+
+double overall_rms(const JudgedStrategy& strategy) {
+  double squares = 0.0, n = 0.0;
+  for (const Case& c : strategy.cases) {
+    if (!c.failed.empty() || c.after.n == 0) continue;
+    squares += c.after.n * c.after.rmse * c.after.rmse;
+    n += c.after.n;
+  }
+  return std::sqrt(squares / n);
+}
+
+const JudgedStrategy* simplest_enough(const StrategyMatrix& matrix, const std::string& family) {
+  for (const JudgedStrategy& s : matrix.strategies) {
+    const bool does_nothing = s.fitted.name == kNoCorrection;
+    if (!does_nothing && (s.fitted.is_baseline || s.safety == Safety::kUnsafe)) continue;
+    const Worst w = worst_of(s, [&](const Case& c) { return c.failed.empty() && matrix.runs[c.run].family == family; });
+    if (w.peak && w.peak->after.peak_abs <= matrix.settings.tolerance_um) return &s;
+  }
+  return nullptr;
+}
+
+const JudgedStrategy* best_strategy(const StrategyMatrix& matrix) {
+  const JudgedStrategy* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const JudgedStrategy& s : matrix.strategies) {
+    if (s.fitted.is_baseline) continue;
+    const Worst w = worst_of(s, [](const Case& c) { return c.failed.empty(); });
+    if (!w.peak) continue;
+    if (!best || s.safety < best->safety || (s.safety == best->safety && w.left < least)) {
+      least = w.left;
+      best = &s;
+    }
+  }
+  return best;
+}
+
+Judgement judge(const DeployedPredictor& strategy, const ObservedRun& run, const std::vector<double>& drift_um) {
+  Case c;
+  const std::vector<double> predicted = live(*strategy.predictor, run);
+  GuardedCorrection correction = correct(strategy, run);
+  std::vector<double> left, unguarded;
+  int n_inside = 0, n = 0;
+  for (std::size_t i = 0; i < drift_um.size(); ++i) {
+    left.push_back(drift_um[i] - correction.correction_um[i]);
+    if (std::isfinite(left.back())) c.harm_um = std::max(c.harm_um, std::abs(left.back()) - std::abs(drift_um[i]));
+    const double off = drift_um[i] - predicted[i];
+    if (std::isnan(drift_um[i])) continue;
+    unguarded.push_back(std::isnan(off) ? std::numeric_limits<double>::infinity() : off);
+    ++n;
+    if (strategy.interval_um && std::abs(off) <= *strategy.interval_um) ++n_inside;
+  }
+  c.before = score(drift_um);
+  c.after = score(left);
+  for (double off : unguarded) c.peak_unguarded_um = std::max(c.peak_unguarded_um, std::abs(off));
+  std::erase_if(unguarded, [](double off) { return std::isinf(off); });
+  c.rms_unguarded_um = score(unguarded).rmse;
+  c.first_hour_um = range_until(run.readings.time_s, left, run.n_before, kHour_s);
+  c.whole_um = range_until(run.readings.time_s, left, run.n_before, std::numeric_limits<double>::infinity());
+  c.covered = strategy.interval_um && n > 0 ? static_cast<double>(n_inside) / n : std::numeric_limits<double>::quiet_NaN();
+  c.events = std::move(correction.events);
+  return {std::move(c), std::move(correction.correction_um), std::move(left)};
+}
+
+StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<ObservedRun> training,
+                                std::vector<JudgedRunOfMachine> runs) {
+  StrategyMatrix matrix{
+      .training = std::move(training), .runs = std::move(runs), .strategies = {}, .left_out = {}, .settings = settings};
+  FittedStrategies fitted = fit_strategies(settings.strategies, matrix.training);
+  matrix.left_out = std::move(fitted.left_out);
+  std::vector<std::vector<double>> drift_um;
+  for (const JudgedRunOfMachine& r : matrix.runs) {
+    const std::string& target = settings.strategies.target;
+    drift_um.push_back(scored_readings(r.run, target, settings.strategies.count_from_start).at(target).values);
+  }
+  for (std::size_t r = 0; r < drift_um.size(); ++r) {
+    if (score(drift_um[r]).n == 0)
+      throw InputError(fmt::format("{}: '{}' has no value in any row; there is nothing to judge by", matrix.runs[r].name,
+                                   settings.strategies.target));
+  }
+  if (std::all_of(fitted.strategies.begin(), fitted.strategies.end(),
+                  [](const DeployedPredictor& f) { return f.is_baseline; }))
+    throw InputError(
+        fmt::format("no strategy could be fitted; {}: {}", matrix.left_out.front().name, matrix.left_out.front().why));
+  const std::size_t n_runs = matrix.runs.size(), n_jobs = fitted.strategies.size() * n_runs;
+  std::vector<std::vector<Case>> cases(n_jobs);
+  std::vector<std::exception_ptr> failures(n_jobs);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t job = 0; job < n_jobs; ++job) {
+    const DeployedPredictor& strategy = fitted.strategies[job / n_runs];
+    const std::size_t r = job % n_runs;
+    try {
+      for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
+        cases[job].push_back(judge(strategy, run, drift_um[r]).scores);
+        cases[job].back().run = r;
+        cases[job].back().failed = failed;
+      }
+    } catch (...) {
+      failures[job] = std::current_exception();  // none may leave the parallel loop
+    }
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  for (std::size_t s = 0; s < fitted.strategies.size(); ++s) {
+    JudgedStrategy judged;
+    judged.fitted = std::move(fitted.strategies[s]);
+    for (std::size_t r = 0; r < n_runs; ++r) {
+      auto& of_run = cases[s * n_runs + r];
+      std::move(of_run.begin(), of_run.end(), std::back_inserter(judged.cases));
+    }
+    matrix.strategies.push_back(std::move(judged));
+  }
+  for (JudgedStrategy& s : matrix.strategies) {
+    give_verdict(matrix, s);
+    if (s.fitted.is_baseline) continue;
+    double least = overall_rms(s);
+    for (const JudgedStrategy& baseline : matrix.strategies) {
+      if (!baseline.fitted.is_baseline || !(overall_rms(baseline) < least)) continue;
+      least = overall_rms(baseline);
+      s.beaten_by = baseline.fitted.name;
+    }
+  }
+  return matrix;
+}
+
+}  // namespace driftwright::compensation

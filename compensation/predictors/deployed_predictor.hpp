@@ -1,0 +1,29 @@
+#pragma once
+// A predictor with all that it takes to put it on a machine. This is what is judged, what is kept in a file, and what corrects.
+
+#include <optional>
+
+#include "compensation/predictors/fail_safe.hpp"
+#include "compensation/predictors/predictor.hpp"
+
+namespace driftwright::compensation {
+
+struct DeployedPredictor {
+  std::string name;          ///< "ridge, all sensors"
+  std::string target;        ///< displacement that it tells, in um
+  bool from_start = false;   ///< drift and temperatures count from the first row of the run
+  bool is_baseline = false;  ///< what others have to beat; it has no fail-safe
+  std::shared_ptr<const Predictor> predictor;
+  std::vector<std::string> sensors = {};  ///< what it reads and may fail: thermometers, among them the hall's
+  std::string hall = {};                  ///< channel of the hall in its training runs; "" where there was none
+  std::string reason = {};                ///< what the fit decided, one sentence; may be empty
+  std::optional<FailSafe> fail_safe = {};
+  /// Half width of the 95 % prediction interval [um]: of each training run left out in turn the error that 95 % of its rows keep, the
+  /// largest of those. None where only one run was given.
+  std::optional<double> interval_um = {};
+};
+
+/// The correction as it goes to an axis: of repaired readings, guarded. Without a fail-safe the prediction, 0 where it says nothing.
+[[nodiscard]] GuardedCorrection correct(const DeployedPredictor& deployed, const ObservedRun& run);
+
+}  // namespace driftwright::compensation

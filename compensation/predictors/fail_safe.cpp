@@ -1,0 +1,236 @@
+#include "compensation/predictors/fail_safe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "base/errors.hpp"
+#include "compensation/predictors/control_tables.hpp"
+#include "compensation/predictors/drift_model.hpp"
+#include "compensation/sensors/product_sums.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+// Room beside what the training records kept.
+constexpr double kRangeRoom = 0.2;  // of a range's width, on both sides
+constexpr double kClampRoom = 0.5;  // of the drift's
+constexpr double kJumpRoom = 2.0;   // times the largest
+constexpr double kSlewRoom = 2.0;   // times the largest rate of the prediction, over ten rows
+constexpr double kApartRoom = 2.0;  // times the largest distance on a run left out
+constexpr double kLeastRoom_K = 3.0, kLeastJump_K = 1.0, kLeastApart_K = 1.5;  // below, instruments are what is seen
+constexpr double kLeastRoomOfDrive = 0.02;  // of the largest speed or power: one that never changed is told to no more
+constexpr double kMoved_K = 3.0, kNeverApart_K = 1e3;  // less than that is no movement to learn a relation from
+constexpr double kRidge = 0.03;                        // penalty of a relation, columns of unit deviation
+constexpr std::size_t kSlewRows = 10;
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  void take(double x) {
+    if (std::isnan(x)) return;
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  [[nodiscard]] double width() const { return high - low; }
+};
+
+/// What the others say of an input: ridge regression, for what thermometers that move alike have in common holds in another hall too,
+/// and their small differences do not.
+struct Relation {
+  double intercept = 0.0;
+  std::vector<double> coefficient;  // of the others
+  [[nodiscard]] std::vector<double> predict(const Record& record, const std::vector<std::string>& others) const {
+    std::vector<double> predicted(record.n_samples(), intercept);
+    for (std::size_t j = 0; j < others.size(); ++j) {
+      const std::vector<double>& x = record.at(others[j]).values;
+      for (std::size_t i = 0; i < x.size(); ++i) predicted[i] += coefficient[j] * x[i];
+    }
+    return predicted;
+  }
+};
+Relation relation(std::span<const Record> records, const std::string& input, const std::vector<std::string>& others) {
+  const ProductSums sums = product_sums(records, others, input);
+  std::vector<int> columns(others.size());
+  std::iota(columns.begin(), columns.end(), 0);
+  const ScaledFit fit = fit_columns(sums.total(), columns, kRidge);
+  const double unit = sums.deviation(sums.n_inputs());
+  Relation r{.intercept = sums.mean(sums.n_inputs()) + unit * fit.intercept, .coefficient = {}};
+  for (std::size_t j = 0; j < others.size(); ++j) {
+    const auto k = static_cast<Eigen::Index>(j);
+    r.coefficient.push_back(unit * fit.slope(k) / sums.deviation(k));
+    r.intercept -= r.coefficient.back() * sums.mean(k);
+  }
+  return r;
+}
+
+bool moved(std::span<const Record> training, const std::string& input) {
+  Range range;
+  for (const Record& record : training) {
+    for (double x : record.at(input).values) range.take(x);
+  }
+  return range.width() > kMoved_K;
+}
+
+/// The largest distance between an input and what the others lead to, on records left out where there are two or more.
+double most_apart(std::span<const Record> training, const std::string& input, const std::vector<std::string>& others) {
+  double apart = 0.0;
+  for (std::size_t left_out = 0; left_out < training.size(); ++left_out) {
+    std::vector<Record> rest;
+    for (std::size_t r = 0; r < training.size(); ++r) {
+      if (r != left_out || training.size() == 1) rest.push_back(training[r]);
+    }
+    const std::vector<double> expected = relation(rest, input, others).predict(training[left_out], others);
+    const std::vector<double>& read = training[left_out].at(input).values;
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      if (std::isfinite(read[i] - expected[i])) apart = std::max(apart, std::abs(read[i] - expected[i]));
+    }
+  }
+  return apart;
+}
+
+/// What was found wrong with an input in a row, in words.
+std::string words(const drift_input_state& state, const std::string& unit) {
+  switch (state.doubt) {
+    case DRIFT_NO_READING:
+      return "gives no reading";
+    case DRIFT_JUMP:
+      return fmt::format("jumps by {:.2f} {}", state.doubt_size, unit);
+    case DRIFT_APART:
+      return fmt::format("is {:+.2f} {} from what the others say", state.doubt_size, unit);
+    default:
+      throw std::logic_error("a doubt without a reason");
+  }
+}
+
+double step_s(const std::vector<double>& time_s, std::size_t row) {
+  return row > 0 ? time_s[row] - time_s[row - 1] : 0.0;
+}
+
+}  // namespace
+
+FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std::string>& inputs,
+                         const std::vector<std::vector<double>>& predicted, bool from_start, bool is_counted) {
+  std::vector<Record> training(as_given.begin(), as_given.end());
+  if (from_start && !is_counted) {
+    for (Record& record : training) record = counted_from_start(std::move(record), {});
+  }
+  FailSafe safe;
+  safe.from_start = from_start;
+  Range drift;
+  double rate = 0.0;
+  std::vector<double> steps_s;
+  for (std::size_t r = 0; r < training.size(); ++r) {
+    const std::vector<double>&d = predicted[r], &t = training[r].time_s;
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      drift.take(d[i]);
+      if (i > 0) steps_s.push_back(t[i] - t[i - 1]);
+      const std::size_t rows = std::min(kSlewRows, d.size() - 1);
+      if (i < rows || rows == 0) continue;
+      const double over = (d[i] - d[i - rows]) / (t[i] - t[i - rows]);
+      if (std::isfinite(over)) rate = std::max(rate, std::abs(over));
+    }
+  }
+  if (steps_s.empty())
+    throw InputError("training records of one row tell nothing about steps; two rows at least are needed");
+  std::nth_element(steps_s.begin(), steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2), steps_s.end());
+  safe.period_s = steps_s[steps_s.size() / 2];
+  safe.stale_s = 5.0 * safe.period_s;
+  safe.fade_s = 10.0 * safe.period_s;
+  drift.take(0.0);  // no correction is always allowed
+  safe.lowest_um = drift.low - kClampRoom * drift.width();
+  safe.highest_um = drift.high + kClampRoom * drift.width();
+  safe.most_rate_um_s = kSlewRoom * rate;
+
+  for (const std::string& input : inputs) {
+    const bool is_speed = is_drive(training.front().at(input).unit);
+    FailSafe::Guard g;
+    g.input = input;
+    g.unit = training.front().at(input).unit;
+    Range range;
+    double jump = 0.0;
+    for (const Record& record : training) {
+      const std::vector<double>& x = record.at(input).values;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        range.take(x[i]);
+        if (i > 0 && std::isfinite(x[i] - x[i - 1])) jump = std::max(jump, std::abs(x[i] - x[i - 1]));
+      }
+    }
+    const double largest = std::max(std::abs(range.low), std::abs(range.high));
+    const double room = std::max(kRangeRoom * range.width(), is_speed ? kLeastRoomOfDrive * largest : kLeastRoom_K);
+    g.low = range.low - room;
+    g.high = range.high + room;
+    g.most_jump = is_speed ? std::numeric_limits<double>::infinity() : std::max(kJumpRoom * jump, kLeastJump_K);
+    std::vector<std::string> others;
+    for (const std::string& other : inputs) {
+      if (other != input && !is_drive(training.front().at(other).unit) && moved(training, other)) others.push_back(other);
+    }
+    if (!is_speed && !others.empty()) {
+      // one that hardly moved in the training runs is told by its mean there, and in doubt only when it is missing or jumps
+      const bool has_moved = moved(training, input);
+      const Relation r = has_moved ? relation(training, input, others)
+                                   : Relation{0.5 * (range.low + range.high), std::vector<double>(others.size(), 0.0)};
+      g.others_intercept = r.intercept;
+      for (const std::string& other : inputs) {
+        const auto at = std::find(others.begin(), others.end(), other);
+        g.others_coefficient.push_back(at == others.end() ? 0.0
+                                                          : r.coefficient[static_cast<std::size_t>(at - others.begin())]);
+      }
+      g.most_apart = has_moved ? std::max(kApartRoom * most_apart(training, input, others), kLeastApart_K) : kNeverApart_K;
+    }
+    safe.guards.push_back(std::move(g));
+  }
+  return safe;
+}
+
+int most_replaced(std::size_t n_inputs) {
+  return std::max(1, static_cast<int>(n_inputs / 3));
+}
+
+Repaired repaired(const FailSafe& safe, Record readings) {
+  const std::size_t n = safe.guards.size();
+  const FailSafeTable table = fail_safe_table(safe);
+  Repaired result{.readings = std::move(readings), .deserved = {}, .events = {}};
+  const std::vector<double>& time_s = result.readings.time_s;
+  std::vector<std::vector<double>*> channel;
+  for (const FailSafe::Guard& g : safe.guards) {
+    channel.push_back(
+        &result.readings.channels[static_cast<std::size_t>(&result.readings.at(g.input) - result.readings.channels.data())]
+             .values);
+  }
+  drift_state state{};
+  std::vector<drift_input_state> inputs(n);
+  std::vector<double> room(n * (n + 1)), read(n), x(n);
+  std::vector<char> was_doubted(n, 0);
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    for (std::size_t k = 0; k < n; ++k) read[k] = (*channel[k])[i];
+    result.deserved.push_back(
+        drift_repair(&table.safe, &state, inputs.data(), room.data(), read.data(), step_s(time_s, i), x.data()));
+    for (std::size_t k = 0; k < n; ++k) {
+      const FailSafe::Guard& g = safe.guards[k];
+      if (inputs[k].is_doubted && !was_doubted[k])
+        result.events.push_back(fmt::format("from {:.0f} min: {} {}", time_s[i] / 60.0, g.input, words(inputs[k], g.unit)));
+      was_doubted[k] = static_cast<char>(inputs[k].is_doubted);
+      (*channel[k])[i] = x[k];
+    }
+  }
+  return result;
+}
+
+GuardedCorrection guarded(const FailSafe& safe, const Repaired& readings, std::span<const double> predicted) {
+  const FailSafeTable table = fail_safe_table(safe);
+  GuardedCorrection result{.correction_um = {}, .trust = {}, .events = readings.events};
+  const std::vector<double>& time_s = readings.readings.time_s;
+  drift_state state{};
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    result.correction_um.push_back(
+        drift_guarded_um(&table.safe, &state, readings.deserved[i], predicted[i], step_s(time_s, i)));
+    result.trust.push_back(state.trust);
+  }
+  return result;
+}
+
+}  // namespace driftwright::compensation

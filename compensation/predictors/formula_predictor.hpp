@@ -1,0 +1,25 @@
+#pragma once
+// A formula of readings and their lags as a predictor.
+
+#include "compensation/predictors/drift_model.hpp"
+#include "compensation/predictors/predictor.hpp"
+
+namespace driftwright::compensation {
+
+class FormulaPredictor final : public Predictor {
+ public:
+  /// @param model  drift in um
+  explicit FormulaPredictor(DriftModel model) : model_(std::move(model)) {}
+  [[nodiscard]] const DriftModel& model() const { return model_; }
+  [[nodiscard]] std::vector<Input> inputs() const override;
+  /// Row by row what DriftModel::predict() gives of the whole record.
+  [[nodiscard]] std::unique_ptr<Follower> follow() const override;
+
+ private:
+  DriftModel model_;
+};
+
+/// The formula that a predictor is; null for one that is none.
+[[nodiscard]] const DriftModel* as_formula(const Predictor& predictor);
+
+}  // namespace driftwright::compensation

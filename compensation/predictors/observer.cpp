@@ -1,0 +1,405 @@
+#include "compensation/predictors/observer.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <stdexcept>
+
+#include "base/errors.hpp"
+
+namespace driftwright::compensation {
+namespace {
+
+constexpr double kFlag = 5.0;            // deviations of the mean innovation
+constexpr double kOutlier = 6.0;         // deviations of one innovation: that reading is passed over
+constexpr double kMemory = 0.9;          // of the mean innovation from row to row
+constexpr std::size_t kRowsBack = 30;    // to which the filter returns when a sensor is dropped
+constexpr double kZero = 2.0;            // of an indicator's deviation: what its zero may be off by
+constexpr double kHallJump_K = 3.0;      // that no hall changes by from row to row
+constexpr double kHallJumpIn_s = 600.0;  // of rows further apart, in so long
+constexpr std::size_t kStepsKept = 512;
+constexpr double kStart_K = 0.1;  // by which all of the machine may be warmer than the start says
+
+}  // namespace
+
+/// Over a step of constant drive: z+ = decay z + gain f.
+struct Observer::Step {
+  Eigen::MatrixXd decay, gain;
+  std::vector<double> power_W, coefficient;
+};
+
+class Observer::Run final : public Follower {
+ public:
+  Run(const Observer& observer, bool with_drift) : o_(observer), s_(observer.system_), with_drift_(with_drift) {
+    n_ = s_.size();
+    n_sources_ = static_cast<Eigen::Index>(s_.sources.size());
+    n_exchanges_ = static_cast<Eigen::Index>(s_.exchanges.size());
+    const Eigen::Index n_factors = o_.factors_.mean.size(), n_all = n_ + n_factors + 1;
+    scale_ = n_all - 2;
+    zero_ = n_all - 1;
+    belief_ = {Eigen::VectorXd::Zero(n_all), Eigen::MatrixXd::Zero(n_all, n_all)};
+    belief_.covariance.topLeftCorner(n_, n_) = kStart_K * kStart_K * s_.ones * s_.ones.transpose();
+    belief_.mean.segment(n_, n_factors) = o_.factors_.mean;
+    belief_.covariance.block(n_, n_, n_factors, n_factors) = o_.factors_.covariance;
+    belief_.covariance(zero_, zero_) = std::pow(kZero * 1e-6 * o_.settings_.drift_um, 2);
+    live_.assign(o_.sensors_.size(), true);
+    mean_innovation_.assign(o_.sensors_.size(), 0.0);
+    last_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+
+  double next(const ObservedRun& run) override {
+    if (row_ == 0) begin(run);
+    history_.push_back({row_, belief_});
+    if (history_.size() > kRowsBack) history_.pop_front();
+    judge_hall(run, row_);
+    take_row(run, row_);
+    if (const int suspect = worst_suspect(row_); suspect >= 0) drop(run, static_cast<std::size_t>(suspect));
+    return 1e6 * drift_m(row_++);
+  }
+
+  /// Of the rows taken so far, the last.
+  [[nodiscard]] double deviation_um() const {
+    const Eigen::VectorXd h = drift_gradient();
+    return 1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h)));
+  }
+  [[nodiscard]] Eigen::VectorXd outputs() const { return s_.observe(belief_.mean.head(n_), hall_K_[row_ - 1]); }
+  [[nodiscard]] const std::vector<std::string>& distrusted() const { return distrusted_; }
+
+  [[nodiscard]] Belief factors() const {
+    const Eigen::Index n_factors = o_.factors_.mean.size();
+    return {belief_.mean.segment(n_, n_factors), belief_.covariance.block(n_, n_, n_factors, n_factors)};
+  }
+
+ private:
+  struct Snapshot {
+    std::size_t row;
+    Belief belief;  // before that row's step and readings
+  };
+
+  void begin(const ObservedRun& run) {
+    const auto channel = [&](const std::string& name, const char* unit) {
+      const Channel& c = run.readings.at(name);
+      if (c.unit != unit)
+        throw InputError(
+            fmt::format("channel '{}' of {} is in {}; the model tells it in {}", name, run.readings.source, c.unit, unit));
+      return static_cast<std::size_t>(&c - run.readings.channels.data());
+    };
+    for (const std::string& name : o_.sensors_) sensor_channel_.push_back(channel(name, "degC"));
+    if (with_drift_) drift_channel_ = channel(o_.drift_, "um");
+    start_hall_K_ = run.hall.at(run.readings.time_s.front());
+    belief_.mean.head(n_) = o_.start_ + (start_hall_K_ - o_.start_hall_K_) * s_.ones;
+    start_state_ = belief_.mean.head(n_);
+  }
+
+  /// What the hall's thermometer is believed at a row. One that jumps does not tell of a hall: its last reading holds until it is back near it.
+  void judge_hall(const ObservedRun& run, std::size_t i) {
+    const std::vector<double>& t = run.readings.time_s;
+    const double told_K = run.hall.at(t[i]);
+    if (i == 0) {
+      hall_K_.push_back(told_K);
+      is_hall_doubted_.push_back(false);
+      return;
+    }
+    const double most_K = kHallJump_K * std::max(1.0, (t[i] - t[i - 1]) / kHallJumpIn_s);
+    const bool is_doubted = std::abs(told_K - hall_K_.back()) > most_K;
+    if (is_doubted && !is_hall_doubted_.back())
+      distrusted_.push_back(fmt::format("the hall's thermometer from {:.0f} min", t[i] / 60.0));
+    hall_K_.push_back(is_doubted ? hall_K_.back() : told_K);
+    is_hall_doubted_.push_back(is_doubted);
+  }
+
+  /// Between the row before and row i.
+  [[nodiscard]] double hall_K(const ObservedRun& run, std::size_t i, double t_s) const {
+    return is_hall_doubted_[i] || is_hall_doubted_[i - 1] ? hall_K_[i] : run.hall.at(t_s);
+  }
+
+  /// Goes back to before its mean innovation began to grow, and follows the rows since then without it.
+  void drop(const ObservedRun& run, std::size_t sensor) {
+    live_[sensor] = false;
+    distrusted_.push_back(fmt::format("{} from {:.0f} min", o_.sensors_[sensor], run.readings.time_s[row_] / 60.0));
+    belief_ = history_.front().belief;
+    mean_innovation_.assign(mean_innovation_.size(), 0.0);
+    last_s_.assign(last_s_.size(), std::numeric_limits<double>::quiet_NaN());
+    last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t k = history_.front().row; k <= row_; ++k) take_row(run, k);
+    history_.clear();
+  }
+
+  void take_row(const ObservedRun& run, std::size_t i) {
+    const std::vector<double>& t = run.readings.time_s;
+    if (i > 0) advance(run, i);
+    for (std::size_t k = 0; k < sensor_channel_.size(); ++k) {
+      const double read = run.readings.channels[sensor_channel_[k]].values[i];
+      if (!live_[k] || std::isnan(read)) continue;
+      const Eigen::Index output = o_.sensor_output_[k];
+      Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
+      h.head(n_) = s_.outputs.state.col(output);
+      const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * hall_K_[i] + s_.reference_K - 273.15;
+      const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, t[i], last_s_[k]);
+      const double innovation = read - expected_K, spread = std::sqrt(h.dot(belief_.covariance * h) + variance);
+      mean_innovation_[k] = kMemory * mean_innovation_[k] + (1.0 - kMemory) * innovation / spread;
+      if (std::abs(innovation) < kOutlier * spread) correct(h, innovation, variance);
+    }
+    const double drift_um = with_drift_ ? run.readings.channels[drift_channel_].values[i] : std::nan("");
+    if (std::isfinite(drift_um)) {
+      // counts from the start of the run; where it is missing there, from the model's at its first value
+      if (first_drift_ >= i) {
+        first_drift_ = i;
+        drift_zero_m_ = 1e-6 * drift_um - (i > 0 ? drift_m(i) : 0.0);
+      }
+      const double variance = 1e-12 * variance_of(o_.settings_.drift_um, o_.settings_.model_um, t[i], last_drift_s_);
+      Eigen::VectorXd h = drift_gradient();
+      h(zero_) = 1.0;
+      correct(h, 1e-6 * drift_um - drift_zero_m_ - drift_m(i) - belief_.mean(zero_), variance);
+    }
+  }
+
+  /// Of a reading's white error and the model's own, which readings near each other share. @param last_s  time of the one before; NaN: none
+  [[nodiscard]] double variance_of(double white, double model, double t_s, double& last_s) const {
+    const double step_s = std::isnan(last_s) ? o_.settings_.period_s : t_s - last_s;
+    last_s = t_s;
+    return white * white + model * model * std::max(1.0, o_.settings_.model_holds_s / step_s);
+  }
+
+  /// The live sensor whose mean innovation is the furthest out, if any is beyond the flag.
+  [[nodiscard]] int worst_suspect(std::size_t i) const {
+    constexpr double kWarm = 10;  // rows before a mean means anything
+    if (i < kWarm) return -1;
+    const double deviation = std::sqrt((1.0 - kMemory) / (1.0 + kMemory));  // of the mean of white innovations
+    int worst = -1;
+    double most = kFlag * deviation;
+    for (std::size_t k = 0; k < live_.size(); ++k) {
+      if (live_[k] && std::abs(mean_innovation_[k]) > most) {
+        most = std::abs(mean_innovation_[k]);
+        worst = static_cast<int>(k);
+      }
+    }
+    return worst;
+  }
+
+  void advance(const ObservedRun& run, std::size_t i) {
+    double from_s = run.readings.time_s[i - 1], section_end_s = 0.0;
+    const double to_s = run.readings.time_s[i];
+    for (std::size_t c = 0; c < run.cyclogram.sections.size() && from_s < to_s; ++c) {
+      const bool is_last = c + 1 == run.cyclogram.sections.size();
+      section_end_s += run.cyclogram.sections[c].duration_s;
+      const double until_s = is_last ? to_s : std::min(to_s, section_end_s);
+      while (from_s < until_s - 1e-9) {
+        const auto n_left = std::ceil((until_s - from_s) / o_.settings_.longest_step_s - 1e-9);
+        const double h_s = (until_s - from_s) / n_left;
+        effects::Inputs at{
+            .drive = run.cyclogram.sections[c].drive, .hall_K = hall_K(run, i, from_s + 0.5 * h_s), .time_s = from_s};
+        at.run = run.cyclogram.name;
+        step(at, h_s);
+        from_s += h_s;
+      }
+      from_s = std::max(from_s, std::min(until_s, to_s));
+    }
+  }
+
+  const Step& step_of(const effects::Inputs& u, double h_s) {
+    Step now;
+    for (const auto& source : s_.sources) now.power_W.push_back(source.power_W(u));
+    for (const auto& e : s_.exchanges) now.coefficient.push_back(e.coefficient(u));
+    std::vector<double> key = now.coefficient;
+    key.push_back(h_s);
+    key.insert(key.end(), now.power_W.begin(), now.power_W.end());
+    if (steps_.size() >= kStepsKept) steps_.clear();  // periods that are never the same twice
+    const auto [at, is_new] = steps_.try_emplace(std::move(key), Step{});
+    if (!is_new) return at->second;
+    Eigen::MatrixXd k = s_.conduction;
+    for (std::size_t e = 0; e < s_.exchanges.size(); ++e) k += now.coefficient[e] * s_.exchanges[e].matrix;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+    Eigen::VectorXd decay(n_), gain(n_);
+    for (Eigen::Index j = 0; j < n_; ++j) {
+      const double x = eigen.eigenvalues()(j) * h_s;
+      decay(j) = std::exp(-x);
+      gain(j) = std::abs(x) > 1e-8 ? -h_s * std::expm1(-x) / x : h_s;
+    }
+    const Eigen::MatrixXd& v = eigen.eigenvectors();
+    now.decay = v * decay.asDiagonal() * v.transpose();
+    now.gain = v * gain.asDiagonal() * v.transpose();
+    at->second = std::move(now);
+    return at->second;
+  }
+
+  void step(const effects::Inputs& at, double h_s) {
+    const double hall_K = at.hall_K;
+    const Step& now = step_of(at, h_s);
+    const Eigen::VectorXd z = belief_.mean.head(n_);
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(n_);
+    Eigen::MatrixXd by_factor(n_, n_sources_ + n_exchanges_);  // heat per unit of each factor
+    for (Eigen::Index s = 0; s < n_sources_; ++s) {
+      by_factor.col(s) = now.power_W[static_cast<std::size_t>(s)] * s_.sources[static_cast<std::size_t>(s)].load;
+      load += by_factor.col(s);
+    }
+    Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(n_, n_);  // of the exchanges' factors' heat along z
+    for (Eigen::Index e = 0; e < n_exchanges_; ++e) {
+      const auto& exchange = s_.exchanges[static_cast<std::size_t>(e)];
+      const double c = now.coefficient[static_cast<std::size_t>(e)];
+      Eigen::VectorXd outside = Eigen::VectorXd::Zero(n_);
+      if (exchange.reaches_hall()) outside += hall_K * exchange.to_hall;
+      if (exchange.offset.size() > 0) outside += exchange.offset;
+      load += c * outside;
+      by_factor.col(n_sources_ + e) = c * (outside - exchange.matrix * z);
+      slope -= belief_.mean(n_ + n_sources_ + e) * c * exchange.matrix;
+    }
+    const Eigen::Index n_factors = by_factor.cols(), n_all = belief_.mean.size();
+    const Eigen::VectorXd factor = belief_.mean.segment(n_, n_factors);
+    Eigen::MatrixXd f(n_, n_ + n_factors);
+    f.leftCols(n_) = now.decay + now.gain * slope;
+    f.rightCols(n_factors) = now.gain * by_factor;
+    belief_.mean.head(n_) = now.decay * z + now.gain * (load + by_factor * factor);
+    Eigen::MatrixXd& p = belief_.covariance;
+    const Eigen::MatrixXd top = f * p.topRows(n_ + n_factors);  // rows of the new state against everything old
+    p.topRightCorner(n_, n_all - n_) = top.rightCols(n_all - n_);
+    p.bottomLeftCorner(n_all - n_, n_) = top.rightCols(n_all - n_).transpose();
+    p.topLeftCorner(n_, n_) = top.leftCols(n_ + n_factors) * f.transpose();
+    const double walk = o_.settings_.factor_walk * o_.settings_.factor_walk * h_s / 3600.0;
+    p.diagonal().segment(n_, n_factors).array() += walk;
+  }
+
+  void correct(const Eigen::VectorXd& h, double innovation, double variance) {
+    const Eigen::VectorXd ph = belief_.covariance * h;
+    const double total = h.dot(ph) + variance;
+    belief_.mean += ph * (innovation / total);
+    belief_.covariance -= ph * ph.transpose() / total;
+  }
+
+  /// Since the start of the run: a scale of the displacement leaves alone what was there before.
+  [[nodiscard]] double drift_m(std::size_t i) const {
+    return (1.0 + belief_.mean(scale_)) * unscaled_drift_m() +
+           s_.outputs.hall(o_.drift_output_) * (hall_K_[i] - start_hall_K_);
+  }
+  [[nodiscard]] double unscaled_drift_m() const {
+    return s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_) - start_state_);
+  }
+  [[nodiscard]] Eigen::VectorXd drift_gradient() const {
+    Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
+    h.head(n_) = (1.0 + belief_.mean(scale_)) * s_.outputs.state.col(o_.drift_output_);
+    h(scale_) = unscaled_drift_m();
+    return h;
+  }
+
+  const Observer& o_;
+  const solver::ReducedSystem& s_;
+  bool with_drift_;
+  Eigen::Index n_ = 0, n_sources_ = 0, n_exchanges_ = 0;
+  Eigen::Index scale_ = 0, zero_ = 0;  // of the drift: its factor, and what the indicator showed at the start of the run
+  Belief belief_;
+  Eigen::VectorXd start_state_;
+  double start_hall_K_ = 0.0, drift_zero_m_ = 0.0;
+  std::size_t row_ = 0, first_drift_ = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> sensor_channel_;
+  std::size_t drift_channel_ = 0;
+  std::vector<bool> live_;
+  std::vector<std::string> distrusted_;
+  std::vector<double> hall_K_;  // per row taken: as believed
+  std::vector<bool> is_hall_doubted_;
+  std::vector<double> mean_innovation_;
+  std::vector<double> last_s_;  // of each sensor's readings
+  double last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
+  std::deque<Snapshot> history_;
+  std::map<std::vector<double>, Step> steps_;
+};
+
+Observer::Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_hall_K,
+                   std::vector<std::string> sensors, std::string drift, ObserverSettings settings)
+    : system_(std::move(system)),
+      start_(std::move(start)),
+      start_hall_K_(start_hall_K),
+      sensors_(std::move(sensors)),
+      drift_(std::move(drift)),
+      settings_(settings) {
+  if (!system_.is_linear()) throw std::logic_error("an observer follows a linear reduced model");
+  const auto output = [&](const std::string& name) {
+    const auto found = std::find(system_.outputs.name.begin(), system_.outputs.name.end(), name);
+    if (found == system_.outputs.name.end()) throw InputError(fmt::format("the model has no output '{}'", name));
+    return static_cast<Eigen::Index>(found - system_.outputs.name.begin());
+  };
+  for (const std::string& sensor : sensors_) sensor_output_.push_back(output(sensor));
+  drift_output_ = output(drift_);
+  const auto n = static_cast<Eigen::Index>(solver::flow_names(system_).size());
+  factors_ = {Eigen::VectorXd::Zero(n + 1), Eigen::MatrixXd::Zero(n + 1, n + 1)};
+  factors_.covariance.diagonal().head(n).setConstant(settings_.factor * settings_.factor);
+  factors_.covariance(n, n) = settings_.scale * settings_.scale;
+}
+
+void Observer::learn(std::span<const ObservedRun> runs) {
+  if (!runs.empty()) settings_.period_s = runs.front().readings.time_s.at(1) - runs.front().readings.time_s.at(0);
+  for (const ObservedRun& run : runs) {
+    Run pass(*this, true);
+    for (std::size_t i = 0; i < run.readings.n_samples(); ++i) (void)pass.next(run);
+    factors_ = pass.factors();
+  }
+}
+
+Observer Observer::with_sensors(std::vector<std::string> sensors) const {
+  Observer other(system_, start_, start_hall_K_, std::move(sensors), drift_, settings_);
+  other.factors_ = factors_;
+  return other;
+}
+
+Observation Observer::observe(const ObservedRun& run) const {
+  Run pass(*this, false);
+  const std::size_t n = run.readings.n_samples();
+  Observation seen;
+  seen.outputs.resize(system_.outputs.state.cols(), static_cast<Eigen::Index>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    seen.drift_um.push_back(pass.next(run));
+    seen.deviation_um.push_back(pass.deviation_um());
+    seen.outputs.col(static_cast<Eigen::Index>(i)) = pass.outputs();
+  }
+  seen.distrusted = pass.distrusted();
+  return seen;
+}
+
+std::vector<Input> Observer::inputs() const {
+  std::vector<Input> inputs;
+  for (const std::string& sensor : sensors_) inputs.push_back({sensor, "degC"});
+  return inputs;
+}
+
+std::unique_ptr<Follower> Observer::follow() const {
+  return std::make_unique<Run>(*this, false);
+}
+
+Observer::State Observer::state() const {
+  return {system_, start_, start_hall_K_, sensors_, drift_, settings_, factors_};
+}
+
+Observer Observer::of_state(State state) {
+  Observer observer(std::move(state.system), std::move(state.start), state.start_hall_K, std::move(state.sensors),
+                    std::move(state.drift), state.settings);
+  if (state.factors.mean.size() != observer.factors_.mean.size() ||
+      state.factors.covariance.rows() != observer.factors_.covariance.rows() ||
+      state.factors.covariance.cols() != observer.factors_.covariance.cols())
+    throw std::logic_error("an observer has a factor on each heat flow and one on the drift");
+  observer.factors_ = std::move(state.factors);
+  return observer;
+}
+
+std::vector<Observer::Factor> Observer::factors() const {
+  std::vector<std::string> names = solver::flow_names(system_);
+  names.push_back(drift_);
+  std::vector<Factor> result;
+  for (Eigen::Index i = 0; i < factors_.mean.size(); ++i) {
+    const double deviation = std::sqrt(std::max(0.0, factors_.covariance(i, i)));
+    result.push_back({std::move(names[static_cast<std::size_t>(i)]), 1.0 + factors_.mean(i), deviation});
+  }
+  return result;
+}
+
+solver::ModelFactors Observer::model_factors() const {
+  const Eigen::VectorXd value = 1.0 + factors_.mean.array();
+  solver::ModelFactors f = solver::flow_factors(system_, {value.data(), value.data() + value.size() - 1});
+  f.output.assign(system_.outputs.name.size(), 1.0);
+  f.output[static_cast<std::size_t>(drift_output_)] = value(value.size() - 1);
+  return f;
+}
+
+}  // namespace driftwright::compensation

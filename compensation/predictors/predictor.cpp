@@ -1,0 +1,23 @@
+#include "compensation/predictors/predictor.hpp"
+
+#include <limits>
+
+namespace driftwright::compensation {
+
+std::vector<double> live(const Predictor& predictor, const ObservedRun& run) {
+  const std::unique_ptr<Follower> follower = predictor.follow();
+  std::vector<double> drift_um;
+  drift_um.reserve(run.readings.n_samples());
+  for (std::size_t i = 0; i < run.readings.n_samples(); ++i) drift_um.push_back(follower->next(run));
+  return drift_um;
+}
+
+std::vector<double> ahead(const Predictor& predictor, ObservedRun known) {
+  const std::vector<double> unknown(known.readings.n_samples(), std::numeric_limits<double>::quiet_NaN());
+  for (const Input& input : predictor.inputs()) {
+    if (!known.readings.find(input.name)) known.readings.channels.push_back({input.name, input.unit, unknown});
+  }
+  return live(predictor, known);
+}
+
+}  // namespace driftwright::compensation

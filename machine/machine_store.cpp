@@ -1,0 +1,160 @@
+#include "machine/machine_store.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "base/file_bytes.hpp"
+#include "base/npy_file.hpp"
+#include "machine/reduced_files.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::filesystem::path folder_of(const std::filesystem::path& store, const std::string& key) {
+  return store / fmt::format("{:016x}", fnv1a(key));
+}
+
+Eigen::MatrixXi as_column(const std::vector<int>& values) {
+  return Eigen::Map<const Eigen::VectorXi>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+std::vector<int> as_vector(const Eigen::MatrixXi& column) {
+  return {column.data(), column.data() + column.size()};
+}
+
+void write_mesh(const mesh::Mesh& mesh, const FileOf& file) {
+  std::vector<int> shapes;
+  for (mesh::CellShape s : mesh.cells.shape) shapes.push_back(static_cast<int>(s));
+  write_npy(file("mesh_coords.npy"), Eigen::MatrixXd(mesh.coords));
+  write_npy(file("mesh_shape.npy"), as_column(shapes));
+  write_npy(file("mesh_offset.npy"), as_column(mesh.cells.offset));
+  write_npy(file("mesh_node.npy"), as_column(mesh.cells.node));
+  write_npy(file("mesh_group.npy"), as_column(mesh.cells.group));
+}
+
+mesh::Mesh read_mesh(const std::vector<std::string>& regions, const FileOf& file) {
+  mesh::Mesh mesh;
+  mesh.regions = regions;
+  const Eigen::MatrixXd coords = read_npy<double>(file("mesh_coords.npy"));
+  if (coords.rows() != 3) throw InputError(fmt::format("{}: no points", file("mesh_coords.npy").string()));
+  mesh.coords = coords;
+  for (int s : as_vector(read_npy<int>(file("mesh_shape.npy")))) mesh.cells.shape.push_back(static_cast<mesh::CellShape>(s));
+  mesh.cells.offset = as_vector(read_npy<int>(file("mesh_offset.npy")));
+  mesh.cells.node = as_vector(read_npy<int>(file("mesh_node.npy")));
+  mesh.cells.group = as_vector(read_npy<int>(file("mesh_group.npy")));
+  const std::size_t n_cells = mesh.cells.shape.size();
+  const auto beyond = [](const std::vector<int>& indices, int n) {
+    return std::any_of(indices.begin(), indices.end(), [n](int i) { return i < 0 || i >= n; });
+  };
+  if (beyond(mesh.cells.node, mesh.n_nodes()) || beyond(mesh.cells.group, static_cast<int>(regions.size())) ||
+      mesh.cells.offset.size() != n_cells + 1 || mesh.cells.group.size() != n_cells ||
+      mesh.cells.offset.back() != static_cast<int>(mesh.cells.node.size())) {
+    throw InputError(fmt::format("{}: cells of another mesh", file("mesh_offset.npy").string()));
+  }
+  return mesh;
+}
+
+/// Files in a folder, their names beginning with a prefix.
+FileOf in_folder(const std::filesystem::path& folder, const std::string& prefix = "") {
+  return [folder, prefix](const std::string& name) { return folder / (prefix + name); };
+}
+
+void write_machine(const std::filesystem::path& work, const std::string& key, const ReducedMachine& machine) {
+  Json json = {{"n_unknowns", machine.n_unknowns},
+               {"has_fields", machine.displacement_m.size() > 0},
+               {"regions", machine.mesh.regions},
+               {"error_K", machine.error.temperature_K},
+               {"error_m", machine.error.displacement_m},
+               {"error_rad", machine.error.angle_rad},
+               {"system", write_system(machine.system, machine.start, into_npy(in_folder(work)))}};
+  if (machine.modal) {
+    const auto write = [&](const char* name, const compensation::ModalPredictor& p) {
+      json["modal"][name] = {
+          {"time_constant_s", p.time_constant_s},
+          {"system", write_system(p.system, p.start, into_npy(in_folder(work, fmt::format("modal_{}_", name))))}};
+    };
+    write("bare", machine.modal->bare);
+    write("completed", machine.modal->completed);
+  }
+  write_mesh(machine.mesh, in_folder(work));
+  write_npy(work / "temperature.npy", machine.temperature);
+  write_npy(work / "displacement_m.npy", machine.displacement_m);
+  write_bytes(work / "model.json", json.dump());
+  write_bytes(work / "key.txt", key);
+}
+
+}  // namespace
+
+std::filesystem::path machine_store() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache == '/') {
+    return std::filesystem::path(cache) / "driftwright";
+  }
+  if (const char* home = std::getenv("HOME"); home && *home == '/')
+    return std::filesystem::path(home) / ".cache/driftwright";
+  return {};
+}
+
+std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, const std::string& key,
+                                           const effects::HeatBalance& balance) {
+  if (store.empty()) return std::nullopt;
+  const std::filesystem::path folder = folder_of(store, key);
+  std::error_code missing;
+  if (!std::filesystem::exists(folder / "key.txt", missing)) return std::nullopt;
+  try {
+    if (read_bytes(folder / "key.txt") != key) return std::nullopt;
+    const Json json = Json::parse(read_bytes(folder / "model.json"));
+    ReducedMachine machine;
+    machine.n_unknowns = json.at("n_unknowns");
+    machine.mesh = read_mesh(json.at("regions"), in_folder(folder));
+    machine.system = read_system(json.at("system"), balance, from_npy(in_folder(folder)), machine.start);
+    machine.error = {json.at("error_K"), json.at("error_m"), json.at("error_rad")};
+    if (json.contains("modal")) {
+      const auto read = [&](const char* name) {
+        const Json& m = json.at("modal").at(name);
+        compensation::ModalPredictor p;
+        p.time_constant_s = m.at("time_constant_s").get<std::vector<double>>();
+        p.system =
+            read_system(m.at("system"), balance, from_npy(in_folder(folder, fmt::format("modal_{}_", name))), p.start);
+        return p;
+      };
+      machine.modal = {read("bare"), read("completed")};
+    }
+    const bool has_fields = json.at("has_fields");
+    const Eigen::Index size = has_fields ? machine.system.size() : 0, n_nodes = has_fields ? machine.mesh.n_nodes() : 0;
+    machine.temperature = array_of<float>(folder / "temperature.npy", n_nodes, size);
+    machine.displacement_m = array_of<float>(folder / "displacement_m.npy", 3 * n_nodes, size);
+    return machine;
+  } catch (const InputError&) {
+  } catch (const nlohmann::json::exception&) {
+  } catch (const std::logic_error&) {  // of another balance
+  }
+  return std::nullopt;  // damaged: made anew
+}
+
+void save_machine(const std::filesystem::path& store, const std::string& key, const ReducedMachine& machine) {
+  if (store.empty()) return;
+  const std::filesystem::path folder = folder_of(store, key),
+                              work = folder.string() + fmt::format(".partial-{}", ::getpid());
+  std::error_code failed;
+  std::filesystem::create_directories(work, failed);
+  if (failed) throw InputError(fmt::format("{}: {}", work.string(), failed.message()));
+  try {
+    write_machine(work, key, machine);
+  } catch (...) {  // a full disk is not filled further
+    std::filesystem::remove_all(work, failed);
+    throw;
+  }
+  const std::filesystem::path old = folder.string() + fmt::format(".old-{}", ::getpid());
+  std::error_code none, ignored;
+  std::filesystem::rename(folder, old, none);  // a damaged one
+  std::filesystem::rename(work, folder, failed);
+  if (failed) std::filesystem::remove_all(work, ignored);  // another process was first
+  if (!none) std::filesystem::remove_all(old, ignored);
+}
+
+}  // namespace driftwright::scenarios

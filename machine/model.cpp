@@ -1,0 +1,106 @@
+#include "machine/model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/file_bytes.hpp"
+#include "base/version.hpp"
+#include "machine/machine_key.hpp"
+#include "machine/machine_store.hpp"
+#include "machine/ways_out.hpp"
+#include "scenarios/reader/felt_run.hpp"
+
+namespace driftwright::scenarios {
+
+namespace {
+
+constexpr int kStates = 50;  // that a reduced model will about have: as many displacement fields
+
+/// How many fields are written of the longest cyclogram.
+int n_fields(const scenarios::Scenario& scenario) {
+  if (!scenario.solver.fields_at_s.empty()) return static_cast<int>(scenario.solver.fields_at_s.size()) + 2;
+  double longest_s = 0.0;
+  for (const Cyclogram& c : scenario.cyclograms) longest_s = std::max(longest_s, c.duration_s());
+  return static_cast<int>(std::min(1e6, longest_s / scenario.solver.fields_every_s)) + 2;
+}
+
+/// Version and bytes of this program: what another build has reduced may be something else.
+std::string build_name() {
+  static const std::string name = [] {
+    try {
+      return fmt::format("{} {:016x}", kVersion, fnv1a(read_bytes("/proc/self/exe")));
+    } catch (const InputError&) {  // no such file system: the version has to do
+      return std::string(kVersion);
+    }
+  }();
+  return name;
+}
+
+}  // namespace
+
+std::string Model::words() const {
+  if (full()) return fmt::format("full model of {} temperature unknowns", n_unknowns());
+  const solver::ReductionError& e = reduced()->error;
+  return fmt::format(
+      "reduced model of {} states for {} unknowns, estimated to miss the full one by at most {:.2g} K, {:.2g} um and "
+      "{:.2g} "
+      "urad",
+      reduced()->system.size(), n_unknowns(), e.temperature_K, 1e6 * e.displacement_m, 1e6 * e.angle_rad);
+}
+
+compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenario, const Model& model, int n_modes,
+                                               const Drive& typical) {
+  const scenarios::MachineModel& machine = *scenario.machine;
+  if (const scenarios::ReducedMachine* reduced = model.reduced()) {
+    if (reduced->modal) return *reduced->modal;
+    throw InputError(machine.where, fmt::format("thermostat '{}' switches; a linear model (thermal modes) cannot follow it. "
+                                                "`simulate` can",
+                                                reduced->system.thermostats.front().name));
+  }
+  return compensation::make_modal_predictors(model.full()->system, n_modes, scenarios::start_state(machine, *model.full()),
+                                             scenarios::felt_hall_at_start_K(machine), typical);
+}
+
+scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields) {
+  listener.begin("meshing");
+  scenarios::PlacedMachine placed = scenarios::place(model);
+  const bool is_elastic = scenarios::needs_elasticity(placed, n_fields > 0);
+  listener.begin(is_elastic ? fmt::format("solving {} elastic unknowns", 3 * placed.mesh.n_nodes()) : "assembling");
+  return scenarios::build(model, std::move(placed), is_elastic, n_fields);
+}
+
+scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, const scenarios::ReductionPlan& plan,
+                                       const Listener& listener, bool* was_known) {
+  const std::string key = scenarios::machine_key(model, plan, build_name());
+  const std::filesystem::path store = scenarios::machine_store();
+  auto known = scenarios::load_machine(store, key, effects::heat_balance(model.effects));
+  if (was_known) *was_known = known.has_value();
+  if (known) return std::move(*known);
+  const scenarios::Machine machine = build_machine(model, listener, plan.with_fields ? kStates : 0);
+  scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
+  listener.begin(fmt::format("reducing {} temperature unknowns", machine.system.size()));
+  scenarios::ReducedMachine reduced = scenarios::reduce(model, machine, plan);
+  try {
+    scenarios::save_machine(store, key, reduced);
+  } catch (const InputError& e) {  // the run is none the worse for it
+    fmt::print(stderr, "note: the reduced model is not kept: {}\n", e.what());
+  }
+  return reduced;
+}
+
+Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
+                 const Listener& listener, bool with_fields) {
+  const scenarios::MachineModel& model = *scenario.machine;
+  effects::HeatBalance balance = effects::heat_balance(model.effects);
+  if (scenario.solver.model == scenarios::ModelKind::kFull) {
+    return {build_machine(model, listener, with_fields ? n_fields(scenario) : 0), std::move(balance), false};
+  }
+  std::vector<const Cyclogram*> asked = cyclograms;
+  for (const Cyclogram& c : scenario.cyclograms) asked.push_back(&c);
+  bool was_known = false;
+  scenarios::ReducedMachine reduced = open_reduced(model, scenarios::reduction_plan(scenario, asked), listener, &was_known);
+  return {std::move(reduced), std::move(balance), was_known};
+}
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,240 @@
+#include "machine/reduced_files.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/file_bytes.hpp"
+#include "base/npy_file.hpp"
+#include "solver/bind_laws.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+using solver::BoundLaw;
+using solver::ReducedSystem;
+using Json = nlohmann::ordered_json;
+
+/// Vectors side by side; empty ones as zeros.
+Eigen::MatrixXd side_by_side(Eigen::Index rows, const std::vector<Eigen::VectorXd>& columns) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].size() > 0) matrix.col(static_cast<Eigen::Index>(i)) = columns[i];
+  }
+  return matrix;
+}
+
+Json law_json(const std::string& name, const BoundLaw& law) {
+  return {{"name", name}, {"probes", law.probes}, {"thermostat", law.thermostat}, {"frozen_K", law.frozen_K}};
+}
+
+BoundLaw law_from(const Json& json) {
+  BoundLaw law;
+  law.probes = json.at("probes").get<std::vector<int>>();
+  law.thermostat = json.at("thermostat");
+  law.frozen_K = json.at("frozen_K").get<std::vector<double>>();
+  return law;
+}
+
+Json body_json(const effects::Body& body) {
+  return {{"kind", static_cast<int>(body.kind)}, {"name", body.name}};
+}
+effects::Body body_from(const Json& json) {
+  return {static_cast<effects::BodyKind>(json.at("kind").get<int>()), json.at("name")};
+}
+
+constexpr const char* kReader =
+    R"(# Reads the reduced model beside this file: dz/dt = -K(c) z + loads P + to_hall c T_hall + offset c,  y = outputs' z + outputs_hall T_hall.
+# z(0) = start; temperatures in K over reference_K, displacements in m, tilts in rad. c and P at some drives: model.json, "drives".
+import json, os, numpy as np
+here = os.path.dirname(os.path.abspath(__file__))
+model = json.load(open(os.path.join(here, "model.json")))
+a = {n: np.load(os.path.join(here, n + ".npy")) for n in
+     "conduction exchanges to_hall offset loads outputs outputs_hall start".split()}
+r = model["size"]
+G = a["exchanges"].reshape(-1, r, r)  # one symmetric matrix per exchange
+def K(c): return a["conduction"] + np.tensordot(c, G, 1)
+def ABC(drive):  # u = [P of each source, T_hall, 1]
+    c, col = np.array(drive["coefficients"]), lambda x: x.reshape(r, -1)
+    B = np.column_stack([col(a["loads"]), col(a["to_hall"]) @ c, col(a["offset"]) @ c])
+    return -K(c), B, a["outputs"].reshape(r, -1).T
+)";
+
+}  // namespace
+
+template <class Scalar>
+Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic> array_of(const std::filesystem::path& path, Eigen::Index rows,
+                                                               Eigen::Index columns) {
+  auto values = read_npy<Scalar>(path);
+  if (values.rows() != rows || values.cols() != columns) {
+    throw InputError(
+        fmt::format("{}: {} x {} values, not {} x {}", path.string(), values.rows(), values.cols(), rows, columns));
+  }
+  return values;
+}
+
+template Eigen::MatrixXd array_of<double>(const std::filesystem::path&, Eigen::Index, Eigen::Index);
+template Eigen::MatrixXf array_of<float>(const std::filesystem::path&, Eigen::Index, Eigen::Index);
+
+WriteArray into_npy(FileOf file) {
+  return [file = std::move(file)](const std::string& name, const Eigen::MatrixXd& values) {
+    write_npy(file(name + ".npy"), values);
+  };
+}
+
+ReadArray from_npy(FileOf file) {
+  return
+      [file = std::move(file)](const std::string& name) -> Eigen::MatrixXd { return read_npy<double>(file(name + ".npy")); };
+}
+
+Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, const WriteArray& write) {
+  const auto r = static_cast<Eigen::Index>(system.size());
+  Json json = {{"size", system.size()}, {"reference_K", system.reference_K}};
+  std::vector<Eigen::VectorXd> loads, to_hall, flow, offset, medium, probes;
+  Eigen::MatrixXd matrices(r * static_cast<Eigen::Index>(system.exchanges.size()), r);
+  for (const auto& s : system.sources) {
+    loads.push_back(s.load);
+    json["sources"].push_back(law_json(s.name, s.power_W));
+    json["sources"].back()["body"] = body_json(s.body);
+  }
+  for (std::size_t i = 0; i < system.exchanges.size(); ++i) {
+    const auto& e = system.exchanges[i];
+    matrices.middleRows(r * static_cast<Eigen::Index>(i), r) = e.matrix;
+    to_hall.push_back(e.to_hall);
+    flow.push_back(e.flow);
+    offset.push_back(e.offset);
+    medium.push_back(e.medium);
+    Json entry = law_json(e.name, e.coefficient);
+    entry["body"] = body_json(e.place.body);
+    entry["surrounding"] = e.place.surrounding;
+    entry["per"] = static_cast<int>(e.place.per);
+    entry["medium_sum"] = e.medium_sum;
+    entry["has_medium"] = e.medium.size() > 0;
+    entry["hall_sum"] = e.hall_sum;
+    entry["offset_sum"] = e.offset_sum;
+    entry["has_offset"] = e.offset.size() > 0;
+    entry["prescribes"] = e.prescribes;
+    json["exchanges"].push_back(std::move(entry));
+  }
+  for (const auto& p : system.probes) {
+    probes.push_back(p.weights);
+    json["probes"].push_back(
+        {{"body", body_json(p.body)}, {"before", p.before}, {"hall_share", p.hall_share}, {"offset_K", p.offset_K}});
+  }
+  if (!system.parts.empty()) {
+    const auto n_parts = static_cast<Eigen::Index>(system.parts.size()), n_outputs = system.outputs.state.cols();
+    Eigen::MatrixXd conduction(r * n_parts, r), mass(r * n_parts, r), outputs(r * n_parts, n_outputs);
+    for (Eigen::Index i = 0; i < n_parts; ++i) {
+      const auto& part = system.parts[static_cast<std::size_t>(i)];
+      conduction.middleRows(r * i, r) = part.conduction;
+      mass.middleRows(r * i, r) = part.mass;
+      outputs.middleRows(r * i, r) = part.outputs;
+      json["parts"].push_back(part.body);
+    }
+    write("parts_conduction", conduction);
+    write("parts_mass", mass);
+    write("parts_outputs", outputs);
+  }
+  json["outputs"] = {{"name", system.outputs.name}, {"unit", system.outputs.unit}};
+  write("conduction", system.conduction);
+  write("exchanges", matrices);
+  write("to_hall", side_by_side(r, to_hall));
+  write("flow", side_by_side(r, flow));
+  write("offset", side_by_side(r, offset));
+  write("medium", side_by_side(r, medium));
+  write("loads", side_by_side(r, loads));
+  write("probes", side_by_side(r, probes));
+  write("outputs", system.outputs.state);
+  write("outputs_hall", system.outputs.hall);
+  write("ones", system.ones);
+  write("start", start);
+  return json;
+}
+
+ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance, const ReadArray& read,
+                          Eigen::VectorXd& start) {
+  ReducedSystem system;
+  const Eigen::Index r = json.at("size");
+  const Json none = Json::array();
+  const auto n_of = [&](const char* key) { return static_cast<Eigen::Index>(json.value(key, none).size()); };
+  const auto sized = [&](const char* name, Eigen::Index rows, Eigen::Index columns) {
+    Eigen::MatrixXd values = read(name);
+    if (values.rows() != rows || values.cols() != columns)
+      throw InputError(fmt::format("array '{}' is {} x {}, not {} x {}", name, values.rows(), values.cols(), rows, columns));
+    return values;
+  };
+  const auto array = [&](const char* name, Eigen::Index columns) { return sized(name, r, columns); };
+  system.reference_K = json.at("reference_K");
+  system.mass = Eigen::MatrixXd::Identity(r, r);
+  system.conduction = array("conduction", r);
+  const Eigen::Index n_exchanges = n_of("exchanges");
+  const Eigen::MatrixXd matrices = sized("exchanges", r * n_exchanges, r), to_hall = array("to_hall", n_exchanges),
+                        flow = array("flow", n_exchanges), offset = array("offset", n_exchanges),
+                        medium = array("medium", n_exchanges), loads = array("loads", n_of("sources")),
+                        probes = array("probes", n_of("probes"));
+  Eigen::Index i = 0;
+  for (const Json& s : json.value("sources", none))
+    system.sources.push_back({s.at("name"), body_from(s.at("body")), loads.col(i++), law_from(s)});
+  i = 0;
+  for (const Json& e : json.value("exchanges", none)) {
+    system.exchanges.push_back(
+        {.name = e.at("name"),
+         .place = {body_from(e.at("body")), e.at("surrounding"), static_cast<effects::Per>(e.at("per").get<int>())},
+         .matrix = matrices.middleRows(r * i, r),
+         .to_hall = to_hall.col(i),
+         .hall_sum = e.at("hall_sum"),
+         .coefficient = law_from(e),
+         .flow = flow.col(i),
+         .offset = e.at("has_offset").get<bool>() ? Eigen::VectorXd(offset.col(i)) : Eigen::VectorXd(),
+         .offset_sum = e.at("offset_sum"),
+         .medium = e.at("has_medium").get<bool>() ? Eigen::VectorXd(medium.col(i)) : Eigen::VectorXd(),
+         .medium_sum = e.at("medium_sum"),
+         .prescribes = e.at("prescribes")});
+    ++i;
+  }
+  i = 0;
+  for (const Json& p : json.value("probes", none)) {
+    system.probes.push_back(
+        {body_from(p.at("body")), p.at("before"), probes.col(i++), p.at("hall_share"), p.at("offset_K")});
+  }
+  system.outputs.name = json.at("outputs").at("name").get<std::vector<std::string>>();
+  system.outputs.unit = json.at("outputs").at("unit").get<std::vector<std::string>>();
+  const auto n_outputs = static_cast<Eigen::Index>(system.outputs.name.size());
+  system.outputs.state = array("outputs", n_outputs);
+  system.outputs.hall = sized("outputs_hall", n_outputs, 1);
+  if (const Eigen::Index n_parts = n_of("parts"); n_parts > 0) {
+    const auto parts_of = [&](const char* name, Eigen::Index columns) { return sized(name, r * n_parts, columns); };
+    const Eigen::MatrixXd conduction = parts_of("parts_conduction", r), mass = parts_of("parts_mass", r),
+                          outputs = parts_of("parts_outputs", n_outputs);
+    for (Eigen::Index p = 0; p < n_parts; ++p) {
+      system.parts.push_back({json.at("parts")[static_cast<std::size_t>(p)], conduction.middleRows(r * p, r),
+                              mass.middleRows(r * p, r), outputs.middleRows(r * p, r)});
+    }
+  }
+  system.ones = array("ones", 1);
+  start = array("start", 1);
+  solver::bind_laws(system, effects::with_radiation_as_films(balance));
+  return system;
+}
+
+void export_reduced(const ReducedSystem& system, const Eigen::VectorXd& start, const solver::ReductionError& error,
+                    const std::vector<Drive>& drives, const FileOf& file) {
+  Json json = write_system(system, start, into_npy(file));
+  json["error"] = {
+      {"temperature_K", error.temperature_K}, {"displacement_m", error.displacement_m}, {"angle_rad", error.angle_rad}};
+  for (const Drive& drive : drives) {
+    const effects::Inputs at{.drive = drive};
+    std::vector<double> coefficients, powers_W;
+    for (const auto& e : system.exchanges) coefficients.push_back(e.coefficient(at));
+    for (const auto& s : system.sources) powers_W.push_back(s.power_W(at));
+    json["drives"].push_back({{"speed_rpm", drive.speed_rpm},
+                              {"feed_m_s", drive.feed_m_s},
+                              {"cutting_power_W", drive.cutting_power_W},
+                              {"coefficients", coefficients},
+                              {"powers_W", powers_W}});
+  }
+  write_bytes(file("model.json"), json.dump(1) + "\n");
+  write_bytes(file("reduced_model.py"), kReader);
+}
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,118 @@
+#include "machine/simulated_run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <exception>
+
+#include "base/quantity.hpp"
+#include "machine/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "solver/reduced_transient.hpp"
+
+namespace driftwright::scenarios {
+
+namespace {
+
+/// Which output times get whole fields.
+class FieldTimes {
+ public:
+  FieldTimes(const SolverSettings& settings, double end_s) : settings_(settings), end_s_(end_s) {}
+  bool is_due(double time_s) {
+    const auto& wanted_s = settings_.fields_at_s;
+    const bool listed =
+        std::any_of(wanted_s.begin(), wanted_s.end(), [&](double t_s) { return std::abs(t_s - time_s) <= 1e-9 * t_s; });
+    const bool due = wanted_s.empty() ? time_s >= next_s_ - 1e-6 : listed || time_s == 0.0;
+    if (!due && time_s < end_s_) return false;
+    while (next_s_ <= time_s + 1e-6) next_s_ += settings_.fields_every_s;
+    return true;
+  }
+
+ private:
+  const SolverSettings& settings_;
+  double end_s_, next_s_ = 0.0;
+};
+
+void write_fields(const Scenario& scenario, const Model& model, const solver::RegionMaterials& materials, double time_s,
+                  const Eigen::VectorXd& state, const FieldSink& fields) {
+  const ReducedMachine* reduced = model.reduced();
+  const Eigen::VectorXd nodes =
+      reduced ? reduced->node_temperature_K(state) : Eigen::VectorXd(state.head(model.mesh().n_nodes()));
+  const Eigen::Matrix3Xd displacement_m =
+      reduced ? reduced->node_displacement_m(state) : model.full()->elasticity->displacement(nodes);
+  WholeFields whole{.time_s = time_s,
+                    .temperature_degC = (nodes.array() + (scenario.machine->reference_K - kZeroCelsius_K)).matrix(),
+                    .displacement_um = 1e6 * displacement_m};
+  if (scenario.solver.stresses) whole.stress = solver::stress_field(model.mesh(), materials, displacement_m, nodes);
+  fields.take(whole);
+}
+
+}  // namespace
+
+SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOptions& options, const Model& model,
+                          const Eigen::VectorXd& from, const Cyclogram& cyclogram, const std::vector<double>& times_s,
+                          const solver::OutputCallback& at_output) {
+  const FeltRun felt = felt_run(machine, cyclogram);
+  const auto run = [&](const auto& system) {
+    return solver::simulate(system, felt.cyclogram, felt.hall, times_s, options, from, at_output);
+  };
+  SimulatedRun simulated{.record = {},
+                         .trajectory = model.reduced() ? run(model.reduced()->system) : run(model.full()->system)};
+  simulated.record = as_recorded(machine, simulated.trajectory, model.outputs(), cyclogram);
+  return simulated;
+}
+
+Eigen::VectorXd start_of(const MachineModel& machine, const Model& model) {
+  return model.reduced() ? model.reduced()->start : start_state(machine, *model.full());
+}
+
+const Eigen::VectorXd& ones_of(const Model& model) {
+  return model.reduced() ? model.reduced()->system.ones : model.full()->system.ones;
+}
+
+std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Model& model,
+                                              const std::vector<const Cyclogram*>& cyclograms, const Listener& listener,
+                                              const FieldSink& fields) {
+  const MachineModel& machine = *scenario.machine;
+  const SolverSettings& settings = scenario.solver;
+  double total_s = 0.0;
+  for (const Cyclogram* c : cyclograms) total_s += c->duration_s();
+  listener.begin(fmt::format("simulating {} cyclogram{}, {:.0f} min in all", cyclograms.size(),
+                             cyclograms.size() == 1 ? "" : "s", total_s / 60.0));
+
+  solver::RegionMaterials materials;
+  if (fields.take && settings.stresses) materials = region_materials(machine, model.mesh());
+  const Eigen::VectorXd start = start_of(machine, model);
+  std::vector<SimulatedRun> runs(cyclograms.size());
+  std::vector<std::exception_ptr> failures(cyclograms.size());
+  double done_s = 0.0;
+  // Runs are independent, so each has a core of its own and the loops inside it stay on that core: no thread waits for
+  // another, which matters on a busy machine. A single run has all cores.
+#pragma omp parallel for schedule(dynamic, 1) if (cyclograms.size() > 1)
+  for (std::size_t i = 0; i < cyclograms.size(); ++i) {
+    const Cyclogram& cyclogram = *cyclograms[i];
+    FieldTimes field_times(settings, cyclogram.duration_s());
+    double last_s = 0.0;
+    const auto at_output = [&](double time_s, const Eigen::VectorXd& state) {
+#pragma omp critical(simulated)
+      listener.share((done_s += time_s - last_s) / total_s);
+      last_s = time_s;
+      if (fields.take && i == fields.cyclogram && field_times.is_due(time_s)) {
+        write_fields(scenario, model, materials, time_s, state, fields);
+      }
+    };
+    const std::vector<double> times_s = output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
+    try {
+      const Eigen::VectorXd from = start + warmer_start_K(machine, cyclogram) * ones_of(model);
+      runs[i] = simulate_run(machine, settings.transient, model, from, cyclogram, times_s, at_output);
+    } catch (...) {
+      failures[i] = std::current_exception();  // none may leave the parallel loop
+    }
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  return runs;
+}
+
+}  // namespace driftwright::scenarios

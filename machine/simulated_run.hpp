@@ -1,0 +1,50 @@
+#pragma once
+// Cyclograms simulated by a machine's model, and the whole fields of one of them.
+
+#include <optional>
+
+#include "base/listener.hpp"
+#include "machine/model.hpp"
+#include "solver/stress.hpp"
+
+namespace driftwright::scenarios {
+
+/// A simulated cyclogram.
+struct SimulatedRun {
+  Record record;
+  solver::Trajectory trajectory;
+};
+
+/// Runs one cyclogram.
+/// @param machine   the scenario's, or one that differs from it in the hall
+/// @param from      state of the model at t = 0
+/// @param times_s   of the outputs, within the cyclogram
+/// @param at_output called at each of them
+[[nodiscard]] SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOptions& options,
+                                        const Model& model, const Eigen::VectorXd& from, const Cyclogram& cyclogram,
+                                        const std::vector<double>& times_s, const solver::OutputCallback& at_output = {});
+
+/// The state of the model at t = 0, by the scenario's `start`, over the reference temperature [K]; reduced for a reduced model.
+[[nodiscard]] Eigen::VectorXd start_of(const MachineModel& machine, const Model& model);
+/// The state "1 K warmer everywhere".
+[[nodiscard]] const Eigen::VectorXd& ones_of(const Model& model);
+
+/// The fields of all nodes at one time of a run.
+struct WholeFields {
+  double time_s = 0.0;
+  Eigen::VectorXd temperature_degC;             ///< n_nodes
+  Eigen::Matrix3Xd displacement_um;             ///< 3 x n_nodes
+  std::optional<solver::StressField> stress{};  ///< where the scenario asks for it
+};
+/// Takes those of one cyclogram every `fields_every` and at its end.
+struct FieldSink {
+  std::size_t cyclogram = 0;                              ///< index of it
+  std::function<void(const WholeFields& fields)> take{};  ///< null: nobody wants any
+};
+
+/// Runs cyclograms from the scenario's start on, side by side on all cores, with one line of progress for all.
+[[nodiscard]] std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Model& model,
+                                                            const std::vector<const Cyclogram*>& cyclograms,
+                                                            const Listener& listener, const FieldSink& fields = {});
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,165 @@
+#include "nc/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace driftwright {
+namespace {
+
+const std::map<NcCode, const char*>& g_groups() {  // of one group, a block may name one
+  static const std::map<NcCode, const char*> groups = [] {
+    std::map<NcCode, const char*> g;
+    const auto add = [&](const char* group, std::initializer_list<NcCode> codes) {
+      for (NcCode c : codes) g[c] = group;
+    };
+    add("motion", {0, 10, 20, 30, 730, 800, 810, 820, 830, 840, 850});
+    add("plane", {170, 180, 190});
+    add("distance", {900, 910});
+    add("arc centre", {901, 911});
+    add("feed mode", {930, 940, 950});
+    add("unit", {200, 210});
+    add("cutter compensation", {400, 410, 420});
+    add("tool length", {430, 490});
+    add("retract", {980, 990});
+    add("coordinate system", {540, 550, 560, 570, 580, 590, 591, 592, 593});
+    add("path control", {610, 611, 640});
+    add("spindle mode", {970});
+    add("polar", {150});
+    add("rotation", {690});
+    add("reference point", {280, 300});
+    add("dwell", {40});
+    add("machine coordinates", {530});
+    return g;
+  }();
+  return groups;
+}
+
+const std::map<NcCode, const char*>& m_groups() {
+  static const std::map<NcCode, const char*> groups = {
+      {0, "stop"},     {10, "stop"},    {20, "stop"},        {300, "stop"},     {600, "stop"},
+      {30, "spindle"}, {40, "spindle"}, {50, "spindle"},     {190, "spindle"},  {60, "tool change"},
+      {70, "mist"},    {80, "flood"},   {90, "coolant off"}, {480, "override"}, {490, "override"}};
+  return groups;
+}
+
+const char* hint(char letter, NcCode code) {
+  if (letter == 'G') {
+    if (code >= 50 && code <= 53) return "splines are not computed here; let the CAM system write lines and arcs";
+    if (code == 330 || code == 331 || code == 760) return "threading is not computed here; write G1 with G95";
+    if (code == 100 || code == 520 || (code >= 920 && code <= 923))
+      return "shifts of the origin are not followed here; write the program about one origin";
+    if (code == 680 || code == 510 || code == 500 || code == 160)
+      return "rotation, scaling and polar coordinates are not computed here";
+    if (code == 960) return "constant surface speed is not computed here; write the spindle speeds with G97";
+    if (code >= 382 && code <= 385) return "probing ends nobody knows when; leave it out";
+    if (code == 650 || code == 660) return "macros are not run here; let the post-processor write them out";
+    if (code == 740 || (code >= 860 && code <= 890))
+      return "of the canned cycles G73, G81 to G85 are known; write the others out";
+  }
+  if (letter == 'M' && (code == 970 || code == 980 || code == 990))
+    return "subprograms are not called here; let the post-processor write them out";
+  return "its effect on times and speeds is not known here; if it has none, name it under `ignore`";
+}
+
+}  // namespace
+
+std::string nc_word_name(char letter, NcCode code) {
+  return code % 10 == 0 ? fmt::format("{}{}", letter, code / 10) : fmt::format("{}{}.{}", letter, code / 10, code % 10);
+}
+
+std::optional<NcCode> of_group(const std::vector<NcCode>& codes, const std::string& group) {
+  for (NcCode c : codes) {
+    if (g_groups().at(c) == group) return c;
+  }
+  return std::nullopt;
+}
+
+bool contains(const std::vector<NcCode>& codes, NcCode code) {
+  return std::find(codes.begin(), codes.end(), code) != codes.end();
+}
+
+NcWords::NcWords(const NcBlock& block) : block_(block), used_(block.words.size(), false) {
+  for (std::size_t i = 0; i < block.words.size(); ++i) {
+    const char letter = block.words[i].letter;
+    if (letter == 'G' || letter == 'M') continue;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (block.words[j].letter == letter) fail(i, fmt::format("a second {} in one block", letter));
+    }
+  }
+}
+
+void NcWords::fail(std::size_t i, const std::string& message) const {
+  throw InputError(block_.at(block_.words[i]), fmt::format("{}: {}", block_.words[i].text, message));
+}
+
+std::size_t NcWords::find(char letter) const {
+  for (std::size_t i = 0; i < used_.size(); ++i) {
+    if (!used_[i] && block_.words[i].letter == letter) return i;
+  }
+  return used_.size();
+}
+
+bool NcWords::has_any(const std::string& letters) const {
+  return std::any_of(letters.begin(), letters.end(), [&](char c) { return has(c); });
+}
+
+std::optional<double> NcWords::take(char letter) {
+  const std::size_t i = find(letter);
+  if (i >= used_.size()) return std::nullopt;
+  used_[i] = true;
+  return block_.words[i].value;
+}
+
+double NcWords::take_not_negative(char letter) {
+  const std::size_t i = find(letter);
+  const double value = take(letter).value();
+  if (value < 0.0) fail(i, "a value of zero or above is wanted");
+  return value;
+}
+
+int NcWords::take_count(char letter) {
+  const std::size_t i = find(letter);
+  const double value = take(letter).value();
+  if (!(value >= 1.0 && value <= 1e5 && value == std::floor(value))) fail(i, "a whole number from 1 to 100000 is wanted");
+  return static_cast<int>(value);
+}
+
+std::vector<NcCode> NcWords::take_codes(char letter, const std::set<std::string>& ignored) {
+  const std::map<NcCode, const char*>& groups = letter == 'G' ? g_groups() : m_groups();
+  std::vector<NcCode> codes;
+  for (std::size_t i = 0; i < used_.size(); ++i) {
+    if (block_.words[i].letter != letter) continue;
+    const double tenths = 10.0 * block_.words[i].value;
+    const NcCode code = static_cast<NcCode>(std::lround(std::clamp(tenths, -1.0, 1e6)));
+    if (std::abs(tenths - code) > 1e-3 || code < 0) fail(i, "no such word");
+    used_[i] = true;
+    if (ignored.count(nc_word_name(letter, code)) > 0) {
+      pardoned_ = "PQRLE";
+      continue;
+    }
+    const auto group = groups.find(code);
+    if (group == groups.end()) fail(i, hint(letter, code));
+    for (NcCode other : codes) {
+      if (std::string(groups.at(other)) == group->second) {
+        fail(i, fmt::format("it contradicts {} in the same block (group: {})", nc_word_name(letter, other), group->second));
+      }
+    }
+    codes.push_back(code);
+  }
+  return codes;
+}
+
+void NcWords::reject_unused() const {
+  for (std::size_t i = 0; i < used_.size(); ++i) {
+    const char letter = block_.words[i].letter;
+    if (used_[i] || pardoned_.find(letter) != std::string::npos) continue;
+    if (std::string("ABCUVW").find(letter) != std::string::npos)
+      fail(i, "rotary and further linear axes are not followed here; X, Y, Z are");
+    fail(i, "this word has no use in its block");
+  }
+}
+
+}  // namespace driftwright

@@ -1,0 +1,52 @@
+#pragma once
+// The G and M words that NC programs may hold here, and the words of one block as they are used up.
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "nc/block.hpp"
+
+namespace driftwright {
+
+/// The number of a G or M word times ten: G5.1 is 51.
+using NcCode = int;
+
+/// "G5.1" of ('G', 51).
+[[nodiscard]] std::string nc_word_name(char letter, NcCode code);
+
+/// The code of that group of G words (such as "motion") among `codes`.
+[[nodiscard]] std::optional<NcCode> of_group(const std::vector<NcCode>& codes, const std::string& group);
+
+[[nodiscard]] bool contains(const std::vector<NcCode>& codes, NcCode code);
+
+/// The words of a block, and which of them have been used. The block must outlive it.
+class NcWords {
+ public:
+  /// @throws InputError  for a letter other than G and M that stands there twice
+  explicit NcWords(const NcBlock& block);
+
+  /// Whether there is an unused word of that letter, or of any of those.
+  [[nodiscard]] bool has(char letter) const { return find(letter) < used_.size(); }
+  [[nodiscard]] bool has_any(const std::string& letters) const;
+  /// An unused word's value, now used.
+  std::optional<double> take(char letter);
+  /// The same of a word that is there. @throws InputError  for a value below zero; for one that is no count from 1 to 100000
+  double take_not_negative(char letter);
+  int take_count(char letter);
+  /// G or M codes in their order, all used now; those of `ignored` are left out, and with them the words P Q R L E.
+  /// @throws InputError  for a code that is not known here, with a hint, and for two of one group
+  std::vector<NcCode> take_codes(char letter, const std::set<std::string>& ignored);
+  /// @throws InputError  for the first word that nobody has used
+  void reject_unused() const;
+
+ private:
+  [[noreturn]] void fail(std::size_t i, const std::string& message) const;
+  [[nodiscard]] std::size_t find(char letter) const;
+  const NcBlock& block_;
+  std::vector<bool> used_;
+  std::string pardoned_;
+};
+
+}  // namespace driftwright

@@ -1,0 +1,141 @@
+#include "scenarios/reader/felt_run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/quantity.hpp"
+#include "effects/recorded_column.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+void must_be_one_of(const Where& where, const char* what, const std::string& name, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  if (known.empty()) throw InputError(where, fmt::format("there is no {} '{}', nor any other", what, name));
+  const std::string near = nearest_word(name, known);
+  throw InputError(where, fmt::format("there is no {} '{}'; there are {}.{}", what, name, fmt::join(known, ", "),
+                                      near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+}
+
+template <class Entries>
+std::vector<std::string> names_of(const Entries& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+/// `tilt` goes with tilts, any other amount with displacements.
+void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
+  const std::vector<effects::Parameter>& parameters = effect.kind->parameters;
+  const bool knows_tilt = std::any_of(parameters.begin(), parameters.end(), [](const auto& p) { return p.name == "tilt"; });
+  if (!knows_tilt || effect.has("tilt") == is_tilt) return;
+  throw InputError(effect.where,
+                   is_tilt ? fmt::format("'{}' is a tilt; {} wants `tilt` in urad there", effect.place, effect.kind->key)
+                           : fmt::format("'{}' is a displacement, no tilt; `tilt` does not fit", effect.place));
+}
+
+/// Calls work(effect, name) for each column that effects name and that is no channel of the drive.
+template <class Work>
+void for_each_wanted_column(const MachineModel& model, const std::string& cyclogram, Work work) {
+  for (const effects::Effect& e : model.effects) {
+    if (!e.acts_in(cyclogram)) continue;
+    for (const effects::Mention& mention : e.kind->mentions) {
+      if (mention.of != effects::Mention::Of::kColumn) continue;
+      if (const std::string& name = e.words.at(mention.name); !name.empty() && !effects::is_drive_channel(name))
+        work(e, name);
+    }
+  }
+}
+
+}  // namespace
+
+bool is_on_hall(const Sensor& sensor) {
+  const auto* node = std::get_if<std::string>(&sensor.place);
+  return node && *node == effects::kHallName;
+}
+
+bool has_ambient_channel(const MachineModel& model) {
+  return std::none_of(model.sensors.begin(), model.sensors.end(), is_on_hall);
+}
+
+std::vector<std::string> wanted_columns(const MachineModel& model, const std::string& cyclogram) {
+  std::vector<std::string> names;
+  for_each_wanted_column(model, cyclogram, [&](const effects::Effect&, const std::string& name) { names.push_back(name); });
+  return names;
+}
+
+void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
+  for_each_wanted_column(model, cyclogram.name, [&](const effects::Effect& effect, const std::string& name) {
+    const Cyclogram::Column* column = cyclogram.column(name);
+    if (!column) {
+      std::vector<std::string> known;
+      for (const Cyclogram::Column& c : cyclogram.columns) known.push_back(c.header());
+      throw InputError(
+          effect.where,
+          fmt::format("{} wants the column '{}', which cyclogram '{}' does not have ({}); take a record that has "
+                      "it (`{{csv: FILE}}`), or give it in rows (`columns: [duration, speed, {}]`)",
+                      effect.name(), name, cyclogram.name,
+                      known.empty() ? "it has none beside the drive" : fmt::format("it has {}", fmt::join(known, ", ")),
+                      name));
+    }
+    if (effect.place_kind == effects::Place::kDisplacement && column->unit != "degC")
+      throw InputError(effect.where, fmt::format("{} follows temperatures in degC; the column '{}' is in {}", effect.name(),
+                                                 column->name, column->unit));
+  });
+}
+
+FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
+  require_columns(model, recorded);
+  return felt_run_as_far_as_known(model, recorded);
+}
+
+FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded) {
+  const effects::DriveChange change = effects::drive_change(model.effects, recorded.name);
+  return {effects::true_cyclogram(change, recorded), effects::true_hall(change, model.hall, recorded)};
+}
+
+double felt_hall_at_start_K(const MachineModel& model) {
+  return effects::true_hall(effects::drive_change(model.effects, ""), model.hall, {}).at(0.0);
+}
+
+double warmer_start_K(const MachineModel& model, const Cyclogram& recorded) {
+  if (model.start != Start::kHall && model.start != Start::kSteady) return 0.0;
+  return felt_run_as_far_as_known(model, recorded).hall.at(0.0) - felt_hall_at_start_K(model);
+}
+
+std::vector<std::string> sensor_channels(const Record& record) {
+  std::vector<std::string> names = record.names_with_unit("degC");
+  std::erase(names, kAmbient);
+  return names;
+}
+
+void check_instruments(const MachineModel& model, const std::vector<Cyclogram>& cyclograms) {
+  const std::vector<std::string> sensors = names_of(model.sensors), runs = names_of(cyclograms),
+                                 tilts = names_of(model.tilts);
+  std::vector<std::string> displacements = names_of(model.displacements);
+  std::vector<std::string> by_sensitivities;
+  for (const DisplacementOutput& d : model.displacements) {
+    if (d.by_sensitivity) by_sensitivities.push_back(d.name);
+  }
+  displacements.insert(displacements.end(), tilts.begin(), tilts.end());
+  for (const effects::Effect& e : model.effects) {
+    if (e.place_kind == effects::Place::kSensor) must_be_one_of(e.where, "sensor", e.place, sensors);
+    if (e.place_kind == effects::Place::kDisplacement) {
+      must_be_one_of(e.where, "displacement", e.place, displacements);
+      require_fitting_amount(e, std::find(tilts.begin(), tilts.end(), e.place) != tilts.end());
+    }
+    for (const effects::Mention& mention : e.kind->mentions) {
+      const std::string& name = e.words.at(mention.name);
+      if (name.empty() || mention.of == effects::Mention::Of::kColumn)
+        continue;  // left out; or of records: require_columns()
+      const bool is_sensor = mention.of == effects::Mention::Of::kSensor;
+      must_be_one_of(e.reference_where.at(mention.name), is_sensor ? "sensor" : "displacement", name,
+                     is_sensor ? sensors : by_sensitivities);
+    }
+    if (!e.in.empty()) must_be_one_of(e.reference_where.at("in"), "cyclogram", e.in, runs);
+  }
+}
+
+}  // namespace driftwright::scenarios

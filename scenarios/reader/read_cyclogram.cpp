@@ -1,0 +1,237 @@
+#include "scenarios/reader/read_cyclogram.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/mapped_record.hpp"
+#include "base/quantity.hpp"
+#include "nc/sections.hpp"
+#include "scenarios/reader/read_columns.hpp"
+#include "scenarios/reader/recorded_run.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+constexpr double kShortest_s = 1e-3, kMostSpeed_rpm = 1e6, kMostFeed_m_s = 100.0, kMostPower_W = 1e9;
+constexpr int kMostRepeats = 100000;
+constexpr double kMostSections = 1e6;
+
+/// A column of rows.
+struct Column {
+  const char* name;  ///< in `columns`
+  const char* unit;
+  double most;  ///< in `unit`
+  double* (*place)(Drive& drive);
+};
+
+const std::array<Column, 5>& columns() {
+  static const std::array<Column, 5> table = {{
+      {"speed", "rpm", kMostSpeed_rpm, [](Drive& d) { return &d.speed_rpm; }},
+      {"feed_x", "m/s", kMostFeed_m_s, [](Drive& d) { return &d.feed_m_s[0]; }},
+      {"feed_y", "m/s", kMostFeed_m_s, [](Drive& d) { return &d.feed_m_s[1]; }},
+      {"feed_z", "m/s", kMostFeed_m_s, [](Drive& d) { return &d.feed_m_s[2]; }},
+      {"cutting_power", "W", kMostPower_W, [](Drive& d) { return &d.cutting_power_W; }},
+  }};
+  return table;
+}
+
+std::string beside(const ConfigMap& in, const std::string& key) {
+  return (std::filesystem::path(in.file()).parent_path() / in.text(key)).string();  // an absolute path replaces the folder
+}
+
+/// A column of rows that is none of the drive's: `heater_W`.
+struct FurtherColumn {
+  std::string name, unit;  ///< as a record has them
+  [[nodiscard]] std::string quantity_unit() const {
+    return unit == "W_m2" ? "W/m^2" : unit == "mm_min" ? "mm/min" : unit == "count" ? "1" : unit;
+  }
+};
+
+std::optional<FurtherColumn> further_column(const std::string& header) {
+  for (const std::string& unit : known_units()) {  // longest first
+    const std::string end = "_" + unit;
+    if (header.size() > end.size() && header.ends_with(end) && is_of_column(unit))
+      return FurtherColumn{header.substr(0, header.size() - end.size()), unit};
+  }
+  return std::nullopt;
+}
+
+struct RowColumns {
+  std::vector<const Column*> drive;
+  std::vector<FurtherColumn> further;
+  std::vector<bool> is_further;  ///< of each column behind the duration
+};
+
+std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std::string& key, const RowColumns& columns,
+                                                 std::vector<Cyclogram::Column>& further) {
+  const std::vector<const Column*>& given = columns.drive;
+  std::vector<std::string> units = {"s"};
+  std::size_t n_drive = 0;
+  for (std::size_t i = 0; i < columns.is_further.size(); ++i)
+    units.push_back(columns.is_further[i] ? columns.further[i - n_drive].quantity_unit() : given[n_drive++]->unit);
+  for (const FurtherColumn& f : columns.further) further.push_back({f.name, f.unit, {}});
+  double start_s = 0.0;
+  std::vector<Cyclogram::Section> sections;
+  for (const std::vector<double>& row : in.rows(key, units)) {
+    if (!(row[0] >= kShortest_s))
+      in.fail(key, fmt::format("a section of {:g} s; a duration above zero is wanted, 1 ms or more", row[0]));
+    Cyclogram::Section section{row[0], {}};
+    std::size_t n_before = 0;  // of the drive
+    for (std::size_t j = 0; j < columns.is_further.size(); ++j) {
+      double value = row[j + 1];
+      if (columns.is_further[j]) {
+        Cyclogram::Column& column = further[j - n_before];
+        column.rows.time_s.push_back(start_s);
+        column.rows.value.push_back(column.unit == "degC" ? value - kZeroCelsius_K : value);
+        continue;
+      }
+      const std::size_t i = n_before++;
+      if (!(value >= 0.0 && value <= given[i]->most)) {
+        in.fail(key, fmt::format("a {} of {:g} {}; 0 to {:g} {} is allowed", given[i]->name, value, given[i]->unit,
+                                 given[i]->most, given[i]->unit));
+      }
+      *given[i]->place(section.drive) = value;
+    }
+    start_s += section.duration_s;
+    sections.push_back(section);
+  }
+  return sections;
+}
+
+/// `columns:` without its first, the duration.
+RowColumns row_columns(const ConfigMap& in) {
+  std::vector<std::string> known;
+  for (const Column& c : columns()) known.emplace_back(c.name);
+  const std::vector<std::string> names = in.texts("columns");
+  if (names.empty() || names[0] != "duration")
+    in.fail("columns", fmt::format("the first column is duration; after it any of {}", fmt::join(known, ", ")));
+  RowColumns columns_given;
+  std::vector<const Column*>& given = columns_given.drive;
+  for (std::size_t i = 1; i < names.size(); ++i) {
+    const auto column =
+        std::find_if(columns().begin(), columns().end(), [&](const Column& c) { return c.name == names[i]; });
+    const auto further = column == columns().end() ? further_column(names[i]) : std::nullopt;
+    if (column == columns().end() && !further) {
+      in.fail("columns",
+              fmt::format("'{}' is no column; duration, then any of {}, or one that effects ask for, with its unit "
+                          "(heater_W)",
+                          names[i], fmt::join(known, ", ")));
+    }
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i))
+      in.fail("columns", fmt::format("'{}' stands there twice", names[i]));
+    columns_given.is_further.push_back(further.has_value());
+    if (further) {
+      columns_given.further.push_back(*further);
+    } else {
+      given.push_back(&*column);
+    }
+  }
+  return columns_given;
+}
+
+void read_nc_cyclogram(const ConfigMap& in, Cyclogram& cyclogram) {
+  const NcProgram program = read_nc_program(beside(in, "nc_program"), read_nc_settings(in));
+  const double resolution_s = in.quantity("resolution", "s", 0.0, 1e6, 10.0);
+  const double cutting_power_W = in.quantity("cutting_power", "W", 0.0, kMostPower_W, 0.0);
+  try {
+    cyclogram = cyclogram_of(program, cyclogram.name, resolution_s, cutting_power_W);
+  } catch (const InputError& e) {
+    in.fail("nc_program", e.what());
+  }
+  cyclogram.remarks.front() = fmt::format("{}: {}", in.text("nc_program"), cyclogram.remarks.front());
+}
+
+/// Columns of a cyclogram that is not repeated yet.
+void repeat_columns(Cyclogram& cyclogram, int times) {
+  const double length_s = cyclogram.duration_s();
+  for (Cyclogram::Column& column : cyclogram.columns) {
+    TimeSeries once = column.rows;
+    if (times > 1 && once.time_s.size() > 1 && once.time_s.back() >= length_s) {  // a record's last row ends it
+      once.time_s.pop_back();
+      once.value.pop_back();
+    }
+    for (int i = 1; i < times; ++i) {
+      if (i == 1) column.rows = once;
+      for (std::size_t k = 0; k < once.time_s.size(); ++k) {
+        column.rows.time_s.push_back(once.time_s[k] + i * length_s);
+        column.rows.value.push_back(once.value[k]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
+  if (!is_name(name)) cyclograms.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", name));
+  Cyclogram cyclogram{.name = name, .sections = {}};
+  if (!cyclograms.is_map(name)) {
+    cyclogram.sections = sections_of_rows(cyclograms, name, {{&columns()[0]}, {}, {false}}, cyclogram.columns);
+    return cyclogram;
+  }
+  const ConfigMap in = cyclograms.map(name);
+  const int n_kinds =
+      static_cast<int>(in.has("rows")) + static_cast<int>(in.has("csv")) + static_cast<int>(in.has("nc_program"));
+  if (n_kinds != 1)
+    cyclograms.fail(name, "a cyclogram is a list of [duration, speed], or a map with one of the keys rows, csv, nc_program");
+  if (in.has("rows")) {
+    cyclogram.sections = sections_of_rows(in, "rows", row_columns(in), cyclogram.columns);
+  } else if (in.has("csv")) {
+    std::optional<ColumnMap> columns;
+    if (const auto map = in.optional_map("columns")) columns = read_columns(*map);
+    Cyclogram recorded = run_of(read_record(beside(in, "csv"), columns).record, nullptr, {}, Reading::kPlan).cyclogram;
+    cyclogram.sections = std::move(recorded.sections);
+    cyclogram.columns = std::move(recorded.columns);
+  } else {
+    read_nc_cyclogram(in, cyclogram);
+  }
+  const int repeat = in.integer("repeat", 1, kMostRepeats, 1);
+  in.reject_unknown_keys();
+  if (static_cast<double>(repeat) * static_cast<double>(cyclogram.sections.size()) > kMostSections)
+    in.fail("repeat",
+            fmt::format("{} times {} sections are more than {:g}", repeat, cyclogram.sections.size(), kMostSections));
+  repeat_columns(cyclogram, repeat);
+  cyclogram.sections = repeated(cyclogram.sections, repeat);
+  if (cyclogram.sections.empty()) cyclograms.fail(name, "the cyclogram takes no time; at least one move or dwell is wanted");
+  return cyclogram;
+}
+
+NcSettings read_nc_settings(const ConfigMap& in) {
+  NcSettings settings;
+  if (in.has("rapid")) settings.rapid_m_s = in.quantity("rapid", "m/s", 1e-6, kMostFeed_m_s);
+  if (in.has("tool_change")) settings.tool_change_s = in.quantity("tool_change", "s", 0.0, 3600.0);
+  settings.dwell_P_s = in.choice("dwell_unit", {"s", "ms"}, "s") == "s" ? 1.0 : 1e-3;
+  if (in.has("machine_zero")) {
+    const Eigen::Vector3d zero_m = in.vector3("machine_zero", "m");
+    settings.machine_zero_m = {zero_m[0], zero_m[1], zero_m[2]};
+  }
+  if (in.has("ignore")) {
+    for (const std::string& word : in.texts("ignore")) {
+      const bool fine = word.size() >= 2 && (word[0] == 'G' || word[0] == 'M') && (word[1] != '0' || word.size() == 2) &&
+                        word.find_first_not_of("0123456789.", 1) == std::string::npos;
+      if (!fine) in.fail("ignore", fmt::format("'{}' is no G or M word such as M88 (capital, no leading zero)", word));
+      settings.ignored.insert(word);
+    }
+  }
+  return settings;
+}
+
+Cyclogram cyclogram_of(const NcProgram& program, const std::string& name, double resolution_s, double cutting_power_W) {
+  Cyclogram cyclogram{.name = name, .sections = merged_sections(program.moves, resolution_s, cutting_power_W)};
+  cyclogram.remarks = {fmt::format("machining time {:.1f} s, {} moves", program.duration_s(), program.moves.size())};
+  cyclogram.remarks.insert(cyclogram.remarks.end(), program.notes.begin(), program.notes.end());
+  for (const Cyclogram::Section& section : cyclogram.sections) {
+    if (!(section.drive.speed_rpm <= kMostSpeed_rpm)) {
+      throw InputError(fmt::format("the program turns the spindle at {:g} rpm; 0 to {:g} rpm is allowed",
+                                   section.drive.speed_rpm, kMostSpeed_rpm));
+    }
+  }
+  return cyclogram;
+}
+
+}  // namespace driftwright::scenarios

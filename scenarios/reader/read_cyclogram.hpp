@@ -1,0 +1,22 @@
+#pragma once
+// What drives the machine, as scenarios write it: rows, a record CSV or an NC program (docs/cyclograms.md).
+
+#include "base/config_map.hpp"
+#include "base/cyclogram.hpp"
+#include "nc/program.hpp"
+
+namespace driftwright::scenarios {
+
+/// The cyclogram `name` of the map `cyclograms`. Paths in it are relative to the folder of the scenario.
+/// @throws InputError  file, line and column of the scenario, the CSV or the NC program
+[[nodiscard]] Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name);
+
+/// The keys rapid, tool_change, dwell_unit, machine_zero, ignore of an NC program. @throws InputError
+[[nodiscard]] NcSettings read_nc_settings(const ConfigMap& in);
+
+/// The cyclogram that an NC program makes (nc_sections.hpp), with its remarks.
+/// @throws InputError  for a program that takes no time or turns the spindle faster than any
+[[nodiscard]] Cyclogram cyclogram_of(const NcProgram& program, const std::string& name, double resolution_s,
+                                     double cutting_power_W);
+
+}  // namespace driftwright::scenarios

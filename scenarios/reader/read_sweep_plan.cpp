@@ -1,0 +1,312 @@
+// Reads the file of a study into a SweepPlan.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "base/designs.hpp"
+#include "base/quantity.hpp"
+#include "scenarios/reader/sweep_plan.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+constexpr std::size_t kMostMembers = 1000000;
+
+/// Where a value below a key of `in` stands.
+Where where_of(const ConfigMap& in, const std::string& key, const ConfigNode& node) {
+  return node.where(in.where(key).key);
+}
+
+Quantity read_number(const ConfigMap& in, const std::string& key, const ConfigNode& node) {
+  if (!node.is_scalar()) throw InputError(where_of(in, key, node), "a number with its unit is wanted, such as 300 N");
+  try {
+    return split_quantity(node.text);
+  } catch (const RangeError& e) {
+    throw InputError(where_of(in, key, node), e.what());
+  }
+}
+
+/// The same in the variation's unit.
+double read_number_in_unit(const ConfigMap& in, const std::string& key, const ConfigNode& node, const Variation& v) {
+  const Quantity quantity = read_number(in, key, node);
+  try {
+    return convert(quantity.number, quantity.unit, v.unit);
+  } catch (const RangeError& e) {
+    throw InputError(where_of(in, key, node), e.what());
+  }
+}
+
+/// `values:` a list, or a map of names. Numbers with units of one kind make a column of numbers, everything else one of words.
+void read_values(const ConfigMap& in, Variation& v) {
+  const ConfigNode& values = *in.value("values");
+  if (!(values.is_list() || values.is_map()) || values.items.empty())
+    in.fail("values", "a list of values is wanted, or a map of names to values; at least one");
+  try {
+    std::vector<double> numbers;
+    for (const ConfigNodePtr& node : values.items) {
+      if (!node->is_scalar() || values.is_map()) throw RangeError("no number");
+      const Quantity quantity = split_quantity(node->text);
+      if (numbers.empty()) v.unit = quantity.unit;
+      numbers.push_back(convert(quantity.number, quantity.unit, v.unit));
+    }
+    v.is_number = true;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      v.values.push_back({values.items[i], number_label(numbers[i]), numbers[i]});
+  } catch (const RangeError&) {
+    v.unit.clear();
+    for (std::size_t i = 0; i < values.items.size(); ++i) {
+      const ConfigNodePtr& node = values.items[i];
+      const std::string label = values.is_map()     ? values.keys[i].text
+                                : node->is_scalar() ? node->text
+                                                    : std::to_string(i + 1);
+      v.values.push_back({node, label, std::nan("")});
+    }
+  }
+}
+
+void read_steps(const ConfigMap& in, Variation& v) {
+  const ConfigNode &from = *in.value("from"), &to = *in.value("to");
+  const Quantity first = read_number(in, "from", from);
+  v.unit = first.unit;
+  v.is_number = true;
+  const double last = read_number_in_unit(in, "to", to, v);
+  const int n = in.integer("steps", 2, static_cast<int>(kMostMembers));
+  const bool is_log = in.choice("spacing", {"linear", "log"}, "linear") == "log";
+  if (is_log && (has_offset(v.unit) || !(first.number > 0.0 && last > 0.0)))
+    in.fail("from", "logarithmic steps want both ends above 0, and no degC");
+  for (double number : is_log ? log_steps(first.number, last, n) : linear_steps(first.number, last, n))
+    v.values.push_back(v.value_of(number));
+}
+
+/// `uniform: [a, b]`, `log_uniform: [a, b]`.
+void read_range(const ConfigMap& in, const std::string& key, Variation& v) {
+  const ConfigNode& range = *in.value(key);
+  if (!range.is_list() || range.items.size() != 2) in.fail(key, "two numbers with units are wanted, such as [200 N, 400 N]");
+  const Quantity low = read_number(in, key, *range.items[0]);
+  v.unit = low.unit;
+  const double high = read_number_in_unit(in, key, *range.items[1], v);
+  if (!(low.number < high)) in.fail(key, "the first number must be below the second");
+  const bool is_log = key == "log_uniform";
+  if (is_log && (has_offset(v.unit) || !(low.number > 0.0))) in.fail(key, "log_uniform wants numbers above 0, and no degC");
+  v.spread = {is_log ? Spread::Kind::kLogUniform : Spread::Kind::kUniform, low.number, high};
+}
+
+void read_normal(const ConfigMap& in, Variation& v) {
+  const ConfigMap normal = in.map("normal");
+  const Quantity mean = read_number(normal, "mean", *normal.value("mean"));
+  const ConfigNode& node = *normal.value("sd");
+  const Quantity sd = read_number(normal, "sd", node);
+  normal.reject_unknown_keys();
+  v.unit = mean.unit;
+  try {
+    const double factor = unit_factor(sd.unit.empty() ? "1" : sd.unit, v.unit.empty() ? "1" : v.unit);
+    v.spread = {Spread::Kind::kNormal, mean.number, sd.number * factor};
+  } catch (const RangeError& e) {
+    normal.fail("sd", e.what());
+  }
+  if (has_offset(sd.unit)) normal.fail("sd", "a temperature difference in K is wanted");
+  if (!(sd.number > 0.0)) normal.fail("sd", "the standard deviation must be above 0");
+}
+
+/// A name for columns from an address: effects[link@housing].conductance gives effects_link_housing_conductance.
+std::string name_of_address(const std::string& address) {
+  std::string name;
+  for (char c : address) {
+    const bool is_fine = std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+    if (is_fine) {
+      name += c;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
+  }
+  while (name.ends_with('_')) name.pop_back();
+  return name;
+}
+
+Variation read_variation(const ConfigMap& in, const ConfigNode& scenario, Design design) {
+  Variation v;
+  const std::vector<std::string> addresses = in.is_list("key") ? in.texts("key") : std::vector{in.text("key")};
+  if (addresses.empty()) in.fail("key", "no key to vary");
+  for (const std::string& address : addresses) {
+    v.places.push_back(find_address(scenario, address, in.where("key")));
+    v.tops.push_back(scenario.keys[v.places.back()[0]].text);
+    if (v.tops.back() == "name" || v.tops.back() == "study")
+      in.fail("key", fmt::format("`{}` changes nothing that is simulated", v.tops.back()));
+  }
+  v.name = in.has("name") ? in.name("name") : name_of_address(addresses[0]);
+  const std::vector<std::string> kinds = {"values", "from", "uniform", "log_uniform", "normal"};
+  std::vector<std::string> given;
+  for (const std::string& kind : kinds) {
+    if (in.has(kind)) given.push_back(kind);
+  }
+  if (given.size() != 1)
+    in.fail("key", fmt::format("one of {} is wanted beside it{}", fmt::join(kinds, ", "),
+                               given.empty() ? "" : fmt::format(", not {}", fmt::join(given, " and "))));
+  v.written_at = in.value(given[0]);
+  if (given[0] == "values") {
+    read_values(in, v);
+  } else if (given[0] == "from") {
+    read_steps(in, v);
+  } else if (given[0] == "normal") {
+    read_normal(in, v);
+  } else {
+    read_range(in, given[0], v);
+  }
+  if (v.spread) v.is_number = true;
+  if (v.spread && design != Design::kLatinHypercube)
+    in.fail(given[0], fmt::format("a distribution wants `design: latin_hypercube`; a list or grid wants `values`, or "
+                                  "`from`, `to` and `steps`"));
+  in.reject_unknown_keys();
+  return v;
+}
+
+void reject_overlaps(const SweepPlan& plan, const std::vector<ConfigMap>& entries) {
+  std::set<std::string> headers = {"member", "status"};
+  for (const CollectedScalar& c : plan.collect) headers.insert(c.header());
+  std::vector<std::pair<ConfigSteps, std::size_t>> seen;
+  for (std::size_t i = 0; i < plan.variations.size(); ++i) {
+    const Variation& v = plan.variations[i];
+    if (!headers.insert(v.header()).second)
+      entries[i].fail("key", fmt::format("there is a column '{}' already; give this one another `name`", v.header()));
+    for (const ConfigSteps& place : v.places) {
+      for (const auto& [other, j] : seen) {
+        const auto n = static_cast<std::ptrdiff_t>(std::min(place.size(), other.size()));
+        if (std::equal(place.begin(), place.begin() + n, other.begin()))
+          entries[i].fail("key", fmt::format("vary[{}] changes the same value, or one within it", j));
+      }
+      seen.emplace_back(place, i);
+    }
+  }
+}
+
+void count_members(const ConfigMap& in, SweepPlan& plan) {
+  std::vector<std::size_t> sizes;
+  for (const Variation& v : plan.variations) sizes.push_back(v.values.size());
+  switch (plan.design) {
+    case Design::kList:
+      for (std::size_t i = 0; i < sizes.size(); ++i) {
+        if (sizes[i] == sizes[0]) continue;
+        in.fail("design", fmt::format("in a list all entries of `vary` have as many values, one a member; '{}' has {}, '{}' "
+                                      "has {} (`grid` combines each with each)",
+                                      plan.variations[0].name, sizes[0], plan.variations[i].name, sizes[i]));
+      }
+      plan.n_members = sizes[0];
+      break;
+    case Design::kGrid:
+      plan.n_members = 1;
+      for (std::size_t size : sizes) {
+        plan.n_members *= size;
+        if (plan.n_members > kMostMembers) in.fail("design", fmt::format("the grid has more than {} members", kMostMembers));
+      }
+      break;
+    case Design::kLatinHypercube: {
+      const int n = in.integer("samples", 1, static_cast<int>(kMostMembers));
+      const int seed = in.integer("seed", 0, 2147483647, 1);
+      plan.n_members = static_cast<std::size_t>(n);
+      plan.samples = latin_hypercube(n, static_cast<int>(sizes.size()), static_cast<std::uint64_t>(seed));
+      break;
+    }
+  }
+}
+
+/// Channels of the scenario's results and their units.
+std::vector<std::pair<std::string, std::string>> channels_of(const MachineModel& machine) {
+  std::vector<std::pair<std::string, std::string>> channels;
+  for (const DisplacementOutput& d : machine.displacements) channels.emplace_back(d.name, "um");
+  for (const TiltOutput& t : machine.tilts) channels.emplace_back(t.name, "urad");
+  for (const Sensor& s : machine.sensors) channels.emplace_back(s.name, "degC");
+  return channels;
+}
+
+/// `collect: [channel, channel.scalar, ...]`.
+std::vector<CollectedScalar> read_collect(const ConfigMap& in, const Scenario& scenario,
+                                          const std::vector<std::string>& cyclograms) {
+  const auto channels = channels_of(*scenario.machine);
+  std::vector<std::string> known, scalars, wanted;
+  for (const auto& [name, unit] : channels) known.push_back(name);
+  for (const auto& [name, scalar] : scalar_names()) scalars.push_back(name);
+  wanted = in.has("collect") ? in.texts("collect") : known;
+  if (wanted.empty()) in.fail("collect", "nothing to collect");
+  std::vector<CollectedScalar> of_each;
+  for (const std::string& text : wanted) {
+    const std::string channel = text.substr(0, text.find('.'));
+    const auto found = std::find(known.begin(), known.end(), channel);
+    if (found == known.end()) {
+      const std::string near = nearest_word(channel, known);
+      in.fail("collect", fmt::format("no channel '{}'; there are {}.{}", channel, fmt::join(known, ", "),
+                                     near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+    }
+    const std::string& unit = channels[static_cast<std::size_t>(found - known.begin())].second;
+    if (channel == text) {
+      for (Scalar s : {Scalar::kPeak, Scalar::kTimeOfPeak, Scalar::kEnd}) of_each.push_back({"", channel, unit, s});
+      continue;
+    }
+    const auto scalar = std::find_if(scalar_names().begin(), scalar_names().end(),
+                                     [&](const auto& s) { return s.first == text.substr(channel.size() + 1); });
+    if (scalar == scalar_names().end())
+      in.fail("collect", fmt::format("'{}': after the dot one of {} is wanted", text, fmt::join(scalars, ", ")));
+    of_each.push_back({"", channel, unit, scalar->second});
+  }
+  std::vector<CollectedScalar> collect;
+  std::set<std::string> headers;
+  for (const std::string& cyclogram : cyclograms) {
+    for (CollectedScalar c : of_each) {
+      c.cyclogram = cyclogram;
+      if (!headers.insert(c.header()).second) in.fail("collect", fmt::format("'{}' is collected twice", c.header()));
+      collect.push_back(std::move(c));
+    }
+  }
+  return collect;
+}
+
+std::vector<std::string> read_cyclograms(const ConfigMap& in, const Scenario& scenario) {
+  std::vector<std::string> known;
+  for (const Cyclogram& c : scenario.cyclograms) known.push_back(c.name);
+  if (!in.has("cyclograms")) return known;
+  const std::vector<std::string> names = in.texts("cyclograms");
+  if (names.empty()) in.fail("cyclograms", "no cyclogram to simulate");
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string near = nearest_word(name, known);
+    in.fail("cyclograms", fmt::format("no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "),
+                                      near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+  }
+  return names;
+}
+
+}  // namespace
+
+SweepPlan read_sweep_plan(const std::string& path) {
+  SweepPlan plan;
+  plan.path = path;
+  plan.study = read_config_tree(path);
+  const ConfigMap in = ConfigMap::of_tree(plan.study);
+  plan.name = in.name("name");
+  const auto scenario_path = std::filesystem::path(path).parent_path() / in.text("scenario");  // an absolute path stays
+  if (!std::filesystem::is_regular_file(scenario_path))
+    in.fail("scenario", fmt::format("there is no file '{}' (paths are relative to the study)", scenario_path.string()));
+  plan.scenario = read_config_tree(scenario_path.string());
+  const std::map<std::string, Design> designs = {
+      {"list", Design::kList}, {"grid", Design::kGrid}, {"latin_hypercube", Design::kLatinHypercube}};
+  plan.design = designs.at(in.choice("design", {"list", "grid", "latin_hypercube"}));
+
+  const std::vector<ConfigMap> entries = in.maps("vary");
+  if (entries.empty()) in.fail("vary", "nothing varies; a list of {key, values} is wanted");
+  for (const ConfigMap& entry : entries) plan.variations.push_back(read_variation(entry, *plan.scenario, plan.design));
+  count_members(in, plan);
+
+  const Scenario scenario = read_scenario(ConfigMap::of_tree(plan.scenario));
+  if (!scenario.machine) in.fail("scenario", "a sweep simulates; this scenario has no `machine`");
+  plan.collect = read_collect(in, scenario, read_cyclograms(in, scenario));
+  reject_overlaps(plan, entries);
+  in.reject_unknown_keys();
+  return plan;
+}
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,375 @@
+#include "scenarios/reader/scenario.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <set>
+
+#include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/read_columns.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
+#include "scenarios/reader/read_hall.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+/// `materials:` maps each region to a name of the library or to a map: of values, or of such a name and how well it is known.
+std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
+  std::vector<std::string> names;
+  for (const auto& [name, material] : solver::material_library()) names.push_back(name);
+  std::vector<MaterialEntry> entries;
+  for (const std::string& region : in.keys()) {
+    MaterialEntry& entry = entries.emplace_back();
+    entry.region = region;
+    entry.where = in.where(region);
+    if (!in.is_map(region)) {
+      entry.material = solver::material_library().at(in.choice(region, names));
+      continue;
+    }
+    const ConfigMap values = in.map(region);
+    entry.known_to = effects::read_known_to(values, {"conductivity", "heat_capacity", "expansion"});
+    if (values.has("like")) {
+      entry.material = solver::material_library().at(values.choice("like", names));
+      values.reject_unknown_keys();
+    } else {
+      entry.material = solver::read_material(values);
+    }
+  }
+  return entries;
+}
+
+void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
+  std::set<std::string> names = {"speed",  "time",   "feed_x",  // columns that records have beside these
+                                 "feed_y", "feed_z", "cutting_power"};
+  const auto add = [&](const std::string& name, const char* list) {
+    if (!names.insert(name).second)
+      in.fail(list,
+              fmt::format(
+                  "the name '{}' is used twice, or is a column of every record (time, speed, feeds, cutting power, ambient)",
+                  name));
+  };
+  for (const Sensor& s : m.sensors) add(s.name, "sensors");
+  for (const Sensor& s : m.sensors) {
+    if (s.name == kAmbient && !is_on_hall(s)) in.fail("sensors", "the name 'ambient' is that of the hall's temperature");
+  }
+  names.insert(kAmbient);
+  for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
+  for (const TiltOutput& t : m.tilts) add(t.name, "tilts");
+}
+
+/// `start: reference | hall | steady`, or a temperature.
+void read_start(const ConfigMap& in, MachineModel& m) {
+  if (!in.has("start")) return;
+  const std::string text = in.text("start");
+  if (text == "reference") {
+    m.start = Start::kReference;
+  } else if (text == "hall") {
+    m.start = Start::kHall;
+  } else if (text == "steady") {
+    m.start = Start::kSteady;
+  } else if (std::isdigit(static_cast<unsigned char>(text.front())) || text.find_first_of("+-.") == 0) {
+    m.start = Start::kUniform;
+    m.start_K = in.temperature_K("start");
+  } else {
+    in.fail("start", fmt::format("'{}' is no start; reference, hall, steady or a temperature is wanted", text));
+  }
+}
+
+MachineModel read_machine(const ConfigMap& in) {
+  MachineModel m;
+  m.reference_K = in.temperature_K("reference_temperature");
+  m.mesh = read_mesh_recipe(in.map("machine"));
+  if (const auto materials = in.optional_map("materials")) m.materials = read_materials(*materials);
+  for (const ConfigMap& entry : in.maps("supports")) m.supports.push_back(read_support(entry));
+  for (const ConfigMap& entry : in.maps("joints")) m.joints.push_back(read_joint(entry));
+  for (const ConfigMap& entry : in.maps("effects")) m.effects.push_back(effects::read_effect(entry));
+  for (const ConfigMap& entry : in.maps("sensors")) m.sensors.push_back(read_sensor(entry));
+  for (const ConfigMap& entry : in.maps("displacements")) {
+    for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));
+  }
+  for (const ConfigMap& entry : in.maps("tilts")) m.tilts.push_back(read_tilt(entry));
+  m.hall = read_hall(in, m.reference_K);
+  read_start(in, m);
+  m.where = in.where("machine");
+  for (const char* key : {"reference_temperature", "machine", "materials", "supports", "joints", "sensors", "displacements",
+                          "tilts", "start"}) {
+    m.written += fmt::format("{}: {}\n", key, in.written(key));
+  }
+  const bool has_mesh = !std::holds_alternative<LumpedMachine>(m.mesh);
+  if (has_mesh && m.supports.empty()) in.fail("supports", "no support; name at least one surface that is held");
+  if (m.sensors.empty() && m.displacements.empty())
+    in.fail("sensors", "neither a sensor nor a displacement; what is wanted?");
+  reject_repeated_names(in, m);
+  return m;
+}
+
+SolverSettings read_solver(const ConfigMap& in) {
+  SolverSettings s;
+  if (in.choice("model", {"full", "reduced"}, "full") == "reduced") s.model = ModelKind::kReduced;
+  s.reduction_tolerance_K = in.quantity("reduction_tolerance", "K", 1e-5, 1.0, s.reduction_tolerance_K);
+  s.transient.relative_tolerance = in.quantity("relative_tolerance", "1", 1e-10, 1e-1, s.transient.relative_tolerance);
+  s.transient.absolute_tolerance_K = in.quantity("absolute_tolerance", "K", 1e-9, 1.0, s.transient.absolute_tolerance_K);
+  s.output_interval_s = in.quantity("output_interval", "s", 1e-3, 1e6, s.output_interval_s);
+  s.fields_every_s = in.quantity("fields_every", "s", 1e-3, 1e9, s.fields_every_s);
+  if (in.has("fields_at")) {
+    s.fields_at_s = in.quantities("fields_at", "s");
+    std::sort(s.fields_at_s.begin(), s.fields_at_s.end());
+    if (!(s.fields_at_s.front() >= 0.0)) in.fail("fields_at", "times from 0 s on are wanted");
+    if (in.has("fields_every")) in.fail("fields_at", "either `fields_at` or `fields_every` is wanted, not both");
+  }
+  s.stresses = in.choice("stresses", {"true", "false"}, "false") == "true";
+  const std::string format = in.choice("fields_format", {"vtu", "xdmf", "none"}, "vtu");
+  s.fields_format = format == "none" ? FieldsFormat::kNone : format == "xdmf" ? FieldsFormat::kXdmf : FieldsFormat::kVtu;
+  if (s.fields_format == FieldsFormat::kNone && (s.stresses || !s.fields_at_s.empty())) {
+    in.fail("fields_format",
+            "without fields there are neither stresses nor times for them; leave out `stresses` and `fields_at`");
+  }
+  in.reject_unknown_keys();
+  return s;
+}
+
+void check_candidates(const ConfigMap& in, const Study& study, const MachineModel& machine) {
+  std::vector<std::string> sensors;
+  for (const Sensor& sensor : machine.sensors) sensors.push_back(sensor.name);
+  for (const std::string& name : study.candidates) {
+    const bool is_ambient = name == kAmbient && has_ambient_channel(machine);
+    if (!is_ambient && std::find(sensors.begin(), sensors.end(), name) == sensors.end()) {
+      in.fail("candidates", fmt::format("no sensor '{}'; there are {}", name, fmt::join(sensors, ", ")));
+    }
+  }
+  const std::size_t n_candidates = study.candidates.empty() ? sensors.size() : study.candidates.size();
+  if (study.sensors_to_choose > static_cast<int>(n_candidates)) {
+    in.fail("sensors_to_choose", fmt::format("{} of {} sensors cannot be chosen", study.sensors_to_choose, n_candidates));
+  }
+}
+
+Study read_study(const ConfigMap& in, const Scenario& scenario) {
+  Study s;
+  s.where = in.where();
+  s.target = in.text("target");
+  if (in.has("candidates")) s.candidates = in.texts("candidates");
+  for (const std::string& name : s.candidates) {
+    if (name == s.target) in.fail("candidates", fmt::format("'{}' is the target; it cannot predict itself", name));
+    if (std::count(s.candidates.begin(), s.candidates.end(), name) > 1)
+      in.fail("candidates", fmt::format("'{}' stands there twice", name));
+  }
+  const std::string image = in.choice("image", {"automatic", "initial_value", "mean_value", "range"}, "automatic");
+  s.image = image == "initial_value" ? compensation::Image::kInitialValue
+            : image == "mean_value"  ? compensation::Image::kMeanValue
+            : image == "range"       ? compensation::Image::kRange
+                                     : compensation::Image::kAutomatic;
+  s.count_from_start = in.choice("count_from_start", {"true", "false"}, "false") == "true";
+  s.sensors_to_choose = in.integer("sensors_to_choose", 1, 1000, s.sensors_to_choose);
+  s.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, s.tolerance_um);
+  s.encoder_period_um = in.quantity("encoder_period", "um", 1e-3, 1e6, s.encoder_period_um);
+  if (scenario.machine) {
+    s.train = in.texts("train");
+    s.judge = in.text("judge");
+    s.thermal_modes = in.integer("thermal_modes", 1, 500, s.thermal_modes);
+    std::vector<std::string> known;
+    for (const Cyclogram& c : scenario.cyclograms) known.push_back(c.name);
+    const auto must_know = [&](const char* key, const std::string& name) {
+      if (std::find(known.begin(), known.end(), name) == known.end()) {
+        in.fail(key, fmt::format("no cyclogram '{}'; there are {}", name, fmt::join(known, ", ")));
+      }
+    };
+    if (s.train.empty()) in.fail("train", "no cyclogram to train on");
+    for (const std::string& name : s.train) {
+      must_know("train", name);
+      if (std::count(s.train.begin(), s.train.end(), name) > 1)
+        in.fail("train", fmt::format("'{}' stands there twice", name));
+    }
+    must_know("judge", s.judge);
+    for (const std::string& name : s.train) {
+      if (name == s.judge || scenario.cyclogram(name).sections == scenario.cyclogram(s.judge).sections) {
+        in.fail("judge",
+                fmt::format("a strategy is judged on a cyclogram it was not fitted on; '{}' is one of `train`", s.judge));
+      }
+    }
+    std::vector<std::string> channels;
+    for (const DisplacementOutput& d : scenario.machine->displacements) channels.push_back(d.name);
+    if (std::find(channels.begin(), channels.end(), s.target) == channels.end()) {
+      in.fail("target", fmt::format("no displacement '{}'; there are {}", s.target, fmt::join(channels, ", ")));
+    }
+    s.sensor_resolution_K = in.quantity("sensor_resolution", "K", 0.0, 10.0, s.sensor_resolution_K);
+    check_candidates(in, s, *scenario.machine);
+  }
+  in.reject_unknown_keys();
+  return s;
+}
+
+/// The map has the channels that the study is about, with or without their units, and its target in um.
+void check_columns(const ConfigMap& in, const ColumnMap& columns, const Study& study) {
+  std::vector<std::string> names = {study.target}, known;
+  names.insert(names.end(), study.candidates.begin(), study.candidates.end());
+  for (const MappedChannel& c : columns.channels) known.push_back(c.name);
+  for (const std::string& name : names) {
+    const auto channel = std::find_if(columns.channels.begin(), columns.channels.end(), [&](const MappedChannel& c) {
+      return c.name == name || c.name + "_" + c.unit == name;
+    });
+    if (channel == columns.channels.end())
+      in.fail("", fmt::format("`study` is about the channel '{}', which has no column here; there are {}", name,
+                              fmt::join(known, ", ")));
+    if (name == study.target && channel->unit != "um")
+      in.fail(channel->name, fmt::format("the target of `study` is in {} here; a length is wanted, which records have in um",
+                                         channel->written_unit));
+  }
+}
+
+AxisLoopSettings read_axis_loop_of(const ConfigMap& in, const ConfigMap& axis_loop, const Scenario& scenario) {
+  if (!scenario.machine || !scenario.study)
+    in.fail("axis_loop", "an axis is corrected by what a `study` of a machine has learned");
+  AxisLoopContext context{.target = scenario.study->target,
+                          .sensor_resolution_K = scenario.study->sensor_resolution_K,
+                          .encoder_period_um = scenario.study->encoder_period_um,
+                          .duration_s = scenario.cyclogram(scenario.study->judge).duration_s()};
+  for (const DisplacementOutput& d : scenario.machine->displacements) context.displacements.push_back(d.name);
+  for (const Sensor& s : scenario.machine->sensors) context.sensors.push_back(s.name);
+  return read_axis_loop(axis_loop, context);
+}
+
+/// Reads the table and gives the machine a displacement for each of its points.
+TableSettings add_table(const ConfigMap& in, MachineModel& machine, const std::vector<Cyclogram>& cyclograms) {
+  if (std::holds_alternative<LumpedMachine>(machine.mesh)) in.fail("region", "a table wants a mesh; this machine has none");
+  std::vector<std::string> sensors, names;
+  for (const Sensor& s : machine.sensors) sensors.push_back(s.name);
+  for (const Cyclogram& c : cyclograms) names.push_back(c.name);
+  TableSettings table = read_table(in, sensors, names);
+  const auto run = std::find(names.begin(), names.end(), table.cyclogram) - names.begin();
+  const double taught_s = cyclograms[static_cast<std::size_t>(run)].duration_s() - table.train_from_s;
+  if (!(taught_s >= 2.0 * table.every_s)) {
+    in.fail("train_from", fmt::format("{:g} h are left to learn from; three measurements, {:g} h, are wanted",
+                                      taught_s / 3600.0, table.every_s / 1800.0));
+  }
+  for (DisplacementOutput& d : table_displacements(table)) machine.displacements.push_back(std::move(d));
+  for (const Eigen::Vector3d& p : table_points(table))
+    machine.written += fmt::format("table: {} {:.17g} {:.17g} {:.17g}\n", table.region, p[0], p[1], p[2]);
+  return table;
+}
+
+}  // namespace
+
+const Cyclogram& Scenario::cyclogram(const std::string& cyclogram_name) const {
+  std::vector<std::string> known;
+  for (const Cyclogram& c : cyclograms) {
+    if (c.name == cyclogram_name) return c;
+    known.push_back(c.name);
+  }
+  throw InputError(fmt::format("{}: no cyclogram '{}'; there are {}", path, cyclogram_name, fmt::join(known, ", ")));
+}
+
+void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
+  constexpr double kMostOutputs = 1e6;
+  const double n_outputs = cyclogram.duration_s() / scenario.solver.output_interval_s;
+  if (!(n_outputs <= kMostOutputs)) {
+    throw InputError(
+        fmt::format("{}: cyclogram '{}' would give {:.1e} rows of output, more than {:.0e}; take a longer output_interval",
+                    scenario.path, cyclogram.name, n_outputs, kMostOutputs));
+  }
+  const Cyclogram felt = felt_run_as_far_as_known(*scenario.machine, cyclogram).cyclogram;
+  for (const effects::Effect& effect : scenario.machine->effects) {
+    const effects::HeatBalance balance = effects::heat_balance({effect});
+    for (const Cyclogram::Section& section : felt.sections) {
+      effects::Inputs at{.drive = section.drive};
+      at.run = cyclogram.name;
+      try {
+        balance.for_each_law([&](const std::string&, const effects::Law& law) {
+          if (law.probes.empty()) (void)law(at);  // those that look at temperatures are tried as the run goes
+        });
+      } catch (const RangeError& e) {
+        throw InputError(effect.where, fmt::format("{} at the {:g} rpm of cyclogram '{}': {}", effect.name(),
+                                                   section.drive.speed_rpm, cyclogram.name, e.what()));
+      }
+    }
+  }
+}
+
+Scenario read_scenario(const std::string& path) {
+  return read_scenario(ConfigMap::read_file(path));
+}
+
+Scenario read_scenario(const ConfigMap& in) {
+  Scenario scenario;
+  scenario.path = in.file();
+  scenario.name = in.name("name");
+  const bool has_machine = in.has("machine");
+  if (has_machine) scenario.machine = read_machine(in);
+  if (has_machine) {
+    const ConfigMap cyclograms = in.map("cyclograms");
+    for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
+    if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
+    if (const auto solver = in.optional_map("solver")) scenario.solver = read_solver(*solver);
+    for (const Cyclogram& c : scenario.cyclograms) check_cyclogram(scenario, c);
+    const bool has_fields = scenario.solver.stresses || !scenario.solver.fields_at_s.empty();
+    if (has_fields && std::holds_alternative<LumpedMachine>(scenario.machine->mesh)) {
+      in.fail("solver", "a lumped machine has no fields; leave out `fields_at` and `stresses`");
+    }
+    double longest_s = 0.0;
+    for (const Cyclogram& c : scenario.cyclograms) longest_s = std::max(longest_s, c.duration_s());
+    if (!scenario.solver.fields_at_s.empty() && scenario.solver.fields_at_s.back() > longest_s) {
+      in.fail("solver", fmt::format("`fields_at` names {:g} min; the longest cyclogram ends at {:g} min",
+                                    scenario.solver.fields_at_s.back() / 60.0, longest_s / 60.0));
+    }
+  }
+  if (const auto study = in.optional_map("study")) scenario.study = read_study(*study, scenario);
+  if (const auto columns = in.optional_map("columns")) {
+    scenario.columns = read_columns(*columns);
+    if (scenario.study) check_columns(columns->map("channels"), *scenario.columns, *scenario.study);
+  }
+  if (const auto programme = in.optional_map("programme")) {
+    if (!has_machine) in.fail("programme", "a programme wants a machine to simulate");
+    if (scenario.machine->displacements.empty())
+      in.fail("programme", "a programme judges predictors of drift and wants `displacements`");
+    scenario.programme = read_programme(*programme);
+    for (const Cyclogram& c : scenario.programme->cyclograms) check_cyclogram(scenario, c);
+    for (const Cyclogram& c : test_cyclograms(*scenario.programme)) check_cyclogram(scenario, c);
+  }
+  if (const auto validation = in.optional_map("validation")) {
+    if (!has_machine || !scenario.study)
+      in.fail("validation", "it wants a machine to simulate, and a `study` that names the target");
+    std::vector<const Cyclogram*> known;
+    for (const Cyclogram& c : scenario.cyclograms) known.push_back(&c);
+    if (scenario.programme) {
+      for (const Cyclogram& c : scenario.programme->cyclograms) {
+        if (std::none_of(known.begin(), known.end(), [&](const Cyclogram* k) { return k->name == c.name; }))
+          known.push_back(&c);
+      }
+    }
+    scenario.validation = read_validation(*validation, known, scenario.study->tolerance_um);
+    for (const Validation::Family& family : scenario.validation->families) {
+      for (const Cyclogram& c : family.cyclograms) check_cyclogram(scenario, c);
+    }
+  }
+  if (const auto schedule = in.optional_map("schedule")) {
+    if (!has_machine)
+      in.fail("schedule", "a scenario about measured records alone has no machine whose drift a program corrects");
+    const double tolerance_um = scenario.study ? scenario.study->tolerance_um : Study{}.tolerance_um;
+    scenario.schedule = read_schedule(*schedule, scenario.machine->displacements, tolerance_um);
+  }
+  if (const auto axis_loop = in.optional_map("axis_loop")) scenario.axis_loop = read_axis_loop_of(in, *axis_loop, scenario);
+  if (const auto table = in.optional_map("table")) {
+    if (!has_machine) in.fail("table", "a table wants a machine to simulate");
+    scenario.table = add_table(*table, *scenario.machine, scenario.cyclograms);
+  }
+  if (has_machine) check_instruments(*scenario.machine, scenario.cyclograms);  // points of a table are displacements, too
+  if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");
+  in.reject_unknown_keys();
+  return scenario;
+}
+
+const MachineModel& require_machine(const Scenario& scenario, const std::string& verb) {
+  if (scenario.machine) return *scenario.machine;
+  throw InputError(
+      fmt::format("{}: `{}` needs the key `machine`; this scenario is about measured records alone (select, validate)",
+                  scenario.path, verb));
+}
+
+const Study& require_study(const Scenario& scenario, const std::string& verb) {
+  if (scenario.study) return *scenario.study;
+  throw InputError(
+      fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit", scenario.path, verb));
+}
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,133 @@
+#pragma once
+// A scenario file as plain data: SI inside, nothing computed yet. One read_... function per struct is its schema.
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/column_map.hpp"
+#include "base/cyclogram.hpp"
+#include "base/errors.hpp"
+#include "base/fields_format.hpp"
+#include "compensation/sensors/grey_relational.hpp"
+#include "effects/effect.hpp"
+#include "scenarios/reader/programme.hpp"
+#include "scenarios/reader/read_axis_loop.hpp"
+#include "scenarios/reader/read_mechanics.hpp"
+#include "scenarios/reader/read_mesh.hpp"
+#include "scenarios/reader/read_outputs.hpp"
+#include "scenarios/reader/read_schedule.hpp"
+#include "scenarios/reader/read_table.hpp"
+#include "scenarios/reader/validation.hpp"
+#include "solver/material.hpp"
+#include "solver/transient.hpp"
+
+namespace driftwright::scenarios {
+
+/// A region and the material it is made of.
+struct MaterialEntry {
+  std::string region;
+  solver::Material material;
+  effects::KnownTo known_to = {};  ///< of conductivity, heat_capacity, expansion
+  Where where = {};
+};
+
+/// The state at t = 0.
+enum class Start {
+  kReference,  ///< everything at the reference temperature
+  kHall,       ///< everything at the hall's first temperature
+  kUniform,    ///< everything at MachineModel::start_K
+  kSteady,     ///< the steady state at standstill in the hall's first temperature
+};
+
+/// All that the simulation needs.
+struct MachineModel {
+  double reference_K = 293.15;
+  MeshRecipe mesh;
+  std::vector<MaterialEntry> materials;
+  std::vector<SupportEntry> supports;
+  std::vector<JointEntry> joints;  ///< mechanics of joints that are not tied
+  std::vector<effects::Effect> effects;
+  std::vector<Sensor> sensors;
+  std::vector<DisplacementOutput> displacements;
+  std::vector<TiltOutput> tilts;
+  Start start = Start::kReference;
+  double start_K = 293.15;  ///< for Start::kUniform
+  TimeSeries hall;          ///< minus reference_K [K]
+  Where where;
+  std::string
+      written;  ///< the keys that decide mesh and matrices, as the scenario has them; numbers of effects are not among them
+};
+
+/// What a cyclogram is run on.
+enum class ModelKind {
+  kFull,     ///< the finite elements themselves
+  kReduced,  ///< a small system made of them, which is kept on disk
+};
+
+struct SolverSettings {
+  ModelKind model = ModelKind::kFull;
+  double reduction_tolerance_K =
+      8e-3;  ///< error of the reduced model against the full one, estimated; with 2 um/K and 20 urad/K
+  solver::TransientOptions transient;
+  double output_interval_s = 60.0;
+  double fields_every_s = 1800.0;
+  std::vector<double>
+      fields_at_s;        ///< instead of fields_every_s where not empty; the start and the end are written in any case
+  bool stresses = false;  ///< stresses beside the other fields
+  FieldsFormat fields_format = FieldsFormat::kVtu;
+};
+
+/// What is fitted and what it is judged by.
+struct Study {
+  std::string target;                   ///< displacement channel that ranking and verdict are about
+  std::vector<std::string> candidates;  ///< temperature channels to choose from; empty: all of the record
+  /// Temperatures and target count from the first row of each record, as where the tool is set anew before each run.
+  bool count_from_start = false;
+  compensation::Image image = compensation::Image::kAutomatic;  ///< that sensors are ranked by
+  std::vector<std::string> train;                               ///< cyclograms
+  std::string judge;                                            ///< cyclogram
+  int sensors_to_choose = 4;
+  /// Step of the thermometers' readings [K], 0 = exact. Predictors are fitted and judged on readings rounded to it.
+  double sensor_resolution_K = 0.0;
+  int thermal_modes = 20;
+  double tolerance_um = 10.0;
+  double encoder_period_um = 1.0;
+  Where where;
+};
+
+struct Scenario {
+  std::string path;
+  std::string name;
+  std::optional<MachineModel> machine;  ///< absent in a scenario about measured records alone
+  std::optional<ColumnMap> columns;  ///< how the records that verbs are given are written; absent: as docs/record.md has it
+  std::vector<Cyclogram> cyclograms;
+  SolverSettings solver;
+  std::optional<Study> study;
+  std::optional<Programme> programme;
+  std::optional<Validation> validation;
+  std::optional<ScheduleSettings> schedule;
+  std::optional<AxisLoopSettings> axis_loop;
+  std::optional<TableSettings> table;  ///< its points stand behind the machine's own displacements
+
+  /// @throws InputError  naming the cyclograms there are
+  [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;
+};
+
+/// Looks whether a cyclogram can be run on the scenario's machine: every law defined at every speed, outputs not too many.
+/// read_scenario() has done so for the scenario's own. @throws InputError
+void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram);
+
+/// @throws InputError  with file, line and key
+[[nodiscard]] Scenario read_scenario(const std::string& path);
+/// The same from the map at the top of a scenario, which may have been edited.
+[[nodiscard]] Scenario read_scenario(const ConfigMap& in);
+
+/// The scenario's machine, or its study. @param verb  that needs it. @throws InputError  where there is none
+[[nodiscard]] const MachineModel& require_machine(const Scenario& scenario, const std::string& verb);
+[[nodiscard]] const Study& require_study(const Scenario& scenario, const std::string& verb);
+
+}  // namespace driftwright::scenarios

@@ -1,0 +1,109 @@
+#pragma once
+// A study of many variants of one scenario, as its file describes it (docs/sweep.md): which values vary, which members that
+// makes, what is collected of each. Nothing is simulated here.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "base/config_address.hpp"
+#include "base/config_map.hpp"
+#include "scenarios/reader/scenario.hpp"
+
+namespace driftwright::scenarios {
+
+/// One value that a member puts into the scenario.
+struct SweepValue {
+  ConfigNodePtr node;
+  std::string label;    ///< what the table shows: the number without its unit, a word, or a name given
+  double number = 0.0;  ///< in the variation's unit; NaN for what is no number
+};
+
+/// A distribution by its inverse: the value below which a share u of all values lies.
+struct Spread {
+  enum class Kind { kUniform, kLogUniform, kNormal };
+  Kind kind = Kind::kUniform;
+  double first = 0.0;   ///< lower end, or mean
+  double second = 0.0;  ///< upper end, or standard deviation
+
+  /// @param u  0 < u < 1
+  [[nodiscard]] double at(double u) const;
+};
+
+/// One entry of `vary`.
+struct Variation {
+  std::string name;
+  std::string unit;                 ///< of all its numbers, as it is written; "" for plain numbers
+  bool is_number = false;           ///< false for words, lists and maps
+  std::vector<ConfigSteps> places;  ///< in the scenario; all take the same value
+  std::vector<std::string> tops;    ///< key of the scenario that each of them lies under
+  std::vector<SweepValue> values;   ///< those listed, or steps
+  std::optional<Spread> spread;     ///< instead of values
+  ConfigNodePtr written_at;         ///< place in the study that errors about a value point to
+
+  /// Name of its column, with the unit of numbers.
+  [[nodiscard]] std::string header() const;
+  /// The value for a number in `unit`.
+  [[nodiscard]] SweepValue value_of(double number) const;
+};
+
+/// A number of a value as tables show it.
+[[nodiscard]] std::string number_label(double number);
+
+/// A number that sums up a channel over a cyclogram.
+enum class Scalar { kPeak, kTimeOfPeak, kEnd, kMin, kMax };
+/// Their names in studies and tables.
+[[nodiscard]] const std::vector<std::pair<std::string, Scalar>>& scalar_names();
+
+/// One column of results.
+struct CollectedScalar {
+  std::string cyclogram;
+  std::string channel;
+  std::string unit;  ///< of the channel
+  Scalar scalar = Scalar::kPeak;
+
+  /// "<cyclogram>_<channel>_<scalar>_<unit>"
+  [[nodiscard]] std::string header() const;
+};
+
+enum class Design { kList, kGrid, kLatinHypercube };
+
+struct SweepPlan {
+  std::string path;
+  std::string name;
+  ConfigNodePtr study;
+  ConfigNodePtr scenario;  ///< as its file has it
+  Design design = Design::kList;
+  std::vector<Variation> variations;
+  std::size_t n_members = 0;
+  Eigen::MatrixXd samples;  ///< of a Latin hypercube: n_members x variations, in (0, 1)
+  std::vector<CollectedScalar> collect;
+
+  /// The value of a variation that a member (from 0) takes.
+  [[nodiscard]] SweepValue value(std::size_t member, std::size_t variation) const;
+  /// The scenario of a member. Errors about a varied value name the study's line.
+  [[nodiscard]] ConfigMap scenario_of(std::size_t member) const;
+  /// Header row of its table: member, varied values, results, status.
+  [[nodiscard]] std::string table_header() const;
+};
+
+/// What two members have in common when their keys agree.
+enum class Shared {
+  kStructure,  ///< mesh and influence vectors
+  kMachine,    ///< the whole machine; drive, hall, start and solver may differ
+};
+/// @returns "" where all members of the plan agree
+[[nodiscard]] std::string sharing_key(const SweepPlan& plan, std::size_t member, Shared what);
+
+/// Members of part `part` of `n_parts` (from 0), those that share a machine next to each other; each member is in one part, and
+/// parts differ by one member at most.
+[[nodiscard]] std::vector<std::size_t> members_of_part(const SweepPlan& plan, std::size_t part, std::size_t n_parts);
+
+/// A number for everything that decides the table: program version, study, scenario, and the files that they name. 16 hex digits.
+[[nodiscard]] std::string content_key(const SweepPlan& plan, const std::string& version);
+
+/// Reads a study and its scenario, finds every key in the latter.
+/// @throws InputError  with file, line and key
+[[nodiscard]] SweepPlan read_sweep_plan(const std::string& path);
+
+}  // namespace driftwright::scenarios

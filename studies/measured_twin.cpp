@@ -1,0 +1,111 @@
+#include "studies/measured_twin.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "diagnosis/scatter.hpp"
+#include "diagnosis/unit_check.hpp"
+#include "diagnosis/warm_start.hpp"
+#include "machine/simulated_run.hpp"
+#include "studies/other_mesh.hpp"
+
+namespace driftwright::studies {
+namespace {
+
+/// Sizes, over the machine's own, of the mesh that tells what the mesh itself does. Not every size can be meshed: the first that can.
+constexpr double kOtherSizes[] = {1.4, 1.25, 1.6, 1.15, 0.85};
+
+/// Whether two files hold one record.
+bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun& b) {
+  if (a.time_s != b.time_s || a.channels.size() != b.channels.size()) return false;
+  for (const diagnosis::MeasuredChannel& c : a.channels) {
+    const diagnosis::MeasuredChannel* other = b.find(c.name);
+    if (!other) return false;
+    for (Eigen::Index i = 0; i < c.value.size(); ++i) {
+      if (c.value[i] != other->value[i] && !(std::isnan(c.value[i]) && std::isnan(other->value[i]))) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
+                                const std::vector<std::string>& measured, const Listener& listener) {
+  const scenarios::MachineModel& model = scenarios::require_machine(scenario, verb);
+  MeasuredTwin m;
+  m.scenario = scenario;
+  listener.begin("meshing");
+  const scenarios::PlacedMachine placed = scenarios::place(model);
+  m.mesh = placed.mesh;
+  const solver::Outputs names = scenarios::output_names(model, placed);
+  for (const std::string& path : measured) {
+    m.runs.push_back(diagnosis::read_measured(path, model, names, scenario.columns));
+    for (std::size_t r = 0; r + 1 < m.runs.size(); ++r) {
+      if (same_readings(m.runs[r], m.runs.back())) {
+        throw InputError(fmt::format("{}: the same readings as {}; a record counts once", path, m.runs[r].path));
+      }
+      if (m.runs[r].name != m.runs.back().name) continue;
+      throw InputError(
+          fmt::format("{}: there is a record called '{}' already ({}); what happened in one of them is said by its "
+                      "name. Rename one of the files",
+                      path, m.runs[r].name, m.runs[r].path));
+    }
+  }
+
+  const auto open = [&](const scenarios::Scenario& of) {
+    auto parts = std::make_unique<TwinParts>(TwinParts{diagnosis::augment(of, m.mesh, m.runs), {}});
+    parts->machine = scenarios::open_reduced(parts->augmented.model, parts->augmented.plan, listener);
+    return parts;
+  };
+  m.fine = open(scenario);
+  solver::TransientOptions tolerances = scenario.solver.transient;  // a fraction of the noise is fine enough
+  tolerances.relative_tolerance = std::max(tolerances.relative_tolerance, 1e-4);
+  tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
+  const diagnosis::Twin whole(m.fine->augmented, m.fine->machine, tolerances);
+  diagnosis::leave_out_foreign_units(m.runs, whole);
+  diagnosis::find_warm_starts(m.runs, whole);
+  listener.begin("looking what states the measured runs come to");
+  m.focus = std::make_unique<diagnosis::Focus>(
+      diagnosis::focus(whole, m.runs, diagnosis::scatter(whole), diagnosis::candidates(whole, m.runs, {})));
+  m.twin.emplace(m.fine->augmented, m.focus->machine, tolerances);
+  for (double size : kOtherSizes) {
+    OtherMesh mesh = other_mesh(scenario.machine->mesh, size);
+    m.why_one_mesh = mesh.why_none;
+    if (!mesh.recipe) break;
+    scenarios::Scenario other = scenario;
+    other.machine->mesh = std::move(*mesh.recipe);
+    other.machine->written += fmt::format("\nmesh size times {}\n", size);
+    const auto failed = [&](const std::exception& e) {
+      m.why_one_mesh = fmt::format("no other size can be meshed; of the last one tried: {}", e.what());
+    };
+    try {
+      m.other = open(other);
+    } catch (const SolveError& e) {
+      failed(e);
+      continue;
+    } catch (const InputError& e) {  // too many cells
+      failed(e);
+      continue;
+    }
+    m.on_other_mesh.emplace(m.other->augmented, m.other->machine, tolerances);
+    m.how.mesh_error_share = 1.0 / std::abs(size * size - 1.0);
+    break;
+  }
+  m.how.floor.white_K = std::max(m.how.floor.white_K, m.focus->error_K);
+  m.how.floor.white_m = std::max(m.how.floor.white_m, m.focus->error_m);
+  if (!m.twin->machine().system.is_linear()) {  // integrated in steps, and thermostats that switch a little early or late
+    m.how.floor.slow_K = 0.02;
+    m.how.floor.slow_m = 5e-8;
+  }
+  return m;
+}
+
+std::string one_mesh_text(const MeasuredTwin& m) {
+  if (m.on_other_mesh || m.mesh.n_nodes() == 0) return "";
+  return fmt::format("note: there is no second mesh: {}; an error of the mesh can pass for a cause\n", m.why_one_mesh);
+}
+
+}  // namespace driftwright::studies

@@ -1,0 +1,220 @@
+#include "studies/prediction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/mapped_record.hpp"
+#include "base/quantity.hpp"
+#include "compensation/sensors/interpolate.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
+
+namespace driftwright::studies {
+namespace {
+
+double duration_s(const std::string& option, const std::string& text) {
+  if (text.empty()) return 0.0;
+  constexpr double kMost_s = 1e7;
+  try {
+    const double value_s = parse_quantity(text, "s");
+    if (value_s >= 0.0 && value_s <= kMost_s) return value_s;
+  } catch (const RangeError& e) {
+    throw InputError(fmt::format("{} '{}': {}", option, text, e.what()));
+  }
+  throw InputError(fmt::format("{} '{}': a time from 0 s to {:g} s is wanted", option, text, kMost_s));
+}
+
+std::vector<std::string> sensors_on_hall(const scenarios::MachineModel& machine) {
+  std::vector<std::string> names;
+  for (const scenarios::Sensor& sensor : machine.sensors) {
+    if (scenarios::is_on_hall(sensor)) names.push_back(sensor.name);
+  }
+  return names;
+}
+
+/// An effect that holds in the run before alone would have to end with it, and effects are told one name of a run.
+void require_no_effect_in(const scenarios::MachineModel& machine, const std::string& run, const std::string& job) {
+  for (const effects::Effect& effect : machine.effects) {
+    if (effect.in == run && run != job) {
+      throw InputError(effect.where,
+                       fmt::format("{} holds in '{}' alone, and a prediction that starts from that record goes on as "
+                                   "'{}', where it does not hold. Leave the effect out, or rename the record",
+                                   effect.name(), run, job));
+    }
+  }
+}
+
+/// What was before the job, as the command line names it.
+struct Before {
+  scenarios::JobOrder order;
+  std::optional<Record> record;  ///< none: a cyclogram of the scenario, or nothing
+};
+
+Before read_before(const scenarios::Scenario& scenario, const PredictionOptions& options, const std::string& job) {
+  const scenarios::MachineModel& machine = *scenario.machine;
+  Before before;
+  before.order.pause_s = duration_s("--after-pause", options.after_pause);
+  before.order.n_parts = options.parts;
+  before.order.between_s = duration_s("--between", options.between);
+  if (options.start.empty()) return before;
+  if (options.start.ends_with(".csv")) {
+    ReadRecord read = read_record(options.start, scenario.columns);
+    before.order.start = scenarios::run_of(read.record, &machine, sensors_on_hall(machine), scenarios::Reading::kStrict);
+    for (const std::string& note : read.notes) fmt::print("note: {}\n", note);
+    for (const scenarios::DataFinding& f : before.order.start->findings) fmt::print("note: {}\n", f.what);
+    before.record = std::move(read.record);
+  } else {
+    before.order.start.emplace();
+    before.order.start->cyclogram = scenario.cyclogram(options.start);
+  }
+  require_no_effect_in(machine, before.order.start->cyclogram.name, job);
+  return before;
+}
+
+std::string start_words(const Before& before, const PredictionOptions& options) {
+  if (!before.order.start) return "";
+  const bool lacks_hall = before.record && !before.order.start->has_ambient();
+  return fmt::format("{}{} ({:.4g} min{}){}", before.record ? "" : "cyclogram ", options.start,
+                     before.order.start->cyclogram.duration_s() / 60.0,
+                     lacks_hall ? ", without a hall temperature: the scenario's" : "",
+                     before.order.pause_s > 0.0 ? fmt::format(" and {:.4g} min at rest", before.order.pause_s / 60.0) : "");
+}
+
+/// @param recorded  the run before
+/// @param modelled  begins with the same run
+std::vector<StartCheck> start_checks(const Record& recorded, const Record& modelled) {
+  std::vector<StartCheck> checks;
+  for (const Channel& channel : recorded.channels) {
+    const Channel* model = modelled.find(channel.name);
+    if ((channel.unit != "um" && channel.unit != "urad") || !model || model->unit != channel.unit) continue;
+    const auto is_reading = [](double v) { return !std::isnan(v); };
+    const auto first = std::find_if(channel.values.begin(), channel.values.end(), is_reading);
+    const auto last = std::find_if(channel.values.rbegin(), channel.values.rend(), is_reading);
+    if (first == channel.values.end()) continue;
+    const auto modelled_at = [&](std::ptrdiff_t row) {
+      return compensation::interpolate(modelled.time_s, model->values,
+                                       recorded.time_s[static_cast<std::size_t>(row)] - recorded.time_s.front());
+    };
+    checks.push_back(
+        {.channel = channel.name,
+         .unit = channel.unit,
+         .recorded = *last - *first,
+         .modelled = modelled_at(last.base() - channel.values.begin() - 1) - modelled_at(first - channel.values.begin())});
+  }
+  return checks;
+}
+
+/// Rows from the first part on, with the time counted from there.
+Record from_row(const Record& record, std::size_t first) {
+  Record rest{.source = record.source, .time_s = {}, .channels = {}};
+  for (std::size_t i = first; i < record.n_samples(); ++i) rest.time_s.push_back(record.time_s[i] - record.time_s[first]);
+  for (const Channel& channel : record.channels) {
+    rest.channels.push_back(
+        {channel.name, channel.unit, {channel.values.begin() + static_cast<std::ptrdiff_t>(first), channel.values.end()}});
+  }
+  return rest;
+}
+
+}  // namespace
+
+scenarios::ModelKind predicting_model(const scenarios::Scenario& scenario) {
+  const scenarios::MachineModel& machine = *scenario.machine;
+  if (scenario.solver.model == scenarios::ModelKind::kReduced) return scenarios::ModelKind::kReduced;
+  if (std::holds_alternative<scenarios::LumpedMachine>(machine.mesh)) return scenarios::ModelKind::kFull;
+  const effects::HeatBalance balance = effects::heat_balance(machine.effects);
+  const bool follows_time = std::any_of(balance.fixed.begin(), balance.fixed.end(), [](const auto& fixed) {
+    return !fixed.follows_hall && fixed.temperature_K.value.size() > 1;
+  });
+  return follows_time ? scenarios::ModelKind::kFull : scenarios::ModelKind::kReduced;
+}
+
+Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
+                         const Listener& listener, const std::string& verb) {
+  const scenarios::MachineModel& own = scenarios::require_machine(scenario, verb);
+  const Before before = read_before(scenario, options, job.name);
+  scenarios::JobSeries series = scenarios::job_series(job, before.order, own.hall, scenario.solver.output_interval_s);
+  scenarios::check_cyclogram(scenario, series.cyclogram);
+  scenarios::Scenario asked = scenario;
+  asked.solver.model = options.model.empty()     ? predicting_model(scenario)
+                       : options.model == "full" ? scenarios::ModelKind::kFull
+                                                 : scenarios::ModelKind::kReduced;
+  TimeSeries& hall =
+      asked.machine->hall;  // what the model is asked for: halls as warm as the series', behind the scenario's own
+  for (double value_K : series.hall.value) {
+    hall.time_s.push_back(hall.time_s.back() + 1.0);
+    hall.value.push_back(value_K);
+  }
+  const scenarios::Model model = scenarios::open_model(asked, {&series.cyclogram}, listener, false);
+  listener.begin(fmt::format("simulating {:.0f} min", series.cyclogram.duration_s() / 60.0));
+  scenarios::MachineModel machine = own;
+  machine.hall = series.hall;
+  // The model's start is that of the scenario's hall; a run that began in another hall began as much warmer.
+  double warmer_K = scenarios::warmer_start_K(machine, series.cyclogram);
+  if (machine.start == scenarios::Start::kHall || machine.start == scenarios::Start::kSteady)
+    warmer_K += scenarios::felt_hall_at_start_K(machine) - scenarios::felt_hall_at_start_K(own);
+  const double total_s = series.cyclogram.duration_s();
+  const scenarios::SimulatedRun run = scenarios::simulate_run(
+      machine, scenario.solver.transient, model, scenarios::start_of(own, model) + warmer_K * scenarios::ones_of(model),
+      series.cyclogram, series.time_s, [&](double time_s, const Eigen::VectorXd&) { listener.share(time_s / total_s); });
+  const std::size_t first = series.parts.front().first;
+  for (scenarios::PartRows& rows : series.parts) {
+    rows.first -= first;
+    rows.last -= first;
+  }
+  return {.record = from_row(run.record, first),
+          .parts = std::move(series.parts),
+          .predicted_by = model.words(),
+          .started_from = start_words(before, options),
+          .start_checks = before.record ? start_checks(*before.record, run.record) : std::vector<StartCheck>{}};
+}
+
+std::string start_check_text(const Prediction& prediction) {
+  std::string text;
+  for (const StartCheck& c : prediction.start_checks) {
+    text += fmt::format("  over that record {} changes by {:+.1f} {}, in the model by {:+.1f} {}\n", c.channel, c.recorded,
+                        c.unit, c.modelled, c.unit);
+  }
+  return text;
+}
+
+nlohmann::ordered_json start_checks_json(const Prediction& prediction) {
+  nlohmann::ordered_json checks = nlohmann::ordered_json::array();
+  for (const StartCheck& c : prediction.start_checks) {
+    checks.push_back(
+        {{"name", c.channel}, {"unit", c.unit}, {"recorded_change", c.recorded}, {"modelled_change", c.modelled}});
+  }
+  return checks;
+}
+
+compensation::Iso230Figures iso_figures(const Prediction& prediction) {
+  compensation::Iso230Figures figures = compensation::iso230_3_figures(prediction.record);
+  if (prediction.started_from.empty()) return figures;
+  figures.channels.clear();
+  figures.not_available = "the machine was at work before; the test starts from a machine in balance with its hall";
+  return figures;
+}
+
+Cyclogram named_cyclogram(const scenarios::Scenario& scenario, const std::string& name_or_file) {
+  Cyclogram cyclogram;
+  const bool is_known = std::any_of(scenario.cyclograms.begin(), scenario.cyclograms.end(),
+                                    [&](const Cyclogram& c) { return c.name == name_or_file; });
+  if (!is_known && (name_or_file.ends_with(".csv") || std::filesystem::exists(name_or_file))) {
+    const ReadRecord read = read_record(name_or_file, scenario.columns);
+    for (const std::string& note : read.notes) fmt::print("note: {}\n", note);
+    scenarios::RecordedRun run = scenarios::run_of(read.record, nullptr, {}, scenarios::Reading::kStrict);
+    for (const scenarios::DataFinding& f : run.findings) {
+      if (f.channel == "speed") fmt::print("note: {}\n", f.what);  // the hall is the scenario's
+    }
+    cyclogram = std::move(run.cyclogram);
+  } else {
+    cyclogram = scenario.cyclogram(name_or_file);
+  }
+  scenarios::check_cyclogram(scenario, cyclogram);
+  return cyclogram;
+}
+
+}  // namespace driftwright::studies

@@ -1,0 +1,54 @@
+#pragma once
+// How corrections of a table are judged: each with other noise and another wrong model, five times, and with the same instruments.
+
+#include <cmath>
+#include <functional>
+
+#include "compensation/judging/model_scatter.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "studies/table_study.hpp"
+
+namespace driftwright::studies {
+
+inline constexpr int kTableRepetitions = 5;
+
+/// Repeats a correction and keeps what is typical and what is worst.
+/// @param correct  of the repetition, from 0 on: what it leaves on the table, one matrix a judged time
+[[nodiscard]] TableStrategy repeated(const std::string& name,
+                                     const std::function<std::vector<Eigen::Matrix3Xd>(int)>& correct);
+
+/// Expansions of a library are known to 3 %: grey iron from 10.0 to 11.7, say its standards.
+[[nodiscard]] ExpansionFactors wrong_expansions(const scenarios::TableSettings& s, int repetition);
+
+/// The same machine, full or reduced, off by random factors in each power and coefficient.
+template <class System>
+[[nodiscard]] System wrong_system(System system, const scenarios::TableSettings& s, int repetition) {
+  Random random(static_cast<std::uint64_t>(s.seed), 50 + static_cast<std::uint64_t>(repetition));
+  return compensation::scattered(std::move(system), s.model_scatter, random);
+}
+
+[[nodiscard]] compensation::RingPlan ring_plan(const scenarios::TableSettings& s, double every_s, int repetition);
+
+/// Channel of table_readings() with the hall that the machine feels; no sensor has a name with a blank.
+inline constexpr const char* kFeltHall = "felt hall";
+
+/// The record with its temperatures as the table's instrument gives them: read every `update`, averaged backwards, held.
+/// @param felt  of the run, for the hall
+[[nodiscard]] Record table_readings(const scenarios::Scenario& scenario, const scenarios::FeltRun& felt,
+                                    const Record& record, int repetition);
+
+/// The instrument in a sentence.
+[[nodiscard]] std::string instrument_words(const scenarios::TableSettings& s);
+
+/// Mean of some thermometers [K].
+[[nodiscard]] std::vector<double> mean_K(const Record& record, const std::vector<std::string>& sensors);
+
+/// Rings measured while training.
+struct TableTraining {
+  std::vector<std::size_t> rows;
+  std::vector<Eigen::Matrix3Xd> rings_m;
+  [[nodiscard]] std::vector<double> at(const std::vector<double>& values) const;
+};
+[[nodiscard]] TableTraining train(const TableRun& run, const scenarios::TableSettings& s, int repetition);
+
+}  // namespace driftwright::studies

@@ -1,0 +1,304 @@
+#include "studies/validation_study.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+
+#include "base/quantity.hpp"
+#include "base/random.hpp"
+#include "compensation/judging/model_scatter.hpp"
+#include "compensation/sensors/thermometers.hpp"
+#include "machine/as_recorded.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "solver/reduced_transient.hpp"
+
+namespace driftwright::studies {
+namespace {
+
+using namespace compensation;
+using scenarios::Scenario;
+using scenarios::Validation;
+
+constexpr int kObserverModes = 12;   // the slowest of the model, beside its steady responses
+constexpr double kRounding = 0.289;  // standard deviation of an error spread evenly over one step, 1 / sqrt(12)
+
+/// One simulation to make.
+struct Job {
+  const Cyclogram* cyclogram;
+  const Validation::Season* season;
+};
+
+/// Simulates, true: no noise, no rounding.
+compensation::ObservedRun simulate(const Scenario& scenario, const scenarios::Model& model, const Job& job) {
+  scenarios::MachineModel machine = *scenario.machine;
+  machine.hall = scenarios::hall_in(*job.season, machine.hall, job.cyclogram->duration_s());
+  const scenarios::FeltRun felt = scenarios::felt_run(machine, *job.cyclogram);
+  const std::vector<double> times_s = scenarios::output_times_s(*job.cyclogram, scenario.solver.output_interval_s);
+  const auto run = [&](const auto& system, const Eigen::VectorXd& start) {
+    const Eigen::VectorXd shifted = start + job.season->offset_K * system.ones;
+    return scenarios::as_recorded(
+        machine, solver::simulate(system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, shifted),
+        model.outputs(), *job.cyclogram);
+  };
+  compensation::ObservedRun result{.cyclogram = *job.cyclogram, .hall = machine.hall, .readings = {}};
+  result.readings = model.reduced() ? run(model.reduced()->system, model.reduced()->start)
+                                    : run(model.full()->system, scenarios::start_state(*scenario.machine, *model.full()));
+  result.readings.source = job.cyclogram->name;
+  return result;
+}
+
+Thermometers instrument_of(const Validation& v) {
+  return {.noise_K = v.noise_K, .resolution_K = v.resolution_K};
+}
+
+/// @param run  index among training runs and, behind them, those judged
+std::uint64_t seed_of(const Validation& v, std::size_t run) {
+  return 1000 * static_cast<std::uint64_t>(v.seed) + run;
+}
+
+std::string speed_channel(const Record& record) {
+  const Channel* speed = record.find("speed");
+  if (!speed || speed->unit != "rpm") return {};
+  const auto [low, high] = std::minmax_element(speed->values.begin(), speed->values.end());
+  return *high > *low || *high > 0.0 ? "speed" : "";
+}
+
+/// The hall among the channels of a simulated record: a sensor on it, or `ambient`.
+std::string hall_channel(const Scenario& scenario, const Record& record) {
+  const std::vector<std::string> sensors = hall_sensors(scenario);
+  if (!sensors.empty()) return sensors.front();
+  return record.find(scenarios::kAmbient) ? scenarios::kAmbient : "";
+}
+
+constexpr double kWarm_K = 4.0;  // beside the hall, that a model starts as warm as
+
+/// Why a run does not begin in balance with its hall, going by its first readings; "" where it does.
+std::string why_not_in_balance(const scenarios::MachineModel& machine, const compensation::ObservedRun& run) {
+  const double hall_C = run.hall.at(0.0) + machine.reference_K - kZeroCelsius_K;
+  for (const scenarios::Sensor& s : machine.sensors) {
+    const Channel* c = run.readings.find(s.name);
+    if (!c || scenarios::is_on_hall(s) || !(std::abs(c->values.front() - hall_C) > kWarm_K)) continue;
+    return fmt::format("{} begins with {} at {:.1f} degC in a hall of {:.1f} degC, and a model starts as warm as the hall",
+                       run.readings.source, s.name, c->values.front(), hall_C);
+  }
+  return "";
+}
+
+/// What strategies may know of the machine behind records, or why nothing.
+struct RecordedPhysics {
+  std::optional<compensation::Physics> physics;
+  std::string why_none;
+};
+/// @param runs  for training and judging
+RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<const compensation::ObservedRun*>& runs,
+                                    const compensation::StrategySettings& how, const Listener& listener) {
+  if (!scenario.machine) return {std::nullopt, "the scenario has no machine"};
+  const scenarios::MachineModel& machine = *scenario.machine;
+  if (!how.count_from_start)
+    return {std::nullopt, "a model knows drift since the start of a run; `study: {count_from_start: true}` is needed"};
+  if (effects::has_reading_effects(machine.effects))
+    return {std::nullopt, "the scenario's effects change what instruments read, and a model tells what is true"};
+  if (machine.start != scenarios::Start::kHall)
+    return {std::nullopt, "every record begins in a hall of its own; `start: hall` is needed"};
+  std::vector<const Cyclogram*> cyclograms;
+  for (const compensation::ObservedRun* run : runs) {
+    if (std::string why = why_no_model_follows(machine, *run); !why.empty()) return {std::nullopt, std::move(why)};
+    cyclograms.push_back(&run->cyclogram);
+  }
+  Scenario reduced = scenario;
+  for (const compensation::ObservedRun* run : runs) {  // what the model is asked for: halls as warm as recorded
+    TimeSeries& hall = reduced.machine->hall;
+    for (double v : run->hall.value) {
+      hall.time_s.push_back(hall.time_s.back() + 1.0);
+      hall.value.push_back(v);
+    }
+  }
+  if (std::holds_alternative<scenarios::LumpedMachine>(machine.mesh)) reduced.solver.model = scenarios::ModelKind::kReduced;
+  if (reduced.solver.model != scenarios::ModelKind::kReduced) return {std::nullopt, "`solver: {model: reduced}` is needed"};
+  try {
+    const scenarios::Model model = scenarios::open_model(reduced, cyclograms, listener, false);
+    const auto& outputs = model.outputs().name;
+    for (const std::string& name : how.candidates) {
+      if (std::find(outputs.begin(), outputs.end(), name) == outputs.end())
+        return {std::nullopt, fmt::format("the scenario's machine has no sensor '{}'", name)};
+    }
+    std::optional<compensation::Physics> physics = physics_of(scenario, model, 0.0, 1);
+    if (!physics) return {std::nullopt, "in the scenario's machine films, heat or thermostats follow temperatures"};
+    return {std::move(physics), ""};
+  } catch (const InputError& e) {  // a machine that no reduced model follows
+    return {std::nullopt, e.what()};
+  } catch (const SolveError& e) {  // such as heat without a way out
+    return {std::nullopt, e.what()};
+  }
+}
+
+}  // namespace
+
+std::string why_no_model_follows(const scenarios::MachineModel& machine, const compensation::ObservedRun& run) {
+  if (run.cyclogram.sections.empty()) return fmt::format("{} does not say what drove the machine", run.readings.source);
+  return why_not_in_balance(machine, run);
+}
+
+std::optional<compensation::Physics> physics_of(const Scenario& scenario, const scenarios::Model& model, double scatter,
+                                                int seed) {
+  const scenarios::ReducedMachine* reduced = model.reduced();
+  if (!reduced || !reduced->system.is_linear()) return std::nullopt;
+  const double hall_K = scenarios::felt_hall_at_start_K(*scenario.machine);
+  const ModalPredictor modes =
+      make_ritz_predictor(reduced->system, reduced->start, kObserverModes, {.drive = {}, .hall_K = hall_K});
+  return compensation::Physics{scattered(modes.system, scatter, seed, true), modes.start, hall_K};
+}
+
+std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record) {
+  if (!study.candidates.empty()) return study.candidates;
+  std::vector<std::string> names;
+  for (const Channel& c : record.channels) {
+    const bool is_temperature = (c.unit == "degC" || c.unit == "K") && c.name != scenarios::kAmbient;
+    if (is_temperature && &c != record.find(study.target)) names.push_back(c.name);
+  }
+  if (names.empty()) throw InputError(fmt::format("{}: no temperature channel (degC or K) to choose from", record.source));
+  return names;
+}
+
+std::vector<std::string> usable_sensors(const std::vector<Record>& records, const std::vector<std::string>& candidates) {
+  std::vector<std::string> usable;
+  for (const std::string& name : candidates) {
+    const bool is_there = std::all_of(records.begin(), records.end(), [&](const Record& record) {
+      const std::vector<double>& x = record.at(name).values;
+      const auto n_missing = std::count_if(x.begin(), x.end(), [](double v) { return std::isnan(v); });
+      return 2 * static_cast<std::size_t>(n_missing) < x.size();
+    });
+    if (is_there) usable.push_back(name);
+  }
+  if (usable.empty())
+    throw InputError(
+        fmt::format("each of the candidates ({}) is missing in half the rows of a record", fmt::join(candidates, ", ")));
+  return usable;
+}
+
+std::optional<Record> as_judged(const Validation& v, const std::string& cyclogram, const Record& exact) {
+  std::size_t run = v.train.size();
+  for (const Validation::Family& family : v.families) {
+    for (const Validation::Season& season : v.seasons) {
+      for (const Cyclogram& c : family.cyclograms) {
+        if (&season == &v.seasons.front() && c.name == cyclogram) return as_read(exact, instrument_of(v), seed_of(v, run));
+        ++run;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const scenarios::Model& model,
+                                                 const Listener& listener) {
+  const Validation& v = *scenario.validation;
+  const scenarios::Study& study = *scenario.study;
+  if (effects::has_reading_effects(scenario.machine->effects)) {
+    throw InputError(v.where,
+                     "strategies are judged by the true drift; leave out the effects that change what instruments read");
+  }
+  std::vector<Job> jobs;
+  for (const Cyclogram& c : v.train) jobs.push_back({&c, &v.seasons.front()});
+  std::vector<std::pair<std::string, std::string>> family_and_season;
+  for (const Validation::Family& family : v.families) {
+    for (const Validation::Season& season : v.seasons) {
+      for (const Cyclogram& c : family.cyclograms) {
+        jobs.push_back({&c, &season});
+        family_and_season.emplace_back(family.name, season.name);
+      }
+    }
+  }
+  listener.begin(fmt::format("simulating {} runs", jobs.size()));
+  std::vector<compensation::ObservedRun> runs(jobs.size());
+  std::vector<std::exception_ptr> failures(jobs.size());
+  std::size_t n_done = 0;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    try {
+      runs[i] = simulate(scenario, model, jobs[i]);
+    } catch (...) {
+      failures[i] = std::current_exception();  // none may leave the parallel loop
+    }
+#pragma omp critical(told_of_work)
+    listener.share(static_cast<double>(++n_done) / static_cast<double>(jobs.size()));
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  const std::vector<std::string> candidates = candidate_sensors(study, runs.front().readings);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].readings = as_read(std::move(runs[i].readings), instrument_of(v), seed_of(v, i));
+    if (i >= v.train.size()) continue;
+    Random random(seed_of(v, i), 99);
+    const auto target = static_cast<std::size_t>(&runs[i].readings.at(study.target) - runs[i].readings.channels.data());
+    for (double& um : runs[i].readings.channels[target].values) um += v.drift_noise_um * random.normal();
+  }
+  const std::string hall = hall_channel(scenario, runs.front().readings);
+  compensation::MatrixSettings settings;
+  compensation::StrategySettings& how = settings.strategies;
+  how.target = study.target;
+  how.candidates = candidates;
+  how.n_sensors = study.sensors_to_choose;
+  how.count_from_start = true;
+  how.image = study.image;
+  how.speed = speed_channel(runs.front().readings);
+  how.hall = hall;
+  how.reading_K = std::max(1e-3, std::hypot(v.noise_K, kRounding * v.resolution_K));
+  how.drift_um = std::max(0.1, v.drift_noise_um);
+  how.physics = physics_of(scenario, model, v.model_scatter, v.seed);
+  settings.tolerance_um = v.tolerance_um;
+  settings.fails_at = v.fails_at;
+  settings.fails_in = v.seasons.front().name;
+  settings.elsewhere = hall;
+  std::vector<compensation::ObservedRun> training(
+      std::make_move_iterator(runs.begin()),
+      std::make_move_iterator(runs.begin() + static_cast<std::ptrdiff_t>(v.train.size())));
+  std::vector<compensation::JudgedRunOfMachine> judged;
+  for (std::size_t k = 0; k < family_and_season.size(); ++k) {
+    compensation::ObservedRun& run = runs[v.train.size() + k];
+    judged.push_back({family_and_season[k].first, family_and_season[k].second, run.cyclogram.name, std::move(run)});
+  }
+  listener.begin(fmt::format("fitting and judging strategies on {} runs", judged.size()));
+  return compensation::judge_strategies(settings, std::move(training), std::move(judged));
+}
+
+compensation::StrategyMatrix validate_on_records(const Scenario& scenario, StudyRecords records, const Listener& listener) {
+  const scenarios::Study& study = *scenario.study;
+  const std::vector<Record> training = own_records(records.train);
+  compensation::MatrixSettings settings;
+  compensation::StrategySettings& how = settings.strategies;
+  how.target = study.target;
+  how.candidates = usable_sensors(training, candidate_sensors(study, training.front()));
+  how.n_sensors = study.sensors_to_choose;
+  how.count_from_start = study.count_from_start;
+  how.image = study.image;
+  how.speed = speed_channel(training.front());
+  how.hall = records.hall;
+  std::vector<const compensation::ObservedRun*> all;
+  for (const std::vector<compensation::ObservedRun>* list : {&records.train, &records.test}) {
+    for (const compensation::ObservedRun& run : *list) all.push_back(&run);
+  }
+  RecordedPhysics physics = physics_for_records(scenario, all, how, listener);
+  how.physics = std::move(physics.physics);
+  how.without_physics = std::move(physics.why_none);
+  const Channel* elsewhere = how.hall.empty() ? nullptr : records.test.front().readings.find(how.hall);
+  if (elsewhere && elsewhere->unit == training.front().at(how.candidates.front()).unit) settings.elsewhere = how.hall;
+  std::vector<compensation::JudgedRunOfMachine> judged;
+  for (compensation::ObservedRun& run : records.test) {
+    const std::string name = std::filesystem::path(run.readings.source).filename().string();
+    judged.push_back({"measured", "", name, std::move(run)});
+  }
+  settings.tolerance_um = study.tolerance_um;
+  settings.fails_at = 0.5;
+  listener.begin(fmt::format("fitting and judging strategies on {} records", judged.size()));
+  compensation::StrategyMatrix matrix =
+      compensation::judge_strategies(settings, std::move(records.train), std::move(judged));
+  matrix.findings = std::move(records.findings);
+  return matrix;
+}
+
+}  // namespace driftwright::studies

@@ -1,0 +1,42 @@
+#pragma once
+// The runs that strategies are fitted on and judged by: simulated in every season of a scenario's `validation`, or measured.
+
+#include "compensation/judging/strategy_matrix.hpp"
+#include "machine/model.hpp"
+#include "scenarios/reader/scenario.hpp"
+#include "studies/record_study.hpp"
+
+namespace driftwright::studies {
+
+/// Strategies on the scenario's `validation`. The simulation of its model is the truth; the model that strategies may use is off by
+/// `model_scatter`. Drift counts from the start of each run.
+/// @throws InputError  for effects that change readings alone, and as judge_strategies()
+[[nodiscard]] compensation::StrategyMatrix validate_strategies(const scenarios::Scenario& scenario,
+                                                               const scenarios::Model& model, const Listener& listener);
+
+/// The readings of a cyclogram in the scenario's own hall as validate_strategies() gives them to strategies, with the noise of that very run;
+/// none where it judges no such run. @param exact  as simulated
+[[nodiscard]] std::optional<Record> as_judged(const scenarios::Validation& validation, const std::string& cyclogram,
+                                              const Record& exact);
+
+/// Strategies on measured records (record_study.hpp). Those with physics take part where the scenario has a machine that is linear, drift counts from the start
+/// of each record, and the records say what drove it.
+[[nodiscard]] compensation::StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, StudyRecords records,
+                                                               const Listener& listener);
+
+/// Why a model of the machine cannot follow a measured run: nothing says what drove it, or it begins out of balance with its hall. "" where it can.
+[[nodiscard]] std::string why_no_model_follows(const scenarios::MachineModel& machine, const compensation::ObservedRun& run);
+
+/// The model as strategies get it, off by random factors (compensation::scattered()); none where it is not a linear reduced one.
+[[nodiscard]] std::optional<compensation::Physics> physics_of(const scenarios::Scenario& scenario,
+                                                              const scenarios::Model& model, double scatter, int seed);
+
+/// Thermometers of a record to choose from: the study's candidates, or every temperature channel but the target and `ambient`.
+/// @throws InputError  when there is none
+[[nodiscard]] std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record);
+
+/// Those with a value in more than half of the rows of each record. @throws InputError  when there is none
+[[nodiscard]] std::vector<std::string> usable_sensors(const std::vector<Record>& records,
+                                                      const std::vector<std::string>& candidates);
+
+}  // namespace driftwright::studies

@@ -1,0 +1,55 @@
+#!/usr/bin/python3
+"""Arrows between rooms: a file includes headers of its own room and of rooms that its CMakeLists.txt links, and no room needs itself.
+
+    arrows_test.py FOLDER_OF_THE_PROJECT
+"""
+import pathlib
+import re
+import sys
+
+TARGET = re.compile(r"driftwright_target\(driftwright_(\w+)\)")
+LINKS = re.compile(r"target_link_libraries\(driftwright_(\w+)((?:[^()]|\([^()]*\))*)\)")
+INCLUDE = re.compile(r'^#include "([^"]+)/[^"/]+"', re.M)
+
+
+def rooms_of(top):
+    """By folder: the room's target, and by target: the targets that it links."""
+    target, links = {}, {}
+    for cmake in top.glob("**/CMakeLists.txt"):
+        folder = cmake.parent.relative_to(top).as_posix()
+        if folder.split("/")[0] in ("build", "tests", "bench"):
+            continue
+        text = cmake.read_text()
+        found = [n for n in TARGET.findall(text) if f"add_library(driftwright_{n}" in text]
+        if found:
+            target[folder] = found[0]
+        for name, linked in LINKS.findall(text):
+            links.setdefault(name, set()).update(re.findall(r"driftwright_(\w+)", linked))
+    return target, links
+
+
+def below(name, links, seen):
+    """All targets that one needs. Exits where it needs itself."""
+    for n in links.get(name, ()):
+        if n in seen:
+            sys.exit(f"a circle of rooms: {' -> '.join([*seen, n])}")
+    return set(links.get(name, ())).union(*[below(n, links, [*seen, n]) for n in links.get(name, ())])
+
+
+def main():
+    top = pathlib.Path(sys.argv[1])
+    target, links = rooms_of(top)
+    if len(target) < 10:
+        sys.exit(f"only {len(target)} rooms found under {top}")
+    wrong = []
+    for folder, name in target.items():
+        allowed = below(name, links, [name]) | {name}
+        for file in [*(top / folder).glob("*.cpp"), *(top / folder).glob("*.hpp"), *(top / folder).glob("*.h")]:
+            for other in INCLUDE.findall(file.read_text()):
+                if other in target and target[other] not in allowed:
+                    wrong.append(f"{file.relative_to(top)} includes a header of {other}, which driftwright_{name} does not link")
+    print("\n".join(wrong) or f"{len(target)} rooms, every arrow one way")
+    sys.exit(bool(wrong))
+
+
+main()
