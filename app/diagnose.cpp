@@ -31,7 +31,7 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
   if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
   for (const std::string& path : options.measured) head.push_back("  measured: " + path);
   if (d.written.keeps_numbers)
-    head.emplace_back(options.causes_only
+    head.emplace_back(options.causes_only || d.written.causes_alone
                           ? "  the scenario's own numbers are as they were"
                           : "  the scenario's own numbers are as fitted beside the causes (`calibration` in comments); "
                             "--causes-only leaves them");

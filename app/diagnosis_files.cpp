@@ -31,6 +31,7 @@ std::vector<StatedChange> stated_causes(const diagnosis::Diagnosis& d) {
         fmt::format("{}, evidence gain {:.1f} nats", diagnosis::word(cause.standing), cause.log_evidence_gain)};
     for (const diagnosis::Estimate& p : cause.parameters)
       numbers.push_back(fmt::format("{} {}, 95 %: {}", p.name, value_text(p), interval_text(p)));
+    if (d.written.causes_alone) numbers.emplace_back("written as fitted beside the scenario's own numbers as they are");
     changes.push_back({fmt::format("{} at {}", cause.effect, cause.where),
                        fmt::format("{} at {}: {}", cause.effect, cause.where, fmt::join(numbers, "; ")),
                        diagnosis::change_of(claim, fit.x.segment(first, n))});
@@ -42,6 +43,7 @@ std::vector<StatedChange> stated_causes(const diagnosis::Diagnosis& d) {
 std::vector<StatedChange> stated_scatter(const diagnosis::Diagnosis& d, bool causes_only) {
   constexpr double kUnmoved = 1e-4;  // standard deviations of the prior
   std::vector<StatedChange> changes;
+  if (d.written.causes_alone) return changes;
   const std::vector<diagnosis::Knob>& knobs = d.scatter;
   for (std::size_t i = 0; i < knobs.size(); ++i) {
     const diagnosis::Estimate& e = d.calibrated.at(i);

@@ -157,6 +157,21 @@ void write_nothing(Diagnosis& d) {
   }
 }
 
+/// Causes with the scenario's own numbers as they are written.
+void write_alone(Diagnosis& d, const CausesAlone& alone) {
+  d.written = {.hypothesis = alone.hypothesis,
+               .causes = alone.claims,
+               .fit = alone.fit,
+               .keeps_numbers = true,
+               .causes_alone = true,
+               .why_nothing = {}};
+  d.extended = alone.fit.prediction;
+  d.holdout = alone.how;
+  d.gain = alone.channels;
+  for (std::size_t c = 0; c < d.causes.size(); ++c)
+    d.causes[c].is_written = std::find(alone.claims.begin(), alone.claims.end(), c) != alone.claims.end();
+}
+
 /// Of a diagnosis that was ended: what stands so far is said, and that it was not judged.
 void leave_incomplete(Diagnosis& d, const std::string& stage) {
   d.ended_at = stage;
@@ -338,7 +353,15 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       if (c.standing != Standing::kSuspected && c.doubt.empty()) c.doubt = "more is left than it explains";
       c.standing = Standing::kSuspected;
     }
-    if (runs.size() == 1 && options.most_effects > 0 && d.written.keeps_numbers) write_nothing(d);
+    if (runs.size() == 1 && options.most_effects > 0) {
+      const std::optional<CausesAlone> alone =
+          listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise, held);
+      if (alone) {
+        write_alone(d, *alone);
+      } else if (d.written.keeps_numbers) {
+        write_nothing(d);
+      }
+    }
   }
   const bool is_open = std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
   if (is_open && !listener.wants_end()) {

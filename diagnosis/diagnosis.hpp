@@ -49,6 +49,7 @@ struct Written {
   std::vector<std::size_t> causes;  ///< of Diagnosis::causes, one a claim
   Fit fit;
   bool keeps_numbers = true;     ///< false: nothing is written
+  bool causes_alone = false;     ///< the scenario\'s own numbers are as they were
   std::string why_nothing = {};  ///< then: why, a clause
 };
 

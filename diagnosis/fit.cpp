@@ -302,6 +302,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   Eigen::VectorXd taken_at = nuisance_;
   int n_retakes = 0;
   const auto retake = [&](double promised) {
+    if (n_n == 0) return false;
     const Eigen::VectorXd gone = (f.x.head(n_n) - taken_at).cwiseQuotient(sd.head(n_n));
     if (n_retakes == kMostRetakes || (gone.cwiseAbs().maxCoeff() <= kFar && promised < kPromised)) return false;
     own_slopes = slopes_at(hypothesis, f, workspace);

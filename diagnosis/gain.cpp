@@ -14,8 +14,12 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kFitted = 2.0 / 3.0;  // of a single run
-constexpr int kBlocks = 6;             // of a run, every other one kept out
-constexpr double kNoSolution = -1e6;   // nats of a fold that no numbers fit
+constexpr const char* kAheadWords =
+    "the last third of the only record, predicted with numbers fitted to the first two thirds";
+constexpr double kWorseOfOne = 1.05;  // RMSE of one channel
+constexpr double kStrong = 20.0;      // nats of a cause that may be written alone
+constexpr int kBlocks = 6;            // of a run, every other one kept out
+constexpr double kNoSolution = -1e6;  // nats of a fold that no numbers fit
 // What a kept-out record has of its own, such as its hall, is in the misses and says nothing of a claim: they count where likelihood is not clear.
 constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorse = 1.1;            // of the squares
@@ -56,6 +60,14 @@ bool has_time(const Claim& claim) {
   return claim.happens || std::any_of(claim.knobs.begin(), claim.knobs.end(), [](const Knob& k) { return k.is_time; });
 }
 
+/// The end of a single run.
+Fold ahead_of(const std::vector<MeasuredRun>& runs) {
+  const double from_s = kFitted * runs[0].time_s.back();
+  Fold fold = fold_of(runs, [&](std::size_t, double t_s) { return t_s > from_s; });
+  fold.is_ahead = true;
+  return fold;
+}
+
 struct Folds {
   std::vector<Fold> list;
   std::string how;
@@ -71,10 +83,8 @@ Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace
           fold_of(runs, [&](std::size_t r, double t_s) { return r == run && static_cast<int>(t_s / block_s) % 2 == odd; }));
   };
   if (runs.size() == 1) {
-    const double from_s = kFitted * runs[0].time_s.back();
-    folds.list.push_back(fold_of(runs, [&](std::size_t, double t_s) { return t_s > from_s; }));
-    folds.list.back().is_ahead = true;
-    folds.how = "the last third of the only record, predicted with numbers fitted to the first two thirds";
+    folds.list.push_back(ahead_of(runs));
+    folds.how = kAheadWords;
     if (std::any_of(result.hypothesis.begin(), result.hypothesis.end(), has_time)) {
       by_blocks(0);
       folds.how += "; and sixths of it, every other one kept out, for something happened in it";
@@ -370,6 +380,55 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   held.keeps_numbers = judge.squares_over_noise(extended) <= judge.squares_over_noise(written);
   held.channels = channel_gains(fitter.runs(), noise, judge, written, calibrated, held.keeps_numbers ? extended : written);
   return held;
+}
+
+std::optional<CausesAlone> causes_alone(const Fitter& fitter, const SearchResult& result,
+                                        const std::map<std::string, NoiseModel>& noise, const HeldOut& held) {
+  if (fitter.runs().size() != 1 || held.n_searched == 0) return std::nullopt;
+  std::vector<std::size_t> strong;  // the strongest first
+  for (std::size_t c = 0; c < result.findings.size(); ++c) {
+    // what happened at a time of this record says nothing of another one
+    if (result.findings[c].log_evidence_gain >= kStrong && held.n_again[c] == held.n_searched &&
+        !has_time(result.hypothesis[c]))
+      strong.push_back(c);
+  }
+  std::stable_sort(strong.begin(), strong.end(), [&](std::size_t a, std::size_t b) {
+    return result.findings[a].log_evidence_gain > result.findings[b].log_evidence_gain;
+  });
+  Fold ahead = ahead_of(fitter.runs());
+  Fitter whole(fitter.twin(), fitter.runs(), {}, {});
+  whole.set_noise(fitter.noise(), fitter.shared_noise());
+  const Fitter part(whole, ahead.fitted);
+  Judge judge(fitter, result, noise, {ahead});
+  const std::vector<Prediction> written = judge.written();
+  Twin::Workspace workspace(fitter.twin());
+  for (const std::size_t n : {strong.size(), std::size_t{1}}) {
+    if (n == 0 || n > strong.size()) continue;
+    std::vector<std::size_t> kept(strong.begin(), strong.begin() + static_cast<std::ptrdiff_t>(n)), left_out;
+    std::sort(kept.begin(), kept.end());
+    for (std::size_t c = 0; c < result.hypothesis.size(); ++c) {
+      if (std::find(kept.begin(), kept.end(), c) == kept.end()) left_out.push_back(c);
+    }
+    const Remainder rest = without_claims(result.hypothesis, left_out, fitter.n_nuisance());
+    const Eigen::VectorXd x = result.fit.x(rest.x);
+    CausesAlone alone{.claims = std::move(kept), .hypothesis = rest.hypothesis, .fit = {}, .how = {}, .channels = {}};
+    Fit before;
+    const bool is_solved = has_solution([&] {
+      before = part.fit(alone.hypothesis, x.tail(x.size() - fitter.n_nuisance()), workspace);
+      alone.fit = whole.fit(alone.hypothesis, before.x, workspace);
+    });
+    if (!is_solved) continue;
+    const std::vector<Prediction> extended = {before.prediction};
+    if (judge.squares_over_noise(extended) * kWorse > judge.squares_over_noise(written)) continue;
+    alone.channels = channel_gains(fitter.runs(), noise, judge, written, judge.judged(0).predicted, extended);
+    const bool harms_one = std::any_of(alone.channels.begin(), alone.channels.end(), [](const ChannelGain& g) {
+      return g.rmse_after > kWorseOfOne * g.rmse_before && g.rmse_after > g.noise_floor;
+    });
+    if (harms_one) continue;
+    alone.how = fmt::format("{}; causes alone, the scenario's own numbers as they are written", kAheadWords);
+    return alone;
+  }
+  return std::nullopt;
 }
 
 }  // namespace driftwright::diagnosis

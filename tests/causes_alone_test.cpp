@@ -1,0 +1,61 @@
+// Of a single record that stays unexplained: the causes with the scenario's numbers as they are written, where they hold on its end.
+
+#include <gtest/gtest.h>
+
+#include "diagnosis/extended_scenario.hpp"
+#include "tests/lumped_records.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr const char* kBox = R"(name: box
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: heater, capacity: 2400 J/K}
+  - {type: node, node: wall, capacity: 9000 J/K}
+  - {type: heat_source, node: heater, power: 40 W, at_speed: 1000 rpm, exponent: 1}
+  - {type: link, node: heater, to: wall, conductance: 3 W/K}
+  - {type: link, node: wall, to: hall, conductance: 1.5 W/K}
+hall: [[0 h, 21 degC]]
+sensors:
+  - {name: heater, node: heater}
+  - {name: wall, node: wall}
+displacements:
+  - name: lift
+    sensitivities:
+      - {node: wall, sensitivity: 2 um/K}
+cyclograms:
+  day: [[60 min, 1000 rpm], [40 min, 0 rpm], [90 min, 1000 rpm], [50 min, 500 rpm], [70 min, 1000 rpm], [50 min, 0 rpm], [60 min, 1000 rpm]]
+solver: {output_interval: 60 s}
+)";
+// Heat that is missing whatever the speed, and heat that comes and goes as nobody could tell.
+constexpr const char* kTruth =
+    "{type: heat_source, node: heater, power: 15 W, exponent: 0}\n"
+    "  - {type: heat_window, node: wall, power: 7 W, windows: [[10 min, 47 min]]}\n"
+    "  - {type: heat_window, node: wall, power: -6 W, windows: [[81 min, 102 min]]}\n"
+    "  - {type: heat_window, node: wall, power: 9 W, windows: [[131 min, 158 min]]}\n"
+    "  - {type: heat_window, node: wall, power: -8 W, windows: [[195 min, 231 min]]}\n"
+    "  - {type: heat_window, node: wall, power: 5 W, windows: [[262 min, 301 min]]}\n"
+    "  - {type: heat_window, node: wall, power: -7 W, windows: [[322 min, 352 min]]}\n"
+    "  - {type: heat_window, node: wall, power: 8 W, windows: [[377 min, 399 min]]}";
+
+TEST(CausesAlone, AreWrittenWhereTheyHoldAndNothingElseIs) {
+  const Beside beside(write_file("plain.yaml", kBox),
+                      noisy_records(write_file("truth.yaml", with_effect(kBox, kTruth)), "box_", 60.0, 0.02, 0.05));
+  const Diagnosis d = beside.diagnosed();
+  ASSERT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
+  ASSERT_TRUE(d.wander);
+  EXPECT_EQ(d.wander->bodies.front().body.name, "wall");
+  ASSERT_TRUE(d.written.causes_alone);
+  ASSERT_EQ(d.written.hypothesis.size(), d.written.causes.size());
+  const Cause& first = d.causes.at(d.written.causes.front());
+  EXPECT_EQ(first.effect, "heat_source");
+  EXPECT_EQ(first.where, "heater");
+  EXPECT_NEAR(first.parameters.front().value, 15.0, 3.0);
+  for (const ChannelGain& g : d.gain) EXPECT_LT(g.rmse_after, 1.05 * g.rmse_before) << g.name;
+  EXPECT_LT(d.gain.front().rmse_after, 0.5 * d.gain.front().rmse_before) << "the heater's thermometer";
+}
+
+}  // namespace
+}  // namespace driftwright::diagnosis
