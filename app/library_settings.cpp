@@ -2,11 +2,16 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
+#include <string_view>
 
 namespace driftwright::app {
 namespace {
 
+constexpr std::string_view kComputing[] = {"run",        "mesh",     "simulate", "predict",   "validate",
+                                           "compensate", "schedule", "diagnose", "calibrate", "sweep"};
 constexpr const char* kSpins = "10000";  // some microseconds
 
 /// @return whether it was missing
@@ -18,6 +23,8 @@ bool set_missing(const char* name, const char* value) {
 }  // namespace
 
 void restart_with_library_settings(char** argv) {
+  const std::string_view verb = argv[0] && argv[1] ? argv[1] : "";
+  if (std::find(std::begin(kComputing), std::end(kComputing), verb) == std::end(kComputing)) return;
   bool is_new = false;
   const char* policy = std::getenv("OMP_WAIT_POLICY");
   if (!(policy && *policy)) is_new = set_missing("GOMP_SPINCOUNT", kSpins);

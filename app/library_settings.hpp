@@ -3,8 +3,9 @@
 
 namespace driftwright::app {
 
-/// Starts the program anew with those settings in its environment where they are missing; what the user set stays. Returns where nothing is
+/// Where a verb computes (its name is the first argument), starts the program anew with those settings in its environment where they are missing; what the user set stays. Returns where nothing is
 /// missing, or where it cannot be started anew: it is then slower and as right. Call it first.
+/// Loading the libraries twice takes 0.15 s: verbs that only read and show are left alone.
 ///
 /// - GOMP_SPINCOUNT, unless OMP_WAIT_POLICY or itself is set: how long a thread that waits turns in a loop before it sleeps. The default of libgomp is
 ///   milliseconds, which on a busy machine are taken from the thread that it waits for.
