@@ -13,6 +13,8 @@ constexpr double kStandsOut = 7.0;  // sigmas of one channel's leftover
 constexpr double kStandsOutTogether = 6.0;
 constexpr double kJump =
     27.0;  // squares that one step somewhere may take off by chance: exp(-13.5) times some thousand rows
+// What integrators, thermostats that switch a step late and reduced models leave of a record of their own making.
+constexpr double kLeast_K = 0.012, kLeast_m = 3e-8, kLeast_rad = 3e-7;
 constexpr double kRough = 3.0;                // leftover over noise: a model that no effect mends
 constexpr double kModelErrorTime_s = 1200.0;  // for which it misses alike
 constexpr double kNoiseCanBeWider = 1.5;      // than high frequencies say
@@ -63,7 +65,8 @@ std::optional<Unexplained> unexplained_of(const Fitter& fitter, const SearchResu
   Unexplained u;
   for (const Leftover& l : list) {
     const bool stands_out = l.sigmas() > kStandsOut || (together > kStandsOutTogether && l.sigmas() > 3.0);
-    const double worth_naming = kWorthNaming * noise.at(l.channel).total();
+    const double least = l.unit == "K" ? kLeast_K : l.unit == "m" ? kLeast_m : kLeast_rad;
+    const double worth_naming = std::max(least, kWorthNaming * noise.at(l.channel).total());
     const bool jumps = l.jump_squares >= kJump && l.jump >= worth_naming;
     if (!(stands_out && l.rms >= worth_naming) && !jumps) continue;
     u.nats += 0.5 * std::max(l.squares - l.n_curves, jumps ? l.jump_squares : 0.0);
