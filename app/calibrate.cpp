@@ -19,11 +19,8 @@ void calibrate(const CalibrateOptions& options) {
   Progress progress;
   studies::MeasuredTwin m = studies::open_measured_twin(scenario, "calibrate", options.measured, progress.listener());
   m.how.most_effects = 0;
-  const Listener listener{.on_begin = [&](const std::string& work) { progress.begin(work); },
-                          .on_share = [&](double share) { progress.update(share); },
-                          .wants_end_now = {}};
   const diagnosis::Diagnosis d =
-      diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);
+      diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, progress.listener());
   progress.begin("writing");
   const std::string warning = calibration_warning(d, d.search.candidates);
   std::vector<std::string> head = {

@@ -57,9 +57,8 @@ void diagnose(const DiagnoseOptions& options) {
       throw InputError(fmt::format("--without {}: no candidate has that key; there are {}", key, fmt::join(keys, ", ")));
     }
   }
-  const Listener listener{.on_begin = [&](const std::string& work) { progress.begin(work); },
-                          .on_share = [&](double share) { progress.update(share); },
-                          .wants_end_now = EndRequest::is_made};
+  Listener listener = progress.listener();
+  listener.wants_end_now = EndRequest::is_made;
   std::optional<EndRequest> end_request(std::in_place);
   diagnosis::Diagnosis d =
       diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);

@@ -164,7 +164,10 @@ void write_alone(Diagnosis& d, const CausesAlone& alone) {
                .fit = alone.fit,
                .keeps_numbers = true,
                .causes_alone = true,
-               .why_nothing = {}};
+               .why_nothing =
+                   "of a single record of which more is left only causes of 20 nats are written that tell of no time, are "
+                   "found again "
+                   "without its last third and do no harm there"};
   d.extended = alone.fit.prediction;
   d.holdout = alone.how;
   d.gain = alone.channels;

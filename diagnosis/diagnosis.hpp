@@ -48,9 +48,10 @@ struct Written {
   Hypothesis hypothesis;
   std::vector<std::size_t> causes;  ///< of Diagnosis::causes, one a claim
   Fit fit;
-  bool keeps_numbers = true;     ///< false: nothing is written
-  bool causes_alone = false;     ///< the scenario\'s own numbers are as they were
-  std::string why_nothing = {};  ///< then: why, a clause
+  bool keeps_numbers = true;  ///< false: nothing is written
+  bool causes_alone = false;  ///< the scenario\'s own numbers are as they were
+  std::string why_nothing =
+      {};  ///< of what is not written: why, a clause; "": kept-out rows are predicted better without it
 };
 
 /// Residuals of a channel in three states of the model.
