@@ -2,19 +2,14 @@
 #include <fmt/ranges.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "app/diagnosis_files.hpp"
-#include "app/diagnosis_json.hpp"
-#include "app/diagnosis_report.hpp"
-#include "app/diagnosis_summary.hpp"
 #include "app/end_request.hpp"
-#include "app/measured_iso230_3.hpp"
 #include "app/results.hpp"
 #include "diagnosis/event_candidates.hpp"
-#include "output/json_text.hpp"
+#include "findings/diagnosis_document.hpp"
 
 namespace driftwright::app {
 namespace {
@@ -25,7 +20,7 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
   for (const diagnosis::Cause& c : d.causes) {
     head.push_back(fmt::format("  {}{}: {} at {} ({}){}{}", diagnosis::word(c.standing),
                                c.is_written ? "" : ", not written in", c.effect, c.where, c.law,
-                               c.parameters.empty() ? "" : ": ", parameters_text(c)));
+                               c.parameters.empty() ? "" : ": ", findings::parameters_text(c)));
     for (const diagnosis::Cause& a : c.alternatives) head.push_back(fmt::format("    or {} at {}", a.effect, a.where));
   }
   if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
@@ -45,7 +40,7 @@ void diagnose(const DiagnoseOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   (void)scenarios::require_machine(scenario, "diagnose");
   output::ResultsFolder folder = open_results(options, scenario.name);
-  Progress progress;
+  Progress progress(options.quiet);
   studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", options.measured, progress.listener());
   m.how.without = {options.without.begin(), options.without.end()};
   if (!options.without.empty()) {
@@ -71,18 +66,9 @@ void diagnose(const DiagnoseOptions& options) {
   const diagnosis::ExtendedScenario extended =
       write_scenario("extended", m, changes, head_of(d, options), folder, &difference);
   if (extended.not_written.empty()) simulate_written(m, folder.path("extended.yaml").string(), d);
-  nlohmann::ordered_json json = diagnosis_json(d);
-  json["iso_230_3"] = iso230_3_json(measured_iso230_3(m));
-  json["extended"] = {{"written", extended.written}, {"not_written", extended.not_written}};
-  folder.write_text("diagnosis.json", output::json_text(json));
-  const bool has_mesh = write_missing_heat(m.mesh, missing_heat(d, d.search.candidates), folder);
-  const DiagnosisPage page{m, d, d.search.candidates, extended, difference, "extended.yaml"};
-  folder.write_text("report.html", output::render_html(diagnosis_report(page, folder.made_by())));
-  folder.commit();
-  progress.end();
-  fmt::print("{}{}{}", summary_text(d), studies::one_mesh_text(m), not_written_text("extended.yaml", extended));
-  fmt::print("results in {}: report.html, diagnosis.json, extended.yaml, extended.diff{}\n", shown_path(folder.target()),
-             has_mesh ? ", residual_source.vtu" : "");
+  write_missing_heat(m.mesh, findings::missing_heat(d, d.search.candidates), folder);
+  finish(findings::diagnosis_document({m, d, extended, difference, "extended.yaml"}, folder.made_by()), folder, progress,
+         options, "", "diagnosis.json");
   std::fflush(stdout);
   if (!d.ended_at.empty()) throw EndedEarly(fmt::format("ended at \"{}\": the diagnosis is incomplete", d.ended_at));
 }

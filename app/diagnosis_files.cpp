@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "app/diagnosis_summary.hpp"
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
 #include "base/line_diff.hpp"
@@ -30,7 +29,7 @@ std::vector<StatedChange> stated_causes(const diagnosis::Diagnosis& d) {
     std::vector<std::string> numbers = {
         fmt::format("{}, evidence gain {:.1f} nats", diagnosis::word(cause.standing), cause.log_evidence_gain)};
     for (const diagnosis::Estimate& p : cause.parameters)
-      numbers.push_back(fmt::format("{} {}, 95 %: {}", p.name, value_text(p), interval_text(p)));
+      numbers.push_back(fmt::format("{} {}, 95 %: {}", p.name, findings::value_text(p), findings::interval_text(p)));
     if (d.written.causes_alone) numbers.emplace_back("written as fitted beside the scenario's own numbers as they are");
     changes.push_back({fmt::format("{} at {}", cause.effect, cause.where),
                        fmt::format("{} at {}: {}", cause.effect, cause.where, fmt::join(numbers, "; ")),
@@ -49,7 +48,8 @@ std::vector<StatedChange> stated_scatter(const diagnosis::Diagnosis& d, bool cau
     const diagnosis::Estimate& e = d.calibrated.at(i);
     const bool is_cause = std::find(d.moved.begin(), d.moved.end(), i) != d.moved.end();
     if (std::abs(e.deviation) < kUnmoved || (causes_only && !is_cause)) continue;
-    changes.push_back({e.name, fmt::format("{} {}, 95 %: {}", knobs[i].name, value_text(e), interval_text(e)),
+    changes.push_back({e.name,
+                       fmt::format("{} {}, 95 %: {}", knobs[i].name, findings::value_text(e), findings::interval_text(e)),
                        [knob = knobs[i], value = e.value](diagnosis::TwinState& state) { knob.set(state, value); },
                        is_cause ? "diagnosis" : "calibration"});
   }
@@ -98,23 +98,12 @@ void simulate_written(const studies::MeasuredTwin& m, const std::string& path, d
     g.rmse_written = std::sqrt(squares[g.name].first / std::max(1.0, squares[g.name].second));
 }
 
-std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d, const std::vector<diagnosis::Candidate>& candidates) {
-  std::vector<MissingHeat> list;  // scores come best first, several laws a candidate
-  for (const diagnosis::Score& s : d.search.scores) {
-    const diagnosis::Candidate& c = candidates.at(s.candidate);
-    if (c.effect != "heat_source" || !(s.gain > 0.0) || s.start.size() == 0) continue;
-    const diagnosis::Variant& v = c.variants.at(s.variant);
-    const bool has_better = std::any_of(list.begin(), list.end(), [&](const auto& h) { return h.body == c.where; });
-    if (!has_better) list.push_back({c.where, s.gain, v.knobs[0].value(s.start[0]), v.law});
-  }
-  return list;
-}
-
-bool write_missing_heat(const mesh::Mesh& mesh, const std::vector<MissingHeat>& heat, output::ResultsFolder& folder) {
+bool write_missing_heat(const mesh::Mesh& mesh, const std::vector<findings::MissingHeat>& heat,
+                        output::ResultsFolder& folder) {
   if (mesh.n_nodes() == 0) return false;
   std::vector<output::RegionField> fields = {{"missing_heat_evidence", std::vector<double>(mesh.regions.size(), 0.0)},
                                              {"missing_heat_W", std::vector<double>(mesh.regions.size(), 0.0)}};
-  for (const MissingHeat& h : heat) {
+  for (const findings::MissingHeat& h : heat) {
     const auto found = std::find(mesh.regions.begin(), mesh.regions.end(), h.body);
     if (found == mesh.regions.end()) continue;
     const auto r = static_cast<std::size_t>(found - mesh.regions.begin());

@@ -2,6 +2,7 @@
 // What a diagnosis writes beside its report: the extended scenario, its difference to the user's, and where heat would be missing.
 
 #include "diagnosis/extended_scenario.hpp"
+#include "findings/diagnosis_words.hpp"
 #include "output/results_folder.hpp"
 #include "studies/measured_twin.hpp"
 
@@ -24,19 +25,9 @@ namespace driftwright::app {
 /// @throws InputError  as read_scenario()
 void simulate_written(const studies::MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d);
 
-/// Best claim of missing heat in a region or lumped node, on top of scatter alone.
-struct MissingHeat {
-  std::string body;
-  double evidence = 0.0;  ///< nats, by the linear theory
-  double power_W = 0.0;   ///< at the claim's stated speed, or at all times; < 0: the scenario has too much
-  std::string law;
-};
-/// Strongest first; bodies in which no heat brings evidence are left out.
-[[nodiscard]] std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d,
-                                                    const std::vector<diagnosis::Candidate>& candidates);
-
 /// residual_source.vtu: missing_heat_evidence [nats] and missing_heat_W of each region. Nothing for a machine without mesh.
 /// @returns whether it was written
-bool write_missing_heat(const mesh::Mesh& mesh, const std::vector<MissingHeat>& heat, output::ResultsFolder& folder);
+bool write_missing_heat(const mesh::Mesh& mesh, const std::vector<findings::MissingHeat>& heat,
+                        output::ResultsFolder& folder);
 
 }  // namespace driftwright::app

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -44,10 +46,13 @@ double positive_quantity(const std::string& option, const std::string& text, con
   throw InputError(fmt::format("{} '{}': more than 0 is wanted", option, text));
 }
 
+constexpr double kMostRowsBehind = 1e7;  // the end of the input
+
 /// The injector with rows for its unit of time, in either way to use it.
 class RowInjector {
  public:
-  RowInjector(const InsertionRules& rules, bool clocked, std::int64_t separation, std::int64_t interval) : rows_(rules) {
+  RowInjector(const InsertionRules& rules, bool clocked, std::int64_t separation, std::int64_t interval)
+      : rows_(rules), separation_(separation) {
     if (clocked) timed_.emplace(InsertionLimits{.rules = rules, .separation = separation, .insertion_interval = interval});
   }
 
@@ -72,10 +77,17 @@ class RowInjector {
       out.push_back(last_);
     }
   }
-  /// Appends the rows that complete what has begun when the input ends.
+  /// Appends the rows that complete what has begun when the input ends. @throws InputError  where that would be rows without end
   void finish(std::vector<Lines>& out) {
     if (!timed_) return;
     timed_->freeze();
+    const double n_rows = std::abs(static_cast<double>(timed_->waiting())) * static_cast<double>(separation_);
+    if (n_rows > kMostRowsBehind)
+      throw InputError(
+          fmt::format("--separation {}: {} edges still wait when the input ends, which would take {:.3g} rows more; at most "
+                      "{:.0e} are written behind "
+                      "the end. The rows hold edges that are closer than the separation allows",
+                      separation_, std::abs(timed_->waiting()), n_rows, kMostRowsBehind));
     while (timed_->waiting() != 0 && edges_.empty()) {
       timed_->advance(++n_rows_, edges_);
       if (!edges_.empty()) last_ = edges_.back().lines;
@@ -90,6 +102,7 @@ class RowInjector {
 
  private:
   PulseInjector rows_;
+  std::int64_t separation_;
   std::optional<TimedInjector> timed_;
   std::int64_t target_ = 0, n_rows_ = 0;
   Lines last_ = 0;

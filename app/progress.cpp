@@ -7,7 +7,7 @@
 
 namespace driftwright::app {
 
-Progress::Progress() : on_terminal_(isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(bool quiet) : on_terminal_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   end();

@@ -10,7 +10,8 @@ namespace driftwright::app {
 /// One line on standard error that is rewritten as work goes on and erased at the end.
 class Progress {
  public:
-  Progress();
+  /// @param quiet  shows nothing on a terminal either
+  explicit Progress(bool quiet = false);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -1,15 +1,24 @@
 #include "app/results.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
+#include "base/delimited_text.hpp"
 #include "base/quantity.hpp"
 #include "base/version.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/heat_flow_record.hpp"
+#include "output/document_csv.hpp"
+#include "output/document_html.hpp"
+#include "output/document_json.hpp"
+#include "output/document_text.hpp"
+#include "output/json_text.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/reduced_transient.hpp"
 #include "solver/stress.hpp"
@@ -18,7 +27,47 @@ namespace driftwright::app {
 
 output::ResultsFolder open_results(const CommonOptions& options, const std::string& scenario_name) {
   const std::string target = options.out.empty() ? "results/" + scenario_name : options.out;
-  return {target, options.force, output::Provenance{kVersion, options.scenario}};
+  return {target, options.force, output::Provenance{kVersion, clean_name(options.scenario)}};
+}
+
+namespace {
+
+/// "fields.pvd, record.csv, report.html, tables/": files, then folders.
+std::string contents(const output::ResultsFolder& folder) {
+  std::vector<std::string> files;
+  std::set<std::string> folders;
+  for (const std::string& file : folder.files()) {
+    const std::size_t slash = file.find('/');
+    if (slash != std::string::npos)
+      folders.insert(file.substr(0, slash + 1));
+    else if (file != output::kManifestName)
+      files.push_back(file);
+  }
+  files.insert(files.end(), folders.begin(), folders.end());
+  return fmt::format("{}", fmt::join(files, ", "));
+}
+
+}  // namespace
+
+void show(const output::Document& document, const CommonOptions& options) {
+  if (options.quiet) return;
+  fmt::print("{}", options.json ? output::json_text(output::document_json(document))
+                                : output::document_text(document, {.details = options.details}));
+}
+
+void finish(const output::Document& document, output::ResultsFolder& folder, Progress& progress,
+            const CommonOptions& options, const std::string& also, const std::string& json_file) {
+  progress.begin("writing");
+  const std::string json = output::json_text(output::document_json(document));
+  folder.write_text("summary.json", json);  // of every verb
+  if (json_file != "summary.json") folder.write_text(json_file, json);
+  for (const output::CsvFile& csv : output::document_csv(document)) folder.write_text(csv.path, csv.text);
+  folder.write_text("report.html", output::document_html(document));
+  folder.commit();
+  progress.end();
+  show(document, options);
+  if (!options.quiet && !options.json)
+    fmt::print("{}results in {}: {}\n", also, shown_path(folder.target()), contents(folder));
 }
 
 std::vector<std::string> provenance_lines(const output::Provenance& made_by, const std::string& what) {

@@ -6,6 +6,7 @@
 #include "app/progress.hpp"
 #include "app/verbs.hpp"
 #include "machine/simulated_run.hpp"
+#include "output/document.hpp"
 #include "output/field_series.hpp"
 #include "output/results_folder.hpp"
 
@@ -13,6 +14,15 @@ namespace driftwright::app {
 
 /// The folder of results of a command on a scenario.
 [[nodiscard]] output::ResultsFolder open_results(const CommonOptions& options, const std::string& scenario_name);
+
+/// Writes a document's renderings (report.html, tables and its JSON) into the folder, puts that in place, and shows the document.
+/// @param also  lines for the terminal alone, such as what was known from disk
+/// @param json_file  another name of the JSON, beside summary.json
+void finish(const output::Document& document, output::ResultsFolder& folder, Progress& progress,
+            const CommonOptions& options, const std::string& also = "", const std::string& json_file = "summary.json");
+
+/// Prints a document as the options want it.
+void show(const output::Document& document, const CommonOptions& options);
 
 /// Comment lines of a record CSV: who made it from what.
 [[nodiscard]] std::vector<std::string> provenance_lines(const output::Provenance& made_by, const std::string& what);

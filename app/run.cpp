@@ -1,11 +1,8 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
-#include "app/machine_study_output.hpp"
-#include "app/verbs.hpp"
+#include "app/results.hpp"
+#include "findings/machine_study_document.hpp"
 #include "machine/ways_out.hpp"
-#include "output/json_text.hpp"
 #include "studies/table_study.hpp"
 
 namespace driftwright::app {
@@ -16,7 +13,7 @@ void run(const CommonOptions& options) {
   const scenarios::MachineModel& model = scenarios::require_machine(scenario, "run");
   (void)scenarios::require_study(scenario, "run");
   output::ResultsFolder folder = open_results(options, scenario.name);
-  Progress progress;
+  Progress progress(options.quiet);
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
   const scenarios::Model machine = scenarios::open_model(scenario, {}, progress.listener(), wants_fields);
   if (const scenarios::Machine* full = machine.full()) {  // thermal modes need them
@@ -37,14 +34,11 @@ void run(const CommonOptions& options) {
                       record_csv(run.record, provenance_lines(folder.made_by(), "training cyclogram " + run.record.source)));
   }
   folder.write_text("heat_flows.csv", heat_flows_csv(study.judged.trajectory, scenario.study->judge, folder.made_by()));
-  folder.write_text("schedule.txt", schedule_text(study));
-  folder.write_text("summary.json", output::json_text(summary_json(scenario, machine, study, folder.made_by())));
-  folder.write_text("report.html", output::render_html(study_report(scenario, machine, study, folder.made_by())));
-  folder.commit();
-  progress.end();
-  fmt::print("{}  {}{}\n  results in {}: report.html, {}record.csv, summary.json\n{}", terminal_summary(scenario, study),
-             machine.words(), machine.was_known ? " (known from disk)" : "", shown_path(folder.target()),
-             fields ? fields->file_to_open() + " (ParaView), " : "", fields ? fields_note(*fields) : "");
+  folder.write_text("schedule.txt", findings::schedule_text(study));
+  finish(findings::document_of(study, scenario, machine, folder.made_by()), folder, progress, options,
+         fmt::format("{}{}{}", machine.was_known ? "the reduced model was known from disk\n" : "",
+                     fields ? fmt::format("fields in {} (ParaView)\n", fields->file_to_open()) : "",
+                     fields ? fields_note(*fields) : ""));
 }
 
 }  // namespace driftwright::app

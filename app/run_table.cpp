@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "app/results.hpp"
-#include "app/table_report.hpp"
 #include "base/quantity.hpp"
 #include "compensation/frames/frame_programs.hpp"
+#include "findings/table_document.hpp"
 #include "machine/ways_out.hpp"
-#include "output/json_text.hpp"
 
 namespace driftwright::app {
 
@@ -33,7 +30,7 @@ compensation::FrameProgram frame_program(const scenarios::TableSettings& s, cons
 
 void run_table(const CommonOptions& options, const scenarios::Scenario& scenario) {
   output::ResultsFolder folder = open_results(options, scenario.name);
-  Progress progress;
+  Progress progress(options.quiet);
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
   const scenarios::Model machine = scenarios::open_model(scenario, {}, progress.listener(), wants_fields);
   if (const scenarios::Machine* full = machine.full())
@@ -46,8 +43,8 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
   progress.begin("writing results");
   const auto comments = [&](const std::string& what) { return provenance_lines(folder.made_by(), what); };
   folder.write_text("record.csv", record_csv(study.run.record, comments("cyclogram " + scenario.table->cyclogram)));
-  folder.write_text("strategies.csv", strategies_csv(study, comments("largest position error anywhere on the table")));
-  folder.write_text("probe.csv", probe_csv(study, comments("largest error of touches")));
+  folder.write_text("strategies.csv",
+                    findings::strategies_csv(study, comments("largest position error anywhere on the table")));
   const compensation::FrameProgram program = frame_program(*scenario.table, study, folder.made_by());
   const std::string why_no_program = compensation::why_no_program(program.rings);
   if (why_no_program.empty()) {
@@ -55,15 +52,14 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
          compensation::frame_programs(compensation::in_machine(program, scenario.table->origin_m)))
       folder.write_text("control/" + file.name, file.text);
   }
-  folder.write_text("summary.json", output::json_text(table_json(scenario, study, folder.made_by())));
-  folder.write_text("report.html", output::render_html(table_report(scenario, study, folder.made_by())));
-  folder.commit();
-  progress.end();
-  fmt::print("{}  {}{}\n  results in {}: report.html, {}record.csv, summary.json{}\n{}", table_terminal(scenario, study),
-             machine.words(), machine.was_known ? " (known from disk)" : "", shown_path(folder.target()),
-             fields ? fields->file_to_open() + " (ParaView), " : "", why_no_program.empty() ? ", control/" : "",
-             fields ? fields_note(*fields) : "");
-  if (!why_no_program.empty()) fmt::print("warning: no programs for controls: {}\n", why_no_program);
+  output::Document document = findings::document_of(study, scenario, folder.made_by());
+  std::vector<std::string> warnings;
+  if (!why_no_program.empty()) warnings.push_back("no programs for controls: " + why_no_program);
+  add(document.body, output::Notes{.key = "warnings", .sort = "warning", .lines = warnings});
+  finish(document, folder, progress, options,
+         fmt::format("{}{}{}", machine.was_known ? "the reduced model was known from disk\n" : "",
+                     fields ? fmt::format("fields in {} (ParaView)\n", fields->file_to_open()) : "",
+                     fields ? fields_note(*fields) : ""));
 }
 
 }  // namespace driftwright::app

@@ -1,21 +1,21 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/results.hpp"
-#include "app/schedule_report.hpp"
-#include "app/verbs.hpp"
+#include "app/schedule_files.hpp"
 #include "base/file_bytes.hpp"
-#include "output/json_text.hpp"
+#include "findings/schedule_document.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 #include "studies/planner.hpp"
 
 namespace driftwright::app {
 namespace {
+
+using studies::CorrectedProgram;
+using studies::CorrectedSeries;
 
 const scenarios::ScheduleSettings& require_schedule(const scenarios::Scenario& scenario) {
   if (scenario.schedule) return *scenario.schedule;
@@ -73,7 +73,8 @@ void correct(CorrectedSeries& series, const std::string& bytes) {
   }
   const compensation::ProgramScheduleOptions how{.policy = studies::policy_of(settings.policy), .split = series.split};
   for (compensation::SharedPlan& shared : compensation::plan_series(series.program.steps, time_s, parts, how)) {
-    CorrectedProgram program{.file = corrected_file(series.file, shared, rows.size()), .shared = {}, .corrected = {}};
+    CorrectedProgram program{
+        .file = studies::corrected_file(series.file, shared, rows.size()), .shared = {}, .corrected = {}};
     program.corrected =
         corrected_nc_program(bytes, series.program.steps, compensation::initial_shift_m(shared.plan, shared.axes),
                              compensation::offset_changes(shared.plan, shared.axes), offsets);
@@ -110,7 +111,7 @@ void schedule(const ScheduleVerbOptions& options) {
                                          .between = options.between,
                                          .model = options.model};
   output::ResultsFolder folder = open_results(options, scenario.name);
-  Progress progress;
+  Progress progress(options.quiet);
   series.prediction = studies::predict_drift(scenario, series.cyclogram, asked, progress.listener(), "schedule");
   const studies::Prediction& prediction = series.prediction;
   if (series.is_series())
@@ -122,23 +123,13 @@ void schedule(const ScheduleVerbOptions& options) {
   const std::string what = fmt::format("predicted by the {} for {}{}{}", prediction.predicted_by, options.program,
                                        series.is_series() ? fmt::format(", {} parts", prediction.parts.size()) : "",
                                        prediction.started_from.empty() ? "" : ", after " + prediction.started_from);
-  std::vector<std::string> files;
-  for (const CorrectedProgram& program : series.programs) {
-    folder.write_text(program.file, program.corrected.text);
-    files.push_back(program.file);
-  }
+  for (const CorrectedProgram& program : series.programs) folder.write_text(program.file, program.corrected.text);
   folder.write_text("record.csv", record_csv(prediction.record, provenance_lines(folder.made_by(), what)));
-  folder.write_text("schedule.txt", schedule_notation(series));
+  const std::string notation = schedule_notation(series);
+  folder.write_text("schedule.txt", notation);
   folder.write_text("schedule.csv",
                     schedule_csv(series, provenance_lines(folder.made_by(), "corrections of the drift " + what)));
-  folder.write_text("summary.json", output::json_text(schedule_json(series, folder.made_by())));
-  folder.write_text("report.html", output::render_html(schedule_report(series, scenario.name, folder.made_by())));
-  folder.commit();
-  progress.end();
-  fmt::print(
-      "{}  results in {}: {}, schedule.txt, schedule.csv, record.csv, summary.json, report.html\n",
-      schedule_terminal(series), shown_path(folder.target()),
-      files.size() > 3 ? fmt::format("{} to {}", files.front(), files.back()) : fmt::format("{}", fmt::join(files, ", ")));
+  finish(findings::document_of(series, scenario.name, notation, folder.made_by()), folder, progress, options);
 }
 
 }  // namespace driftwright::app

@@ -3,9 +3,8 @@
 #include <algorithm>
 
 #include "app/results.hpp"
-#include "app/sweep_report.hpp"
-#include "app/verbs.hpp"
 #include "base/version.hpp"
+#include "findings/sweep_document.hpp"
 #include "output/rows_under_way.hpp"
 #include "studies/sweep_run.hpp"
 
@@ -73,18 +72,23 @@ NumberedRows rows_of(const std::vector<std::size_t>& members, const NumberedRows
 }
 
 /// Writes the folder of results from all rows.
-void write_table(const SweepOptions& options, const SweepPlan& plan, const NumberedRows& rows) {
+void write_table(const SweepOptions& options, const SweepPlan& plan, const NumberedRows& rows, Progress& progress) {
   output::ResultsFolder folder = open_results(options, plan.name);
   std::string csv;
   for (const std::string& line : provenance_lines(folder.made_by(), "sweep " + plan.name)) csv += "# " + line + "\n";
   csv += plan.table_header() + "\n";
   for (const auto& [number, row] : rows) csv += row + "\n";
   folder.write_text("sweep.csv", csv);
-  const SweepColumns columns = sweep_columns(plan, rows);
-  folder.write_text("report.html", output::render_html(sweep_report(plan, rows, columns, folder.made_by())));
-  folder.commit();
-  fmt::print("{}: {} members, {} failed\n{}results in {}: sweep.csv, report.html\n", plan.name, rows.size(),
-             columns.n_failed, sweep_summary(plan, columns), shown_path(folder.target()));
+  finish(findings::sweep_document(plan, rows, folder.made_by()), folder, progress, options);
+}
+
+NumberedRows found_rows(const fs::path& parts, const output::RowsIdentity& identity) {
+  std::size_t n_damaged = 0;
+  NumberedRows rows = output::find_rows(parts, identity, &n_damaged);
+  if (n_damaged > 0)
+    fmt::print(stderr, "note: {} row{} in {} {} damaged and dropped\n", n_damaged, n_damaged == 1 ? "" : "s",
+               shown_path(parts), n_damaged == 1 ? "is" : "are");
+  return rows;
 }
 
 /// @throws SolveError  so that a script sees it
@@ -117,29 +121,30 @@ void sweep(const SweepOptions& options) {
       output::check_results_folder(options.out.empty() ? "results/" + plan.name : options.out, options.force);
   const fs::path parts = target.string() + ".parts";
   const output::RowsIdentity identity{scenarios::content_key(plan, kVersion), plan.table_header()};
+  Progress progress(options.quiet);
   if (options.merge) {
-    const NumberedRows rows = output::find_rows(parts, identity);
+    const NumberedRows rows = found_rows(parts, identity);
     if (rows.size() < plan.n_members) refuse_to_merge(plan, rows, parts);
-    write_table(options, plan, rows);
+    write_table(options, plan, rows, progress);
     output::remove_rows(parts);
     fail_where_members_failed(rows, target / "sweep.csv");
     return;
   }
-  Progress progress;
   const std::vector<std::size_t> members = scenarios::members_of_part(plan, part.number - 1, part.of);
   std::optional<output::RowsUnderWay> file(std::in_place, parts, part.file(), identity);
   if (file->dropped_stale())
     fmt::print(stderr, "note: rows of an earlier version of this study or its scenario are dropped\n");
-  NumberedRows rows = rows_of(members, output::find_rows(parts, identity));
+  NumberedRows rows = rows_of(members, found_rows(parts, identity));
   simulate_missing(plan, members, *file, rows, progress);
   if (part.of > 1) {
     file->finish(rows);
-    fmt::print("{}: shard {} of {}, {} members in {}; when all shards are done: driftwright sweep {} --merge\n", plan.name,
-               part.number, part.of, rows.size(), shown_path(parts / part.file()), options.scenario);
+    if (!options.quiet && !options.json)
+      fmt::print("{}: shard {} of {}, {} members in {}; when all shards are done: driftwright sweep {} --merge\n", plan.name,
+                 part.number, part.of, rows.size(), shown_path(parts / part.file()), options.scenario);
     fail_where_members_failed(rows, parts / part.file());
     return;
   }
-  write_table(options, plan, rows);
+  write_table(options, plan, rows, progress);
   file.reset();
   output::remove_rows(parts);
   fail_where_members_failed(rows, target / "sweep.csv");

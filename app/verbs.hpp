@@ -12,8 +12,11 @@ namespace driftwright::app {
 /// What all verbs take.
 struct CommonOptions {
   std::string scenario;
-  std::string out;     ///< folder of results; empty: results/<name of the scenario>
-  bool force = false;  ///< replace a folder that holds other files too
+  std::string out;       ///< folder of results; empty: results/<name of the scenario>
+  bool force = false;    ///< replace a folder that holds other files too
+  bool json = false;     ///< print the JSON document in place of text
+  bool quiet = false;    ///< print no results, show no progress
+  bool details = false;  ///< print all tables
 };
 
 void run(const CommonOptions& options);
@@ -92,10 +95,28 @@ struct ListOptions {
 /// Prints the catalogue of effects or the library of materials.
 void list(const ListOptions& options);
 
+struct SchemaOptions {
+  std::string what = "scenario";  ///< or "sweep"
+  bool markdown = false;          ///< tables, as docs/scenario.md and docs/sweep.md have them
+};
+/// Prints what a file may hold, as JSON Schema.
+void schema(const SchemaOptions& options);
+
 struct CalibrateOptions : CommonOptions {
   std::vector<std::string> measured;  ///< record CSVs
 };
 void calibrate(const CalibrateOptions& options);
+
+struct ExportOptions {
+  std::string scenario;
+  std::string out;  ///< file; empty: results/<name of the scenario>.fmu
+  bool fmu = false;
+  int fmi = 2;                 ///< version of the standard, 2 or 3
+  std::string of = "machine";  ///< or observer
+  std::string type = "both";   ///< me, cs
+  std::string model;           ///< with observer: its file
+};
+void export_model(const ExportOptions& options);
 
 struct SweepOptions : CommonOptions {  ///< `scenario` is the study
   std::string shard;                   ///< "i/n", or empty for all members

@@ -4,10 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "base/quantity.hpp"
 
 namespace driftwright {
+
+namespace {
+
+std::string not_known(const std::string& word, const std::vector<std::string>& allowed) {
+  return fmt::format("'{}' is not known here; one of {} is wanted", word, fmt::join(allowed, ", "));
+}
+
+}  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
   std::string best;
@@ -51,9 +60,86 @@ const std::string& ConfigMap::file() const {
   return source_->path;
 }
 
-bool ConfigMap::has(const std::string& key) const {
-  asked_.insert(key);
+ConfigMap ConfigMap::described_by(const schema::Map& description) const {
+  ConfigMap in = *this;
+  in.description_ = &description;
+  in.asked_.clear();
+  for (const schema::Key& key : description.keys) {
+    if (key.is_compulsory) (void)in.value(key.name);
+  }
+  in.asked_.clear();
+  for (const schema::Group& group : description.groups) in.check_group(group);
+  return in;
+}
+
+ConfigMap ConfigMap::described_by(const std::vector<schema::Map>& descriptions) const {
+  std::vector<std::string> words, keys;
+  for (const schema::Map& d : descriptions) {
+    const bool is_there = d.when_key.empty() || holds(d.when_key);
+    if (is_there && (d.when_word.empty() || text(d.when_key) == d.when_word)) {
+      for (const schema::Map& other : descriptions) {  // behind it: two forms at once
+        if (&other > &d && other.when_word.empty() && holds(other.when_key) && !d.find(other.when_key))
+          fail(other.when_key, fmt::format("either `{}` or `{}` is wanted, not both", d.when_key, other.when_key));
+      }
+      return described_by(d);
+    }
+    (d.when_word.empty() ? keys : words).push_back(d.when_word.empty() ? d.when_key : d.when_word);
+  }
+  if (words.empty()) fail("", fmt::format("a map with one of the keys {} is wanted", fmt::join(keys, ", ")));
+  const std::string& key = descriptions.back().when_key;
+  (void)choice(key, words);
+  throw std::logic_error("no description is chosen by " + key);
+}
+
+const schema::Map& ConfigMap::description() const {
+  if (!description_) throw std::logic_error(fmt::format("the map '{}' is read without a description", path_));
+  return *description_;
+}
+
+void ConfigMap::check_group(const schema::Group& group) const {
+  std::vector<std::string> given;
+  for (const std::string& key : group.keys) {
+    if (holds(key)) {
+      given.push_back(key);
+    } else {
+      asked_.insert(key);  // that it is missing has been looked at
+    }
+  }
+  using Rule = schema::Group::Rule;
+  const bool too_many = given.size() > 1 && (group.rule == Rule::kExactlyOne || group.rule == Rule::kAtMostOne);
+  const bool too_few = given.empty() && (group.rule == Rule::kExactlyOne || group.rule == Rule::kAtLeastOne);
+  if (group.rule == Rule::kWantFirst && !given.empty() && given.front() != group.keys.front())
+    fail(given.front(), group.message);
+  if (too_many || too_few) fail(too_many ? given.back() : "", group.message);
+  if (group.rule != Rule::kAllOrNone || given.empty()) return;
+  for (const std::string& key : group.keys) {
+    if (!holds(key)) (void)value(key);
+  }
+}
+
+bool ConfigMap::holds(const std::string& key) const {
   return node_->find(key) != nullptr;
+}
+
+const schema::Key* ConfigMap::ask(const std::string& key) const {
+  asked_.insert(key);
+  if (!description_) return nullptr;
+  const schema::Key* described = description_->find(key);
+  if (!described) throw std::logic_error(fmt::format("the key '{}' is not described in '{}'", key, description_->name));
+  return described;
+}
+
+const schema::Value& ConfigMap::way(const std::string& key, schema::Value::Kind kind) const {
+  (void)description();
+  const schema::Value* way = ask(key)->way(kind);
+  if (!way)
+    throw std::logic_error(fmt::format("the key '{}' of '{}' is described as another kind", key, description_->name));
+  return *way;
+}
+
+bool ConfigMap::has(const std::string& key) const {
+  (void)ask(key);
+  return holds(key);
 }
 
 bool ConfigMap::is_map(const std::string& key) const {
@@ -100,7 +186,7 @@ void ConfigMap::fail(const std::string& key, const std::string& message) const {
 }
 
 const ConfigNodePtr& ConfigMap::value(const std::string& key) const {
-  asked_.insert(key);
+  (void)ask(key);
   const auto index = node_->index_of(key);
   if (!index) {
     const std::string near = nearest_word(key, keys());
@@ -121,6 +207,8 @@ std::string ConfigMap::scalar(const ConfigNode& node, const std::string& key) co
 }
 
 std::string ConfigMap::text(const std::string& key) const {
+  const schema::Key* described = ask(key);
+  if (described && described->word && !holds(key)) return *described->word;
   const ConfigNode& node = child(key);
   if (node.kind == ConfigNode::Kind::kNull) fail(key, "the value is empty");
   std::string value = scalar(node, key);
@@ -143,10 +231,18 @@ std::string ConfigMap::name(const std::string& key) const {
   return value;
 }
 
+std::string ConfigMap::choice(const std::string& key) const {
+  return choice(key, way(key, schema::Value::Kind::kChoice).options);
+}
+
+bool ConfigMap::flag(const std::string& key) const {
+  return choice(key) == "true";
+}
+
 std::string ConfigMap::choice(const std::string& key, const std::vector<std::string>& allowed) const {
   std::string value = text(key);
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
-    fail(key, fmt::format("'{}' is not known here; one of {} is wanted", value, fmt::join(allowed, ", ")));
+    fail(key, not_known(value, allowed));
   }
   return value;
 }
@@ -159,12 +255,22 @@ std::string ConfigMap::choice(const std::string& key, const std::vector<std::str
 std::vector<std::string> ConfigMap::texts(const std::string& key) const {
   const ConfigNode& node = child(key);
   if (!node.is_list()) fail(key, "a list [a, b, ...] is wanted");
+  const schema::Value& as = way(key, schema::Value::Kind::kList);
+  if (node.items.size() < as.least)
+    fail(key, fmt::format("the list has {} entries; at least {} are wanted", node.items.size(), as.least));
   std::vector<std::string> values;
-  for (const ConfigNodePtr& item : node.items) values.push_back(scalar(*item, key));
+  const std::vector<std::string>& allowed = as.items.front().options;
+  for (const ConfigNodePtr& item : node.items) {
+    values.push_back(scalar(*item, key));
+    if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), values.back()) == allowed.end())
+      throw InputError(item->where(path_of(key)), not_known(values.back(), allowed));
+  }
   return values;
 }
 
-int ConfigMap::integer(const std::string& key, int low, int high) const {
+int ConfigMap::integer(const std::string& key) const {
+  const schema::Value& as = way(key, schema::Value::Kind::kInteger);
+  if (const auto fallback = ask(key)->number; fallback && !holds(key)) return static_cast<int>(*fallback);
   const std::string value = text(key);  // by hand: yaml-cpp takes 010 for eight
   std::size_t used = 0;
   int number = 0;
@@ -173,79 +279,97 @@ int ConfigMap::integer(const std::string& key, int low, int high) const {
   } catch (const std::exception&) {
     used = 0;
   }
-  if (used != value.size() || number < low || number > high) {
-    fail(key, fmt::format("'{}' is no whole number from {} to {}", value, low, high));
-  }
+  if (used != value.size() || number < as.low || number > as.high)
+    fail(key, fmt::format("'{}' is no whole number from {:.0f} to {:.0f}", value, as.low, as.high));
   return number;
 }
 
-int ConfigMap::integer(const std::string& key, int low, int high, int fallback) const {
-  return has(key) ? integer(key, low, high) : fallback;
-}
-
-double ConfigMap::read_quantity(const ConfigNode& node, const std::string& key, const std::string& unit) const {
+double ConfigMap::read_quantity(const ConfigNode& node, const std::string& key, const schema::Value& as) const {
+  double value = 0.0;
   try {
-    const std::string value = scalar(node, key);
-    return unit == "degC" ? parse_temperature_K(value) : parse_quantity(value, unit);
+    const std::string text = scalar(node, key);
+    value = as.unit == "degC" ? parse_temperature_K(text) : parse_quantity(text, as.unit);
   } catch (const RangeError& e) {
     throw InputError(node.where(path_of(key)), e.what());
   }
+  if ((value >= as.low && value <= as.high) || (as.or_zero && value == 0.0)) return value;
+  throw InputError(node.where(path_of(key)),
+                   fmt::format("{} lies outside what is allowed, {}", schema::written(value, as.unit), schema::range(as)));
 }
 
-double ConfigMap::quantity(const std::string& key, const std::string& unit, double low, double high) const {
-  const double value = read_quantity(child(key), key, unit);
-  if (!(value >= low && value <= high)) {
-    fail(key, fmt::format("{:g} {} lies outside what is allowed, {:g} to {:g} {}", value, unit, low, high, unit));
-  }
-  return value;
+double ConfigMap::quantity(const std::string& key) const {
+  const schema::Value& as = way(key, schema::Value::Kind::kQuantity);
+  if (const auto fallback = ask(key)->number; fallback && !holds(key)) return *fallback;
+  return read_quantity(child(key), key, as);
 }
 
-double ConfigMap::quantity(const std::string& key, const std::string& unit, double low, double high, double fallback) const {
-  return has(key) ? quantity(key, unit, low, high) : fallback;
+double ConfigMap::quantity(const std::string& key, double fallback) const {
+  return has(key) ? quantity(key) : fallback;
 }
 
-double ConfigMap::temperature_K(const std::string& key) const {
-  const double value_K = read_quantity(child(key), key, "degC");
-  if (!(value_K >= 1.0 && value_K <= 3000.0)) fail(key, fmt::format("{:g} K lies outside 1 K to 3000 K", value_K));
-  return value_K;
+double ConfigMap::quantity_in(const std::string& key, const std::string& unit) const {
+  schema::Value as = way(key, schema::Value::Kind::kQuantity);
+  as.unit = unit;
+  return read_quantity(child(key), key, as);
 }
 
-Eigen::Vector3d ConfigMap::vector3(const std::string& key, const std::string& unit) const {
+Eigen::Vector3d ConfigMap::vector3(const std::string& key) const {
+  const schema::Value& as = way(key, schema::Value::Kind::kRow);
+  const std::string& unit = as.items.front().unit;
   const ConfigNode& node = child(key);
   if (!node.is_list() || node.items.size() != 3) {
     fail(key, fmt::format("three quantities in {} are wanted, such as [10 {}, 0 {}, 0 {}]", unit, unit, unit, unit));
   }
   Eigen::Vector3d v;
-  for (int i = 0; i < 3; ++i) v[i] = read_quantity(*node.items[static_cast<std::size_t>(i)], key, unit);
+  for (std::size_t i = 0; i < 3; ++i) v[static_cast<Eigen::Index>(i)] = read_quantity(*node.items[i], key, as.items[i]);
   return v;
 }
 
-std::vector<double> ConfigMap::quantities(const std::string& key, const std::string& unit) const {
+std::vector<double> ConfigMap::quantities(const std::string& key) const {
+  const schema::Value& as = way(key, schema::Value::Kind::kList);
   const ConfigNode& node = child(key);
-  if (!node.is_list() || node.items.size() == 0)
-    fail(key, fmt::format("a list of quantities in {} is wanted, at least one", unit));
+  if (!node.is_list() || node.items.size() < as.least) {
+    fail(key, fmt::format("a list of quantities in {} is wanted, at least {}", as.items.front().unit,
+                          as.least == 1 ? "one" : std::to_string(as.least)));
+  }
   std::vector<double> values;
-  for (const ConfigNodePtr& item : node.items) values.push_back(read_quantity(*item, key, unit));
+  for (const ConfigNodePtr& item : node.items) values.push_back(read_quantity(*item, key, as.items.front()));
   return values;
 }
 
-std::vector<std::vector<double>> ConfigMap::rows(const std::string& key, const std::vector<std::string>& units) const {
+std::vector<std::vector<double>> ConfigMap::rows(const std::string& key) const {
+  return rows(key, way(key, schema::Value::Kind::kList).items.front().items);
+}
+
+std::vector<std::vector<double>> ConfigMap::rows(const std::string& key, const std::vector<schema::Value>& columns) const {
   const ConfigNode& node = child(key);
+  std::vector<std::string> units;
+  for (const schema::Value& c : columns) units.push_back(c.unit);
   const std::string wanted = fmt::format("rows of [{}] are wanted", fmt::join(units, ", "));
   if (!node.is_list() || node.items.size() == 0) fail(key, wanted + ", at least one");
   std::vector<std::vector<double>> rows;
   for (const ConfigNodePtr& row : node.items) {
-    if (!row->is_list() || row->items.size() != units.size()) throw InputError(row->where(path_of(key)), wanted);
+    if (!row->is_list() || row->items.size() != columns.size()) throw InputError(row->where(path_of(key)), wanted);
     rows.emplace_back();
-    for (std::size_t j = 0; j < units.size(); ++j) rows.back().push_back(read_quantity(*row->items[j], key, units[j]));
+    for (std::size_t j = 0; j < columns.size(); ++j) rows.back().push_back(read_quantity(*row->items[j], key, columns[j]));
   }
   return rows;
+}
+
+ConfigMap ConfigMap::below(const std::string& key, const ConfigNodePtr& node, std::string path) const {
+  const ConfigMap map(source_, node, std::move(path));
+  if (!description_) return map;
+  const schema::Key& described = *ask(key);
+  const schema::Value* way = described.way(schema::Value::Kind::kMap);
+  if (const schema::Value* list = described.way(schema::Value::Kind::kList); !way && list) way = &list->items.front();
+  if (!way) throw std::logic_error(fmt::format("the key '{}' of '{}' is not described as a map", key, description_->name));
+  return map.described_by(way->maps);
 }
 
 ConfigMap ConfigMap::map(const std::string& key) const {
   const ConfigNode& node = child(key);
   if (!node.is_map()) fail(key, "a map of keys is wanted");
-  return {source_, value(key), path_of(key)};
+  return below(key, value(key), path_of(key));
 }
 
 std::optional<ConfigMap> ConfigMap::optional_map(const std::string& key) const {
@@ -258,18 +382,20 @@ std::vector<ConfigMap> ConfigMap::maps(const std::string& key) const {
   if (!has(key)) return maps;
   const ConfigNode& node = child(key);
   if (!node.is_list()) fail(key, "a list of maps is wanted");
+  if (const std::size_t least = description_ ? way(key, schema::Value::Kind::kList).least : 0; node.items.size() < least)
+    fail(key, fmt::format("the list has {} entries; at least {} are wanted", node.items.size(), least));
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     if (!node.items[i]->is_map()) throw InputError(node.items[i]->where(path_of(key)), "a map of keys is wanted");
-    maps.push_back({source_, node.items[i], fmt::format("{}[{}]", path_of(key), i)});
+    maps.push_back(below(key, node.items[i], fmt::format("{}[{}]", path_of(key), i)));
   }
   return maps;
 }
 
 void ConfigMap::reject_unknown_keys() const {
+  const std::vector<std::string> known = description().names();
   for (const ConfigNode::Key& entry : node_->keys) {
     const std::string& key = entry.text;
-    if (asked_.count(key)) continue;
-    const std::vector<std::string> known(asked_.begin(), asked_.end());
+    if (description_->find(key)) continue;
     const std::string near = nearest_word(key, known);
     ConfigNode at_key;
     at_key.source = node_->source;
@@ -278,6 +404,10 @@ void ConfigMap::reject_unknown_keys() const {
     throw InputError(at_key.where(path_of(key)),
                      fmt::format("unknown key '{}'; known keys: {}.{}", key, fmt::join(known, ", "),
                                  near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+  }
+  for (const std::string& key : known) {
+    if (!asked_.count(key))
+      throw std::logic_error(fmt::format("the key '{}' of '{}' is described, and nobody reads it", key, description_->name));
   }
 }
 

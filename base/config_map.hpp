@@ -1,9 +1,8 @@
 #pragma once
-// A YAML map as a scenario reader wants it: typed, with units, ranges and errors that name file, line and key.
+// A YAML map as a scenario reader wants it: typed, by a description of its keys, with errors that name file, line and key.
 // Together with config_tree it is the only place that knows yaml-cpp's pitfalls.
 
 #include <Eigen/Core>
-#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,19 +10,26 @@
 
 #include "base/config_tree.hpp"
 #include "base/errors.hpp"
+#include "base/schema.hpp"
 
 namespace driftwright {
 
-inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
-/// One map of a YAML file. Every getter without a default throws InputError when the key is missing; every getter
-/// throws InputError when the value has the wrong kind, unit or range. Ranges are inclusive and in `unit`.
+/// One map of a YAML file, read by a description of its keys (schema.hpp). Every getter throws InputError when the key is missing and the
+/// description has no value for that, and when the value has another kind, unit or range than described; std::logic_error for a key that is not
+/// described so.
 class ConfigMap {
  public:
   /// Reads a whole file. @throws InputError  when it is missing, is no YAML, or its top is no map
   static ConfigMap read_file(const std::string& path);
   /// The map at the top of a tree, such as one that has been edited. @throws InputError  when its top is no map
   static ConfigMap of_tree(ConfigNodePtr root);
+
+  /// The same map with what it may hold; the description outlives it. @throws InputError  where a compulsory key is missing, or keys do not go
+  /// together
+  [[nodiscard]] ConfigMap described_by(const schema::Map& description) const;
+  /// With the first of several whose condition holds. @throws InputError  where there is none
+  [[nodiscard]] ConfigMap described_by(const std::vector<schema::Map>& descriptions) const;
+  [[nodiscard]] const schema::Map& description() const;
 
   [[nodiscard]] bool has(const std::string& key) const;
   [[nodiscard]] bool is_map(const std::string& key) const;
@@ -41,49 +47,63 @@ class ConfigMap {
   [[nodiscard]] std::string text(const std::string& key, const std::string& fallback) const;
   /// A name that may become a channel, a file or a folder: letters, digits, '_' and '-'.
   [[nodiscard]] std::string name(const std::string& key) const;
-  /// A text that must be one of `allowed`.
+  /// One of the words described.
+  [[nodiscard]] std::string choice(const std::string& key) const;
+  /// A text that must be one of those that are there in this file, such as the names of its sensors.
   [[nodiscard]] std::string choice(const std::string& key, const std::vector<std::string>& allowed) const;
   [[nodiscard]] std::string choice(const std::string& key, const std::vector<std::string>& allowed,
                                    const std::string& fallback) const;
+  /// true or false.
+  [[nodiscard]] bool flag(const std::string& key) const;
   [[nodiscard]] std::vector<std::string> texts(const std::string& key) const;
-  [[nodiscard]] int integer(const std::string& key, int low, int high) const;
-  [[nodiscard]] int integer(const std::string& key, int low, int high, int fallback) const;
-  /// "<number> <unit>" in `unit` (UDUNITS syntax).
-  [[nodiscard]] double quantity(const std::string& key, const std::string& unit, double low, double high) const;
-  [[nodiscard]] double quantity(const std::string& key, const std::string& unit, double low, double high,
-                                double fallback) const;
-  /// A list of quantities in `unit`: [10 min, 20 min]; "degC" comes in kelvin. At least one.
-  [[nodiscard]] std::vector<double> quantities(const std::string& key, const std::string& unit) const;
-  /// An absolute temperature, "20 degC" or "293.15 K", in kelvin; 1 K to 3000 K.
-  [[nodiscard]] double temperature_K(const std::string& key) const;
-  /// A point or direction with a unit each: [10 mm, 0 mm, 1.2 m].
-  [[nodiscard]] Eigen::Vector3d vector3(const std::string& key, const std::string& unit) const;
-  /// Rows of quantities, [[30 min, 2000 rpm], ...]; row i column j in units[j]; "degC" columns come in kelvin.
-  [[nodiscard]] std::vector<std::vector<double>> rows(const std::string& key, const std::vector<std::string>& units) const;
+  [[nodiscard]] int integer(const std::string& key) const;
+  /// In the unit described; "degC" comes in kelvin.
+  [[nodiscard]] double quantity(const std::string& key) const;
+  [[nodiscard]] double quantity(const std::string& key, double fallback) const;
+  /// In a unit that other keys decide; described as a quantity of unit "".
+  [[nodiscard]] double quantity_in(const std::string& key, const std::string& unit) const;
+  /// A list of quantities.
+  [[nodiscard]] std::vector<double> quantities(const std::string& key) const;
+  /// A row of three quantities.
+  [[nodiscard]] Eigen::Vector3d vector3(const std::string& key) const;
+  /// A list of rows of quantities.
+  [[nodiscard]] std::vector<std::vector<double>> rows(const std::string& key) const;
+  /// The same by a description that depends on other keys.
+  [[nodiscard]] std::vector<std::vector<double>> rows(const std::string& key,
+                                                      const std::vector<schema::Value>& columns) const;
 
   /// A key's value as YAML in one writing, without comments; "" when the key is missing.
   [[nodiscard]] std::string written(const std::string& key) const;
 
+  /// Described as the description of this map says, if it has one.
   [[nodiscard]] ConfigMap map(const std::string& key) const;
   [[nodiscard]] std::optional<ConfigMap> optional_map(const std::string& key) const;
   /// A list of maps; empty when the key is missing.
   [[nodiscard]] std::vector<ConfigMap> maps(const std::string& key) const;
 
-  /// @throws InputError  for the first key that no getter has asked for, with the known keys and the nearest of them
+  /// @throws InputError  for the first key that is not described, with the known keys and the nearest of them
+  /// @throws std::logic_error  for a described key that no getter has asked for
   void reject_unknown_keys() const;
   /// @throws InputError  at `key` with this message
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;
 
  private:
   ConfigMap(std::shared_ptr<const ConfigSource> source, ConfigNodePtr node, std::string path);
+  [[nodiscard]] ConfigMap below(const std::string& key, const ConfigNodePtr& node, std::string path) const;
+  [[nodiscard]] bool holds(const std::string& key) const;
+  /// Notes that a key is read. @throws std::logic_error  where it is not described
+  const schema::Key* ask(const std::string& key) const;
+  [[nodiscard]] const schema::Value& way(const std::string& key, schema::Value::Kind kind) const;
+  void check_group(const schema::Group& group) const;
   [[nodiscard]] const ConfigNode& child(const std::string& key) const;  // throws when missing
   [[nodiscard]] std::string scalar(const ConfigNode& node, const std::string& key) const;
   [[nodiscard]] std::string path_of(const std::string& key) const;
-  [[nodiscard]] double read_quantity(const ConfigNode& node, const std::string& key, const std::string& unit) const;
+  [[nodiscard]] double read_quantity(const ConfigNode& node, const std::string& key, const schema::Value& as) const;
 
   std::shared_ptr<const ConfigSource> source_;  // of the whole tree; shared by all its maps
   ConfigNodePtr node_;
   std::string path_;
+  const schema::Map* description_ = nullptr;  // outlives the map
   mutable std::set<std::string> asked_;
 };
 

@@ -5,12 +5,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <sstream>
 
 #include "base/config_text.hpp"
+#include "base/delimited_text.hpp"
 
 namespace driftwright {
 namespace {
@@ -19,6 +18,13 @@ Where where_in(const ConfigSource& source, int line, int column, const std::stri
   const bool inside = line >= 1 && line <= static_cast<int>(source.lines.size());
   return {source.path, line, column, key, inside ? source.lines[static_cast<std::size_t>(line) - 1] : ""};
 }
+
+constexpr std::size_t kMostNodes = 1000000, kDeepest = 200;
+
+/// Of a node, with what its aliases stand for.
+struct Extent {
+  std::size_t size = 1, depth = 1;
+};
 
 /// Builds the tree from the parser's events. yaml-cpp's own nodes would let duplicate keys pass, take lists and maps for keys,
 /// and lose their lines when copied.
@@ -37,7 +43,7 @@ class TreeBuilder : public YAML::EventHandler {
     const auto known = anchors_.find(anchor);
     if (known == anchors_.end())
       throw InputError(where_in(*source_, mark.line + 1, mark.column + 1, ""), "an alias stands inside its own anchor");
-    add(known->second, 0);
+    add(known->second.node, 0, known->second.extent);
   }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, const std::string& value) override {
     ConfigNode node = make(ConfigNode::Kind::kScalar, mark);
@@ -46,11 +52,11 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {
-    open_.push_back({make(ConfigNode::Kind::kList, mark), anchor, false});
+    open_.push_back({make(ConfigNode::Kind::kList, mark), anchor, false, {}});
   }
   void OnSequenceEnd() override { close(); }
   void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
-    open_.push_back({make(ConfigNode::Kind::kMap, mark), anchor, true});
+    open_.push_back({make(ConfigNode::Kind::kMap, mark), anchor, true, {}});
   }
   void OnMapEnd() override { close(); }
 
@@ -59,6 +65,11 @@ class TreeBuilder : public YAML::EventHandler {
     ConfigNode node;
     YAML::anchor_t anchor;
     bool wants_key;
+    Extent extent;
+  };
+  struct Anchored {
+    ConfigNodePtr node;
+    Extent extent;
   };
 
   [[nodiscard]] ConfigNode make(ConfigNode::Kind kind, const YAML::Mark& mark) const {
@@ -73,11 +84,28 @@ class TreeBuilder : public YAML::EventHandler {
   void close() {
     Open done = std::move(open_.back());
     open_.pop_back();
-    add(std::make_shared<ConfigNode>(std::move(done.node)), done.anchor);
+    add(std::make_shared<ConfigNode>(std::move(done.node)), done.anchor, done.extent);
   }
 
-  void add(ConfigNodePtr node, YAML::anchor_t anchor) {
-    if (anchor != 0) anchors_[anchor] = node;
+  /// A few lines of aliases of aliases stand for billions of values.
+  void require_bearable(const Extent& extent, const ConfigNode& node) const {
+    if (extent.size > kMostNodes)
+      throw InputError(
+          where_in(*source_, node.line, node.column, ""),
+          fmt::format("with what its aliases stand for, this holds more than {} values, which is the most", kMostNodes));
+    if (extent.depth > kDeepest)
+      throw InputError(where_in(*source_, node.line, node.column, ""),
+                       fmt::format("lists and maps are nested more than {} deep, which is the most", kDeepest));
+  }
+
+  void add(ConfigNodePtr node, YAML::anchor_t anchor, const Extent& extent = {}) {
+    if (anchor != 0) anchors_[anchor] = {node, extent};
+    if (!open_.empty()) {
+      Extent& around = open_.back().extent;
+      around.size += extent.size;
+      around.depth = std::max(around.depth, extent.depth + 1);
+      require_bearable(around, *node);
+    }
     if (open_.empty()) {
       root_ = std::move(node);
       return;
@@ -101,7 +129,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   std::shared_ptr<const ConfigSource> source_;
   std::vector<Open> open_;
-  std::map<YAML::anchor_t, ConfigNodePtr> anchors_;
+  std::map<YAML::anchor_t, Anchored> anchors_;
   ConfigNodePtr root_;
 };
 
@@ -123,9 +151,7 @@ Where ConfigNode::where(const std::string& key) const {
 }
 
 ConfigNodePtr read_config_tree(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: the file cannot be opened; is the path right?", path));
-  return read_config_text({std::istreambuf_iterator<char>(file), {}}, path);
+  return read_config_text(read_text_file(path), path);
 }
 
 ConfigNodePtr read_config_text(const std::string& whole, const std::string& path) {
@@ -143,6 +169,8 @@ ConfigNodePtr read_config_text(const std::string& whole, const std::string& path
     YAML::Parser(in).HandleNextDocument(builder);
   } catch (const YAML::ParserException& e) {
     throw InputError(where_in(*source, e.mark.line + 1, e.mark.column + 1, ""), "this is not valid YAML: " + e.msg);
+  } catch (const YAML::Exception& e) {
+    throw InputError(fmt::format("{}: this is not valid YAML: {}", path, e.msg));
   }
   if (builder.root()) return builder.root();
   ConfigNode empty;

@@ -134,6 +134,15 @@ std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const st
   return stretches;
 }
 
+std::vector<LinearStretch> behind(double time_s, std::vector<LinearStretch> stretches) {
+  std::erase_if(stretches, [&](const LinearStretch& s) { return s.end_s <= time_s; });
+  if (!stretches.empty() && stretches.front().start_s < time_s) {
+    stretches.front().start_s = time_s;
+    stretches.front().drive_changed = false;
+  }
+  return stretches;
+}
+
 std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const TimeSeries& hall) {
   return linear_stretches(cyclogram, hall.time_s);
 }

@@ -32,16 +32,22 @@ std::string as_utf8(const std::string& path, std::string bytes, const char* enco
   return text;
 }
 
+/// By the table of well-formed byte sequences (Unicode 15, table 3-7): no overlong forms, no surrogates, nothing above U+10FFFF.
 bool is_utf8(const std::string& bytes) {
   std::size_t more = 0;
+  std::uint8_t low = 0x80U, high = 0xBFU;  // of the next byte
   for (const char byte : bytes) {
     const auto c = static_cast<std::uint8_t>(byte);
     if (more > 0) {
-      if ((c & 0xC0U) != 0x80U) return false;
+      if (c < low || c > high) return false;
+      low = 0x80U;
+      high = 0xBFU;
       --more;
     } else if (c >= 0x80U) {
       if (c < 0xC2U || c > 0xF4U) return false;
       more = c < 0xE0U ? 1 : c < 0xF0U ? 2 : 3;
+      low = c == 0xE0U ? 0xA0U : c == 0xF0U ? 0x90U : 0x80U;
+      high = c == 0xEDU ? 0x9FU : c == 0xF4U ? 0x8FU : 0xBFU;
     }
   }
   return more == 0;
@@ -64,7 +70,7 @@ bool is_digit(char c) {
 
 }  // namespace
 
-std::vector<std::string> read_text_lines(const std::string& path) {
+std::string read_text_file(const std::string& path) {
   std::string text = read_bytes(path);
   if (text.starts_with("\xEF\xBB\xBF")) {
     text.erase(0, 3);
@@ -75,6 +81,18 @@ std::vector<std::string> read_text_lines(const std::string& path) {
   } else if (!is_utf8(text)) {
     text = as_utf8(path, std::move(text), "WINDOWS-1252");
   }
+  return text;
+}
+
+std::string clean_name(std::string name) {
+  if (!is_utf8(name)) name = as_utf8(name, name, "ISO-8859-1");  // which has every byte
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }, ' ');
+  return name;
+}
+
+std::vector<std::string> read_text_lines(const std::string& path) {
+  const std::string text = read_text_file(path);
   std::vector<std::string> lines;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());

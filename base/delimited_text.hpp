@@ -6,9 +6,16 @@
 
 namespace driftwright {
 
-/// The lines of a text file without their line breaks (LF, CR LF), in UTF-8. A byte order mark tells UTF-8 or UTF-16; without one a file
-/// that is no UTF-8 is taken as Windows-1252, which has Latin-1's degree sign.
+/// A text file in UTF-8. A byte order mark, which is left out, tells UTF-8 or UTF-16; without one a file that is no UTF-8 is taken as Windows-1252,
+/// which has Latin-1's degree sign. What is read this way can be written into any output of ours.
 /// @throws InputError  for a file that cannot be opened or holds bytes that are no text
+[[nodiscard]] std::string read_text_file(const std::string& path);
+
+/// A name from elsewhere (another format of files, an argument) as text that all our outputs can carry: what is no UTF-8 is
+/// taken as Latin-1, control characters become blanks.
+[[nodiscard]] std::string clean_name(std::string name);
+
+/// The lines of a text file without their line breaks (LF, CR LF). @throws InputError  as read_text_file()
 [[nodiscard]] std::vector<std::string> read_text_lines(const std::string& path);
 
 /// A cell and where it begins.

@@ -1,45 +1,4 @@
 #pragma once
-// The ways a command can end badly. Each is an exception type with its own exit code.
+// A public header of the library, by the name that it has inside.
 
-#include <stdexcept>
-#include <string>
-
-namespace driftwright {
-
-/// Where in an input file a value stands. line and column count from one; 0 = unknown.
-struct Where {
-  std::string file;
-  int line = 0;
-  int column = 0;
-  std::string key;      ///< key path, such as "sensors[3].at"
-  std::string excerpt;  ///< the source line, without its line break
-};
-
-/// The input is wrong and the user can mend it. Exit code 2.
-/// what() reads "file:line:column: message [key]" followed by the source line with a caret.
-class InputError : public std::runtime_error {
- public:
-  explicit InputError(const std::string& message) : std::runtime_error(message) {}
-  /// @param message  what is wrong and what is allowed, one sentence each
-  InputError(const Where& where, const std::string& message);
-};
-
-/// The numerics gave up. Exit code 3. The message names time, step, residual or flag, and what to try.
-class SolveError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// The user ended the work before it was complete (Ctrl-C), and what was known is written. Exit code 130.
-class EndedEarly : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// An argument lies outside the range a formula is valid for; NaN counts as outside.
-class RangeError : public std::domain_error {
- public:
-  using std::domain_error::domain_error;
-};
-
-}  // namespace driftwright
+#include "driftwright/errors.hpp"  // IWYU pragma: export

@@ -1,6 +1,7 @@
 #include "base/file_bytes.hpp"
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <fstream>
 #include <sstream>
@@ -10,10 +11,14 @@
 namespace driftwright {
 
 std::string read_bytes(const std::filesystem::path& path) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown))
+    throw InputError(fmt::format("{}: is a folder; a file is wanted", path.string()));
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
-  bytes << file.rdbuf();
-  if (!file) throw InputError(fmt::format("{}: the file cannot be read", path.string()));
+  if (file && file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();
+  file.clear(file.rdstate() & ~(std::ios::eofbit));  // an empty file is one
+  if (!file) throw InputError(fmt::format("{}: the file cannot be opened or read; is the path right?", path.string()));
   return bytes.str();
 }
 
@@ -24,10 +29,9 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
   if (!file) throw InputError(fmt::format("{}: cannot be written; is the disk full?", path.string()));
 }
 
-std::uint64_t fnv1a(const std::string& bytes) {
-  std::uint64_t h = 14695981039346656037ull;
-  for (unsigned char c : bytes) h = (h ^ c) * 1099511628211ull;
-  return h;
+std::string content_hash(std::string_view bytes) {
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
 }  // namespace driftwright

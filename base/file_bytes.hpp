@@ -1,9 +1,9 @@
 #pragma once
 // Whole files, and a number for what is in them.
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace driftwright {
 
@@ -12,7 +12,7 @@ namespace driftwright {
 /// @throws InputError  naming the file, when it cannot be written to the end
 void write_bytes(const std::filesystem::path& path, const std::string& bytes);
 
-/// FNV-1a, 64 bits.
-[[nodiscard]] std::uint64_t fnv1a(const std::string& bytes);
+/// XXH3 of 128 bits (xxHash), as 32 hexadecimal digits: tells damage, and contents that differ, but not forgery.
+[[nodiscard]] std::string content_hash(std::string_view bytes);
 
 }  // namespace driftwright

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
+#include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 
 namespace driftwright {
@@ -94,13 +94,11 @@ std::span<const std::string> known_units() {
 }
 
 Record read_record_csv(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: the file cannot be opened; is the path right?", path));
   Record record{.source = path, .time_s = {}, .channels = {}};
   double seconds = 0.0;
-  std::string line;
-  for (int line_number = 1; std::getline(file, line); ++line_number) {
-    if (line_number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a spreadsheet's byte order mark
+  int line_number = 0;
+  for (const std::string& line : read_text_lines(path)) {
+    ++line_number;
     if (line.starts_with("#") || line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const std::vector<std::string> cells = split_cells(line);
     const auto where = [&](std::size_t cell) {
@@ -113,6 +111,8 @@ Record read_record_csv(const std::string& path) {
       seconds = seconds_per_time_unit(cells[0], where(0));
       for (std::size_t i = 1; i < cells.size(); ++i) {
         Channel channel = split_header(cells[i]);
+        if (std::any_of(cells[i].begin(), cells[i].end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }))
+          throw InputError(where(i), fmt::format("column {:?} has a control character in its name", cells[i]));
         if (channel.unit.empty()) {
           throw InputError(where(i), fmt::format("column '{}' names no unit; '<channel>_<unit>' is wanted with one of {}",
                                                  cells[i], fmt::join(unit_table(), ", ")));
@@ -145,7 +145,11 @@ Record read_record_csv(const std::string& path) {
 std::string record_csv(const Record& record, const std::vector<std::string>& comments) {
   fmt::memory_buffer text;
   auto out = std::back_inserter(text);
-  for (const std::string& comment : comments) fmt::format_to(out, "# {}\n", comment);
+  for (std::string comment : comments) {
+    std::replace_if(
+        comment.begin(), comment.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    fmt::format_to(out, "# {}\n", comment);
+  }
   fmt::format_to(out, "time_s");
   for (const Channel& c : record.channels) fmt::format_to(out, ",{}", c.header());
   fmt::format_to(out, "\n");

@@ -1,18 +1,19 @@
-# Everything Driftwright takes from Debian 12, with the lowest version known to work. Packages: packages.txt.
+# Everything Driftwright takes from Debian 12, with the lowest version known to work. Packages: packages.txt; what tests alone need: packages-tests.txt.
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
-find_package(GTest 1.12 REQUIRED)
 find_package(date 3.0 REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(SUNDIALS 6.4 REQUIRED COMPONENTS arkode nvecserial)
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML IOImage)
 # HDF5 also comes as a parallel library; this is the plain one.
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial>=1.10)
+pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip)
 pkg_check_modules(udunits REQUIRED IMPORTED_TARGET udunits)
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash>=0.8)
 
 # Spectra is header-only; its package's own CMake file asks for nothing more than Eigen.
 find_path(SPECTRA_INCLUDE_DIR Spectra/SymGEigsShiftSolver.h REQUIRED)
@@ -31,3 +32,9 @@ driftwright_import(Gmsh::Gmsh gmsh gmsh.h "")
 driftwright_import(Ceres::ceres ceres ceres/ceres.h "")
 find_library(GLOG_LIBRARY glog REQUIRED)  # its headers call it
 set_target_properties(Ceres::ceres PROPERTIES INTERFACE_LINK_LIBRARIES "${GLOG_LIBRARY}")
+
+# GoogleTest compiles the tests; the program does without.
+find_package(GTest 1.12)
+if(NOT TARGET GTest::gmock)
+  message(STATUS "Tests are not built: GoogleTest (libgtest-dev, libgmock-dev) is not installed; ./test installs it")
+endif()

@@ -6,51 +6,107 @@ build="$top/build/release"
 
 say() { printf '%s\n' "$*" >&2; }
 
-install_packages() {
-  local stamp="$build/packages.stamp" wanted missing=() as_root=()
-  cmp -s "$top/packages.txt" "$stamp" && return 0
-  command -v dpkg-query >/dev/null || { say "driftwright: no dpkg here; install by hand what packages.txt lists (names of Debian 12)"; return 0; }
-  wanted=$(grep -v '^#' "$top/packages.txt")
-  for package in $wanted; do
-    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+# missing_packages LIST...: the packages of these lists that are not installed.
+missing_packages() {
+  local package
+  (cd "$top" && cat "$@") | grep -v '^#' | while read -r package; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || printf '%s ' "$package"
   done
-  if [ ${#missing[@]} -gt 0 ]; then
-    if [ "$(id -u)" -ne 0 ]; then
-      command -v sudo >/dev/null || { say "driftwright: as root, please: apt-get install ${missing[*]}"; exit 1; }
-      as_root=(sudo)
-      [ -t 0 ] || as_root=(sudo -n)   # in a pipe nobody can type a password
-    fi
-    say "driftwright: installing Debian packages: ${missing[*]}"
-    local log="$build/packages.log"
-    mkdir -p "$build"
-    if ! { "${as_root[@]}" apt-get update -q && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-           apt-get install -q -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 </dev/null; then
-      tail -n 15 "$log" >&2
-      say "driftwright: the packages could not be installed; the whole story is in $log"
-      exit 1
-    fi
-  fi
-  mkdir -p "$build" && cp "$top/packages.txt" "$stamp"
 }
 
-# build_target TARGET: configures once, then lets Ninja look at what has changed.
+# install LIST...: what is missing of these lists, where apt takes nothing away for it. Fails with words.
+install() {
+  local missing as_root=() removed log="$build/packages.log"
+  read -ra missing <<<"$(missing_packages "$@")"
+  [ ${#missing[@]} -gt 0 ] || return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { say "driftwright: as root, please: apt-get install ${missing[*]}"; return 1; }
+    as_root=(sudo)
+    [ -t 0 ] || as_root=(sudo -n)   # in a pipe nobody can type a password
+  fi
+  say "driftwright: installing Debian packages: ${missing[*]}"
+  if ! "${as_root[@]}" apt-get update -q >"$log" 2>&1 </dev/null; then
+    tail -n 15 "$log" >&2
+    say "driftwright: the lists of packages could not be read; the whole story is in $log"
+    return 1
+  fi
+  removed=$(apt-get install -s --no-install-recommends "${missing[@]}" 2>/dev/null </dev/null | sed -n 's/^Remv \([^ ]*\).*/\1/p' | tr '\n' ' ')
+  if [ -n "$removed" ]; then
+    say "driftwright: ${missing[*]} cannot stand beside ${removed% }, which apt would remove for it; it was left as it is"
+    say "driftwright: where you can do without: apt-get install --no-install-recommends ${missing[*]}"
+    return 1
+  fi
+  if ! "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+       apt-get install -q -y --no-install-recommends "${missing[@]}" >>"$log" 2>&1 </dev/null; then
+    tail -n 15 "$log" >&2
+    say "driftwright: the packages could not be installed; the whole story is in $log"
+    return 1
+  fi
+}
+
+# install_once LIST...: as install, for the lists that have changed since; what has been installed is configured for.
+install_once() {
+  local list changed=()
+  for list in "$@"; do cmp -s "$top/$list" "$build/$list.stamp" || changed+=("$list"); done
+  [ ${#changed[@]} -gt 0 ] || return 0
+  if command -v dpkg-query >/dev/null; then
+    install "${changed[@]}" || return 1
+  else
+    say "driftwright: no dpkg here; install by hand what ${changed[*]} lists (names of Debian 12)"
+  fi
+  configured=no
+  for list in "${changed[@]}"; do cp "$top/$list" "$build/$list.stamp"; done
+}
+
+# configure: for the first time, for new packages, and where CMake's files have changed or gone.
+configure() {
+  if [ "$configured" = yes ] && [ -f "$build/build.ninja" ]; then
+    ninja -C "$build" build.ninja >"$log" 2>&1 && return 0
+  else
+    say "driftwright: configuring (Release)"
+    (cd "$top" && cmake --preset release) >"$log" 2>&1 && return 0
+  fi
+  tail -n 30 "$log" >&2
+  say "driftwright: configuring failed; see $log"
+  return 1
+}
+
+# build TARGET: what Ninja finds to do. A dry run tells whether there is work; only then is there anything to see.
+build() {
+  ninja -C "$build" -n "$1" 2>/dev/null | grep -q 'no work to do' && return 0
+  say "driftwright: building $1 (Release)"
+  if [ -t 2 ]; then
+    ninja -C "$build" "$1" >&2 || { say "driftwright: the build failed"; return 1; }
+  else
+    ninja -C "$build" "$1" >"$log" 2>&1 || { tail -n 40 "$log" >&2; say "driftwright: the build failed; see $log"; return 1; }
+  fi
+}
+
+configure_and_build() {
+  configure || return 3
+  build "$1"
+}
+
+# build_target TARGET LIST...: with the packages of these lists, configures where needed, then lets Ninja look at what has changed. Ends with 3
+# where packages or CMake do not let it build, with 1 where a file does not compile.
 build_target() {
-  local log="$build/build.log"
+  local target="$1" outcome=0 log="$build/build.log" configured=yes
+  shift
   mkdir -p "$build"
   exec 9>"$build/lock" && flock 9   # two calls at once build one after the other
-  install_packages
-  if [ ! -f "$build/build.ninja" ]; then
-    say "driftwright: configuring (Release)"
-    (cd "$top" && cmake --preset release) >"$log" 2>&1 || { tail -n 30 "$log" >&2; say "driftwright: configuring failed; see $log"; exit 1; }
-  fi
-  # A dry run tells whether there is work; only then is there anything to see.
-  if ! ninja -C "$build" -n "$1" | grep -q 'no work to do'; then
-    say "driftwright: building $1 (Release)"
-    if [ -t 2 ]; then
-      ninja -C "$build" "$1" >&2 || { say "driftwright: the build failed"; exit 1; }
-    else
-      ninja -C "$build" "$1" >"$log" 2>&1 || { tail -n 40 "$log" >&2; say "driftwright: the build failed; see $log"; exit 1; }
+  if ! install_once "$@"; then
+    outcome=3
+  else
+    configure_and_build "$target" || outcome=$?
+    # A package may have gone since.
+    if [ "$outcome" -ne 0 ] && command -v dpkg-query >/dev/null && [ -n "$(missing_packages "$@")" ]; then
+      outcome=3
+      if install "$@"; then
+        configured=no outcome=0
+        configure_and_build "$target" || outcome=$?
+      fi
     fi
   fi
   exec 9>&-
+  return "$outcome"
 }

@@ -241,8 +241,12 @@ void set_grid(MeasuredRun& run) {
 
 MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model, const solver::Outputs& outputs,
                           const std::optional<ColumnMap>& columns) {
-  const ReadRecord read = read_record(path, columns);
+  return measured_run(read_record(path, columns), model, outputs);
+}
+
+MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& model, const solver::Outputs& outputs) {
   const Record& whole = read.record;
+  const std::string& path = whole.source;
   if (whole.n_samples() < 3) {
     throw InputError(
         fmt::format("{}: {} rows; a diagnosis wants at least three, and rather a hundred", path, whole.n_samples()));

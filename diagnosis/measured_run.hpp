@@ -46,12 +46,14 @@ struct MeasuredRun {
 /// Sets grid_s and row_in_grid of a run whose rows and cyclogram are known.
 void set_grid(MeasuredRun& run);
 
-/// Reads a record and finds its channels among the model's outputs. Readings of sensors that the model says read the hall itself are left
+/// Finds the channels of a record, whose source is its file or its name, among the model's outputs. Readings of sensors that the model says read the hall itself are left
 /// out where the record has an ambient temperature.
 /// Readings of a sensor that stood still are taken out (stuck_sensor.hpp).
 /// @throws InputError  for a record without speed, with fewer than three rows, with a channel that is called as an output but has a
 ///                     unit of another kind, with a hall temperature in another unit than its header says, or with nothing to compare
-/// @param columns  how the file is written, where it is no record CSV
+[[nodiscard]] MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& model,
+                                       const solver::Outputs& outputs);
+/// The same of a file. @param columns  how it is written, where it is no record CSV
 [[nodiscard]] MeasuredRun read_measured(const std::string& path, const scenarios::MachineModel& model,
                                         const solver::Outputs& outputs,
                                         const std::optional<ColumnMap>& columns = std::nullopt);

@@ -1,11 +1,10 @@
 #include "effects/effect.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "effects/effect_schema.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -50,7 +49,6 @@ void keep_time(const Effect& effect, HeatBalance& balance) {
   });
 }
 
-/// Exactly one of the kind's places must be named.
 void read_place(const ConfigMap& in, Effect& effect) {
   const std::vector<Place>& places = effect.kind->places;
   if (places.size() == 1 && has_no_name(places.front())) {
@@ -59,38 +57,16 @@ void read_place(const ConfigMap& in, Effect& effect) {
     effect.where = in.where();
     return;
   }
-  std::vector<std::string> keys, given;
   for (Place place : places) {
-    keys.emplace_back(place_key(place));
-    if (!in.has(keys.back())) continue;
-    given.push_back(keys.back());
+    if (!in.has(place_key(place))) continue;
     effect.place_kind = place;
+    effect.place = in.text(place_key(place));
+    effect.where = in.where(place_key(place));
   }
-  if (given.size() > 1) {
-    in.fail(given[1], fmt::format("an effect has one place; here are {}", fmt::join(given, " and ")));
-  }
-  if (given.empty() && keys.size() > 1) {
-    in.fail(keys.front(), fmt::format("{} wants one place: {}", effect.kind->key, fmt::join(keys, " or ")));
-  }
-  const std::string key = given.empty() ? keys.front() : given.front();
-  if (given.empty()) effect.place_kind = places.front();
-  effect.place = in.text(key);
-  effect.where = in.where(key);
-}
-
-double read_parameter(const ConfigMap& in, const Parameter& p) {
-  if (p.fallback && !in.has(p.name)) return *p.fallback;
-  if (p.unit != "degC") return in.quantity(p.name, p.unit, p.low, p.high);
-  const double t_K = in.temperature_K(p.name);
-  if (!(t_K >= p.low && t_K <= p.high)) {
-    in.fail(p.name, fmt::format("{:.2f} K is out of range; {:.2f} K to {:.2f} K is allowed", t_K, p.low, p.high));
-  }
-  return t_K;
 }
 
 void read_reference(const ConfigMap& in, const Reference& r, Effect& effect) {
   if (!in.has(r.name)) {
-    if (!r.fallback) (void)in.text(r.name);  // fails as every missing key does
     if (!r.fallback->empty()) effect.references[r.name] = {r.kinds.front(), *r.fallback};
     return;
   }
@@ -100,13 +76,8 @@ void read_reference(const ConfigMap& in, const Reference& r, Effect& effect) {
     return;
   }
   const ConfigMap body = in.map(r.name);
-  std::vector<std::string> keys;
   for (BodyKind kind : r.kinds) {
-    keys.emplace_back(body_key(kind));
-    if (body.has(keys.back())) effect.references[r.name] = {kind, body.text(keys.back())};
-  }
-  if (!effect.references.contains(r.name)) {
-    in.fail(r.name, fmt::format("a map with one of {} is wanted", fmt::join(keys, ", ")));
+    if (body.has(body_key(kind))) effect.references[r.name] = {kind, body.text(body_key(kind))};
   }
   body.reject_unknown_keys();
 }
@@ -121,16 +92,16 @@ void read_timing(const ConfigMap& in, Effect& effect) {
   effect.in = in.text("in", "");
   if (in.has("in")) effect.reference_where["in"] = in.where("in");
   if (effect.kind->timing != Timing::kInTime) return;
-  effect.from_s = in.quantity("from", "s", 0.0, 1e9, 0.0);
-  effect.until_s = in.quantity("until", "s", 0.0, 1e9, kNever_s);
+  effect.from_s = in.quantity("from");
+  effect.until_s = in.quantity("until");
   if (!(effect.until_s > effect.from_s)) in.fail("until", "a time behind `from` is wanted");
 }
 
 void read_table(const ConfigMap& in, const Table& t, Effect& effect) {
-  if (!t.compulsory && !in.has(t.name)) return;
+  if (!in.has(t.name)) return;
   TimeSeries series;
   if (in.is_list(t.name)) {
-    for (const std::vector<double>& row : in.rows(t.name, {t.argument_unit, t.value_unit})) {
+    for (const std::vector<double>& row : in.rows(t.name)) {
       if (!series.time_s.empty() && !(row[0] > series.time_s.back())) {
         in.fail(t.name, "the first column must increase from row to row");
       }
@@ -139,13 +110,7 @@ void read_table(const ConfigMap& in, const Table& t, Effect& effect) {
     }
   } else {
     series.time_s = {0.0};
-    series.value = {t.value_unit == "degC" ? in.temperature_K(t.name) : in.quantity(t.name, t.value_unit, t.low, t.high)};
-  }
-  for (double value : series.value) {
-    if (!(value >= t.low && value <= t.high)) {
-      in.fail(t.name, fmt::format("{:g} {} is out of range; {:g} to {:g} is allowed", value,
-                                  t.value_unit == "degC" ? "K" : t.value_unit, t.low, t.high));
-    }
+    series.value = {in.quantity(t.name)};
   }
   effect.tables[t.name] = std::move(series);
 }
@@ -211,20 +176,16 @@ Body Effect::body() const {
   throw std::logic_error(std::string("a ") + place_key(place_kind) + " is no body");
 }
 
-Effect read_effect(const ConfigMap& in) {
-  std::vector<std::string> keys;
-  for (const EffectKind& kind : catalogue()) keys.push_back(kind.key);
-  const std::string type = in.choice("type", keys);
-  const EffectKind& kind = catalogue()[std::find(keys.begin(), keys.end(), type) - keys.begin()];
-
+Effect read_effect(const ConfigMap& entry) {
+  const ConfigMap in = entry.described_by(effect_schemas());
+  const EffectKind& kind = kind_of(in.choice("type"));
   Effect effect;
   effect.kind = &kind;
   read_place(in, effect);
-  for (const Parameter& p : kind.parameters) effect.values.push_back(read_parameter(in, p));
+  for (const Parameter& p : kind.parameters)
+    effect.values.push_back(in.has(p.name) ? in.quantity(p.name) : p.fallback.value_or(kNotGiven));
   for (const Reference& r : kind.references) read_reference(in, r, effect);
-  for (const Choice& c : kind.choices) {
-    effect.words[c.name] = c.fallback ? in.choice(c.name, c.options, *c.fallback) : in.choice(c.name, c.options);
-  }
+  for (const Choice& c : kind.choices) effect.words[c.name] = in.choice(c.name);
   for (const Table& t : kind.tables) read_table(in, t, effect);
   for (const Mention& m : kind.mentions) read_mention(in, m, effect);
   read_timing(in, effect);

@@ -15,8 +15,11 @@ double read_share(const ConfigMap& in, const std::string& key) {
   if (text == "fixed") return 0.0;
   if (text == "guess") return kGuess;
   if (text.empty() || !(text.front() >= '0' && text.front() <= '9'))
-    in.fail(key, fmt::format("'{}' is not how well a number is known; a share such as 20 %, `guess` (a factor of 2) or `fixed` is wanted", text));
-  return in.quantity(key, "1", 1e-3, 2.0);
+    in.fail(key,
+            fmt::format(
+                "'{}' is not how well a number is known; a share such as 20 %, `guess` (a factor of 2) or `fixed` is wanted",
+                text));
+  return in.quantity(key);
 }
 
 std::string word(double share) {
@@ -25,9 +28,22 @@ std::string word(double share) {
 
 }  // namespace
 
+schema::Key known_to_key(const std::vector<std::string>& names) {
+  const schema::Ways share = {schema::choice({"fixed", "guess"}), schema::quantity("1", 1e-3, 2.0)};
+  schema::Map by_name{.name = fmt::format("known_to ({})", fmt::join(names, ", ")),
+                      .about = "How well single numbers are known: 1 sigma of their logarithms."};
+  for (const std::string& name : names)
+    by_name.keys.push_back(schema::optional(name, share, schema::Said{}, "as `known_to`"));
+  schema::Ways ways = share;
+  ways.push_back(schema::map(by_name));
+  return schema::optional(
+      kKey, ways, schema::Said{"10 %, exponents 3 %"},
+      "how well its numbers are known: 1 sigma of their logarithms, `guess` (a factor of 2), `fixed` (as they "
+      "stand), or a map of these by number");
+}
+
 KnownTo read_known_to(const ConfigMap& in, const std::vector<std::string>& names) {
-  if (!in.has(kKey)) return {};
-  if (names.empty()) in.fail(kKey, "none of its numbers is one that a diagnosis calibrates");
+  if (names.empty() || !in.has(kKey)) return {};
   if (!in.is_map(kKey)) return {{"", read_share(in, kKey)}};
   const ConfigMap by_name = in.map(kKey);
   KnownTo said;

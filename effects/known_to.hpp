@@ -13,6 +13,8 @@ namespace driftwright::effects {
 using KnownTo = std::map<std::string, double>;
 inline constexpr double kGuess = 0.6931471805599453;  ///< a factor of 2
 
+/// The key `known_to` of an entry with numbers of these names, one at least.
+[[nodiscard]] schema::Key known_to_key(const std::vector<std::string>& names);
 /// Reads `known_to` of an entry; empty where it is not there. @param names  of the numbers that may be known roughly
 /// @throws InputError  for another word, a share beyond 0.1 % to 200 %, a number that has no such name
 [[nodiscard]] KnownTo read_known_to(const ConfigMap& in, const std::vector<std::string>& names);

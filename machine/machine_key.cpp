@@ -93,7 +93,7 @@ std::string machine_text(const MachineModel& model) {
   }
   if (const auto* imported = std::get_if<mesh::ImportedMesh>(&model.mesh)) {
     const std::string bytes = read_bytes(imported->path);
-    text += fmt::format("mesh file of {} bytes, {:016x}\n", bytes.size(), fnv1a(bytes));
+    text += fmt::format("mesh file of {} bytes, {}\n", bytes.size(), content_hash(bytes));
   }
   if (model.start == Start::kHall || model.start == Start::kSteady || !balance.fixed.empty()) {
     text += fmt::format("hall at the start {} K\n", felt_hall_at_start_K(model));

@@ -16,8 +16,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kHashes = "hashes.json";  // of all other files of a machine
+
 std::filesystem::path folder_of(const std::filesystem::path& store, const std::string& key) {
-  return store / fmt::format("{:016x}", fnv1a(key));
+  return store / content_hash(key);
 }
 
 Eigen::MatrixXi as_column(const std::vector<int>& values) {
@@ -86,6 +88,22 @@ void write_machine(const std::filesystem::path& work, const std::string& key, co
   write_npy(work / "displacement_m.npy", machine.displacement_m);
   write_bytes(work / "model.json", json.dump());
   write_bytes(work / "key.txt", key);
+  Json hashes;
+  for (const auto& entry : std::filesystem::directory_iterator(work))
+    hashes[entry.path().filename().string()] = content_hash(read_bytes(entry.path()));
+  write_bytes(work / kHashes, hashes.dump());
+}
+
+/// @throws InputError  naming the first file that is not as it was written; a JSON exception where the list of hashes holds something else
+void require_whole(const std::filesystem::path& folder) {
+  const Json hashes = Json::parse(read_bytes(folder / kHashes), nullptr, false);
+  if (hashes.is_discarded()) throw InputError(fmt::format("{}: is not as it was written", (folder / kHashes).string()));
+  for (const auto& [name, hash] : hashes.items()) {
+    if (content_hash(read_bytes(folder / name)) != hash.get<std::string>())
+      throw InputError(fmt::format("{}: is not as it was written", (folder / name).string()));
+  }
+  if (!hashes.contains("key.txt") || !hashes.contains("model.json"))
+    throw InputError(fmt::format("{}: names not all files", (folder / kHashes).string()));
 }
 
 }  // namespace
@@ -100,13 +118,16 @@ std::filesystem::path machine_store() {
 }
 
 std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, const std::string& key,
-                                           const effects::HeatBalance& balance) {
+                                           const effects::HeatBalance& balance, std::string* damage) {
   if (store.empty()) return std::nullopt;
   const std::filesystem::path folder = folder_of(store, key);
   std::error_code missing;
-  if (!std::filesystem::exists(folder / "key.txt", missing)) return std::nullopt;
+  if (!std::filesystem::exists(folder, missing)) return std::nullopt;
+  std::string why;
   try {
-    if (read_bytes(folder / "key.txt") != key) return std::nullopt;
+    if (read_bytes(folder / "key.txt") != key)
+      throw InputError(fmt::format("{}: is of another machine", (folder / "key.txt").string()));
+    require_whole(folder);
     const Json json = Json::parse(read_bytes(folder / "model.json"));
     ReducedMachine machine;
     machine.n_unknowns = json.at("n_unknowns");
@@ -129,11 +150,15 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
     machine.temperature = array_of<float>(folder / "temperature.npy", n_nodes, size);
     machine.displacement_m = array_of<float>(folder / "displacement_m.npy", 3 * n_nodes, size);
     return machine;
-  } catch (const InputError&) {
-  } catch (const nlohmann::json::exception&) {
-  } catch (const std::logic_error&) {  // of another balance
+  } catch (const InputError& e) {
+    why = e.what();
+  } catch (const nlohmann::json::exception& e) {
+    why = fmt::format("{}: {}", folder.string(), e.what());
+  } catch (const std::logic_error& e) {  // of another balance
+    why = fmt::format("{}: {}", folder.string(), e.what());
   }
-  return std::nullopt;  // damaged: made anew
+  if (damage) *damage = why;
+  return std::nullopt;
 }
 
 void save_machine(const std::filesystem::path& store, const std::string& key, const ReducedMachine& machine) {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "base/file_bytes.hpp"
 #include "base/version.hpp"
 #include "machine/machine_key.hpp"
 #include "machine/machine_store.hpp"
+#include "machine/sources.hpp"
 #include "machine/ways_out.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
@@ -25,16 +25,9 @@ int n_fields(const scenarios::Scenario& scenario) {
   return static_cast<int>(std::min(1e6, longest_s / scenario.solver.fields_every_s)) + 2;
 }
 
-/// Version and bytes of this program: what another build has reduced may be something else.
+/// What other sources, or another build of them, have reduced may be something else. Program and library of one build know each other's machines.
 std::string build_name() {
-  static const std::string name = [] {
-    try {
-      return fmt::format("{} {:016x}", kVersion, fnv1a(read_bytes("/proc/self/exe")));
-    } catch (const InputError&) {  // no such file system: the version has to do
-      return std::string(kVersion);
-    }
-  }();
-  return name;
+  return fmt::format("{} {}", kVersion, kSourcesOfMachines);
 }
 
 }  // namespace
@@ -74,7 +67,9 @@ scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, con
                                        const Listener& listener, bool* was_known) {
   const std::string key = scenarios::machine_key(model, plan, build_name());
   const std::filesystem::path store = scenarios::machine_store();
-  auto known = scenarios::load_machine(store, key, effects::heat_balance(model.effects));
+  std::string damage;
+  auto known = scenarios::load_machine(store, key, effects::heat_balance(model.effects), &damage);
+  if (!damage.empty()) fmt::print(stderr, "note: a kept machine is damaged and made anew: {}\n", damage);
   if (was_known) *was_known = known.has_value();
   if (known) return std::move(*known);
   const scenarios::Machine machine = build_machine(model, listener, plan.with_fields ? kStates : 0);

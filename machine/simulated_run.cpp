@@ -8,6 +8,7 @@
 #include "base/quantity.hpp"
 #include "machine/as_recorded.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "solver/energy_balance.hpp"
 #include "solver/reduced_transient.hpp"
 
 namespace driftwright::scenarios {
@@ -58,6 +59,10 @@ SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOp
   };
   SimulatedRun simulated{.record = {},
                          .trajectory = model.reduced() ? run(model.reduced()->system) : run(model.full()->system)};
+  const double capacity_J_K = model.reduced()
+                                  ? model.reduced()->system.ones.squaredNorm()  // M = 1
+                                  : model.full()->system.ones.dot(model.full()->system.mass * model.full()->system.ones);
+  solver::require_balance(simulated.trajectory, capacity_J_K);
   simulated.record = as_recorded(machine, simulated.trajectory, model.outputs(), cyclogram);
   return simulated;
 }

@@ -51,8 +51,34 @@ std::string surface_name(const GantryTable& t, const OuterFace& face) {
 
 }  // namespace
 
+const schema::Map& gantry_table_schema() {
+  using namespace schema;
+  const auto length = [](const char* name, const char* meaning) {
+    return compulsory(name, quantity("m", 1e-3, 100.0), meaning);
+  };
+  const auto box = [&](const char* of) {
+    return schema::Map{.name = std::string("machine (gantry_table), ") + of,
+                       .keys = {length("length", "along x"), length("width", "along y"), length("height", "along z")}};
+  };
+  schema::Map workpiece = box("workpiece"), table = box("table"), bed = box("bed");
+  workpiece.keys.push_back(compulsory("at", schema::vector3("m"), "middle of its underside on the table, with z 0 mm"));
+  const schema::Map guideways = {.name = "machine (gantry_table), guideways",
+                                 .keys = {length("width", "of one"), length("height", "above the bed"),
+                                          length("gauge", "between the middles of the two")}};
+  static const schema::Map description = {
+      .name = "machine (gantry_table)",
+      .keys = {compulsory("generator", choice({"gantry_table"}), "the table of a gantry mill on its bed (docs/table.md)"),
+               compulsory("table", schema::map(table), "a plate as thick as the iron in its ribs and walls would be"),
+               compulsory("bed", schema::map(bed), "the same"),
+               compulsory("guideways", schema::map(guideways), "two, on the bed; they carry the table"),
+               schema::optional("workpiece", schema::map(workpiece), "a block on the table"),
+               compulsory("mesh_size", quantity("m", 0.02, 10.0), "edges of the elements; half as long again in the bed"),
+               schema::optional("element_order", integer(1, 2), 2, "2; 1 is far too stiff in bending")}};
+  return description;
+}
+
 GantryTable read_gantry_table(const ConfigMap& in) {
-  const auto length = [](const ConfigMap& map, const char* key) { return map.quantity(key, "m", 1e-3, 100.0); };
+  const auto length = [](const ConfigMap& map, const char* key) { return map.quantity(key); };
   const auto size = [&](const ConfigMap& map) {
     return GantryTable::Box{length(map, "length"), length(map, "width"), length(map, "height")};
   };
@@ -69,7 +95,7 @@ GantryTable read_gantry_table(const ConfigMap& in) {
   if (t.guideway_gauge_m <= t.guideway_width_m) in.fail("guideways", "the guideways overlap; a wider gauge is wanted");
   if (const auto piece = in.optional_map("workpiece")) {
     t.workpiece = size(*piece);
-    const Eigen::Vector3d at_m = piece->vector3("at", "m");
+    const Eigen::Vector3d at_m = piece->vector3("at");
     t.workpiece_x_m = at_m[0];
     t.workpiece_y_m = at_m[1];
     piece->reject_unknown_keys();
@@ -78,8 +104,8 @@ GantryTable read_gantry_table(const ConfigMap& in) {
       in.fail("workpiece", "the workpiece does not lie on the table; `at` is the middle of its underside, with z 0 mm");
     }
   }
-  t.mesh_size_m = in.quantity("mesh_size", "m", 0.02, 10.0);
-  t.element_order = in.integer("element_order", 1, 2, 2);
+  t.mesh_size_m = in.quantity("mesh_size");
+  t.element_order = in.integer("element_order");
   return t;
 }
 

@@ -28,6 +28,8 @@ struct GantryTable {
   int element_order = 2;
 };
 
+/// What the map `machine` of a scenario may hold then.
+[[nodiscard]] const schema::Map& gantry_table_schema();
 /// Reads the map `machine` of a scenario. @throws InputError  also for parts that do not fit onto each other
 [[nodiscard]] GantryTable read_gantry_table(const ConfigMap& in);
 

@@ -58,6 +58,8 @@ struct ImportedMesh {
   Where where;
 };
 
+/// What the map `machine` of a scenario may hold then.
+[[nodiscard]] const schema::Map& imported_mesh_schema();
 /// Reads the map `machine` of a scenario that has the key `mesh`.
 /// @param folder  of the scenario file, which relative paths start from
 /// @throws InputError

@@ -152,8 +152,57 @@ void check_fits(const ConfigMap& in, const KneeMill& m) {
 
 }  // namespace
 
+const schema::Map& knee_mill_schema() {
+  using namespace schema;
+  struct Length {
+    const char *name, *meaning;
+  };
+  const auto part = [](const char* name, const char* of, const std::vector<Length>& lengths) {
+    schema::Map map{.name = std::string("machine (knee_mill), ") + name};
+    for (const Length& l : lengths) map.keys.push_back(compulsory(l.name, quantity("m", 1e-3, 50.0), l.meaning));
+    return compulsory(name, schema::map(map), of);
+  };
+  const auto bearings = [&] {
+    schema::Map map{.name = "machine (knee_mill), bearings"};
+    for (const char* which : {"front", "rear"})
+      map.keys.push_back(
+          part(which, "one of the two", {{"width", "along the axis"}, {"setback", "from the end of the quill"}}));
+    return compulsory("bearings", schema::map(map), "rings between spindle and quill");
+  };
+  static const schema::Map description = {
+      .name = "machine (knee_mill)",
+      .keys = {
+          compulsory("generator", choice({"knee_mill"}), "a knee-type milling machine, drawn by its dimensions"),
+          part("column", "a box of walls",
+               {{"width", "along x"}, {"depth", "along y"}, {"height", "along z"}, {"wall", "thickness of the walls"}}),
+          part("headstock", "a box of walls on the column, with the barrel of the quill",
+               {{"width", "along x"},
+                {"depth", "along y"},
+                {"height", "along z"},
+                {"wall", "thickness of the walls"},
+                {"overhang", "in front of the column"},
+                {"barrel_diameter", "of the hole that the quill is in"},
+                {"axis_height", "of the spindle's axis above the headstock's floor"}}),
+          part("quill", "the sleeve that carries the spindle",
+               {{"diameter", "outside"},
+                {"bore", "inside"},
+                {"length", "along the axis"},
+                {"stick_out", "in front of the headstock"}}),
+          part("spindle", "a solid shaft", {{"diameter", "of the shaft"}, {"stick_out", "in front of the quill"}}),
+          bearings(),
+          part("motor", "a cylinder behind the headstock", {{"diameter", "outside"}, {"length", "along the axis"}}),
+          part("knee", "a block in front of the column",
+               {{"width", "along x"}, {"depth", "along y"}, {"height", "along z"}, {"bottom", "height of its underside"}}),
+          part("table", "a plate on the knee",
+               {{"width", "along x"}, {"depth", "along y"}, {"thickness", "along z"}, {"gap", "to the column"}}),
+          part("mesh_size", "edges of the elements",
+               {{"frame", "of the castings"}, {"spindle", "of quill, spindle and bearings"}}),
+          schema::optional("element_order", integer(1, 2), 2, "2; 1 is far too stiff in bending")}};
+  return description;
+}
+
 KneeMill read_knee_mill(const ConfigMap& in) {
-  const auto length = [](const ConfigMap& map, const char* key) { return map.quantity(key, "m", 1e-3, 50.0); };
+  const auto length = [](const ConfigMap& map, const char* key) { return map.quantity(key); };
   KneeMill m{};
   const ConfigMap column = in.map("column");
   m.column = {length(column, "width"), length(column, "depth"), length(column, "height"), length(column, "wall")};
@@ -189,7 +238,7 @@ KneeMill read_knee_mill(const ConfigMap& in) {
   const ConfigMap size = in.map("mesh_size");
   m.coarse_m = length(size, "frame");
   m.fine_m = length(size, "spindle");
-  m.element_order = in.integer("element_order", 1, 2, 2);
+  m.element_order = in.integer("element_order");
   for (const ConfigMap* map : {&column, &head, &quill, &spindle, &bearings, &front, &rear, &motor, &knee, &table, &size}) {
     map->reject_unknown_keys();
   }

@@ -43,6 +43,8 @@ struct KneeMill {
   int element_order = 2;
 };
 
+/// What the map `machine` of a scenario may hold then.
+[[nodiscard]] const schema::Map& knee_mill_schema();
 /// Reads the map `machine` of a scenario. @throws InputError  also for parts that do not fit into each other
 [[nodiscard]] KneeMill read_knee_mill(const ConfigMap& in);
 

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <set>
 
+#include "base/delimited_text.hpp"
 #include "mesh/gmsh_parts.hpp"
+#include "mesh/read_apart.hpp"
 
 namespace driftwright::mesh {
 namespace {
@@ -24,17 +26,22 @@ std::vector<Solid> import_solids(const std::string& path) {
   gmsh::option::setNumber("Geometry.OCCImportLabels", 1);
   gmsh::vectorpair shapes;
   try {
+    const ReadingTime limited(path);
     occ::importShapes(path, shapes, true, "step");
+    occ::synchronize();
   } catch (const std::string& message) {
     throw InputError(path + ": Gmsh cannot read it: " + message);
+  } catch (const std::exception& e) {
+    throw InputError(fmt::format("{}: Gmsh cannot read it: {}", path, e.what()));
+  } catch (...) {  // OpenCASCADE has exceptions of its own
+    throw InputError(path + ": OpenCASCADE cannot read it; is the file damaged?");
   }
-  occ::synchronize();
   std::vector<Solid> solids;
   for (const auto& [dim, tag] : shapes) {
     if (dim != 3) continue;
     std::string label;
     gmsh::model::getEntityName(3, tag, label);
-    solids.push_back({tag, label.substr(label.rfind('/') + 1)});  // the whole label if it has no '/'
+    solids.push_back({tag, clean_name(label.substr(label.rfind('/') + 1))});  // the whole label if it has no '/'
   }
   if (solids.empty()) throw InputError(path + ": there is no solid in it");
   return solids;

@@ -7,12 +7,13 @@
 #include <cctype>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "base/config_map.hpp"
+#include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "mesh/topology.hpp"
 
@@ -81,8 +82,7 @@ class InpReader {
  public:
   explicit InpReader(const std::string& path) {
     raw_.path = path;
-    std::ifstream file(path);
-    if (!file) throw InputError(path + ": the file cannot be opened");
+    std::istringstream file(read_text_file(path));
     std::string line;
     while (std::getline(file, line)) {
       ++line_;

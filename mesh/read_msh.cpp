@@ -7,9 +7,12 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 
+#include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "mesh/gmsh_parts.hpp"
+#include "mesh/read_apart.hpp"
 
 namespace driftwright::mesh {
 namespace {
@@ -104,7 +107,7 @@ class Reader {
   static std::string name_of(int dim, int tag, const std::string& kind) {
     std::string name;
     gmsh::model::getPhysicalName(dim, tag, name);
-    return name.empty() ? fmt::format("{}_{}", kind, tag) : name;
+    return name.empty() ? fmt::format("{}_{}", kind, tag) : clean_name(std::move(name));
   }
 
   static bool has_elements(int entity) {
@@ -124,6 +127,9 @@ class Reader {
       const auto known = gmsh_elements().find(types[t]);
       if (known == gmsh_elements().end()) refuse(types[t], tags[t].front());
       const std::size_t n = known->second.order.size();
+      if (nodes[t].size() != n * tags[t].size())
+        fail(fmt::format("{} nodes of {} elements of {} nodes each; the file is damaged", nodes[t].size(), tags[t].size(),
+                         n));
       for (std::size_t e = 0; e < tags[t].size(); ++e) visit(known->second, tags[t][e], &nodes[t][e * n]);
     }
   }
@@ -140,10 +146,17 @@ class Reader {
         tag, name, n_nodes));
   }
 
+  /// Our number of a node that an element names.
+  int number_of(std::size_t tag, std::size_t element) const {
+    if (tag >= node_.size() || node_[tag] < 0)
+      fail(fmt::format("element {} has node {}, which the file does not hold", element, tag));
+    return node_[tag];
+  }
+
   void add_cells(int entity, int region) {
     each_element(3, entity, [&](const GmshElement& element, std::size_t tag, const std::size_t* nodes) {
       std::array<int, kMaxNodesPerCell> all{};
-      for (std::size_t i = 0; i < element.order.size(); ++i) all[i] = node_.at(nodes[element.order[i]]);
+      for (std::size_t i = 0; i < element.order.size(); ++i) all[i] = number_of(nodes[element.order[i]], tag);
       const std::span<const int> numbered(all.data(), element.order.size());
       raw_.cells.add(element.shape, numbered, region);
       raw_.cell_number.push_back(static_cast<long>(tag));
@@ -153,7 +166,7 @@ class Reader {
   void add_facets(int entity, RawMesh::FacetSurface& surface) {
     each_element(2, entity, [&](const GmshElement& element, std::size_t tag, const std::size_t* nodes) {
       std::vector<int> corners;
-      for (int i = 0; i < n_corners_of(element.shape); ++i) corners.push_back(node_.at(nodes[i]));
+      for (int i = 0; i < n_corners_of(element.shape); ++i) corners.push_back(number_of(nodes[i], tag));
       surface.corners.push_back(corners);
       surface.number.push_back(static_cast<long>(tag));
     });
@@ -169,10 +182,15 @@ class Reader {
 RawMesh read_msh(const std::string& path) {
   const GmshSession session;
   try {
-    gmsh::open(path);
+    {
+      const ReadingTime limited(path);
+      gmsh::open(path);
+    }
     return Reader(path).read();
   } catch (const std::string& message) {
     throw InputError(path + ": Gmsh cannot read it: " + message);
+  } catch (const std::length_error&) {  // a count below 0, or one of a damaged file
+    throw InputError(path + ": Gmsh cannot read it: a count in it cannot be right");
   }
 }
 

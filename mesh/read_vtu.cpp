@@ -1,25 +1,36 @@
 #include "mesh/read_vtu.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <vtkCallbackCommand.h>
-#include <vtkCell.h>
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkObject.h>
+#include <vtkOutputWindow.h>
+#include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
+#include <vtkStringOutputWindow.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <sstream>
+#include <stdexcept>
 
+#include "base/delimited_text.hpp"
 #include "base/errors.hpp"
+#include "mesh/read_apart.hpp"
 #include "mesh/shape.hpp"
 
 namespace driftwright::mesh {
@@ -52,6 +63,21 @@ std::optional<CellShape> shape_of_vtk(int type) {
   }
 }
 
+bool is_point_or_line(int type) {
+  switch (type) {
+    case VTK_EMPTY_CELL:
+    case VTK_VERTEX:
+    case VTK_POLY_VERTEX:
+    case VTK_LINE:
+    case VTK_POLY_LINE:
+    case VTK_QUADRATIC_EDGE:
+    case VTK_CUBIC_LINE:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// Names of an integer cell array's values: entry i of `names`, or else <kind>_<i>.
 class Groups {
  public:
@@ -60,9 +86,19 @@ class Groups {
         values_(grid->GetCellData()->GetArray(array)),
         names_(vtkStringArray::SafeDownCast(grid->GetFieldData()->GetAbstractArray(names))) {}
   [[nodiscard]] bool exist() const { return values_ != nullptr; }
-  [[nodiscard]] int of(vtkIdType cell) const { return static_cast<int>(values_->GetTuple1(cell)); }
+  /// Whether each cell has one whole number of bearable size.
+  [[nodiscard]] bool are_sound(vtkIdType n_cells) const {
+    if (!exist()) return true;
+    if (values_->GetNumberOfComponents() != 1 || values_->GetNumberOfTuples() != n_cells) return false;
+    for (vtkIdType c = 0; c < n_cells; ++c) {
+      const double value = values_->GetComponent(c, 0);
+      if (!(std::abs(value) < 1e9) || value != std::floor(value)) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] int of(vtkIdType cell) const { return static_cast<int>(values_->GetComponent(cell, 0)); }
   [[nodiscard]] std::string name(int value) const {
-    if (names_ && value >= 0 && value < names_->GetNumberOfValues()) return names_->GetValue(value);
+    if (names_ && value >= 0 && value < names_->GetNumberOfValues()) return clean_name(names_->GetValue(value));
     return fmt::format("{}_{}", kind_, value);
   }
 
@@ -91,6 +127,59 @@ void append_text(vtkObject*, unsigned long, void* text, void* message) {
   *static_cast<std::string*>(text) += static_cast<const char*>(message);
 }
 
+/// VTK's own sentences among "ERROR: In vtkXMLDataReader.cxx, line 410\nvtkXMLUnstructuredGridReader (0x55..): sentence\n\n".
+std::string reasons(const std::string& messages) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> found;
+  std::istringstream lines(messages);
+  for (std::string line; std::getline(lines, line) && found.size() < kMost;) {
+    if (line.find("ERROR: In ") != std::string::npos || line.find("Warning: In ") != std::string::npos) continue;
+    if (const auto object = line.find("): "); object != std::string::npos) line.erase(0, object + 3);
+    if (!line.empty() && std::find(found.begin(), found.end(), line) == found.end()) found.push_back(line);
+  }
+  return fmt::format("{}", fmt::join(found, " "));
+}
+
+/// What VTK says beside the reader's own errors, in place of standard error.
+class VtkWords {
+ public:
+  VtkWords() : before_(vtkOutputWindow::GetInstance()) { vtkOutputWindow::SetInstance(words_); }
+  ~VtkWords() { vtkOutputWindow::SetInstance(before_); }
+  VtkWords(const VtkWords&) = delete;
+  VtkWords& operator=(const VtkWords&) = delete;
+  [[nodiscard]] std::string text() { return words_->GetOutput(); }
+
+ private:
+  vtkSmartPointer<vtkOutputWindow> before_;
+  vtkNew<vtkStringOutputWindow> words_;
+};
+
+/// Everything that names a place in another array, before VTK is asked to look there.
+void require_sound(vtkUnstructuredGrid* grid, const std::function<void(const std::string&)>& fail) {
+  const vtkIdType n_points = grid->GetNumberOfPoints(), n_cells = grid->GetNumberOfCells();
+  vtkCellArray* cells = grid->GetCells();
+  vtkUnsignedCharArray* types = grid->GetCellTypesArray();
+  if (!cells || !types || types->GetNumberOfValues() != n_cells || cells->GetNumberOfCells() != n_cells)
+    fail(fmt::format("it has {} cells and types of {}; the file is damaged", n_cells,
+                     types ? types->GetNumberOfValues() : 0));
+  vtkDataArray *offsets = cells->GetOffsetsArray(), *nodes = cells->GetConnectivityArray();
+  const auto at = [](vtkDataArray* array, vtkIdType i) { return array->GetComponent(i, 0); };
+  const auto n_listed = static_cast<double>(nodes->GetNumberOfValues());
+  if (offsets->GetNumberOfValues() != n_cells + 1 || at(offsets, 0) != 0.0 || at(offsets, n_cells) != n_listed)
+    fail(fmt::format("the offsets of its {} cells do not divide the {} nodes that are listed; the file is damaged", n_cells,
+                     n_listed));
+  for (vtkIdType c = 0; c < n_cells; ++c) {
+    const double size = at(offsets, c + 1) - at(offsets, c);
+    const auto shape = shape_of_vtk(types->GetValue(c));
+    if (size < 0.0 || at(offsets, c + 1) > n_listed || (shape && size != n_nodes_of(*shape)))
+      fail(fmt::format("cell {}, of VTK's type {}, has {} nodes; the file is damaged", c, types->GetValue(c), size));
+    for (auto i = static_cast<vtkIdType>(at(offsets, c)); i < static_cast<vtkIdType>(at(offsets, c + 1)); ++i) {
+      if (const double node = at(nodes, i); !(node >= 0.0 && node < static_cast<double>(n_points)))
+        fail(fmt::format("cell {} has node {}, and there are nodes 0 to {}", c, node, n_points - 1));
+    }
+  }
+}
+
 }  // namespace
 
 RawMesh read_vtu(const std::string& path) {
@@ -107,36 +196,50 @@ RawMesh read_vtu(const std::string& path) {
   reader->SetParserErrorObserver(on_error);
   reader->SetFileName(path.c_str());
   {
-    static std::mutex one_at_a_time;  // the switch is the whole process's
+    static std::mutex one_at_a_time;  // VTK's window of words is the whole process's
     const std::lock_guard alone(one_at_a_time);
-    vtkObject::GlobalWarningDisplayOff();  // VTK would print what goes into our message
-    reader->Update();
-    vtkObject::GlobalWarningDisplayOn();
+    VtkWords words;
+    const ReadingTime limited(path);
+    try {
+      reader->Update();
+    } catch (const std::length_error&) {
+      fail("VTK cannot read it: a count in it cannot be right");
+    }
+    if (words.text().find("ERROR: In ") != std::string::npos) errors += words.text();  // and not for warnings alone
   }
   vtkUnstructuredGrid* grid = reader->GetOutput();
-  if (!errors.empty()) fail("VTK cannot read it: " + errors.substr(0, errors.find('\n')));
+  if (!errors.empty()) fail("VTK cannot read it: " + reasons(errors));
   if (grid->GetNumberOfCells() == 0) fail("VTK finds no unstructured grid with cells in it");
 
+  require_sound(grid, fail);
   raw.coords.resize(3, grid->GetNumberOfPoints());
   for (vtkIdType n = 0; n < grid->GetNumberOfPoints(); ++n) {
     grid->GetPoint(n, raw.coords.col(n).data());
     raw.node_number.push_back(n);
   }
   const Groups region(grid, "region", "region_names"), surface(grid, "surface", "surface_names");
+  for (const auto& [groups, name] : {std::pair{&region, "region"}, {&surface, "surface"}}) {
+    if (!groups->are_sound(grid->GetNumberOfCells()))
+      fail(fmt::format("the cell array '{}' does not hold one whole number below 1e9 for each of the {} cells", name,
+                       grid->GetNumberOfCells()));
+  }
   std::map<int, int> region_index, surface_index;  // value of the array -> our index
   int n_turned = 0, n_unnamed = 0;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
-    vtkCell* cell = grid->GetCell(c);
-    if (cell->GetCellDimension() < 2) continue;
-    const auto shape = shape_of_vtk(grid->GetCellType(c));
+    const int type = grid->GetCellType(c);
+    if (is_point_or_line(type)) continue;
+    const auto shape = shape_of_vtk(type);
     if (!shape) {
       fail(
           fmt::format("cell {} is of VTK's type {}, which is not computed with; tetrahedra, hexahedra of 8 and 20 nodes and "
                       "wedges of 6 and 15 are",
-                      c, grid->GetCellType(c)));
+                      c, type));
     }
     std::vector<int> nodes;
-    for (int i = 0; i < cell->GetNumberOfPoints(); ++i) nodes.push_back(static_cast<int>(cell->GetPointId(i)));
+    vtkIdType n_nodes = 0;
+    const vtkIdType* node = nullptr;
+    grid->GetCellPoints(c, n_nodes, node);
+    for (vtkIdType i = 0; i < n_nodes; ++i) nodes.push_back(static_cast<int>(node[i]));
     if (dimension_of(*shape) == 2) {
       if (!surface.exist() || surface.of(c) < 0) {
         ++n_unnamed;

@@ -5,7 +5,8 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+
+#include "base/delimited_text.hpp"
 
 namespace driftwright {
 namespace {
@@ -92,14 +93,11 @@ Where NcBlock::at(const NcWord& word) const {
 }
 
 std::vector<NcBlock> read_nc_blocks(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: the NC program cannot be opened; is the path right?", path));
   std::vector<NcBlock> blocks;
   bool started = false;
-  std::string text;
-  for (int number = 1; std::getline(file, text); ++number) {
-    if (number == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-    if (text.ends_with('\r')) text.pop_back();
+  int number = 0;
+  for (const std::string& text : read_text_lines(path)) {
+    ++number;
     const LineReader reader(path, number, text);
     std::vector<Character> line = reader.characters();
     if (line.empty()) continue;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace driftwright::output {
+#include "output/markup.hpp"
+
+namespace driftwright::output::html {
 namespace {
 
 constexpr std::string_view kStyle = R"css(
@@ -20,6 +22,7 @@ header { border-bottom: 2px solid var(--text); margin-bottom: 28px; padding-bott
 h1 { font-size: 28px; line-height: 1.2; margin: 0; }
 header p { color: var(--soft); margin: 6px 0 0; max-width: none; overflow-wrap: anywhere; }
 h2 { font-size: 20px; line-height: 1.3; margin: 40px 0 12px; }
+h3 { font-size: 17px; line-height: 1.3; margin: 28px 0 8px; }
 p { margin: 12px 0; max-width: 46em; }
 .verdict { margin: 20px 0; padding: 14px 18px; background: var(--card); border-left: 6px solid var(--tone);
   border-radius: 4px; }
@@ -29,9 +32,10 @@ p { margin: 12px 0; max-width: 46em; }
 .table { overflow-x: auto; margin: 20px 0; }
 table { border-collapse: collapse; font-size: 15px; font-variant-numeric: tabular-nums; }
 caption { text-align: left; color: var(--soft); padding-bottom: 6px; }
-th, td { padding: 6px 14px; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
+th, td { padding: 6px 10px; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
 th { border-bottom: 2px solid var(--soft); vertical-align: bottom; }
-.number { text-align: right; white-space: nowrap; }
+.number { text-align: right; }
+td.number { white-space: nowrap; }
 .plots { display: grid; grid-template-columns: 1fr 1fr; gap: 20px 16px; margin: 20px 0; }
 figure { margin: 0; padding: 12px 0 10px; background: #ffffff; color: #1d2329; border: 1px solid #d9dee3;
   border-radius: 4px; grid-column: 1 / -1; min-width: 0; break-inside: avoid; }
@@ -51,32 +55,9 @@ figure svg { display: block; width: 100%; height: auto; }
 pre { background: var(--card); border: 1px solid var(--line); border-radius: 4px; padding: 12px 16px; overflow-x: auto;
   font: 13px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; }
 @media (max-width: 640px) { figure.half { grid-column: 1 / -1; } }
-@media print { body { padding: 0; max-width: none; font-size: 11pt; } h2 { break-after: avoid; }
+@media print { body { padding: 0; max-width: none; font-size: 11pt; } table { font-size: 9pt; } th, td { padding: 4px 6px; } h2, h3 { break-after: avoid; }
   tr, .verdict { break-inside: avoid; } pre { white-space: pre-wrap; } * { print-color-adjust: exact; } }
 )css";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 /// Does a cell begin like a number: a digit, perhaps after signs, dots and spaces?
 bool looks_numeric(const std::string& cell) {
@@ -108,7 +89,7 @@ bool is_number_column(const Table& table, std::size_t column) {
 }
 
 std::string html(const Heading& heading) {
-  return fmt::format("<h2>{}</h2>\n", escaped(heading.text));
+  return fmt::format("<h{0}>{1}</h{0}>\n", heading.level, escaped(heading.text));
 }
 std::string html(const Paragraph& paragraph) {
   return fmt::format("<p>{}</p>\n", escaped(paragraph.text));
@@ -124,23 +105,24 @@ std::string html(const Verdict& verdict) {
 }
 
 std::string html(const Table& table) {
+  const bool has_headers = !table.headers.empty();
+  const std::size_t n_columns = has_headers ? table.headers.size() : table.rows.empty() ? 0 : table.rows.front().size();
   for (const auto& row : table.rows) {
-    if (row.size() != table.headers.size()) {
-      throw std::logic_error(
-          fmt::format("table '{}': {} cells under {} headers", table.caption, row.size(), table.headers.size()));
+    if (row.size() != n_columns) {
+      throw std::logic_error(fmt::format("table '{}': {} cells under {} headers", table.caption, row.size(), n_columns));
     }
   }
   std::vector<std::string> attribute;  // of the cells of each column
-  for (std::size_t c = 0; c < table.headers.size(); ++c) {
+  for (std::size_t c = 0; c < n_columns; ++c) {
     attribute.emplace_back(is_number_column(table, c) ? " class=\"number\"" : "");
   }
   std::string out = "<div class=\"table\"><table>\n";
   if (!table.caption.empty()) out += fmt::format("<caption>{}</caption>\n", escaped(table.caption));
-  out += "<thead><tr>";
+  if (has_headers) out += "<thead><tr>";
   for (std::size_t c = 0; c < table.headers.size(); ++c) {
     out += fmt::format("<th{}>{}</th>", attribute[c], escaped(table.headers[c]));
   }
-  out += "</tr></thead>\n<tbody>\n";
+  out += has_headers ? "</tr></thead>\n<tbody>\n" : "<tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
     for (std::size_t c = 0; c < row.size(); ++c) out += fmt::format("<td{}>{}</td>", attribute[c], escaped(row[c]));
@@ -220,4 +202,4 @@ std::string render_html(const Report& report) {
       body);
 }
 
-}  // namespace driftwright::output
+}  // namespace driftwright::output::html

@@ -7,10 +7,11 @@
 
 #include "output/plot.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::html {
 
 struct Heading {
   std::string text = {};
+  int level = 2;  ///< 2 or 3: a section, or one within it
 };
 struct Paragraph {
   std::string text = {};
@@ -31,19 +32,8 @@ struct Verdict {
 /// Columns whose filled cells all begin like a number are aligned right.
 struct Table {
   std::string caption = {};
-  std::vector<std::string> headers = {};
+  std::vector<std::string> headers = {};            ///< none: the first cells say what stands in the others
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as headers
-};
-
-/// Values of the same kind side by side, one line each; bars begin at zero, those of negative values are not drawn.
-struct Bars {
-  std::string caption = {};
-  struct Bar {
-    std::string label = {};
-    double value = 0.0;
-    std::string text = {};  ///< behind the bar: the value with its unit
-  };
-  std::vector<Bar> bars = {};
 };
 
 using ReportBlock = std::variant<Heading, Paragraph, Verdict, Table, Plot, Preformatted, Bars>;
@@ -61,4 +51,4 @@ struct Report {
 /// ill-formed
 [[nodiscard]] std::string render_html(const Report& report);
 
-}  // namespace driftwright::output
+}  // namespace driftwright::output::html

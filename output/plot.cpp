@@ -1,9 +1,8 @@
 #include "output/plot.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
-#include <stdlib.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,19 +10,15 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
-#include "output/results_folder.hpp"
+#include "base/errors.hpp"
 
 namespace driftwright::output {
 namespace {
-
-namespace fs = std::filesystem;
 
 // Okabe & Ito without yellow, which is faint on white.
 constexpr std::array kPalette = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
@@ -33,32 +28,38 @@ constexpr std::array kBandColors = {"#DCEFE6", "#FBEBCB"};
 constexpr int kWidth = 960, kHalfWidth = 472, kHeight = 340, kHalfHeight = 300;
 constexpr double kCharacterWidth = 6.6;  // mean, of the font below [px]
 
-/// A folder of our own under the system's temporary one, gone with this object.
-class TemporaryFolder {
+/// A file without a name or a place: gone with this object, whatever becomes of the process.
+class NamelessFile {
  public:
-  TemporaryFolder() : path_((fs::temp_directory_path() / "driftwright-plots-XXXXXX").string()) {
-    if (mkdtemp(path_.data()) == nullptr) {
-      throw std::runtime_error(fmt::format("cannot make a temporary folder '{}': {}", path_, std::strerror(errno)));
+  explicit NamelessFile(const char* what) : handle_(memfd_create(what, MFD_CLOEXEC)) {
+    if (handle_ < 0) throw InputError(fmt::format("no room for the plots of the report: {}", std::strerror(errno)));
+  }
+  ~NamelessFile() { close(handle_); }
+  NamelessFile(const NamelessFile&) = delete;
+  NamelessFile& operator=(const NamelessFile&) = delete;
+  [[nodiscard]] int handle() const { return handle_; }
+
+  void write_from_start(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t n = ::write(handle_, text.data(), text.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) throw InputError(fmt::format("no room for the plots of the report: {}", std::strerror(errno)));
+      text.remove_prefix(static_cast<std::size_t>(n));
     }
+    lseek(handle_, 0, SEEK_SET);
   }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
+  [[nodiscard]] std::string text() const {
+    std::string all(static_cast<std::size_t>(std::max<off_t>(0, lseek(handle_, 0, SEEK_END))), '\0');
+    std::size_t n_read = 0;
+    for (ssize_t n = 1; n > 0 && n_read < all.size(); n_read += static_cast<std::size_t>(std::max<ssize_t>(0, n)))
+      n = pread(handle_, all.data() + n_read, all.size() - n_read, static_cast<off_t>(n_read));
+    all.resize(n_read);
+    return all;
   }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] fs::path path() const { return path_; }
 
  private:
-  std::string path_;
+  int handle_;
 };
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// A gnuplot string literal: nothing but the quote itself is special in it.
 std::string quoted(const std::string& text) {
@@ -157,8 +158,8 @@ void check(const Plot& plot) {
   }
 }
 
-/// Commands that draw one plot to `file`.
-std::string script(const Plot& plot, const std::string& file) {
+/// Commands that draw one plot to standard output.
+std::string script(const Plot& plot) {
   Range x, y;
   for (const Series& s : plot.series) {
     for (std::size_t i = 0; i < s.x.size(); ++i) {
@@ -183,7 +184,7 @@ std::string script(const Plot& plot, const std::string& file) {
   std::string out = "reset\nunset key\n";
   out += fmt::format("set terminal svg size {},{} fixed noenhanced font 'Arial,13' background '#ffffff'\n", width,
                      (plot.half_width ? kHalfHeight : kHeight) + 16 * n_rows);
-  out += fmt::format("set output '{}'\n", file);
+  out += "set output\n";
   // The same left margin in every plot, so that plots above each other share their time axis.
   out += fmt::format("set lmargin 11\nset rmargin 3.5\nset bmargin 3\nset tmargin {}\n", 0.8 + n_rows);
   out +=
@@ -241,21 +242,23 @@ std::string script(const Plot& plot, const std::string& file) {
   return out + curves + "\nunset output\n";
 }
 
-/// Runs gnuplot on `commands` with `folder` as its current one.
-void run_gnuplot(const std::string& commands, const fs::path& folder) {
-  write_file(folder / "plots.gp", "set encoding utf8\n" + commands);
+/// What gnuplot draws by `commands`. Nothing of it touches a disk: neither a full one nor a missing TMPDIR matters.
+/// @throws InputError  when it is missing or killed; std::runtime_error  when it does not take the commands
+std::string drawn_by_gnuplot(const std::string& commands) {
+  NamelessFile input("plots.gp"), output("plots.svg"), messages("messages");
+  input.write_from_start("set encoding utf8\n" + commands);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "messages", O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
-  std::string arguments[] = {"gnuplot", "--default-settings", "plots.gp"};  // default: no .gnuplot of the user
-  char* argv[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
+  posix_spawn_file_actions_adddup2(&actions, input.handle(), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, output.handle(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, messages.handle(), STDERR_FILENO);
+  std::string arguments[] = {"gnuplot", "--default-settings"};  // default: no .gnuplot of the user
+  char* argv[] = {arguments[0].data(), arguments[1].data(), nullptr};
   pid_t pid = 0;
   const int error = posix_spawnp(&pid, "gnuplot", &actions, nullptr, argv, environ);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
-    throw std::runtime_error(
+    throw InputError(
         fmt::format("gnuplot, which draws the plots of the report, cannot be started: {} (Debian: apt "
                     "install gnuplot-nox)",
                     std::strerror(error)));
@@ -263,9 +266,28 @@ void run_gnuplot(const std::string& commands, const fs::path& folder) {
   int status = 0;
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw std::runtime_error("gnuplot failed to draw the plots of the report: " + read_file(folder / "messages"));
+  if (WIFSIGNALED(status))
+    throw InputError(fmt::format("gnuplot, which draws the plots of the report, was ended: {}; is memory short?",
+                                 strsignal(WTERMSIG(status))));
+  if (WEXITSTATUS(status) != 0)
+    throw std::runtime_error("gnuplot failed to draw the plots of the report: " + messages.text());
+  return output.text();
+}
+
+/// The documents of a stream of them, each to its end. @throws InputError  where one is missing or cut short
+std::vector<std::string> whole_documents(const std::string& stream, std::size_t n_wanted) {
+  constexpr std::string_view kBegin = "<svg", kEnd = "</svg>";
+  std::vector<std::string> found;
+  for (std::size_t at = stream.find(kBegin); at != std::string::npos; at = stream.find(kBegin, at)) {
+    const std::size_t end = stream.find(kEnd, at);
+    if (end == std::string::npos) break;
+    found.push_back(stream.substr(at, end + kEnd.size() - at));
+    at = end;
   }
+  if (found.size() != n_wanted || stream.rfind(kBegin) > stream.rfind(kEnd))
+    throw InputError(
+        fmt::format("gnuplot drew {} of the report's {} plots to their end; is memory short?", found.size(), n_wanted));
+  return found;
 }
 
 std::string with_inserted(const std::string& text, std::string_view after, const std::string& insertion) {
@@ -278,12 +300,9 @@ std::string with_inserted(const std::string& text, std::string_view after, const
   return out.append(text, from);
 }
 
-/// The <svg> element of a gnuplot file, fit to stand in a page with others: no prologue, every id and every
+/// The <svg> element of gnuplot, fit to stand in a page with others: no prologue, every id and every
 /// reference to one with `prefix`, no line that names gnuplot's version.
-std::string embeddable(const std::string& file_text, const std::string& prefix) {
-  const std::size_t start = file_text.find("<svg");
-  if (start == std::string::npos) throw std::runtime_error("gnuplot wrote no SVG");
-  std::string svg = file_text.substr(start);
+std::string embeddable(std::string svg, const std::string& prefix) {
   const std::size_t title = svg.find("<title>"), title_end = svg.find("</desc>");
   if (title < title_end && title_end != std::string::npos) svg.erase(title, title_end + 7 - title);
   for (const std::string_view after : {" id='", " id=\"", "href='#", "url(#"}) {
@@ -314,14 +333,11 @@ std::vector<std::string> draw_svgs(std::span<const Plot> plots) {
   std::string commands;
   for (std::size_t p = 0; p < plots.size(); ++p) {
     check(plots[p]);
-    commands += script(plots[p], fmt::format("{}.svg", p));
+    commands += script(plots[p]);
   }
-  const TemporaryFolder folder;
-  run_gnuplot(commands, folder.path());
-  std::vector<std::string> svgs;
-  for (std::size_t p = 0; p < plots.size(); ++p) {
-    svgs.push_back(embeddable(read_file(folder.path() / fmt::format("{}.svg", p)), fmt::format("plot{}-", p + 1)));
-  }
+  std::vector<std::string> svgs = whole_documents(drawn_by_gnuplot(commands), plots.size());
+  for (std::size_t p = 0; p < svgs.size(); ++p)
+    svgs[p] = embeddable(std::move(svgs[p]), fmt::format("plot{}-", p + 1)) + "\n";
   return svgs;
 }
 

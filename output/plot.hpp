@@ -47,9 +47,21 @@ struct Plot {
   bool half_width = false;  ///< two of these share a row
 };
 
+/// Values of the same kind side by side, one line each; bars begin at zero, those of negative values are not drawn.
+struct Bars {
+  std::string caption = {};
+  struct Bar {
+    std::string label = {};
+    double value = 0.0;
+    std::string text = {};  ///< behind the bar: the value with its unit
+  };
+  std::vector<Bar> bars = {};
+};
+
 /// One `<svg>` element per plot, without title and legend (html_report adds those as text beside it). Their
 /// ids differ, also between plots. gnuplot runs once for all of them; the same plots give the same bytes.
-/// @throws std::runtime_error  when gnuplot is missing or fails, with what it said
+/// @throws InputError          when gnuplot is missing, is killed, or draws a plot not to its end
+/// @throws std::runtime_error  when it does not take our commands, with what it said
 /// @throws std::logic_error    when x and y of a series differ in length, or a band's limits are not finite
 [[nodiscard]] std::vector<std::string> draw_svgs(std::span<const Plot> plots);
 

@@ -3,9 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
 #include <stdexcept>
 
+#include "base/file_bytes.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/past_drift.hpp"
 #include "output/formula_json.hpp"
@@ -18,6 +19,20 @@ namespace {
 using namespace compensation;
 
 constexpr const char* kFormat = "driftwright predictor 1";
+
+std::string compact(const Json& j) {
+  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A predictor is what was judged, or none.
+void require_whole(Json file) {
+  const auto hash = value<std::string>(file, "hash");
+  file.erase("hash");
+  if (hash != content_hash(compact(file)))
+    throw InputError(
+        "key `hash` does not fit what the file holds: it was damaged or changed, and is not what was judged; `validate` "
+        "writes it anew");
+}
 
 Json earlier_runs_json(const EarlierRunsPredictor& p) {
   Json runs = Json::array();
@@ -106,6 +121,7 @@ PredictorFile file_of(const Json& j) {
   if (const auto safe = value<Json>(j, "fail_safe"); !safe.is_null()) d.fail_safe = fail_safe_of(safe);
   require_guards(d);
   file.judged = value<Json>(j, "judged");
+  require_whole(j);
   return file;
 }
 
@@ -131,14 +147,17 @@ Json predictor_json(const PredictorFile& file, const std::vector<effects::Effect
             {"fail_safe", d.fail_safe ? fail_safe_json(*d.fail_safe) : Json(nullptr)},
             {"predictor", kind}};
   j[kind] = std::move(made);
+  j = Json::parse(compact(j));  // texts that are none become so
+  j["hash"] = content_hash(compact(j));
   return j;
 }
 
 PredictorFile read_predictor(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: no such file; a predictor of `validate` is wanted, models/NAME.json", path));
+  if (!std::filesystem::is_regular_file(path))
+    throw InputError(fmt::format("{}: no such file; a predictor of `validate` is wanted, models/NAME.json", path));
+  const std::string text = read_bytes(path);
   try {
-    return file_of(Json::parse(file));
+    return file_of(Json::parse(text));
   } catch (const nlohmann::json::exception& e) {
     throw InputError(fmt::format("{}: {}", path, e.what()));
   } catch (const InputError& e) {

@@ -118,6 +118,16 @@ void remove_stale(const fs::path& target) {
   }
 }
 
+/// On the disk, so that a power cut after the swap leaves whole files. @throws InputError  where the disk says no
+void sync(const fs::path& path) {
+  const int handle = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (handle < 0) throw cannot("open", path, errno);
+  const int failed = fsync(handle) != 0 ? errno : 0;
+  close(handle);
+  if (failed != 0 && failed != EINVAL)
+    throw cannot("write", path, failed);  // EINVAL: a file system that has nothing to write to
+}
+
 /// Puts `work` where `target` is. Returns the folder that then holds what the target held, if there was one.
 fs::path swap_in(const fs::path& work, const fs::path& target) {
   if (!fs::exists(target)) {
@@ -189,7 +199,11 @@ fs::path ResultsFolder::path(const fs::path& relative) {
   if (committed_ || normal.filename().empty() || normal.is_absolute() || *normal.begin() == "..") {
     throw std::logic_error(fmt::format("no file '{}' can be made in a folder of results", relative.string()));
   }
-  fs::create_directories((work_ / normal).parent_path());
+  try {
+    fs::create_directories((work_ / normal).parent_path());
+  } catch (const fs::filesystem_error& e) {
+    throw cannot_use(target_, e);
+  }
   files_.insert(normal.generic_string());
   return work_ / normal;
 }
@@ -198,11 +212,26 @@ void ResultsFolder::write_text(const fs::path& relative, std::string_view text) 
   write_file(path(relative), text);
 }
 
+void ResultsFolder::sync_all() const {
+  sync(work_ / kManifestName);
+  for (const std::string& file : files_) sync(work_ / file);
+  for (const auto& entry : fs::recursive_directory_iterator(work_)) {
+    if (entry.is_directory()) sync(entry.path());
+  }
+  sync(work_);
+}
+
 void ResultsFolder::commit() {
+  fs::path old;
   nlohmann::ordered_json manifest = {
       {"program", "driftwright"}, {"version", made_by_.version}, {"scenario", made_by_.scenario}, {"files", files_}};
   write_file(work_ / kManifestName, manifest.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  const fs::path old = swap_in(work_, target_);
+  try {
+    sync_all();
+    old = swap_in(work_, target_);
+  } catch (const fs::filesystem_error& e) {
+    throw cannot_use(target_, e);
+  }
   committed_ = true;
   if (old.empty()) return;
   if (!force_) {

@@ -8,13 +8,9 @@
 #include <string_view>
 #include <vector>
 
-namespace driftwright::output {
+#include "output/provenance.hpp"
 
-/// What made a folder of results. Stands in its manifest and in each field file.
-struct Provenance {
-  std::string version;   ///< of the program, "0.1.0"
-  std::string scenario;  ///< path or name of the scenario, as the user gave it
-};
+namespace driftwright::output {
 
 /// Name of the file, inside a folder of results, that lists the files which are ours:
 ///     { "program": "driftwright", "version": ..., "scenario": ..., "files": ["report.html", ...] }
@@ -54,6 +50,8 @@ class ResultsFolder {
   /// Where the results will be found: absolute, links resolved.
   [[nodiscard]] const std::filesystem::path& target() const { return target_; }
   [[nodiscard]] const Provenance& made_by() const { return made_by_; }
+  /// What path() has been asked for so far, sorted.
+  [[nodiscard]] const std::set<std::string>& files() const { return files_; }
 
   /// Where to write the file `relative` ("fields/fields_0000.vtu") until commit(). Creates its subfolder and
   /// enters it in the manifest.
@@ -64,12 +62,14 @@ class ResultsFolder {
   /// write_file() to path(relative).
   void write_text(const std::filesystem::path& relative, std::string_view text);
 
-  /// Writes the manifest and puts the folder in place of the target. Files of others that have come into the
+  /// Writes the manifest, waits until all is on the disk, and puts the folder in place of the target. Files of others that have come into the
   /// target since the constructor looked (a ParaView state saved during a long run) move into the new folder.
   /// @throws InputError  naming what could not be written or renamed; the target is then as it was
   void commit();
 
  private:
+  void sync_all() const;
+
   std::filesystem::path target_;
   std::filesystem::path work_;
   std::vector<std::filesystem::path> created_parents_;  // innermost last; removed again when nothing was committed

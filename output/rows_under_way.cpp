@@ -8,9 +8,11 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "base/errors.hpp"
+#include "base/file_bytes.hpp"
 #include "output/results_folder.hpp"
 
 namespace driftwright::output {
@@ -45,17 +47,35 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// A row with its hash behind it, as a line.
+std::string line_of(const std::string& row) {
+  return fmt::format("{}\t{}\n", row, content_hash(row));
+}
+
+/// The row of a line, if it is as it was written.
+std::optional<std::string> row_of(const std::string& line) {
+  const std::size_t tab = line.rfind('\t');
+  if (tab == std::string::npos || line.substr(tab + 1) != content_hash(std::string_view(line).substr(0, tab)))
+    return std::nullopt;
+  return line.substr(0, tab);
+}
+
 }  // namespace
 
-NumberedRows find_rows(const fs::path& folder, const RowsIdentity& identity) {
+NumberedRows find_rows(const fs::path& folder, const RowsIdentity& identity, std::size_t* n_damaged) {
   NumberedRows rows;
+  if (n_damaged) *n_damaged = 0;
   for (const fs::path& file : rows_files(folder)) {
     const std::string text = text_of(file), start = opening(identity);
     if (!text.starts_with(start)) continue;
     for (std::size_t begin = start.size(), end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
-      const std::string row = text.substr(begin, end - begin);
+      const std::optional<std::string> row = row_of(text.substr(begin, end - begin));
       std::size_t number = 0;
-      if (std::istringstream(row) >> number) rows.emplace(number, row);
+      if (row && std::istringstream(*row) >> number) {
+        rows.emplace(number, *row);
+      } else if (n_damaged) {
+        ++*n_damaged;
+      }
     }
   }
   return rows;
@@ -94,7 +114,7 @@ RowsUnderWay::RowsUnderWay(const fs::path& folder, const std::string& name, Rows
     close(handle_);
     throw cannot("write", partial_);
   }
-  if (keep == 0) append(start.substr(0, start.size() - 1));
+  if (keep == 0) write_line(start);
 }
 
 RowsUnderWay::~RowsUnderWay() {
@@ -102,13 +122,16 @@ RowsUnderWay::~RowsUnderWay() {
 }
 
 void RowsUnderWay::append(const std::string& row) {
-  const std::string line = row + "\n";
+  write_line(line_of(row));
+}
+
+void RowsUnderWay::write_line(const std::string& line) {
   if (write(handle_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) throw cannot("write", partial_);
 }
 
 void RowsUnderWay::finish(const NumberedRows& rows) {
   std::string text = opening(identity_);
-  for (const auto& [number, row] : rows) text += row + "\n";
+  for (const auto& [number, row] : rows) text += line_of(row);
   const fs::path whole = file_.string() + ".new";
   write_file(whole, text);
   std::error_code failed;

@@ -2,8 +2,9 @@
 // Rows of a long table, kept as they come in, in a folder that survives an interruption. Several processes may work on the same
 // table at once, on one machine or several, each in a file of its own; rows of all of them are found again.
 //
-// Every file begins with `# rows of <content>` and the header of the table; a row begins with its number. Files of another
-// content are stale and never read. A line without its end, which a killed process leaves, does not count.
+// Every file begins with `# rows of <content>` and the header of the table; a row begins with its number, and behind it stands, after a tab, its hash.
+// Files of another content are stale and never read. A line without its end, which a killed process leaves, does not count, nor does
+// a row that is not as it was written.
 
 #include <filesystem>
 #include <map>
@@ -22,7 +23,9 @@ struct RowsIdentity {
 };
 
 /// All rows of that identity in the files `sweep*.csv` and `sweep*.csv.partial` of a folder; none when it does not exist.
-[[nodiscard]] NumberedRows find_rows(const std::filesystem::path& folder, const RowsIdentity& identity);
+/// @param n_damaged  where given: how many lines were left out because they are not as they were written
+[[nodiscard]] NumberedRows find_rows(const std::filesystem::path& folder, const RowsIdentity& identity,
+                                     std::size_t* n_damaged = nullptr);
 
 /// Removes those files, but not one that a process is writing to, and the folder when it is then empty. Never throws: rows that
 /// stay do no harm.
@@ -51,6 +54,8 @@ class RowsUnderWay {
   void finish(const NumberedRows& rows);
 
  private:
+  void write_line(const std::string& line);
+
   std::filesystem::path file_;  // without ".partial"
   std::filesystem::path partial_;
   RowsIdentity identity_;

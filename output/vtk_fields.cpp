@@ -20,32 +20,6 @@
 namespace driftwright::output {
 namespace {
 
-int vtk_cell_type(mesh::CellShape shape) {
-  switch (shape) {
-    case mesh::CellShape::kTri3:
-      return VTK_TRIANGLE;
-    case mesh::CellShape::kTri6:
-      return VTK_QUADRATIC_TRIANGLE;
-    case mesh::CellShape::kTet4:
-      return VTK_TETRA;
-    case mesh::CellShape::kTet10:
-      return VTK_QUADRATIC_TETRA;
-    case mesh::CellShape::kQuad4:
-      return VTK_QUAD;
-    case mesh::CellShape::kQuad8:
-      return VTK_QUADRATIC_QUAD;
-    case mesh::CellShape::kHex8:
-      return VTK_HEXAHEDRON;
-    case mesh::CellShape::kHex20:
-      return VTK_QUADRATIC_HEXAHEDRON;
-    case mesh::CellShape::kWedge6:
-      return VTK_WEDGE;
-    case mesh::CellShape::kWedge15:
-      return VTK_QUADRATIC_WEDGE;
-  }
-  throw std::logic_error("a cell shape without a VTK type");
-}
-
 /// Adds a named array of the given type, replacing one of that name, and returns it for filling.
 template <typename Array>
 Array* add_array(vtkFieldData* data, const char* name, int n_components, vtkIdType n_tuples) {
@@ -158,6 +132,32 @@ class VtuWriter : public FieldWriter {
 };
 
 }  // namespace
+
+int vtk_cell_type(mesh::CellShape shape) {
+  switch (shape) {
+    case mesh::CellShape::kTri3:
+      return VTK_TRIANGLE;
+    case mesh::CellShape::kTri6:
+      return VTK_QUADRATIC_TRIANGLE;
+    case mesh::CellShape::kTet4:
+      return VTK_TETRA;
+    case mesh::CellShape::kTet10:
+      return VTK_QUADRATIC_TETRA;
+    case mesh::CellShape::kQuad4:
+      return VTK_QUAD;
+    case mesh::CellShape::kQuad8:
+      return VTK_QUADRATIC_QUAD;
+    case mesh::CellShape::kHex8:
+      return VTK_HEXAHEDRON;
+    case mesh::CellShape::kHex20:
+      return VTK_QUADRATIC_HEXAHEDRON;
+    case mesh::CellShape::kWedge6:
+      return VTK_WEDGE;
+    case mesh::CellShape::kWedge15:
+      return VTK_QUADRATIC_WEDGE;
+  }
+  throw std::logic_error("a cell shape without a VTK type");
+}
 
 std::unique_ptr<FieldWriter> make_vtu_writer(ResultsFolder& folder, const mesh::Mesh& mesh) {
   return std::make_unique<VtuWriter>(folder, mesh);

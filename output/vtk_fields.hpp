@@ -25,6 +25,9 @@ namespace driftwright::output {
 /// @throws InputError  when the file cannot be written
 void write_mesh(const mesh::Mesh& mesh, std::span<const double> quality, const std::filesystem::path& file);
 
+/// VTK's number of a shape, such as 24 of a quadratic tetrahedron.
+[[nodiscard]] int vtk_cell_type(mesh::CellShape shape);
+
 /// A number per region.
 struct RegionField {
   std::string name;           ///< of the cell array, with its unit

@@ -130,6 +130,7 @@ void interpolate(double share, double step_s, const double* from, const double* 
 Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches, const TimeSeries& hall,
                      const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
                      const OutputCallback& callback) {
+  const double from_s = stretches.front().start_s;
   SUNContext raw_context = nullptr;
   SUNContext_Create(nullptr, &raw_context);
   const ContextPtr context(raw_context);
@@ -140,10 +141,10 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
   (void)ode.begin_stretch(stretches.front(), out(y.get()));
   // Made before ARKODE and freed after it, which still looks at them when it goes.
   const StageSolverPtr stage = make_stage_solver(callee, context.get());
-  const ArkodePtr arkode(ARKStepCreate(nullptr, rhs_callback, 0.0, y.get(), context.get()));
+  const ArkodePtr arkode(ARKStepCreate(nullptr, rhs_callback, from_s, y.get(), context.get()));
   void* mem = arkode.get();
   callee.arkode = mem;
-  const auto must = [&](int flag, const char* call) { check(flag, call, 0.0, callee); };
+  const auto must = [&](int flag, const char* call) { check(flag, call, from_s, callee); };
   // Its messages come back as flags; check() says them in our words.
   must(ARKStepSetErrHandlerFn(
            mem, [](int, const char*, const char*, char*, void*) {}, nullptr),
@@ -175,15 +176,15 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
     run.outputs.col(next) = outputs;
     run.heat_J.col(next).setZero();
     run.stored_J[next] = 0.0;
-    if (t_s > 0.0) {
+    if (t_s > from_s) {
       run.heat_J.col(next) = ode.heats_J(in(state_vector));
       run.stored_J[next] = ode.stored_J(in(state_vector));
     }
     ++next;
     if (callback) callback(t_s, ode.state(in(state_vector)));
   };
-  double t_s = 0.0;
-  if (next < n_times && output_s[next] <= 0.0) take_output(0.0, y.get());
+  double t_s = from_s;
+  if (next < n_times && output_s[next] <= from_s) take_output(from_s, y.get());
   const auto restart = [&](double end_s) {
     ode.restart(t_s, in(y.get()));
     check(ARKStepReset(mem, t_s, y.get()), "ARKStepReset", t_s, callee);

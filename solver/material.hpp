@@ -34,6 +34,8 @@ struct Material {
 /// The library, by name.
 [[nodiscard]] const std::map<std::string, Material>& material_library();
 
+/// What a material given by its values may hold.
+[[nodiscard]] schema::Map material_schema();
 /// Reads a material given by its values: density, conductivity, heat_capacity, youngs_modulus, poisson_ratio, expansion (one
 /// number, or a list of three for x, y and z), and optionally source. Conductivity and heat_capacity may be rows of
 /// [temperature, value]. @throws InputError

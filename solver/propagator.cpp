@@ -66,7 +66,7 @@ Propagator::Propagator(const ReducedSystem& system) : system_(system), decomposi
 }
 
 Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
-                           const Eigen::VectorXd& start, bool with_heat, Eigen::MatrixXd* states) {
+                           const Eigen::VectorXd& start, bool with_heat, Eigen::MatrixXd* states, double from_s) {
   const auto n = static_cast<Eigen::Index>(system_.size()), n_times = static_cast<Eigen::Index>(output_s.size());
   const auto n_sources = static_cast<Eigen::Index>(system_.sources.size()),
              n_exchanges = static_cast<Eigen::Index>(system_.exchanges.size());
@@ -91,7 +91,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
   Eigen::MatrixXd block, integrals;  // z and ∫ z at the outputs of a stretch, in its eigenvectors
   Eigen::ArrayXd e(n), decay(n);
   std::size_t next = 0;
-  for (const LinearStretch& stretch : linear_stretches(cyclogram, knots_s)) {
+  for (const LinearStretch& stretch : behind(from_s, linear_stretches(cyclogram, knots_s))) {
     const double length_s = stretch.end_s - stretch.start_s, hall_K = hall.at(stretch.start_s),
                  hall_slope = (hall.at(stretch.end_s) - hall_K) / length_s;
     effects::Inputs at{.drive = stretch.drive, .hall_K = hall_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};

@@ -25,8 +25,10 @@ class Propagator {
   /// @param output_s   times of the outputs, increasing, within the cyclogram
   /// @param with_heat  also heat_J and stored_J of the result, which otherwise stay empty
   /// @param states     unless null, the reduced states at the outputs, size x n_times
+  /// @param from_s     as TransientOptions::from_s
   [[nodiscard]] Trajectory run(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
-                               const Eigen::VectorXd& start, bool with_heat = false, Eigen::MatrixXd* states = nullptr);
+                               const Eigen::VectorXd& start, bool with_heat = false, Eigen::MatrixXd* states = nullptr,
+                               double from_s = 0.0);
 
   /// The same run, kept, for what systems close by would do; nothing where that were too much to keep.
   [[nodiscard]] std::optional<Course> course(const Cyclogram& cyclogram, const TimeSeries& hall,

@@ -13,10 +13,11 @@ Trajectory simulate(const ReducedSystem& system, const Cyclogram& cyclogram, con
     std::vector<double> knots_s = hall.time_s;
     knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
     ReducedOde ode(system, hall);
-    return integrate(ode, linear_stretches(cyclogram, knots_s), hall, output_s, options, start, callback);
+    return integrate(ode, behind(options.from_s, linear_stretches(cyclogram, knots_s)), hall, output_s, options, start,
+                     callback);
   }
   Eigen::MatrixXd states;
-  Trajectory run = Propagator(system).run(cyclogram, hall, output_s, start, true, &states);
+  Trajectory run = Propagator(system).run(cyclogram, hall, output_s, start, true, &states, options.from_s);
   for (std::size_t k = 0; callback && k < output_s.size(); ++k) {
     callback(output_s[k], states.col(static_cast<Eigen::Index>(k)));
   }

@@ -34,7 +34,8 @@ Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const 
                     const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
                     const OutputCallback& callback) {
   HeatOde ode(system, hall, options.absolute_tolerance_K);
-  return integrate(ode, linear_stretches(cyclogram, knots_s(system, hall)), hall, output_s, options, start, callback);
+  return integrate(ode, behind(options.from_s, linear_stretches(cyclogram, knots_s(system, hall))), hall, output_s, options,
+                   start, callback);
 }
 
 }  // namespace driftwright::solver

@@ -19,6 +19,8 @@ struct TransientOptions {
   double absolute_tolerance_K = 5e-4;
   double max_step_s = 1200.0;
   int most_switches = 20000;  ///< of all thermostats; more are no control but a slip in its data
+  /// Where on the cyclogram, before its end, the run begins: the state is given there, outputs lie there or later, and heat counts from there.
+  double from_s = 0.0;
 };
 
 /// Called at each output time with the time and the state; throwing ends the run.

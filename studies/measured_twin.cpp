@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "base/mapped_record.hpp"
 #include "diagnosis/scatter.hpp"
 #include "diagnosis/unit_check.hpp"
 #include "diagnosis/warm_start.hpp"
@@ -34,6 +35,13 @@ bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun
 
 MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
                                 const std::vector<std::string>& measured, const Listener& listener) {
+  std::vector<ReadRecord> records;
+  for (const std::string& path : measured) records.push_back(read_record(path, scenario.columns));
+  return open_measured_twin(scenario, verb, records, listener);
+}
+
+MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
+                                const std::vector<ReadRecord>& measured, const Listener& listener) {
   const scenarios::MachineModel& model = scenarios::require_machine(scenario, verb);
   MeasuredTwin m;
   m.scenario = scenario;
@@ -41,8 +49,9 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   const scenarios::PlacedMachine placed = scenarios::place(model);
   m.mesh = placed.mesh;
   const solver::Outputs names = scenarios::output_names(model, placed);
-  for (const std::string& path : measured) {
-    m.runs.push_back(diagnosis::read_measured(path, model, names, scenario.columns));
+  for (const ReadRecord& read : measured) {
+    const std::string& path = read.record.source;
+    m.runs.push_back(diagnosis::measured_run(read, model, names));
     for (std::size_t r = 0; r + 1 < m.runs.size(); ++r) {
       if (same_readings(m.runs[r], m.runs.back())) {
         throw InputError(fmt::format("{}: the same readings as {}; a record counts once", path, m.runs[r].path));
@@ -105,7 +114,7 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
 
 std::string one_mesh_text(const MeasuredTwin& m) {
   if (m.on_other_mesh || m.mesh.n_nodes() == 0) return "";
-  return fmt::format("note: there is no second mesh: {}; an error of the mesh can pass for a cause\n", m.why_one_mesh);
+  return fmt::format("there is no second mesh: {}; an error of the mesh can pass for a cause", m.why_one_mesh);
 }
 
 }  // namespace driftwright::studies

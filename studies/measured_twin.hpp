@@ -27,13 +27,15 @@ struct MeasuredTwin {
   diagnosis::DiagnosisOptions how;  ///< with the errors of the mesh and of the reduced model
 };
 
-/// Reads the records, meshes and reduces; a machine whose mesh has a size on a second mesh, too.
-/// @param measured  record CSVs
+/// Meshes and reduces; a machine whose mesh has a size on a second mesh, too.
 /// @throws InputError  for what cannot be read or compared
+[[nodiscard]] MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
+                                              const std::vector<ReadRecord>& measured, const Listener& listener);
+/// The same with records from files. @param measured  record CSVs, or as the scenario's `columns` says
 [[nodiscard]] MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
                                               const std::vector<std::string>& measured, const Listener& listener);
 
-/// A line for the terminal where what the mesh does could not be told; else empty.
+/// A sentence without its full stop where what the mesh does could not be told; else empty.
 [[nodiscard]] std::string one_mesh_text(const MeasuredTwin& m);
 
 }  // namespace driftwright::studies

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <map>
+#include <mutex>
 
 #include "base/mapped_record.hpp"
 #include "base/quantity.hpp"
 #include "compensation/sensors/interpolate.hpp"
+#include "machine/machine_key.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 
@@ -64,8 +66,8 @@ Before read_before(const scenarios::Scenario& scenario, const PredictionOptions&
   if (options.start.ends_with(".csv")) {
     ReadRecord read = read_record(options.start, scenario.columns);
     before.order.start = scenarios::run_of(read.record, &machine, sensors_on_hall(machine), scenarios::Reading::kStrict);
-    for (const std::string& note : read.notes) fmt::print("note: {}\n", note);
-    for (const scenarios::DataFinding& f : before.order.start->findings) fmt::print("note: {}\n", f.what);
+    for (const std::string& note : read.notes) fmt::print(stderr, "note: {}\n", note);
+    for (const scenarios::DataFinding& f : before.order.start->findings) fmt::print(stderr, "note: {}\n", f.what);
     before.record = std::move(read.record);
   } else {
     before.order.start.emplace();
@@ -132,8 +134,37 @@ scenarios::ModelKind predicting_model(const scenarios::Scenario& scenario) {
   return follows_time ? scenarios::ModelKind::kFull : scenarios::ModelKind::kReduced;
 }
 
+struct PredictingModels::Known {
+  std::mutex mutex;
+  std::map<std::string, std::shared_ptr<const scenarios::Model>> by_plan;  ///< "full", or what decides the reduced model
+};
+
+PredictingModels::PredictingModels() : known_(std::make_unique<Known>()) {}
+PredictingModels::~PredictingModels() = default;
+
+std::shared_ptr<const scenarios::Model> PredictingModels::of(const scenarios::Scenario& scenario, const Cyclogram& cyclogram,
+                                                             const Listener& listener) {
+  std::string plan = "full";
+  if (scenario.solver.model == scenarios::ModelKind::kReduced) {
+    std::vector<const Cyclogram*> asked = {&cyclogram};
+    for (const Cyclogram& c : scenario.cyclograms) asked.push_back(&c);
+    plan = scenarios::machine_key(*scenario.machine, scenarios::reduction_plan(scenario, asked), "");
+  }
+  const std::lock_guard lock(known_->mutex);
+  std::shared_ptr<const scenarios::Model>& model = known_->by_plan[plan];
+  if (!model)
+    model = std::make_shared<const scenarios::Model>(scenarios::open_model(scenario, {&cyclogram}, listener, false));
+  return model;
+}
+
 Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
                          const Listener& listener, const std::string& verb) {
+  PredictingModels models;
+  return predict_drift(scenario, job, options, listener, verb, models);
+}
+
+Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
+                         const Listener& listener, const std::string& verb, PredictingModels& models) {
   const scenarios::MachineModel& own = scenarios::require_machine(scenario, verb);
   const Before before = read_before(scenario, options, job.name);
   scenarios::JobSeries series = scenarios::job_series(job, before.order, own.hall, scenario.solver.output_interval_s);
@@ -148,7 +179,8 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
     hall.time_s.push_back(hall.time_s.back() + 1.0);
     hall.value.push_back(value_K);
   }
-  const scenarios::Model model = scenarios::open_model(asked, {&series.cyclogram}, listener, false);
+  const std::shared_ptr<const scenarios::Model> opened = models.of(asked, series.cyclogram, listener);
+  const scenarios::Model& model = *opened;
   listener.begin(fmt::format("simulating {:.0f} min", series.cyclogram.duration_s() / 60.0));
   scenarios::MachineModel machine = own;
   machine.hall = series.hall;
@@ -172,24 +204,6 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
           .start_checks = before.record ? start_checks(*before.record, run.record) : std::vector<StartCheck>{}};
 }
 
-std::string start_check_text(const Prediction& prediction) {
-  std::string text;
-  for (const StartCheck& c : prediction.start_checks) {
-    text += fmt::format("  over that record {} changes by {:+.1f} {}, in the model by {:+.1f} {}\n", c.channel, c.recorded,
-                        c.unit, c.modelled, c.unit);
-  }
-  return text;
-}
-
-nlohmann::ordered_json start_checks_json(const Prediction& prediction) {
-  nlohmann::ordered_json checks = nlohmann::ordered_json::array();
-  for (const StartCheck& c : prediction.start_checks) {
-    checks.push_back(
-        {{"name", c.channel}, {"unit", c.unit}, {"recorded_change", c.recorded}, {"modelled_change", c.modelled}});
-  }
-  return checks;
-}
-
 compensation::Iso230Figures iso_figures(const Prediction& prediction) {
   compensation::Iso230Figures figures = compensation::iso230_3_figures(prediction.record);
   if (prediction.started_from.empty()) return figures;
@@ -198,21 +212,24 @@ compensation::Iso230Figures iso_figures(const Prediction& prediction) {
   return figures;
 }
 
+Cyclogram cyclogram_of(const scenarios::Scenario& scenario, const Record& record) {
+  scenarios::RecordedRun run = scenarios::run_of(record, nullptr, {}, scenarios::Reading::kStrict);
+  for (const scenarios::DataFinding& f : run.findings) {
+    if (f.channel == "speed") fmt::print(stderr, "note: {}\n", f.what);  // the hall is the scenario's
+  }
+  scenarios::check_cyclogram(scenario, run.cyclogram);
+  return std::move(run.cyclogram);
+}
+
 Cyclogram named_cyclogram(const scenarios::Scenario& scenario, const std::string& name_or_file) {
-  Cyclogram cyclogram;
   const bool is_known = std::any_of(scenario.cyclograms.begin(), scenario.cyclograms.end(),
                                     [&](const Cyclogram& c) { return c.name == name_or_file; });
   if (!is_known && (name_or_file.ends_with(".csv") || std::filesystem::exists(name_or_file))) {
     const ReadRecord read = read_record(name_or_file, scenario.columns);
-    for (const std::string& note : read.notes) fmt::print("note: {}\n", note);
-    scenarios::RecordedRun run = scenarios::run_of(read.record, nullptr, {}, scenarios::Reading::kStrict);
-    for (const scenarios::DataFinding& f : run.findings) {
-      if (f.channel == "speed") fmt::print("note: {}\n", f.what);  // the hall is the scenario's
-    }
-    cyclogram = std::move(run.cyclogram);
-  } else {
-    cyclogram = scenario.cyclogram(name_or_file);
+    for (const std::string& note : read.notes) fmt::print(stderr, "note: {}\n", note);
+    return cyclogram_of(scenario, read.record);
   }
+  const Cyclogram& cyclogram = scenario.cyclogram(name_or_file);
   scenarios::check_cyclogram(scenario, cyclogram);
   return cyclogram;
 }

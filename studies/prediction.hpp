@@ -1,7 +1,7 @@
 #pragma once
 // The drift of a job ahead of its run, by the machine's model: what `predict` shows and `schedule` corrects.
 
-#include <nlohmann/json_fwd.hpp>
+#include <memory>
 
 #include "compensation/judging/iso230_3.hpp"
 #include "machine/job_series.hpp"
@@ -38,21 +38,38 @@ struct Prediction {
 /// temperature that is prescribed over time, which no reduced model follows.
 [[nodiscard]] scenarios::ModelKind predicting_model(const scenarios::Scenario& scenario);
 
+/// Models of one scenario's machine that predictions run on, each opened once. Calls may come from several threads.
+class PredictingModels {
+ public:
+  PredictingModels();
+  ~PredictingModels();
+  /// The model for a cyclogram in the halls of `scenario`, by its `solver.model`.
+  [[nodiscard]] std::shared_ptr<const scenarios::Model> of(const scenarios::Scenario& scenario, const Cyclogram& cyclogram,
+                                                           const Listener& listener);
+
+ private:
+  struct Known;
+  std::unique_ptr<Known> known_;
+};
+
 /// Simulates the job, after what was before it.
 /// @param job   a cyclogram that has passed check_cyclogram()
 /// @param verb  for messages
 /// @throws InputError  without a machine, for a record that is no run of it, for durations that cannot be read, for a series that the
 ///                     machine cannot run or that has too many rows
 [[nodiscard]] Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job,
+                                       const PredictionOptions& options, const Listener& listener, const std::string& verb,
+                                       PredictingModels& models);
+/// The same with a model of its own. @param verb  for messages
+[[nodiscard]] Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job,
                                        const PredictionOptions& options, const Listener& listener, const std::string& verb);
-
-/// A line of the terminal for each start check, two spaces before it.
-[[nodiscard]] std::string start_check_text(const Prediction& prediction);
-/// [{"name", "unit", "recorded_change", "modelled_change"}]
-[[nodiscard]] nlohmann::ordered_json start_checks_json(const Prediction& prediction);
 
 /// The figures of ISO 230-3 of a prediction; none behind another run: the machine is not in balance with its hall then.
 [[nodiscard]] compensation::Iso230Figures iso_figures(const Prediction& prediction);
+
+/// What a record says drove the machine, as a cyclogram named as its source is; looked at by check_cyclogram().
+/// @throws InputError  for a record that tells no cyclogram, for a cyclogram that the machine cannot run
+[[nodiscard]] Cyclogram cyclogram_of(const scenarios::Scenario& scenario, const Record& record);
 
 /// The cyclogram of that name in the scenario, or the one that a record CSV tells, named as the file without its folder and ending; looked
 /// at by check_cyclogram().

@@ -8,6 +8,7 @@
 namespace driftwright {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 TEST(Check, TellsDurationSpeedSectionsAndMachiningTime) {
@@ -21,10 +22,10 @@ TEST(Check, TellsDurationSpeedSectionsAndMachiningTime) {
   std::ofstream(folder / "part.ngc") << "G54 G0 X100\nG55\nS1500 M3\nG4 P60\nM5\nG4 P119\nM2\n";
   const CommandOutcome outcome = run_program("check " + (folder / "scenario.yaml").string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, HasSubstr("9.0 min in 9 sections, up to 1500 rpm, turning 33 % of the time\n"));
+  EXPECT_THAT(outcome.output, ContainsRegex("\n +part +9.0 +9 +1500 +33\n"));
   EXPECT_THAT(outcome.output, HasSubstr("part.ngc: machining time 180.0 s, 3 moves\n"));
   EXPECT_THAT(outcome.output, HasSubstr("line 2: G55: another coordinate system"));
-  EXPECT_THAT(outcome.output, HasSubstr("300.0 min in 1 section, up to 2000 rpm, turning 100 % of the time\n"));
+  EXPECT_THAT(outcome.output, ContainsRegex(" 300.0 +1 +2000 +100\n"));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 namespace driftwright {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
@@ -85,7 +86,7 @@ TEST_F(CncMill13, StrategiesThatLeaveTheToleranceAreShownFailing) {
     n_failing += inside ? 0 : 1;
   }
   EXPECT_EQ(n_failing, 4);  // one thermometer and regression, through both actuators; modes keep it
-  EXPECT_THAT(outcome_.output, HasSubstr("drift_z LEAVES 10 um"));
+  EXPECT_THAT(outcome_.output, ContainsRegex("drift_z +regression +schedule .* no\n"));
 }
 
 TEST_F(CncMill13, TheFourChosenAreThoseOfTheRangeImage) {
@@ -127,7 +128,7 @@ TEST_F(CncMill13, SelectsOnItsOwnRecordsAsTheStudyDoes) {
   const CommandOutcome selected = run_program("select scenarios/cnc_mill_13.yaml" + train + " -o " +
                                               (fresh_folder("cnc_mill_13_select") / "out").string());
   EXPECT_EQ(selected.exit_code, 0) << selected.output;
-  EXPECT_THAT(selected.output, HasSubstr("1  X1"));
+  EXPECT_THAT(selected.output, ContainsRegex(" 1  X1 "));
 }
 
 TEST_F(CncMill13, PredictorsAreJudgedOnItsProgramme) {
@@ -135,7 +136,7 @@ TEST_F(CncMill13, PredictorsAreJudgedOnItsProgramme) {
   const CommandOutcome validated = run_program("validate scenarios/cnc_mill_13.yaml -o " + folder.string());
   EXPECT_EQ(validated.exit_code, 0) << validated.output;
   EXPECT_THAT(validated.output, HasSubstr("25 cyclograms"));
-  EXPECT_THAT(validated.output, HasSubstr("hybrid: those, scaled to tests: 20 of 20 random cyclograms inside"));
+  EXPECT_THAT(validated.output, ContainsRegex("hybrid: those, scaled to tests +drift_z +20 +20 "));
 }
 
 }  // namespace

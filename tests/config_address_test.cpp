@@ -90,8 +90,10 @@ TEST(EditedTree, SharesTheRestAndKeepsTheLinesOfBoth) {
   EXPECT_EQ(edited->items[0], tree()->items[0]) << "what was not edited is shared";
   EXPECT_EQ(text_at("effects[2].conductance"), "1 W/K") << "the old tree stays as it was";
   const ConfigMap in = ConfigMap::of_tree(edited);
-  EXPECT_EQ(in.maps("effects")[1].quantity("conductance", "W/K", 0, 100), 15.0);
-  EXPECT_THAT([&] { (void)in.maps("effects")[2].quantity("conductance", "W/K", 0, 100); },
+  const schema::Map link = {.name = "link",
+                            .keys = {schema::compulsory("conductance", schema::quantity("W/K", 0, 100), "")}};
+  EXPECT_EQ(in.maps("effects")[1].described_by(link).quantity("conductance"), 15.0);
+  EXPECT_THAT([&] { (void)in.maps("effects")[2].described_by(link).quantity("conductance"); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("config_address_study.yaml:2:5: -3 W/K lies outside"),
                                               HasSubstr("[effects[2].conductance]"), HasSubstr("2 |   - -3 W/K"))));
   EXPECT_THAT([&] { (void)in.maps("effects")[2].text("film"); },

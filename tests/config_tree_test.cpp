@@ -1,5 +1,7 @@
 #include "base/config_tree.hpp"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -8,6 +10,10 @@
 
 namespace driftwright {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 std::string line_of(const std::string& yaml) {
   return written(*read_config_tree(write_file("tree.yaml", yaml)));
@@ -23,6 +29,25 @@ TEST(WrittenTree, IsTheSameHoweverTheFileIsLaidOut) {
 
 TEST(WrittenTree, AnAliasIsWrittenAsWhatItStandsFor) {
   EXPECT_EQ(line_of("{a: &x [1, 2], b: *x}"), line_of("{a: [1, 2], b: [1, 2]}"));
+}
+
+TEST(ConfigTree, AliasesThatStandForBillionsAreRefusedWithTheNumber) {
+  std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x]\n", chain = "a0: &a0 [x]\n";
+  for (int i = 1; i < 12; ++i)
+    bomb += fmt::format("a{0}: &a{0} [*a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}, *a{1}]\n", i, i - 1);
+  for (int i = 1; i < 5000; ++i) chain += fmt::format("a{0}: &a{0} [*a{1}]\n", i, i - 1);
+  EXPECT_THAT([&] { (void)line_of(bomb); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("tree.yaml:7:"), HasSubstr("1000000 values"))));
+  EXPECT_THAT([&] { (void)line_of(chain); }, ThrowsMessage<InputError>(HasSubstr("more than 200 deep")));
+  EXPECT_THAT([&] { (void)line_of(std::string(100000, '[')); }, ThrowsMessage<InputError>(HasSubstr("tree.yaml")));
+}
+
+TEST(ConfigTree, IsReadFromTheEncodingsOfRecords) {
+  EXPECT_EQ(line_of("name: Geh\xE4use"), "{\"name\": \"Geh\xC3\xA4use\"}");  // Latin-1
+  EXPECT_EQ(line_of("\xEF\xBB\xBFname: x"), "{\"name\": \"x\"}");
+  EXPECT_EQ(line_of(std::string("\xFF\xFEn\0:\0 \0x\0", 10)), "{\"n\": \"x\"}");
+  EXPECT_THAT([] { (void)read_config_tree(temporary_folder().string()); },
+              ThrowsMessage<InputError>(HasSubstr("is a folder")));
 }
 
 TEST(WrittenTree, DiffersWhereTreesDiffer) {

@@ -5,12 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/diagnosis_summary.hpp"
+#include "findings/diagnosis_words.hpp"
 
 namespace driftwright::app {
 namespace {
 
 using diagnosis::Estimate;
+using namespace findings;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::Field;
@@ -45,24 +46,11 @@ TEST(MissingHeat, IsTheBestLawOfEachBodyThatBringsEvidence) {
   EXPECT_EQ(heat[1].evidence, 30.0);
 }
 
-TEST(DiagnosisSummary, TimesAreInMinutesAndIntervalsInOrder) {
+TEST(DiagnosisWords, TimesAreInMinutesAndIntervalsInOrder) {
   EXPECT_EQ(value_text({"time", "min", 120.0, 118.0, 122.0}), "120 min");
   EXPECT_EQ(interval_text({"time", "min", 120.0, 118.0, 122.0}), "118 to 122");
   EXPECT_EQ(interval_text({"factor", "1", 0.8, 0.9, 0.7}), "0.7 to 0.9");
   EXPECT_EQ(value_text({"factor", "1", 0.8, 0.7, 0.9}), "0.8");
-}
-
-TEST(DiagnosisSummary, ShowsCausesAlternativesAndWhatWasNotWritten) {
-  diagnosis::Diagnosis d;
-  d.verdict = diagnosis::Verdict::kAmbiguous;
-  d.reason = "a reason";
-  d.causes.push_back({"convection", "nose", "another film", {{"factor", "1", 1.5, 1.4, 1.6}}, 41.25, {}});
-  d.causes[0].alternatives.push_back({"radiation", "nose", "sun", {{"power", "W", 12.0, 9.0, 15.0}}, 39.0, {}});
-  d.gain.push_back({"tip_z", "um", 0.3, 5.0, 4.0, 0.4, 9.0, 1.0});
-  EXPECT_THAT(summary_text(d), AllOf(HasSubstr("ambiguous: a reason"), HasSubstr("convection at nose"), HasSubstr("41.2"),
-                                     HasSubstr("factor 1.5 (1.4 to 1.6)"), HasSubstr("or radiation at nose"),
-                                     HasSubstr("power 12 W (9 to 15)"), HasSubstr("tip_z")));
-  EXPECT_EQ(not_written_text("extended.yaml", {"", {}, {"a: why"}}), "NOT WRITTEN to extended.yaml: a: why\n");
 }
 
 TEST(CalibrationWarning, ComesFromLeftoversFromEvidenceAndFromNumbersThatMovedFar) {

@@ -449,14 +449,14 @@ struct Bad {
   const char* text;
   const char* message;
 };
-class EffectErrors : public ::testing::TestWithParam<Bad> {};
+class LawErrors : public ::testing::TestWithParam<Bad> {};
 
-TEST_P(EffectErrors, NameWhatIsWrong) {
+TEST_P(LawErrors, NameWhatIsWrong) {
   EXPECT_THAT([] { (void)read(GetParam().text); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Each, EffectErrors,
+    Each, LawErrors,
     ::testing::Values(
         Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm}", "one of two is wanted"},
         Bad{"{type: bearing_friction, region: a, f0: 2, mean_diameter: 90 mm, viscosity: 32 mm^2/s, viscosity_40: 32 "
@@ -505,7 +505,7 @@ INSTANTIATE_TEST_SUITE_P(
             "outside the table"},
         Bad{"{type: contact, joint: j, conductance_over_pressure: [[0 Pa, 1 W/(m^2 K)], [2 Pa, -3 W/(m^2 K)]], pressure: 1 "
             "Pa}",
-            "is out of range"},
+            "outside what is allowed"},
         Bad{"{type: air_gap, joint: j, diameter: 10 mm, gap: 1 mm}", "narrow gaps"},
         Bad{"{type: air_gap, joint: j, diameter: 10 mm, gap: 0 mm}", "outside what is allowed"},
         Bad{"{type: node, node: n, capacity: 0 J/K}", "outside what is allowed"},

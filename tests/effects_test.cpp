@@ -57,14 +57,14 @@ struct OutOfRange {
   const char* what;
   double (*call)();
 };
-class Ranges : public ::testing::TestWithParam<OutOfRange> {};
+class EffectRanges : public ::testing::TestWithParam<OutOfRange> {};
 
-TEST_P(Ranges, AreGuarded) {
+TEST_P(EffectRanges, AreGuarded) {
   EXPECT_THAT([] { (void)GetParam().call(); }, ThrowsMessage<RangeError>(HasSubstr(GetParam().what)));
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Each, Ranges,
+    Each, EffectRanges,
     ::testing::Values(OutOfRange{"f0", [] { return palmgren_viscous_torque_Nmm(0, 32, 2000, 90); }},
                       OutOfRange{"f0", [] { return palmgren_viscous_torque_Nmm(NAN, 32, 2000, 90); }},
                       OutOfRange{"viscosity", [] { return palmgren_viscous_torque_Nmm(2, 0, 2000, 90); }},

@@ -92,14 +92,14 @@ struct OutOfRange {
   const char* what;
   double (*call)();
 };
-class Ranges : public ::testing::TestWithParam<OutOfRange> {};
+class FilmRanges : public ::testing::TestWithParam<OutOfRange> {};
 
-TEST_P(Ranges, AreGuarded) {
+TEST_P(FilmRanges, AreGuarded) {
   EXPECT_THAT([] { (void)GetParam().call(); }, ThrowsMessage<RangeError>(HasSubstr(GetParam().what)));
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Each, Ranges,
+    Each, FilmRanges,
     ::testing::Values(OutOfRange{"Rayleigh", [] { return nusselt_vertical_plate(1.1e12, 0.7); }},
                       OutOfRange{"Rayleigh", [] { return nusselt_vertical_plate(-1, 0.7); }},
                       OutOfRange{"Rayleigh", [] { return nusselt_vertical_plate(NAN, 0.7); }},

@@ -82,7 +82,7 @@ TEST_F(Fp3Spindle, SomeStrategyStaysInsideTenMicrometres) {
   }
   EXPECT_LT(least_um, 2.0);  // modes through the injector
   EXPECT_GT(most_um, 9.0);   // one thermometer by a schedule, which uses the whole tolerance
-  EXPECT_THAT(outcome_.output, HasSubstr("stays inside 10 um"));
+  EXPECT_THAT(outcome_.output, HasSubstr("Inside 10 µm by at least one strategy"));
 }
 
 TEST_F(Fp3Spindle, ScoresAreThoseOfTheWrittenRecord) {
@@ -187,7 +187,7 @@ TEST_F(Fp3Spindle, TheSameScenarioGivesTheSameBytes) {
 
 TEST(Fp3Verbs, CheckMeshSimulateAndPredictWork) {
   const auto folder = fresh_folder("fp3_verbs");
-  EXPECT_THAT(run_program("check scenarios/fp3_spindle.yaml").output, HasSubstr("fine; "));
+  EXPECT_THAT(run_program("check scenarios/fp3_spindle.yaml").output, HasSubstr(": fine\n"));
   EXPECT_EQ(run_program("mesh scenarios/fp3_spindle.yaml -o " + (folder / "mesh").string()).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "mesh/mesh.vtu"));
 

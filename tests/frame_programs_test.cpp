@@ -271,7 +271,9 @@ std::string table_text(const std::string& control, const std::string& probe) {
 }
 
 scenarios::TableSettings table_of(const std::string& control, const std::string& probe) {
-  return scenarios::read_table(ConfigMap::read_file(write_file("table.yaml", table_text(control, probe))), {"s"}, {"c"});
+  return scenarios::read_table(
+      ConfigMap::read_file(write_file("table.yaml", table_text(control, probe))).described_by(scenarios::table_schema()),
+      {"s"}, {"c"});
 }
 
 TEST(FrameProgram, TakesOriginSignAndBallFromTheScenario) {
@@ -291,7 +293,7 @@ TEST(FrameProgram, TakesOriginSignAndBallFromTheScenario) {
     return "nothing";
   };
   EXPECT_THAT(said(", origin: [6 m, 1 m]", ""), AllOf(HasSubstr("table.yaml:9"), HasSubstr("origin")));
-  EXPECT_THAT(said(", origin: [600 m, 1 m, 0 m]", ""), AllOf(HasSubstr("table.yaml:9"), HasSubstr("-100 m to 100 m")));
+  EXPECT_THAT(said(", origin: [600 m, 1 m, 0 m]", ""), AllOf(HasSubstr("table.yaml:9"), HasSubstr("-100 to 100 m")));
   EXPECT_THAT(said(", axis_moves: plus", ""), AllOf(HasSubstr("table.yaml:9"), HasSubstr("against_dk")));
   EXPECT_THAT(said("", ", ball_diameter: 1 m"), AllOf(HasSubstr("table.yaml:10"), HasSubstr("ball_diameter")));
 }

@@ -183,7 +183,7 @@ TEST(GantryTable, SaysWhatIsWrongWithALine) {
   refuses("{name: low, at: [-4.8 m", "{name: low, at: [4.75 m", "identical");
   refuses("{name: low, at: [-4.8 m, 0 m, 0 m]}", "{name: low, at: [4.9 m, 0 m, 0 m]}", "swapped");
   refuses("{name: low, at: [-4.8 m", "{name: low, at: [-5.8 m", "outside");
-  refuses("    - {name: low, at: [-4.8 m, 0 m, 0 m]}\n", "", "two are wanted");
+  refuses("    - {name: low, at: [-4.8 m, 0 m, 0 m]}\n", "", "at least 2 are wanted");
   refuses("    - {name: high, at", "    - {name: middle, at: [-4.8 m, 0 m, 0 m]}\n    - {name: high, at",
           "identical with ring 'low'");
   refuses("    - {name: high, at", "    - {name: low, at: [0 m, 0 m, 0 m]}\n    - {name: high, at",

@@ -64,11 +64,11 @@ Trajectory run_everything(const effects::HeatBalance& balance, CellShape shape, 
   return simulate(system, cycle, hall, {9000}, kShipped, start);
 }
 
-class EachCell : public ::testing::TestWithParam<CellShape> {};
-INSTANTIATE_TEST_SUITE_P(Shapes, EachCell, ::testing::ValuesIn(fixtures::kAllShapes),
+class BalanceInEachCell : public ::testing::TestWithParam<CellShape> {};
+INSTANTIATE_TEST_SUITE_P(Shapes, BalanceInEachCell, ::testing::ValuesIn(fixtures::kAllShapes),
                          [](const auto& test) { return fixtures::name_of(test.param); });
 
-TEST_P(EachCell, HeatBalancesWithEverythingLinearAtOnceAtTheShippedTolerances) {
+TEST_P(BalanceInEachCell, HeatBalancesWithEverythingLinearAtOnceAtTheShippedTolerances) {
   const Trajectory run = run_everything(everything_linear(), GetParam(), {fixtures::steel(), fixtures::steel()});
   RecordProperty("gap", text(run.energy_gap()));
   RecordProperty("steps", run.n_steps);
@@ -78,7 +78,7 @@ TEST_P(EachCell, HeatBalancesWithEverythingLinearAtOnceAtTheShippedTolerances) {
   EXPECT_GT(crossed_J, 1e6);
 }
 
-TEST_P(EachCell, HeatBalancesNearlyWithRadiationLawsOfTemperatureAndProperties) {
+TEST_P(BalanceInEachCell, HeatBalancesNearlyWithRadiationLawsOfTemperatureAndProperties) {
   effects::HeatBalance balance = everything_linear();
   balance.radiations = {{"to the hall", "a.z1", 0.9}, {"to the air", "b.z1", 0.6, "air"}};
   const auto thins = [](const effects::Inputs& u) {

@@ -5,10 +5,14 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <regex>
 #include <set>
 
-namespace driftwright::output {
+#include "base/errors.hpp"
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::output::html {
 namespace {
 
 using ::testing::AllOf;
@@ -159,8 +163,44 @@ TEST(Plot, SaysWhenGnuplotIsMissing) {
   const std::string path = std::getenv("PATH");
   setenv("PATH", "/nowhere", 1);
   EXPECT_THAT([] { (void)draw_svgs(std::vector{ramp("One")}); },
-              ThrowsMessage<std::runtime_error>(AllOf(HasSubstr("gnuplot"), HasSubstr("cannot be started"))));
+              ThrowsMessage<InputError>(AllOf(HasSubstr("gnuplot"), HasSubstr("cannot be started"))));
   setenv("PATH", path.c_str(), 1);
+}
+
+/// Puts a program of that name and text before all others.
+void with_program(const char* name, const std::string& text, const std::function<void()>& work) {
+  const std::filesystem::path folder = fresh_folder("programs");
+  std::ofstream(folder / name) << text;
+  std::filesystem::permissions(folder / name, std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
+  work();
+  setenv("PATH", path.c_str(), 1);
+}
+
+TEST(Plot, ThatIsCutShortIsNoPlot) {
+  // What a full disk once left, with exit code 0.
+  for (const char* output : {"<svg><path d='M0 0'/>", "", "<svg></svg><svg>"}) {
+    with_program("gnuplot", std::string("#!/bin/sh\ncat >/dev/null\nprintf '%s' \"") + output + "\"\n", [&] {
+      EXPECT_THAT(
+          [] {
+            (void)draw_svgs(std::vector{ramp("One"), ramp("Two")});
+          },
+          ThrowsMessage<InputError>(HasSubstr("plots to their end")))
+          << output;
+    });
+  }
+  with_program("gnuplot", "#!/bin/sh\nkill -9 $$\n", [] {
+    EXPECT_THAT([] { (void)draw_svgs(std::vector{ramp("One")}); },
+                ThrowsMessage<InputError>(HasSubstr("was ended: Killed")));
+  });
+}
+
+TEST(Plot, NeedsNoTemporaryFolder) {
+  const char* before = std::getenv("TMPDIR");
+  setenv("TMPDIR", "/no/such/folder", 1);
+  EXPECT_EQ(draw_svgs(std::vector{ramp("One"), ramp("Two")}).size(), 2u);
+  before ? setenv("TMPDIR", before, 1) : unsetenv("TMPDIR");
 }
 
 TEST(Plot, PassesOnWhatGnuplotSaysWhenItFails) {
@@ -171,4 +211,4 @@ TEST(Plot, PassesOnWhatGnuplotSaysWhenItFails) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::html

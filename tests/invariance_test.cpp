@@ -24,8 +24,8 @@ constexpr double kRounding = 1e-9;
 // In time linear solves stop at 0.02 of 1e-7 K each, and there are some hundred of them in a run of some 10 K.
 constexpr double kSolves = 2e-8;
 
-class EachCell : public ::testing::TestWithParam<CellShape> {};
-INSTANTIATE_TEST_SUITE_P(Shapes, EachCell, ::testing::ValuesIn(fixtures::kAllShapes),
+class InvarianceOfEachCell : public ::testing::TestWithParam<CellShape> {};
+INSTANTIATE_TEST_SUITE_P(Shapes, InvarianceOfEachCell, ::testing::ValuesIn(fixtures::kAllShapes),
                          [](const auto& test) { return fixtures::name_of(test.param); });
 
 /// A column and a head on its side that share no nodes, 7 and 5 cells high: a joint, films, a hot node, a radiating face.
@@ -101,11 +101,11 @@ void expect_unchanged(CellShape shape, const Eigen::Matrix3d& turn, const Eigen:
   }
 }
 
-TEST_P(EachCell, TranslationChangesNothing) {
+TEST_P(InvarianceOfEachCell, TranslationChangesNothing) {
   expect_unchanged(GetParam(), Eigen::Matrix3d::Identity(), {3.0, -7.0, 1.5});
 }
 
-TEST_P(EachCell, RotationTurnsDisplacementsAndNothingElse) {
+TEST_P(InvarianceOfEachCell, RotationTurnsDisplacementsAndNothingElse) {
   const Eigen::Matrix3d turn =
       (Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()) * Eigen::AngleAxisd(2.1, Eigen::Vector3d::UnitX()))
           .toRotationMatrix();
@@ -133,7 +133,7 @@ mesh::Cells turned_inside_out(const mesh::Cells& cells) {
 
 const Eigen::Matrix3d kMirror = Eigen::Vector3d(-1, 1, 1).asDiagonal();
 
-TEST_P(EachCell, MirrorImageHasMirroredDisplacementsAndTheSameTemperatures) {
+TEST_P(InvarianceOfEachCell, MirrorImageHasMirroredDisplacementsAndTheSameTemperatures) {
   mesh::Mesh mesh = column_and_head(GetParam());
   const Answer before = answer_of(mesh, true);
   mesh.coords = kMirror * mesh.coords;
@@ -145,7 +145,7 @@ TEST_P(EachCell, MirrorImageHasMirroredDisplacementsAndTheSameTemperatures) {
   EXPECT_LT(relative(after.displacement - kMirror * before.displacement, before.displacement), kRounding);
 }
 
-TEST_P(EachCell, SymmetricBodyUnderSymmetricLoadHasMirroredTemperaturesAndDisplacements) {
+TEST_P(InvarianceOfEachCell, SymmetricBodyUnderSymmetricLoadHasMirroredTemperaturesAndDisplacements) {
   // A box beside its mirror image in x = 0, one body; heat on top and radiation in front, films on the sides, foot fixed.
   mesh::Mesh mesh;
   fixtures::add_box(mesh, {{0, 0, 0}, {0.3, 0.2, 0.4}, {3, 2, 4}, GetParam()}, "body", "");
@@ -197,7 +197,7 @@ TEST_P(EachCell, SymmetricBodyUnderSymmetricLoadHasMirroredTemperaturesAndDispla
   EXPECT_LT(displacement_m, kRounding * u.cwiseAbs().maxCoeff());
 }
 
-TEST_P(EachCell, NumberOfThreadsChangesNoBit) {
+TEST_P(InvarianceOfEachCell, NumberOfThreadsChangesNoBit) {
   // Steady, transient (nonlinear) and elastic; the linear transient of a mesh large enough for every loop: transient_test.
   const mesh::Mesh mesh = column_and_head(GetParam());
   const int n_before = omp_get_max_threads();

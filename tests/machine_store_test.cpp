@@ -322,16 +322,32 @@ TEST(MachineStore, TakesADamagedFolderForNone) {
   for (const std::string& name : names) {
     const fs::path file = only_folder(store) / name;
     const std::string whole = read_text(file);
-    const std::function<void()> harms[] = {[&] { fs::remove(file); }, [&] { fs::resize_file(file, 0); },
+    const std::function<void()> harms[] = {[&] { fs::remove(file); },
+                                           [&] { fs::resize_file(file, 0); },
                                            [&] { fs::resize_file(file, whole.size() / 2); },
                                            [&] { fs::resize_file(file, whole.size() - 1); },
+                                           [&] {  // of the same size, and of values that might be right
+                                             std::string other = whole;
+                                             other.back() = static_cast<char>(other.back() ^ 1);
+                                             std::ofstream(file, std::ios::binary) << other;
+                                           },
+                                           [&] {
+                                             std::string zeros = whole;
+                                             std::fill(zeros.begin() + static_cast<std::ptrdiff_t>(zeros.size() / 2),
+                                                       zeros.end(), '\0');
+                                             if (zeros == whole) zeros.back() = 1;  // it held nothing but zeros
+                                             std::ofstream(file, std::ios::binary) << zeros;
+                                           },
                                            [&] {
                                              fs::remove(file);
                                              fs::create_directory(file);
                                            }};
     for (const auto& harm : harms) {
       harm();
-      EXPECT_FALSE(load_machine(store, key, balance_of(s))) << name;
+      std::string damage;
+      EXPECT_FALSE(load_machine(store, key, balance_of(s), &damage)) << name;
+      EXPECT_THAT(damage, HasSubstr(name == "hashes.json" || damage.find("hashes.json") != std::string::npos ? "hashes.json"
+                                                                                                             : name));
       save_machine(store, key, kept);  // made anew
       const auto found = load_machine(store, key, balance_of(s));
       ASSERT_TRUE(found) << name;

@@ -34,7 +34,8 @@ using ::testing::ThrowsMessage;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 ColumnMap map_of(const std::string& yaml) {
-  return scenarios::read_columns(ConfigMap::read_file(write_file("columns.yaml", yaml)));
+  return scenarios::read_columns(
+      ConfigMap::read_file(write_file("columns.yaml", yaml)).described_by(scenarios::columns_schema()));
 }
 
 ReadRecord read_sample(const std::string& file, const std::string& yaml) {
@@ -294,7 +295,7 @@ INSTANTIATE_TEST_SUITE_P(
                {"a zone wants stamps with a date"}},
         BadMap{"two_times",
                "time: {column: t, interval: 1 s}\nchannels: {x: {column: X, unit: um}}\n",
-               {"`interval` counts rows"}},
+               {"one of `column` (a name), `position` (from 1) and `interval`"}},
         BadMap{"number_and_stamp",
                "time: {column: t, unit: s, format: \"%H\"}\nchannels: {x: {column: X, unit: um}}\n",
                {"not both", "[time.format]"}},

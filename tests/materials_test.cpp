@@ -65,7 +65,7 @@ Material read(const std::string& expansion) {
                  "density: 1600 kg/m^3\nconductivity: 5 W/(m K)\nheat_capacity: 900 J/(kg K)\nyoungs_modulus: 50 GPa\n"
                  "poisson_ratio: 0.3\nexpansion: " +
                      expansion + "\n");
-  return read_material(ConfigMap::read_file(file));
+  return read_material(ConfigMap::read_file(file).described_by(material_schema()));
 }
 
 TEST(Material, ExpansionIsOneNumberOrOneForEachAxis) {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/csv_row.hpp"
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
@@ -19,16 +20,13 @@ namespace {
 /// A number of strategies.csv: the row of that strategy, the column of that name.
 double cell(const std::string& csv, const std::string& strategy, const std::string& column) {
   std::istringstream lines(csv);
-  std::string header, line;
-  std::getline(lines, header);
-  const auto n = std::count(header.begin(), header.begin() + static_cast<std::ptrdiff_t>(header.find(column)), ',');
+  std::string line;
+  while (std::getline(lines, line) && line.starts_with("#")) continue;
+  const std::vector<std::string> header = csv_cells(line);
+  const auto n = static_cast<std::size_t>(std::find(header.begin(), header.end(), column) - header.begin());
   while (std::getline(lines, line)) {
-    const std::string quoted = "\"" + strategy + "\"";
-    if (line.rfind(quoted, 0) != 0) continue;
-    std::istringstream cells(line.substr(quoted.size()));
-    std::string text;
-    for (std::ptrdiff_t i = 0; i <= n; ++i) std::getline(cells, text, ',');
-    return std::stod(text);
+    const std::vector<std::string> cells = csv_cells(line);
+    if (cells.front() == strategy) return std::stod(cells.at(n));
   }
   return std::nan("");
 }

@@ -18,8 +18,8 @@ using fixtures::text;
 using mesh::CellShape;
 using std::numbers::pi;
 
-class EachCell : public ::testing::TestWithParam<CellShape> {};
-INSTANTIATE_TEST_SUITE_P(Shapes, EachCell, ::testing::ValuesIn(fixtures::kAllShapes),
+class NafemsOnEachCell : public ::testing::TestWithParam<CellShape> {};
+INSTANTIATE_TEST_SUITE_P(Shapes, NafemsOnEachCell, ::testing::ValuesIn(fixtures::kAllShapes),
                          [](const auto& test) { return fixtures::name_of(test.param); });
 
 // --- T2: steady conduction and radiation ------------------------------------------------------------------------
@@ -77,7 +77,7 @@ double t2_error_K(const mesh::Mesh& mesh, const std::string& surrounding, double
   return worst_K;
 }
 
-TEST_P(EachCell, NafemsT2IsExactOnEveryMesh) {
+TEST_P(NafemsOnEachCell, NafemsT2IsExactOnEveryMesh) {
   // The temperature is linear in place, which every cell holds: only the solve errs, by 1e-10 of some 700 K at most.
   EXPECT_NEAR(t2_exact_K(), 927.0, 0.05);  // the target's digits
   const double coarse_K =
@@ -256,7 +256,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, NafemsT4,
                                            Convergence{CellShape::kWedge15, {8, 16, 32}, 3.0, 3.8e-05}),
                          shape_name);
 
-TEST_P(EachCell, CornerOfNafemsT4LimitsTheL2ErrorToSecondOrder) {
+TEST_P(NafemsOnEachCell, CornerOfNafemsT4LimitsTheL2ErrorToSecondOrder) {
   // Over the whole body the corner's r ln r counts: the energy error falls as h sqrt(ln(1/h)) and the L2 error as
   // h^2 sqrt(ln(1/h)), for quadratic cells too, which show 3 where solutions are smooth (heat_test).
   std::vector<double> h_m, error;

@@ -21,11 +21,11 @@ using fixtures::fixed_at;
 using fixtures::text;
 using mesh::CellShape;
 
-class EachCell : public ::testing::TestWithParam<CellShape> {};
-INSTANTIATE_TEST_SUITE_P(Shapes, EachCell, ::testing::ValuesIn(fixtures::kAllShapes),
+class OvershootInEachCell : public ::testing::TestWithParam<CellShape> {};
+INSTANTIATE_TEST_SUITE_P(Shapes, OvershootInEachCell, ::testing::ValuesIn(fixtures::kAllShapes),
                          [](const auto& test) { return fixtures::name_of(test.param); });
 
-TEST_P(EachCell, MassMatrixIsTheConsistentOne) {
+TEST_P(OvershootInEachCell, MassMatrixIsTheConsistentOne) {
   // u = v = x: u'Mv = ∫ rho c x^2 dV = rho c / 3 on the unit cube. Lumped, its corners alone would give 1/2.
   const mesh::Mesh mesh = fixtures::box_mesh({.shape = GetParam()});
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, {});

@@ -192,5 +192,30 @@ TEST(PredictorFile, WhatIsNoneIsRefusedWithItsKey) {
   EXPECT_THROW((void)read_predictor("nowhere.json"), InputError);
 }
 
+TEST(PredictorFile, WhatIsNotWhatWasJudgedIsRefused) {
+  Json j = predictor_json(formula(false), {}, {"1", "a test"});
+  const auto read = [](const Json& file) { return read_predictor(driftwright::write_file("changed.json", file.dump(1))); };
+  EXPECT_NO_THROW((void)read(j));  // the layout is nobody's business
+  const auto refused = [&](const std::function<void(Json&)>& change, const char* word) {
+    Json other = j;
+    change(other);
+    EXPECT_THAT([&] { (void)read(other); }, ThrowsMessage<InputError>(AllOf(HasSubstr("changed.json"), HasSubstr(word))));
+  };
+  refused(
+      [](Json& o) {
+        o["formula"]["terms"][1]["coefficient"] = o["formula"]["terms"][1]["coefficient"].get<double>() * 10.0;
+      },
+      "not what was judged");
+  refused([](Json& o) { o["fail_safe"]["highest_um"] = 1e3; }, "not what was judged");
+  refused([](Json& o) { o["judged"]["verdict"] = "safe to deploy"; }, "not what was judged");
+  refused([](Json& o) { o.erase("hash"); }, "`hash`");
+}
+
+TEST(PredictorFile, NamesOfAnyBytesComeBack) {
+  PredictorFile file = formula(false);
+  file.predictor.reason = "t_Geh\xE4use";  // Latin-1, as a caller of the library may hand it in
+  EXPECT_EQ(back(file).predictor.reason, "t_Geh\xEF\xBF\xBDuse");
+}
+
 }  // namespace
 }  // namespace driftwright::output

@@ -29,7 +29,7 @@ tolerance: 8 um
 )";
 
 Programme read(const std::string& text) {
-  return read_programme(ConfigMap::read_file(write_file("programme.yaml", text)));
+  return read_programme(ConfigMap::read_file(write_file("programme.yaml", text)).described_by(programme_schema()));
 }
 
 std::string with(const std::string& what, const std::string& instead) {
@@ -92,10 +92,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"unknown_key", "most_modes", "most_mode", {":11:", "unknown key 'most_mode'", "Did you mean 'most_modes'?"}},
         Mistake{"unknown_key_of_tests", "  seed", "  seeds", {":7:", "unknown key 'seeds'"}},
         Mistake{"unknown_key_of_random", "sections: 7", "section: 7", {":10:", "unknown key 'section'"}},
-        Mistake{"speed_zero", "500 rpm", "0 rpm", {":2:", "speeds", "between 1 and 1e6 rpm"}},
-        Mistake{"only_zero", "[2000 rpm, 500 rpm, 1000 rpm]", "[0 rpm]", {":2:", "between 1 and 1e6 rpm"}},
+        Mistake{"speed_zero", "500 rpm", "0 rpm", {":2:", "speeds", "0 rpm lies outside what is allowed, 1 to 1e+06 rpm"}},
+        Mistake{"only_zero", "[2000 rpm, 500 rpm, 1000 rpm]", "[0 rpm]", {":2:", "at least 3"}},
         Mistake{"speed_twice", "500 rpm", "1000 rpm", {":2:", "twice"}},
-        Mistake{"too_few_tests", "2000 rpm, 500 rpm", "2000 rpm", {":2:", "3 speeds at least are wanted; there are 2"}},
+        Mistake{"too_few_tests", "2000 rpm, 500 rpm", "2000 rpm", {":2:", "at least 3"}},
         Mistake{"no_heating", "  heating: 5 h\n", "", {"key 'heating' is missing"}},
         Mistake{"unit", "heating: 5 h", "heating: 5 rpm", {":3:", "wrong unit"}},
         Mistake{"above_the_tests",

@@ -57,6 +57,42 @@ TEST(Propagator, InACompleteBasisIsTheFullModel) {
   EXPECT_LT(difference_K(exact, full), 1e-5);  // 1e-8 of 60 K a step, over some hundred steps
 }
 
+TEST(Propagator, ARunThatGoesOnEndsAsTheWhole) {
+  // In the middle of a section, on its end, and beside a knot of the hall; heat counts from where the run goes on.
+  const FullSystem system = fixtures::two_blocks(1);
+  const ReducedSystem reduced =
+      project(system, orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size())));
+  const Eigen::VectorXd start = 5.0 * reduced.ones;
+  const double end_s = kCycle.duration_s();
+  for (const double from_s : {700.0, 1800.0, 2000.0, 7100.0}) {
+    Eigen::MatrixXd states;
+    const Trajectory whole = Propagator(reduced).run(kCycle, kRampingHall, {from_s, end_s}, start, true, &states);
+    const Trajectory rest =
+        Propagator(reduced).run(kCycle, kRampingHall, {from_s, end_s}, states.col(0), true, nullptr, from_s);
+    EXPECT_LT(difference_K(whole, rest), 1e-10) << from_s;
+    EXPECT_LT((whole.heat_J.col(1) - whole.heat_J.col(0) - rest.heat_J.col(1)).cwiseAbs().maxCoeff(),
+              1e-9 * whole.heat_J.cwiseAbs().maxCoeff())
+        << from_s;
+    EXPECT_EQ(rest.heat_J.col(0).cwiseAbs().maxCoeff(), 0.0);
+  }
+}
+
+TEST(Transient, ARunThatGoesOnEndsAsTheWhole) {
+  const FullSystem system = fixtures::two_blocks(1);
+  TransientOptions options{.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8};
+  const double from_s = 700.0, end_s = kCycle.duration_s();
+  Eigen::VectorXd at_from;
+  const auto keep = [&](double time_s, const Eigen::VectorXd& state) {
+    if (time_s == from_s) at_from = state;
+  };
+  const Trajectory whole = simulate(system, kCycle, kRampingHall, {from_s, end_s}, options,
+                                    Eigen::VectorXd::Constant(system.size(), 5.0), keep);
+  options.from_s = from_s;
+  const Trajectory rest = simulate(system, kCycle, kRampingHall, {from_s, end_s}, options, at_from);
+  EXPECT_LT(difference_K(whole, rest), 1e-5);  // 1e-8 of 60 K a step, over some hundred steps
+  EXPECT_LT(std::abs(whole.stored_J[1] - whole.stored_J[0] - rest.stored_J[1]), 1e-6 * std::abs(whole.stored_J[1]));
+}
+
 TEST(Propagator, ModesWithSteadyResponsesBeatModesAlone) {
   // Six modes without and with the steady responses at both ends of the range of speed.
   const FullSystem system = fixtures::two_blocks(2);

@@ -23,7 +23,7 @@ const AxisLoopContext kContext{.displacements = {"nose_y", "nose_z"},
 
 AxisLoopSettings read(const std::string& block) {
   const ConfigMap in = ConfigMap::read_file(write_file("axis_loop.yaml", "axis_loop:\n" + block));
-  return read_axis_loop(in.map("axis_loop"), kContext);
+  return read_axis_loop(in.map("axis_loop").described_by(axis_loop_schema()), kContext);
 }
 
 TEST(ReadAxisLoop, DefaultsComeFromTheStudy) {

@@ -20,7 +20,8 @@ using ::testing::ThrowsMessage;
 
 Cyclogram read(const std::string& entry) {
   const ConfigMap in = ConfigMap::read_file(write_file("scenario.yaml", "cyclograms:\n" + entry));
-  const ConfigMap cyclograms = in.map("cyclograms");
+  const schema::Map schema = cyclograms_schema();
+  const ConfigMap cyclograms = in.map("cyclograms").described_by(schema);
   return read_cyclogram(cyclograms, cyclograms.keys().at(0));
 }
 
@@ -137,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"no_kind",
               "  a: {repeat: 2}\n",
               {"scenario.yaml:2:", "one of the keys rows, csv, nc_program", "[cyclograms.a]"}},
-        Wrong{"two_kinds", "  a: {csv: x.csv, nc_program: y.ngc}\n", {"one of the keys rows, csv, nc_program"}},
+        Wrong{"two_kinds", "  a: {csv: x.csv, nc_program: y.ngc}\n", {"either `csv` or `nc_program` is wanted"}},
         Wrong{"not_a_name", "  a b: [[1 s, 1 rpm]]\n", {"'a b' is no name"}},
         Wrong{"negative_speed", "  a: [[1 s, -1 rpm]]\n", {"a speed of -1 rpm; 0 to 1e+06 rpm"}},
         Wrong{"no_duration", "  a: [[0 s, 1 rpm]]\n", {"1 ms or more"}},
@@ -175,7 +176,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& wrong) { return std::string(wrong.param.name); });
 
 TimeSeries hall(const std::string& entry) {
-  return read_hall(ConfigMap::read_file(write_file("scenario.yaml", "hall: " + entry + "\n")), 293.15);
+  return read_hall(ConfigMap::read_file(write_file("scenario.yaml", "hall: " + entry + "\n"))
+                       .described_by({.name = "hall of a test", .keys = {hall_key()}}),
+                   293.15);
 }
 
 TEST(ReadCyclogram, TakesAFileOfALoggerByItsColumns) {
@@ -219,7 +222,8 @@ TEST(ReadHall, RefusesWhatIsNoHallTemperature) {
               ThrowsMessage<InputError>(HasSubstr("unknown key 'offset'")));
   EXPECT_THAT([] { (void)hall("[[0 s, 21 degC], [0 s, 22 degC]]"); },
               ThrowsMessage<InputError>(HasSubstr("times must increase")));
-  EXPECT_THAT([] { (void)hall("[[0 s, 200 degC]]"); }, ThrowsMessage<InputError>(HasSubstr("no hall temperature")));
+  EXPECT_THAT([] { (void)hall("[[0 s, 200 degC]]"); },
+              ThrowsMessage<InputError>(HasSubstr("200 degC lies outside what is allowed, -73.15 to 126.85 degC")));
 }
 
 TEST(ToRecord, CarriesFeedsAndCuttingPowerWhereTheCyclogramUsesThem) {

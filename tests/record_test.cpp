@@ -53,6 +53,26 @@ INSTANTIATE_TEST_SUITE_P(Each, RecordCsvErrors,
                                            BadCsv{"t,a_K\n0,1\n", "time_s, time_min or time_h"},
                                            BadCsv{"time_s,a_K\n0,1,2\n", "3 cells where the header has 2"}));
 
+TEST(RecordCsv, IsReadFromAnyEncodingAndWrittenInOne) {
+  const Record record = read_record_csv(write_file("latin1.csv", "time_s,t_Geh\xE4use_degC\n0,20\n1,21\n"));
+  EXPECT_EQ(record.channels.at(0).name, "t_Geh\xC3\xA4use");
+  EXPECT_EQ(read_record_csv(write_file("again.csv", record_csv(record))).channels.at(0).name, "t_Geh\xC3\xA4use");
+  const Record surrogate = read_record_csv(write_file("wild.csv", "time_s,t_\xED\xA0\x80_degC\n0,20\n1,21\n"));
+  EXPECT_EQ(surrogate.channels.at(0).name, "t_\xC3\xAD\xC2\xA0\xE2\x82\xAC");  // no UTF-8, though it looks so
+}
+
+TEST(RecordCsv, CommentsStayComments) {
+  const Record record{.source = "x", .time_s = {0.0, 1.0}, .channels = {{"a", "K", {1.0, 2.0}}}};
+  const std::string text = record_csv(record, {"of the scenario a\nb.yaml", "c\rd"});
+  EXPECT_EQ(text.substr(0, text.find("time_s")), "# of the scenario a b.yaml\n# c d\n");
+  EXPECT_EQ(read_record_csv(write_file("commented.csv", text)).n_samples(), 2u);
+}
+
+TEST(RecordCsv, RefusesFoldersAndControlCharactersInNames) {
+  EXPECT_THROW((void)read_record_csv(temporary_folder().string()), InputError);
+  EXPECT_THROW((void)read_record_csv(write_file("bell.csv", "time_s,a\a_K\n0,1\n1,2\n")), InputError);
+}
+
 TEST(RecordCsv, RefusesAMissingFile) {
   EXPECT_THAT([] { (void)read_record_csv("/nowhere/x.csv"); }, ThrowsMessage<InputError>(HasSubstr("cannot be opened")));
 }

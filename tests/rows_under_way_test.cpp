@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/errors.hpp"
+#include "base/file_bytes.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::output {
@@ -15,6 +16,11 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
 using ::testing::ThrowsMessage;
+
+/// A row as a line of the file.
+std::string line(const std::string& row) {
+  return row + "\t" + content_hash(row) + "\n";
+}
 
 const RowsIdentity kIdentity{"0123abcd", "member,a"};
 
@@ -32,7 +38,8 @@ TEST(RowsUnderWay, AreFoundAgainWithoutALineCutShort) {
     EXPECT_FALSE(file.dropped_stale());
     file.append("3,c");
   }
-  EXPECT_EQ(read_text(folder / "sweep.csv.partial"), "# rows of 0123abcd\nmember,a\n2,b\n1,a\n3,c\n");
+  EXPECT_EQ(read_text(folder / "sweep.csv.partial"),
+            "# rows of 0123abcd\nmember,a\n" + line("2,b") + line("1,a") + line("3,c"));
 }
 
 TEST(RowsUnderWay, OfAnotherContentOrHeaderAreStale) {
@@ -54,6 +61,21 @@ TEST(RowsUnderWay, AStartCutShortIsBegunAnew) {
   EXPECT_EQ(read_text(folder / "sweep.csv.partial"), "# rows of 0123abcd\nmember,a\n");
 }
 
+TEST(RowsUnderWay, ThatAreNotAsTheyWereWrittenDoNotCount) {
+  const auto folder = fresh_folder("damaged") / "parts";
+  {
+    RowsUnderWay file(folder, "sweep.csv", kIdentity);
+    for (const char* row : {"1,4.25", "2,4.25", "3,4.25"}) file.append(row);
+  }
+  std::string text = read_text(folder / "sweep.csv.partial");
+  text[text.find("2,4.25") + 2] = '8';  // a plausible number
+  text += "4,4.25\n";                   // as of a version that wrote no hash
+  std::ofstream(folder / "sweep.csv.partial") << text;
+  std::size_t n_damaged = 0;
+  EXPECT_THAT(find_rows(folder, kIdentity, &n_damaged), ElementsAre(Pair(1, "1,4.25"), Pair(3, "3,4.25")));
+  EXPECT_EQ(n_damaged, 2u);
+}
+
 TEST(RowsUnderWay, OfAllPartsComeTogetherAndFinishedOnesAreInOrder) {
   const auto folder = fresh_folder("together");
   RowsUnderWay first(folder, "sweep.1of2.csv", kIdentity), second(folder, "sweep.2of2.csv", kIdentity);
@@ -61,7 +83,7 @@ TEST(RowsUnderWay, OfAllPartsComeTogetherAndFinishedOnesAreInOrder) {
   first.append("1,a");
   second.append("2,b");
   first.finish({{1, "1,a"}, {3, "3,c"}});
-  EXPECT_EQ(read_text(folder / "sweep.1of2.csv"), "# rows of 0123abcd\nmember,a\n1,a\n3,c\n");
+  EXPECT_EQ(read_text(folder / "sweep.1of2.csv"), "# rows of 0123abcd\nmember,a\n" + line("1,a") + line("3,c"));
   EXPECT_FALSE(std::filesystem::exists(folder / "sweep.1of2.csv.partial"));
   EXPECT_THAT(find_rows(folder, kIdentity), ElementsAre(Pair(1, "1,a"), Pair(2, "2,b"), Pair(3, "3,c")));
 }

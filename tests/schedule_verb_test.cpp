@@ -16,6 +16,7 @@ namespace driftwright {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -128,8 +129,8 @@ Path rs274(const std::filesystem::path& program) {
 TEST(ScheduleVerb, WritesTheProgramAndItsSchedule) {
   const Scheduled s = run_schedule("verb", passes(), "--policy paper");
   ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
-  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("part.ngc"), HasSubstr("z (nose_z)"), HasSubstr("tolerance 10 um"),
-                                      HasSubstr("x (nose_x)"), HasSubstr("policy paper, written for linuxcnc")));
+  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("part.ngc"), ContainsRegex("z +nose_z +10.0 "),
+                                      ContainsRegex("x +nose_x +4.0 "), HasSubstr("policy paper, written for linuxcnc")));
   EXPECT_THAT(read_text(s.folder / "schedule.txt"), AllOf(HasSubstr("# axis z, nose_z"), HasSubstr("}-{0,10,10")));
   EXPECT_THAT(read_text(s.folder / "report.html"), HasSubstr("what is left"));
   EXPECT_GT(read_record_csv((s.folder / "record.csv").string()).at("nose_z").values.back(), 30.0);
@@ -228,9 +229,9 @@ TEST(ScheduleVerb, NamesBlocksThatCannotKeepTheToleranceAndDividesThem) {
   const std::string slow = "G21 G90 G54\nS2000 M3\nG0 X0 Y0 Z0\nG1 X600 F10\nG0 Z5\nM30\n";
   const Scheduled whole = run_schedule("whole", slow);
   ASSERT_EQ(whole.outcome.exit_code, 0) << whole.outcome.output;
-  EXPECT_THAT(whole.outcome.output, AllOf(HasSubstr("line 4: z "), HasSubstr("um beyond, in 60.0 min; --split divides it")));
+  EXPECT_THAT(whole.outcome.output, ContainsRegex("line 4 +z .* 60.0  --split divides it\n"));
   const Scheduled parts = run_schedule("parts", slow, "--split");
-  EXPECT_THAT(parts.outcome.output, AllOf(HasSubstr("1 block(s) divided"), Not(HasSubstr("beyond"))));
+  EXPECT_THAT(parts.outcome.output, AllOf(HasSubstr("blocks divided  1\n"), Not(HasSubstr("beyond"))));
   EXPECT_THAT(read_text(parts.folder / "part.ngc"), AllOf(HasSubstr(" F10\nG10 L2 P1 "), HasSubstr("\nG1 X600 F10\n")));
   if (!has_rs274()) GTEST_SKIP() << kNoRs274;
   const Path path = rs274(parts.folder / "part.ngc");
@@ -419,7 +420,8 @@ TEST(Fp3Part, KeepsTheToleranceOfThePaper) {
   const CommandOutcome outcome =
       run_program("schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o " + folder.string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
-  EXPECT_THAT(outcome.output, AllOf(HasSubstr("5 operations"), Not(HasSubstr("LEFT")), Not(HasSubstr("beyond"))));
+  EXPECT_THAT(outcome.output,
+              AllOf(HasSubstr("5 operations"), Not(HasSubstr("The tolerance is left")), Not(HasSubstr("beyond"))));
   if (!has_rs274()) GTEST_SKIP() << kNoRs274;
   std::filesystem::copy_file("scenarios/parts/fp3_part.ngc", folder.parent_path() / "fp3_part.ngc");
   const Path before = rs274(folder.parent_path() / "fp3_part.ngc"), after = rs274(folder / "fp3_part.ngc");

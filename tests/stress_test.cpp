@@ -35,9 +35,9 @@ mesh::Mesh distorted(CellShape shape) {
   return mesh;
 }
 
-class EachCell : public ::testing::TestWithParam<CellShape> {};
+class StressInEachCell : public ::testing::TestWithParam<CellShape> {};
 
-TEST_P(EachCell, RigidMotionMakesNoStress) {
+TEST_P(StressInEachCell, RigidMotionMakesNoStress) {
   // u = t + w x (x), |w| = 1e-3: strains are rounding of terms w ~ 1e-3, so stresses are E |w| 1e-13.
   const mesh::Mesh mesh = distorted(GetParam());
   const Eigen::Vector3d t(1e-3, -2e-3, 5e-4), w(6e-4, -3e-4, 7e-4);
@@ -47,7 +47,7 @@ TEST_P(EachCell, RigidMotionMakesNoStress) {
   EXPECT_LT(stress.cwiseAbs().maxCoeff(), 1e-12 * kSteel.youngs_modulus_Pa * w.norm());
 }
 
-TEST_P(EachCell, FreeExpansionMakesNoStress) {
+TEST_P(StressInEachCell, FreeExpansionMakesNoStress) {
   // Held without constraint: the planes x = 0, y = 0 and z = 0 of the box, which the map leaves plane, in their normals.
   mesh::Mesh mesh = fixtures::box_mesh({{0, 0, 0}, {0.3, 0.2, 0.1}, {3, 2, 2}, GetParam()});
   fixtures::map_nodes(mesh, [](const Eigen::Vector3d& x) {
@@ -62,7 +62,7 @@ TEST_P(EachCell, FreeExpansionMakesNoStress) {
   EXPECT_LT(nodal_stress_Pa(mesh, {kSteel}, u, theta).cwiseAbs().maxCoeff(), 1e-9 * stress_scale_Pa());
 }
 
-TEST_P(EachCell, OrthotropicExpansionOfAFreeBlockIsThatOfEachAxis) {
+TEST_P(StressInEachCell, OrthotropicExpansionOfAFreeBlockIsThatOfEachAxis) {
   // Unidirectional CFRP: hardly any along the fibres, much across. Free: no stress.
   Material m = kSteel;
   m.expansion_1_K = {-0.5e-6, 30e-6, 12e-6};
@@ -76,7 +76,7 @@ TEST_P(EachCell, OrthotropicExpansionOfAFreeBlockIsThatOfEachAxis) {
   EXPECT_LT(nodal_stress_Pa(mesh, {m}, u, theta).cwiseAbs().maxCoeff(), 1e-9 * stress_scale_Pa());
 }
 
-TEST_P(EachCell, ABarBetweenWallsHasMinusEAlphaTheta) {
+TEST_P(StressInEachCell, ABarBetweenWallsHasMinusEAlphaTheta) {
   const mesh::Mesh mesh = fixtures::box_mesh({{0, 0, 0}, {0.3, 0.02, 0.03}, {4, 2, 2}, GetParam()});
   const Elasticity elastic(mesh, {kSteel},
                            {{"x0", {true, false, false}},
@@ -248,7 +248,7 @@ TEST(Recovery, WhereRegionsShareNodesTheHigherStressedOneIsShown) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cells, EachCell,
+INSTANTIATE_TEST_SUITE_P(Cells, StressInEachCell,
                          ::testing::Values(CellShape::kTet4, CellShape::kTet10, CellShape::kHex8, CellShape::kHex20,
                                            CellShape::kWedge6, CellShape::kWedge15));
 INSTANTIATE_TEST_SUITE_P(Cells, Recovery, ::testing::Values(CellShape::kTet10, CellShape::kHex20, CellShape::kWedge15));

@@ -12,6 +12,7 @@
 
 #include "base/csv_row.hpp"
 #include "base/record.hpp"
+#include "base/file_bytes.hpp"
 #include "tests/command_line.hpp"
 
 namespace driftwright {
@@ -243,7 +244,10 @@ TEST(Sweep, GoesOnWhereItWasKilled) {
   // That rows are taken over, not computed again, shows by a mark in one of them.
   const fs::path marked = folder / "marked.parts" / "sweep.csv.partial";
   std::string text = read_text(marked);
-  text.insert(text.find(",done"), "123456");  // more digits than a table has
+  const std::size_t done = text.find(",done"), begin = text.rfind('\n', done) + 1, tab = text.find('\t', done);
+  std::string row = text.substr(begin, tab - begin);
+  row.insert(row.find(",done"), "123456");  // more digits than a table has
+  text.replace(begin, text.find('\n', tab) - begin, row + "\t" + content_hash(row));
   std::ofstream(marked) << text << "240,torn";
   EXPECT_EQ(run_program("sweep " + study + " -o " + (folder / "marked").string()).exit_code, 0);
   const std::string table = read_text(folder / "marked" / "sweep.csv");

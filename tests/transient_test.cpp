@@ -8,15 +8,19 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "solver/energy_balance.hpp"
 #include "solver/heat_assembly.hpp"
 #include "solver/heat_ode.hpp"
 #include "solver/integrate.hpp"
+#include "tests/effect_list.hpp"
 #include "tests/fixtures.hpp"
 
 namespace driftwright::solver {
 namespace {
 
 using mesh::CellShape;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 const TimeSeries kStillHall{{0.0}, {0.0}};
 
@@ -82,6 +86,37 @@ TEST(EnergyBalance, GapIsThatOfItsThreeTerms) {
   run.stored_J.resize(1);
   run.stored_J << 69.0;
   EXPECT_DOUBLE_EQ(run.energy_gap(), 1.0 / (0.5 * 199.0));
+}
+
+TEST(EnergyBalance, ThatDoesNotCloseEndsARun) {
+  Trajectory run;
+  run.time_s = {60.0};
+  run.flows = {{"in", FlowKind::kSource}};
+  run.heat_J = Eigen::MatrixXd::Constant(1, 1, 1000.0);
+  run.stored_J = Eigen::VectorXd::Constant(1, 995.0);
+  EXPECT_NO_THROW(require_balance(run, 10.0));  // half a per cent
+  run.stored_J[0] = 0.0;
+  EXPECT_THAT([&] { require_balance(run, 10.0); },
+              ThrowsMessage<SolveError>(HasSubstr("1000 J went in and 0 J are stored")));
+  EXPECT_NO_THROW(require_balance(run, 1e6));  // of a machine that this warms by a thousandth of a kelvin
+  run.heat_J(0, 0) = std::nan("");
+  EXPECT_THROW(require_balance(run, 1e6), SolveError);
+}
+
+TEST(EnergyBalance, OfASystemWhoseLoadWasLostEndsTheRun) {
+  // As a kept machine once was used whose loads had become zeros on the disk.
+  FullSystem system = assemble_heat(fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {2, 2, 2}}), {fixtures::steel()},
+                                    fixtures::balance_of({"{type: heat_source, region: body, power: 100 W}"}));
+  fixtures::observe_unknowns(system, {0});
+  const Cyclogram rest{.name = "rest", .sections = {{3600.0, {}}}};
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
+  EXPECT_NO_THROW((void)simulate(system, rest, {{0.0}, {0.0}}, {3600.0}, {}, start));
+  system.sources.front().load.setZero();
+  EXPECT_THAT(
+      [&] {
+        (void)simulate(system, rest, {{0.0}, {0.0}}, {3600.0}, {}, start);
+      },
+      ThrowsMessage<SolveError>(HasSubstr("does not balance")));
 }
 
 /// Heat for an hour and rest, on a mesh fine enough that long steps take many iterations with the diagonal.

@@ -30,7 +30,8 @@ const std::vector<Cyclogram>& known() {
 Validation read(const std::string& text) {
   std::vector<const Cyclogram*> pointers;
   for (const Cyclogram& c : known()) pointers.push_back(&c);
-  return read_validation(ConfigMap::read_file(write_file("validation.yaml", text)), pointers, 12.0);
+  return read_validation(ConfigMap::read_file(write_file("validation.yaml", text)).described_by(validation_schema()),
+                         pointers, 12.0);
 }
 
 TEST(Validation, ReadsWhatItIsGivenAndDefaultsTheRest) {
@@ -101,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"unknown_judge",
             "train: [warm_up, steps]\nfamilies:\n  c: [chaos]\n",
             {":3:", "no cyclogram 'chaos'", "[families.c]"}},
-        Bad{"one_training", "train: [warm_up]\nfamilies: {c: [chaotic]}\n", {":1:", "two cyclograms at least"}},
+        Bad{"one_training", "train: [warm_up]\nfamilies: {c: [chaotic]}\n", {":1:", "at least 2 are wanted"}},
         Bad{"the_same_twice",
             "train: [warm_up, warm_up]\nfamilies: {c: [chaotic]}\n",
             {":1:", "'warm_up'", "fitted on twice"}},
@@ -133,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
             {":3:", "1.5"}},
         Bad{"one_speed",
             "train: [warm_up, steps]\nfamilies:\n  r: {count: 2, duration: 60 min, speeds: [500 rpm]}\n",
-            {":3:", "two speeds at least", "[families.r.speeds]"}}),
+            {":3:", "at least 2", "[families.r.speeds]"}}),
     [](const auto& p) { return std::string(p.param.name); });
 
 TEST(HallIn, IsTheScenariosWithOffsetAndASineOfADay) {

@@ -10,11 +10,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <string_view>
 
+#include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 
 namespace driftwright::compensation {
@@ -83,14 +83,12 @@ CorrectionInput::~CorrectionInput() {
 }
 
 void CorrectionInput::read_table() {
-  std::ifstream file(path_);
-  if (!file) throw InputError(fmt::format("{}: cannot be read", path_));
   double rows_per_unit = 0.0;  // 0: no header yet
   bool by_row = false;
   double quarters_per_unit = 0.0;
   std::int64_t n_lines = 0;
   double last_key = -std::numeric_limits<double>::infinity();
-  for (std::string line; std::getline(file, line);) {
+  for (const std::string& line : read_text_lines(path_)) {
     ++n_lines;
     const std::string_view text = trimmed(line);
     if (text.empty() || text.starts_with('#')) continue;

@@ -157,6 +157,12 @@ std::vector<std::string> each_once(const std::vector<JudgedRunOfMachine>& runs, 
 
 }  // namespace
 
+const char* word(Safety safety) {
+  return safety == Safety::kSafe           ? "safe to deploy"
+         : safety == Safety::kWithinLimits ? "safe within limits"
+                                                         : "unsafe";
+}
+
 void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const double tolerance = m.settings.tolerance_um;
   const Worst all = worst_of(s, [](const Case&) { return true; });

@@ -39,6 +39,8 @@ struct Case {
 };
 
 enum class Safety { kSafe, kWithinLimits, kUnsafe };
+/// "safe to deploy", "safe within limits", "unsafe".
+[[nodiscard]] const char* word(Safety safety);
 
 /// All cases of one strategy.
 struct JudgedStrategy {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "base/errors.hpp"
 #include "compensation/sensors/complete_rows.hpp"
@@ -13,6 +14,14 @@ namespace {
 constexpr double kConstant = 1.0e-12;   // deviation over largest magnitude: rounding, not movement
 constexpr double kDependent = 1.0e-10;  // of a column's square left beside those before it
 constexpr double kMoves = 1.0e-10;      // variance in some rows, of that over all
+
+/// The sums of some columns, with the constant before and the target behind them.
+Eigen::MatrixXd restricted(const Eigen::MatrixXd& sums, std::span<const int> columns) {
+  std::vector<Eigen::Index> kept = {0};
+  for (int c : columns) kept.push_back(c + 1);
+  kept.push_back(sums.cols() - 1);
+  return sums(kept, kept);
+}
 
 }  // namespace
 
@@ -137,15 +146,21 @@ void require_enough_rows(double n_rows, std::size_t n_columns, const std::string
 }
 
 double held_out_rmse(const ProductSums& sums, std::span<const int> columns, double penalty) {
-  const Eigen::MatrixXd total = sums.total();
+  // Of these columns alone: hundreds of thermometers are tried by the thousand, and the sums of all are a megabyte a record.
+  std::vector<Eigen::MatrixXd> by_record;
+  for (const Eigen::MatrixXd& record : sums.by_record) by_record.push_back(restricted(record, columns));
+  Eigen::MatrixXd total = by_record.front();
+  for (std::size_t r = 1; r < by_record.size(); ++r) total += by_record[r];
+  std::vector<int> all(columns.size());
+  std::iota(all.begin(), all.end(), 0);
   double squares = 0.0, n = 0.0;
   int n_records = 0;
-  for (const Eigen::MatrixXd& record : sums.by_record) {
+  for (const Eigen::MatrixXd& record : by_record) {
     if (record(0, 0) == 0.0) continue;
     ++n_records;
     if (record(0, 0) == total(0, 0)) break;
     require_enough_rows(total(0, 0) - record(0, 0), columns.size(), sums.target);
-    squares += residual_squares(record, columns, fit_columns(total - record, columns, penalty));
+    squares += residual_squares(record, all, fit_columns(total - record, all, penalty));
     n += record(0, 0);
   }
   if (n_records < 2) {

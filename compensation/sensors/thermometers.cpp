@@ -13,6 +13,8 @@
 namespace driftwright::compensation {
 namespace {
 
+constexpr double kMostSamples = 2e8;  // 1.6 GB
+
 bool is_temperature(const Channel& channel) {
   return channel.unit == "degC" || channel.unit == "K";
 }
@@ -110,7 +112,12 @@ Record sampled(const Record& record, double period_s) {
   if (!(period_s > 0.0)) throw RangeError(fmt::format("sampling period {} s must be positive", period_s));
   Record result{.source = record.source, .time_s = {}, .channels = {}};
   const double span_s = record.time_s.back() - record.time_s.front();
-  const auto n = static_cast<std::size_t>(std::floor(span_s / period_s * (1.0 + 1e-12))) + 1;
+  const double n_wanted = std::floor(span_s / period_s * (1.0 + 1e-12)) + 1.0;
+  if (!(n_wanted * static_cast<double>(record.channels.size() + 1) <= kMostSamples))
+    throw RangeError(fmt::format("{} channels of '{}' every {:g} s are {:.3g} samples over {:g} h; at most {:.0e} are taken",
+                                 record.channels.size(), record.source, period_s,
+                                 n_wanted * static_cast<double>(record.channels.size()), span_s / 3600.0, kMostSamples));
+  const auto n = static_cast<std::size_t>(n_wanted);
   for (std::size_t i = 0; i < n; ++i) {
     result.time_s.push_back(std::min(record.time_s.front() + static_cast<double>(i) * period_s, record.time_s.back()));
   }

@@ -43,7 +43,7 @@ inline constexpr double kSensorDrift_K_h = 2.0;
 
 /// The record every `period_s` from its first time on, linear between its rows and missing beside missing values; `speed`
 /// holds its value until the next row instead. The last row is the last one inside the record.
-/// @throws RangeError  when the period is not positive
+/// @throws RangeError  when the period is not positive, or so short that there would be more than 2e8 samples
 [[nodiscard]] Record sampled(const Record& record, double period_s);
 
 }  // namespace driftwright::compensation

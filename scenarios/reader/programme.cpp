@@ -16,11 +16,49 @@ constexpr double kShortestShare = 0.5, kLongestShare = 1.5;  // of a section's m
 
 }  // namespace
 
+std::vector<schema::Key> random_keys() {
+  using namespace schema;
+  return {compulsory("count", integer(1, 1000), "how many"),
+          schema::optional("sections", integer(2, 100), Programme::Random{}.sections,
+                           "of each, of random length, no speed twice in a row, now and then a stop"),
+          compulsory("duration", quantity("s", 60.0, 1e6), "of each")};
+}
+
+schema::Map programme_schema() {
+  using namespace schema;
+  const Programme p;
+  const schema::Map tests = {
+      .name = "programme, tests",
+      .keys = {compulsory("speeds", list(quantity("rpm", 1.0, 1e6), kFewestSpeeds), "one test at each"),
+               compulsory("heating", quantity("s", 60.0, 1e7), "time at the speed, from the start on"),
+               compulsory("cooling", quantity("s", 60.0, 1e7), "time at standstill behind it"),
+               schema::optional("temperature_noise", quantity("K", 0.0, 10.0), p.temperature_noise_K,
+                                "of the tests' readings, white, 1 sigma"),
+               schema::optional("displacement_noise", quantity("um", 0.0, 1e3), p.displacement_noise_um,
+                                "the same; tilts: per 100 mm"),
+               schema::optional("seed", integer(0, 1000000), p.seed, "of noise and random cyclograms")}};
+  return {
+      .name = "programme",
+      .keys = {compulsory("tests", schema::map(tests), "runs at fixed speeds that predictors learn from"),
+               schema::optional("cyclograms", schema::map(cyclograms_schema()), "to predict"),
+               schema::optional("random", schema::map({.name = "programme, random", .keys = random_keys()}),
+                                "cyclograms to predict, at the tests' speeds"),
+               schema::optional("most_modes", integer(1, 8), p.most_modes, "that may be identified from tests"),
+               schema::optional("model_scatter", quantity("1", 0.0, 1.0), p.model_scatter,
+                                "1 sigma of the logarithm by which a hybrid's model is wrong in each power and coefficient"),
+               schema::optional("extrapolate", flag(), "false", "true: cyclograms may run outside the tested speeds"),
+               schema::optional("tolerance", quantity("um", 1e-3, 1e6), p.tolerance_um, "of scheduled corrections")},
+      .groups = {{Group::Rule::kAtLeastOne,
+                  {"cyclograms", "random"},
+                  "`cyclograms` or `random` is wanted, to judge predictors on"}},
+      .about = "What predictors of drift are judged on by `validate` (docs/prediction.md)."};
+}
+
 Programme::Random read_random(const ConfigMap& in) {
   Programme::Random random;
-  random.count = in.integer("count", 1, 1000);
-  random.sections = in.integer("sections", 2, 100, random.sections);
-  random.duration_s = in.quantity("duration", "s", 60.0, 1e6);
+  random.count = in.integer("count");
+  random.sections = in.integer("sections");
+  random.duration_s = in.quantity("duration");
   return random;
 }
 
@@ -28,19 +66,15 @@ Programme read_programme(const ConfigMap& in) {
   Programme p;
   p.where = in.where();
   const ConfigMap tests = in.map("tests");
-  p.test_rpm = tests.quantities("speeds", "rpm");
+  p.test_rpm = tests.quantities("speeds");
   std::sort(p.test_rpm.begin(), p.test_rpm.end());
-  if (!(p.test_rpm.front() >= 1.0 && p.test_rpm.back() <= 1e6))
-    tests.fail("speeds", "speeds between 1 and 1e6 rpm are wanted");
   if (std::adjacent_find(p.test_rpm.begin(), p.test_rpm.end()) != p.test_rpm.end())
     tests.fail("speeds", "a speed stands there twice");
-  if (p.test_rpm.size() < kFewestSpeeds)
-    tests.fail("speeds", fmt::format("{} speeds at least are wanted; there are {}", kFewestSpeeds, p.test_rpm.size()));
-  p.heating_s = tests.quantity("heating", "s", 60.0, 1e7);
-  p.cooling_s = tests.quantity("cooling", "s", 60.0, 1e7);
-  p.temperature_noise_K = tests.quantity("temperature_noise", "K", 0.0, 10.0, 0.0);
-  p.displacement_noise_um = tests.quantity("displacement_noise", "um", 0.0, 1e3, 0.0);
-  p.seed = tests.integer("seed", 0, 1000000, 1);
+  p.heating_s = tests.quantity("heating");
+  p.cooling_s = tests.quantity("cooling");
+  p.temperature_noise_K = tests.quantity("temperature_noise");
+  p.displacement_noise_um = tests.quantity("displacement_noise");
+  p.seed = tests.integer("seed");
   tests.reject_unknown_keys();
   if (const auto cyclograms = in.optional_map("cyclograms")) {
     for (const std::string& name : cyclograms->keys()) {
@@ -57,9 +91,9 @@ Programme read_programme(const ConfigMap& in) {
   }
   if (p.cyclograms.empty() && p.random.count == 0)
     in.fail("cyclograms", "neither `cyclograms` nor `random` to judge predictors on");
-  p.most_modes = in.integer("most_modes", 1, 8, p.most_modes);
-  p.model_scatter = in.quantity("model_scatter", "1", 0.0, 1.0, 0.0);
-  p.extrapolate = in.choice("extrapolate", {"true", "false"}, "false") == "true";
+  p.most_modes = in.integer("most_modes");
+  p.model_scatter = in.quantity("model_scatter");
+  p.extrapolate = in.flag("extrapolate");
   for (const Cyclogram& c : p.cyclograms) {
     for (const auto& s : c.sections) {
       const double rpm = s.drive.speed_rpm;
@@ -72,7 +106,7 @@ Programme read_programme(const ConfigMap& in) {
                           rpm, p.test_rpm.front(), p.test_rpm.back()));
     }
   }
-  p.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, p.tolerance_um);
+  p.tolerance_um = in.quantity("tolerance");
   in.reject_unknown_keys();
   return p;
 }

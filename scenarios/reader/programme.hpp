@@ -23,6 +23,9 @@ struct Programme {
   Where where;
 };
 
+/// What the key `programme` may hold; the keys that read_random() reads.
+[[nodiscard]] schema::Map programme_schema();
+[[nodiscard]] std::vector<schema::Key> random_keys();
 /// The keys count, sections, duration. @throws InputError  file, line, key
 [[nodiscard]] Programme::Random read_random(const ConfigMap& in);
 /// @throws InputError  file, line, key

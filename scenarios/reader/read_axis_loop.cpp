@@ -10,39 +10,34 @@ namespace {
 using namespace compensation;
 
 void read_encoder(const ConfigMap& in, Encoder& encoder, double default_period_um) {
-  encoder.period_um = default_period_um;
-  if (in.has("lines") || in.has("pitch")) {
-    if (in.has("signal_period")) in.fail("signal_period", "either `signal_period`, or `pitch` and `lines`, is wanted");
-    encoder.period_um = in.quantity("pitch", "um", 1e-3, 1e9) / in.integer("lines", 1, 100'000'000);
-  } else {
-    encoder.period_um = in.quantity("signal_period", "um", 1e-4, 1e6, default_period_um);
-  }
-  encoder.jitter = in.quantity("jitter", "1", 0.0, 0.49, encoder.jitter);
+  encoder.period_um =
+      in.has("pitch") ? in.quantity("pitch") / in.integer("lines") : in.quantity("signal_period", default_period_um);
+  encoder.jitter = in.quantity("jitter");
 }
 
 InjectorSettings read_injector(const ConfigMap& in) {
   InjectorSettings s;
-  const std::string insert = in.choice("insert", {"cycle", "half", "quarter"}, "cycle");
+  const std::string insert = in.choice("insert");
   s.rules.quarters = insert == "quarter" ? 1 : insert == "half" ? 2 : kQuartersPerPeriod;
-  s.rules.anywhere = in.choice("window", {"both_low", "any"}, "both_low") == "any";
-  const std::string counts = in.choice("counts", {"x4", "x2", "x1"}, "x4");
+  s.rules.anywhere = in.choice("window") == "any";
+  const std::string counts = in.choice("counts");
   s.counting = counts == "x1" ? Counting::kX1 : counts == "x2" ? Counting::kX2 : Counting::kX4;
   if (s.rules.quarters < quarters_per_count(s.counting))
     in.fail("insert", fmt::format("a {} is less than one count at {}; the control would not see each", insert, counts));
-  s.least_separation_s = in.quantity("least_separation", "s", 1e-9, 1.0, s.least_separation_s);
-  s.largest_count_rate_1_s = in.quantity("largest_count_rate", "1/s", 1.0, 1e9, s.largest_count_rate_1_s);
-  s.largest_slew_um_s = in.quantity("largest_slew", "um/s", 1e-6, 1e6, s.largest_slew_um_s);
+  s.least_separation_s = in.quantity("least_separation");
+  s.largest_count_rate_1_s = in.quantity("largest_count_rate");
+  s.largest_slew_um_s = in.quantity("largest_slew");
   return s;
 }
 
 Servo read_servo(const ConfigMap& in) {
   Servo s;
-  s.period_s = in.quantity("period", "s", 1e-5, 0.1, s.period_s);
-  s.position_gain_1_s = in.quantity("position_gain", "1/s", 1e-3, 1e4, s.position_gain_1_s);
-  s.speed_gain_1_s = in.quantity("speed_gain", "1/s", 1e-2, 1e5, s.speed_gain_1_s);
-  s.speed_reset_s = in.quantity("speed_reset", "s", 1e-4, 1e3, s.speed_reset_s);
-  s.feed_forward = in.quantity("feed_forward", "1", 0.0, 2.0, s.feed_forward);
-  s.largest_acceleration_um_s2 = in.quantity("largest_acceleration", "um/s^2", 1.0, 1e9, s.largest_acceleration_um_s2);
+  s.period_s = in.quantity("period");
+  s.position_gain_1_s = in.quantity("position_gain");
+  s.speed_gain_1_s = in.quantity("speed_gain");
+  s.speed_reset_s = in.quantity("speed_reset");
+  s.feed_forward = in.quantity("feed_forward");
+  s.largest_acceleration_um_s2 = in.quantity("largest_acceleration");
   // The speed loop of a sampled drive with a = gain (v_ref - v) is stable below 2 / period, the cascade below a quarter of the inner loop.
   if (!(s.speed_gain_1_s * s.period_s <= 1.0))
     in.fail("speed_gain", fmt::format("at most 1 / period = {:g} 1/s, or the speed rings", 1.0 / s.period_s));
@@ -57,9 +52,9 @@ Servo read_servo(const ConfigMap& in) {
 
 AxisMotion read_motion(const ConfigMap& in) {
   AxisMotion m;
-  m.stroke_um = in.quantity("stroke", "um", 1e-3, 1e8);
-  m.feed_um_s = in.quantity("feed", "um/s", 1e-3, 1e7);
-  m.every_s = in.quantity("every", "s", 1e-3, 1e9);
+  m.stroke_um = in.quantity("stroke");
+  m.feed_um_s = in.quantity("feed");
+  m.every_s = in.quantity("every");
   if (!(m.stroke_um / m.feed_um_s <= 0.5 * m.every_s))
     in.fail("every",
             fmt::format("a pass takes {:g} s; at least twice that, or there is no rest in which errors are looked at",
@@ -74,27 +69,89 @@ AxisMotion read_motion(const ConfigMap& in) {
 
 }  // namespace
 
+schema::Map axis_loop_schema() {
+  using namespace schema;
+  const AxisLoop loop;
+  const InjectorSettings injector;
+  const Servo s;
+  const schema::Map motion = {
+      .name = "axis_loop, motion",
+      .keys = {compulsory("stroke", quantity("um", 1e-3, 1e8), "of the axis, there and back in turn"),
+               compulsory("feed", quantity("um/s", 1e-3, 1e7), "of the axis as it moves"),
+               compulsory("every", quantity("s", 1e-3, 1e9), "from one pass to the next; it rests between")}};
+  const schema::Map servo = {
+      .name = "axis_loop, servo",
+      .keys = {schema::optional("period", quantity("s", 1e-5, 0.1), s.period_s, "of the sampled loops"),
+               schema::optional("position_gain", quantity("1/s", 1e-3, 1e4), s.position_gain_1_s,
+                                "of the position loop; a quarter of speed_gain at most"),
+               schema::optional("speed_gain", quantity("1/s", 1e-2, 1e5), s.speed_gain_1_s,
+                                "of the speed loop; 1 / period at most"),
+               schema::optional("speed_reset", quantity("s", 1e-4, 1e3), s.speed_reset_s, "reset time of the speed loop"),
+               schema::optional("feed_forward", quantity("1", 0.0, 2.0), s.feed_forward, "share of the commanded speed"),
+               schema::optional("largest_acceleration", quantity("um/s^2", 1.0, 1e9), s.largest_acceleration_um_s2,
+                                "of the drive")}};
+  const schema::Map growth = {.name = "axis_loop, growth",
+                              .keys = {compulsory("of", choice({"screw", "scale"}), "what grows"),
+                                       compulsory("sensor", text(), "whose temperature it has"),
+                                       compulsory("expansion", quantity("1/K", -1e-3, 1e-3), "strain per kelvin"),
+                                       compulsory("at", quantity("um", -1e9, 1e9), "distance from the fixed bearing")}};
+  return {.name = "axis_loop",
+          .keys = {schema::optional("displacement", text(), Said{"the target of `study`"}, "that is corrected"),
+                   schema::optional("feedback", choice({"motor", "scale"}), "motor", "what the encoder sits on"),
+                   schema::optional("signal_period", quantity("um", 1e-4, 1e6), Said{"the study's encoder_period"},
+                                    "travel of one period of the encoder's signal"),
+                   schema::optional("pitch", quantity("um", 1e-3, 1e9), "or: of the screw"),
+                   schema::optional("lines", integer(1, 100'000'000), "and lines of the encoder a turn"),
+                   schema::optional("jitter", quantity("1", 0.0, 0.49), loop.encoder.jitter,
+                                    "of its edges, in quarters of a period"),
+                   schema::optional("counts", choice({"x4", "x2", "x1"}), "x4", "how the control counts a period"),
+                   schema::optional("insert", choice({"cycle", "half", "quarter"}), "cycle", "what is inserted at once"),
+                   schema::optional("window", choice({"both_low", "any"}), "both_low", "when it may be inserted"),
+                   schema::optional("least_separation", quantity("s", 1e-9, 1.0), injector.least_separation_s,
+                                    "between two edges"),
+                   schema::optional("largest_count_rate", quantity("1/s", 1.0, 1e9), injector.largest_count_rate_1_s,
+                                    "that the control counts"),
+                   schema::optional("largest_slew", quantity("um/s", 1e-6, 1e6), injector.largest_slew_um_s,
+                                    "of the correction"),
+                   schema::optional("servo", schema::map(servo), "drive and control"),
+                   schema::optional("motion", schema::map(motion), Said{"at rest"}, "how the axis moves"),
+                   schema::optional("sampling", quantity("s", 1e-3, 1e6), loop.sampling_s,
+                                    "period of readings, predictions and corrections"),
+                   schema::optional("temperature_noise", quantity("K", 0.0, 100.0), 0.0, "of thermometers, white, 1 sigma"),
+                   schema::optional("temperature_resolution", quantity("K", 0.0, 100.0),
+                                    Said{"the study's sensor_resolution"}, "step of their readings"),
+                   schema::optional("hysteresis", quantity("um", 0.0, 1e6), loop.hysteresis_um,
+                                    "a correction changes once it is this much more than half an insertion off"),
+                   schema::optional("seed", integer(0, 1'000'000'000), static_cast<double>(loop.seed), "of the noise"),
+                   schema::optional("growth", schema::map(growth), Said{"none"}, "of the screw or scale itself")},
+          .groups = {{Group::Rule::kAllOrNone, {"pitch", "lines"}, "both are wanted"},
+                     {Group::Rule::kAtMostOne,
+                      {"pitch", "signal_period"},
+                      "either `signal_period`, or `pitch` and `lines`, is wanted"}},
+          .about = "The study's regression through a pulse injector, edge by edge (docs/injector.md)."};
+}
+
 AxisLoopSettings read_axis_loop(const ConfigMap& in, const AxisLoopContext& context) {
   AxisLoopSettings s;
   s.where = in.where();
   AxisLoop& loop = s.loop;
   s.displacement = in.choice("displacement", context.displacements, context.target);
-  loop.feedback = in.choice("feedback", {"motor", "scale"}, "motor") == "motor" ? Feedback::kMotor : Feedback::kScale;
+  loop.feedback = in.choice("feedback") == "motor" ? Feedback::kMotor : Feedback::kScale;
   read_encoder(in, loop.encoder, context.encoder_period_um);
   loop.injector = read_injector(in);
   if (const auto servo = in.optional_map("servo")) loop.servo = read_servo(*servo);
   if (const auto motion = in.optional_map("motion")) loop.motion = read_motion(*motion);
-  loop.sampling_s = in.quantity("sampling", "s", 1e-3, 1e6, loop.sampling_s);
-  loop.thermometers.noise_K = in.quantity("temperature_noise", "K", 0.0, 100.0, 0.0);
-  loop.thermometers.resolution_K = in.quantity("temperature_resolution", "K", 0.0, 100.0, context.sensor_resolution_K);
-  loop.hysteresis_um = in.quantity("hysteresis", "um", 0.0, 1e6, 0.0);
-  loop.seed = static_cast<std::uint64_t>(in.integer("seed", 0, 1'000'000'000, 1));
+  loop.sampling_s = in.quantity("sampling");
+  loop.thermometers.noise_K = in.quantity("temperature_noise");
+  loop.thermometers.resolution_K = in.quantity("temperature_resolution", context.sensor_resolution_K);
+  loop.hysteresis_um = in.quantity("hysteresis");
+  loop.seed = static_cast<std::uint64_t>(in.integer("seed"));
   loop.encoder.seed = loop.seed;
   if (const auto growth = in.optional_map("growth")) {
-    loop.growing_part = growth->choice("of", {"screw", "scale"}) == "screw" ? GrowingPart::kScrew : GrowingPart::kScale;
+    loop.growing_part = growth->choice("of") == "screw" ? GrowingPart::kScrew : GrowingPart::kScale;
     loop.growing_channel = growth->choice("sensor", context.sensors);
-    loop.expansion_1_K = growth->quantity("expansion", "1/K", -1e-3, 1e-3);
-    loop.at_um = growth->quantity("at", "um", -1e9, 1e9);
+    loop.expansion_1_K = growth->quantity("expansion");
+    loop.at_um = growth->quantity("at");
     growth->reject_unknown_keys();
   }
   constexpr double kMostSamples = 1e6, kMostEdges = 3e8;

@@ -25,6 +25,8 @@ struct AxisLoopContext {
   double duration_s = 0.0;           ///< of the judged cyclogram
 };
 
+/// What the key `axis_loop` may hold.
+[[nodiscard]] schema::Map axis_loop_schema();
 /// @throws InputError  file, line and key; also where the run would be too long to simulate
 [[nodiscard]] AxisLoopSettings read_axis_loop(const ConfigMap& in, const AxisLoopContext& context);
 

@@ -15,17 +15,13 @@ constexpr int kMostColumns = 100000, kMostLines = 1000000;
 
 char read_separator(const ConfigMap& in) {
   if (!in.has("separator")) return '\0';
-  const std::string text = in.choice("separator", {";", ",", "|", "tab", "blank"});
+  const std::string text = in.choice("separator");
   return text == "tab" ? '\t' : text == "blank" ? ' ' : text.front();
 }
 
-/// The column that a map names by `column` or `position`; `kind` says whose.
-ColumnPlace read_place(const ConfigMap& in, const std::string& kind, bool has_header) {
-  if (in.has("column") == in.has("position"))
-    in.fail(in.has("column") ? "position" : "column",
-            fmt::format("either `column` (a name) or `position` (from 1) of the {} is wanted", kind));
-  if (in.has("position"))
-    return {.name = "", .position = in.integer("position", 1, kMostColumns), .where = in.where("position")};
+/// The column that a map names by `column` or `position`.
+ColumnPlace read_place(const ConfigMap& in, bool has_header) {
+  if (in.has("position")) return {.name = "", .position = in.integer("position"), .where = in.where("position")};
   if (!has_header) in.fail("column", "without a header columns have no names; `position` (from 1) is wanted");
   return {.name = in.text("column"), .position = 0, .where = in.where("column")};
 }
@@ -37,16 +33,16 @@ void read_header(const ConfigMap& in, ColumnMap& map) {
     return;
   }
   map.header = ColumnMap::Header::kAtLine;
-  map.header_line = in.integer("header_line", 1, kMostLines);
+  map.header_line = in.integer("header_line");
 }
 
 TimeColumns read_time(const ConfigMap& in, bool has_header) {
   TimeColumns time;
   if (in.has("interval")) {
-    for (const char* key : {"column", "position", "unit", "format", "zone", "milliseconds"}) {
+    for (const char* key : {"unit", "format", "zone", "milliseconds"}) {
       if (in.has(key)) in.fail(key, "`interval` counts rows; no column tells the time then");
     }
-    time.interval_s = in.quantity("interval", "s", 1e-9, 1e7);
+    time.interval_s = in.quantity("interval");
     in.reject_unknown_keys();
     return time;
   }
@@ -54,9 +50,8 @@ TimeColumns read_time(const ConfigMap& in, bool has_header) {
     if (!has_header) in.fail("column", "without a header columns have no names; `position` (from 1) is wanted");
     for (const std::string& name : in.texts("column"))
       time.columns.push_back({.name = name, .position = 0, .where = in.where("column")});
-    if (time.columns.empty()) in.fail("column", "at least one column is wanted");
   } else {
-    time.columns.push_back(read_place(in, "time", has_header));
+    time.columns.push_back(read_place(in, has_header));
   }
   if (in.has("unit")) {
     for (const char* key : {"format", "zone", "milliseconds"}) {
@@ -93,32 +88,78 @@ TimeColumns read_time(const ConfigMap& in, bool has_header) {
 MappedChannel read_channel(const ConfigMap& in, const std::string& name, bool has_header) {
   MappedChannel channel;
   channel.name = name;
-  channel.column = read_place(in, "channel", has_header);
+  channel.column = read_place(in, has_header);
   channel.written_unit = in.text("unit");
   try {
     channel.unit = record_unit(channel.written_unit);
   } catch (const RangeError& e) {
     in.fail("unit", e.what());
   }
-  channel.factor = in.quantity("factor", "1", -1e12, 1e12, 1.0);
+  channel.factor = in.quantity("factor");
   if (channel.factor == 0.0) in.fail("factor", "0 would make every reading 0");
   if (in.has("offset")) {
     const bool is_temperature = has_offset(channel.written_unit);
     const std::string unit = is_temperature ? "K" : channel.written_unit;
-    channel.offset = in.quantity("offset", unit, -1e12, 1e12) * unit_factor(unit, channel.written_unit);
+    channel.offset = in.quantity_in("offset", unit) * unit_factor(unit, channel.written_unit);
   }
-  channel.magnitude = in.choice("magnitude", {"true", "false"}, "false") == "true";
+  channel.magnitude = in.flag("magnitude");
   in.reject_unknown_keys();
   return channel;
 }
 
 }  // namespace
 
+schema::Map columns_schema() {
+  using namespace schema;
+  const auto position = [] { return schema::optional("position", integer(1, kMostColumns), "or: its number, from 1"); };
+  const schema::Map time = {
+      .name = "columns, time",
+      .keys = {schema::optional("column", Ways{text(), list(text(), 1)},
+                                "its name in the header; several (date, time of day) are joined"),
+               position(),
+               schema::optional("interval", quantity("s", 1e-9, 1e7), "or: time from row to row, where no column tells it"),
+               schema::optional("unit", text(), "of a time that is a number"),
+               schema::optional("format", text(), Said{"found by itself"}, "of a time that is a stamp"),
+               schema::optional("zone", text(), Said{"clocks do not change"},
+                                "time zone of the stamps, such as Europe/Prague"),
+               schema::optional("milliseconds", text(), "column that has them apart from the stamp")},
+      .groups = {{Group::Rule::kExactlyOne,
+                  {"column", "position", "interval"},
+                  "one of `column` (a name), `position` (from 1) and `interval` is wanted for the time"}}};
+  const schema::Map channel = {
+      .name = "columns, channels",
+      .keys = {schema::optional("column", text(), "its name in the header"), position(),
+               compulsory("unit", text(), "that its numbers are in; what records carry is converted"),
+               schema::optional("factor", quantity("1", -1e12, 1e12), 1.0, "on its numbers, not 0"),
+               schema::optional("offset", quantity("", -1e12, 1e12), Said{"0"},
+                                "added behind the factor; in its unit, of a temperature in K"),
+               schema::optional("magnitude", flag(), "false", "true: without its sign")},
+      .groups = {{Group::Rule::kExactlyOne,
+                  {"column", "position"},
+                  "either `column` (a name) or `position` (from 1) of the channel is wanted"}},
+      .about = "A channel of the record, by its name without unit."};
+  const schema::Map channels = {
+      .name = "columns, channels by name",
+      .others = {schema::optional("channel", schema::map(channel), "where it is and what it is in")}};
+  return {.name = "columns",
+          .keys = {schema::optional("separator", choice({";", ",", "|", "tab", "blank"}), Said{"found by itself"},
+                                    "between cells"),
+                   schema::optional("decimal", choice({".", ","}), ".", "sign of numbers"),
+                   schema::optional("header_line", Ways{integer(1, kMostLines), choice({"none"})}, Said{"found by itself"},
+                                    "line of the header, or `none`"),
+                   schema::optional("end", text(), Said{"the end of the file"},
+                                    "what the first line behind the data begins with"),
+                   schema::optional("missing", list(text()), "words that stand for a missing value"),
+                   compulsory("time", schema::map(time), "which columns tell it"),
+                   compulsory("channels", schema::map(channels), "by name: which columns become channels")},
+          .about = "How records are written where a logger wrote them (docs/record.md)."};
+}
+
 ColumnMap read_columns(const ConfigMap& in) {
   ColumnMap map;
   map.where = in.where();
   map.separator = read_separator(in);
-  map.decimal = in.choice("decimal", {".", ","}, ".").front();
+  map.decimal = in.choice("decimal").front();
   read_header(in, map);
   map.end = in.text("end", "");
   if (in.has("missing")) map.missing = in.texts("missing");

@@ -6,6 +6,8 @@
 
 namespace driftwright::scenarios {
 
+/// What the key `columns` may hold.
+[[nodiscard]] schema::Map columns_schema();
 /// @throws InputError  file, line and key, for units that no record carries, channels named twice, a time that is told in no way or in two,
 ///                     columns by position where a header names them, or by name where there is none
 [[nodiscard]] ColumnMap read_columns(const ConfigMap& in);

@@ -69,14 +69,15 @@ struct RowColumns {
 std::vector<Cyclogram::Section> sections_of_rows(const ConfigMap& in, const std::string& key, const RowColumns& columns,
                                                  std::vector<Cyclogram::Column>& further) {
   const std::vector<const Column*>& given = columns.drive;
-  std::vector<std::string> units = {"s"};
+  std::vector<schema::Value> entries = {schema::quantity("s")};
   std::size_t n_drive = 0;
   for (std::size_t i = 0; i < columns.is_further.size(); ++i)
-    units.push_back(columns.is_further[i] ? columns.further[i - n_drive].quantity_unit() : given[n_drive++]->unit);
+    entries.push_back(
+        schema::quantity(columns.is_further[i] ? columns.further[i - n_drive].quantity_unit() : given[n_drive++]->unit));
   for (const FurtherColumn& f : columns.further) further.push_back({f.name, f.unit, {}});
   double start_s = 0.0;
   std::vector<Cyclogram::Section> sections;
-  for (const std::vector<double>& row : in.rows(key, units)) {
+  for (const std::vector<double>& row : in.rows(key, entries)) {
     if (!(row[0] >= kShortest_s))
       in.fail(key, fmt::format("a section of {:g} s; a duration above zero is wanted, 1 ms or more", row[0]));
     Cyclogram::Section section{row[0], {}};
@@ -136,8 +137,8 @@ RowColumns row_columns(const ConfigMap& in) {
 
 void read_nc_cyclogram(const ConfigMap& in, Cyclogram& cyclogram) {
   const NcProgram program = read_nc_program(beside(in, "nc_program"), read_nc_settings(in));
-  const double resolution_s = in.quantity("resolution", "s", 0.0, 1e6, 10.0);
-  const double cutting_power_W = in.quantity("cutting_power", "W", 0.0, kMostPower_W, 0.0);
+  const double resolution_s = in.quantity("resolution");
+  const double cutting_power_W = in.quantity("cutting_power");
   try {
     cyclogram = cyclogram_of(program, cyclogram.name, resolution_s, cutting_power_W);
   } catch (const InputError& e) {
@@ -167,6 +168,52 @@ void repeat_columns(Cyclogram& cyclogram, int times) {
 
 }  // namespace
 
+std::vector<schema::Key> nc_keys() {
+  using namespace schema;
+  return {schema::optional("rapid", quantity("m/s", 1e-6, kMostFeed_m_s),
+                           "speed of rapids along their line; compulsory for programs with rapids"),
+          schema::optional("tool_change", quantity("s", 0.0, 3600.0), "time of M6; compulsory for programs with M6"),
+          schema::optional("dwell_unit", choice({"s", "ms"}), "s",
+                           "of P with G4 and in canned cycles: s (LinuxCNC) or ms (Fanuc)"),
+          schema::optional("machine_zero", schema::vector3("m"),
+                           "in the coordinates of the program; compulsory with G28, G30, G53"),
+          schema::optional("ignore", list(text()), "G and M words to pass over, with P, Q, R, L, E of their block"),
+          schema::optional("resolution", quantity("s", 0.0, 1e6), 10.0,
+                           "moves shorter than this are merged into sections with their mean feeds"),
+          schema::optional("cutting_power", quantity("W", 0.0, kMostPower_W), 0.0,
+                           "at the edge during every feed move with the spindle turning, cuts in the air too")};
+}
+
+schema::Map cyclograms_schema() {
+  using namespace schema;
+  const auto repeat = [] {
+    return schema::optional("repeat", integer(1, kMostRepeats), 1, "how many times, one after another");
+  };
+  const schema::Map rows_map = {
+      .name = "cyclograms, rows",
+      .keys = {compulsory("rows", list(list(quantity("")), 1), "one of each section, as `columns` names them"),
+               compulsory("columns", list(text(), 1),
+                          "duration first, then any of speed, feed_x, feed_y, feed_z, cutting_power, and further ones with "
+                          "a unit (heater_W)"),
+               repeat()},
+      .when_key = "rows"};
+  const schema::Map csv = {.name = "cyclograms, csv",
+                           .keys = {compulsory("csv", text(), "a record, relative to the scenario"),
+                                    schema::optional("columns", schema::map(columns_schema()),
+                                                     "how the file is written, where a logger wrote it"),
+                                    repeat()},
+                           .when_key = "csv"};
+  schema::Map nc = {.name = "cyclograms, nc_program",
+                    .keys = {compulsory("nc_program", text(), "an NC program, relative to the scenario"), repeat()},
+                    .when_key = "nc_program"};
+  for (Key& key : nc_keys()) nc.keys.push_back(std::move(key));
+  return {.name = "cyclograms",
+          .others = {schema::optional(
+              "cyclogram", Ways{schema::rows({quantity("s"), quantity("rpm")}), one_of({rows_map, csv, nc})},
+              "rows of [duration, speed]; or a map with further columns, a record or an NC program")},
+          .about = "What drives the machine (docs/cyclograms.md)."};
+}
+
 Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
   if (!is_name(name)) cyclograms.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", name));
   Cyclogram cyclogram{.name = name, .sections = {}};
@@ -175,13 +222,10 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
     return cyclogram;
   }
   const ConfigMap in = cyclograms.map(name);
-  const int n_kinds =
-      static_cast<int>(in.has("rows")) + static_cast<int>(in.has("csv")) + static_cast<int>(in.has("nc_program"));
-  if (n_kinds != 1)
-    cyclograms.fail(name, "a cyclogram is a list of [duration, speed], or a map with one of the keys rows, csv, nc_program");
-  if (in.has("rows")) {
+  const std::string& kind = in.description().when_key;
+  if (kind == "rows") {
     cyclogram.sections = sections_of_rows(in, "rows", row_columns(in), cyclogram.columns);
-  } else if (in.has("csv")) {
+  } else if (kind == "csv") {
     std::optional<ColumnMap> columns;
     if (const auto map = in.optional_map("columns")) columns = read_columns(*map);
     Cyclogram recorded = run_of(read_record(beside(in, "csv"), columns).record, nullptr, {}, Reading::kPlan).cyclogram;
@@ -190,7 +234,7 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
   } else {
     read_nc_cyclogram(in, cyclogram);
   }
-  const int repeat = in.integer("repeat", 1, kMostRepeats, 1);
+  const int repeat = in.integer("repeat");
   in.reject_unknown_keys();
   if (static_cast<double>(repeat) * static_cast<double>(cyclogram.sections.size()) > kMostSections)
     in.fail("repeat",
@@ -203,11 +247,11 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
 
 NcSettings read_nc_settings(const ConfigMap& in) {
   NcSettings settings;
-  if (in.has("rapid")) settings.rapid_m_s = in.quantity("rapid", "m/s", 1e-6, kMostFeed_m_s);
-  if (in.has("tool_change")) settings.tool_change_s = in.quantity("tool_change", "s", 0.0, 3600.0);
-  settings.dwell_P_s = in.choice("dwell_unit", {"s", "ms"}, "s") == "s" ? 1.0 : 1e-3;
+  if (in.has("rapid")) settings.rapid_m_s = in.quantity("rapid");
+  if (in.has("tool_change")) settings.tool_change_s = in.quantity("tool_change");
+  settings.dwell_P_s = in.choice("dwell_unit") == "s" ? 1.0 : 1e-3;
   if (in.has("machine_zero")) {
-    const Eigen::Vector3d zero_m = in.vector3("machine_zero", "m");
+    const Eigen::Vector3d zero_m = in.vector3("machine_zero");
     settings.machine_zero_m = {zero_m[0], zero_m[1], zero_m[2]};
   }
   if (in.has("ignore")) {

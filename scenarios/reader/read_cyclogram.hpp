@@ -7,6 +7,11 @@
 
 namespace driftwright::scenarios {
 
+/// What the map `cyclograms` may hold.
+[[nodiscard]] schema::Map cyclograms_schema();
+/// The keys of a map about an NC program: those of read_nc_settings(), resolution and cutting_power.
+[[nodiscard]] std::vector<schema::Key> nc_keys();
+
 /// The cyclogram `name` of the map `cyclograms`. Paths in it are relative to the folder of the scenario.
 /// @throws InputError  file, line and column of the scenario, the CSV or the NC program
 [[nodiscard]] Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name);

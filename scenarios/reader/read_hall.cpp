@@ -11,9 +11,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-bool is_hall_temperature(double temperature_K) {
-  return temperature_K >= 200.0 && temperature_K <= 400.0;
-}
+constexpr double kColdestHall_K = 200.0, kHottestHall_K = 400.0;
 
 TimeSeries of_record(const ConfigMap& in, double reference_K) {
   const auto path = std::filesystem::path(in.file()).parent_path() / in.text("csv");  // an absolute path stays
@@ -24,7 +22,8 @@ TimeSeries of_record(const ConfigMap& in, double reference_K) {
   in.reject_unknown_keys();
   if (channel.unit != "degC") in.fail("channel", fmt::format("{} is no temperature in degC", channel.header()));
   for (std::size_t i = 0; i < record.n_samples(); ++i) {
-    if (!is_hall_temperature(channel.values[i] + kZeroCelsius_K)) {
+    const double T_K = channel.values[i] + kZeroCelsius_K;
+    if (!(T_K >= kColdestHall_K && T_K <= kHottestHall_K)) {
       throw InputError(fmt::format("{}: {} is missing or outside -73 to 127 degC at {:g} s", record.source, channel.header(),
                                    record.time_s[i]));
     }
@@ -36,15 +35,24 @@ TimeSeries of_record(const ConfigMap& in, double reference_K) {
 
 }  // namespace
 
+schema::Key hall_key() {
+  using namespace schema;
+  const schema::Map record = {.name = "hall",
+                              .keys = {compulsory("csv", text(), "a record, relative to the scenario"),
+                                       compulsory("channel", text(), "its channel in degC, without the unit"),
+                                       schema::optional("columns", schema::map(columns_schema()),
+                                                        "how the file is written, where a logger wrote it")},
+                              .about = "The hall's temperature from a record."};
+  return compulsory(
+      "hall", Ways{rows({quantity("s"), temperature(kColdestHall_K, kHottestHall_K)}), schema::map(record)},
+      "air of the hall: rows of [time, temperature], linear between and constant outside, or a record (docs/cyclograms.md)");
+}
+
 TimeSeries read_hall(const ConfigMap& in, double reference_K) {
   if (in.is_map("hall")) return of_record(in.map("hall"), reference_K);
   TimeSeries hall;
-  for (const std::vector<double>& row : in.rows("hall", {"s", "degC"})) {
+  for (const std::vector<double>& row : in.rows("hall")) {
     if (!hall.time_s.empty() && !(row[0] > hall.time_s.back())) in.fail("hall", "times must increase from row to row");
-    if (!is_hall_temperature(row[1])) {
-      in.fail("hall",
-              fmt::format("{:.0f} degC is no hall temperature; -73 to 127 degC is allowed", row[1] - kZeroCelsius_K));
-    }
     hall.time_s.push_back(row[0]);
     hall.value.push_back(row[1] - reference_K);
   }

@@ -6,6 +6,8 @@
 
 namespace driftwright::scenarios {
 
+/// The key `hall`.
+[[nodiscard]] schema::Key hall_key();
 /// The key `hall` of `in`: rows of [time, temperature], or a map {csv, channel} with a path relative to the scenario's
 /// folder and a channel in degC. Values are minus reference_K [K].
 /// @throws InputError  for times that do not increase, temperatures outside 200 K to 400 K, missing values and channels

@@ -1,59 +1,63 @@
 #include "scenarios/reader/read_mechanics.hpp"
 
-#include <fmt/format.h>
-
 namespace driftwright::scenarios {
 namespace {
 
 /// Softer springs drown in the rounding of the machine's own stiffness, stiffer ones drown it.
 constexpr double kSoftest_N_m = 1e3, kStiffest_N_m = 1e13;
 
-void check_stiffness(const ConfigMap& in, const std::string& key, double stiffness_N_m) {
-  if (stiffness_N_m == 0.0 || (stiffness_N_m >= kSoftest_N_m && stiffness_N_m <= kStiffest_N_m)) return;
-  in.fail(key, fmt::format("{:g} N/m lies outside what is allowed, 0 N/m or {:g} to {:g} N/m", stiffness_N_m, kSoftest_N_m,
-                           kStiffest_N_m));
-}
-
-double read_stiffness_N_m(const ConfigMap& in, const std::string& key) {
-  const double stiffness_N_m = in.quantity(key, "N/m", -kNoLimit, kNoLimit);
-  check_stiffness(in, key, stiffness_N_m);
-  return stiffness_N_m;
-}
-
-bool is_ring(const ConfigMap& in) {
-  const bool axis = in.has("axis"), axial = in.has("axial_stiffness"), radial = in.has("radial_stiffness");
-  return axis || axial || radial;
-}
-
-bool has_normal_springs(const ConfigMap& in) {
-  const bool normal = in.has("normal_stiffness"), tangential = in.has("tangential_stiffness");
-  return normal || tangential;
+schema::Value stiffness() {
+  return schema::quantity_or_zero("N/m", kSoftest_N_m, kStiffest_N_m);
 }
 
 }  // namespace
 
+schema::Map support_schema() {
+  using namespace schema;
+  return {
+      .name = "supports",
+      .keys = {compulsory("surface", text(), "of the mesh; one surface may have several supports"),
+               schema::optional("fixed", list(choice({"x", "y", "z"})), "axes along which it does not move"),
+               schema::optional("sliding", flag(), "true: it does not move along its normal; plane or curved"),
+               schema::optional("springs", row({stiffness(), stiffness(), stiffness()}),
+                                "stiffness of the whole surface along x, y, z; 0 N/m: none")},
+      .groups = {{Group::Rule::kAtLeastOne,
+                  {"fixed", "sliding", "springs"},
+                  "how is this surface held? `fixed: [x, y, z]`, `sliding: true` or `springs: [kx, ky, kz]` is wanted"}}};
+}
+
+schema::Map joint_schema() {
+  using namespace schema;
+  return {
+      .name = "joints",
+      .keys = {compulsory("name", text(), "of the joint, as `column/knee`"),
+               schema::optional("mechanics", choice({"tied", "sliding", "none"}),
+                                "what the joint passes on; joints that are not listed are tied"),
+               schema::optional("normal_stiffness", stiffness(),
+                                "of a guideway or bolted joint: force per opening, of the whole joint"),
+               schema::optional("tangential_stiffness", stiffness(), "the same along the joint"),
+               schema::optional("axis", choice({"x", "y", "z"}), "of a ring, such as a bearing"),
+               schema::optional("axial_stiffness", stiffness(), "of the ring, along its axis; 0 N/m: a floating bearing"),
+               schema::optional("radial_stiffness", stiffness(), "of the ring: force per sideways displacement")},
+      .groups = {
+          {Group::Rule::kExactlyOne,
+           {"mechanics", "normal_stiffness", "axis"},
+           "one of `mechanics: tied | sliding | none`, `normal_stiffness` with `tangential_stiffness`, and `axis` with "
+           "`axial_stiffness` and `radial_stiffness` is wanted"},
+          {Group::Rule::kAllOrNone, {"normal_stiffness", "tangential_stiffness"}, "both are wanted"},
+          {Group::Rule::kAllOrNone, {"axis", "axial_stiffness", "radial_stiffness"}, "all three are wanted"}}};
+}
+
 SupportEntry read_support(const ConfigMap& in) {
   SupportEntry entry{{in.text("surface"), {false, false, false}}, in.where("surface")};
   solver::Support& support = entry.support;
-  const bool has_fixed = in.has("fixed"), has_sliding = in.has("sliding"), has_springs = in.has("springs");
-  if (!has_fixed && !has_sliding && !has_springs) {
-    in.fail("surface", "how is this surface held? `fixed: [x, y, z]`, `sliding: true` or `springs: [kx, ky, kz]` is wanted");
+  if (in.has("fixed")) {
+    for (const std::string& direction : in.texts("fixed")) support.fixed[direction[0] - 'x'] = true;
   }
-  if (has_fixed) {
-    for (const std::string& direction : in.texts("fixed")) {
-      if (direction != "x" && direction != "y" && direction != "z") {
-        in.fail("fixed", fmt::format("'{}' is no direction; a list of x, y, z is wanted", direction));
-      }
-      support.fixed[direction[0] - 'x'] = true;
-    }
-  }
-  if (has_sliding) support.sliding = in.choice("sliding", {"true", "false"}) == "true";
-  if (has_springs) {
-    const Eigen::Vector3d springs_N_m = in.vector3("springs", "N/m");
-    for (int i = 0; i < 3; ++i) {
-      check_stiffness(in, "springs", springs_N_m[i]);
-      support.springs_N_m[i] = springs_N_m[i];
-    }
+  if (in.has("sliding")) support.sliding = in.flag("sliding");
+  if (in.has("springs")) {
+    const Eigen::Vector3d springs_N_m = in.vector3("springs");
+    for (int i = 0; i < 3; ++i) support.springs_N_m[i] = springs_N_m[i];
   }
   in.reject_unknown_keys();
   return entry;
@@ -62,19 +66,13 @@ SupportEntry read_support(const ConfigMap& in) {
 JointEntry read_joint(const ConfigMap& in) {
   JointEntry entry{{in.text("name"), {}}, in.where("name")};
   solver::JointKind& kind = entry.mechanics.kind;
-  const bool plain = in.has("mechanics"), springs = has_normal_springs(in), ring = is_ring(in);
-  if (plain + springs + ring != 1) {
-    in.fail("name",
-            "one of `mechanics: tied | sliding | none`, `normal_stiffness` with `tangential_stiffness`, and `axis` with "
-            "`axial_stiffness` and `radial_stiffness` is wanted");
-  }
-  if (springs) {
-    kind = solver::NormalSprings{read_stiffness_N_m(in, "normal_stiffness"), read_stiffness_N_m(in, "tangential_stiffness")};
-  } else if (ring) {
-    kind = solver::RingSprings{in.choice("axis", {"x", "y", "z"})[0] - 'x', read_stiffness_N_m(in, "axial_stiffness"),
-                               read_stiffness_N_m(in, "radial_stiffness")};
-  } else {
-    const std::string word = in.choice("mechanics", {"tied", "sliding", "none"});
+  const bool springs = in.has("normal_stiffness") && in.has("tangential_stiffness");
+  const bool ring = in.has("axis") && in.has("axial_stiffness") && in.has("radial_stiffness");
+  if (springs) kind = solver::NormalSprings{in.quantity("normal_stiffness"), in.quantity("tangential_stiffness")};
+  if (ring)
+    kind = solver::RingSprings{in.choice("axis")[0] - 'x', in.quantity("axial_stiffness"), in.quantity("radial_stiffness")};
+  if (in.has("mechanics")) {
+    const std::string word = in.choice("mechanics");
     if (word == "tied") kind = solver::Tied{};
     if (word == "sliding") kind = solver::Sliding{};
     if (word == "none") kind = solver::NoMechanics{};

@@ -18,6 +18,10 @@ struct JointEntry {
   Where where;
 };
 
+/// What an entry of `supports` and one of `joints` may hold.
+[[nodiscard]] schema::Map support_schema();
+[[nodiscard]] schema::Map joint_schema();
+
 /// {surface, fixed: [x, y, z]}, {surface, sliding: true}, {surface, springs: [kx, ky, kz]}; at least one of the three.
 /// @throws InputError
 [[nodiscard]] SupportEntry read_support(const ConfigMap& in);

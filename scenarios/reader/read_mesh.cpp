@@ -21,9 +21,24 @@ mesh::Mesh build(const LumpedMachine&) {
 
 }  // namespace
 
+schema::Value mesh_recipe_schema() {
+  using namespace schema;
+  schema::Map lumped = {.name = "machine (lumped)",
+                        .keys = {compulsory("generator", choice({"lumped"}),
+                                            "no mesh: nodes and links among the effects, no materials or supports")}};
+  std::vector<schema::Map> all = {mesh::imported_mesh_schema(), mesh::knee_mill_schema(), mesh::gantry_table_schema(),
+                                  lumped};
+  for (schema::Map& map : all) {
+    if (!map.when_key.empty()) continue;
+    map.when_key = "generator";
+    map.when_word = map.find("generator")->values.front().options.front();
+  }
+  return one_of(std::move(all));
+}
+
 MeshRecipe read_mesh_recipe(const ConfigMap& in) {
-  if (in.has("mesh")) return mesh::read_imported_mesh(in, std::filesystem::path(in.file()).parent_path().string());
-  const std::string generator = in.choice("generator", {"knee_mill", "gantry_table", "lumped"});
+  if (in.description().when_key == "mesh") return mesh::read_imported_mesh(in, std::filesystem::path(in.file()).parent_path().string());
+  const std::string generator = in.choice("generator");
   if (generator == "lumped") {
     in.reject_unknown_keys();
     return LumpedMachine{};

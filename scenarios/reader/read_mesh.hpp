@@ -16,6 +16,8 @@ struct LumpedMachine {};
 /// How the mesh comes about. A new generator or reader is a new alternative.
 using MeshRecipe = std::variant<mesh::KneeMill, mesh::GantryTable, mesh::ImportedMesh, LumpedMachine>;
 
+/// What the map `machine` may hold.
+[[nodiscard]] schema::Value mesh_recipe_schema();
 /// Reads the map `machine`: with the key `mesh` a file, relative to the scenario's folder, else a generator.
 /// @throws InputError
 [[nodiscard]] MeshRecipe read_mesh_recipe(const ConfigMap& in);

@@ -7,12 +7,25 @@
 namespace driftwright::scenarios {
 namespace {
 
+using namespace schema;
+
 int read_axis(const ConfigMap& in, const std::string& key) {
-  return in.choice(key, {"x", "y", "z"})[0] - 'x';
+  return in.choice(key)[0] - 'x';
+}
+
+Value axis() {
+  return choice({"x", "y", "z"});
+}
+
+Value point() {
+  return schema::map({.name = "points",
+                      .keys = {compulsory("region", text(), "that the point moves with"),
+                               compulsory("at", schema::vector3("m"), "moved onto the region by at most 5 mm")},
+                      .about = "A point on or in a region of the mesh."});
 }
 
 PointOnRegion read_point(const ConfigMap& in) {
-  PointOnRegion point{in.text("region"), in.vector3("at", "m"), in.where("at")};
+  PointOnRegion point{in.text("region"), in.vector3("at"), in.where("at")};
   in.reject_unknown_keys();
   return point;
 }
@@ -20,9 +33,9 @@ PointOnRegion read_point(const ConfigMap& in) {
 BySensitivity read_sensitivities(const ConfigMap& in) {
   BySensitivity by{.terms = {}, .where = in.where("sensitivities")};
   for (const ConfigMap& term : in.maps("sensitivities")) {
-    const bool is_node = !term.has("region");
+    const bool is_node = term.has("node");
     const effects::Body body = is_node ? effects::node(term.text("node")) : effects::region(term.text("region"));
-    by.terms.push_back({body, 1e-6 * term.quantity("sensitivity", "um/K", -1e6, 1e6)});
+    by.terms.push_back({body, 1e-6 * term.quantity("sensitivity")});
     term.reject_unknown_keys();
   }
   if (by.terms.empty()) {
@@ -36,7 +49,7 @@ BySensitivity read_sensitivities(const ConfigMap& in) {
 std::vector<DisplacementOutput> at_positions(const ConfigMap& in, const DisplacementOutput& base) {
   const int axis = read_axis(in, "axis");
   std::vector<DisplacementOutput> outputs;
-  for (double travel_m : in.quantities("at", "m")) {
+  for (double travel_m : in.quantities("at")) {
     DisplacementOutput output = base;
     output.points->travel_m = travel_m * Eigen::Vector3d::Unit(axis);
     output.name = fmt::format("{}_{}{:.0f}", base.name, "xyz"[axis], 1e3 * travel_m);
@@ -52,13 +65,64 @@ std::vector<DisplacementOutput> at_positions(const ConfigMap& in, const Displace
 
 }  // namespace
 
+schema::Map sensor_schema() {
+  return {.name = "sensors",
+          .keys = {compulsory("name", schema::name(), "of its channel"),
+                   schema::optional("region", text(), "of the mesh that it sits on"),
+                   schema::optional("at", schema::vector3("m"), "where on it; moved onto the region by at most 5 mm"),
+                   schema::optional("node", text(), "or: a lumped node, or `hall`")},
+          .groups = {{Group::Rule::kExactlyOne,
+                      {"node", "region"},
+                      "where does it sit? `region` and `at`, or `node`, is wanted"},
+                     {Group::Rule::kAllOrNone, {"region", "at"}, "both are wanted"}},
+          .about = "Thermometers."};
+}
+
+schema::Map displacement_schema() {
+  const schema::Map term = {
+      .name = "displacements, sensitivities",
+      .keys = {schema::optional("node", text(), "lumped node whose temperature it follows"),
+               schema::optional("region", text(), "or: region of the mesh, by its mean temperature"),
+               compulsory("sensitivity", quantity("um/K", -1e6, 1e6), "positive moves the tool along the axis")},
+      .groups = {{Group::Rule::kExactlyOne, {"node", "region"}, "one of `node` and `region` is wanted"}}};
+  const schema::Map positions = {.name = "displacements, positions",
+                                 .keys = {compulsory("axis", axis(), "that the table travels along"),
+                                          compulsory("at", list(quantity("m"), 1), "where it has travelled to")}};
+  return {
+      .name = "displacements",
+      .keys =
+          {compulsory("name", schema::name(), "of its channel"),
+           schema::optional("along", axis(), "the axis that it is measured along"),
+           schema::optional("tool", point(), "point of the tool"),
+           schema::optional("table", point(), Said{"the ground"}, "point that the indicator's stand moves and turns with"),
+           schema::optional(
+               "positions", schema::map(positions),
+               "one output for each place that the table has travelled to: the indicator then stands on another spot of it"),
+           schema::optional("sensitivities", schema::maps(term),
+                            "summed over T - T_reference, alone or beside what the points do (below)")},
+      .groups = {{Group::Rule::kAllOrNone, {"along", "tool"}, "both are wanted"},
+                 {Group::Rule::kAtLeastOne,
+                  {"along", "sensitivities"},
+                  "points (`along`, `tool`) or `sensitivities` are wanted"}},
+      .about = "Displacements of the tool against the table: actual - commanded."};
+}
+
+schema::Map tilt_schema() {
+  return {.name = "tilts",
+          .keys = {compulsory("name", schema::name(), "of its channel"),
+                   compulsory("about", axis(), "the axis that the line tilts about"),
+                   compulsory("from", point(), "where the line begins"), compulsory("to", point(), "where it ends"),
+                   compulsory("table", point(), "what it tilts against")},
+          .about = "Changes of the angle of a line against the table (ISO 230-3)."};
+}
+
 Sensor read_sensor(const ConfigMap& in) {
   Sensor sensor{.name = in.name("name"), .place = {}, .where = in.where()};
   if (in.has("node")) {
     sensor.place = in.text("node");
     sensor.where = in.where("node");
   } else {
-    sensor.place = PointOnRegion{in.text("region"), in.vector3("at", "m"), in.where("at")};
+    sensor.place = PointOnRegion{in.text("region"), in.vector3("at"), in.where("at")};
   }
   in.reject_unknown_keys();
   return sensor;
@@ -67,14 +131,14 @@ Sensor read_sensor(const ConfigMap& in) {
 std::vector<DisplacementOutput> read_displacements(const ConfigMap& in) {
   DisplacementOutput base{.name = in.name("name")};
   if (in.has("sensitivities")) base.by_sensitivity = read_sensitivities(in);
-  const bool has_points = in.has("along") || in.has("tool") || in.has("table") || in.has("positions");
+  const auto table = in.optional_map("table"), positions = in.optional_map("positions");
+  const bool has_points = in.has("along") || in.has("tool") || table || positions;
   if (base.by_sensitivity && !has_points) {
     in.reject_unknown_keys();
     return {base};
   }
   base.points = ToolAgainstTable{.axis = read_axis(in, "along"), .tool = read_point(in.map("tool")), .table = {}};
-  if (const auto table = in.optional_map("table")) base.points->table = read_point(*table);
-  const auto positions = in.optional_map("positions");
+  if (table) base.points->table = read_point(*table);
   if (positions && !base.points->table)
     in.fail("positions", "these are positions of the table; `table` says where it is in the mesh");
   in.reject_unknown_keys();

@@ -62,6 +62,11 @@ struct TiltOutput {
   PointOnRegion from, to, table;
 };
 
+/// What an entry of `sensors`, `displacements` and `tilts` may hold.
+[[nodiscard]] schema::Map sensor_schema();
+[[nodiscard]] schema::Map displacement_schema();
+[[nodiscard]] schema::Map tilt_schema();
+
 [[nodiscard]] Sensor read_sensor(const ConfigMap& in);
 /// One output, or with `positions` one per position of the table, named <name>_<axis><position in mm>.
 [[nodiscard]] std::vector<DisplacementOutput> read_displacements(const ConfigMap& in);

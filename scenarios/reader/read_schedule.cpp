@@ -39,19 +39,52 @@ ScheduleAxis read_axis(const ConfigMap& in, int axis, const std::vector<Displace
     }
     a.displacement = own.front();
   }
-  a.sign = in.choice("sign", {"+1", "1", "-1"}, "+1") == "-1" ? -1.0 : 1.0;
-  a.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, tolerance_um);
+  a.sign = in.choice("sign") == "-1" ? -1.0 : 1.0;
+  a.tolerance_um = in.quantity("tolerance", tolerance_um);
   in.reject_unknown_keys();
   return a;
 }
 
 }  // namespace
 
+schema::Map schedule_schema() {
+  using namespace schema;
+  const ScheduleSettings s;
+  std::vector<std::string> offsets;
+  for (const auto& [name, code] : kWorkOffsets) offsets.push_back(name);
+  const schema::Map axis = {
+      .name = "schedule, axes",
+      .keys = {schema::optional("displacement", text(), Said{"the only one along the axis"}, "whose drift is corrected"),
+               schema::optional("sign", choice({"+1", "1", "-1"}), "+1",
+                                "+1: the displacement counts in the axis's direction, -1: against it"),
+               schema::optional("tolerance", quantity("um", 1e-3, 1e6), Said{"that of `schedule`"},
+                                "a correction may be wrong by it")},
+      .about = "An axis of the program, under its letter."};
+  schema::Map axes = {.name = "schedule, axes by letter"};
+  for (const std::string& letter : kLetters)
+    axes.keys.push_back(schema::optional(letter, schema::map(axis), "how this axis is corrected"));
+  schema::Map map = {
+      .name = "schedule",
+      .keys = {schema::optional("axes", schema::map(axes), Said{"each along which one displacement is"},
+                                "that are corrected"),
+               schema::optional("tolerance", quantity("um", 1e-3, 1e6), Said{"that of `study`"},
+                                "a correction may be wrong by it"),
+               schema::optional("policy", choice(kSchedulePolicies), s.policy.c_str(),
+                                "`paper`: steps of the tolerance; `minimal`: fewest changes"),
+               schema::optional("dialect", choice(kScheduleDialects), s.dialect.c_str(), "that corrections are written in"),
+               schema::optional("work_offset", choice(offsets), "G54", "that the program runs in"),
+               compulsory("base_offset", schema::vector3("m"), "what the work offset holds without corrections"),
+               schema::optional("drift_from", choice({"reference", "start"}), "reference", "what the drift counts from")},
+      .about = "Corrections written into an NC program (docs/schedule.md)."};
+  for (Key& key : nc_keys()) map.keys.push_back(std::move(key));
+  return map;
+}
+
 ScheduleSettings read_schedule(const ConfigMap& in, const std::vector<DisplacementOutput>& displacements,
                                double tolerance_um) {
   ScheduleSettings s;
   s.where = in.where();
-  tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, tolerance_um);
+  tolerance_um = in.quantity("tolerance", tolerance_um);
   if (const auto axes = in.optional_map("axes")) {
     for (int axis = 0; axis < 3; ++axis) {
       if (const auto entry = axes->optional_map(kLetters[axis]))
@@ -70,17 +103,15 @@ ScheduleSettings read_schedule(const ConfigMap& in, const std::vector<Displaceme
   }
   if (s.axes.empty())
     in.fail("axes", "no axis to correct; a map such as {z: {displacement: nose_z, sign: +1, tolerance: 10 um}} is wanted");
-  s.policy = in.choice("policy", kSchedulePolicies, s.policy);
-  s.dialect = in.choice("dialect", kScheduleDialects, s.dialect);
-  std::vector<std::string> offsets;
-  for (const auto& [name, code] : kWorkOffsets) offsets.push_back(name);
-  s.work_offset = kWorkOffsets.at(in.choice("work_offset", offsets, "G54"));
-  const Eigen::Vector3d base_m = in.vector3("base_offset", "m");
+  s.policy = in.choice("policy");
+  s.dialect = in.choice("dialect");
+  s.work_offset = kWorkOffsets.at(in.choice("work_offset"));
+  const Eigen::Vector3d base_m = in.vector3("base_offset");
   s.base_offset_m = {base_m[0], base_m[1], base_m[2]};
-  s.from_start = in.choice("drift_from", {"reference", "start"}, "reference") == "start";
+  s.from_start = in.choice("drift_from") == "start";
   s.nc = read_nc_settings(in);
-  s.resolution_s = in.quantity("resolution", "s", 0.0, 1e6, s.resolution_s);
-  s.cutting_power_W = in.quantity("cutting_power", "W", 0.0, 1e9, s.cutting_power_W);
+  s.resolution_s = in.quantity("resolution");
+  s.cutting_power_W = in.quantity("cutting_power");
   in.reject_unknown_keys();
   return s;
 }

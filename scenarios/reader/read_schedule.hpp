@@ -34,6 +34,8 @@ struct ScheduleSettings {
   Where where;
 };
 
+/// What the key `schedule` may hold.
+[[nodiscard]] schema::Map schedule_schema();
 /// @param displacements  of the scenario's machine
 /// @param tolerance_um   where an axis has none of its own
 /// @throws InputError  file, line and key

@@ -16,7 +16,9 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr std::size_t kMostMembers = 1000000;
+constexpr int kMostMembers = 1000000;
+/// The keys of an entry of `vary` of which one says how it varies.
+const std::vector<std::string> kKinds = {"values", "from", "uniform", "log_uniform", "normal"};
 
 /// Where a value below a key of `in` stands.
 Where where_of(const ConfigMap& in, const std::string& key, const ConfigNode& node) {
@@ -76,8 +78,8 @@ void read_steps(const ConfigMap& in, Variation& v) {
   v.unit = first.unit;
   v.is_number = true;
   const double last = read_number_in_unit(in, "to", to, v);
-  const int n = in.integer("steps", 2, static_cast<int>(kMostMembers));
-  const bool is_log = in.choice("spacing", {"linear", "log"}, "linear") == "log";
+  const int n = in.integer("steps");
+  const bool is_log = in.choice("spacing") == "log";
   if (is_log && (has_offset(v.unit) || !(first.number > 0.0 && last > 0.0)))
     in.fail("from", "logarithmic steps want both ends above 0, and no degC");
   for (double number : is_log ? log_steps(first.number, last, n) : linear_steps(first.number, last, n))
@@ -132,7 +134,6 @@ std::string name_of_address(const std::string& address) {
 Variation read_variation(const ConfigMap& in, const ConfigNode& scenario, Design design) {
   Variation v;
   const std::vector<std::string> addresses = in.is_list("key") ? in.texts("key") : std::vector{in.text("key")};
-  if (addresses.empty()) in.fail("key", "no key to vary");
   for (const std::string& address : addresses) {
     v.places.push_back(find_address(scenario, address, in.where("key")));
     v.tops.push_back(scenario.keys[v.places.back()[0]].text);
@@ -140,28 +141,21 @@ Variation read_variation(const ConfigMap& in, const ConfigNode& scenario, Design
       in.fail("key", fmt::format("`{}` changes nothing that is simulated", v.tops.back()));
   }
   v.name = in.has("name") ? in.name("name") : name_of_address(addresses[0]);
-  const std::vector<std::string> kinds = {"values", "from", "uniform", "log_uniform", "normal"};
-  std::vector<std::string> given;
-  for (const std::string& kind : kinds) {
-    if (in.has(kind)) given.push_back(kind);
-  }
-  if (given.size() != 1)
-    in.fail("key", fmt::format("one of {} is wanted beside it{}", fmt::join(kinds, ", "),
-                               given.empty() ? "" : fmt::format(", not {}", fmt::join(given, " and "))));
-  v.written_at = in.value(given[0]);
-  if (given[0] == "values") {
+  const std::string kind = *std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& k) { return in.has(k); });
+  v.written_at = in.value(kind);
+  if (kind == "values") {
     read_values(in, v);
-  } else if (given[0] == "from") {
+  } else if (kind == "from") {
     read_steps(in, v);
-  } else if (given[0] == "normal") {
+  } else if (kind == "normal") {
     read_normal(in, v);
   } else {
-    read_range(in, given[0], v);
+    read_range(in, kind, v);
   }
   if (v.spread) v.is_number = true;
   if (v.spread && design != Design::kLatinHypercube)
-    in.fail(given[0], fmt::format("a distribution wants `design: latin_hypercube`; a list or grid wants `values`, or "
-                                  "`from`, `to` and `steps`"));
+    in.fail(kind, fmt::format("a distribution wants `design: latin_hypercube`; a list or grid wants `values`, or "
+                              "`from`, `to` and `steps`"));
   in.reject_unknown_keys();
   return v;
 }
@@ -202,12 +196,13 @@ void count_members(const ConfigMap& in, SweepPlan& plan) {
       plan.n_members = 1;
       for (std::size_t size : sizes) {
         plan.n_members *= size;
-        if (plan.n_members > kMostMembers) in.fail("design", fmt::format("the grid has more than {} members", kMostMembers));
+        if (plan.n_members > static_cast<std::size_t>(kMostMembers))
+          in.fail("design", fmt::format("the grid has more than {} members", kMostMembers));
       }
       break;
     case Design::kLatinHypercube: {
-      const int n = in.integer("samples", 1, static_cast<int>(kMostMembers));
-      const int seed = in.integer("seed", 0, 2147483647, 1);
+      const int n = in.integer("samples");
+      const int seed = in.integer("seed");
       plan.n_members = static_cast<std::size_t>(n);
       plan.samples = latin_hypercube(n, static_cast<int>(sizes.size()), static_cast<std::uint64_t>(seed));
       break;
@@ -232,7 +227,6 @@ std::vector<CollectedScalar> read_collect(const ConfigMap& in, const Scenario& s
   for (const auto& [name, unit] : channels) known.push_back(name);
   for (const auto& [name, scalar] : scalar_names()) scalars.push_back(name);
   wanted = in.has("collect") ? in.texts("collect") : known;
-  if (wanted.empty()) in.fail("collect", "nothing to collect");
   std::vector<CollectedScalar> of_each;
   for (const std::string& text : wanted) {
     const std::string channel = text.substr(0, text.find('.'));
@@ -270,7 +264,6 @@ std::vector<std::string> read_cyclograms(const ConfigMap& in, const Scenario& sc
   for (const Cyclogram& c : scenario.cyclograms) known.push_back(c.name);
   if (!in.has("cyclograms")) return known;
   const std::vector<std::string> names = in.texts("cyclograms");
-  if (names.empty()) in.fail("cyclograms", "no cyclogram to simulate");
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const std::string near = nearest_word(name, known);
@@ -280,13 +273,67 @@ std::vector<std::string> read_cyclograms(const ConfigMap& in, const Scenario& sc
   return names;
 }
 
+schema::Map variation_schema() {
+  using namespace schema;
+  const Value number = quantity("");
+  const schema::Map normal = {.name = "vary, normal",
+                              .keys = {compulsory("mean", number, "of the distribution"),
+                                       compulsory("sd", number, "its standard deviation; of a temperature in K")}};
+  return {.name = "vary",
+          .keys = {compulsory("key", Ways{text(), list(text(), 1)},
+                              "where in the scenario the value goes; several take the same"),
+                   schema::optional("name", schema::name(), Said{"made of the key"}, "of its column"),
+                   schema::optional("values", anything(), "a list of values, or a map of names to values, at least one"),
+                   schema::optional("from", number, "or: first of steps, both ends among them"),
+                   schema::optional("to", number, "last of them"),
+                   schema::optional("steps", integer(2, kMostMembers), "how many"),
+                   schema::optional("spacing", choice({"linear", "log"}), "linear", "of steps"),
+                   schema::optional("uniform", row({number, number}), "or, of a Latin hypercube: between two values"),
+                   schema::optional("log_uniform", row({number, number}), "the same for its logarithm"),
+                   schema::optional("normal", schema::map(normal), "or: about a mean")},
+          .groups = {{Group::Rule::kExactlyOne, kKinds,
+                      fmt::format("one of {} is wanted beside the key", fmt::join(kKinds, ", "))},
+                     {Group::Rule::kAllOrNone, {"from", "to", "steps"}, "all three are wanted"},
+                     {Group::Rule::kWantFirst, {"from", "spacing"}, "`spacing` goes with `from`, `to` and `steps`"}},
+          .about = "What varies."};
+}
+
 }  // namespace
+
+const std::vector<schema::Map>& sweep_schemas() {
+  using namespace schema;
+  static const std::vector<schema::Map> all = [] {
+    const schema::Map common = {
+        .name = "study",
+        .keys = {compulsory("name", schema::name(), "of the study; names the folder of results"),
+                 compulsory("scenario", text(), "its scenario, relative to the study"),
+                 compulsory(
+                     "design", choice({"list", "grid", "latin_hypercube"}),
+                     "`list`: values side by side, member by member; `grid`: each with each; `latin_hypercube`: samples"),
+                 compulsory("vary", list(schema::map(variation_schema()), 1), "what varies"),
+                 schema::optional("cyclograms", list(text(), 1), Said{"all of the scenario"},
+                                  "that are simulated for each member"),
+                 schema::optional("collect", list(text(), 1), Said{"every displacement, tilt and thermometer"},
+                                  "channels (for peak, time_of_peak and end) or `channel.scalar`")},
+        .when_key = "design",
+        .about = "Many variants of one scenario (docs/sweep.md)."};
+    schema::Map list = common, grid = common, hypercube = common;
+    list.when_word = "list";
+    grid.when_word = "grid";
+    hypercube.when_word = "latin_hypercube";
+    hypercube.name = "study (latin_hypercube)";
+    hypercube.keys.push_back(compulsory("samples", integer(1, kMostMembers), "how many members"));
+    hypercube.keys.push_back(schema::optional("seed", integer(0, 2147483647), 1, "of the samples"));
+    return std::vector{list, grid, hypercube};
+  }();
+  return all;
+}
 
 SweepPlan read_sweep_plan(const std::string& path) {
   SweepPlan plan;
   plan.path = path;
   plan.study = read_config_tree(path);
-  const ConfigMap in = ConfigMap::of_tree(plan.study);
+  const ConfigMap in = ConfigMap::of_tree(plan.study).described_by(sweep_schemas());
   plan.name = in.name("name");
   const auto scenario_path = std::filesystem::path(path).parent_path() / in.text("scenario");  // an absolute path stays
   if (!std::filesystem::is_regular_file(scenario_path))
@@ -294,10 +341,9 @@ SweepPlan read_sweep_plan(const std::string& path) {
   plan.scenario = read_config_tree(scenario_path.string());
   const std::map<std::string, Design> designs = {
       {"list", Design::kList}, {"grid", Design::kGrid}, {"latin_hypercube", Design::kLatinHypercube}};
-  plan.design = designs.at(in.choice("design", {"list", "grid", "latin_hypercube"}));
+  plan.design = designs.at(in.choice("design"));
 
   const std::vector<ConfigMap> entries = in.maps("vary");
-  if (entries.empty()) in.fail("vary", "nothing varies; a list of {key, values} is wanted");
   for (const ConfigMap& entry : entries) plan.variations.push_back(read_variation(entry, *plan.scenario, plan.design));
   count_members(in, plan);
 

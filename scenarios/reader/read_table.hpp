@@ -59,6 +59,9 @@ struct TableSettings {
   Where where;
 };
 
+/// What the key `table` may hold.
+[[nodiscard]] schema::Map table_schema();
+
 /// Points of the table that are judged, row by row along X, then the rings, then the head.
 [[nodiscard]] std::vector<Eigen::Vector3d> table_points(const TableSettings& table);
 

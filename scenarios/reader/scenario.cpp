@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "effects/effect_schema.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
@@ -15,23 +16,23 @@
 namespace driftwright::scenarios {
 namespace {
 
+const std::vector<std::string> kKnownRoughly = {"conductivity", "heat_capacity", "expansion"};
+
 /// `materials:` maps each region to a name of the library or to a map: of values, or of such a name and how well it is known.
 std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
-  std::vector<std::string> names;
-  for (const auto& [name, material] : solver::material_library()) names.push_back(name);
   std::vector<MaterialEntry> entries;
   for (const std::string& region : in.keys()) {
     MaterialEntry& entry = entries.emplace_back();
     entry.region = region;
     entry.where = in.where(region);
     if (!in.is_map(region)) {
-      entry.material = solver::material_library().at(in.choice(region, names));
+      entry.material = solver::material_library().at(in.choice(region));
       continue;
     }
     const ConfigMap values = in.map(region);
-    entry.known_to = effects::read_known_to(values, {"conductivity", "heat_capacity", "expansion"});
-    if (values.has("like")) {
-      entry.material = solver::material_library().at(values.choice("like", names));
+    entry.known_to = effects::read_known_to(values, kKnownRoughly);
+    if (values.description().when_key == "like") {
+      entry.material = solver::material_library().at(values.choice("like"));
       values.reject_unknown_keys();
     } else {
       entry.material = solver::read_material(values);
@@ -71,7 +72,7 @@ void read_start(const ConfigMap& in, MachineModel& m) {
     m.start = Start::kSteady;
   } else if (std::isdigit(static_cast<unsigned char>(text.front())) || text.find_first_of("+-.") == 0) {
     m.start = Start::kUniform;
-    m.start_K = in.temperature_K("start");
+    m.start_K = in.quantity("start");
   } else {
     in.fail("start", fmt::format("'{}' is no start; reference, hall, steady or a temperature is wanted", text));
   }
@@ -79,7 +80,7 @@ void read_start(const ConfigMap& in, MachineModel& m) {
 
 MachineModel read_machine(const ConfigMap& in) {
   MachineModel m;
-  m.reference_K = in.temperature_K("reference_temperature");
+  m.reference_K = in.quantity("reference_temperature");
   m.mesh = read_mesh_recipe(in.map("machine"));
   if (const auto materials = in.optional_map("materials")) m.materials = read_materials(*materials);
   for (const ConfigMap& entry : in.maps("supports")) m.supports.push_back(read_support(entry));
@@ -107,20 +108,18 @@ MachineModel read_machine(const ConfigMap& in) {
 
 SolverSettings read_solver(const ConfigMap& in) {
   SolverSettings s;
-  if (in.choice("model", {"full", "reduced"}, "full") == "reduced") s.model = ModelKind::kReduced;
-  s.reduction_tolerance_K = in.quantity("reduction_tolerance", "K", 1e-5, 1.0, s.reduction_tolerance_K);
-  s.transient.relative_tolerance = in.quantity("relative_tolerance", "1", 1e-10, 1e-1, s.transient.relative_tolerance);
-  s.transient.absolute_tolerance_K = in.quantity("absolute_tolerance", "K", 1e-9, 1.0, s.transient.absolute_tolerance_K);
-  s.output_interval_s = in.quantity("output_interval", "s", 1e-3, 1e6, s.output_interval_s);
-  s.fields_every_s = in.quantity("fields_every", "s", 1e-3, 1e9, s.fields_every_s);
+  if (in.choice("model") == "reduced") s.model = ModelKind::kReduced;
+  s.reduction_tolerance_K = in.quantity("reduction_tolerance");
+  s.transient.relative_tolerance = in.quantity("relative_tolerance");
+  s.transient.absolute_tolerance_K = in.quantity("absolute_tolerance");
+  s.output_interval_s = in.quantity("output_interval");
+  s.fields_every_s = in.quantity("fields_every");
   if (in.has("fields_at")) {
-    s.fields_at_s = in.quantities("fields_at", "s");
+    s.fields_at_s = in.quantities("fields_at");
     std::sort(s.fields_at_s.begin(), s.fields_at_s.end());
-    if (!(s.fields_at_s.front() >= 0.0)) in.fail("fields_at", "times from 0 s on are wanted");
-    if (in.has("fields_every")) in.fail("fields_at", "either `fields_at` or `fields_every` is wanted, not both");
   }
-  s.stresses = in.choice("stresses", {"true", "false"}, "false") == "true";
-  const std::string format = in.choice("fields_format", {"vtu", "xdmf", "none"}, "vtu");
+  s.stresses = in.flag("stresses");
+  const std::string format = in.choice("fields_format");
   s.fields_format = format == "none" ? FieldsFormat::kNone : format == "xdmf" ? FieldsFormat::kXdmf : FieldsFormat::kVtu;
   if (s.fields_format == FieldsFormat::kNone && (s.stresses || !s.fields_at_s.empty())) {
     in.fail("fields_format",
@@ -155,19 +154,19 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     if (std::count(s.candidates.begin(), s.candidates.end(), name) > 1)
       in.fail("candidates", fmt::format("'{}' stands there twice", name));
   }
-  const std::string image = in.choice("image", {"automatic", "initial_value", "mean_value", "range"}, "automatic");
+  const std::string image = in.choice("image");
   s.image = image == "initial_value" ? compensation::Image::kInitialValue
             : image == "mean_value"  ? compensation::Image::kMeanValue
             : image == "range"       ? compensation::Image::kRange
                                      : compensation::Image::kAutomatic;
-  s.count_from_start = in.choice("count_from_start", {"true", "false"}, "false") == "true";
-  s.sensors_to_choose = in.integer("sensors_to_choose", 1, 1000, s.sensors_to_choose);
-  s.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, s.tolerance_um);
-  s.encoder_period_um = in.quantity("encoder_period", "um", 1e-3, 1e6, s.encoder_period_um);
+  s.count_from_start = in.flag("count_from_start");
+  s.sensors_to_choose = in.integer("sensors_to_choose");
+  s.tolerance_um = in.quantity("tolerance");
+  s.encoder_period_um = in.quantity("encoder_period");
   if (scenario.machine) {
     s.train = in.texts("train");
     s.judge = in.text("judge");
-    s.thermal_modes = in.integer("thermal_modes", 1, 500, s.thermal_modes);
+    s.thermal_modes = in.integer("thermal_modes");
     std::vector<std::string> known;
     for (const Cyclogram& c : scenario.cyclograms) known.push_back(c.name);
     const auto must_know = [&](const char* key, const std::string& name) {
@@ -175,7 +174,6 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
         in.fail(key, fmt::format("no cyclogram '{}'; there are {}", name, fmt::join(known, ", ")));
       }
     };
-    if (s.train.empty()) in.fail("train", "no cyclogram to train on");
     for (const std::string& name : s.train) {
       must_know("train", name);
       if (std::count(s.train.begin(), s.train.end(), name) > 1)
@@ -193,7 +191,7 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     if (std::find(channels.begin(), channels.end(), s.target) == channels.end()) {
       in.fail("target", fmt::format("no displacement '{}'; there are {}", s.target, fmt::join(channels, ", ")));
     }
-    s.sensor_resolution_K = in.quantity("sensor_resolution", "K", 0.0, 10.0, s.sensor_resolution_K);
+    s.sensor_resolution_K = in.quantity("sensor_resolution");
     check_candidates(in, s, *scenario.machine);
   }
   in.reject_unknown_keys();
@@ -219,8 +217,7 @@ void check_columns(const ConfigMap& in, const ColumnMap& columns, const Study& s
 }
 
 AxisLoopSettings read_axis_loop_of(const ConfigMap& in, const ConfigMap& axis_loop, const Scenario& scenario) {
-  if (!scenario.machine || !scenario.study)
-    in.fail("axis_loop", "an axis is corrected by what a `study` of a machine has learned");
+  if (!scenario.study) in.fail("axis_loop", "an axis is corrected by what a `study` of a machine has learned");
   AxisLoopContext context{.target = scenario.study->target,
                           .sensor_resolution_K = scenario.study->sensor_resolution_K,
                           .encoder_period_um = scenario.study->encoder_period_um,
@@ -228,6 +225,145 @@ AxisLoopSettings read_axis_loop_of(const ConfigMap& in, const ConfigMap& axis_lo
   for (const DisplacementOutput& d : scenario.machine->displacements) context.displacements.push_back(d.name);
   for (const Sensor& s : scenario.machine->sensors) context.sensors.push_back(s.name);
   return read_axis_loop(axis_loop, context);
+}
+
+schema::Map materials_schema() {
+  using namespace schema;
+  std::vector<std::string> names;
+  for (const auto& [name, material] : solver::material_library()) names.push_back(name);
+  const Key known_to = effects::known_to_key(kKnownRoughly);
+  const schema::Map like = {.name = "materials, like one of the library",
+                            .keys = {compulsory("like", choice(names), "of the library (docs/materials.md)"), known_to},
+                            .when_key = "like"};
+  schema::Map values = solver::material_schema();
+  values.name = "materials, by values";
+  values.keys.push_back(known_to);
+  return {.name = "materials",
+          .others = {schema::optional("region", Ways{choice(names), one_of({like, values})},
+                                      "a material of the library, or a map: as one of it, or by values")}};
+}
+
+schema::Map solver_schema() {
+  using namespace schema;
+  const SolverSettings s;
+  return {
+      .name = "solver",
+      .keys =
+          {schema::optional("model", choice({"full", "reduced"}), "full",
+                            "what cyclograms are run on; `reduced`: docs/reduced_model.md"),
+           schema::optional("reduction_tolerance", quantity("K", 1e-5, 1.0), s.reduction_tolerance_K,
+                            "of the reduced model against the full one"),
+           schema::optional("relative_tolerance", quantity("1", 1e-10, 1e-1), s.transient.relative_tolerance,
+                            "of the integration in time"),
+           schema::optional("absolute_tolerance", quantity("K", 1e-9, 1.0), s.transient.absolute_tolerance_K, "the same"),
+           schema::optional("output_interval", quantity("s", 1e-3, 1e6), s.output_interval_s,
+                            "between two rows of a record"),
+           schema::optional("fields_every", quantity("s", 1e-3, 1e9), s.fields_every_s,
+                            "between two written fields; start and end are written in any case"),
+           schema::optional("fields_at", list(quantity("s", 0.0), 1), "or: the times of fields"),
+           schema::optional("stresses", flag(), "false", "true: stresses beside the other fields (docs/outputs.md)"),
+           schema::optional(
+               "fields_format", choice({"vtu", "xdmf", "none"}), "vtu",
+               "`vtu`: open `fields.pvd`; `xdmf`: open `fields.xdmf`, for more than about 100 times; `none`: no fields, and "
+               "without `displacements` and `tilts` no elasticity is computed")},
+      .groups = {{Group::Rule::kAtMostOne,
+                  {"fields_every", "fields_at"},
+                  "either `fields_at` or `fields_every` is wanted, not both"}}};
+}
+
+/// @param of_machine  its cyclograms are simulated; else it is about records alone
+schema::Map study_schema(bool of_machine) {
+  using namespace schema;
+  const Study s;
+  schema::Map map = {.name = of_machine ? "study" : "study (of records alone)",
+                     .keys = {compulsory("target", text(), "displacement that ranking and verdict are about")},
+                     .about = "What is fitted and what it is judged by."};
+  if (of_machine) {
+    map.keys.push_back(compulsory("train", list(text(), 1), "cyclograms that are fitted on"));
+    map.keys.push_back(
+        compulsory("judge", text(), "cyclogram that is judged on; none of `train`, under another name either"));
+    map.keys.push_back(schema::optional("sensor_resolution", quantity("K", 0.0, 10.0), s.sensor_resolution_K,
+                                        "step of the thermometers' readings; 0: exact"));
+    map.keys.push_back(schema::optional("thermal_modes", integer(1, 500), s.thermal_modes, "that are computed"));
+  }
+  for (Key& key : std::vector<Key>{
+           schema::optional("candidates", list(text()), Said{"all"}, "temperature channels to choose from"),
+           schema::optional("sensors_to_choose", integer(1, 1000), s.sensors_to_choose, "by ranking"),
+           schema::optional("image", choice({"automatic", "initial_value", "mean_value", "range"}), "automatic",
+                            "of grey grades, that sensors are ranked by"),
+           schema::optional("count_from_start", flag(), "false", "true: records count from their first rows"),
+           schema::optional("tolerance", quantity("um", 1e-3, 1e6), s.tolerance_um, "that the drift is to be kept in"),
+           schema::optional("encoder_period", quantity("um", 1e-3, 1e6), s.encoder_period_um,
+                            "travel of one period of the encoder's signal")})
+    map.keys.push_back(std::move(key));
+  return map;
+}
+
+schema::Key name_key() {
+  return schema::compulsory("name", schema::name(), "of the scenario; names the folder of results");
+}
+schema::Key columns_key() {
+  return schema::optional("columns", schema::map(columns_schema()),
+                          "how the records that verbs are given are written where a logger wrote them (docs/record.md)");
+}
+
+schema::Map machine_scenario_schema() {
+  using namespace schema;
+  return {
+      .name = "scenario",
+      .keys =
+          {name_key(),
+           compulsory("machine", mesh_recipe_schema(),
+                      "the mesh: a generator and its dimensions, a file (docs/meshes.md), or none"),
+           compulsory("reference_temperature", temperature(), "the machine is straight and free of stress at it"),
+           schema::optional("start", Ways{choice({"reference", "hall", "steady"}), temperature()}, Said{"reference"},
+                            "state at t = 0: at the reference temperature, at the hall's first temperature, at standstill "
+                            "in it, or at a temperature"),
+           schema::optional("materials", schema::map(materials_schema()), "of each region of the mesh"),
+           schema::optional("supports", schema::maps(support_schema()),
+                            "what holds surfaces to the ground (below); compulsory with a mesh"),
+           schema::optional("joints", schema::maps(joint_schema()), Said{"tied"},
+                            "mechanics of joints that are not tied (below)"),
+           schema::optional("effects", list(one_of(effects::effect_schemas())),
+                            "what heats, cools, connects and measures (below); every joint needs a `contact`"),
+           hall_key(),
+           schema::optional("sensors", schema::maps(sensor_schema()), "thermometers"),
+           schema::optional("displacements", schema::maps(displacement_schema()), "errors of the tool against the table"),
+           schema::optional("tilts", schema::maps(tilt_schema()), "changes of angle"),
+           compulsory("cyclograms", schema::map(cyclograms_schema()), "by name: what drives the machine"),
+           schema::optional("solver", schema::map(solver_schema()), "model, tolerances, times that are written"),
+           schema::optional("study", schema::map(study_schema(true)), "what is fitted and what it is judged by"),
+           columns_key(),
+           schema::optional("validation", schema::map(validation_schema()), "what strategies are judged on by `validate`"),
+           schema::optional("programme", schema::map(programme_schema()),
+                            "what predictors of drift are judged on by `validate`"),
+           schema::optional("schedule", schema::map(schedule_schema()), "corrections written into an NC program"),
+           schema::optional("axis_loop", schema::map(axis_loop_schema()), "the study's regression through a pulse injector"),
+           schema::optional("table", schema::map(table_schema()), "a long table with scale, rings and probe")},
+      .groups = {{Group::Rule::kAtLeastOne,
+                  {"sensors", "displacements"},
+                  "`sensors` or `displacements` is wanted: what is the machine looked at by?"}},
+      .when_key = "machine"};
+}
+
+schema::Map records_scenario_schema() {
+  return {.name = "scenario (of records alone)",
+          .keys = {name_key(),
+                   schema::compulsory("study", schema::map(study_schema(false)), "what is fitted and what it is judged by"),
+                   columns_key()},
+          .about = "A scenario without `machine` is about measured records alone (see `scenarios/spindle_22.yaml`)."};
+}
+
+/// Else a missing `machine` would make all that goes with it unknown keys.
+void reject_what_wants_a_machine(const ConfigMap& top) {
+  if (top.has("machine")) return;
+  if (!top.has("study")) top.fail("machine", "neither a machine to simulate nor a study of records");
+  const schema::Map& with = scenario_schemas()[0];
+  const schema::Map& without = scenario_schemas()[1];
+  for (const schema::Key& key : with.keys) {
+    if (top.has(key.name) && !without.find(key.name))
+      top.fail(key.name, "it wants a `machine` to simulate; without one a scenario is about measured records alone");
+  }
 }
 
 /// Reads the table and gives the machine a displacement for each of its points.
@@ -286,17 +422,24 @@ void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
   }
 }
 
+const std::vector<schema::Map>& scenario_schemas() {
+  static const std::vector<schema::Map> both = {machine_scenario_schema(), records_scenario_schema()};
+  return both;
+}
+
 Scenario read_scenario(const std::string& path) {
   return read_scenario(ConfigMap::read_file(path));
 }
 
-Scenario read_scenario(const ConfigMap& in) {
+Scenario read_scenario(const ConfigMap& top) {
+  reject_what_wants_a_machine(top);
+  const ConfigMap in = top.described_by(scenario_schemas());
   Scenario scenario;
   scenario.path = in.file();
   scenario.name = in.name("name");
-  const bool has_machine = in.has("machine");
-  if (has_machine) scenario.machine = read_machine(in);
+  const bool has_machine = in.description().when_key == "machine";
   if (has_machine) {
+    scenario.machine = read_machine(in);
     const ConfigMap cyclograms = in.map("cyclograms");
     for (const std::string& name : cyclograms.keys()) scenario.cyclograms.push_back(read_cyclogram(cyclograms, name));
     if (scenario.cyclograms.empty()) in.fail("cyclograms", "no cyclogram; at least one list of [duration, speed] is wanted");
@@ -318,8 +461,11 @@ Scenario read_scenario(const ConfigMap& in) {
     scenario.columns = read_columns(*columns);
     if (scenario.study) check_columns(columns->map("channels"), *scenario.columns, *scenario.study);
   }
+  if (!has_machine) {
+    in.reject_unknown_keys();
+    return scenario;
+  }
   if (const auto programme = in.optional_map("programme")) {
-    if (!has_machine) in.fail("programme", "a programme wants a machine to simulate");
     if (scenario.machine->displacements.empty())
       in.fail("programme", "a programme judges predictors of drift and wants `displacements`");
     scenario.programme = read_programme(*programme);
@@ -327,8 +473,7 @@ Scenario read_scenario(const ConfigMap& in) {
     for (const Cyclogram& c : test_cyclograms(*scenario.programme)) check_cyclogram(scenario, c);
   }
   if (const auto validation = in.optional_map("validation")) {
-    if (!has_machine || !scenario.study)
-      in.fail("validation", "it wants a machine to simulate, and a `study` that names the target");
+    if (!scenario.study) in.fail("validation", "it wants a `study` that names the target");
     std::vector<const Cyclogram*> known;
     for (const Cyclogram& c : scenario.cyclograms) known.push_back(&c);
     if (scenario.programme) {
@@ -343,18 +488,14 @@ Scenario read_scenario(const ConfigMap& in) {
     }
   }
   if (const auto schedule = in.optional_map("schedule")) {
-    if (!has_machine)
-      in.fail("schedule", "a scenario about measured records alone has no machine whose drift a program corrects");
     const double tolerance_um = scenario.study ? scenario.study->tolerance_um : Study{}.tolerance_um;
     scenario.schedule = read_schedule(*schedule, scenario.machine->displacements, tolerance_um);
   }
   if (const auto axis_loop = in.optional_map("axis_loop")) scenario.axis_loop = read_axis_loop_of(in, *axis_loop, scenario);
   if (const auto table = in.optional_map("table")) {
-    if (!has_machine) in.fail("table", "a table wants a machine to simulate");
     scenario.table = add_table(*table, *scenario.machine, scenario.cyclograms);
   }
-  if (has_machine) check_instruments(*scenario.machine, scenario.cyclograms);  // points of a table are displacements, too
-  if (!has_machine && !scenario.study) in.fail("machine", "neither a machine to simulate nor a study of records");
+  check_instruments(*scenario.machine, scenario.cyclograms);  // points of a table are displacements, too
   in.reject_unknown_keys();
   return scenario;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A scenario file as plain data: SI inside, nothing computed yet. One read_... function per struct is its schema.
+// A scenario file as plain data: SI inside, nothing computed yet. One read_... function per struct reads by the description beside it.
 
 #include <array>
 #include <map>
@@ -116,6 +116,9 @@ struct Scenario {
   /// @throws InputError  naming the cyclograms there are
   [[nodiscard]] const Cyclogram& cyclogram(const std::string& cyclogram_name) const;
 };
+
+/// What a scenario file may hold: with a machine, or about records alone.
+[[nodiscard]] const std::vector<schema::Map>& scenario_schemas();
 
 /// Looks whether a cyclogram can be run on the scenario's machine: every law defined at every speed, outputs not too many.
 /// read_scenario() has done so for the scenario's own. @throws InputError

@@ -102,6 +102,9 @@ enum class Shared {
 /// A number for everything that decides the table: program version, study, scenario, and the files that they name. 16 hex digits.
 [[nodiscard]] std::string content_key(const SweepPlan& plan, const std::string& version);
 
+/// What the file of a study may hold, by design.
+[[nodiscard]] const std::vector<schema::Map>& sweep_schemas();
+
 /// Reads a study and its scenario, finds every key in the latter.
 /// @throws InputError  with file, line and key
 [[nodiscard]] SweepPlan read_sweep_plan(const std::string& path);

@@ -29,14 +29,11 @@ Validation::Family read_family(const ConfigMap& in, const std::string& name, con
   Validation::Family family{.name = name, .cyclograms = {}};
   if (!in.is_map(name)) {
     for (const std::string& cyclogram : in.texts(name)) family.cyclograms.push_back(named(in, name, cyclogram, known));
-    if (family.cyclograms.empty()) in.fail(name, "no cyclogram in this family");
     return family;
   }
   const ConfigMap map = in.map(name);
   const Programme::Random random = read_random(map);
-  const std::vector<double> speeds_rpm = map.quantities("speeds", "rpm");
-  if (speeds_rpm.size() < 2 || *std::min_element(speeds_rpm.begin(), speeds_rpm.end()) < 0.0)
-    map.fail("speeds", "two speeds at least are wanted, none below 0");
+  const std::vector<double> speeds_rpm = map.quantities("speeds");
   map.reject_unknown_keys();
   family.cyclograms = random_cyclograms(random, speeds_rpm, seed);
   for (Cyclogram& c : family.cyclograms) c.name = fmt::format("{}_{}", name, c.name);
@@ -45,12 +42,52 @@ Validation::Family read_family(const ConfigMap& in, const std::string& name, con
 
 }  // namespace
 
+schema::Map validation_schema() {
+  using namespace schema;
+  const Validation v;
+  schema::Map random = {
+      .name = "validation, families", .keys = random_keys(), .about = "Random cyclograms, made by the seed."};
+  random.keys.push_back(compulsory("speeds", list(quantity("rpm", 0.0), 2), "that they run at"));
+  const schema::Map families = {.name = "validation, families by name",
+                                .others = {schema::optional("family", Ways{list(text(), 1), schema::map(random)},
+                                                            "names of cyclograms, or how random ones are made")}};
+  const schema::Map season = {
+      .name = "validation, seasons",
+      .keys = {schema::optional("offset", quantity("K", -50.0, 50.0), 0.0, "of the hall against the scenario's"),
+               schema::optional("swing", quantity("K", 0.0, 30.0), 0.0,
+                                "amplitude of a sine of 24 h that begins with each cyclogram")},
+      .about = "A season of the hall, by its name."};
+  const schema::Map seasons = {.name = "validation, seasons by name",
+                               .others = {schema::optional("season", schema::map(season), "how the hall is then")}};
+  return {
+      .name = "validation",
+      .keys =
+          {compulsory("train", list(text(), 2),
+                      "names of cyclograms that strategies are fitted on, two at least: what a fit leaves open is decided "
+                      "on runs left out"),
+           compulsory("families", schema::map(families), "cyclograms to judge on, by kind"),
+           schema::optional("seasons", schema::map(seasons), Said{"the scenario's hall alone"},
+                            "the hall to judge in, beside the scenario's own"),
+           schema::optional("sensor_noise", quantity("K", 0.0, 10.0), v.noise_K, "of thermometers, white, 1 sigma"),
+           schema::optional("sensor_resolution", quantity("K", 0.0, 10.0), v.resolution_K, "step of their readings"),
+           schema::optional("displacement_noise", quantity("um", 0.0, 1e3), v.drift_noise_um,
+                            "of the indicator in the training runs"),
+           schema::optional(
+               "model_scatter", quantity("1", 0.0, 1.0), v.model_scatter,
+               "1 sigma of the logarithm by which the model that strategies are given is wrong in each power and exchange"),
+           schema::optional("sensor_fails_at", quantity("1", 0.0, 1.0), v.fails_at,
+                            "share of a cyclogram after which a sensor fails"),
+           schema::optional("tolerance", quantity("um", 1e-3, 1e6), Said{"that of `study`"},
+                            "that the drift is to be kept in"),
+           schema::optional("seed", integer(0, 1000000), v.seed, "of noise, scatter and random cyclograms")},
+      .about = "What strategies of correction are judged on by `validate` (docs/validation.md)."};
+}
+
 Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogram*>& known, double tolerance_um) {
   Validation v;
   v.where = in.where();
-  v.seed = in.integer("seed", 0, 1000000, v.seed);
+  v.seed = in.integer("seed");
   for (const std::string& name : in.texts("train")) v.train.push_back(named(in, "train", name, known));
-  if (v.train.size() < 2) in.fail("train", "two cyclograms at least: what a fit leaves open is decided on runs left out");
   for (std::size_t i = 0; i < v.train.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (v.train[i].sections == v.train[k].sections)
@@ -75,18 +112,16 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
     for (const std::string& name : seasons->keys()) {
       if (name == v.seasons.front().name) seasons->fail(name, "this is the scenario's own hall, which is always judged in");
       const ConfigMap season = seasons->map(name);
-      v.seasons.push_back({.name = name,
-                           .offset_K = season.quantity("offset", "K", -50.0, 50.0, 0.0),
-                           .swing_K = season.quantity("swing", "K", 0.0, 30.0, 0.0)});
+      v.seasons.push_back({.name = name, .offset_K = season.quantity("offset"), .swing_K = season.quantity("swing")});
       season.reject_unknown_keys();
     }
   }
-  v.noise_K = in.quantity("sensor_noise", "K", 0.0, 10.0, v.noise_K);
-  v.resolution_K = in.quantity("sensor_resolution", "K", 0.0, 10.0, v.resolution_K);
-  v.drift_noise_um = in.quantity("displacement_noise", "um", 0.0, 1e3, v.drift_noise_um);
-  v.model_scatter = in.quantity("model_scatter", "1", 0.0, 1.0, v.model_scatter);
-  v.fails_at = in.quantity("sensor_fails_at", "1", 0.0, 1.0, v.fails_at);
-  v.tolerance_um = in.quantity("tolerance", "um", 1e-3, 1e6, tolerance_um);
+  v.noise_K = in.quantity("sensor_noise");
+  v.resolution_K = in.quantity("sensor_resolution");
+  v.drift_noise_um = in.quantity("displacement_noise");
+  v.model_scatter = in.quantity("model_scatter");
+  v.fails_at = in.quantity("sensor_fails_at");
+  v.tolerance_um = in.quantity("tolerance", tolerance_um);
   in.reject_unknown_keys();
   return v;
 }

@@ -30,6 +30,8 @@ struct Validation {
   Where where;
 };
 
+/// What the key `validation` may hold.
+[[nodiscard]] schema::Map validation_schema();
 /// @param known      cyclograms that may be named
 /// @param tolerance  where the block has none
 /// @throws InputError  file, line, key

@@ -1,0 +1,297 @@
+#include "app/command_line.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+#include "app/cli_documents.hpp"
+#include "app/exit_code.hpp"
+#include "app/verbs.hpp"
+#include "base/config_map.hpp"
+#include "base/errors.hpp"
+#include "base/version.hpp"
+#include "scenarios/reader/read_schedule.hpp"
+
+namespace {
+
+using namespace driftwright;
+
+using app::kDone, app::kWrongInput;
+
+/// Adds a verb with the options that all have; `example` ends its help, `input` is what its file describes.
+CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example,
+                   app::CommonOptions& options, const std::string& input = "scenario") {
+  CLI::App* verb = app.add_subcommand(name, what);
+  verb->add_option(input, options.scenario, input + " YAML")->required();
+  verb->add_option("-o,--out", options.out, "folder of results [results/<name of the " + input + ">]");
+  verb->add_flag("--force", options.force, "replace the folder of results even if it holds other files");
+  CLI::Option* json = verb->add_flag("--json", options.json, "print the results as JSON, as in summary.json, in place of text");
+  CLI::Option* quiet = verb->add_flag("--quiet", options.quiet, "print neither results nor progress");
+  verb->add_flag("--details", options.details, "print all tables of the report")->excludes(json)->excludes(quiet);
+  json->excludes(quiet);
+  verb->footer("Example:\n  driftwright " + example);
+  return verb;
+}
+
+/// @param judges  it also tests, and does without records where the scenario has a programme
+void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
+  verb->add_option("--train", options.train, "record to fit on, or a part of it: run.csv:0h..20h; may be repeated")
+      ->required(!judges)
+      ->allow_extra_args(false);
+  if (judges)
+    verb->add_option("--test", options.test, "record to judge on, or a part of it: run.csv:20h..28h; may be repeated")
+        ->allow_extra_args(false);
+}
+
+/// What a prediction begins with.
+void add_warm_start(CLI::App* verb, std::string& start, std::string& after_pause, std::string& model) {
+  CLI::Option* record = verb->add_option("--start", start,
+                                         "what the machine did before, a record CSV as `simulate` writes it or a cyclogram "
+                                         "of the scenario: the model runs it first [cold]");
+  verb->add_option("--after-pause", after_pause, "time at rest behind it, such as '30 min' [none]")->needs(record);
+  verb->add_option("--model", model, "reduced or full [reduced; full for lumped nodes alone where the scenario has it]")
+      ->check(CLI::IsMember({"reduced", "full"}));
+}
+
+/// The filter: no scenario, no folder of results.
+void add_inject(CLI::App& cli, app::InjectOptions& options) {
+  CLI::App* verb = cli.add_subcommand(
+      "inject", "encoder rows \"A B\" from standard input, with a correction inserted, to standard output");
+  verb->add_option("--correction", options.correction,
+                   "CSV by row or time, or a FIFO with one number a line: the tool's error (actual - commanded)")
+      ->required();
+  verb->add_option("--period", options.period, "travel of one signal period, such as '4 um'; for corrections in um");
+  verb->add_option("--row-time", options.row_time, "time of one row, such as '1 ms'; for corrections by time");
+  verb->add_option("--unit", options.unit, "of numbers from a FIFO")
+      ->check(CLI::IsMember({"um", "count"}))
+      ->capture_default_str();
+  verb->add_option("--counts", options.counts, "how the control counts: a cycle is 4, 2 or 1 counts")
+      ->check(CLI::IsMember({"x4", "x2", "x1"}))
+      ->capture_default_str();
+  verb->add_option("--insert", options.insert, "what is inserted at once; less than a cycle shifts the phase")
+      ->check(CLI::IsMember({"cycle", "half", "quarter"}))
+      ->capture_default_str();
+  verb->add_flag("--anywhere", options.anywhere, "insert also while a line is high");
+  verb->add_flag("--bypass", options.bypass, "pass all bytes on as they are");
+  verb->add_flag("--clocked", options.clocked,
+                 "one row out for each row in, as in a running simulation; else inserted rows are added");
+  verb->add_option("--separation", options.separation, "with --clocked: least rows from edge to edge")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  verb->add_option("--interval", options.interval, "with --clocked: least rows from insertion to insertion (the slew)")
+      ->check(CLI::Range(1, 1000000000))
+      ->capture_default_str();
+  verb->add_option("--vcd", options.vcd, "value change dump of the lines before and after");
+  verb->add_option("--halstream", options.halstream, "rows for LinuxCNC's halstreamer");
+  verb->add_option("--hal", options.hal, "HAL file that plays them into LinuxCNC's encoder");
+  verb->add_option("--log", options.log, "CSV of counts in, inserted and out");
+  verb->footer(
+      "Example:\n  halsampler | driftwright inject --clocked --period '4 um' --row-time '1 ms' --correction drift.csv | "
+      "halstreamer\n"
+      "  with drift.csv: 'time_s,drift_um', then '0,0', '60,4.5', ... (docs/injector.md)");
+  verb->callback([&] { app::inject(options); });
+}
+
+/// A model for other programs: one file.
+void add_export(CLI::App& cli, app::ExportOptions& options) {
+  CLI::App* verb =
+      cli.add_subcommand("export", "the reduced machine or an observer as a functional mock-up unit (docs/fmu.md)");
+  verb->add_option("scenario", options.scenario, "scenario YAML")->required();
+  verb->add_flag("--fmu", options.fmu, "as a functional mock-up unit (FMI), C sources and linux64 binary inside");
+  verb->add_option("-o,--out", options.out, "file NAME.fmu [results/<name of the scenario>.fmu]");
+  verb->add_option("--fmi", options.fmi, "version of the standard: 2 or 3")
+      ->check(CLI::IsMember({2, 3}))
+      ->capture_default_str();
+  verb->add_option("--of", options.of, "machine, or observer with --model")
+      ->check(CLI::IsMember({"machine", "observer"}))
+      ->capture_default_str();
+  verb->add_option("--type", options.type, "me (model exchange), cs (co-simulation) or both")
+      ->check(CLI::IsMember({"me", "cs", "both"}))
+      ->capture_default_str();
+  verb->add_option("--model", options.model, "file of an observer that `validate` has written, models/observer.json");
+  verb->footer(
+      "Example:\n  driftwright export scenarios/fp3_spindle.yaml --fmu -o machine.fmu\n  driftwright export "
+      "scenarios/fp3_spindle.yaml --fmu --fmi 3 --of observer --model results/validation/models/observer.json -o "
+      "observer.fmu");
+  verb->callback([&] { app::export_model(options); });
+}
+
+/// CLI11 would only say that a subcommand is required.
+void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : cli.get_subcommands([](const CLI::App*) { return true; })) verbs.push_back(verb->get_name());
+  if (word.empty() || word[0] == '-' || std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return;
+  const std::string near = nearest_word(word, verbs);
+  throw InputError(fmt::format("unknown verb '{}'; there are {}.{}", word, fmt::join(verbs, ", "),
+                               near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+}
+
+}  // namespace
+
+int app::command_line(int argc, const char* const* argv) {
+  CLI::App cli{"Driftwright: digital twin of a machine tool's thermal behaviour"};
+  cli.set_version_flag("--version", kVersion);
+  cli.require_subcommand(1);
+  cli.add_flag_callback(
+         "--man",
+         [&] {
+           fmt::print("{}", app::man_page(cli, kVersion));
+           throw CLI::Success();
+         },
+         "print the manual page: driftwright --man | man -l -")
+      ->trigger_on_parse();
+  cli.add_option_function<std::string>(
+         "--completion",
+         [&](const std::string& shell) {
+           fmt::print("{}", shell == "zsh" ? app::zsh_completion(cli) : app::bash_completion(cli));
+           throw CLI::Success();
+         },
+         "print completions for a shell: bash or zsh")
+      ->check(CLI::IsMember({"bash", "zsh"}))
+      ->trigger_on_parse();
+  cli.footer(
+      "Exit codes: 0 done, 2 the input is wrong, 3 the numerics gave up, 130 ended by Ctrl-C, 1 a bug of ours.\nExample:\n  "
+      "driftwright run scenarios/fp3_spindle.yaml");
+
+  app::CommonOptions run, check, mesh;
+  app::SimulateOptions simulate;
+  app::PredictOptions predict;
+  app::ScheduleVerbOptions schedule;
+  app::InjectOptions inject;
+  app::RecordOptions select, validate;
+  app::SweepOptions sweep;
+  app::CompensateOptions compensate;
+  app::DiagnoseOptions diagnose;
+  app::CalibrateOptions calibrate;
+  app::ListOptions list;
+  app::ExportOptions exported;
+  add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
+           "run scenarios/fp3_spindle.yaml", run)
+      ->callback([&] { app::run(run); });
+  add_verb(cli, "check", "read and mesh a scenario, place its sensors, compute nothing", "check scenarios/fp3_spindle.yaml",
+           check)
+      ->callback([&] { app::check(check); });
+  add_verb(cli, "mesh", "build the mesh, report its quality, write mesh.vtu",
+           "mesh scenarios/fp3_spindle.yaml -o results/mesh", mesh)
+      ->callback([&] { app::mesh(mesh); });
+  CLI::App* verb = add_verb(cli, "simulate", "temperatures and drift of cyclograms; fields too where one is named",
+                            "simulate scenarios/fp3_spindle.yaml --cyclogram warm_up_2000 -o results/warm_up", simulate);
+  verb->add_option("--cyclogram", simulate.cyclograms,
+                   "name in the scenario, or a record CSV with the column speed_rpm; may be repeated [all of the scenario]")
+      ->allow_extra_args(false);
+  verb->callback([&] { app::simulate(simulate); });
+  verb = add_verb(cli, "predict",
+                  "drift of a cyclogram ahead of its run, by the reduced model; warm after another run where one is given",
+                  "predict scenarios/fp3_spindle.yaml --cyclogram plan.csv -o results/plan", predict);
+  verb->add_option("--cyclogram", predict.cyclogram,
+                   "name in the scenario, or a record CSV with the column speed_rpm (docs/cyclograms.md)")
+      ->required();
+  add_warm_start(verb, predict.start, predict.after_pause, predict.model);
+  verb->callback([&] { app::predict(predict); });
+  verb =
+      add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
+               "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/fp3_part", schedule);
+  verb->add_option("--program", schedule.program, "NC program, ISO (docs/schedule.md)")->required();
+  verb->add_option("--policy", schedule.policy,
+                   "paper (steps of the tolerance) or minimal (fewest changes) [the scenario's, else minimal]")
+      ->check(CLI::IsMember(scenarios::kSchedulePolicies));
+  verb->add_option("--dialect", schedule.dialect, "linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
+      ->check(CLI::IsMember(scenarios::kScheduleDialects));
+  verb->add_flag("--split", schedule.split, "divide straight blocks that cannot keep the tolerance in one piece");
+  add_warm_start(verb, schedule.start, schedule.after_pause, schedule.model);
+  CLI::Option* parts = verb->add_option("--parts", schedule.parts, "how many parts the program makes one after another")
+                           ->check(CLI::Range(1, 1000))
+                           ->capture_default_str();
+  verb->add_option("--between", schedule.between, "time at rest between two parts, such as '2 min' [none]")->needs(parts);
+  verb->callback([&] { app::schedule(schedule); });
+  add_inject(cli, inject);
+  verb = add_verb(cli, "select", "rank the temperature sensors of records by grey relational analysis",
+                  "select scenarios/spindle_22.yaml --train run1.csv --train run2.csv", select);
+  add_records(verb, select, false);
+  verb->callback([&] { app::select(select); });
+  verb = add_verb(cli, "validate",
+                  "judge predictors: a regression on records it was not fitted on, or those of the scenario's programme",
+                  "validate scenarios/fp3_spindle.yaml\n  driftwright validate scenarios/spindle_22.yaml --train run1.csv "
+                  "--train run2.csv --test run3.csv",
+                  validate);
+  add_records(verb, validate, true);
+  verb->callback([&] { app::validate(validate); });
+  verb = add_verb(cli, "compensate", "a cyclogram with its drift corrected by a predictor through an actuator",
+                  "compensate scenarios/fp3_spindle.yaml --model results/fp3_spindle/models/regression_forward.json "
+                  "--through injector -o "
+                  "results/corrected\n  driftwright compensate scenarios/gantry_table.yaml --model observer --through frame "
+                  "-o results/table",
+                  compensate);
+  verb->add_option("--model", compensate.model,
+                   "a file models/NAME.json that `validate` has written, or modes; through the frame modes, observer, "
+                   "regression")
+      ->required();
+  verb->add_option(
+          "--through", compensate.through,
+          "injector (docs/injector.md), schedule, frame (docs/table.md), or none: the correction as `validate` judges it")
+      ->required()
+      ->check(CLI::IsMember({"none", "injector", "schedule", "frame"}));
+  verb->add_option("--cyclogram", compensate.cyclogram, "name in the scenario [the one that `study` judges by]");
+  verb->add_option("--measured", compensate.measured,
+                   "record CSV with readings and drift, in place of a simulation; with --through none");
+  verb->add_option("--after", compensate.after,
+                   "record CSV that --measured continues, which lags begin with; without it the machine counts as at rest "
+                   "before");
+  verb->callback([&] { app::compensate(compensate); });
+  verb = add_verb(cli, "calibrate", "the scenario's uncertain numbers, fitted to measured records, with intervals",
+                  "calibrate scenarios/fp3_spindle.yaml --measured good.csv -o results/calibration", calibrate);
+  verb->add_option("--measured", calibrate.measured, "record CSV (docs/record.md); may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  verb->callback([&] { app::calibrate(calibrate); });
+  verb = add_verb(cli, "diagnose", "what a simulation gets wrong against measured records, why, and what mending it gains",
+                  "diagnose scenarios/fp3_spindle.yaml --measured monday.csv --measured tuesday.csv -o results/diagnosis",
+                  diagnose);
+  verb->add_option("--measured", diagnose.measured, "record CSV (docs/record.md); may be repeated")
+      ->required()
+      ->allow_extra_args(false);
+  verb->add_flag("--causes-only", diagnose.causes_only,
+                 "write the causes alone into extended.yaml, not the scenario's own numbers as fitted beside them");
+  verb->add_option("--without", diagnose.without, "key of an effect that is not looked for; may be repeated")
+      ->allow_extra_args(false);
+  verb->callback([&] { app::diagnose(diagnose); });
+  verb = add_verb(cli, "sweep", "many variants of one scenario, one table (docs/sweep.md)",
+                  "sweep scenarios/lumped_sweep.yaml\n  driftwright sweep scenarios/lumped_sweep.yaml --shard 3/8\n  "
+                  "driftwright sweep scenarios/lumped_sweep.yaml --merge",
+                  sweep, "study");
+  verb->add_option("--shard", sweep.shard, "i/n: simulate the i-th of n parts alone, as a task of a job array does");
+  verb->add_flag("--merge", sweep.merge, "put together what all shards have simulated");
+  verb->callback([&] { app::sweep(sweep); });
+  add_export(cli, exported);
+  verb = cli.add_subcommand("list", "the catalogue of effects, or the library of materials");
+  verb->add_option("what", list.what, "effects or materials")
+      ->check(CLI::IsMember({"effects", "materials"}))
+      ->capture_default_str();
+  verb->add_flag("--markdown", list.markdown, "effects with their places, keys, units and laws, as a table");
+  verb->footer("Example:\n  driftwright list effects --markdown");
+  verb->callback([&] { app::list(list); });
+  app::SchemaOptions schema;
+  verb = cli.add_subcommand("schema", "what a file may hold, as JSON Schema for editors and validators");
+  verb->add_option("what", schema.what, "scenario, or sweep: its study")
+      ->check(CLI::IsMember({"scenario", "sweep"}))
+      ->capture_default_str();
+  verb->add_flag("--markdown", schema.markdown, "as tables, which docs/scenario.md and docs/sweep.md hold");
+  verb->footer("Example:\n  driftwright schema scenario > scenario.schema.json");
+  verb->callback([&] { app::schema(schema); });
+
+  try {
+    reject_unknown_verb(cli, argc > 1 ? argv[1] : "");
+    cli.parse(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+      throw InputError("what the program says cannot be written to standard output; is it full?");
+    return kDone;
+  } catch (const CLI::ParseError& e) {
+    return cli.exit(e) == 0 ? kDone : kWrongInput;
+  } catch (...) {
+    return app::exit_code_of(std::current_exception());
+  }
+}

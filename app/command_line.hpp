@@ -1,0 +1,10 @@
+#pragma once
+// The command line: parse, call the verb, turn exceptions into exit codes.
+
+namespace driftwright::app {
+
+/// @param argv  as main() has it, argv[0] is the program
+/// @return the exit code
+[[nodiscard]] int command_line(int argc, const char* const* argv);
+
+}  // namespace driftwright::app

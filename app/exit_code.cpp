@@ -1,0 +1,69 @@
+#include "app/exit_code.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <new>
+#include <system_error>
+
+#include "base/errors.hpp"
+
+namespace driftwright::app {
+namespace {
+
+/// Without memory of its own, and also where standard error is full.
+void say(const char* words, const char* what = "") noexcept {
+  std::fputs(words, stderr);
+  std::fputs(what, stderr);
+  std::fputs("\n", stderr);
+}
+
+}  // namespace
+
+ExitCode exit_code_of(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const InputError& e) {
+    say("error: ", e.what());
+    return kWrongInput;
+  } catch (const RangeError& e) {
+    say("error: ", e.what());
+    return kWrongInput;
+  } catch (const SolveError& e) {
+    say("the numerics gave up: ", e.what());
+    return kNumericsGaveUp;
+  } catch (const EndedEarly& e) {
+    say(e.what());
+    return kEndedEarly;
+  } catch (const std::bad_alloc&) {
+    say("error: there is not enough memory; a coarser mesh, fewer fields or cyclograms, or `solver: {model: reduced}` take "
+        "less");
+    return kWrongInput;
+  } catch (const std::filesystem::filesystem_error& e) {
+    say("error: a file or folder cannot be used: ", e.what());
+    return kWrongInput;
+  } catch (const std::system_error& e) {
+    say("error: the system cannot do what is wanted: ", e.what());
+    return kWrongInput;
+  } catch (const std::exception& e) {
+    say("internal error: ", e.what());
+    return kOurBug;
+  } catch (...) {
+    say("internal error: an exception of an unknown kind");
+    return kOurBug;
+  }
+}
+
+void end_with_words() {
+  std::set_terminate([] {
+    const std::exception_ptr failure = std::current_exception();
+    const ExitCode code = failure ? exit_code_of(failure) : kOurBug;
+    if (code == kOurBug) std::abort();
+    _exit(code);  // other threads are at work: no destructor may run
+  });
+}
+
+}  // namespace driftwright::app

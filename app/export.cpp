@@ -1,0 +1,174 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/results.hpp"
+#include "app/verbs.hpp"
+#include "base/quantity.hpp"
+#include "base/version.hpp"
+#include "output/fmu/fmu_file.hpp"
+#include "output/predictor_file.hpp"
+#include "studies/prediction.hpp"
+
+namespace driftwright::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A record in the names of an importer, one column a variable.
+struct Columns {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> values;
+  void add(const std::string& name, std::vector<double> column) {
+    names.push_back(name);
+    values.push_back(std::move(column));
+  }
+  [[nodiscard]] std::string csv() const {
+    std::string text;
+    for (std::size_t c = 0; c < names.size(); ++c) text += fmt::format("{}\"{}\"", c > 0 ? "," : "", names[c]);
+    text += "\n";
+    for (std::size_t row = 0; row < values.front().size(); ++row) {
+      for (std::size_t c = 0; c < names.size(); ++c) text += fmt::format("{}{:.12g}", c > 0 ? "," : "", values[c][row]);
+      text += "\n";
+    }
+    return text;
+  }
+};
+
+/// Time and drive, by the names that variables_of() gives them.
+Columns drive_columns(const output::FmuModel& model, const Cyclogram& cyclogram, const std::vector<double>& time_s) {
+  Columns columns;
+  columns.add("time", time_s);
+  const std::vector<output::FmuVariable> variables = output::variables_of(model);
+  for (std::size_t d = 0; d < model.drive.size(); ++d) {  // behind the time
+    std::vector<double> values;
+    for (double t_s : time_s) values.push_back(output::value_of(model.drive[d].variable, cyclogram.drive(t_s)));
+    columns.add(variables[d + 1].name, std::move(values));
+  }
+  return columns;
+}
+
+/// The cyclogram that the study judges by, else the first.
+const Cyclogram& reference_cyclogram(const scenarios::Scenario& scenario) {
+  return scenario.study ? scenario.cyclogram(scenario.study->judge) : scenario.cyclograms.front();
+}
+
+void add_machine_reference(output::FmuOrder& order, const Record& record, const Cyclogram& cyclogram) {
+  order.reference_in = drive_columns(order.model, cyclogram, record.time_s).csv();
+  Columns out;
+  out.add("time", record.time_s);
+  for (const output::FmuOutput& o : order.model.outputs) out.add(o.name, record.at(o.name).values);
+  order.reference_out = out.csv();
+  order.reference_words = fmt::format("what `driftwright predict` says of the cyclogram '{}'", cyclogram.name);
+}
+
+/// What the observer says of a machine that is as its model.
+void add_observer_reference(output::FmuOrder& order, const compensation::Observer& observer,
+                            const scenarios::Scenario& scenario, const Record& record, const Cyclogram& cyclogram) {
+  compensation::ObservedRun run{.cyclogram = cyclogram, .hall = {}, .readings = record};
+  Columns in = drive_columns(order.model, cyclogram, record.time_s), out;
+  std::vector<double> hall_degC;
+  for (double t_s : record.time_s) {
+    run.hall.time_s.push_back(t_s);
+    run.hall.value.push_back(scenario.machine->hall.at(t_s));
+    hall_degC.push_back(run.hall.value.back() + scenario.machine->reference_K - kZeroCelsius_K);
+  }
+  in.add("hall_temperature", std::move(hall_degC));
+  for (const std::string& sensor : observer.sensors()) in.add(sensor, record.at(sensor).values);
+  const compensation::Observation seen = observer.observe(run);
+  out.add("time", record.time_s);
+  out.add(observer.state().drift, seen.drift_um);
+  out.add(observer.state().drift + "_deviation", seen.deviation_um);
+  order.reference_in = in.csv();
+  order.reference_out = out.csv();
+  order.reference_words = fmt::format(
+      "the observer on the simulated cyclogram '{}', without noise; an output holds from its row on until "
+      "the next one",
+      cyclogram.name);
+}
+
+const compensation::Observer& observer_in(const output::PredictorFile& file, const std::string& path) {
+  const auto* observer = dynamic_cast<const compensation::Observer*>(file.predictor.predictor.get());
+  if (!observer)
+    throw InputError(
+        fmt::format("{}: '{}' is no observer; `validate` writes one as models/observer.json", path, file.predictor.name));
+  return *observer;
+}
+
+fs::path target_of(const ExportOptions& options, const std::string& name) {
+  const fs::path target =
+      options.out.empty() ? fs::path("results") / (output::model_identifier(name) + ".fmu") : fs::path(options.out);
+  if (target.extension() != ".fmu")
+    throw InputError(fmt::format("-o '{}': an FMU is one file; a name that ends with .fmu is wanted", target.string()));
+  if (fs::is_directory(target)) throw InputError(fmt::format("-o '{}' is a folder; a file is wanted", target.string()));
+  std::error_code failed;
+  if (target.has_parent_path()) fs::create_directories(target.parent_path(), failed);
+  if (failed) throw InputError(fmt::format("-o '{}': {}", target.string(), failed.message()));
+  return target;
+}
+
+}  // namespace
+
+void export_model(const ExportOptions& options) {
+  if (!options.fmu) throw InputError("export: say what is wanted: --fmu, a functional mock-up unit (FMI)");
+  const bool of_observer = options.of == "observer";
+  if (of_observer == options.model.empty())
+    throw InputError(of_observer
+                         ? "--of observer wants --model FILE, an observer as `validate` writes it (models/observer.json)"
+                         : "--model names the file of an observer; it goes with --of observer");
+  scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  (void)scenarios::require_machine(scenario, "export");
+  output::require_exportable(scenario);
+  const fs::path target = target_of(options, scenario.name);
+  const output::Provenance made_by{kVersion, options.scenario};
+
+  Progress progress;
+  const Cyclogram cyclogram = reference_cyclogram(scenario);
+  output::FmuOrder order{.version = options.fmi == 2 ? output::FmiVersion::k2 : output::FmiVersion::k3,
+                         .interfaces = {.model_exchange = options.type != "cs", .co_simulation = options.type != "me"}};
+  scenario.solver.model = scenarios::ModelKind::kReduced;
+  if (of_observer) {
+    const output::PredictorFile file = output::read_predictor(options.model);
+    const compensation::Observer& observer = observer_in(file, options.model);
+    order.model = output::observer_fmu(scenario, observer);
+    order.step_s = scenario.solver.output_interval_s = observer.state().settings.period_s;
+    const studies::Prediction prediction =
+        studies::predict_drift(scenario, cyclogram, {.model = "reduced"}, progress.listener(), "export");
+    add_observer_reference(order, observer, scenario, prediction.record, cyclogram);
+  } else {
+    const scenarios::Model model = scenarios::open_model(scenario, {}, progress.listener(), false);
+    order.model = output::machine_fmu(scenario, *model.reduced());
+    order.step_s = scenario.solver.output_interval_s;
+    const studies::Prediction prediction =
+        studies::predict_drift(scenario, cyclogram, {.model = "reduced"}, progress.listener(), "export");
+    add_machine_reference(order, prediction.record, cyclogram);
+  }
+  order.model.duration_s = cyclogram.duration_s();
+  progress.listener().begin("compiling");
+  const std::vector<output::FmuEntry> entries = output::fmu_entries(order, made_by);
+  const fs::path partial = target.string() + fmt::format(".partial-{}", getpid());
+  try {
+    output::write_zip(partial, entries);
+    fs::rename(partial, target);
+  } catch (const std::exception& e) {
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+    throw InputError(fmt::format("-o '{}' cannot be written: {}", target.string(), e.what()));
+  }
+  progress.end();
+  fmt::print("{}: FMI {}.0, {}, {}\n{}\n", shown_path(fs::absolute(target)), options.fmi,
+             options.type == "both" ? "model exchange and co-simulation"
+             : options.type == "me" ? "model exchange"
+                                    : "co-simulation",
+             order.model.name, order.model.description);
+  for (const output::DriveRange& r : order.model.drive) {
+    for (const output::FmuVariable& v : output::variables_of(order.model)) {
+      if (v.max && *v.max == r.most && v.causality == "input")
+        fmt::print("  {} from 0 to {:g} {}\n", v.name, r.most, v.unit);
+    }
+  }
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,68 @@
+#include "app/model_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "compensation/control/control_files.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
+#include "findings/strategy_section.hpp"
+#include "output/document_json.hpp"
+#include "output/drift_model_c.hpp"
+#include "output/drift_model_files.hpp"
+#include "output/predictor_file.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using namespace compensation;
+using Json = nlohmann::ordered_json;
+
+/// A strategy that is a formula, as text and C have it.
+std::optional<output::DeployedModel> formula_of(const JudgedStrategy& s) {
+  const DriftModel* model = as_formula(*s.fitted.predictor);
+  if (!model || !s.fitted.fail_safe) return std::nullopt;
+  return output::DeployedModel{*model, *s.fitted.fail_safe,
+                               s.fitted.interval_um.value_or(std::numeric_limits<double>::quiet_NaN())};
+}
+
+}  // namespace
+
+void write_models(const compensation::StrategyMatrix& m, const std::vector<effects::Effect>& effects,
+                  output::ResultsFolder& folder) {
+  const Json conditions = output::section_json(findings::conditions_of(m));
+  bool has_formulas = false;
+  for (const compensation::JudgedStrategy& s : m.strategies) {
+    std::string name;
+    for (char ch : s.fitted.name) {
+      if (std::isalnum(static_cast<unsigned char>(ch))) {
+        name += ch;
+      } else if (!name.empty() && name.back() != '_') {
+        name += '_';
+      }
+    }
+    Json judged = conditions;
+    for (const compensation::JudgedRunOfMachine& r : m.runs)
+      judged["judged_on"].push_back({{"run", r.name}, {"family", r.family}, {"season", r.season}});
+    judged["with_failed_sensors"] = m.settings.fails_at.has_value();
+    judged.update(output::section_json({.blocks = {findings::strategies_table(m, {&s})}})["strategies"][0]);
+    folder.write_text(fmt::format("models/{}.json", name),
+                      output::predictor_json({s.fitted, std::move(judged)}, effects, folder.made_by()).dump(1) + "\n");
+    const std::optional<output::DeployedModel> formula = formula_of(s);
+    if (!formula) continue;
+    folder.write_text(fmt::format("models/{}.txt", name), output::formula_text(*formula));
+    const std::string made_by =
+        fmt::format("Driftwright {}, scenario {}", folder.made_by().version, folder.made_by().scenario);
+    folder.write_text(fmt::format("models/{}.c", name), output::c_function(*formula, made_by));
+    folder.write_text(fmt::format("models/{}_axis.comp", name),
+                      output::linuxcnc_component(*formula, name + "_axis", name + ".c", made_by));
+    has_formulas = true;
+  }
+  for (const ControlFile& file : control_files()) {
+    if (has_formulas) folder.write_text("models/" + file.name, file.text);
+  }
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,15 @@
+#pragma once
+// The deployable models that `validate` writes.
+
+#include "compensation/judging/strategy_matrix.hpp"
+#include "effects/effect.hpp"
+#include "output/results_folder.hpp"
+
+namespace driftwright::app {
+
+/// models/<strategy>.json of each strategy, with its verdict and the conditions it was judged under; .txt and .c of those that are formulas.
+/// @param effects  of the scenario's machine
+void write_models(const compensation::StrategyMatrix& matrix, const std::vector<effects::Effect>& effects,
+                  output::ResultsFolder& folder);
+
+}  // namespace driftwright::app

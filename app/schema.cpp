@@ -1,0 +1,23 @@
+// What files may hold, for editors, validators and the documentation.
+
+#include <fmt/format.h>
+
+#include "app/verbs.hpp"
+#include "output/json_schema.hpp"
+#include "output/schema_tables.hpp"
+#include "scenarios/reader/scenario.hpp"
+#include "scenarios/reader/sweep_plan.hpp"
+
+namespace driftwright::app {
+
+void schema(const SchemaOptions& options) {
+  const bool is_scenario = options.what == "scenario";
+  const auto& files = is_scenario ? scenarios::scenario_schemas() : scenarios::sweep_schemas();
+  if (options.markdown) {
+    fmt::print("{}", output::schema_tables(files, "effects.md"));
+  } else {
+    fmt::print("{}", output::json_schema(files, is_scenario ? "Driftwright scenario" : "Driftwright study"));
+  }
+}
+
+}  // namespace driftwright::app

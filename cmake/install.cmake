@@ -1,0 +1,15 @@
+# What `cmake --install` installs: the program with its scenarios, manual page and completions (component runtime), the shared library
+# (runtime) and what it takes to build against it (dev). The Python package installs itself (python/CMakeLists.txt).
+include(CMakePackageConfigHelpers)
+
+install(TARGETS driftwright RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+install(TARGETS driftwright_library EXPORT driftwrightTargets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT dev)
+install(DIRECTORY include/driftwright DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
+install(EXPORT driftwrightTargets NAMESPACE driftwright:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/driftwright COMPONENT dev)
+file(WRITE ${CMAKE_BINARY_DIR}/driftwrightConfig.cmake "include(\${CMAKE_CURRENT_LIST_DIR}/driftwrightTargets.cmake)\n")
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/driftwrightConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/driftwrightConfig.cmake ${CMAKE_BINARY_DIR}/driftwrightConfigVersion.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/driftwright COMPONENT dev)
+install(DIRECTORY scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/driftwright/scenarios COMPONENT runtime
+  PATTERN "reader" EXCLUDE PATTERN "README.md" EXCLUDE PATTERN "*.cpp" EXCLUDE PATTERN "*.hpp" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE)

@@ -1,0 +1,15 @@
+#pragma once
+// The axis behind a pulse injector, as part of a document.
+
+#include "compensation/injector/axis_loop.hpp"
+#include "output/document.hpp"
+#include "scenarios/reader/read_axis_loop.hpp"
+
+namespace driftwright::findings {
+
+/// Section `axis_loop`: causes of error switched on in turn, counts, faults, plots.
+[[nodiscard]] output::Section axis_loop_section(const scenarios::AxisLoopSettings& settings,
+                                                const compensation::AxisLoopRun& run, double tolerance_um,
+                                                const std::vector<output::SectionMark>& marks);
+
+}  // namespace driftwright::findings

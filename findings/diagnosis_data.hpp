@@ -1,0 +1,19 @@
+#pragma once
+// What of a diagnosis programs alone read: the keys of diagnosis.json that no table for people has (DESIGN.md fixes them).
+
+#include "diagnosis/diagnosis.hpp"
+#include "output/document.hpp"
+
+namespace driftwright::findings {
+
+/// Items `causes`, each with its parameters and alternatives; an empty list where there are none.
+void add_causes_data(output::Section& section, const std::vector<diagnosis::Cause>& causes,
+                     const std::string& key = "causes");
+/// Items `waveforms`, with their courses.
+void add_waveforms_data(output::Section& section, const diagnosis::Diagnosis& d);
+/// `complete`, `n_candidates`, `chance` and how causes were weighed.
+[[nodiscard]] output::Section search_data(const diagnosis::Diagnosis& d);
+/// An empty list, where there would be items.
+[[nodiscard]] output::Value no_items(const std::string& key);
+
+}  // namespace driftwright::findings

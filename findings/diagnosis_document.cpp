@@ -1,0 +1,493 @@
+#include "findings/diagnosis_document.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "findings/diagnosis_data.hpp"
+#include "findings/diagnosis_words.hpp"
+#include "findings/measured_iso230_3.hpp"
+#include "findings/residual_sections.hpp"
+
+namespace driftwright::findings {
+namespace {
+
+using output::Bars;
+using output::Datum;
+using output::Plot;
+using output::Section;
+using output::Table;
+using output::Text;
+using output::Value;
+
+constexpr output::Digits kThree = output::significant(3);
+
+output::Verdict verdict_box(const diagnosis::Diagnosis& d) {
+  using diagnosis::Verdict;
+  using Kind = output::Verdict::Kind;
+  const Kind kind = d.verdict == Verdict::kConsistent    ? Kind::kGood
+                    : d.verdict == Verdict::kUnexplained ? Kind::kBad
+                                                         : Kind::kNeutral;
+  static const std::map<Verdict, const char*> titles = {{Verdict::kConsistent, "Consistent with the scenario"},
+                                                        {Verdict::kSuspected, "A cause is suspected"},
+                                                        {Verdict::kNamed, "Causes named"},
+                                                        {Verdict::kAmbiguous, "Ambiguous: several causes would do"},
+                                                        {Verdict::kUnexplained, "Something is left unexplained"},
+                                                        {Verdict::kInsufficientData, "Too few data for a verdict"}};
+  return {.key = "", .kind = kind, .title = titles.at(d.verdict), .text = d.reason};
+}
+
+Table causes_table(const diagnosis::Diagnosis& d) {
+  Table table{
+      .title = "Causes",
+      .caption =
+          "Gain: logarithm of how much more probable the data are with it than without, after the price of having looked "
+          "for it among all candidates. Alternatives are what the data cannot tell from a cause (less than 3 nats apart).",
+      .columns = {{.title = "effect"},
+                  {.title = "standing"},
+                  {.title = "gain", .unit = "nats"},
+                  {.title = "numbers (95 % interval)"}}};
+  for (const diagnosis::Cause& c : d.causes) {
+    table.rows.push_back(
+        {fmt::format("{} at {}", c.effect, c.where), diagnosis::word(c.standing), c.log_evidence_gain, parameters_text(c)});
+    for (const diagnosis::Cause& a : c.alternatives)
+      table.rows.push_back({fmt::format("or {} at {}", a.effect, a.where), "", a.log_evidence_gain, parameters_text(a)});
+  }
+  return table;
+}
+
+/// What is said of one cause beside its numbers.
+Section cause_section(const diagnosis::Diagnosis& d, std::size_t i) {
+  const diagnosis::Cause& c = d.causes[i];
+  Section section{.title = fmt::format("Cause {}, {}: {} at {}", i + 1, diagnosis::word(c.standing), c.effect, c.where),
+                  .detail = true};
+  if (!c.doubt.empty() || !c.is_written)
+    add(section, Text{fmt::format("{}{}", c.doubt.empty() ? "" : "Only suspected, since " + c.doubt + ". ",
+                                  c.is_written ? ""
+                                               : fmt::format("It is not written into extended.yaml: {}.",
+                                                             d.written.why_nothing.empty()
+                                                                 ? "rows that were kept out are predicted better without it"
+                                                                 : d.written.why_nothing))});
+  if (c.n_searched > 0)
+    add(section,
+        Text{fmt::format("The search was made again {} without a part of the rows; it found this effect at this place {}.",
+                         c.n_searched == 1 ? "once" : fmt::format("{} times", c.n_searched),
+                         c.n_again == 0              ? "in none of them"
+                         : c.n_again == c.n_searched ? "each time"
+                                                     : fmt::format("{} of them", c.n_again))});
+  Table table{.title = c.alternatives.empty()
+                           ? "No other claim comes within 3 nats"
+                           : "The first line is the best; the data cannot tell it from the others (less than 3 nats apart)",
+              .columns = {{.title = "effect"},
+                          {.title = "where"},
+                          {.title = "law"},
+                          {.title = "numbers (95 % interval)"},
+                          {.title = "gain", .unit = "nats"}}};
+  const auto add_row = [&](const diagnosis::Cause& x) {
+    table.rows.push_back({x.effect, x.where, x.law, parameters_text(x), x.log_evidence_gain});
+  };
+  add_row(c);
+  for (const diagnosis::Cause& a : c.alternatives) add_row(a);
+  add(section, std::move(table));
+  return section;
+}
+
+Section experiment_section(const diagnosis::Experiment& e) {
+  Section section{.key = "discriminating_experiment", .title = "Experiment that would tell them apart"};
+  add(section, Text{.words = e.why, .key = "why"});
+  add(section,
+      Text{fmt::format("Cyclogram {}: {}. Any two of the explanations would then differ by {:.1f} sigmas or more, what is "
+                       "not known of their numbers taken off.",
+                       e.cyclogram.name, sections_text(e.cyclogram), e.discrimination)});
+  add(section, Value{.key = "proposes", .datum = e.by_sensor ? "extra_sensor" : "cyclogram"});
+  add(section, Value{.key = "discrimination", .datum = e.discrimination});
+  add(section, Value{.key = "simulated.records", .datum = e.n_simulated});
+  add(section, Value{.key = "simulated.told", .datum = e.n_told});
+  if (e.extra_sensor) {
+    add(section, Text{fmt::format("{} a further thermometer on {}: {:.1f} sigmas; they differ there by up to {:.2g} K.",
+                                  e.by_sensor ? "With" : "Better with", e.extra_sensor->region,
+                                  e.extra_sensor->discrimination, e.extra_sensor->difference_K)});
+    add(section, Value{.key = "extra_sensor.region", .datum = e.extra_sensor->region});
+    add(section, Value{.key = "extra_sensor.difference_K", .datum = e.extra_sensor->difference_K});
+    add(section, Value{.key = "extra_sensor.discrimination", .datum = e.extra_sensor->discrimination});
+  }
+  Section cyclogram{.key = "cyclogram"};
+  add(cyclogram, Value{.key = "name", .datum = e.cyclogram.name});
+  Table sections{.key = "sections", .columns = {{.key = "duration_min"}, {.key = "speed_rpm"}}};
+  std::vector<std::size_t> axes;  // that move
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const auto& s : e.cyclogram.sections) {
+      if (s.drive.feed_m_s[a] > 0.0 && (axes.empty() || axes.back() != a)) axes.push_back(a);
+    }
+  }
+  for (std::size_t a : axes) sections.columns.push_back({.key = std::string("feed_") + "xyz"[a] + "_mm_min"});
+  for (const auto& s : e.cyclogram.sections) {
+    std::vector<Datum> row = {s.duration_s / 60.0, s.drive.speed_rpm};
+    for (std::size_t a : axes) row.emplace_back(60e3 * s.drive.feed_m_s[a]);
+    sections.rows.push_back(std::move(row));
+  }
+  add(cyclogram, std::move(sections));
+  section.sections.push_back(std::move(cyclogram));
+  return section;
+}
+
+Section unexplained_section(const diagnosis::Unexplained& u) {
+  Section section{.key = "unexplained", .title = "What no candidate explains, more than noise"};
+  const auto put = [&](const char* key, Datum datum) { add(section, Value{.key = key, .datum = std::move(datum)}); };
+  put("rms", u.channels.front().rms);
+  put("unit", u.channels.front().unit);
+  put("where", u.channels.front().name);
+  Table table{.key = "channels",
+              .caption = "The smooth part of what is left, in standard deviations of what noise would have of it.",
+              .columns = {{.key = "name", .title = "channel"},
+                          {.key = "rms", .title = "rms", .digits = kThree},
+                          {.key = "unit", .title = "unit"},
+                          {.key = "sigmas", .title = "beyond noise [sigmas]"}}};
+  for (const auto& c : u.channels) table.rows.push_back({c.name, c.rms, c.unit, c.times_noise});
+  add(section, std::move(table));
+  add(section, Value{.key = "waveform_correlates_with", .words = "its waveform follows", .datum = u.correlates_with});
+  add(section, Value{.key = "correlation", .words = "correlation", .datum = u.correlation, .digits = output::decimals(2)});
+  if (!u.heat_would_sit_in.empty())
+    add(section, Value{.key = "heat_would_sit_in", .words = "heat would sit in", .datum = u.heat_would_sit_in});
+  if (u.fails_held_out) put("fails_held_out", true);
+  if (u.one_cause) {
+    using Quantity = diagnosis::Unnamed::Quantity;
+    put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat   ? "heat"
+                              : u.one_cause->quantity == Quantity::kHall ? "hall temperature"
+                                                                         : "reading");
+    put("one_cause.where", u.one_cause->where);
+    put("one_cause.follows", u.one_cause->follows);
+    put("one_cause.instead_of", std::vector<std::int64_t>(u.one_cause->instead_of.begin(), u.one_cause->instead_of.end()));
+    put("one_cause.log_evidence_gain", u.one_cause->log_evidence_gain);
+  }
+  if (u.heat_would_sit_in.empty() || u.time_s.empty()) return section;
+  Plot plot{.title = fmt::format("Heat in {} that would explain most of it, in the first record", u.heat_would_sit_in),
+            .x_label = "time [min]",
+            .y_label = "heat [W]",
+            .series = {{.label = "heat", .x = {}, .y = u.heat_W, .style = output::Series::Style::kSteps}}};
+  for (double t_s : u.time_s) plot.series[0].x.push_back(t_s / 60.0);
+  add(section, std::move(plot));
+  return section;
+}
+
+Section wander_section(const diagnosis::HeatWander& wander) {
+  Section section{.key = "process_noise", .title = "Where the model errs"};
+  add(section,
+      Text{fmt::format("Heat that comes and goes in its bodies, alike for about {:.0f} min, would explain what the first "
+                       "search left. Causes are weighed beside this process noise.",
+                       wander.time_s / 60.0)});
+  add(section, Value{.key = "stays_alike_min", .datum = wander.time_s / 60.0});
+  Table table{
+      .key = "bodies",
+      .columns = {{.key = "where", .title = "body"},
+                  {.key = "standard_deviation_W", .title = "heat, 1 sigma", .unit = "W", .digits = output::significant(2)},
+                  {.key = "share", .title = "share of what it does to the readings", .digits = output::percent(0)}}};
+  for (const auto& b : wander.bodies) table.rows.push_back({b.body.name, b.sd_W, b.share});
+  add(section, std::move(table));
+  return section;
+}
+
+/// What a waveform looks like, with its numbers.
+std::string shape_text(const diagnosis::Waveform& w) {
+  using diagnosis::Shape;
+  const bool is_heat = w.of == diagnosis::Waveform::Of::kHeat;
+  const bool is_tilt = !is_heat && w.unit == "rad";
+  const char* unit = !w.to.empty() ? "W/K" : is_heat ? "W" : is_tilt ? "µrad" : "µm";
+  const double scale = is_heat ? 1.0 : 1e6;
+  const auto size = [&] {
+    return fmt::format("{:.3g} ± {:.2g} {}", scale * w.shape.size, 2.0 * scale * w.shape.size_sd, unit);
+  };
+  const std::string what = w.to.empty() ? "" : "conductance to " + w.to + ": ";
+  switch (w.shape.shape) {
+    case Shape::kNothing:
+      return "nothing that stands out";
+    case Shape::kConstant:
+      return what + "constant, " + size();
+    case Shape::kStep:
+      return fmt::format("{}step of {} at {:.1f} min", what, size(), w.shape.time_s / 60.0);
+    case Shape::kDecay:
+      return fmt::format("{}{} at {:.1f} min, decaying with {:.1f} min (a mass added or taken away)", what, size(),
+                         w.shape.time_s / 60.0, w.shape.time_constant_s / 60.0);
+    case Shape::kPeriodic:
+      return fmt::format("{}periodic, {}, period {:.1f} min", what, size(), w.shape.period_s / 60.0);
+    case Shape::kProportional:
+      return fmt::format("{}follows {}", what, w.shape.follows);
+    case Shape::kWindows: {
+      std::vector<std::string> windows;
+      for (const auto& [begin_s, end_s] : w.shape.windows_s)
+        windows.push_back(fmt::format("{:.1f}-{:.1f}", begin_s / 60.0, end_s / 60.0));
+      return fmt::format("{}{} in {} of one size: {} min", what, size(), windows.size() == 1 ? "a window" : "windows",
+                         fmt::join(windows, ", "));
+    }
+    case Shape::kOther:
+      return "none of the simple courses";
+  }
+  return "";
+}
+
+/// The best of each run and kind are drawn.
+Section waveforms_section(const diagnosis::Diagnosis& d) {
+  constexpr std::size_t kMostPlots = 4;
+  Section section{.title = "What is missing over time", .detail = true};
+  Table table{
+      .title = "What the scenario misses, row by row",
+      .caption =
+          "With its own numbers fitted (as written, where no likely ones fit) and no cause: the heat that each body alone "
+          "would want beside what is written, or the conductance that would bring it, and the growth that each "
+          "displacement has beside its prediction. Likelihood: over no such heat. Explained: of the readings' squared "
+          "misses by the heat, of the waveform's by its course.",
+      .columns = {{.title = "record"},
+                  {.title = "where"},
+                  {.title = "what it looks like"},
+                  {.title = "likelihood", .unit = "nats", .digits = output::decimals(0)},
+                  {.title = "heat explains", .digits = output::percent(0)},
+                  {.title = "course explains", .digits = output::percent(0)}}};
+  std::vector<Plot> plots;
+  std::set<std::pair<std::string, bool>> drawn;
+  for (const diagnosis::Waveform& w : d.waveforms) {
+    const bool is_heat = w.of == diagnosis::Waveform::Of::kHeat;
+    if (w.shape.shape == diagnosis::Shape::kNothing) continue;
+    table.rows.push_back({w.run, w.where, shape_text(w), is_heat ? Datum(w.log_likelihood_gain) : Datum(""),
+                          is_heat ? Datum(w.explained) : Datum(""), w.shape.explained});
+    if (plots.size() == kMostPlots || !drawn.insert({is_heat ? w.run : w.run + " " + w.where, is_heat}).second) continue;
+    const bool is_exchange = !w.to.empty();
+    Plot plot{.title = is_exchange ? fmt::format("Conductance that is missing between {} and {}, {}", w.where, w.to, w.run)
+                       : is_heat   ? fmt::format("Heat that is missing in {}, {}", w.where, w.run)
+                                   : fmt::format("Growth that is missing in {}, {}", w.where, w.run),
+              .x_label = "time [min]",
+              .y_label = is_exchange       ? "conductance [W/K]"
+                         : is_heat         ? "heat [W]"
+                         : w.unit == "rad" ? "tilt [µrad]"
+                                           : "growth [µm]",
+              .series = {{.label = is_exchange ? "conductance"
+                                   : is_heat   ? "heat"
+                                               : "growth",
+                          .x = {},
+                          .y = is_exchange ? w.conductance_W_K : w.value,
+                          .style = output::Series::Style::kSteps}}};
+    for (double t_s : w.time_s) plot.series[0].x.push_back(t_s / 60.0);
+    if (!is_heat) {
+      for (double& y : plot.series[0].y) y *= 1e6;
+    }
+    plots.push_back(std::move(plot));
+  }
+  add(section, std::move(table));
+  for (Plot& plot : plots) add(section, std::move(plot));
+  if (section.blocks.size() == 1 && std::get<Table>(section.blocks.front()).rows.empty()) section = {};
+  add_waveforms_data(section, d);
+  return section;
+}
+
+Section gain_section(const diagnosis::Diagnosis& d) {
+  Section section{.key = "gain", .title = "What mending it gains: measured minus simulated, root mean square and peak"};
+  add(section, Value{.key = "holdout", .words = "held out:", .datum = d.holdout});
+  Table table{
+      .key = "channels",
+      .caption =
+          "Noise floor: what the readings scatter by themselves. Regression: ridge on memories of speed, ambient and "
+          "whatever else drives, which knows nothing of the machine; then with readings of thermometers too. The file: "
+          "what the written scenario gives over the whole of all records, to which its numbers were fitted.",
+      .columns = {{.key = "name", .title = "channel"}, {.key = "unit", .title = "unit"}}};
+  for (const auto& [key, title] : {std::pair{"rmse_before", "as written"},
+                                   {"rmse_calibrated", "scatter alone"},
+                                   {"rmse_after", "extended"},
+                                   {"rmse_regression_drive", "regression"},
+                                   {"rmse_regression_readings", "with thermometers"},
+                                   {"noise_floor", "noise floor"},
+                                   {"peak_before", "peak before"},
+                                   {"peak_after", "peak after"},
+                                   {"rmse_written", "the file, all rows"}})
+    table.columns.push_back({.key = key, .title = title, .digits = kThree});
+  for (const auto& g : d.gain)
+    table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_after, g.rmse_of_drive,
+                          g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_written});
+  add(section, std::move(table));
+  if (const std::string better = better_regression_text(d); !better.empty()) add(section, Text{better});
+  return section;
+}
+
+Section data_section(const diagnosis::Diagnosis& d) {
+  Section section;
+  Table table{.key = "data",
+              .title = "The data themselves",
+              .columns = {{.key = "channel", .title = "channel"},
+                          {.key = "what", .title = "finding"},
+                          {.key = "left_out", .title = "left out"}}};
+  for (const auto& f : d.data) table.rows.push_back({f.channel, f.what, f.leaves_out});
+  add(section, std::move(table));
+  return section;
+}
+
+Section candidates_section(const diagnosis::Diagnosis& d) {
+  constexpr std::size_t kMost = 15;
+  Section section{.title = "Best single candidates", .detail = true};
+  Bars bars{
+      fmt::format("Evidence [nats] that each would bring alone beside scatter, its signature taken at trial size (linear "
+                  "theory); the best of {} candidates. What stands up is fitted in full and pays for being one of many.",
+                  d.n_candidates),
+      {}};
+  std::set<std::size_t> shown;
+  for (const diagnosis::Score& s : d.search.scores) {
+    if (bars.bars.size() == kMost || !(s.gain > 0.0)) break;
+    if (!shown.insert(s.candidate).second) continue;  // by a better law
+    const diagnosis::Candidate& c = d.search.candidates.at(s.candidate);
+    bars.bars.push_back({fmt::format("{} at {}: {}", c.effect, c.where, c.variants.at(s.variant).law), s.gain,
+                         fmt::format("{:.1f}", s.gain)});
+  }
+  const diagnosis::Chance& chance = d.search.chance;
+  const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
+  add(section,
+      Text{fmt::format("The best of all would have {:.1f} nats at half of all machines in which nothing is wrong, {:.1f} at "
+                       "one in a hundred, above which a cause is suspected, and {:.1f} at one in ten thousand, above which "
+                       "it is named; found by simulating this machine with these records.",
+                       chance.gain_at(0.5) + price, chance.gain_at(0.01) + price, chance.gain_at(1e-4) + price)});
+  if (bars.bars.empty()) {
+    add(section, Text{"None would bring evidence."});
+    return section;
+  }
+  add(section, std::move(bars));
+  const std::vector<MissingHeat> heat = missing_heat(d, d.search.candidates);
+  if (heat.empty()) return section;
+  Bars by_body{
+      "Where missing heat would explain the residual: evidence [nats] of heat in each body, with its power; negative: the "
+      "scenario has too much.",
+      {}};
+  for (const MissingHeat& h : heat)
+    by_body.bars.push_back({h.body, h.evidence, fmt::format("{:.1f} nats, {:.3g} W ({})", h.evidence, h.power_W, h.law)});
+  add(section, std::move(by_body));
+  return section;
+}
+
+/// @param detail  not on the terminal
+Section numbers_section(const diagnosis::Diagnosis& d, bool detail) {
+  Section section{.title = "The scenario's own numbers", .detail = detail};
+  Table table{
+      .key = "calibrated",
+      .caption =
+          "The uncertain ones as fitted. Moved: from what the scenario says, in standard deviations of what is known of "
+          "it: the scenario's `known_to`, else 10 %, exponents 3 %, the hall 0.3 K.",
+      .columns = {{.key = "name", .title = "number"},
+                  {.key = "value", .title = "fitted", .digits = output::significant(4)},
+                  {.title = "95 % interval"},
+                  {.key = "unit", .title = "unit"},
+                  {.title = "known to"},
+                  {.key = "sigmas_of_prior", .title = "moved [sigmas]", .digits = output::signed_decimals(2)},
+                  {.key = "ci95"},
+                  {.key = "known_to"},
+                  {.key = "known_to_unit"}}};
+  for (const diagnosis::Estimate& e : d.calibrated) {
+    table.rows.push_back({e.name, e.value, interval_text(e), e.unit, known_to_text(e), e.deviation,
+                          std::vector<double>{e.low, e.high}, e.known_to, e.is_share ? "of its logarithm" : e.unit});
+  }
+  add(section, std::move(table));
+  return section;
+}
+
+/// @param key  of the JSON object that says what was written
+Section written_section(const DiagnosisFindings& found, const std::string& key) {
+  Section section{.key = key, .title = "What was written: " + found.file};
+  add(section,
+      output::Notes{.key = "not_written", .sort = "NOT WRITTEN to " + found.file, .lines = found.extended.not_written});
+  add(section, Value{.key = "written", .datum = found.extended.written});
+  add(section, output::Preformatted{.text = found.difference.empty() ? "No difference to the scenario." : found.difference});
+  return section;
+}
+
+/// Without what people see.
+Section for_programs(Section section) {
+  section.title.clear();
+  for (output::Block& block : section.blocks) {
+    if (auto* value = std::get_if<Value>(&block)) value->words.clear();
+    if (auto* table = std::get_if<Table>(&block)) {
+      for (output::Column& column : table->columns) column.title.clear();
+    }
+  }
+  return section;
+}
+
+output::Document begin(const std::string& what, const DiagnosisFindings& found, const output::Provenance& made_by) {
+  std::vector<std::string> names;
+  for (const auto& run : found.measured.runs) names.push_back(run.path);
+  return {.made_by = made_by,
+          .title = found.measured.scenario.name + ": " + what,
+          .subtitle = fmt::format("measured: {}", fmt::join(names, ", "))};
+}
+
+/// What both have below their own findings. @param after  what Diagnosis::extended is called
+void add_evidence(Section& body, const DiagnosisFindings& found, const std::string& after) {
+  const diagnosis::Diagnosis& d = found.diagnosis;
+  if (d.unexplained)
+    body.sections.push_back(unexplained_section(*d.unexplained));
+  else
+    add(body, Value{.key = "unexplained"});
+  if (d.wander)
+    body.sections.push_back(wander_section(*d.wander));
+  else
+    add(body, Value{.key = "process_noise"});
+  body.sections.push_back(waveforms_section(d));
+  body.sections.push_back(data_section(d));
+  body.sections.push_back(gain_section(d));
+  for (Section& record : residual_sections(found.measured, d, after)) body.sections.push_back(std::move(record));
+  const std::vector<Iso230Run> iso = measured_iso230_3(found.measured);
+  Table figures = iso230_3_table(iso);
+  figures.key.clear();  // programs have the items
+  for (output::Column& column : figures.columns) {
+    if (column.key != "unit") column.key.clear();
+  }
+  body.sections.push_back({.blocks = {std::move(figures)}});
+  for (Section& item : iso230_3_items(iso)) body.sections.push_back(for_programs(std::move(item)));
+  body.sections.push_back(search_data(d));
+  if (const std::string one_mesh = studies::one_mesh_text(found.measured); !one_mesh.empty())
+    add(body, output::Notes{.sort = "note", .lines = {one_mesh}});
+}
+
+}  // namespace
+
+output::Document diagnosis_document(const DiagnosisFindings& found, const output::Provenance& made_by) {
+  const diagnosis::Diagnosis& d = found.diagnosis;
+  output::Document document = begin("diagnosis", found, made_by);
+  Section& body = document.body;
+  add(body, verdict_box(d));
+  add(body, Value{.key = "verdict", .words = "verdict", .datum = diagnosis::word(d.verdict)});
+  add(body, Value{.key = "reason", .datum = d.reason});
+  add(body, causes_table(d));
+  for (std::size_t i = 0; i < d.causes.size(); ++i) body.sections.push_back(cause_section(d, i));
+  add_causes_data(body, d.causes);
+  if (d.experiment)
+    body.sections.push_back(experiment_section(*d.experiment));
+  else
+    add(body, Value{.key = "discriminating_experiment"});
+  body.sections.push_back(candidates_section(d));
+  add_evidence(body, found, "extended");
+  body.sections.push_back(numbers_section(d, true));
+  body.sections.push_back(written_section(found, "extended"));
+  return document;
+}
+
+output::Document calibration_document(const DiagnosisFindings& found, const output::Provenance& made_by) {
+  const diagnosis::Diagnosis& d = found.diagnosis;
+  output::Document document = begin("calibration", found, made_by);
+  Section& body = document.body;
+  const std::string warning = calibration_warning(d, d.search.candidates);
+  const bool fits = warning.empty();
+  add(body, output::Verdict{.key = "",
+                            .kind = fits ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
+                            .title = fits ? "The scenario's numbers explain the measurement"
+                                          : "The numbers alone do not explain the measurement",
+                            .text = warning});
+  add(body, Value{.key = "warning", .datum = warning});
+  add(body, Value{.key = "verdict", .datum = diagnosis::word(d.verdict)});
+  add(body, Value{.key = "reason", .datum = d.reason});
+  add_causes_data(body, d.causes);
+  add(body, Value{.key = "discriminating_experiment"});
+  body.sections.push_back(numbers_section(d, false));
+  add_evidence(body, found, "calibrated");
+  if (!fits) body.sections.push_back(candidates_section(d));
+  body.sections.push_back(written_section(found, "calibrated_scenario"));
+  return document;
+}
+
+}  // namespace driftwright::findings

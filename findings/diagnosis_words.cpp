@@ -1,0 +1,107 @@
+#include "findings/diagnosis_words.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace driftwright::findings {
+namespace {
+
+using diagnosis::Estimate;
+
+constexpr double kTooFar = 3.5;          // sigmas: beyond, a number is an effect
+constexpr double kClearlyBetter = 0.95;  // of the RMSE
+
+std::string unit_of(const Estimate& e) {
+  return e.unit == "1" ? "" : " " + e.unit;
+}
+
+}  // namespace
+
+std::string value_text(const Estimate& e) {
+  return fmt::format("{:.4g}{}", e.value, unit_of(e));
+}
+std::string known_to_text(const Estimate& e) {
+  return e.is_share ? fmt::format("{:.3g} %", 100.0 * e.known_to) : fmt::format("{:.3g} {}", e.known_to, e.unit);
+}
+
+std::string interval_text(const Estimate& e) {
+  const double a = e.low, b = e.high;
+  return fmt::format("{:.3g} to {:.3g}", std::min(a, b), std::max(a, b));
+}
+
+std::string parameters_text(const diagnosis::Cause& cause) {
+  std::vector<std::string> numbers;
+  for (const Estimate& p : cause.parameters) {
+    if (p.name == "at_speed") continue;  // the law says it
+    numbers.push_back(fmt::format("{} {} ({})", p.name, value_text(p), interval_text(p)));
+  }
+  return fmt::format("{}", fmt::join(numbers, ", "));
+}
+
+std::string sections_text(const Cyclogram& cyclogram) {
+  std::vector<std::string> parts;
+  for (const auto& s : cyclogram.sections) {
+    std::string part = fmt::format("{:.0f} min at {:.0f} rpm", s.duration_s / 60.0, s.drive.speed_rpm);
+    for (std::size_t a = 0; a < s.drive.feed_m_s.size(); ++a) {
+      if (s.drive.feed_m_s[a] > 0.0) part += fmt::format(", {} {:.0f} mm/min", "XYZ"[a], 60e3 * s.drive.feed_m_s[a]);
+    }
+    parts.push_back(part);
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string better_regression_text(const diagnosis::Diagnosis& d) {
+  if (!d.ended_at.empty()) return "";
+  std::vector<std::string> better;
+  for (const auto& g : d.gain) {
+    const bool by_readings = g.rmse_of_readings < g.rmse_of_drive;
+    const double rmse = by_readings ? g.rmse_of_readings : g.rmse_of_drive;
+    if (rmse > 0.0 && rmse < kClearlyBetter * g.rmse_after && g.rmse_after > g.noise_floor)
+      better.push_back(fmt::format("{} ({:.3g} in place of {:.3g} {}, {})", g.name, rmse, g.rmse_after, g.unit,
+                                   by_readings ? "with the thermometers" : "of drive and ambient alone"));
+  }
+  if (better.empty()) return "";
+  return fmt::format("A regression that knows nothing of the machine predicts the same kept-out rows better: {}.",
+                     fmt::join(better, "; "));
+}
+
+std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector<diagnosis::Candidate>& candidates) {
+  std::vector<std::string> reasons;
+  if (d.verdict == diagnosis::Verdict::kInsufficientData) reasons.push_back(d.reason);
+  if (d.unexplained) {
+    const auto& worst = d.unexplained->channels.front();
+    reasons.push_back(fmt::format("{} is left with {:.2g} {} that is not noise", worst.name, worst.rms, worst.unit));
+  }
+  const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
+  if (!d.search.scores.empty() &&
+      d.search.scores.front().gain > price + d.search.chance.gain_at(diagnosis::SearchOptions{}.wrongly_suspected)) {
+    const diagnosis::Score& s = d.search.scores.front();
+    reasons.push_back(fmt::format("{} at {} would bring {:.0f} nats of evidence", candidates.at(s.candidate).effect,
+                                  candidates.at(s.candidate).where, s.gain));
+  }
+  for (const Estimate& e : d.calibrated) {
+    if (std::abs(e.deviation) > kTooFar) reasons.push_back(fmt::format("{} moved by {:+.1f} sigmas", e.name, e.deviation));
+  }
+  if (!d.written.keeps_numbers)
+    reasons.emplace_back("rows that were kept out are predicted better by the scenario as it is written");
+  if (reasons.empty()) return "";
+  return fmt::format("{}. Numbers that were fitted to it have taken up what is wrong elsewhere: `diagnose` names it.",
+                     fmt::join(reasons, "; "));
+}
+
+std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d, const std::vector<diagnosis::Candidate>& candidates) {
+  std::vector<MissingHeat> list;  // scores come best first, several laws a candidate
+  for (const diagnosis::Score& s : d.search.scores) {
+    const diagnosis::Candidate& c = candidates.at(s.candidate);
+    if (c.effect != "heat_source" || !(s.gain > 0.0) || s.start.size() == 0) continue;
+    const diagnosis::Variant& v = c.variants.at(s.variant);
+    const bool has_better = std::any_of(list.begin(), list.end(), [&](const auto& h) { return h.body == c.where; });
+    if (!has_better) list.push_back({c.where, s.gain, v.knobs[0].value(s.start[0]), v.law});
+  }
+  return list;
+}
+
+}  // namespace driftwright::findings

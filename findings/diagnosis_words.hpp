@@ -1,0 +1,37 @@
+#pragma once
+// Words about a diagnosis that documents and files have in common.
+
+#include "diagnosis/diagnosis.hpp"
+#include "diagnosis/extended_scenario.hpp"
+
+namespace driftwright::findings {
+
+/// "14.3 W/(m^2 K)"; times as minutes.
+[[nodiscard]] std::string value_text(const diagnosis::Estimate& estimate);
+/// How well a calibrated number is known before the records: "10 %", "0.3 K".
+[[nodiscard]] std::string known_to_text(const diagnosis::Estimate& estimate);
+/// "13.1 to 15.6", in the unit of value_text().
+[[nodiscard]] std::string interval_text(const diagnosis::Estimate& estimate);
+/// All numbers of a cause with their intervals, or "" for one without.
+[[nodiscard]] std::string parameters_text(const diagnosis::Cause& cause);
+/// "15 min at 3000 rpm, 20 min at 0 rpm, ..."
+[[nodiscard]] std::string sections_text(const Cyclogram& cyclogram);
+
+/// Where a regression that knows nothing of the machine predicts kept-out rows better than what is written, a sentence; else "".
+[[nodiscard]] std::string better_regression_text(const diagnosis::Diagnosis& d);
+/// Why the numbers alone do not explain a measurement that a search without effects was made on; "" where they do.
+/// @param candidates  those that the scores number
+[[nodiscard]] std::string calibration_warning(const diagnosis::Diagnosis& d,
+                                              const std::vector<diagnosis::Candidate>& candidates);
+/// Best claim of missing heat in a region or lumped node, on top of scatter alone.
+struct MissingHeat {
+  std::string body;
+  double evidence = 0.0;  ///< nats, by the linear theory
+  double power_W = 0.0;   ///< at the claim's stated speed, or at all times; < 0: the scenario has too much
+  std::string law;
+};
+/// Strongest first; bodies in which no heat brings evidence are left out.
+[[nodiscard]] std::vector<MissingHeat> missing_heat(const diagnosis::Diagnosis& d,
+                                                    const std::vector<diagnosis::Candidate>& candidates);
+
+}  // namespace driftwright::findings

@@ -1,0 +1,124 @@
+#include "findings/scenario_document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mesh/quality.hpp"
+#include "solver/joint.hpp"
+
+namespace driftwright::findings {
+namespace {
+
+using output::Table;
+using output::Value;
+
+Table cyclograms_table(const std::vector<Cyclogram>& cyclograms) {
+  Table table{.key = "cyclograms",
+              .columns = {{.key = "name", .title = "cyclogram"},
+                          {.key = "duration_min", .title = "duration", .unit = "min"},
+                          {.key = "n_sections", .title = "sections"},
+                          {.key = "highest_speed_rpm", .title = "up to", .unit = "rpm", .digits = output::decimals(0)},
+                          {.key = "share_turning", .title = "turning", .digits = output::percent(0)}}};
+  for (const Cyclogram& cyclogram : cyclograms) {
+    double highest_rpm = 0.0, turning_s = 0.0;
+    for (const Cyclogram::Section& section : cyclogram.sections) {
+      highest_rpm = std::max(highest_rpm, section.drive.speed_rpm);
+      if (section.drive.speed_rpm > 0.0) turning_s += section.duration_s;
+    }
+    table.rows.push_back({cyclogram.name, cyclogram.duration_s() / 60.0, cyclogram.sections.size(), highest_rpm,
+                          turning_s / cyclogram.duration_s()});
+  }
+  return table;
+}
+
+void add_size(output::Section& section, const mesh::Mesh& mesh) {
+  add(section, Value{.key = "nodes", .words = "nodes", .datum = mesh.n_nodes()});
+  add(section, Value{.key = "cells", .words = "cells", .datum = mesh.cells.size()});
+  add(section, Value{.key = "regions", .words = "regions", .datum = mesh.regions.size()});
+  add(section, Value{.key = "joints", .words = "joints", .datum = mesh.joints.size()});
+  add(section, Value{.key = "worst_scaled_jacobian",
+                     .words = "worst scaled Jacobian",
+                     .datum = mesh::worst_quality(mesh).min_scaled,
+                     .digits = output::decimals(4)});
+}
+
+}  // namespace
+
+output::Document scenario_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine* placed,
+                                   const output::Provenance& made_by) {
+  output::Document document{.made_by = made_by, .title = made_by.scenario + ": fine"};
+  output::Section& body = document.body;
+  add(body, Value{.key = "name", .datum = scenario.name});
+  if (!placed) {
+    document.subtitle = "a study of measured records";
+    add(body, Value{.key = "target", .words = "target", .datum = scenario.study->target});
+  } else {
+    if (placed->mesh.n_nodes() > 0) add_size(body, placed->mesh);
+    add(body, Value{.key = "lumped_nodes", .words = "lumped nodes", .datum = placed->balance.nodes.size()});
+    add(body, Value{.key = "effects", .words = "effects", .datum = scenario.machine->effects.size()});
+    add(body, Value{.key = "sensors", .words = "sensors", .datum = scenario.machine->sensors.size()});
+    add(body, cyclograms_table(scenario.cyclograms));
+  }
+  std::vector<std::string> notes;
+  for (const Cyclogram& cyclogram : scenario.cyclograms) {
+    for (const std::string& remark : cyclogram.remarks) notes.push_back(cyclogram.name + ": " + remark);
+  }
+  if (scenario.columns) {
+    for (const std::string& line : words(*scenario.columns)) notes.push_back("records are read by `columns`: " + line);
+  }
+  if (placed) notes.insert(notes.end(), placed->mesh.notes.begin(), placed->mesh.notes.end());
+  add(body, output::Notes{.key = "notes", .sort = "note", .lines = notes});
+  return document;
+}
+
+output::Document mesh_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine& placed,
+                               const output::Provenance& made_by) {
+  const mesh::Mesh& m = placed.mesh;
+  const mesh::Quality quality = mesh::worst_quality(m);
+  output::Document document{.made_by = made_by, .title = scenario.name + ": mesh"};
+  output::Section& body = document.body;
+  add_size(body, m);
+  add(body, Value{.key = "worst_cell", .words = "worst cell", .datum = quality.worst_cell});
+  add(body, Value{.key = "worst_cell_region", .words = "its region", .datum = m.regions[m.cells.group[quality.worst_cell]]});
+  add(body, Value{.key = "mean_scaled_jacobian",
+                  .words = "mean scaled Jacobian",
+                  .datum = quality.mean_scaled,
+                  .digits = output::decimals(3)});
+  Table regions{.key = "region_sizes",
+                .columns = {{.key = "region", .title = "region"},
+                            {.key = "volume_l", .title = "volume", .unit = "l", .digits = output::decimals(3)},
+                            {.key = "mass_kg", .title = "mass", .unit = "kg"},
+                            {.key = "cells", .title = "cells"}}};
+  for (std::size_t r = 0; r < m.regions.size(); ++r) {
+    const int region = static_cast<int>(r);
+    const double volume_m3 = mesh::volume_m3(m, region);
+    regions.rows.push_back(
+        {m.regions[r], 1e3 * volume_m3, volume_m3 * placed.materials[r].density_kg_m3, m.cells_in(region).size()});
+  }
+  Table surfaces{.key = "surfaces",
+                 .columns = {{.key = "surface", .title = "surface"},
+                             {.key = "area_m2", .title = "area", .unit = "m2", .digits = output::decimals(4)}}};
+  for (std::size_t s = 0; s < m.surfaces.size(); ++s) {
+    if (m.surfaces[s].find('@') == std::string::npos)
+      surfaces.rows.push_back({m.surfaces[s], mesh::area_m2(m, static_cast<int>(s))});
+  }
+  Table joints{
+      .key = "contacts",
+      .columns = {{.key = "joint", .title = "joint"},
+                  {.key = "area_m2", .title = "in contact", .unit = "m2", .digits = output::decimals(4)},
+                  {.key = "largest_gap_mm", .title = "sides apart by up to", .unit = "mm", .digits = output::decimals(3)}}};
+  for (const mesh::Joint& joint : m.joints) {
+    double area_m2 = 0.0, gap_m = 0.0;
+    for (const solver::JointPoint& p : solver::joint_points(m, joint)) {
+      area_m2 += p.area_m2;
+      gap_m = std::max(gap_m, p.gap_m);
+    }
+    joints.rows.push_back({joint.name, area_m2, 1e3 * gap_m});
+  }
+  for (Table* table : {&regions, &surfaces, &joints}) add(body, std::move(*table));
+  add(body, output::Notes{.key = "notes", .sort = "note", .lines = m.notes});
+  return document;
+}
+
+}  // namespace driftwright::findings

@@ -1,0 +1,60 @@
+#include "findings/simulation_document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "findings/iso230_3_section.hpp"
+#include "findings/run_section.hpp"
+
+namespace driftwright::findings {
+namespace {
+
+output::Table end_table(const Record& record) {
+  output::Table table{
+      .key = "at_end",
+      .columns = {
+          {.key = "name", .title = "at its end"}, {.key = "unit", .title = "unit"}, {.key = "value", .title = "value"}}};
+  for (const Channel& c : record.channels) {
+    if (c.unit == "um" || c.unit == "urad") table.rows.push_back({c.name, c.unit, c.values.back()});
+  }
+  return table;
+}
+
+}  // namespace
+
+output::Document document_of(const std::vector<scenarios::SimulatedRun>& runs,
+                             const std::vector<const Cyclogram*>& cyclograms, const scenarios::Scenario& scenario,
+                             const scenarios::Model& model, const output::Provenance& made_by) {
+  output::Document document{.made_by = made_by,
+                            .title = scenario.name + ": simulation",
+                            .subtitle = fmt::format("{} nodes, {} cells, {} lumped nodes; {}", model.mesh().n_nodes(),
+                                                    model.mesh().cells.size(), model.balance.nodes.size(), model.words())};
+  add(document.body, output::Value{.key = "simulated_by", .datum = model.words()});
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Cyclogram& cyclogram = *cyclograms[i];
+    const solver::Trajectory& run = runs[i].trajectory;
+    output::Section section{
+        .key = "cyclograms", .title = "Cyclogram " + cyclogram.name, .item = output::Item{"cyclogram", cyclogram.name}};
+    add(section, output::Value{.key = "duration_min",
+                               .words = "duration",
+                               .datum = cyclogram.duration_s() / 60.0,
+                               .unit = "min",
+                               .digits = output::decimals(0)});
+    add(section, output::Value{.key = "n_steps", .words = "steps", .datum = run.n_steps});
+    add(section, output::Value{.key = "energy_balance_gap",
+                               .words = "gap of the energy balance",
+                               .datum = std::max(1e-16, run.energy_gap()),
+                               .digits = output::scientific(0)});
+    add(section, end_table(runs[i].record));
+    add_overshoots(section, run, model);
+    add_channel_plots(section, runs[i].record, cyclogram);
+    add_heat(section, run, cyclogram);
+    section.sections.push_back(iso230_3_section(compensation::iso230_3_figures(runs[i].record)));
+    section.sections.back().detail = runs.size() > 1;
+    document.body.sections.push_back(std::move(section));
+  }
+  return document;
+}
+
+}  // namespace driftwright::findings

@@ -1,0 +1,15 @@
+#pragma once
+// What `simulate` found, as a document.
+
+#include "machine/simulated_run.hpp"
+#include "output/document.hpp"
+
+namespace driftwright::findings {
+
+/// @param runs  of the cyclograms, in their order
+[[nodiscard]] output::Document document_of(const std::vector<scenarios::SimulatedRun>& runs,
+                                           const std::vector<const Cyclogram*>& cyclograms,
+                                           const scenarios::Scenario& scenario, const scenarios::Model& model,
+                                           const output::Provenance& made_by);
+
+}  // namespace driftwright::findings

@@ -1,0 +1,14 @@
+#pragma once
+// What a sweep found, as a document.
+
+#include "output/document.hpp"
+#include "studies/sweep_statistics.hpp"
+
+namespace driftwright::findings {
+
+/// @param rows  by the member's number, as studies::table_row() has them
+[[nodiscard]] output::Document sweep_document(const scenarios::SweepPlan& plan,
+                                              const std::map<std::size_t, std::string>& rows,
+                                              const output::Provenance& made_by);
+
+}  // namespace driftwright::findings

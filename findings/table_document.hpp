@@ -1,0 +1,19 @@
+#pragma once
+// What `run` found of a scenario with a table, as a document.
+
+#include "output/document.hpp"
+#include "studies/table_study.hpp"
+
+namespace driftwright::findings {
+
+/// The longest wait between measurements that keeps the tolerance, as all shorter ones do; nullptr when even the shortest does not.
+[[nodiscard]] const studies::IntervalRow* longest_interval(const studies::TableStudy& study, double tolerance_m,
+                                                           bool with_model);
+
+[[nodiscard]] output::Document document_of(const studies::TableStudy& study, const scenarios::Scenario& scenario,
+                                           const output::Provenance& made_by);
+
+/// Largest position error on the table over the judged time, a column a strategy, as a record CSV.
+[[nodiscard]] std::string strategies_csv(const studies::TableStudy& study, const std::vector<std::string>& comments);
+
+}  // namespace driftwright::findings

@@ -1,0 +1,6 @@
+#pragma once
+// Everything that the library offers.
+
+#include "driftwright/command.hpp"
+#include "driftwright/judging.hpp"
+#include "driftwright/machine.hpp"

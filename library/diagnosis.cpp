@@ -1,0 +1,71 @@
+#include "diagnosis/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include "app/diagnosis_files.hpp"
+#include "diagnosis/extended_scenario.hpp"
+#include "library/parts.hpp"
+#include "studies/measured_twin.hpp"
+
+namespace driftwright {
+namespace {
+
+std::vector<Estimate> plain(const std::vector<diagnosis::Estimate>& estimates) {
+  std::vector<Estimate> list;
+  for (const diagnosis::Estimate& e : estimates) list.push_back({e.name, e.unit, e.value, e.low, e.high});
+  return list;
+}
+
+Cause plain(const diagnosis::Cause& cause) {
+  Cause c{.effect = cause.effect,
+          .where = cause.where,
+          .law = cause.law,
+          .standing = diagnosis::word(cause.standing),
+          .parameters = plain(cause.parameters),
+          .log_evidence_gain = cause.log_evidence_gain,
+          .is_written = cause.is_written,
+          .alternatives = {}};
+  for (const diagnosis::Cause& a : cause.alternatives) c.alternatives.push_back(plain(a));
+  return c;
+}
+
+Diagnosis diagnosis_of(const scenarios::Scenario& scenario, const std::vector<Record>& measured,
+                       const DiagnoseOptions& options, int most_effects, const Listener& listener) {
+  std::vector<ReadRecord> records;
+  for (const Record& record : measured) records.push_back({.record = record, .notes = {}});
+  studies::MeasuredTwin m = studies::open_measured_twin(scenario, "diagnose", records, listener);
+  m.how.without = {options.without.begin(), options.without.end()};
+  m.how.most_effects = most_effects;
+  const diagnosis::Diagnosis d =
+      diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);
+  Diagnosis result{.verdict = diagnosis::word(d.verdict),
+                   .reason = d.reason,
+                   .causes = {},
+                   .calibrated = plain(d.calibrated),
+                   .holdout = d.holdout,
+                   .gain = {},
+                   .extended_scenario = {},
+                   .not_written = {}};
+  for (const diagnosis::Cause& cause : d.causes) result.causes.push_back(plain(cause));
+  for (const diagnosis::ChannelGain& g : d.gain)
+    result.gain.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_after, g.noise_floor});
+  std::vector<diagnosis::StatedChange> changes;
+  if (d.written.keeps_numbers) changes = app::stated_scatter(d, options.causes_only);
+  for (diagnosis::StatedChange& cause : app::stated_causes(d)) changes.push_back(std::move(cause));
+  diagnosis::ExtendedScenario extended = diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, changes, {});
+  result.extended_scenario = std::move(extended.text);
+  result.not_written = std::move(extended.not_written);
+  return result;
+}
+
+}  // namespace
+
+Diagnosis Machine::diagnose(const std::vector<Record>& measured, const DiagnoseOptions& options) const {
+  return diagnosis_of(parts_->scenario, measured, options, diagnosis::DiagnosisOptions{}.most_effects, parts_->listener);
+}
+
+Diagnosis Machine::calibrate(const std::vector<Record>& measured) const {
+  return diagnosis_of(parts_->scenario, measured, {}, 0, parts_->listener);
+}
+
+}  // namespace driftwright

@@ -1,0 +1,38 @@
+#pragma once
+// Mesh files read apart from the program: VTK, Gmsh and OpenCASCADE are not written for files that are damaged, and may end the process
+// that reads one. In a process of its own that is a sentence about the file.
+
+#include <functional>
+#include <string>
+
+#include "mesh/mesh.hpp"
+
+namespace driftwright::mesh {
+
+/// What `read` returns or throws, done in a child process where that is harmless, and else here.
+///
+/// The child is a fork without exec: what it reads need not be a program of ours. That is safe where this process has one thread. With several, a
+/// thread that the child does not have may hold a lock that it waits for; so a process with several threads forks only where all of them
+/// are known to be ours (all_threads_are_ours()): they hold no lock of the libraries that read, since the fork is done
+/// under the lock that Gmsh and METIS are called under. In a program that only uses this library and has threads, files are read here.
+/// The child never runs the parent's exit handlers, writes nothing to its streams, and ends with the thread that waits for it.
+///
+/// @param path  of the file, for messages
+/// @throws InputError  naming the file, when the child dies, runs out of memory or spends more processor time than ReadingTime allows; what
+///                     `read` throws otherwise, as the same of our exceptions
+[[nodiscard]] Mesh read_apart(const std::string& path, const std::function<Mesh()>& read);
+
+/// Said once by a program whose threads are all made by this library and its OpenMP.
+void all_threads_are_ours();
+
+/// While it lives, in a child of read_apart(), processor time is bounded by the size of the file: 5 s and 60 s more a megabyte. Elsewhere it does nothing.
+/// What is done with the file once it is read takes as long as it takes.
+class ReadingTime {
+ public:
+  explicit ReadingTime(const std::string& path);
+  ~ReadingTime();
+  ReadingTime(const ReadingTime&) = delete;
+  ReadingTime& operator=(const ReadingTime&) = delete;
+};
+
+}  // namespace driftwright::mesh

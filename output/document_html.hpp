@@ -1,0 +1,19 @@
+#pragma once
+// A document as one HTML page: all of it, with its pictures.
+
+#include <string>
+#include <vector>
+
+#include "output/document.hpp"
+#include "output/html_report.hpp"
+
+namespace driftwright::output {
+
+/// A section as blocks of a page. @throws std::logic_error  when a table's row is not as long as its columns
+[[nodiscard]] std::vector<html::ReportBlock> page_blocks(const Section& section);
+
+/// @throws std::runtime_error  when plots cannot be drawn, see draw_svgs()
+/// @throws std::logic_error    when a table's row is not as long as its columns, or a plot is ill-formed
+[[nodiscard]] std::string document_html(const Document& document);
+
+}  // namespace driftwright::output

@@ -1,0 +1,152 @@
+#include "output/fmu/drive_law.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace driftwright::output {
+namespace {
+
+constexpr double kMmMin_per_m_s = 60e3;
+constexpr double kTolerance = 1e-13, kNarrowest = 1e-9, kLeastShare = 1e-6;
+constexpr int kNodes = kLawDegree + 1, kChecks = 41;
+constexpr std::size_t kMostPieces = 2000;  // a kink takes some forty
+
+using Coefficients = std::array<double, kNodes>;
+
+double sum(const double* c, double s) {
+  double b0 = 0.0, b1 = 0.0;
+  for (int j = kLawDegree; j > 0; --j) {
+    const double b2 = b1;
+    b1 = b0;
+    b0 = 2.0 * s * b1 - b2 + c[j];
+  }
+  return s * b0 - b1 + c[0];
+}
+
+/// By the values at the zeros of the next polynomial.
+Coefficients interpolated(const std::function<double(double)>& f, double low, double high) {
+  Coefficients value{}, c{};
+  for (int k = 0; k < kNodes; ++k) {
+    const double s = std::cos(std::numbers::pi * (k + 0.5) / kNodes);
+    value[static_cast<std::size_t>(k)] = f(0.5 * (low + high) + 0.5 * (high - low) * s);
+  }
+  for (int j = 0; j < kNodes; ++j) {
+    double total = 0.0;
+    for (int k = 0; k < kNodes; ++k)
+      total += value[static_cast<std::size_t>(k)] * std::cos(std::numbers::pi * j * (k + 0.5) / kNodes);
+    c[static_cast<std::size_t>(j)] = (j == 0 ? 1.0 : 2.0) / kNodes * total;
+  }
+  return c;
+}
+
+/// @param at_rest  which f is the difference to, and whose rounding it has
+bool keeps_to(const Coefficients& c, const std::function<double(double)>& f, double at_rest, double low, double high) {
+  double most = std::abs(at_rest), error = 0.0;
+  for (int k = 0; k < kChecks; ++k) {
+    const double s = -1.0 + 2.0 * k / (kChecks - 1), value = f(0.5 * (low + high) + 0.5 * (high - low) * s);
+    most = std::max(most, std::abs(value));
+    error = std::max(error, std::abs(value - sum(c.data(), s)));
+  }
+  return error <= kTolerance * most;
+}
+
+/// @returns false where it would take more than kMostPieces
+bool add_pieces(LawTerm& term, const std::function<double(double)>& f, double at_rest, double low, double high) {
+  const Coefficients c = interpolated(f, low, high);
+  if (high - low > kNarrowest && !keeps_to(c, f, at_rest, low, high)) {
+    const double middle = 0.5 * (low + high);
+    return add_pieces(term, f, at_rest, low, middle) && add_pieces(term, f, at_rest, middle, high);
+  }
+  term.log_x.push_back(high);
+  term.coefficients.insert(term.coefficients.end(), c.begin(), c.end());
+  return term.log_x.size() <= kMostPieces;
+}
+
+}  // namespace
+
+double value_of(DriveVariable variable, const Drive& drive) {
+  switch (variable) {
+    case DriveVariable::kSpeed:
+      return drive.speed_rpm;
+    case DriveVariable::kFeedX:
+      return kMmMin_per_m_s * drive.feed_m_s[0];
+    case DriveVariable::kFeedY:
+      return kMmMin_per_m_s * drive.feed_m_s[1];
+    case DriveVariable::kFeedZ:
+      return kMmMin_per_m_s * drive.feed_m_s[2];
+    case DriveVariable::kCuttingPower:
+      return drive.cutting_power_W;
+  }
+  return 0.0;
+}
+
+void set_value(DriveVariable variable, Drive& drive, double value) {
+  switch (variable) {
+    case DriveVariable::kSpeed:
+      drive.speed_rpm = value;
+      break;
+    case DriveVariable::kFeedX:
+      drive.feed_m_s[0] = value / kMmMin_per_m_s;
+      break;
+    case DriveVariable::kFeedY:
+      drive.feed_m_s[1] = value / kMmMin_per_m_s;
+      break;
+    case DriveVariable::kFeedZ:
+      drive.feed_m_s[2] = value / kMmMin_per_m_s;
+      break;
+    case DriveVariable::kCuttingPower:
+      drive.cutting_power_W = value;
+      break;
+  }
+}
+
+double DriveLaw::at(const std::vector<double>& x) const {
+  double value = at_rest;
+  for (const LawTerm& term : terms) {
+    const double own = x[static_cast<std::size_t>(term.variable)];
+    if (!(own > 0.0)) continue;
+    const double log_x = std::clamp(std::log(own), term.log_x.front(), term.log_x.back());
+    const auto above = std::upper_bound(term.log_x.begin() + 1, term.log_x.end() - 1, log_x);
+    const double low = *(above - 1), high = *above;
+    value +=
+        sum(term.coefficients.data() + (above - term.log_x.begin() - 1) * kNodes, 2.0 * (log_x - low) / (high - low) - 1.0);
+  }
+  return value;
+}
+
+std::optional<DriveLaw> tabulated(const std::function<double(const Drive&)>& law, const std::vector<DriveRange>& ranges) {
+  DriveLaw table{.at_rest = law({})};
+  for (std::size_t v = 0; v < ranges.size(); ++v) {
+    const std::function<double(double)> beyond_rest = [&](double log_x) {
+      Drive drive;
+      set_value(ranges[v].variable, drive, std::exp(log_x));
+      return law(drive) - table.at_rest;
+    };
+    const double high = std::log(ranges[v].most), low = high + std::log(kLeastShare);
+    bool is_constant = true;
+    for (int k = 0; k < kChecks && is_constant; ++k)
+      is_constant = beyond_rest(low + (high - low) * k / (kChecks - 1)) == 0.0;
+    if (is_constant) continue;
+    LawTerm term{.variable = static_cast<int>(v), .log_x = {low}, .coefficients = {}};
+    if (!add_pieces(term, beyond_rest, table.at_rest, low, high)) return std::nullopt;
+    table.terms.push_back(std::move(term));
+  }
+  std::mt19937 random(1);  // drives in which all variables differ from 0
+  std::uniform_real_distribution<double> share(0.05, 1.0);
+  for (int k = 0; k < kChecks && ranges.size() > 1; ++k) {
+    Drive drive;
+    std::vector<double> x;
+    for (const DriveRange& r : ranges) {
+      x.push_back(share(random) * r.most);
+      set_value(r.variable, drive, x.back());
+    }
+    const double value = law(drive);
+    if (std::abs(value - table.at(x)) > 1e-11 * (std::abs(value) + std::abs(table.at_rest))) return std::nullopt;
+  }
+  return table;
+}
+
+}  // namespace driftwright::output

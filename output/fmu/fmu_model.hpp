@@ -1,0 +1,71 @@
+#pragma once
+// What becomes a functional mock-up unit, as numbers: the reduced machine, or an observer over it.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compensation/predictors/observer.hpp"
+#include "machine/model.hpp"
+#include "output/fmu/drive_law.hpp"
+
+namespace driftwright::output {
+
+struct FmuOutput {
+  std::string name, unit;             ///< "degC", "um" or "urad"
+  Eigen::VectorXd state;              ///< of K, m or rad per unit of each state
+  double hall = 0.0;                  ///< per kelvin of the hall
+  double factor = 1.0, offset = 0.0;  ///< from K, m, rad to the unit
+};
+
+struct FmuSource {
+  Eigen::VectorXd load;
+  DriveLaw power_W;
+};
+struct FmuExchange {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd to_hall, offset;
+  DriveLaw coefficient;
+};
+
+/// Of an observer (Observer): what it reads, its settings, what it has learned.
+struct FmuObserver {
+  std::vector<int> sensor_output = {};  ///< indices of outputs
+  std::vector<std::string> sensors = {};
+  int drift_output = 0;
+  compensation::ObserverSettings settings = {};
+  compensation::Observer::Belief factors = {};
+};
+
+/// dz/dt = -K z + f, M = 1, as solver::ThermalSystem. What the drive does not change is summed in K0, f0 and h0 in a machine; an observer
+/// has a factor on each source and exchange and keeps them apart.
+struct FmuModel {
+  std::string name = {};         ///< of the scenario
+  std::string description = {};  ///< one sentence
+  std::vector<DriveRange> drive = {};
+  double reference_K = 293.15;
+  Eigen::MatrixXd conduction = {};
+  Eigen::VectorXd constant_load = {}, hall_load = {};
+  std::vector<FmuSource> sources = {};
+  std::vector<FmuExchange> exchanges = {};
+  std::vector<FmuOutput> outputs = {};
+  Eigen::VectorXd start = {}, ones = {};
+  double start_hall_K = 0.0;
+  bool start_follows_hall = false;
+  TimeSeries hall = {};
+  std::vector<std::vector<double>> known_drives = {};  ///< of the cyclograms: decomposed when an instance is made
+  double duration_s = 0.0;                             ///< of the cyclogram of the reference result
+  std::optional<FmuObserver> observer = {};
+};
+
+/// Looks whether a scenario's machine can be exported: whether drive and hall say all. Cheap, before anything is computed.
+/// @throws InputError  naming the effect: one of drive, hall or instruments, one for a time or one cyclogram alone, one that follows a column
+void require_exportable(const scenarios::Scenario& scenario);
+
+/// @param reduced  linear
+/// @throws InputError  naming the law: one that follows temperatures, a thermostat, two variables of the drive that act together
+[[nodiscard]] FmuModel machine_fmu(const scenarios::Scenario& scenario, const scenarios::ReducedMachine& reduced);
+/// @throws InputError  as machine_fmu()
+[[nodiscard]] FmuModel observer_fmu(const scenarios::Scenario& scenario, const compensation::Observer& observer);
+
+}  // namespace driftwright::output

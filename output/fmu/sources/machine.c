@@ -1,0 +1,291 @@
+/* The reduced machine: exact over each step of co-simulation, its slopes for model exchange. */
+#include <math.h>
+#include <string.h>
+
+#include "model.h"
+#include "symmetric_eigen.h"
+#include "thermal.h"
+
+enum { kLeastSlots = 8, kBeside = 2 }; /* of decompositions kept; hall and its rate, behind the drive among the inputs */
+
+const int model_kind_is_observer = 0;
+
+/* K in its eigenvectors, for one set of coefficients; what each mode keeps over the step met last. */
+typedef struct {
+  int is_filled;
+  double *coefficient, *lambda, *vectors; /* vectors by rows */
+  double step_s;
+  double *kept, *of_constant, *of_slope;
+} slot;
+
+typedef struct {
+  int n_slots, next_slot;
+  slot* slots;
+  /* Of the drive met last. */
+  int has_drive, has_matrix, in_modes; /* in_modes: index of the slot whose modes the loads are in, plus 1 */
+  double *drive, *coefficient, *power, *constant, *per_hall, *matrix;
+  double *mode_constant, *mode_per_hall;
+  /* Room for a while. */
+  double *modes, *eigen_work, *matrix_work, *slope;
+} machine;
+
+static int n_slots(void) {
+  return thermal.n_known + kLeastSlots;
+}
+
+static size_t n_doubles(void) {
+  const size_t n = (size_t)thermal.n, slots = (size_t)n_slots();
+  return slots * ((size_t)thermal.n_exchanges + n + n * n + 3 * n) + (size_t)thermal.n_drive + (size_t)thermal.n_exchanges +
+         (size_t)thermal.n_sources + 2 * n + n * n + 2 * n + n + 2 * n + n * n + (size_t)thermal.n_exchanges +
+         (size_t)thermal.n_sources;
+}
+
+size_t model_n_saved(void) {
+  return (size_t)kInputs + (size_t)model_n_inputs() + (size_t)thermal.n;
+}
+size_t model_scratch_size(void) {
+  return sizeof(machine) + (size_t)n_slots() * sizeof(slot) + n_doubles() * sizeof(double);
+}
+int model_n_inputs(void) {
+  return thermal.n_drive + kBeside;
+}
+int model_n_outputs(void) {
+  return thermal.n_outputs;
+}
+int model_n_states(void) {
+  return thermal.n;
+}
+double* model_states(double* saved) {
+  return saved + kInputs + model_n_inputs();
+}
+
+static double hall_K(const double* saved, double time_s) {
+  const double* const hall = saved + kInputs + thermal.n_drive;
+  if (saved[kHallFromInput] == 0.0) return hall_by_scenario_K(time_s);
+  return hall[0] - thermal.reference_degC + hall[1] * (time_s - saved[kHallSetAt]);
+}
+
+/* The decomposition of these coefficients. Returns null where it fails. */
+static slot* slot_of(machine* m, const double* coefficient) {
+  const size_t bytes = (size_t)thermal.n_exchanges * sizeof *coefficient;
+  slot* s;
+  int k;
+  for (k = 0; k < m->n_slots; ++k) {
+    s = &m->slots[k];
+    if (s->is_filled && (bytes == 0 || memcmp(s->coefficient, coefficient, bytes) == 0)) return s;
+  }
+  s = &m->slots[m->next_slot];
+  if (m->in_modes == m->next_slot + 1) m->in_modes = 0;
+  m->next_slot = (m->next_slot + 1) % m->n_slots;
+  s->is_filled = 0;
+  s->step_s = -1.0;
+  if (bytes > 0) memcpy(s->coefficient, coefficient, bytes);
+  thermal_matrix(coefficient, m->matrix_work);
+  if (symmetric_eigen(thermal.n, m->matrix_work, s->lambda, s->vectors, m->eigen_work) != 0) return 0;
+  for (k = 0; k < thermal.n; ++k) {
+    if (s->lambda[k] < 0.0) s->lambda[k] = 0.0; /* by rounding */
+  }
+  s->is_filled = 1;
+  return s;
+}
+
+static void coefficients_of(const double* drive, double* coefficient) {
+  int e;
+  for (e = 0; e < thermal.n_exchanges; ++e) coefficient[e] = law_value(&thermal.coefficients[e], drive);
+}
+
+static void take_drive(machine* m, const double* saved) {
+  const double* const drive = saved + kInputs;
+  const size_t bytes = (size_t)thermal.n_drive * sizeof *drive;
+  int s;
+  if (m->has_drive && memcmp(m->drive, drive, bytes) == 0) return;
+  memcpy(m->drive, drive, bytes);
+  coefficients_of(drive, m->coefficient);
+  for (s = 0; s < thermal.n_sources; ++s) m->power[s] = law_value(&thermal.powers[s], drive);
+  thermal_loads(m->coefficient, m->power, m->constant, m->per_hall);
+  m->has_drive = 1;
+  m->has_matrix = 0;
+  m->in_modes = 0;
+}
+
+static double* take(double** room, size_t n) {
+  double* const at = *room;
+  *room += n;
+  return at;
+}
+
+int model_prepare(void* scratch) {
+  machine* const m = scratch;
+  const size_t n = (size_t)thermal.n;
+  double* room;
+  int k;
+  memset(m, 0, sizeof *m);
+  m->n_slots = n_slots();
+  m->slots = (slot*)(m + 1);
+  room = (double*)(m->slots + m->n_slots);
+  for (k = 0; k < m->n_slots; ++k) {
+    slot* const s = &m->slots[k];
+    s->is_filled = 0;
+    s->coefficient = take(&room, (size_t)thermal.n_exchanges);
+    s->lambda = take(&room, n);
+    s->vectors = take(&room, n * n);
+    s->kept = take(&room, n);
+    s->of_constant = take(&room, n);
+    s->of_slope = take(&room, n);
+  }
+  m->drive = take(&room, (size_t)thermal.n_drive);
+  m->coefficient = take(&room, (size_t)thermal.n_exchanges);
+  m->power = take(&room, (size_t)thermal.n_sources);
+  m->constant = take(&room, n);
+  m->per_hall = take(&room, n);
+  m->matrix = take(&room, n * n);
+  m->mode_constant = take(&room, n);
+  m->mode_per_hall = take(&room, n);
+  m->modes = take(&room, n);
+  m->eigen_work = take(&room, 2 * n);
+  m->matrix_work = take(&room, n * n);
+  m->slope = take(&room, (size_t)thermal.n_exchanges + (size_t)thermal.n_sources);
+  for (k = 0; k < thermal.n_known; ++k) {
+    coefficients_of(thermal.known_drive + (size_t)k * (size_t)thermal.n_drive, m->coefficient);
+    if (!slot_of(m, m->coefficient)) return 1;
+  }
+  return 0;
+}
+
+void model_reset(double* saved, void* scratch) {
+  memset(saved, 0, model_n_saved() * sizeof *saved);
+  saved[kInputs + thermal.n_drive] = thermal.start_hall_K + thermal.reference_degC;
+  model_touched(scratch);
+}
+
+void model_touched(void* scratch) {
+  (void)scratch; /* the scratch looks at the inputs by itself */
+}
+
+const char* model_before_input(double* saved, int input, double value) {
+  if (!(fabs(value) <= HUGE_VAL) || fabs(value) == HUGE_VAL) return "an input is no finite number";
+  if (input < thermal.n_drive && !(value >= 0.0 && value <= thermal.most_drive[input] * (1.0 + 1e-12)))
+    return "an input is outside its min and max, between which the model was reduced";
+  if (input == thermal.n_drive) saved[kHallSetAt] = saved[kTime];
+  return 0;
+}
+
+void model_start(double* saved, void* scratch) {
+  double* const z = model_states(saved);
+  double warmer_K = saved[kStartWarmer];
+  int i;
+  (void)scratch;
+  saved[kHallSetAt] = saved[kTime];
+  if (thermal.start_follows_hall && saved[kHallFromInput] != 0.0)
+    warmer_K += hall_K(saved, saved[kTime]) - thermal.start_hall_K;
+  for (i = 0; i < thermal.n; ++i) z[i] = thermal.start[i] + warmer_K * thermal.ones[i];
+}
+
+const char* model_step(double* saved, void* scratch, double h_s) {
+  machine* const m = scratch;
+  const int n = thermal.n;
+  const double from_s = saved[kTime], end_s = from_s + h_s;
+  double* const z = model_states(saved);
+  double t_s = from_s;
+  slot* s;
+  int i;
+  take_drive(m, saved);
+  s = slot_of(m, m->coefficient);
+  if (!s) return "the decomposition of the conduction matrix did not converge";
+  if (m->in_modes != (int)(s - m->slots) + 1) {
+    multiply(n, n, s->vectors, m->constant, m->mode_constant);
+    multiply(n, n, s->vectors, m->per_hall, m->mode_per_hall);
+    m->in_modes = (int)(s - m->slots) + 1;
+  }
+  multiply(n, n, s->vectors, z, m->modes);
+  while (t_s < end_s) {
+    const double knot_s = saved[kHallFromInput] == 0.0 ? next_hall_knot_s(t_s) : HUGE_VAL;
+    const double until_s = knot_s < end_s ? knot_s : end_s, piece_s = until_s - t_s;
+    const double hall = hall_K(saved, t_s), slope = (hall_K(saved, until_s) - hall) / piece_s;
+    if (!(fabs(piece_s - s->step_s) <= 1e-12 * piece_s)) {
+      for (i = 0; i < n; ++i) decay_of(s->lambda[i] * piece_s, &s->kept[i], &s->of_constant[i], &s->of_slope[i]);
+      s->step_s = piece_s;
+    }
+    for (i = 0; i < n; ++i) {
+      m->modes[i] = s->kept[i] * m->modes[i] +
+                    piece_s * s->of_constant[i] * (m->mode_constant[i] + hall * m->mode_per_hall[i]) +
+                    piece_s * piece_s * s->of_slope[i] * slope * m->mode_per_hall[i];
+    }
+    t_s = until_s;
+  }
+  memset(z, 0, (size_t)n * sizeof *z);
+  add_transposed(n, n, s->vectors, m->modes, z);
+  saved[kTime] = end_s;
+  return 0;
+}
+
+const char* model_event(double* saved, void* scratch) {
+  (void)saved;
+  (void)scratch;
+  return 0;
+}
+
+double model_next_event_s(const double* saved) {
+  return saved[kHallFromInput] == 0.0 ? next_hall_knot_s(saved[kTime]) : HUGE_VAL;
+}
+
+void model_outputs(const double* saved, void* scratch, double* outputs) {
+  const double hall = hall_K(saved, saved[kTime]);
+  int o;
+  (void)scratch;
+  multiply(thermal.n_outputs, thermal.n, thermal.outputs, saved + kInputs + model_n_inputs(), outputs);
+  for (o = 0; o < thermal.n_outputs; ++o)
+    outputs[o] = thermal.output_factor[o] * (outputs[o] + thermal.outputs_hall[o] * hall) + thermal.output_offset[o];
+}
+
+static const double* matrix_of(machine* m, const double* saved) {
+  take_drive(m, saved);
+  if (!m->has_matrix) thermal_matrix(m->coefficient, m->matrix);
+  m->has_matrix = 1;
+  return m->matrix;
+}
+
+void model_derivatives(const double* saved, void* scratch, double* derivatives) {
+  machine* const m = scratch;
+  const double hall = hall_K(saved, saved[kTime]);
+  int i;
+  multiply(thermal.n, thermal.n, matrix_of(m, saved), saved + kInputs + model_n_inputs(), derivatives);
+  for (i = 0; i < thermal.n; ++i) derivatives[i] = m->constant[i] + hall * m->per_hall[i] - derivatives[i];
+}
+
+static void add_hall(double seed_K, const machine* m, double* outputs, double* derivatives) {
+  int i;
+  for (i = 0; i < thermal.n_outputs; ++i) outputs[i] += seed_K * thermal.output_factor[i] * thermal.outputs_hall[i];
+  for (i = 0; i < thermal.n; ++i) derivatives[i] += seed_K * m->per_hall[i];
+}
+
+void model_add_sensitivity(const double* saved, void* scratch, int known_is_state, int known, double seed, double* outputs,
+                           double* derivatives) {
+  machine* const m = scratch;
+  const double *const k = matrix_of(m, saved), *const z = saved + kInputs + model_n_inputs();
+  const int n = thermal.n, is_hall_input = saved[kHallFromInput] != 0.0;
+  int i, j, e, s;
+  if (known_is_state) {
+    for (i = 0; i < thermal.n_outputs; ++i) outputs[i] += seed * thermal.output_factor[i] * thermal.outputs[i * n + known];
+    for (i = 0; i < n; ++i) derivatives[i] -= seed * k[i * n + known];
+  } else if (known == thermal.n_drive) {
+    if (is_hall_input) add_hall(seed, m, outputs, derivatives);
+  } else if (known == thermal.n_drive + 1) {
+    if (is_hall_input) add_hall(seed * (saved[kTime] - saved[kHallSetAt]), m, outputs, derivatives);
+  } else {
+    const double* const drive = saved + kInputs;
+    const double hall = hall_K(saved, saved[kTime]);
+    for (s = 0; s < thermal.n_sources; ++s) m->slope[s] = seed * law_slope(&thermal.powers[s], drive, known);
+    add_transposed(thermal.n_sources, n, thermal.loads, m->slope, derivatives);
+    for (e = 0; e < thermal.n_exchanges; ++e) {
+      const double slope = seed * law_slope(&thermal.coefficients[e], drive, known);
+      const double* const g = thermal.exchanges + (size_t)e * (size_t)n * (size_t)n;
+      if (slope == 0.0) continue;
+      for (i = 0; i < n; ++i) {
+        double sum = hall * thermal.to_hall[e * n + i] + thermal.offsets[e * n + i];
+        for (j = 0; j < n; ++j) sum -= g[i * n + j] * z[j];
+        derivatives[i] += slope * sum;
+      }
+    }
+  }
+}

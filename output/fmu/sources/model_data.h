@@ -1,0 +1,69 @@
+/* What one exported model is made of: the tables of model_data.c, which the export writes. Everything else here is the same in
+ * every unit. SI and kelvin inside; what the importer sees is in the units of modelDescription.xml. */
+#ifndef DRIFTWRIGHT_MODEL_DATA_H
+#define DRIFTWRIGHT_MODEL_DATA_H
+
+/* A law of one variable x >= 0 of the drive: 0 at x = 0, and behind it a polynomial of log x in Chebyshev's form in each piece.
+ * Below the first piece it is what it is at the piece's beginning. */
+typedef struct {
+  int variable; /* index of the drive */
+  int n_pieces;
+  int degree;
+  const double* log_x;        /* ends of the pieces, n_pieces + 1 */
+  const double* coefficients; /* n_pieces rows of degree + 1 */
+} law_term;
+
+/* A power or a coefficient over the drive: what it is at rest, and a term for each variable that it looks at. */
+typedef struct {
+  double at_rest;
+  int n_terms;
+  const law_term* terms;
+} drive_law;
+
+/* dz/dt = -K z + f, M = 1: K = K0 + sum c_e G_e, f = f0 + hall h0 + sum P_s b_s + sum c_e (hall g_e + o_e). Matrices by rows. */
+typedef struct {
+  int n, n_drive, n_sources, n_exchanges, n_outputs;
+  const double* conduction;    /* K0 */
+  const double* constant_load; /* f0 */
+  const double* hall_load;     /* h0 */
+  const double* loads;         /* b_s, n_sources rows */
+  const drive_law* powers;
+  const double* exchanges; /* G_e, n_exchanges matrices */
+  const double* to_hall;   /* g_e, n_exchanges rows */
+  const double* offsets;   /* o_e, n_exchanges rows */
+  const drive_law* coefficients;
+  const double* outputs; /* n_outputs rows: y = outputs z + outputs_hall hall */
+  const double* outputs_hall;
+  const double* output_factor; /* what is told is factor y + offset */
+  const double* output_offset;
+  const double* start; /* z at the start in the hall start_hall_K */
+  const double* ones;  /* z of 1 K everywhere */
+  double start_hall_K;
+  int start_follows_hall; /* a start in a warmer hall is as much warmer */
+  double reference_degC;  /* hall temperatures count from here */
+  int n_hall;             /* knots of the scenario's hall, linear between them and constant outside */
+  const double* hall_time_s;
+  const double* hall_K;
+  const double* most_drive; /* of each variable of the drive, for which the model was reduced */
+  const double* nominal;    /* of each state */
+  int n_known;              /* sets of the drive whose decompositions are made ahead */
+  const double* known_drive;
+} thermal_data;
+
+/* Of an observer alone (observer.c); otherwise all zero. */
+typedef struct {
+  int n_sensors;
+  const int* sensor_output; /* of each sensor, index of the output that it reads */
+  int drift_output;
+  double period_s; /* from sample to sample */
+  double reading_K, model_K, model_holds_s, factor_walk, longest_step_s, drift_um;
+  const double* factor_mean;       /* of the sources, the exchanges and the drift, minus 1 */
+  const double* factor_covariance; /* by rows */
+} observer_data;
+
+extern const char* const model_guid;
+extern const char* const model_identifier;
+extern const thermal_data thermal;
+extern const observer_data observer;
+
+#endif

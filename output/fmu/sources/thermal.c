@@ -1,0 +1,131 @@
+#include "thermal.h"
+
+#include <math.h>
+#include <string.h>
+
+void multiply(int rows, int columns, const double* matrix, const double* x, double* y) {
+  int i, j;
+  for (i = 0; i < rows; ++i) {
+    const double* const row = matrix + (size_t)i * (size_t)columns;
+    double sum = 0.0;
+    for (j = 0; j < columns; ++j) sum += row[j] * x[j];
+    y[i] = sum;
+  }
+}
+
+void add_transposed(int rows, int columns, const double* matrix, const double* x, double* y) {
+  int i, j;
+  for (i = 0; i < rows; ++i) {
+    const double* const row = matrix + (size_t)i * (size_t)columns;
+    for (j = 0; j < columns; ++j) y[j] += row[j] * x[i];
+  }
+}
+
+/* The piece that holds log x, and where in it, from -1 to 1. */
+static const double* piece_at(const law_term* t, double log_x, double* s, double* half_width) {
+  int low = 0, high = t->n_pieces;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    if (log_x < t->log_x[middle])
+      high = middle;
+    else
+      low = middle;
+  }
+  *half_width = 0.5 * (t->log_x[low + 1] - t->log_x[low]);
+  *s = (log_x - t->log_x[low]) / *half_width - 1.0;
+  if (*s < -1.0) *s = -1.0;
+  if (*s > 1.0) *s = 1.0;
+  return t->coefficients + (size_t)low * (size_t)(t->degree + 1);
+}
+
+double law_value(const drive_law* law, const double* drive) {
+  double value = law->at_rest;
+  int k, j;
+  for (k = 0; k < law->n_terms; ++k) {
+    const law_term* const t = &law->terms[k];
+    const double x = drive[t->variable];
+    const double* c;
+    double s, half, b0 = 0.0, b1 = 0.0, b2;
+    if (!(x > 0.0)) continue;
+    c = piece_at(t, log(x), &s, &half);
+    for (j = t->degree; j > 0; --j) { /* Clenshaw's sum */
+      b2 = b1;
+      b1 = b0;
+      b0 = 2.0 * s * b1 - b2 + c[j];
+    }
+    value += s * b0 - b1 + c[0];
+  }
+  return value;
+}
+
+double law_slope(const drive_law* law, const double* drive, int variable) {
+  double slope = 0.0;
+  int k, j;
+  for (k = 0; k < law->n_terms; ++k) {
+    const law_term* const t = &law->terms[k];
+    const double x = drive[t->variable];
+    const double* c;
+    double s, half, u0 = 1.0, u1, u2 = 0.0, sum = 0.0; /* U_{j-1}(s): T_j' = j U_{j-1} */
+    if (t->variable != variable || !(x > 0.0)) continue;
+    c = piece_at(t, log(x), &s, &half);
+    u1 = 0.0;
+    for (j = 1; j <= t->degree; ++j) {
+      sum += j * c[j] * u0;
+      u2 = u1;
+      u1 = u0;
+      u0 = 2.0 * s * u1 - u2;
+    }
+    slope += sum / (half * x);
+  }
+  return slope;
+}
+
+void decay_of(double x, double* kept, double* of_constant, double* of_slope) {
+  *kept = exp(-x);
+  if (x < 1e-2) { /* differences of nearly equal numbers: their series, to x^5 */
+    *of_constant = 1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0))));
+    *of_slope = 0.5 - x / 6.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0 * (1.0 - x / 7.0))));
+  } else {
+    *of_constant = -expm1(-x) / x;
+    *of_slope = (1.0 - *of_constant) / x;
+  }
+}
+
+double hall_by_scenario_K(double time_s) {
+  const double *const t = thermal.hall_time_s, *const hall = thermal.hall_K;
+  int k;
+  if (time_s <= t[0]) return hall[0];
+  for (k = 1; k < thermal.n_hall; ++k) {
+    if (time_s < t[k]) return hall[k - 1] + (hall[k] - hall[k - 1]) * ((time_s - t[k - 1]) / (t[k] - t[k - 1]));
+  }
+  return hall[thermal.n_hall - 1];
+}
+
+double next_hall_knot_s(double time_s) {
+  int k;
+  for (k = 0; k < thermal.n_hall; ++k) {
+    if (thermal.hall_time_s[k] > time_s + 1e-9 * fabs(time_s)) return thermal.hall_time_s[k];
+  }
+  return HUGE_VAL;
+}
+
+void thermal_matrix(const double* coefficient, double* matrix) {
+  const size_t size = (size_t)thermal.n * (size_t)thermal.n;
+  size_t i;
+  int e;
+  memcpy(matrix, thermal.conduction, size * sizeof *matrix);
+  for (e = 0; e < thermal.n_exchanges; ++e) {
+    const double* const g = thermal.exchanges + (size_t)e * size;
+    if (coefficient[e] == 0.0) continue;
+    for (i = 0; i < size; ++i) matrix[i] += coefficient[e] * g[i];
+  }
+}
+
+void thermal_loads(const double* coefficient, const double* power_W, double* constant_W, double* per_hall_W_K) {
+  const size_t bytes = (size_t)thermal.n * sizeof *constant_W;
+  memcpy(constant_W, thermal.constant_load, bytes);
+  memcpy(per_hall_W_K, thermal.hall_load, bytes);
+  add_transposed(thermal.n_sources, thermal.n, thermal.loads, power_W, constant_W);
+  add_transposed(thermal.n_exchanges, thermal.n, thermal.offsets, coefficient, constant_W);
+  add_transposed(thermal.n_exchanges, thermal.n, thermal.to_hall, coefficient, per_hall_W_K);
+}

@@ -1,0 +1,221 @@
+#include "output/machine_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "mesh/outer_faces.hpp"
+#include "output/markup.hpp"
+#include "output/surface_view.hpp"
+
+namespace driftwright::output {
+namespace {
+
+constexpr int kViewWidth = 300, kViewHeight = 420, kDense = 2;  // units of the SVG; pixels a unit
+constexpr double kShownBend = 0.05;  // largest displacement in the picture over the machine's size
+
+std::string base64(const std::string& bytes) {
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
+    unsigned v = 0;
+    for (std::size_t k = 0; k < 3; ++k) v = v << 8U | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= n ? kDigits[v >> (18 - 6 * k) & 63U] : '=';
+  }
+  return text;
+}
+
+std::string hex(const std::array<float, 3>& colour) {
+  const auto byte = [](float v) { return static_cast<int>(std::lround(255.0F * v)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(colour[0]), byte(colour[1]), byte(colour[2]));
+}
+
+/// Triangles of a face; mid-side nodes are corners of them.
+std::vector<std::array<int, 3>> triangles_of(mesh::CellShape shape, const std::vector<int>& n) {
+  switch (shape) {
+    case mesh::CellShape::kTri3:
+      return {{n[0], n[1], n[2]}};
+    case mesh::CellShape::kTri6:
+      return {{n[0], n[3], n[5]}, {n[3], n[1], n[4]}, {n[5], n[4], n[2]}, {n[3], n[4], n[5]}};
+    case mesh::CellShape::kQuad4:
+      return {{n[0], n[1], n[2]}, {n[0], n[2], n[3]}};
+    case mesh::CellShape::kQuad8:
+      return {{n[0], n[4], n[7]}, {n[4], n[1], n[5]}, {n[5], n[2], n[6]},
+              {n[6], n[3], n[7]}, {n[4], n[5], n[6]}, {n[4], n[6], n[7]}};
+    default:
+      throw std::logic_error("a face that is no facet");
+  }
+}
+
+/// The machine's outside. Parts of triangles: the named surface, or behind these the region.
+struct Skin {
+  std::vector<std::array<int, 3>> triangle;
+  std::vector<int> part;
+  std::vector<int> surface;  ///< of each triangle, -1: has no name
+};
+
+Skin skin_of(const mesh::Mesh& mesh) {
+  std::map<mesh::FaceKey, int> named;
+  for (int f = 0; f < mesh.facets.size(); ++f) {
+    const auto nodes = mesh.facets.nodes(f);
+    const int corners = mesh::n_corners_of(mesh.facets.shape[static_cast<std::size_t>(f)]);
+    named[mesh::face_key(nodes.first(static_cast<std::size_t>(corners)))] = mesh.facets.group[static_cast<std::size_t>(f)];
+  }
+  Skin skin;
+  mesh::FaceTable(mesh.cells).for_each([&](const mesh::FaceKey& key, std::span<const mesh::FaceTable::Entry> at) {
+    if (at.size() != 1) return;
+    const auto name = named.find(key);
+    const int surface = name == named.end() ? -1 : name->second;
+    const int region = mesh.cells.group[static_cast<std::size_t>(at[0].at.cell)];
+    const int part = surface >= 0 ? surface : static_cast<int>(mesh.surfaces.size()) + region;
+    for (const auto& t : triangles_of(mesh::shape_of(mesh.cells, at[0].at), mesh::nodes_of(mesh.cells, at[0].at))) {
+      skin.triangle.push_back(t);
+      skin.part.push_back(part);
+      skin.surface.push_back(surface);
+    }
+  });
+  return skin;
+}
+
+/// Labels in a column beside a view, each with a line to its point; none covers another.
+std::string labels(const std::vector<PictureMark>& marks, const DrawnView& drawn, double left, double slack) {
+  struct Label {
+    const PictureMark* mark;
+    double x, y, shown_y = 0.0;
+    bool hidden;
+  };
+  std::array<std::vector<Label>, 2> sides;
+  for (const PictureMark& mark : marks) {
+    const Eigen::Vector2d p = drawn.pixel(mark.at_m) / kDense;
+    sides[p.x() < 0.5 * kViewWidth ? 0 : 1].push_back({&mark, left + p.x(), p.y(), 0.0, drawn.hides(mark.at_m, slack)});
+  }
+  constexpr double kLine = 13.0;
+  std::string out;
+  for (int side = 0; side < 2; ++side) {
+    auto& list = sides[side];
+    std::sort(list.begin(), list.end(), [](const Label& a, const Label& b) { return a.y < b.y; });
+    double next = kLine;
+    for (Label& l : list) next = (l.shown_y = std::max(l.y, next)) + kLine;
+    double last = kViewHeight - 4.0;
+    for (auto l = list.rbegin(); l != list.rend(); ++l) last = (l->shown_y = std::min(l->shown_y, last)) - kLine;
+    const double text_x = side == 0 ? left - 6.0 : left + kViewWidth + 6.0;
+    for (const Label& l : list) {
+      const char* tone = l.hidden ? "#98a2ab" : "#1d2329";
+      out += fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"0.6\" fill=\"none\"/>\n",
+                         text_x, l.shown_y - 4.0, l.x, l.y, tone);
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"1.2\"/>\n",
+                         l.x, l.y, l.mark->is_indicator ? 4.5 : 3.0, l.mark->is_indicator ? "none" : "#ffffff",
+                         l.mark->is_indicator && !l.hidden ? "#00a0c0" : tone);
+      out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\">{}</text>\n", text_x, l.shown_y,
+                         side == 0 ? "end" : "start", tone, escaped(l.mark->name));
+    }
+  }
+  return out;
+}
+
+std::string colour_bar(const PictureField& field, double low, double high, double x, double y, double width) {
+  constexpr int kSteps = 64;
+  std::string out;
+  for (int i = 0; i < kSteps; ++i) {
+    out += fmt::format("<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"12\" fill=\"{}\"/>\n",
+                       x + width * i / kSteps, y, width / kSteps + 0.3, hex(inferno((i + 0.5) / kSteps)));
+  }
+  for (int i = 0; i <= 4; ++i) {
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.1f}</text>\n", x + width * i / 4.0,
+                       y + 26.0, low + (high - low) * i / 4.0);
+  }
+  return out + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", x + 0.5 * width, y - 6.0,
+                           escaped(field.label));
+}
+
+}  // namespace
+
+std::string draw_machine(const MachinePicture& picture) {
+  const mesh::Mesh& mesh = *picture.mesh;
+  if (mesh.cells.size() == 0) throw std::logic_error("draw_machine: a mesh without cells");
+  if (picture.field && picture.field->value.size() != mesh.n_nodes())
+    throw std::logic_error("draw_machine: a field of another mesh");
+  const Skin skin = skin_of(mesh);
+  ColouredSurface surface{.point = mesh.coords, .triangle = skin.triangle, .colour = {}, .part = skin.part};
+  const double size_m = (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).norm();
+  double magnified = 0.0;
+  if (picture.displacement_m.cols() == mesh.n_nodes()) {
+    const double most_m = picture.displacement_m.colwise().norm().maxCoeff();
+    if (most_m > 0.0) {
+      const double exact = kShownBend * size_m / most_m, decade = std::pow(10.0, std::floor(std::log10(exact)));
+      magnified = decade * (exact >= 5 * decade ? 5 : exact >= 2 * decade ? 2 : 1);  // 1, 2 or 5
+      surface.point += magnified * picture.displacement_m;
+    }
+  }
+  double low = 0.0, high = 1.0;
+  std::set<int> shown_surfaces;
+  if (picture.field) {
+    low = picture.field->value.minCoeff();
+    high = std::max(picture.field->value.maxCoeff(), low + 1e-9);
+    for (double v : picture.field->value) surface.colour.push_back(inferno((v - low) / (high - low)));
+  } else {
+    // Points that surfaces share would mix their colours: each triangle has points of its own.
+    Eigen::Matrix3Xd own(3, 3 * static_cast<Eigen::Index>(skin.triangle.size()));
+    for (std::size_t i = 0; i < skin.triangle.size(); ++i) {
+      const int name = skin.surface[i];
+      if (name >= 0) shown_surfaces.insert(name);
+      for (int k = 0; k < 3; ++k) {
+        const auto to = static_cast<int>(3 * i) + k;
+        own.col(to) = surface.point.col(skin.triangle[i][k]);
+        surface.triangle[i][k] = to;
+        surface.colour.push_back(name >= 0 ? distinct_colour(name) : std::array<float, 3>{0.82F, 0.84F, 0.86F});
+      }
+    }
+    surface.point = own;
+  }
+  const bool in_colours_of_names = !picture.field;
+  const int rows_of_names = in_colours_of_names ? (static_cast<int>(shown_surfaces.size()) + 4) / 4 : 0;
+  const int height = kViewHeight + (in_colours_of_names ? 14 + 16 * rows_of_names : 62);
+  std::string body;
+  const View views[2] = {{.towards = {1.0, 1.2, 0.7}}, {.towards = {-1.0, -1.2, 0.7}}};
+  const double left_of[2] = {100.0, 600.0};
+  for (int v = 0; v < 2; ++v) {
+    const DrawnView drawn = draw_surface(surface, views[v], kDense * kViewWidth, kDense * kViewHeight);
+    body += fmt::format("<image x=\"{}\" y=\"0\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n",
+                        left_of[v], kViewWidth, kViewHeight, base64(drawn.png));
+    std::vector<PictureMark> marks = picture.marks;
+    if (magnified > 0.0) {  // where the nearest node went
+      for (PictureMark& mark : marks) {
+        Eigen::Index nearest = 0;
+        (mesh.coords.colwise() - mark.at_m).colwise().squaredNorm().minCoeff(&nearest);
+        mark.at_m += magnified * picture.displacement_m.col(nearest);
+      }
+    }
+    body += labels(marks, drawn, left_of[v], 0.01 * size_m);
+    body += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"#5b6670\">{}</text>\n",
+                        left_of[v] + kViewWidth / 2, kViewHeight + 12, v == 0 ? "from +x, +y" : "from −x, −y");
+  }
+  if (picture.field) {
+    body += colour_bar(*picture.field, low, high, 350.0, kViewHeight + 30.0, 300.0);
+    if (magnified > 0.0)
+      body += fmt::format("<text x=\"30\" y=\"{}\" fill=\"#5b6670\">displacement magnified {:.0f} times</text>\n",
+                          height - 6, magnified);
+  } else {
+    int i = 0;
+    const auto entry = [&](const std::string& colour, const std::string& name) {
+      const int x = 30 + 242 * (i % 4), y = kViewHeight + 30 + 16 * (i / 4);
+      body +=
+          fmt::format("<rect x=\"{}\" y=\"{}\" width=\"10\" height=\"10\" fill=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n",
+                      x, y - 9, colour, x + 15, y, escaped(name));
+      ++i;
+    };
+    for (int s : shown_surfaces) entry(hex(distinct_colour(s)), mesh.surfaces[static_cast<std::size_t>(s)]);
+    entry("#d1d6db", "without a name");
+  }
+  return fmt::format(
+      "<svg viewBox=\"0 0 1000 {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"the machine\" "
+      "font-family=\"sans-serif\" font-size=\"11\" fill=\"#1d2329\">\n{}</svg>\n",
+      height, body);
+}
+
+}  // namespace driftwright::output

@@ -1,0 +1,43 @@
+#pragma once
+// One run corrected by one predictor through one actuator: what `compensate` shows.
+
+#include <optional>
+
+#include "base/listener.hpp"
+#include "compensation/judging/iso230_3.hpp"
+#include "compensation/predictors/deployed_predictor.hpp"
+#include "compensation/predictors/score.hpp"
+#include "scenarios/reader/scenario.hpp"
+
+namespace driftwright::studies {
+
+struct CorrectionRequest {
+  std::string through = {};               ///< none, injector, schedule
+  const Cyclogram* cyclogram = nullptr;   ///< to simulate; null: a record is given
+  std::string measured = {}, after = {};  ///< a record CSV or a part of one, and what it continues; empty: none
+};
+
+/// What the actuator left, over the run's own rows.
+struct CorrectionStudy {
+  compensation::DeployedPredictor predictor = {};
+  std::string run = {};  ///< name of the cyclogram or record
+  std::vector<double> time_s = {}, drift_um = {}, predicted_um = {}, left_um = {};
+  std::vector<bool> at_rest = {};  ///< rows that are judged, where the axis moves; empty: all
+  compensation::Score before = {}, after = {};
+  std::optional<double> margin_um = {};  ///< that the plan keeps, where there is one
+  compensation::Iso230Figures iso = {};  ///< of the drift, and of what is left of it
+  std::vector<std::string> notes = {};   ///< how the run was read, a sentence each
+};
+
+/// Simulates or reads the run, lets the predictor tell its drift and the actuator undo it.
+/// @param predictor  none: the machine's thermal modes
+/// @throws InputError  for a record that the predictor cannot follow, a drift that no schedule can be written for, and as read_records() and
+///                     open_model()
+[[nodiscard]] CorrectionStudy correct_run(const scenarios::Scenario& scenario,
+                                          std::optional<compensation::DeployedPredictor> predictor,
+                                          const CorrectionRequest& request, const Listener& listener);
+
+/// The values of rows that are judged: during a pass an axis lags behind its command, which is no thermal error.
+[[nodiscard]] std::vector<double> judged_rows(const CorrectionStudy& study, const std::vector<double>& values);
+
+}  // namespace driftwright::studies
