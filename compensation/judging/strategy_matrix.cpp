@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 
 #include "base/errors.hpp"
+#include "base/parallel.hpp"
 #include "compensation/predictors/drift_model.hpp"
 
 namespace driftwright::compensation {
@@ -158,9 +158,7 @@ std::vector<std::string> each_once(const std::vector<JudgedRunOfMachine>& runs, 
 }  // namespace
 
 const char* word(Safety safety) {
-  return safety == Safety::kSafe           ? "safe to deploy"
-         : safety == Safety::kWithinLimits ? "safe within limits"
-                                                         : "unsafe";
+  return safety == Safety::kSafe ? "safe to deploy" : safety == Safety::kWithinLimits ? "safe within limits" : "unsafe";
 }
 
 void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
@@ -333,24 +331,15 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
         fmt::format("no strategy could be fitted; {}: {}", matrix.left_out.front().name, matrix.left_out.front().why));
   const std::size_t n_runs = matrix.runs.size(), n_jobs = fitted.strategies.size() * n_runs;
   std::vector<std::vector<Case>> cases(n_jobs);
-  std::vector<std::exception_ptr> failures(n_jobs);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t job = 0; job < n_jobs; ++job) {
+  parallel_for(n_jobs, [&](std::size_t job) {
     const DeployedPredictor& strategy = fitted.strategies[job / n_runs];
     const std::size_t r = job % n_runs;
-    try {
-      for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
-        cases[job].push_back(judge(strategy, run, drift_um[r]).scores);
-        cases[job].back().run = r;
-        cases[job].back().failed = failed;
-      }
-    } catch (...) {
-      failures[job] = std::current_exception();  // none may leave the parallel loop
+    for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
+      cases[job].push_back(judge(strategy, run, drift_um[r]).scores);
+      cases[job].back().run = r;
+      cases[job].back().failed = failed;
     }
-  }
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
-  }
+  });
   for (std::size_t s = 0; s < fitted.strategies.size(); ++s) {
     JudgedStrategy judged;
     judged.fitted = std::move(fitted.strategies[s]);
