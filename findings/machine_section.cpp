@@ -58,7 +58,11 @@ output::Picture fields_picture(const scenarios::MachineModel& machine, const mes
 void add_machine(output::Section& body, const scenarios::MachineModel& machine, const mesh::Mesh& mesh,
                  const std::string& cyclogram, const WorstMoment& worst) {
   if (mesh.cells.size() == 0) return;
-  add(body, worst.fields() ? fields_picture(machine, mesh, cyclogram, *worst.fields()) : surfaces_picture(machine, mesh));
+  if (worst.fields()) {
+    add(body, fields_picture(machine, mesh, cyclogram, *worst.fields()));
+  } else if (mesh.facets.size() > 0) {  // kept machines have none
+    add(body, surfaces_picture(machine, mesh));
+  }
 }
 
 void WorstMoment::take(const scenarios::WholeFields& fields) {

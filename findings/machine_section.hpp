@@ -27,7 +27,7 @@ class WorstMoment {
   std::optional<scenarios::WholeFields> worst_;
 };
 
-/// What a report of a run opens with: the fields at the worst moment, the named surfaces where no fields were asked for, nothing without a mesh.
+/// What a report of a run opens with: the fields at the worst moment; where no fields were asked for, the named surfaces if the mesh has them; nothing without a mesh.
 void add_machine(output::Section& body, const scenarios::MachineModel& machine, const mesh::Mesh& mesh,
                  const std::string& cyclogram, const WorstMoment& worst);
 

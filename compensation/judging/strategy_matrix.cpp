@@ -173,12 +173,12 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const Case* worse_beyond = worst_beside_nothing(s, [&](const Case& c) { return !keeps(c); });
   const auto beside_nothing = [&](const Case& c) {
     return fmt::format(
-        "more is left than without any correction, RMS {:.1f} instead of {:.1f} um and peak {:.1f} instead of {:.1f} um {}",
+        "more is left than without any correction, RMS {:.1f} instead of {:.1f} µm and peak {:.1f} instead of {:.1f} µm {}",
         c.after.rmse, c.before.rmse, c.after.peak_abs, c.before.peak_abs, where_of(m, c));
   };
   if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
     s.safety = Safety::kSafe;
-    s.why = fmt::format("{}never more than {:.1f} um left of the drift; the most {}{}",
+    s.why = fmt::format("{}never more than {:.1f} µm left of the drift; the most {}{}",
                         worse ? fmt::format("{}, inside the tolerance, though: ", beside_nothing(*worse)) : "",
                         all.peak->after.peak_abs, where_of(m, *all.peak),
                         m.runs.size() > 2
@@ -196,7 +196,7 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   });
   if (harms(*harm)) {
     s.safety = Safety::kUnsafe;
-    s.why = fmt::format("it makes things worse, by up to {:.1f} um at one moment ({:.1f} um left of a peak of {:.1f} um) {}",
+    s.why = fmt::format("it makes things worse, by up to {:.1f} µm at one moment ({:.1f} µm left of a peak of {:.1f} µm) {}",
                         harm->harm_um, harm->after.peak_abs, harm->before.peak_abs, where_of(m, *harm));
     return;
   }
@@ -216,7 +216,7 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   if (!s.limits.empty() &&
       !std::all_of(s.cases.begin(), s.cases.end(), [&](const Case& c) { return c.failed.empty() || keeps(c); }))
     s.limits.emplace_back("all with sensors intact");
-  const std::string worst = fmt::format("{:.1f} um of {:.1f} um are left {}", all.peak->after.peak_abs,
+  const std::string worst = fmt::format("{:.1f} µm of {:.1f} µm are left {}", all.peak->after.peak_abs,
                                         all.peak->before.peak_abs, where_of(m, *all.peak));
   s.safety = s.limits.empty() ? Safety::kUnsafe : Safety::kWithinLimits;
   s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst : worst;
