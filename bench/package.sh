@@ -1,16 +1,17 @@
 #!/bin/bash
 # The Debian packages where nothing else is: a bare Debian 12 (debootstrap, as root), the packages installed by apt with what they ask for, and the
-# main job: bench/package.sh [FOLDER]   (1.5 GB; the build of `cmake --preset package` is made where it is missing)
+# main job: bench/package.sh [FOLDER]   (2 GB; packages of `cmake --preset package`, or of the build that BUILD names)
 set -eu
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bare=${1:-$(mktemp -d)}/bare
-mirror=$(sed -n 's/^\(deb\|URIs:\) *\(\[[^]]*\] \)\?\(http[^ ]*\).*/\3/p' /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null | head -n 1)
+mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null | sed -n 's/^\(deb\|URIs:\) *\(\[[^]]*\] \)\?\(http[^ ]*\).*/\3/p' | head -n 1)
 cd "$top"
-cmake --preset package >/dev/null
-cmake --build build/package --target package
+build=${BUILD:-build/package}
+[ -n "${BUILD:-}" ] || cmake --preset package >/dev/null
+cmake --build "$build" --target package
 [ -d "$bare/usr" ] || debootstrap --variant=minbase bookworm "$bare" "$mirror"
 cp /etc/apt/apt.conf.d/*proxy* "$bare/etc/apt/apt.conf.d/" 2>/dev/null || true
-cp build/package/*.deb "$bare/tmp/"
+cp "$build"/*.deb "$bare/tmp/"
 chroot "$bare" sh -ec '
   apt-get update -q >/dev/null
   time apt-get install -q -y --no-install-recommends /tmp/driftwright_*.deb >/tmp/apt.log

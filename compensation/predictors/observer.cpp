@@ -167,7 +167,7 @@ class Observer::Run final : public Follower {
 
   /// The live sensor whose mean innovation is the furthest out, if any is beyond the flag.
   [[nodiscard]] int worst_suspect(std::size_t i) const {
-    constexpr double kWarm = 10;  // rows before a mean means anything
+    constexpr std::size_t kWarm = 10;  // rows before a mean means anything
     if (i < kWarm) return -1;
     const double deviation = std::sqrt((1.0 - kMemory) / (1.0 + kMemory));  // of the mean of white innovations
     int worst = -1;
