@@ -243,6 +243,7 @@ INSTANTIATE_TEST_SUITE_P(
         Conflict{"machine_with_model", "export no_such.yaml --fmu --model x.json", "--of observer"},
         Conflict{"materials_markdown", "list materials --markdown", "--markdown goes with effects"},
         Conflict{"separation_alone", "inject --correction x.csv --separation 5 </dev/null", "add --clocked"},
+        Conflict{"no_threads", "check no_such.yaml --threads 0", "--threads"},
         Conflict{"hal_alone", "inject --correction x.csv --hal x.hal </dev/null", "--halstream, which is not given"}),
     [](const auto& conflict) { return conflict.param.name; });
 
