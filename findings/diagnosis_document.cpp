@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -337,6 +338,12 @@ Section gain_section(const diagnosis::Diagnosis& d) {
                                         {"over_noise.extended", d.misses.extended},
                                         {"over_noise.found", d.misses.found}})
     add(section, Value{.key = key, .datum = over_noise});
+  const bool numbers_stay =
+      std::any_of(d.calibrated.begin(), d.calibrated.end(), [](const auto& e) { return !e.is_written; });
+  if (numbers_stay && d.written.keeps_numbers && !d.written.causes_alone)
+    add(section, Text{"The file leaves the scenario's own numbers as they were (--causes-only): of that alone \"the file, "
+                      "all rows\" tells; "
+                      "on kept-out rows they are as fitted."});
   if (const std::string taken_up = taken_up_text(d); !taken_up.empty())
     add(section, Text{.words = taken_up, .key = "taken_up"});
   if (const std::string better = better_regression_text(d); !better.empty()) add(section, Text{better});
