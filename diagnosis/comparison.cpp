@@ -1,9 +1,9 @@
 #include "diagnosis/comparison.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "base/dense.hpp"
 #include "diagnosis/residual_structure.hpp"
 #include "effects/reading_chain.hpp"
 
@@ -51,7 +51,7 @@ void Comparison::take_shared(Run& run, const Eigen::MatrixXd& root) {
     for (Eigen::Index k = 0; k < u.cols(); ++k)
       whiteners_[run.first_block + c].apply(rows.col(k), u.col(k).segment(block.first - run.first, block.n));
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(u.transpose() * u);
+  const dense::SymmetricEigen eigen(u.transpose() * u);
   const Eigen::VectorXd squares = eigen.eigenvalues().cwiseMax(0.0);
   const auto n_kept = (squares.array() > kNoMatter).count();
   const Eigen::VectorXd kept = squares.tail(n_kept);
