@@ -224,18 +224,20 @@ int app::command_line(int argc, const char* const* argv) {
   verb =
       add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
                "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/fp3_part", schedule);
-  verb->add_option("--program", schedule.program, "NC program, ISO (docs/schedule.md)")->required();
+  verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/schedule.md)")
+      ->required();
   verb->add_option("--policy", schedule.policy,
                    "paper (steps of the tolerance) or minimal (fewest changes) [the scenario's, else minimal]")
       ->check(CLI::IsMember(scenarios::kSchedulePolicies));
-  verb->add_option("--dialect", schedule.dialect, "linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
-      ->check(CLI::IsMember(scenarios::kScheduleDialects));
+  verb->add_option("--dialect", schedule.dialect,
+                   "of the program: linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
+      ->check(CLI::IsMember(scenarios::kDialects));
   verb->add_flag("--split", schedule.split, "divide straight blocks that cannot keep the tolerance in one piece");
   add_warm_start(verb, schedule.start, schedule.after_pause, schedule.model);
-  CLI::Option* parts = verb->add_option("--parts", schedule.parts, "how many parts the program makes one after another")
-                           ->check(CLI::Range(1, 1000))
-                           ->capture_default_str();
-  verb->add_option("--between", schedule.between, "time at rest between two parts, such as '2 min' [none]")->needs(parts);
+  verb->add_option("--parts", schedule.parts, "how many parts the program makes one after another [the scenario's, else 1]")
+      ->check(CLI::Range(1, 1000));
+  verb->add_option("--between", schedule.between,
+                   "time at rest between two parts, such as '2 min' [the scenario's, else none]");
   verb->callback([&] { app::schedule(schedule); });
   add_inject(cli, inject);
   verb = add_verb(cli, "select", "rank the temperature sensors of records by grey relational analysis",
