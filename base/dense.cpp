@@ -98,12 +98,6 @@ MatrixXd solve_square(const MatrixXd& a, const MatrixXd& b) {
   return a.partialPivLu().solve(b);
 }
 
-MatrixXd cholesky(const MatrixXd& a) {
-  const Eigen::LLT<MatrixXd> factor(a);
-  if (factor.info() != Eigen::Success) return {};
-  return factor.matrixL();
-}
-
 MatrixXd orthonormal_from(const MatrixXd& a) {
   return Eigen::HouseholderQR<MatrixXd>(a).householderQ();
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Decompositions of dense matrices of numbers known at run time alone. Eigen's templates for them are compiled once, in dense.cpp, instead of
-// in each of the forty files that decompose something.
+// in each file that decomposes something. A matrix that is not what a function asks for (not definite, not finite) gives numbers that are not finite, or
+// that mean nothing, as Eigen's do.
 
 #include <Eigen/Core>
 #include <memory>
@@ -44,7 +45,7 @@ class PivotedQr {
   [[nodiscard]] Eigen::Index rank() const;
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;  ///< least squares
   [[nodiscard]] Eigen::MatrixXd basis() const;                          ///< orthonormal, of as many columns as the rank
-  [[nodiscard]] Eigen::MatrixXd r() const;                              ///< square, of as many columns as A
+  [[nodiscard]] Eigen::MatrixXd r() const;  ///< square, of as many columns as A. @pre A has as many rows as columns or more
   /// Length of what no combination of A's columns gives of v.
   [[nodiscard]] double length_beside(const Eigen::VectorXd& v) const;
 
@@ -64,9 +65,6 @@ class PivotedQr {
 [[nodiscard]] Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 /// A⁻¹ b for a square A, by LU with partial pivots.
 [[nodiscard]] Eigen::MatrixXd solve_square(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
-/// L of A = L L' for a symmetric positive definite A; empty where it is not.
-[[nodiscard]] Eigen::MatrixXd cholesky(const Eigen::MatrixXd& a);
-
 /// A square orthonormal matrix whose first columns span those of A in their order (Householder).
 [[nodiscard]] Eigen::MatrixXd orthonormal_from(const Eigen::MatrixXd& a);
 

@@ -11,7 +11,7 @@
 
 namespace driftwright {
 
-/// Calls work(i, space) for each i < n, on as many threads as OpenMP has; each thread makes itself a space and keeps it. What throws is carried out of
+/// Calls work(i, space) for each i < n, on as many threads as OpenMP has; each thread makes itself a space and keeps it. What throws, the listener too, is carried out of
 /// the threads: that of the smallest i, the same from run to run, once all others are done.
 /// @param listener  told of the share that is done; once it wants an end, what has not begun is left out
 template <class MakeSpace, class Work>
@@ -23,8 +23,8 @@ void for_each_index(std::size_t n, const MakeSpace& make_space, const Work& work
     std::optional<decltype(make_space())> space;
 #pragma omp for schedule(dynamic)
     for (std::size_t i = 0; i < n; ++i) {
-      if (listener.wants_end()) continue;
       try {
+        if (listener.wants_end()) continue;
         if (!space) space.emplace(make_space());
         work(i, *space);
       } catch (...) {
@@ -33,7 +33,11 @@ void for_each_index(std::size_t n, const MakeSpace& make_space, const Work& work
       const double done = static_cast<double>(++n_done) / static_cast<double>(n);
       if (!listener.on_share) continue;
 #pragma omp critical(told_of_work)
-      listener.share(done);
+      try {
+        listener.share(done);
+      } catch (...) {
+        if (!failures[i]) failures[i] = std::current_exception();
+      }
     }
   }
   for (const std::exception_ptr& failure : failures) {

@@ -12,7 +12,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/driftwrightConfigVersion.cm
 install(FILES ${CMAKE_BINARY_DIR}/driftwrightConfig.cmake ${CMAKE_BINARY_DIR}/driftwrightConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/driftwright COMPONENT dev)
 install(DIRECTORY scenarios/ DESTINATION ${CMAKE_INSTALL_DATADIR}/driftwright/scenarios COMPONENT runtime
-  PATTERN "reader" EXCLUDE PATTERN "README.md" EXCLUDE PATTERN "*.cpp" EXCLUDE PATTERN "*.hpp" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE)
+  PATTERN "reader" EXCLUDE PATTERN "*.py" EXCLUDE PATTERN "*.cpp" EXCLUDE PATTERN "*.hpp" EXCLUDE PATTERN "CMakeLists.txt" EXCLUDE)
 
 set(documents ${CMAKE_BINARY_DIR}/documents)
 add_custom_command(OUTPUT ${documents}/driftwright.1.gz ${documents}/driftwright.bash ${documents}/_driftwright ${documents}/changelog.gz

@@ -47,8 +47,14 @@ output::Picture surfaces_picture(const scenarios::MachineModel& machine, const m
 
 output::Picture fields_picture(const scenarios::MachineModel& machine, const mesh::Mesh& mesh, const std::string& cyclogram,
                                const scenarios::WholeFields& fields) {
-  return {.title = fmt::format("'{}' after {:.0f} min, when the machine is bent most: up to {:.1f} µm", cyclogram,
-                               fields.time_s / 60.0, fields.displacement_um.colwise().norm().maxCoeff()),
+  const double um = fields.displacement_um.colwise().norm().maxCoeff();
+  constexpr double kStill_um = 0.5;
+  const std::string when =
+      um < kStill_um
+          ? fmt::format("'{}': the machine stays as it is, within {:.2f} µm", cyclogram, um)
+          : fmt::format("'{}' after {:.0f} min, when of all stored fields the machine is bent most: up to {:.1f} µm",
+                        cyclogram, fields.time_s / 60.0, um);
+  return {.title = when,
           .svg = output::draw_machine({.mesh = &mesh,
                                        .field = output::PictureField{"temperature [°C]", fields.temperature_degC},
                                        .displacement_m = 1e-6 * fields.displacement_um,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <exception>
 
 #include "base/parallel.hpp"
 #include "base/quantity.hpp"
@@ -97,8 +98,14 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
     FieldTimes field_times(settings, cyclogram.duration_s());
     double last_s = 0.0;
     const auto at_output = [&](double time_s, const Eigen::VectorXd& state) {
+      std::exception_ptr failure;  // none may leave the critical section
 #pragma omp critical(simulated)
-      listener.share((done_s += time_s - last_s) / total_s);
+      try {
+        listener.share((done_s += time_s - last_s) / total_s);
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      if (failure) std::rethrow_exception(failure);
       last_s = time_s;
       if (fields.take && i == fields.cyclogram && field_times.is_due(time_s)) {
         write_fields(scenario, model, materials, time_s, state, fields);

@@ -179,9 +179,10 @@ BoundedTime::BoundedTime(double most_s) {
   getrusage(RUSAGE_SELF, &used);  // a child begins at 0
   rlimit limit;
   getrlimit(RLIMIT_CPU, &limit);
+  before_s_ = limit.rlim_cur;
   const auto most =
       static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + static_cast<rlim_t>(std::ceil(most_s));
-  limit.rlim_cur = std::min(limit.rlim_max, most);
+  limit.rlim_cur = std::min(limit.rlim_cur, most);
   setrlimit(RLIMIT_CPU, &limit);
 }
 
@@ -189,7 +190,7 @@ BoundedTime::~BoundedTime() {
   if (!is_child) return;
   rlimit limit;
   getrlimit(RLIMIT_CPU, &limit);
-  limit.rlim_cur = limit.rlim_max;
+  limit.rlim_cur = before_s_;
   setrlimit(RLIMIT_CPU, &limit);
 }
 

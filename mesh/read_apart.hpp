@@ -18,7 +18,7 @@ namespace driftwright::mesh {
 /// The child never runs the parent's exit handlers, writes nothing to its streams, and ends with the thread that waits for it.
 ///
 /// @param path  of the file, for messages
-/// @throws InputError  naming the file, when the child dies, runs out of memory or spends more processor time than ReadingTime allows; what
+/// @throws InputError  naming the file, when the child dies, runs out of memory or spends more processor time than BoundedTime allows; what
 ///                     `read` throws otherwise, as the same of our exceptions
 [[nodiscard]] Mesh read_apart(const std::string& path, const std::function<Mesh()>& read);
 
@@ -34,6 +34,9 @@ class BoundedTime {
   ~BoundedTime();
   BoundedTime(const BoundedTime&) = delete;
   BoundedTime& operator=(const BoundedTime&) = delete;
+
+ private:
+  unsigned long before_s_ = 0;  ///< the limit that it found
 };
 
 /// What reading a file may take: 5 s of processor time and 60 s more a megabyte.

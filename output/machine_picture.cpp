@@ -107,10 +107,21 @@ std::string labels(const std::vector<PictureMark>& marks, const DrawnView& drawn
     sides[p.x() < 0.5 * kViewWidth ? 0 : 1].push_back({&mark, left + p.x(), p.y(), 0.0, drawn.hides(mark.at_m, slack)});
   }
   constexpr double kLine = 13.0;
+  constexpr std::size_t kMostNames = 30;  // of a side
   std::string out;
   for (int side = 0; side < 2; ++side) {
     auto& list = sides[side];
     std::sort(list.begin(), list.end(), [](const Label& a, const Label& b) { return a.y < b.y; });
+    // More than fit are dots without names.
+    for (std::size_t i = kMostNames; i < list.size(); ++i)
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\" fill=\"#ffffff\" stroke=\"#1d2329\"/>\n", list[i].x,
+                         list[i].y);
+    if (list.size() > kMostNames) {
+      out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"{}\">and {} more</text>\n",
+                         side == 0 ? left - 6.0 : left + kViewWidth + 6.0, kViewHeight + 10, side == 0 ? "end" : "start",
+                         list.size() - kMostNames);
+      list.resize(kMostNames);
+    }
     double next = kLine;
     for (Label& l : list) next = (l.shown_y = std::max(l.y, next)) + kLine;
     double last = kViewHeight - 4.0;
@@ -137,9 +148,10 @@ std::string colour_bar(const PictureField& field, double low, double high, doubl
     out += fmt::format("<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"12\" fill=\"{}\"/>\n",
                        x + width * i / kSteps, y, width / kSteps + 0.3, hex(colour_of((i + 0.5) / kSteps)));
   }
+  const int decimals = std::clamp(static_cast<int>(std::ceil(1.0 - std::log10((high - low) / 4.0))), 0, 3);
   for (int i = 0; i <= 4; ++i) {
-    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.1f}</text>\n", x + width * i / 4.0,
-                       y + 26.0, low + (high - low) * i / 4.0);
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.{}f}</text>\n", x + width * i / 4.0,
+                       y + 26.0, low + (high - low) * i / 4.0, decimals);
   }
   return out + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", x + 0.5 * width, y - 6.0,
                            escaped(field.label));
@@ -171,7 +183,7 @@ std::string draw_machine(const MachinePicture& picture) {
   std::set<int> shown_surfaces;
   if (picture.field) {
     low = picture.field->value.minCoeff();
-    high = std::max(picture.field->value.maxCoeff(), low + 1e-9);
+    high = std::max(picture.field->value.maxCoeff(), low + 0.01);  // what differs by less has one colour
     for (double v : picture.field->value) surface.colour.push_back(colour_of((v - low) / (high - low)));
   } else {
     // Points that surfaces share would mix their colours: each triangle has points of its own.

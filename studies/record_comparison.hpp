@@ -23,8 +23,8 @@ struct RecordComparison {
   Record first;
   Record
       second_at_rows;  ///< channels of both, at the rows of the first, linear in between; NaN where the second has no value
-  std::vector<ChannelDifference> channels;
-  std::vector<std::string> only_first, only_second;  ///< headers of channels without a partner
+  std::vector<ChannelDifference> channels = {};
+  std::vector<std::string> only_first = {}, only_second = {};  ///< headers of channels without a partner
 };
 
 /// @throws InputError  for records that share no channel of the same name and unit, or no stretch of time

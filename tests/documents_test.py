@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Every indented `driftwright` command of README and docs runs as it stands, and prints what the page shows under it.
+"""Every indented `driftwright` command of README and of the pages below runs as it stands, and prints what the page shows under it. Not among them: docs/fl_thermal.md and docs/measured.md, whose
+records others published, and docs/library.md, whose programs `installed_test.sh` and `python_test.py` build and run.
 
     documents_test.py PROGRAM FOLDER_OF_THE_PROJECT [PAGE ...]
 

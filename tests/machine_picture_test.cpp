@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <regex>
+
 #include "tests/fixtures.hpp"
 
 namespace driftwright::output {
@@ -39,6 +41,18 @@ TEST(MachinePicture, ShowsTheRangeOfAFieldAndARoundMagnification) {
     EXPECT_THAT(drawn, HasSubstr(tick));
   // A twentieth of the diagonal, 0.245 m, is 1225 times 10 µm: 1000 of 1, 2 and 5 times a power of ten.
   EXPECT_THAT(drawn, HasSubstr("displacement magnified 1000 times"));
+}
+
+TEST(MachinePicture, KeepsAllNamesInside) {
+  const mesh::Mesh mesh = box();
+  std::vector<PictureMark> marks;
+  for (int i = 0; i < 80; ++i) marks.push_back({"t" + std::to_string(i), {0.0, 0.05, 0.2 * i / 80.0}});
+  const std::string drawn = draw_machine({.mesh = &mesh, .marks = marks});
+  const std::regex text("<text x=\"[^\"]*\" y=\"([^\"]*)\"");
+  int n = 0;
+  for (std::sregex_iterator t(drawn.begin(), drawn.end(), text), end; t != end; ++t, ++n) EXPECT_GT(std::stod((*t)[1]), 8.0);
+  EXPECT_GT(n, 60);
+  EXPECT_THAT(drawn, HasSubstr(">and 50 more<"));
 }
 
 TEST(MachinePicture, OfAnotherMeshIsOurMistake) {

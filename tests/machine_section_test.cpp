@@ -44,7 +44,7 @@ TEST(AddMachine, ShowsFieldsElseSurfacesAndNothingWithoutAMesh) {
   EXPECT_THAT(std::get<output::Picture>(surfaces[0]).svg, HasSubstr(">t1</text>"));
   worst.take(bent(5400.0, 12.34, mesh.n_nodes()));
   EXPECT_EQ(std::get<output::Picture>(shown(mesh, worst).at(0)).title,
-            "'shift' after 90 min, when the machine is bent most: up to 12.3 µm");
+            "'shift' after 90 min, when of all stored fields the machine is bent most: up to 12.3 µm");
 }
 
 }  // namespace

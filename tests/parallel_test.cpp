@@ -41,6 +41,21 @@ TEST(ParallelFor, GivesASinglePieceAllThreads) {
   EXPECT_FALSE(was_parallel);
 }
 
+TEST(ParallelFor, CarriesWhatAListenerThrows) {
+  const auto throwing = [](Listener listener) {
+    return [listener] {
+      parallel_for(
+          20, [](std::size_t) {}, listener);
+    };
+  };
+  EXPECT_THROW(
+      throwing({.on_begin = {}, .on_share = [](double) { throw std::runtime_error("share"); }, .wants_end_now = {}})(),
+      std::runtime_error);
+  EXPECT_THROW(
+      throwing({.on_begin = {}, .on_share = {}, .wants_end_now = []() -> bool { throw std::runtime_error("end"); }})(),
+      std::runtime_error);
+}
+
 TEST(ParallelFor, LeavesOutWhatHasNotBegunOnceAnEndIsWanted) {
   std::atomic<int> n_done = 0;
   parallel_for(1000, [&](std::size_t) { ++n_done; },

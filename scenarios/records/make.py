@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the records of this folder anew: make.py PROGRAM   (from the folder of the project; the same bytes each time but for the program's version)"""
+"""Makes the records of this folder anew: make.py PROGRAM   (from the folder of the project; the same bytes each time)"""
 import pathlib, random, subprocess, sys, tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
