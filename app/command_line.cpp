@@ -11,6 +11,7 @@
 
 #include "app/cli_documents.hpp"
 #include "app/exit_code.hpp"
+#include "app/follow.hpp"
 #include "app/verbs.hpp"
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
@@ -86,6 +87,15 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
       ->check(CLI::IsMember({"cycle", "half", "quarter"}))
       ->capture_default_str();
   verb->add_flag("--anywhere", options.anywhere, "insert also while a line is high");
+  verb->add_option("--column", options.column,
+                   "of a table of several columns [predicted_um], or axis of lines that `follow` writes [the only one]");
+  CLI::Option* on_fault =
+      verb->add_option("--on-fault", options.on_fault,
+                       "what a row or a correction from a FIFO that is none does: hold what was before it, or "
+                       "bypass: the correction is withdrawn until the next good one")
+          ->check(CLI::IsMember({"hold", "bypass"}))
+          ->capture_default_str();
+  verb->add_flag("--strict", options.strict, "it ends the run, with exit code 2")->excludes(on_fault);
   verb->add_flag("--bypass", options.bypass, "pass all bytes on as they are");
   verb->add_flag("--clocked", options.clocked,
                  "one row out for each row in, as in a running simulation; else inserted rows are added");
@@ -104,6 +114,52 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
       "halstreamer\n"
       "  with drift.csv: 'time_s,drift_um', then '0,0', '60,4.5', ... (docs/injector.md)");
   verb->callback([&] { app::inject(options); });
+}
+
+/// Beside a running machine: no folder of results.
+void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
+  CLI::App* verb = cli.add_subcommand(
+      "follow",
+      "rows of a running machine from standard input, its correction after each to standard output (docs/follow.md)");
+  verb->add_option("model", options.models,
+                   "a file models/NAME.json that `validate` has written, or a scenario; several for several axes")
+      ->required();
+  verb->add_option("--columns", options.columns, "scenario whose key `columns` says how the rows are written [as records]");
+  CLI::Option* replay = verb->add_option("--replay", options.replay, "rows from a file in place of standard input");
+  verb->add_option("--pace", options.pace, "so many times as fast as its rows say [as fast as it goes]")->needs(replay);
+  CLI::Option* mqtt =
+      verb->add_option("--mqtt", options.mqtt, "MQTT broker HOST or HOST:PORT in place of standard input")->excludes(replay);
+  CLI::Option* from =
+      verb->add_option("--from", options.from, "topic whose messages are rows, such as {\"time_s\": 60, \"t01_degC\": 21.5}")
+          ->needs(mqtt);
+  verb->add_option("--topic", options.topics,
+                   "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers; may be repeated")
+      ->needs(mqtt)
+      ->excludes(from)
+      ->allow_extra_args(false);
+  verb->add_option("--every", options.every, "time from row to row that is made of --topic")->capture_default_str();
+  verb->add_option("--to", options.to, "topic that lines go to beside standard output")->needs(mqtt);
+  verb->add_option("--state", options.state,
+                   "file that keeps what is known, every second, and that a new start goes on from");
+  verb->add_option("--record", options.record, "record CSV of the rows that were taken");
+  verb->add_option("--slew", options.slew,
+                   "how fast a correction may change, such as '0.5 um/s' [as the model was fitted, else 1 um/s]");
+  verb->add_option("--hold", options.hold,
+                   "so long without a row a correction holds, such as '5 min' [as the model was fitted, else 5 min]");
+  verb->add_option("--fade", options.fade, "time constant with which it fades then [as the model was fitted, else 10 min]");
+  CLI::Option* watch = verb->add_option(
+      "--watch", options.watch, "limits of a watch: says while it runs that the machine is not as modelled; of an observer");
+  CLI::Option* calibrate = verb->add_option("--calibrate-watch", options.calibrate_watch,
+                                            "writes such limits, by simulation, and follows nothing")
+                               ->excludes(watch)
+                               ->excludes(replay);
+  verb->add_option("--top-speed", options.top_speed, "of the spindle, that they are simulated to, such as '2500 rpm'")
+      ->needs(calibrate);
+  verb->footer(
+      "Example:\n  thermometers | driftwright follow results/validation/models/observer.json --state axis.state\n  "
+      "driftwright follow "
+      "scenarios/fp3_spindle.yaml --replay monday.csv --pace 60");
+  verb->callback([&] { app::follow_stream(options); });
 }
 
 /// A model for other programs: one file.
@@ -198,6 +254,7 @@ int app::command_line(int argc, const char* const* argv) {
   app::CalibrateOptions calibrate;
   app::ListOptions list;
   app::ExportOptions exported;
+  app::FollowVerbOptions followed;
   add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
@@ -299,6 +356,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->callback([&] { app::sweep(sweep); });
   app::CompareOptions compared;
   add_compare(cli, compared);
+  add_follow(cli, followed);
   add_export(cli, exported);
   verb = cli.add_subcommand("list", "the catalogue of effects, or the library of materials");
   verb->add_option("what", list.what, "effects or materials")

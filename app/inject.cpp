@@ -46,7 +46,8 @@ double positive_quantity(const std::string& option, const std::string& text, con
   throw InputError(fmt::format("{} '{}': more than 0 is wanted", option, text));
 }
 
-constexpr double kMostRowsBehind = 1e7;  // the end of the input
+constexpr double kMostRowsBehind = 1e7;   // the end of the input
+constexpr std::int64_t kFaultsSaid = 10;  // of each sort, to standard error; the log has all
 
 /// The injector with rows for its unit of time, in either way to use it.
 class RowInjector {
@@ -185,19 +186,25 @@ class Filter {
         correction_(options.correction, {.period_um = positive_quantity("--period", options.period, "um"),
                                          .counting = counting_,
                                          .row_s = row_s_,
-                                         .unit = options.unit}),
+                                         .unit = options.unit,
+                                         .column = options.column,
+                                         .is_strict = options.strict}),
         converter_(rules_.quarters),
         injector_(rules_, options.clocked, options.separation, options.interval) {}
 
   void run() {
     std::signal(SIGPIPE, SIG_IGN);  // write() tells
-    compensation::RowReader reader(STDIN_FILENO);
+    compensation::RowReader reader(STDIN_FILENO, options_.strict);
     bool wanted = true;
     while (wanted) {
       const std::span<const Lines> rows = reader.next();
+      if (!rows.empty() && n_rows_ == 0) begin(rows.front(), reader.has_index());
+      take_faults(reader.faults(), n_bad_rows_);
       if (rows.empty()) break;
-      if (n_rows_ == 0) begin(rows.front(), reader.has_index());
+      const std::int64_t told_before = correction_.n_told();
       correction_.poll();
+      if (correction_.n_told() > told_before) is_withdrawn_ = false;
+      take_faults(correction_.take_faults(), n_bad_corrections_);
       pass_on(rows);
       wanted = rules_.bypass ? compensation::write_bytes(STDOUT_FILENO, reader.bytes())
                              : compensation::write_rows(STDOUT_FILENO, out_, has_index_);
@@ -232,7 +239,7 @@ class Filter {
     const std::size_t block = files_.any() ? 1 : rows.size();  // files tell of each row
     out_.clear();
     for (std::size_t i = 0; i < rows.size();) {
-      const double wish = correction_.quarters_at(n_rows_ + 1);
+      const double told = correction_.quarters_at(n_rows_ + 1), wish = is_withdrawn_ ? 0.0 : told;
       target_ = converter_.insertions(wish) * rules_.quarters;
       injector_.set_target(target_);
       const std::int64_t same = correction_.holds_until() - n_rows_;
@@ -276,6 +283,15 @@ class Filter {
     }
   }
 
+  /// Counts, logs and says what was wrong; where faults bypass, the correction is withdrawn until the pipe tells the next one.
+  void take_faults(const std::vector<std::string>& faults, std::int64_t& n) {
+    for (const std::string& what : faults) {
+      if (n++ < kFaultsSaid) tell(fmt::format("inject: {}\n", what));
+      if (files_.log) *files_.log << "# fault at row " << n_rows_ << ": " << what << "\n";
+    }
+    if (!faults.empty() && options_.on_fault == "bypass") is_withdrawn_ = true;
+  }
+
   void take(std::span<const Lines> out, Lines in) {
     for (Lines row : out) {
       control_.step(row);
@@ -314,6 +330,10 @@ class Filter {
       hal.close();
       if (!hal) throw InputError(fmt::format("{}: cannot be written", options_.hal));
     }
+    if (n_bad_rows_ > 0 || n_bad_corrections_ > 0)
+      tell(fmt::format("inject: {} rows and {} corrections were none; {}\n", n_bad_rows_, n_bad_corrections_,
+                       options_.on_fault == "bypass" ? "the correction was withdrawn until the next good one"
+                                                     : "what was before them held"));
     if (encoder.n_jumps() > 0)
       tell(fmt::format("inject: {} jumps of both lines at once (lost edges or disturbances){}\n", encoder.n_jumps(),
                        rules_.bypass ? "" : "; the correction waited a period behind each"));
@@ -338,7 +358,8 @@ class Filter {
   std::vector<Lines> out_;
   Lines last_in_ = 0;
   bool has_index_ = false;
-  std::int64_t n_rows_ = 0, n_out_ = 0, target_ = 0;
+  std::int64_t n_rows_ = 0, n_out_ = 0, target_ = 0, n_bad_rows_ = 0, n_bad_corrections_ = 0;
+  bool is_withdrawn_ = false;
   std::array<std::int64_t, 3> logged_ = {-1, -1, -1};
   Lines stretch_lines_ = 0;
   std::int64_t stretch_ = 0,

@@ -10,8 +10,8 @@
 namespace driftwright::app {
 namespace {
 
-constexpr std::string_view kComputing[] = {"run",        "mesh",     "simulate", "predict",   "validate",
-                                           "compensate", "schedule", "diagnose", "calibrate", "sweep"};
+constexpr std::string_view kComputing[] = {"run",      "mesh",     "simulate",  "predict", "validate", "compensate",
+                                           "schedule", "diagnose", "calibrate", "sweep",   "follow"};
 constexpr const char* kSpins = "10000";  // some microseconds
 
 /// @return whether it was missing

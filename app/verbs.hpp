@@ -58,6 +58,9 @@ struct InjectOptions {
   std::string insert = "cycle";  ///< cycle, half, quarter
   bool anywhere = false;         ///< not only while both lines are low
   bool bypass = false;
+  std::string column;                    ///< of the correction: of a table of several, or axis of lines of `follow`
+  std::string on_fault = "hold";         ///< or bypass: what a row or correction that is none does
+  bool strict = false;                   ///< it ends the run
   bool clocked = false;                  ///< one row out for each row in
   int separation = 1;                    ///< rows between two edges, where clocked
   int interval = 1;                      ///< rows between two insertions, where clocked

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "base/random.hpp"
 #include "tests/inject_filter.hpp"
@@ -193,10 +194,85 @@ TEST(InjectVerb, EndsQuietlyWhenNobodyReads) {
 
 TEST(InjectVerb, BypassAnswersTheRowsBeforeABadOne) {
   const std::string c = file("c.csv", "row,e_um\n1,3\n");
-  const Filtered f = inject("bypass_bad", "--bypass --period '1 um' --correction " + c, "0 0\n0\t1\r\n0 2\n1 0\n");
+  const Filtered f = inject("bypass_bad", "--strict --bypass --period '1 um' --correction " + c, "0 0\n0\t1\r\n0 2\n1 0\n");
   EXPECT_EQ(f.exit_code, 2);
   EXPECT_EQ(f.rows, "0 0\n0\t1\r\n");
   EXPECT_THAT(f.words, HasSubstr("line 3: '0 2'"));
+}
+
+// A row that is none is as the one before it: the axis stands there for that row. None stands for one in front of all.
+TEST(InjectVerb, ABadRowHoldsIsCountedAndLogged) {
+  const std::string c = file("c.csv", "row,e_um\n1,0\n");
+  const Filtered f =
+      inject("bad_row", "--period '1 um' --log log.csv --correction " + c, "x\n0 0\n1 0\n1 2\n\n1 1\n0 1 1\n0 1\n");
+  EXPECT_EQ(f.exit_code, 0);
+  EXPECT_EQ(f.rows, "0 0\n1 0\n1 0\n1 0\n1 1\n1 1\n0 1\n");
+  EXPECT_THAT(f.words,
+              AllOf(HasSubstr("line 4: '1 2'"), HasSubstr("4 rows and 0 corrections were none"), HasSubstr("encoder +3")));
+  EXPECT_THAT(read_text(temporary_folder() / "bad_row" / "log.csv"), HasSubstr("# fault at row"));
+  const Filtered raw = inject("bad_raw", "--bypass --period '1 um' --correction " + c, "0 0\n0 2\n1 0\n");
+  EXPECT_EQ(raw.rows, "0 0\n0 2\n1 0\n");  // a wire
+  EXPECT_EQ(raw.exit_code, 0);
+}
+
+/// Rows and corrections that come while the filter runs: it answers each row before the next is said. @returns its rows
+std::string said_live(const std::string& name, const std::string& arguments,
+                      const std::vector<std::pair<std::string, std::string>>& correction_then_row) {
+  const auto folder = fresh_folder(name);
+  const std::string fifo = (folder / "correction").string(), rows_in = (folder / "in").string(),
+                    rows_out = (folder / "out").string();
+  for (const std::string& path : {fifo, rows_in}) EXPECT_EQ(mkfifo(path.c_str(), 0600), 0);
+  const std::string command = std::string(DRIFTWRIGHT_PROGRAM) + " inject --period '1 um' " + arguments + " --correction " +
+                              fifo + " <" + rows_in + " >" + rows_out + " 2>" + (folder / "words").string() + "; echo $? >" +
+                              (folder / "code").string();
+  std::thread filter([&] { EXPECT_EQ(std::system(command.c_str()), 0); });
+  const int in = open(rows_in.c_str(), O_WRONLY);
+  int correction = -1;
+  while ((correction = open(fifo.c_str(), O_WRONLY | O_NONBLOCK)) < 0) usleep(1000);
+  const auto say = [](int to, const std::string& text) {
+    EXPECT_EQ(write(to, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  };
+  std::size_t answered = 0;
+  for (const auto& [wish, row] : correction_then_row) {
+    if (!wish.empty()) say(correction, wish + "\n");
+    say(in, row + "\n");
+    for (int i = 0; i < 10000 && std::filesystem::file_size(rows_out) <= answered; ++i) usleep(1000);
+    usleep(20000);
+    answered = std::filesystem::file_size(rows_out);
+  }
+  close(in);
+  close(correction);
+  filter.join();
+  EXPECT_EQ(read_text(folder / "code"), "0\n") << read_text(folder / "words");
+  return read_text(rows_out);
+}
+
+constexpr const char *kForward = "0 0\n1 0\n1 1\n0 1\n0 0\n", *kBack = "0 0\n0 1\n1 1\n1 0\n0 0\n", *kStay = "0 0\n";
+
+TEST(InjectVerb, ABadCorrectionHoldsOrWithdrawsTheLastOne) {
+  EXPECT_EQ(said_live("held", "--on-fault hold", {{"1", "0 0"}, {"nonsense", "0 0"}, {"nan", "0 0"}, {"0", "0 0"}}),
+            std::string(kForward) + kStay + kStay + kBack);
+  EXPECT_EQ(said_live("withdrawn", "--on-fault bypass", {{"1", "0 0"}, {"nonsense", "0 0"}, {"nan", "0 0"}, {"1", "0 0"}}),
+            std::string(kForward) + kBack + kStay + kForward);
+}
+
+TEST(InjectVerb, ReadsWhatFollowWrites) {
+  const std::string one = R"({"state":"on","axes":{"drift_y":{"correction_um":1}}})",
+                    two = R"({"state":"on","axes":{"drift_x":{"correction_um":7},"drift_y":{"correction_um":0}}})";
+  EXPECT_EQ(said_live("followed", "--column drift_y", {{one, "0 0"}, {two, "0 0"}}), std::string(kForward) + kBack);
+  EXPECT_EQ(said_live("followed_one", "", {{one, "0 0"}, {two, "0 0"}}), std::string(kForward) + kStay);  // which axis?
+}
+
+// corrected.csv as `compensate` writes it: the correction is `predicted_um`.
+TEST(InjectVerb, ReadsTheTableThatCompensateWrites) {
+  const std::string c =
+      file("corrected.csv", "# driftwright\ntime_s,drift_um,predicted_um,left_um,at_rest\n0,9,1,8,1\n0.004,9,0,9,0\n");
+  const std::string by_name =
+      inject("corrected", "--period '1 um' --row-time '1 ms' --correction " + c, "0 0\n0 0\n0 0\n0 0\n0 0\n").rows;
+  EXPECT_EQ(by_name, std::string(kForward) + kStay + kStay + kStay + kBack);
+  const std::string left =
+      inject("left", "--period '1 um' --row-time '1 ms' --column left_um --correction " + c, "0 0\n").rows;
+  EXPECT_EQ(left.substr(0, 20), kForward);
 }
 
 /// `driftwright inject` by a shell line that says where its streams go.
@@ -225,7 +301,7 @@ TEST(InjectVerb, AClosedOrFullOutputIsTold) {
 }
 
 TEST(InjectVerb, AnEndlessCorrectionIsRefused) {
-  const CommandOutcome zero = inject_with("zero", "--correction /dev/zero <in.txt");
+  const CommandOutcome zero = inject_with("zero", "--strict --correction /dev/zero <in.txt");
   EXPECT_EQ(zero.exit_code, 2);
   EXPECT_THAT(zero.output, HasSubstr("longer than 4096 characters"));
 }
@@ -282,10 +358,10 @@ constexpr const char* kGood = "row,e_um\n1,3\n";
 INSTANTIATE_TEST_SUITE_P(
     InjectVerb, BadInjection,
     ::testing::Values(
-        BadCase{"row2", kGood, "--period '1 um'", "0 0\n0 2\n", "line 2: '0 2'; 2 columns of 0 and 1 are wanted"},
-        BadCase{"first", kGood, "--period '1 um'", "0\n", "line 1: '0'; two or three columns"},
-        BadCase{"columns", kGood, "--period '1 um'", "0 0 1\n0 0\n", "line 2: '0 0'; 3 columns"},
-        BadCase{"empty_line", kGood, "--period '1 um'", "0 0\n\n0 1\n", "line 2: ''"},
+        BadCase{"row2", kGood, "--strict --period '1 um'", "0 0\n0 2\n", "line 2: '0 2'; 2 columns of 0 and 1 are wanted"},
+        BadCase{"first", kGood, "--strict --period '1 um'", "0\n", "line 1: '0'; two or three columns"},
+        BadCase{"columns", kGood, "--strict --period '1 um'", "0 0 1\n0 0\n", "line 2: '0 0'; 3 columns"},
+        BadCase{"empty_line", kGood, "--strict --period '1 um'", "0 0\n\n0 1\n", "line 2: ''"},
         BadCase{"no_period", kGood, "", "0 0\n", "wants --period"},
         BadCase{"bad_period", kGood, "--period '1 kg'", "0 0\n", "--period '1 kg'"},
         BadCase{"zero_period", kGood, "--period '0 um'", "0 0\n", "more than 0"},
@@ -298,6 +374,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadCase{"zero_row", "row,e_um\n0,1\n", "--period '1 um'", "0 0\n", ":2: row 0"},
         BadCase{"huge", "row,e_um\n1,1e300\n", "--period '1 um'", "0 0\n", ":2: "},
         BadCase{"no_rows", "row,e_um\n", "--period '1 um'", "0 0\n", "no correction behind the header"},
+        BadCase{"three_columns", "row,a_um,b_um\n1,2,3\n", "--period '1 um'", "0 0\n", "no column 'predicted_um'"},
+        BadCase{"no_such_column", "row,a_um,b_um\n1,2,3\n", "--period '1 um' --column c_um", "0 0\n", "no column 'c_um'"},
+        BadCase{"ragged", "row,predicted_um,b_um\n1,2\n", "--period '1 um'", "0 0\n",
+                ":2: '1,2': 2 columns; the header has 3"},
+        BadCase{"strict_and_hold", kGood, "--period '1 um' --strict --on-fault hold", "0 0\n", "--on-fault"},
         BadCase{"hal_alone", kGood, "--period '1 um' --hal h.hal", "0 0\n", "--halstream"},
         BadCase{"interval", kGood, "--period '1 um' --interval 5", "0 0\n", "add --clocked"},
         BadCase{"separation", kGood, "--period '1 um' --separation 5", "0 0\n", "add --clocked"},

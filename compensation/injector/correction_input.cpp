@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,9 +12,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 
+#include "base/csv_row.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 
@@ -49,6 +52,21 @@ double quarters_per(const std::string& unit, const CorrectionScale& scale, const
   return compensation::kQuartersPerPeriod / scale.period_um;
 }
 
+const std::string kMicrometres = "um";
+constexpr std::size_t kShown = 60;  // of a line in messages
+
+/// The correction [um] of an axis in a line of `follow`; of the only one where none is named. None where it says none.
+std::optional<double> followed_um(std::string_view line, const std::string& axis) {
+  const nlohmann::json j = nlohmann::json::parse(line, nullptr, false);
+  const auto axes = j.is_object() ? j.find("axes") : j.end();
+  if (!j.is_object() || axes == j.end() || !axes->is_object() || (axis.empty() && axes->size() != 1)) return std::nullopt;
+  const auto wanted = axis.empty() ? axes->begin() : axes->find(axis);
+  if (wanted == axes->end() || !wanted->is_object()) return std::nullopt;
+  const auto value = wanted->find("correction_um");
+  if (value == wanted->end() || !value->is_number() || !std::isfinite(value->get<double>())) return std::nullopt;
+  return value->get<double>();
+}
+
 /// Beyond this a wish in quarter steps is a slip, and 64-bit counts are far from full.
 constexpr double kMostQuarters = 1e15;
 
@@ -82,8 +100,20 @@ CorrectionInput::~CorrectionInput() {
   if (pipe_ >= 0) ::close(pipe_);
 }
 
+std::size_t CorrectionInput::column_of(const std::vector<std::string>& header, std::int64_t line) const {
+  const std::string wanted = !scale_.column.empty() ? scale_.column : header.size() > 2 ? "predicted_um" : "";
+  if (wanted.empty()) return 1;
+  for (std::size_t c = 1; c < header.size(); ++c) {
+    if (trimmed(header[c]) == wanted) return c;
+  }
+  fail(path_, line,
+       fmt::format("no column '{}' among {}; --column NAME says which holds the correction", wanted,
+                   fmt::join(header, ", ")));
+}
+
 void CorrectionInput::read_table() {
   double rows_per_unit = 0.0;  // 0: no header yet
+  std::size_t n_cells = 0, column = 1;
   bool by_row = false;
   double quarters_per_unit = 0.0;
   std::int64_t n_lines = 0;
@@ -92,10 +122,14 @@ void CorrectionInput::read_table() {
     ++n_lines;
     const std::string_view text = trimmed(line);
     if (text.empty() || text.starts_with('#')) continue;
-    const std::size_t comma = text.find(',');
-    if (comma == std::string_view::npos || text.find(',', comma + 1) != std::string_view::npos)
-      fail(path_, n_lines, fmt::format("'{}': two columns are wanted, such as 'row,correction_um'", text));
-    const std::string_view first = trimmed(text.substr(0, comma)), second = trimmed(text.substr(comma + 1));
+    const std::vector<std::string> cells = csv_cells(std::string(text));
+    if (rows_per_unit == 0.0) column = column_of(cells, n_lines);
+    if (cells.size() < 2 || cells.size() != n_cells + (n_cells == 0 ? cells.size() : 0))
+      fail(path_, n_lines,
+           n_cells > 2 ? fmt::format("'{}': {} columns; the header has {}", text, cells.size(), n_cells)
+                       : fmt::format("'{}': two columns are wanted, such as 'row,correction_um'", text));
+    n_cells = cells.size();
+    const std::string_view first = trimmed(cells[0]), second = trimmed(cells[column]);
     if (rows_per_unit == 0.0) {
       by_row = first == "row";
       if (!by_row && first != "time_s" && first != "time_min")
@@ -105,7 +139,9 @@ void CorrectionInput::read_table() {
       rows_per_unit = by_row ? 1.0 : (first == "time_s" ? 1.0 : 60.0) / scale_.row_s;
       const bool um = second.ends_with("_um");
       if (!um && !second.ends_with("_count"))
-        fail(path_, n_lines, fmt::format("the second column is '{}'; its name must end in _um or _count", second));
+        fail(path_, n_lines,
+             fmt::format("the {} column is '{}'; its name must end in _um or _count",
+                         column == 1 ? "second" : "correction's", second));
       quarters_per_unit = quarters_per(um ? "um" : "count", scale_, path_);
       continue;
     }
@@ -145,14 +181,34 @@ void CorrectionInput::poll() {
     std::size_t begin = 0;
     for (std::size_t end; (end = rest_.find('\n', begin)) != std::string::npos; begin = end + 1) {
       ++n_lines_;
-      const std::string_view line = trimmed(std::string_view(rest_).substr(begin, end - begin));
-      const auto value = number(line);
-      if (!value) fail(path_, n_lines_, fmt::format("'{}': one finite number a line is wanted, in {}", line, scale_.unit));
-      quarters_ = checked_quarters(*value * quarters_per(scale_.unit, scale_, path_), path_, n_lines_);
+      const bool was_endless = std::exchange(is_endless_, false);
+      if (!was_endless) take_line(trimmed(std::string_view(rest_).substr(begin, end - begin)));
     }
     rest_.erase(0, begin);
-    if (rest_.size() > bytes.size())
-      fail(path_, n_lines_ + 1, fmt::format("longer than {} characters; one number a line is wanted", bytes.size()));
+    if (rest_.size() > bytes.size()) {
+      const std::string why = fmt::format("longer than {} characters; one number a line is wanted", bytes.size());
+      if (scale_.is_strict) fail(path_, n_lines_ + 1, why);
+      if (!is_endless_) faults_.push_back(fmt::format("{}:{}: {}", path_, n_lines_ + 1, why));
+      is_endless_ = true;
+      rest_.clear();
+    }
+  }
+}
+
+void CorrectionInput::take_line(std::string_view line) {
+  try {
+    const auto value = line.starts_with('{') ? followed_um(line, scale_.column) : number(line);
+    const std::string& unit = line.starts_with('{') ? kMicrometres : scale_.unit;
+    if (!value)
+      fail(path_, n_lines_,
+           fmt::format("'{}': one finite number a line is wanted, in {}, or what `follow` writes of {}",
+                       line.substr(0, kShown), scale_.unit,
+                       scale_.column.empty() ? "one axis" : "the axis '" + scale_.column + "'"));
+    quarters_ = checked_quarters(*value * quarters_per(unit, scale_, path_), path_, n_lines_);
+    ++n_told_;
+  } catch (const InputError& e) {
+    if (scale_.is_strict) throw;
+    faults_.emplace_back(e.what());
   }
 }
 

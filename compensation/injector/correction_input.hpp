@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compensation/injector/quadrature.hpp"
@@ -15,14 +17,18 @@ struct CorrectionScale {
   compensation::Counting counting = compensation::Counting::kX4;
   double row_s = 0.0;       ///< time of one row; 0: not told, so that times are refused
   std::string unit = "um";  ///< of numbers from a pipe
+  std::string column =
+      {};  ///< of a table of more than two, or axis of lines of `follow`; empty: `predicted_um`, or the only axis
+  bool is_strict = true;  ///< a line of a pipe that is no correction ends it; else it is a fault
 };
 
 /// The wished correction in quarter steps, row after row.
 class CorrectionInput {
  public:
   /// A regular file is a table: the header names `row` (input rows, from 1), `time_s` or `time_min` first, then one column in `_um`
-  /// or `_count`; a value holds from its row or time on, before the first one the wish is 0. Anything else (a FIFO, /dev/fd/3) is a
-  /// pipe: one number a line, in force from the first row that is read after it.
+  /// or `_count`, or several of which one is meant, as in the corrected.csv of `compensate`; a value holds from its row or time on, before the
+  /// first one the wish is 0. Anything else (a FIFO, /dev/fd/3) is a pipe: one number a line, or a line of JSON as `follow` writes it, in force from
+  /// the first row that is read after it.
   /// @throws InputError  with line and what is allowed
   CorrectionInput(const std::string& path, const CorrectionScale& scale);
   ~CorrectionInput();
@@ -33,15 +39,22 @@ class CorrectionInput {
   [[nodiscard]] double quarters_at(std::int64_t row);
   /// The last row up to which the wish stays as it is.
   [[nodiscard]] std::int64_t holds_until() const;
-  /// Reads what the pipe holds by now, 1 MiB at most, without waiting. @throws InputError  when a line is no number, or endless
+  /// Reads what the pipe holds by now, 1 MiB at most, without waiting. @throws InputError  where it is strict: when a line is no correction, or
+  /// endless
   void poll();
+  /// What was wrong in lines since it was asked last, a sentence each.
+  [[nodiscard]] std::vector<std::string> take_faults() { return std::exchange(faults_, {}); }
+  /// How many corrections the pipe has told.
+  [[nodiscard]] std::int64_t n_told() const { return n_told_; }
 
  private:
   struct Step {
     std::int64_t row;
     double quarters;
   };
+  [[nodiscard]] std::size_t column_of(const std::vector<std::string>& header, std::int64_t line) const;
   void read_table();
+  void take_line(std::string_view line);
 
   std::string path_;
   CorrectionScale scale_;
@@ -49,8 +62,10 @@ class CorrectionInput {
   std::size_t next_ = 0;
   double quarters_ = 0.0;
   int pipe_ = -1;
-  std::string rest_;          // of a line of the pipe
-  std::int64_t n_lines_ = 0;  // of the pipe
+  std::string rest_;                       // of a line of the pipe
+  std::int64_t n_lines_ = 0, n_told_ = 0;  // of the pipe
+  bool is_endless_ = false;
+  std::vector<std::string> faults_;
 };
 
 }  // namespace driftwright::compensation

@@ -27,6 +27,17 @@ bool is_blank(char c) {
 
 void RowReader::take_line(const char* begin, const char* end) {
   ++n_lines_;
+  if (is_strict_) return take_good_line(begin, end);
+  try {
+    take_good_line(begin, end);
+  } catch (const InputError& e) {
+    faults_.emplace_back(e.what());
+    if (n_columns_ != 0) rows_.push_back(last_);
+  }
+  if (!rows_.empty()) last_ = rows_.back();
+}
+
+void RowReader::take_good_line(const char* begin, const char* end) {
   const std::string_view line(begin, static_cast<std::size_t>(end - begin));
   if (n_columns_ == 2 && line.size() == 3 && is_bit(begin[0]) && begin[1] == ' ' && is_bit(begin[2])) {  // nearly all
     rows_.push_back(static_cast<Lines>((begin[0] & 1) | (begin[2] & 1) << 1));
@@ -57,6 +68,7 @@ std::span<const Lines> RowReader::next() {
   if (error_) std::rethrow_exception(error_);
   rows_.clear();
   bytes_.clear();
+  faults_.clear();
   std::array<char, 65536> bytes;
   while (rows_.empty() && !at_end_) {
     const ssize_t n = ::read(file_, bytes.data(), bytes.size());
@@ -91,8 +103,14 @@ std::span<const Lines> RowReader::next() {
       keep_taken();
       rest_.append(begin, end);
       constexpr std::size_t kLongestLine = 4096;
-      if (rest_.size() > kLongestLine)
-        throw InputError(fmt::format("standard input, line {}: longer than {} characters", n_lines_ + 1, kLongestLine));
+      if (rest_.size() > kLongestLine) {
+        const std::string why =
+            fmt::format("standard input, line {}: longer than {} characters", n_lines_ + 1, kLongestLine);
+        if (is_strict_) throw InputError(why);
+        if (!is_endless_) faults_.push_back(why);
+        is_endless_ = true;
+        rest_.resize(kLongestLine);  // enough to be no row when it ends
+      }
     } catch (const InputError&) {
       if (rows_.empty()) throw;
       keep_taken();

@@ -15,26 +15,34 @@ namespace driftwright::compensation {
 /// Reads rows of 0 and 1, two or three columns, the same number in all rows. Hands on what has arrived as soon as it is there.
 class RowReader {
  public:
-  explicit RowReader(int file) : file_(file) {}
+  /// @param is_strict  a row that is none ends the reading; else the row before it stands for it, and it is a fault. None stands for one in front
+  ///                   of all
+  explicit RowReader(int file, bool is_strict = true) : file_(file), is_strict_(is_strict) {}
 
   /// The rows that have arrived, at least one; none at the end. Waits until there is one. The loan lasts until the next call.
-  /// @throws InputError  with line and what is allowed, once the rows before it have been handed on
+  /// @throws InputError  where it is strict: with line and what is allowed, once the rows before it have been handed on
   [[nodiscard]] std::span<const compensation::Lines> next();
+  /// What was wrong in lines since the last call of next(), a sentence each.
+  [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
   /// The bytes of these rows' lines, as they came.
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
   [[nodiscard]] bool has_index() const { return n_columns_ == 3; }
 
  private:
   void take_line(const char* begin, const char* end);
+  void take_good_line(const char* begin, const char* end);
 
   int file_;
+  bool is_strict_;
+  compensation::Lines last_ = 0;  // of the rows so far
+  std::vector<std::string> faults_;
   std::vector<compensation::Lines> rows_;
   std::string bytes_;
   std::string rest_;  // bytes of a line that has not ended
   std::exception_ptr error_;
   std::int64_t n_lines_ = 0;
   int n_columns_ = 0;
-  bool at_end_ = false;
+  bool at_end_ = false, is_endless_ = false;
 };
 
 /// Writes bytes at once.

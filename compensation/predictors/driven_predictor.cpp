@@ -17,6 +17,10 @@ class DrivenFollower final : public Follower {
     }
     return known_um_[row_++];
   }
+  [[nodiscard]] std::vector<double> memory() const override {
+    throw std::logic_error("a drift that follows from the whole drive has no memory of its own");
+  }
+  void recall(std::span<const double>) override { (void)memory(); }
 
  private:
   const DrivenPredictor::Drift& drift_um_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "base/errors.hpp"
 #include "compensation/predictors/control_tables.hpp"
 
@@ -19,15 +21,33 @@ class FormulaFollower final : public Follower {
 
   double next(const ObservedRun& run) override {
     const Record& readings = run.readings;
-    if (row_ == 0) find_channels(readings);
-    for (std::size_t k = 0; k < inputs_.size(); ++k) reading_[k] = readings.channels[channel_[k]].values[row_];
-    const double dt_s = row_ > 0 ? readings.time_s[row_] - readings.time_s[row_ - 1] : 0.0;
+    if (!has_channels_) find_channels(readings);
+    const std::size_t at = run.at(row_);
+    for (std::size_t k = 0; k < inputs_.size(); ++k) reading_[k] = readings.channels[channel_[k]].values[at];
+    const double dt_s = row_ > 0 ? readings.time_s[at] - readings.time_s[at - 1] : 0.0;
     ++row_;
     return drift_formula_value(&table_.formula, memories_.data(), reading_.data(), dt_s);
   }
 
+  [[nodiscard]] std::vector<double> memory() const override {
+    std::vector<double> m = {static_cast<double>(row_)};
+    for (const drift_term_state& t : memories_)
+      m.insert(m.end(),
+               {static_cast<double>(t.has_start), static_cast<double>(t.has_lag), t.start, t.lag, t.before, t.since_s});
+    return m;
+  }
+  void recall(std::span<const double> memory) override {
+    if (memory.size() != 1 + 6 * memories_.size()) throw std::logic_error("the memory of another formula");
+    row_ = static_cast<std::size_t>(memory[0]);
+    for (std::size_t k = 0; k < memories_.size(); ++k) {
+      const double* m = &memory[1 + 6 * k];
+      memories_[k] = {m[0] != 0.0, m[1] != 0.0, m[2], m[3], m[4], m[5]};
+    }
+  }
+
  private:
   void find_channels(const Record& readings) {
+    has_channels_ = true;
     for (std::size_t k = 0; k < inputs_.size(); ++k) {
       const Channel& channel = readings.at(inputs_[k].name);
       if (channel.unit != inputs_[k].unit)
@@ -43,6 +63,7 @@ class FormulaFollower final : public Follower {
   std::vector<std::size_t> channel_;
   std::vector<double> reading_;
   std::size_t row_ = 0;
+  bool has_channels_ = false;
 };
 
 }  // namespace

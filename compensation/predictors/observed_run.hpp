@@ -16,6 +16,9 @@ struct RowsOfFile {
   double first_s = 0.0, last_s = 0.0;
 };
 
+/// Rows that a follower may look back by.
+inline constexpr std::size_t kRowsBack = 32;
+
 /// Rows [n_before, n_samples) are the run; those before it are its lead-in, from the last time on at which the machine was in balance. Predictors
 /// follow the lead-in, so that what has a memory - lags, states of a model, a fail-safe - starts the run with what came before it; nothing is fitted
 /// to its drift, and it is not scored. Where temperatures and drift count from the start, they count from the first row of the lead-in.
@@ -26,6 +29,13 @@ struct ObservedRun {
   std::size_t n_before = 0;  ///< rows of lead-in, less than all
   RowsOfFile rows = {};      ///< the run's own, where it was measured
   std::string history = {};  ///< runs that share it are of one record and begin at the same row of it; "": of none
+  /// Of a run that goes on while it is followed: so many rows in front are no longer kept, and the cyclogram's first section begins at this time.
+  /// What stays are kRowsBack rows at least before the last one.
+  std::size_t n_forgotten = 0;
+  double cyclogram_from_s = 0.0;
+
+  /// Where row `row` of the run stands among the readings.
+  [[nodiscard]] std::size_t at(std::size_t row) const { return row - n_forgotten; }
 };
 
 /// The readings with temperatures and `target` counted from their first row where `from_start`, and the target missing in the lead-in: what

@@ -14,10 +14,11 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kFlag = 5.0;            // deviations of the mean innovation
-constexpr double kOutlier = 6.0;         // deviations of one innovation: that reading is passed over
-constexpr double kMemory = 0.9;          // of the mean innovation from row to row
-constexpr std::size_t kRowsBack = 30;    // to which the filter returns when a sensor is dropped
+constexpr double kFlag = 5.0;        // deviations of the mean innovation
+constexpr double kOutlier = 6.0;     // deviations of one innovation: that reading is passed over
+constexpr double kMemory = 0.9;      // of the mean innovation from row to row
+constexpr std::size_t kReturn = 30;  // rows by which the filter goes back when a sensor is dropped
+static_assert(kReturn < kRowsBack);
 constexpr double kZero = 2.0;            // of an indicator's deviation: what its zero may be off by
 constexpr double kHallJump_K = 3.0;      // that no hall changes by from row to row
 constexpr double kHallJumpIn_s = 600.0;  // of rows further apart, in so long
@@ -32,7 +33,7 @@ struct Observer::Step {
   std::vector<double> power_W, coefficient;
 };
 
-class Observer::Run final : public Follower {
+class Observer::Run final : public ObserverFollower {
  public:
   Run(const Observer& observer, bool with_drift) : o_(observer), s_(observer.system_), with_drift_(with_drift) {
     n_ = s_.size();
@@ -47,27 +48,71 @@ class Observer::Run final : public Follower {
     belief_.covariance.block(n_, n_, n_factors, n_factors) = o_.factors_.covariance;
     belief_.covariance(zero_, zero_) = std::pow(kZero * 1e-6 * o_.settings_.drift_um, 2);
     live_.assign(o_.sensors_.size(), true);
+    dropped_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
     mean_innovation_.assign(o_.sensors_.size(), 0.0);
     last_s_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
+    innovation_K_.assign(o_.sensors_.size(), std::numeric_limits<double>::quiet_NaN());
   }
 
   double next(const ObservedRun& run) override {
+    if (!has_channels_) find_channels(run);
     if (row_ == 0) begin(run);
     history_.push_back({row_, belief_});
-    if (history_.size() > kRowsBack) history_.pop_front();
+    if (history_.size() > kReturn) history_.pop_front();
     judge_hall(run, row_);
     take_row(run, row_);
     if (const int suspect = worst_suspect(row_); suspect >= 0) drop(run, static_cast<std::size_t>(suspect));
     return 1e6 * drift_m(row_++);
   }
 
-  /// Of the rows taken so far, the last.
-  [[nodiscard]] double deviation_um() const {
+  [[nodiscard]] double deviation_um() const override {
     const Eigen::VectorXd h = drift_gradient();
     return 1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h)));
   }
-  [[nodiscard]] Eigen::VectorXd outputs() const { return s_.observe(belief_.mean.head(n_), hall_K_[row_ - 1]); }
-  [[nodiscard]] const std::vector<std::string>& distrusted() const { return distrusted_; }
+  [[nodiscard]] Eigen::VectorXd outputs() const override { return s_.observe(belief_.mean.head(n_), hall_K_.back()); }
+  [[nodiscard]] const std::vector<double>& innovation_K() const override { return innovation_K_; }
+  [[nodiscard]] std::vector<std::string> given_up() const override { return distrusted_; }
+
+  /// Rows that the filter could go back to are not in it: a sensor that is given up soon after a recall counts until then.
+  [[nodiscard]] std::vector<double> memory() const override {
+    const auto n = belief_.mean.size();
+    std::vector<double> m = {static_cast<double>(row_), start_hall_K_, hall_K_.back(),
+                             static_cast<double>(is_hall_doubted_.back())};
+    for (std::size_t k = 0; k < live_.size(); ++k)
+      m.insert(m.end(), {static_cast<double>(live_[k]), dropped_s_[k], mean_innovation_[k], last_s_[k]});
+    m.insert(m.end(), start_state_.begin(), start_state_.end());
+    m.insert(m.end(), belief_.mean.begin(), belief_.mean.end());
+    for (Eigen::Index c = 0; c < n; ++c) {
+      for (Eigen::Index r = c; r < n; ++r) m.push_back(belief_.covariance(r, c));
+    }
+    return m;
+  }
+  void recall(std::span<const double> memory) override {
+    const auto n = belief_.mean.size();
+    const std::size_t n_sensors = live_.size();
+    if (memory.size() != 4 + 4 * n_sensors + static_cast<std::size_t>(n_ + n + n * (n + 1) / 2))
+      throw std::logic_error("the memory of another observer");
+    auto at = memory.begin();
+    const auto take = [&] { return *at++; };
+    row_ = static_cast<std::size_t>(take());
+    start_hall_K_ = take();
+    hall_K_ = {take()};
+    is_hall_doubted_ = {take() != 0.0};
+    first_hall_row_ = row_ - 1;
+    for (std::size_t k = 0; k < n_sensors; ++k) {
+      live_[k] = take() != 0.0;
+      dropped_s_[k] = take();
+      mean_innovation_[k] = take();
+      last_s_[k] = take();
+      if (!live_[k]) distrusted_.push_back(words_of_dropped(k));
+    }
+    start_state_.resize(n_);
+    for (double& z : start_state_) z = take();
+    for (double& x : belief_.mean) x = take();
+    for (Eigen::Index c = 0; c < n; ++c) {
+      for (Eigen::Index r = c; r < n; ++r) belief_.covariance(r, c) = belief_.covariance(c, r) = take();
+    }
+  }
 
   [[nodiscard]] Belief factors() const {
     const Eigen::Index n_factors = o_.factors_.mean.size();
@@ -80,7 +125,8 @@ class Observer::Run final : public Follower {
     Belief belief;  // before that row's step and readings
   };
 
-  void begin(const ObservedRun& run) {
+  void find_channels(const ObservedRun& run) {
+    has_channels_ = true;
     const auto channel = [&](const std::string& name, const char* unit) {
       const Channel& c = run.readings.at(name);
       if (c.unit != unit)
@@ -90,6 +136,9 @@ class Observer::Run final : public Follower {
     };
     for (const std::string& name : o_.sensors_) sensor_channel_.push_back(channel(name, "degC"));
     if (with_drift_) drift_channel_ = channel(o_.drift_, "um");
+  }
+
+  void begin(const ObservedRun& run) {
     start_hall_K_ = run.hall.at(run.readings.time_s.front());
     belief_.mean.head(n_) = o_.start_ + (start_hall_K_ - o_.start_hall_K_) * s_.ones;
     start_state_ = belief_.mean.head(n_);
@@ -98,29 +147,36 @@ class Observer::Run final : public Follower {
   /// What the hall's thermometer is believed at a row. One that jumps does not tell of a hall: its last reading holds until it is back near it.
   void judge_hall(const ObservedRun& run, std::size_t i) {
     const std::vector<double>& t = run.readings.time_s;
-    const double told_K = run.hall.at(t[i]);
+    const double t_s = t[run.at(i)], told_K = run.hall.at(t_s);
+    if (hall_K_.size() > kRowsBack) {
+      hall_K_.pop_front();
+      is_hall_doubted_.pop_front();
+      ++first_hall_row_;
+    }
     if (i == 0) {
       hall_K_.push_back(told_K);
       is_hall_doubted_.push_back(false);
       return;
     }
-    const double most_K = kHallJump_K * std::max(1.0, (t[i] - t[i - 1]) / kHallJumpIn_s);
+    const double most_K = kHallJump_K * std::max(1.0, (t_s - t[run.at(i) - 1]) / kHallJumpIn_s);
     const bool is_doubted = std::abs(told_K - hall_K_.back()) > most_K;
     if (is_doubted && !is_hall_doubted_.back())
-      distrusted_.push_back(fmt::format("the hall's thermometer from {:.0f} min", t[i] / 60.0));
+      distrusted_.push_back(fmt::format("the hall's thermometer from {:.0f} min", t_s / 60.0));
     hall_K_.push_back(is_doubted ? hall_K_.back() : told_K);
     is_hall_doubted_.push_back(is_doubted);
   }
 
   /// Between the row before and row i.
   [[nodiscard]] double hall_K(const ObservedRun& run, std::size_t i, double t_s) const {
-    return is_hall_doubted_[i] || is_hall_doubted_[i - 1] ? hall_K_[i] : run.hall.at(t_s);
+    const std::size_t k = i - first_hall_row_;
+    return is_hall_doubted_[k] || is_hall_doubted_[k - 1] ? hall_K_[k] : run.hall.at(t_s);
   }
 
   /// Goes back to before its mean innovation began to grow, and follows the rows since then without it.
   void drop(const ObservedRun& run, std::size_t sensor) {
     live_[sensor] = false;
-    distrusted_.push_back(fmt::format("{} from {:.0f} min", o_.sensors_[sensor], run.readings.time_s[row_] / 60.0));
+    dropped_s_[sensor] = run.readings.time_s[run.at(row_)];
+    distrusted_.push_back(words_of_dropped(sensor));
     belief_ = history_.front().belief;
     mean_innovation_.assign(mean_innovation_.size(), 0.0);
     last_s_.assign(last_s_.size(), std::numeric_limits<double>::quiet_NaN());
@@ -129,29 +185,36 @@ class Observer::Run final : public Follower {
     history_.clear();
   }
 
+  [[nodiscard]] std::string words_of_dropped(std::size_t sensor) const {
+    return fmt::format("{} from {:.0f} min", o_.sensors_[sensor], dropped_s_[sensor] / 60.0);
+  }
+
   void take_row(const ObservedRun& run, std::size_t i) {
-    const std::vector<double>& t = run.readings.time_s;
+    const std::size_t at = run.at(i);
+    const double t_s = run.readings.time_s[at];
     if (i > 0) advance(run, i);
     for (std::size_t k = 0; k < sensor_channel_.size(); ++k) {
-      const double read = run.readings.channels[sensor_channel_[k]].values[i];
+      const double read = run.readings.channels[sensor_channel_[k]].values[at];
+      innovation_K_[k] = std::numeric_limits<double>::quiet_NaN();
       if (!live_[k] || std::isnan(read)) continue;
       const Eigen::Index output = o_.sensor_output_[k];
       Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
       h.head(n_) = s_.outputs.state.col(output);
-      const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * hall_K_[i] + s_.reference_K - 273.15;
-      const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, t[i], last_s_[k]);
+      const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * hall_at(i) + s_.reference_K - 273.15;
+      const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, t_s, last_s_[k]);
       const double innovation = read - expected_K, spread = std::sqrt(h.dot(belief_.covariance * h) + variance);
+      innovation_K_[k] = innovation;
       mean_innovation_[k] = kMemory * mean_innovation_[k] + (1.0 - kMemory) * innovation / spread;
       if (std::abs(innovation) < kOutlier * spread) correct(h, innovation, variance);
     }
-    const double drift_um = with_drift_ ? run.readings.channels[drift_channel_].values[i] : std::nan("");
+    const double drift_um = with_drift_ ? run.readings.channels[drift_channel_].values[at] : std::nan("");
     if (std::isfinite(drift_um)) {
       // counts from the start of the run; where it is missing there, from the model's at its first value
       if (first_drift_ >= i) {
         first_drift_ = i;
         drift_zero_m_ = 1e-6 * drift_um - (i > 0 ? drift_m(i) : 0.0);
       }
-      const double variance = 1e-12 * variance_of(o_.settings_.drift_um, o_.settings_.model_um, t[i], last_drift_s_);
+      const double variance = 1e-12 * variance_of(o_.settings_.drift_um, o_.settings_.model_um, t_s, last_drift_s_);
       Eigen::VectorXd h = drift_gradient();
       h(zero_) = 1.0;
       correct(h, 1e-6 * drift_um - drift_zero_m_ - drift_m(i) - belief_.mean(zero_), variance);
@@ -182,8 +245,8 @@ class Observer::Run final : public Follower {
   }
 
   void advance(const ObservedRun& run, std::size_t i) {
-    double from_s = run.readings.time_s[i - 1], section_end_s = 0.0;
-    const double to_s = run.readings.time_s[i];
+    double from_s = run.readings.time_s[run.at(i) - 1], section_end_s = run.cyclogram_from_s;
+    const double to_s = run.readings.time_s[run.at(i)];
     for (std::size_t c = 0; c < run.cyclogram.sections.size() && from_s < to_s; ++c) {
       const bool is_last = c + 1 == run.cyclogram.sections.size();
       section_end_s += run.cyclogram.sections[c].duration_s;
@@ -273,8 +336,9 @@ class Observer::Run final : public Follower {
   /// Since the start of the run: a scale of the displacement leaves alone what was there before.
   [[nodiscard]] double drift_m(std::size_t i) const {
     return (1.0 + belief_.mean(scale_)) * unscaled_drift_m() +
-           s_.outputs.hall(o_.drift_output_) * (hall_K_[i] - start_hall_K_);
+           s_.outputs.hall(o_.drift_output_) * (hall_at(i) - start_hall_K_);
   }
+  [[nodiscard]] double hall_at(std::size_t row) const { return hall_K_[row - first_hall_row_]; }
   [[nodiscard]] double unscaled_drift_m() const {
     return s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_) - start_state_);
   }
@@ -298,8 +362,11 @@ class Observer::Run final : public Follower {
   std::size_t drift_channel_ = 0;
   std::vector<bool> live_;
   std::vector<std::string> distrusted_;
-  std::vector<double> hall_K_;  // per row taken: as believed
-  std::vector<bool> is_hall_doubted_;
+  std::deque<double> hall_K_;  // of the last rows taken: as believed
+  std::deque<bool> is_hall_doubted_;
+  std::size_t first_hall_row_ = 0;
+  bool has_channels_ = false;
+  std::vector<double> innovation_K_, dropped_s_;
   std::vector<double> mean_innovation_;
   std::vector<double> last_s_;  // of each sensor's readings
   double last_drift_s_ = std::numeric_limits<double>::quiet_NaN();
@@ -354,7 +421,7 @@ Observation Observer::observe(const ObservedRun& run) const {
     seen.deviation_um.push_back(pass.deviation_um());
     seen.outputs.col(static_cast<Eigen::Index>(i)) = pass.outputs();
   }
-  seen.distrusted = pass.distrusted();
+  seen.distrusted = pass.given_up();
   return seen;
 }
 
@@ -365,6 +432,10 @@ std::vector<Input> Observer::inputs() const {
 }
 
 std::unique_ptr<Follower> Observer::follow() const {
+  return watch();
+}
+
+std::unique_ptr<ObserverFollower> Observer::watch() const {
   return std::make_unique<Run>(*this, false);
 }
 

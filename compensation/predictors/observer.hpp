@@ -31,6 +31,17 @@ struct Observation {
   std::vector<std::string> distrusted;  ///< sensors that were dropped, and when
 };
 
+/// An observer on its way through a run: after each row what its filter says of that row.
+class ObserverFollower : public Follower {
+ public:
+  /// That the filter gives the drift, 1 sigma.
+  [[nodiscard]] virtual double deviation_um() const = 0;
+  /// All outputs of the model in the state believed, in K, m, rad.
+  [[nodiscard]] virtual Eigen::VectorXd outputs() const = 0;
+  /// Reading minus what was expected of it, of each sensor [K]; NaN where it has none or is given up.
+  [[nodiscard]] virtual const std::vector<double>& innovation_K() const = 0;
+};
+
 /// Extended Kalman filter over the reduced state z and factors on everything uncertain:
 ///
 ///     dz/dt = -K(u) z + sum_s (1 + w_s) P_s(u) b_s + f_hall(u) + sum_e v_e c_e(u) (hall g_e + o_e - G_e z),   w, v: random walks
@@ -59,6 +70,8 @@ class Observer final : public Predictor {
   [[nodiscard]] std::vector<Input> inputs() const override;
   /// Row by row what observe() gives of the whole run.
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
+  /// The same follower, which also tells what it sees on its way. It outlives no observer.
+  [[nodiscard]] std::unique_ptr<ObserverFollower> watch() const;
 
   /// The same, with what it has learned, reading other sensors.
   [[nodiscard]] Observer with_sensors(std::vector<std::string> sensors) const;

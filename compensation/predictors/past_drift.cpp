@@ -16,8 +16,10 @@ class TimeFollower final : public Follower {
     const std::size_t row = row_++;
     if (row < run.n_before) return std::numeric_limits<double>::quiet_NaN();
     const std::vector<double>& t = run.readings.time_s;
-    return drift_um_(run.n_before > 0 ? t[row] - t[run.n_before] : t[row]);
+    return drift_um_(run.n_before > 0 ? t[row] - t[run.n_before] : t[run.at(row)]);
   }
+  [[nodiscard]] std::vector<double> memory() const override { return {static_cast<double>(row_)}; }
+  void recall(std::span<const double> memory) override { row_ = static_cast<std::size_t>(memory[0]); }
 
  private:
   std::function<double(double)> drift_um_;

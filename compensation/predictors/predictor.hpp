@@ -4,6 +4,7 @@
 // `validate` judges and keeps in a file; what `run` fits, and modes of `compensate --model modes`, are judged on their run and kept in none.
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,13 @@ class Follower {
   /// Takes the next row: the first call the first one. @return the drift there [um]; NaN where nothing can be said
   /// @param run  the same at every call, up to that row at least. Nothing is read that lies behind it: a run may grow between calls
   virtual double next(const ObservedRun& run) = 0;
+  /// All that it knows of the rows it has taken, such as goes into a file, and a follower at the start that goes on from there. The run that it
+  /// is then given has the last row taken in front of the next.
+  /// @throws std::logic_error  for one that knows no such thing, and for the memory of another
+  [[nodiscard]] virtual std::vector<double> memory() const = 0;
+  virtual void recall(std::span<const double> memory) = 0;
+  /// What it reads and has given up, and from when: "t05 from 31 min".
+  [[nodiscard]] virtual std::vector<std::string> given_up() const { return {}; }
 };
 
 /// A channel of the readings.

@@ -1,0 +1,354 @@
+#include "app/follow.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <optional>
+#include <thread>
+
+#include "app/end_request.hpp"
+#include "app/progress.hpp"
+#include "base/errors.hpp"
+#include "base/file_bytes.hpp"
+#include "base/quantity.hpp"
+#include "base/version.hpp"
+#include "follow/followed_machine.hpp"
+#include "follow/line_source.hpp"
+#include "follow/mqtt_link.hpp"
+#include "follow/record_file.hpp"
+#include "follow/row_text.hpp"
+#include "follow/state_file.hpp"
+#include "follow/watch_json.hpp"
+#include "follow/watch_trial.hpp"
+#include "output/predictor_file.hpp"
+
+namespace driftwright::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kSaveEvery_s = 1.0;
+constexpr double kLongestPoll_s = 0.25;  // so soon an end that is asked for is noticed
+constexpr double kStale_s = 60.0;        // after so long without a message a channel is missing, at least
+constexpr double kFirstSilence_s = 5.0;  // without a line, at least, before one is written without
+
+std::optional<double> quantity(const char* option, const std::string& text, const std::string& unit) {
+  if (text.empty()) return std::nullopt;
+  try {
+    const double value = parse_quantity(text, unit);
+    if (value > 0.0 && std::isfinite(value)) return value;
+  } catch (const RangeError& e) {
+    throw InputError(fmt::format("{} '{}': {}", option, text, e.what()));
+  }
+  throw InputError(fmt::format("{} '{}': more than 0 is wanted", option, text));
+}
+
+double seconds_since(Clock::time_point then) {
+  return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+std::vector<follow::Session::Model> models_of(const FollowVerbOptions& options, const Listener& listener) {
+  follow::FollowOptions how{.most_rate_um_s = quantity("--slew", options.slew, "um/s"),
+                            .hold_s = quantity("--hold", options.hold, "s"),
+                            .fade_s = quantity("--fade", options.fade, "s"),
+                            .watch = options.watch};
+  std::vector<follow::Session::Model> models;
+  for (const std::string& path : options.models) {
+    const bool is_scenario = path.ends_with(".yaml") || path.ends_with(".yml");
+    std::unique_ptr<follow::Followed> followed;
+    if (is_scenario) {
+      const scenarios::Scenario scenario = scenarios::read_scenario(path);
+      (void)scenarios::require_machine(scenario, "follow");
+      followed = follow::followed_machine(scenario, how, listener);
+    } else {
+      followed = follow::followed_predictor(path, how);
+    }
+    models.push_back({path, content_hash(read_bytes(path)), std::move(followed)});
+  }
+  return models;
+}
+
+std::optional<ColumnMap> columns_of(const std::string& path) {
+  if (path.empty()) return std::nullopt;
+  const scenarios::Scenario scenario = scenarios::read_scenario(path);
+  if (!scenario.columns)
+    throw InputError(
+        fmt::format("--columns {}: it has no key `columns` (docs/record.md), which says what the columns are", path));
+  return scenario.columns;
+}
+
+/// One run of the verb.
+class Following {
+ public:
+  explicit Following(const FollowVerbOptions& options)
+      : options_(options),
+        source_name_(options.replay.empty() ? "standard input" : options.replay),
+        text_(columns_of(options.columns), source_name_),
+        session_(models_of(options, progress_.listener())) {
+    progress_.end();
+    (void)session_.wanted();
+  }
+
+  void run() {
+    std::signal(SIGPIPE, SIG_IGN);  // a write tells
+    const EndRequest end_request;
+    if (!options_.mqtt.empty()) {
+      follow_broker();
+    } else if (options_.replay.empty()) {
+      follow_input();
+    } else {
+      replay();
+    }
+    if (session_.has_channels()) save();
+    tell();
+  }
+
+ private:
+  void follow_input() {
+    follow::LineSource source(STDIN_FILENO);
+    std::string line;
+    Clock::time_point last = Clock::now();  // a line, or one written without
+    while (is_read_ && !EndRequest::is_made()) {
+      const auto got = source.next(line, kLongestPoll_s);
+      if (got == follow::LineSource::Got::kEnd) break;
+      if (got == follow::LineSource::Got::kLine) {
+        take(line);
+        last = Clock::now();
+        is_silent_ = false;
+      } else {
+        tell_silence(last);
+      }
+      if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
+    }
+  }
+
+  void follow_broker() {
+    constexpr const char* kWill = R"({"state":"off","why":"follow has ended without a word","axes":{}})";
+    std::vector<std::string> topics, headers;
+    for (const std::string& given : options_.topics) {
+      const std::size_t equals = given.find('=');
+      if (equals == std::string::npos || equals == 0 || equals + 1 == given.size())
+        throw InputError(fmt::format("--topic '{}': CHANNEL=TOPIC is wanted, such as t01_degC=shop/mill/t01", given));
+      headers.push_back(given.substr(0, equals));
+      topics.push_back(given.substr(equals + 1));
+    }
+    if (topics.empty() == options_.from.empty())
+      throw InputError("--mqtt wants --from TOPIC, whose messages are rows, or --topic CHANNEL=TOPIC for each channel");
+    const bool makes_rows = !topics.empty();
+    const double every_s = *quantity("--every", options_.every, "s"), stale_s = std::max(kStale_s, 5.0 * every_s);
+    link_ = std::make_unique<follow::MqttLink>(follow::read_mqtt_address(options_.mqtt),
+                                               makes_rows ? topics : std::vector{options_.from}, options_.to, kWill);
+    struct Heard {
+      std::string text;
+      Clock::time_point at;
+    };
+    std::vector<std::optional<Heard>> heard(topics.size());
+    if (makes_rows) take(fmt::format("time_s,{}", fmt::join(headers, ",")));
+    Clock::time_point last = Clock::now(), due = last;
+    follow::MqttLink::Message message;
+    while (is_read_ && !EndRequest::is_made()) {
+      const double until_due_s =
+          makes_rows ? std::max(0.0, std::chrono::duration<double>(due - Clock::now()).count()) : kLongestPoll_s;
+      if (link_->next(message, std::min(kLongestPoll_s, until_due_s))) {
+        for (std::size_t k = 0; k < topics.size(); ++k) {
+          if (topics[k] == message.topic) heard[k] = Heard{message.payload, Clock::now()};
+        }
+        if (!makes_rows) {
+          take_lines(message.payload);
+          last = Clock::now();
+          is_silent_ = false;
+        }
+      }
+      if (makes_rows && Clock::now() >= due) {
+        due += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(every_s));
+        if (Clock::now() > due) due = Clock::now();  // asleep: no rows are made up for that
+        std::vector<std::string> cells;
+        for (const auto& h : heard) cells.push_back(h && seconds_since(h->at) < stale_s ? cell_of(h->text) : "");
+        const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+        take(fmt::format("{:.3f},{}", now_s, fmt::join(cells, ",")));
+      } else if (!makes_rows) {
+        tell_silence(last);
+      }
+      if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
+    }
+  }
+
+  /// A message as a cell: a number, or something that is none.
+  static std::string cell_of(const std::string& text) {
+    try {
+      return fmt::format("{:.17g}", follow::stream_number(text, '.'));
+    } catch (const RangeError&) {
+      return "?";
+    }
+  }
+
+  void take_lines(const std::string& text) {
+    std::size_t begin = 0;
+    while (begin < text.size()) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      take(text.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+
+  /// Writes a line without a row where none has come for long. @param last  line, or one written so
+  void tell_silence(Clock::time_point& last) {
+    if (!session_.has_channels()) return;
+    const double silent_s = seconds_since(last);
+    if (silent_s < (is_silent_ ? 1.0 : std::max(kFirstSilence_s, 3.0 * session_.usual_step_s()))) return;
+    write(session_.wait(silent_s));
+    last = Clock::now();
+    is_silent_ = true;
+  }
+
+  void replay() {
+    std::ifstream file(options_.replay, std::ios::binary);
+    if (!file) throw InputError(fmt::format("--replay {}: cannot be read", options_.replay));
+    std::string line;
+    while (is_read_ && !EndRequest::is_made() && std::getline(file, line)) {
+      take(line);
+      if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
+    }
+    if (file.bad()) throw InputError(fmt::format("--replay {}: cannot be read to its end", options_.replay));
+  }
+
+  /// Waits until a row of a replay is due.
+  void keep_pace(double time_s) {
+    if (!(options_.pace > 0.0) || options_.replay.empty() || !std::isfinite(time_s)) return;
+    if (!first_s_) {
+      first_s_ = time_s;
+      began_ = Clock::now();
+    }
+    const auto due = began_ + std::chrono::duration_cast<Clock::duration>(
+                                  std::chrono::duration<double>((time_s - *first_s_) / options_.pace));
+    while (Clock::now() < due && !EndRequest::is_made())
+      std::this_thread::sleep_for(std::min<Clock::duration>(due - Clock::now(), std::chrono::milliseconds(250)));
+  }
+
+  void take(const std::string& line) {
+    std::optional<follow::StreamRow> row;
+    std::string why;
+    try {
+      row = text_.take(line);
+    } catch (const RangeError& e) {
+      why = e.what();
+    }
+    if (!session_.has_channels() && !text_.channels().empty()) begin();
+    if (!session_.has_channels()) {
+      if (!why.empty()) throw InputError(fmt::format("{}: {}; a header or a JSON row comes first", source_name_, why));
+      return;
+    }
+    if (!row && why.empty()) return;
+    if (row) keep_pace(row->time_s);
+    ++n_rows_;
+    const follow::FollowLine said = row ? session_.take(std::move(*row)) : session_.pass_over(why);
+    if (said.run_s) {
+      ++n_taken_;
+      if (record_) record_->add(session_.taken());
+    }
+    write(said);
+  }
+
+  void begin() {
+    session_.begin(text_.channels());
+    const bool goes_on = !options_.state.empty() && follow::resume_from(options_.state, session_);
+    if (goes_on) (void)std::fputs(fmt::format("follow: goes on from {}\n", options_.state).c_str(), stderr);
+    if (!options_.record.empty())
+      record_.emplace(options_.record, text_.channels(), fmt::format("driftwright {} follow", kVersion), goes_on);
+    saved_ = Clock::now();
+  }
+
+  void write(const follow::FollowLine& said) {
+    const std::string text = follow::line_text(said) + "\n";
+    is_read_ = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    if (!is_read_ && errno != EPIPE) throw InputError("standard output: not all could be written; is the disk full?");
+    std::clearerr(stdout);
+    if (link_ && !options_.to.empty() && !link_->publish(options_.to, text.substr(0, text.size() - 1))) ++n_unheard_;
+  }
+
+  void save() {
+    if (!options_.state.empty()) follow::write_state(options_.state, session_);
+    if (record_) record_->flush();
+    saved_ = Clock::now();
+  }
+
+  void tell() const {
+    std::vector<std::string> faults;
+    for (std::size_t f = 0; f < session_.faults().size(); ++f) {
+      if (session_.faults()[f] > 0)
+        faults.push_back(fmt::format("{} {}", follow::fault_words(static_cast<follow::Fault>(f)), session_.faults()[f]));
+    }
+    (void)std::fputs(fmt::format("follow: {} rows, {} taken{}{}\n", n_rows_, n_taken_, faults.empty() ? "" : "; ",
+                                 fmt::join(faults, ", "))
+                         .c_str(),
+                     stderr);
+    if (n_unheard_ > 0) (void)std::fputs(fmt::format("follow: {} lines found no broker\n", n_unheard_).c_str(), stderr);
+    if (link_ && link_->n_lost() > 0)
+      (void)std::fputs(fmt::format("follow: {} messages came faster than they could be taken\n", link_->n_lost()).c_str(),
+                       stderr);
+  }
+
+  const FollowVerbOptions& options_;
+  Progress progress_;
+  std::string source_name_;
+  follow::RowText text_;
+  follow::Session session_;
+  std::optional<follow::RecordFile> record_;
+  Clock::time_point saved_ = Clock::now(), began_;
+  std::optional<double> first_s_;
+  std::int64_t n_rows_ = 0, n_taken_ = 0;
+  bool is_read_ = true;  // somebody reads what is written
+  bool is_silent_ = false;
+  std::int64_t n_unheard_ = 0;
+  std::unique_ptr<follow::MqttLink> link_;
+};
+
+}  // namespace
+
+namespace {
+
+constexpr int kTrialMachines = 10;
+constexpr double kTrialDays = 10.0;  // of each
+
+/// Writes the limits of an observer's watch.
+void calibrate_watch(const FollowVerbOptions& options) {
+  const std::optional<double> top_rpm = quantity("--top-speed", options.top_speed, "rpm");
+  if (!top_rpm)
+    throw InputError("--calibrate-watch wants --top-speed, such as '2500 rpm': the speeds that the machine works at");
+  if (options.models.size() != 1) throw InputError("--calibrate-watch: limits are those of one observer; name one file");
+  const std::string& path = options.models.front();
+  const output::PredictorFile file = output::read_predictor(path);
+  const auto* observer = dynamic_cast<const compensation::Observer*>(file.predictor.predictor.get());
+  if (!observer)
+    throw InputError(fmt::format(
+        "{}: '{}' is no observer, and only an observer has residuals that physics explains; the fail-safe of a formula "
+        "says which thermometers are in doubt",
+        path, file.predictor.name));
+  const std::vector<std::string> sensors = follow::watchable_sensors(*observer, {});
+  Progress progress;
+  const follow::WatchLimits limits =
+      follow::simulated_limits(*observer, sensors, {.top_rpm = *top_rpm}, kTrialMachines, kTrialDays, progress.listener());
+  progress.end();
+  write_bytes(options.calibrate_watch, follow::watch_json(limits, content_hash(read_bytes(path))).dump(1) + "\n");
+  fmt::print("{}: {} thermometers ({}), {} machines, {:.0f} machine-days, {} daily maxima above their thresholds\n",
+             options.calibrate_watch, sensors.size(), fmt::join(sensors, ", "), kTrialMachines, limits.machine_days,
+             limits.n_alarms);
+}
+
+}  // namespace
+
+void follow_stream(const FollowVerbOptions& options) {
+  if (!options.calibrate_watch.empty()) return calibrate_watch(options);
+  if (options.pace < 0.0) throw InputError("--pace: 0 (as fast as it goes) or more is wanted");
+  if (options.pace > 0.0 && options.replay.empty()) throw InputError("--pace goes with --replay FILE");
+  Following(options).run();
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,118 @@
+#include "compensation/predictors/deployed_follower.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace driftwright::compensation {
+namespace {
+
+constexpr std::size_t kNumbersOfState = 7, kNumbersOfInput = 13;
+
+std::array<double, kNumbersOfState> numbers_of(const drift_state& s) {
+  return {static_cast<double>(s.has_repaired),
+          static_cast<double>(s.has_guarded),
+          s.time_s,
+          s.deserved,
+          s.trust,
+          s.prediction_um,
+          s.correction_um};
+}
+drift_state state_of(const double* n) {
+  return {n[0] != 0.0, n[1] != 0.0, n[2], n[3], n[4], n[5], n[6]};
+}
+
+std::array<double, kNumbersOfInput> numbers_of(const drift_input_state& s) {
+  return {static_cast<double>(s.is_doubted),
+          static_cast<double>(s.doubt),
+          s.doubt_size,
+          static_cast<double>(s.has_start),
+          static_cast<double>(s.has_last),
+          static_cast<double>(s.is_out),
+          static_cast<double>(s.is_untold),
+          s.base,
+          s.start,
+          s.used,
+          s.last,
+          s.last_s,
+          s.doubted_until_s};
+}
+drift_input_state input_of(const double* n) {
+  return {n[0] != 0.0, static_cast<int>(n[1]),
+          n[2],        n[3] != 0.0,
+          n[4] != 0.0, n[5] != 0.0,
+          n[6] != 0.0, n[7],
+          n[8],        n[9],
+          n[10],       n[11],
+          n[12]};
+}
+
+}  // namespace
+
+DeployedFollower::DeployedFollower(const DeployedPredictor& deployed)
+    : deployed_(deployed), follower_(deployed.predictor->follow()) {
+  if (!deployed.fail_safe) return;
+  table_.emplace(fail_safe_table(*deployed.fail_safe));
+  const std::size_t n = deployed.fail_safe->guards.size();
+  inputs_.resize(n);
+  room_.resize(n * (n + 1));
+  read_.resize(n);
+  repaired_.resize(n);
+}
+
+FollowedCorrection DeployedFollower::next(ObservedRun& run) {
+  Record& readings = run.readings;
+  const std::size_t last = readings.n_samples() - 1;
+  const double dt_s = last > 0 ? readings.time_s[last] - readings.time_s[last - 1] : 0.0;
+  if (!table_) {
+    const double drift_um = follower_->next(run);
+    return {.prediction_um = drift_um, .correction_um = std::isfinite(drift_um) ? drift_um : 0.0, .trust = 1.0};
+  }
+  if (channel_.empty()) {
+    for (const FailSafe::Guard& g : deployed_.fail_safe->guards)
+      channel_.push_back(static_cast<std::size_t>(&readings.at(g.input) - readings.channels.data()));
+  }
+  for (std::size_t k = 0; k < channel_.size(); ++k) read_[k] = readings.channels[channel_[k]].values[last];
+  const double deserved =
+      drift_repair(&table_->safe, &repair_, inputs_.data(), room_.data(), read_.data(), dt_s, repaired_.data());
+  for (std::size_t k = 0; k < channel_.size(); ++k) readings.channels[channel_[k]].values[last] = repaired_[k];
+  const double drift_um = follower_->next(run);
+  const double correction_um = drift_guarded_um(&table_->safe, &guard_, deserved, drift_um, dt_s);
+  return {.prediction_um = drift_um, .correction_um = correction_um, .trust = guard_.trust};
+}
+
+std::vector<std::string> DeployedFollower::doubted() const {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < inputs_.size(); ++k) {
+    if (inputs_[k].is_doubted) names.push_back(deployed_.fail_safe->guards[k].input);
+  }
+  for (std::string& name : follower_->given_up()) names.push_back(std::move(name));
+  return names;
+}
+
+std::vector<double> DeployedFollower::memory() const {
+  std::vector<double> m;
+  const auto add = [&](const auto& numbers) {
+    for (double x : numbers) m.push_back(x);
+  };
+  add(numbers_of(repair_));
+  add(numbers_of(guard_));
+  for (const drift_input_state& in : inputs_) add(numbers_of(in));
+  add(follower_->memory());
+  return m;
+}
+
+void DeployedFollower::recall(std::span<const double> memory) {
+  const std::size_t own = 2 * kNumbersOfState + kNumbersOfInput * inputs_.size();
+  if (memory.size() < own) throw std::logic_error("the memory of another predictor");
+  repair_ = state_of(memory.data());
+  guard_ = state_of(memory.data() + kNumbersOfState);
+  for (std::size_t k = 0; k < inputs_.size(); ++k)
+    inputs_[k] = input_of(memory.data() + 2 * kNumbersOfState + kNumbersOfInput * k);
+  follower_->recall(memory.subspan(own));
+}
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,44 @@
+#pragma once
+// What correct() does to a whole run, row by row while it goes on.
+
+#include "compensation/predictors/control_tables.hpp"
+#include "compensation/predictors/deployed_predictor.hpp"
+
+namespace driftwright::compensation {
+
+/// The correction of one row.
+struct FollowedCorrection {
+  double prediction_um = 0.0;  ///< NaN where nothing can be said
+  double correction_um = 0.0;  ///< in force, guarded
+  double trust = 1.0;          ///< 0 to 1, that the prediction was multiplied by
+};
+
+/// A deployed predictor on its way through one run. The predictor outlives it.
+class DeployedFollower {
+ public:
+  explicit DeployedFollower(const DeployedPredictor& deployed);
+
+  /// Takes the next row, the last one that the run has; its doubted readings are replaced there by what the others lead to. Row by row what
+  /// correct() gives of the whole run.
+  /// @throws InputError  for readings that lack an input or have it in another unit
+  FollowedCorrection next(ObservedRun& run);
+
+  /// Inputs that are doubted in the row, in words: by the fail-safe, or given up by the predictor.
+  [[nodiscard]] std::vector<std::string> doubted() const;
+  [[nodiscard]] const Follower& follower() const { return *follower_; }
+
+  /// As Follower has it. @throws std::logic_error  the same
+  [[nodiscard]] std::vector<double> memory() const;
+  void recall(std::span<const double> memory);
+
+ private:
+  const DeployedPredictor& deployed_;
+  std::unique_ptr<Follower> follower_;
+  std::optional<FailSafeTable> table_;
+  drift_state repair_{}, guard_{};
+  std::vector<drift_input_state> inputs_;
+  std::vector<double> room_, read_, repaired_;
+  std::vector<std::size_t> channel_;  ///< of each guard
+};
+
+}  // namespace driftwright::compensation

@@ -1,0 +1,182 @@
+#include "follow/followed_machine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/quantity.hpp"
+#include "follow/state_json.hpp"
+#include "machine/simulated_run.hpp"
+#include "scenarios/reader/felt_run.hpp"
+#include "solver/propagator.hpp"
+#include "solver/reduced_transient.hpp"
+#include "studies/prediction.hpp"
+
+namespace driftwright::follow {
+namespace {
+
+using scenarios::MachineModel;
+
+void require_streamable(const MachineModel& machine) {
+  for (const effects::Effect& e : machine.effects) {
+    const auto refuse = [&](const std::string& why) {
+      throw InputError(
+          e.where,
+          fmt::format("{} {}; a stream does not tell enough of it, and `follow` wants a machine without", e.name(), why));
+    };
+    if (e.kind->change_drive)
+      refuse("changes what the record of the drive or of the hall says, by what comes before or behind a row");
+    if (e.kind->change_readings && e.place_kind != effects::Place::kSensor)
+      refuse("changes what instruments say of displacements, by all that came before");
+    if (!e.in.empty()) refuse(fmt::format("holds in the cyclogram '{}' alone", e.in));
+    if (e.from_s > 0.0 || e.until_s < effects::kNever_s) refuse("holds for a part of a run");
+  }
+}
+
+class FollowedMachine final : public Followed {
+ public:
+  FollowedMachine(const scenarios::Scenario& scenario, const FollowOptions& options, const Listener& listener)
+      : path_(scenario.path), machine_(*scenario.machine), tolerances_(scenario.solver.transient) {
+    require_streamable(machine_);
+    scenarios::Scenario asked = scenario;
+    asked.solver.model = studies::predicting_model(scenario);
+    model_.emplace(scenarios::open_model(asked, {}, listener, false));
+    const auto has_thermostats = [](const auto& system) { return !system.thermostats.empty(); };
+    if (model_->reduced() ? has_thermostats(model_->reduced()->system) : has_thermostats(model_->full()->system))
+      throw InputError(machine_.where, "a machine with thermostats cannot be followed: no row says whether they are on");
+    if (model_->reduced() && model_->is_linear()) exact_.emplace(model_->reduced()->system);
+    for (const scenarios::Sensor& s : machine_.sensors) {
+      if (scenarios::is_on_hall(s) && hall_.empty()) hall_ = s.name;
+    }
+    if (hall_.empty()) hall_ = scenarios::kAmbient;
+    const solver::Outputs& outputs = model_->outputs();
+    OutputSettings settings;
+    settings.most_rate_um_s = options.most_rate_um_s.value_or(settings.most_rate_um_s);
+    settings.hold_s = options.hold_s.value_or(settings.hold_s);
+    settings.fade_s = options.fade_s.value_or(settings.fade_s);
+    for (const scenarios::DisplacementOutput& d : machine_.displacements) {
+      const auto at = std::find(outputs.name.begin(), outputs.name.end(), d.name);
+      if (at == outputs.name.end()) throw std::logic_error("a displacement is no output of the model");
+      output_.push_back(at - outputs.name.begin());
+      axes_.push_back({.name = d.name, .interval_um = {}, .deviation_um = {}});
+      stages_.emplace_back(settings);
+    }
+    if (axes_.empty()) throw InputError(machine_.where, "the machine has no `displacements`; there is nothing to correct");
+  }
+
+  [[nodiscard]] std::vector<WantedChannel> wanted() const override {
+    return {{"speed", "rpm", path_}, {hall_, "degC", path_}};
+  }
+  void begin(const std::vector<Channel>& channels) override { run_.emplace(channels, hall_, machine_.reference_K, true); }
+
+  bool take(double run_s, const std::vector<double>& values, double step_s) override {
+    const double hall_before_K = run_->hall_K();
+    const bool is_first = run_->n_rows() == 0;
+    if (!run_->add(run_s, values)) return false;
+    const double now_s = run_->run().readings.time_s.back();
+    if (is_first) {
+      begin_state();
+    } else {
+      advance(now_s, hall_before_K);
+    }
+    const Eigen::VectorXd outputs = observed();
+    for (std::size_t a = 0; a < axes_.size(); ++a) {
+      axes_[a].predicted_um = 1e6 * outputs[output_[a]];
+      stages_[a].take(axes_[a].predicted_um, step_s);
+    }
+    return true;
+  }
+  void wait(double step_s) override {
+    for (OutputStage& stage : stages_) stage.wait(step_s);
+  }
+  [[nodiscard]] bool has_begun() const override { return run_ && run_->n_rows() > 0; }
+
+  [[nodiscard]] std::vector<AxisCorrection> axes() const override {
+    std::vector<AxisCorrection> axes = axes_;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      axes[a].correction_um = stages_[a].state().correction_um;
+      axes[a].trust = has_begun() ? stages_[a].state().authority : 0.0;
+    }
+    return axes;
+  }
+
+  [[nodiscard]] Json state() const override {
+    Json stages = Json::array();
+    for (const OutputStage& stage : stages_) stages.push_back(state_json(stage.state()));
+    if (!has_begun()) return {{"run", nullptr}, {"stages", std::move(stages)}};
+    return {{"run", state_json(run_->state())},
+            {"state", numbers_json({state_.begin(), state_.end()})},
+            {"stages", std::move(stages)}};
+  }
+  void recall(const Json& j) override {
+    const Json stages = output::list(j, "stages");
+    if (stages.size() != stages_.size()) throw InputError("key `stages` is of another number of axes");
+    for (std::size_t a = 0; a < stages_.size(); ++a) stages_[a].recall(output_stage_of(stages[a]));
+    const auto run = output::value<Json>(j, "run");
+    if (run.is_null()) return;
+    run_->recall(live_run_of(run));
+    const std::vector<double> state = numbers_of(j, "state");
+    state_ = Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
+    const Eigen::VectorXd outputs = observed();
+    for (std::size_t a = 0; a < axes_.size(); ++a) axes_[a].predicted_um = 1e6 * outputs[output_[a]];
+  }
+
+ private:
+  /// As warm as the hall of the first row, where the scenario's start is the hall or balance with it.
+  void begin_state() {
+    MachineModel here = machine_;
+    here.hall = {{0.0}, {run_->hall_K()}};
+    double warmer_K = 0.0;
+    if (machine_.start == scenarios::Start::kHall || machine_.start == scenarios::Start::kSteady)
+      warmer_K = scenarios::felt_hall_at_start_K(here) - scenarios::felt_hall_at_start_K(machine_);
+    state_ = scenarios::start_of(machine_, *model_) + warmer_K * scenarios::ones_of(*model_);
+  }
+
+  /// Over the last step; what was before is one section, which is not run again.
+  void advance(double now_s, double hall_before_K) {
+    const double before_s = now_s - run_->run().cyclogram.sections.back().duration_s;
+    Cyclogram cyclogram{.name = "stream", .sections = {}};
+    if (before_s > 0.0) cyclogram.sections.push_back({before_s, run_->drive_before()});
+    cyclogram.sections.push_back({now_s - before_s, run_->drive_before()});
+    const TimeSeries hall{{before_s, now_s}, {hall_before_K, run_->hall_K()}};
+    solver::TransientOptions from_here = tolerances_;
+    from_here.from_s = before_s;
+    const auto keep = [&](double, const Eigen::VectorXd& state) { state_ = state; };
+    const Eigen::VectorXd start = state_;
+    const double end_s = cyclogram.duration_s();
+    if (exact_) {
+      Eigen::MatrixXd states;
+      (void)exact_->run(cyclogram, hall, {end_s}, start, false, &states, before_s);
+      state_ = states.col(0);
+    } else if (model_->reduced()) {
+      (void)solver::simulate(model_->reduced()->system, cyclogram, hall, {end_s}, from_here, start, keep);
+    } else {
+      (void)solver::simulate(model_->full()->system, cyclogram, hall, {end_s}, from_here, start, keep);
+    }
+  }
+
+  [[nodiscard]] Eigen::VectorXd observed() const {
+    return model_->reduced() ? model_->reduced()->system.observe(state_, run_->hall_K())
+                             : model_->full()->system.observe(state_, run_->hall_K());
+  }
+
+  std::string path_, hall_;
+  MachineModel machine_;
+  solver::TransientOptions tolerances_;
+  std::optional<scenarios::Model> model_;
+  std::optional<solver::Propagator> exact_;  // of a linear reduced model
+  std::optional<LiveRun> run_;
+  Eigen::VectorXd state_;
+  std::vector<Eigen::Index> output_;  // of each axis
+  std::vector<AxisCorrection> axes_;
+  std::vector<OutputStage> stages_;
+};
+
+}  // namespace
+
+std::unique_ptr<Followed> followed_machine(const scenarios::Scenario& scenario, const FollowOptions& options,
+                                           const Listener& listener) {
+  return std::make_unique<FollowedMachine>(scenario, options, listener);
+}
+
+}  // namespace driftwright::follow

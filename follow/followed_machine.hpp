@@ -1,0 +1,18 @@
+#pragma once
+// The machine of a scenario on a stream, by drive and hall alone: the drift that `predict` tells, of all its displacements.
+
+#include <memory>
+
+#include "base/listener.hpp"
+#include "follow/followed_predictor.hpp"
+#include "scenarios/reader/scenario.hpp"
+
+namespace driftwright::follow {
+
+/// Opens the model that predictions run on.
+/// @throws InputError  for a machine that no stream tells enough of: thermostats, effects that change recorded drives or displacements, laws of
+///                     recorded columns, or that hold for a part of a run
+[[nodiscard]] std::unique_ptr<Followed> followed_machine(const scenarios::Scenario& scenario, const FollowOptions& options,
+                                                         const Listener& listener);
+
+}  // namespace driftwright::follow

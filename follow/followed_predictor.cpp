@@ -1,0 +1,182 @@
+#include "follow/followed_predictor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/config_map.hpp"
+#include "base/config_text.hpp"
+#include "base/file_bytes.hpp"
+#include "compensation/predictors/deployed_follower.hpp"
+#include "compensation/predictors/observer.hpp"
+#include "effects/effect.hpp"
+#include "effects/recorded_column.hpp"
+#include "follow/state_json.hpp"
+#include "follow/watch_json.hpp"
+#include "output/predictor_file.hpp"
+
+namespace driftwright::follow {
+namespace {
+
+using namespace compensation;
+
+/// Why a law of an observer holds on no stream; "" where it does.
+std::string why_not(const effects::Effect& e) {
+  for (const effects::Mention& mention : e.kind->mentions) {
+    if (mention.of != effects::Mention::Of::kColumn) continue;
+    if (const auto word = e.words.find(mention.name);
+        word != e.words.end() && !word->second.empty() && !effects::is_drive_channel(word->second))
+      return fmt::format("its law '{}' follows the recorded column '{}', which `follow` does not hand on yet", e.name(),
+                         word->second);
+  }
+  if (!e.in.empty()) return fmt::format("its law '{}' holds in the cyclogram '{}' alone", e.name(), e.in);
+  if (e.from_s > 0.0 || e.until_s < effects::kNever_s)
+    return fmt::format("its law '{}' holds for a part of a run, and a stream has no end or beginning that would say which",
+                       e.name());
+  return "";
+}
+
+/// @throws InputError  for an observer whose laws no stream tells enough of
+void require_laws_of_streams(const std::string& path) {
+  const Json file = Json::parse(read_bytes(path));
+  if (output::value<std::string>(file, "predictor") != "observer") return;
+  std::string yaml = "effects:\n";
+  const Json laws = output::list(output::value<Json>(file, "observer"), "effects");
+  if (laws.empty()) return;
+  for (const Json& law : laws) yaml += "  - " + law.get<std::string>() + "\n";
+  for (const ConfigMap& entry : ConfigMap::of_tree(read_config_text(yaml, "the list `effects`")).maps("effects")) {
+    if (const std::string why = why_not(effects::read_effect(entry)); !why.empty())
+      throw InputError(fmt::format("{}: cannot be followed: {}", path, why));
+  }
+}
+
+OutputSettings settings_of(const DeployedPredictor& d, const FollowOptions& o) {
+  OutputSettings s;
+  if (d.fail_safe) s = {d.fail_safe->most_rate_um_s, d.fail_safe->stale_s, d.fail_safe->fade_s};
+  s.most_rate_um_s = o.most_rate_um_s.value_or(s.most_rate_um_s);
+  s.hold_s = o.hold_s.value_or(s.hold_s);
+  s.fade_s = o.fade_s.value_or(s.fade_s);
+  return s;
+}
+
+class FollowedPredictor final : public Followed {
+ public:
+  FollowedPredictor(const std::string& path, const FollowOptions& options)
+      : path_(path),
+        file_(output::read_predictor(path)),
+        observer_(dynamic_cast<const Observer*>(file_.predictor.predictor.get())),
+        follower_(file_.predictor),
+        stage_(settings_of(file_.predictor, options)) {
+    require_laws_of_streams(path);
+    if (observer_ && d().hall.empty())
+      throw InputError(
+          fmt::format("{}: cannot be followed: '{}' takes the hall from its scenario, and a stream has none; a "
+                      "thermometer of the hall (`node: hall`) or `ambient` in the records it is fitted on tells it",
+                      path, d().name));
+    if (file_.judged.is_object() && file_.judged.contains("verdict") && file_.judged["verdict"].is_string())
+      axis_.verdict = file_.judged["verdict"].get<std::string>();
+    if (!options.watch.empty()) {
+      if (!observer_) throw InputError(fmt::format("--watch: {} holds no observer, whose residuals could be watched", path));
+      watch_.emplace(*observer_, read_watch(options.watch, content_hash(read_bytes(path))));
+    }
+    axis_.name = d().target;
+    axis_.interval_um = d().interval_um;
+  }
+
+  [[nodiscard]] std::vector<WantedChannel> wanted() const override {
+    std::vector<WantedChannel> list;
+    const auto want = [&](const std::string& name, const std::string& unit) {
+      if (std::none_of(list.begin(), list.end(), [&](const WantedChannel& w) { return w.name == name; }))
+        list.push_back({name, unit, path_});
+    };
+    for (const Input& input : d().predictor->inputs()) want(input.name, input.unit);
+    if (d().fail_safe) {
+      for (const FailSafe::Guard& g : d().fail_safe->guards) want(g.input, g.unit);
+    }
+    if (observer_) {
+      want(d().hall, "degC");
+      want("speed", "rpm");
+    }
+    if (watch_) {
+      for (const std::string& name : watch_->limits().sensors) want(name, "degC");
+    }
+    return list;
+  }
+
+  void begin(const std::vector<Channel>& channels) override {
+    const std::string hall = observer_ ? d().hall : "";
+    run_.emplace(channels, hall, observer_ ? observer_->state().system.reference_K : 273.15, observer_ != nullptr);
+  }
+
+  bool take(double run_s, const std::vector<double>& values, double step_s) override {
+    if (!run_->add(run_s, values)) return false;
+    const FollowedCorrection c = follower_.next(run_->run());
+    if (watch_) (void)watch_->next(run_->run());
+    trust_ = c.trust;
+    axis_.predicted_um = c.correction_um;
+    stage_.take(c.correction_um, step_s);
+    return true;
+  }
+  void wait(double step_s) override { stage_.wait(step_s); }
+  [[nodiscard]] bool has_begun() const override { return run_ && run_->n_rows() > 0; }
+
+  [[nodiscard]] std::vector<AxisCorrection> axes() const override {
+    AxisCorrection axis = axis_;
+    axis.correction_um = stage_.state().correction_um;
+    axis.trust = trust_ * stage_.state().authority;
+    if (!has_begun()) axis.trust = 0.0;
+    axis.doubted = follower_.doubted();
+    if (observer_ && has_begun())
+      axis.deviation_um = dynamic_cast<const ObserverFollower&>(follower_.follower()).deviation_um();
+    if (watch_ && has_begun()) {
+      axis.watch_level = watch_->level();
+      if (const auto& alarm = watch_->alarm())
+        axis.alarm = fmt::format("since {:.0f} min: {}", alarm->since_s / 60.0, alarm->words);
+    }
+    return {axis};
+  }
+
+  [[nodiscard]] Json state() const override {
+    if (!has_begun()) return {{"run", nullptr}, {"stage", state_json(stage_.state())}};
+    return {{"run", state_json(run_->state())},
+            {"memory", numbers_json(follower_.memory())},
+            {"trust", trust_},
+            {"predicted_um", axis_.predicted_um},
+            {"watch", watch_ ? numbers_json(watch_->memory()) : Json(nullptr)},
+            {"stage", state_json(stage_.state())}};
+  }
+  void recall(const Json& j) override {
+    stage_.recall(output_stage_of(output::value<Json>(j, "stage")));
+    const auto run = output::value<Json>(j, "run");
+    if (run.is_null()) return;
+    run_->recall(live_run_of(run));
+    follower_.recall(numbers_of(j, "memory"));
+    if (watch_) {
+      if (output::value<Json>(j, "watch").is_null()) throw InputError("it was kept without a watch");
+      watch_->recall(numbers_of(j, "watch"));
+    }
+    trust_ = output::finite(j, "trust");
+    axis_.predicted_um = output::finite(j, "predicted_um");
+  }
+
+ private:
+  [[nodiscard]] const DeployedPredictor& d() const { return file_.predictor; }
+
+  std::string path_;
+  output::PredictorFile file_;
+  const Observer* observer_;
+  DeployedFollower follower_;
+  OutputStage stage_;
+  std::optional<LiveRun> run_;
+  std::optional<Watch> watch_;
+  AxisCorrection axis_;
+  double trust_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<Followed> followed_predictor(const std::string& path, const FollowOptions& options) {
+  return std::make_unique<FollowedPredictor>(path, options);
+}
+
+}  // namespace driftwright::follow

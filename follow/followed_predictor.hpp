@@ -1,0 +1,22 @@
+#pragma once
+// A predictor of `validate` on a stream: the numbers that it was judged by.
+
+#include <memory>
+
+#include "follow/followed.hpp"
+
+namespace driftwright::follow {
+
+struct FollowOptions {
+  std::optional<double> most_rate_um_s = {};  ///< slew limit; none: the model's own, or 1 um/s
+  std::optional<double> hold_s = {};          ///< none: the model's own, or 300 s
+  std::optional<double> fade_s = {};          ///< none: the model's own, or 600 s
+  std::string watch = {};                     ///< file of a watch's limits; empty: nothing is watched
+};
+
+/// @param path  of its file
+/// @throws InputError  for a file that holds no predictor, and for one that no stream can tell enough of: laws of recorded columns, laws that hold for
+///                     a part of a run, a hall that no thermometer reads; for a watch over what is no observer, or with another model's limits
+[[nodiscard]] std::unique_ptr<Followed> followed_predictor(const std::string& path, const FollowOptions& options);
+
+}  // namespace driftwright::follow

@@ -1,0 +1,108 @@
+#include "follow/live_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/quantity.hpp"
+
+namespace driftwright::follow {
+namespace {
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+constexpr double kJitter = 0.01;  // of the top speed so far: no change of the drive, as records are read
+constexpr std::size_t kMostKept = 8 * compensation::kRowsBack;
+
+}  // namespace
+
+LiveRun::LiveRun(const std::vector<Channel>& channels, const std::string& hall, double reference_K, bool wants_drive)
+    : reference_C_(reference_K - kZeroCelsius_K),
+      hall_K_(hall.empty() ? 0.0 : std::numeric_limits<double>::quiet_NaN()),
+      wants_drive_(wants_drive) {
+  const auto find = [&](const std::string& name, const char* unit) {
+    const auto at =
+        std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == name && c.unit == unit; });
+    return at == channels.end() ? kNone : static_cast<std::size_t>(at - channels.begin());
+  };
+  run_.cyclogram.name = "stream";
+  run_.readings.source = "the stream";
+  run_.readings.channels = channels;
+  speed_ = find("speed", "rpm");
+  cutting_ = find("cutting_power", "W");
+  feed_ = {find("feed_x", "mm_min"), find("feed_y", "mm_min"), find("feed_z", "mm_min")};
+  hall_ = find(hall, "degC");
+}
+
+bool LiveRun::add(double run_s, const std::vector<double>& values) {
+  const auto value = [&](std::size_t channel) {
+    return channel == kNone ? std::numeric_limits<double>::quiet_NaN() : values[channel];
+  };
+  if (const double hall_C = value(hall_); !std::isnan(hall_C)) hall_K_ = hall_C - reference_C_;
+  before_ = drive_;
+  if (const double rpm = value(speed_); !std::isnan(rpm)) {
+    has_drive_ = true;
+    top_rpm_ = std::max(top_rpm_, rpm);
+    const bool is_jitter = drive_.speed_rpm > 0.0 && rpm > 0.0 && std::abs(rpm - drive_.speed_rpm) <= kJitter * top_rpm_;
+    if (!is_jitter) drive_.speed_rpm = rpm;
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (const double feed = value(feed_[a]); !std::isnan(feed)) drive_.feed_m_s[a] = std::abs(feed) / 60e3;
+  }
+  if (const double power_W = value(cutting_); !std::isnan(power_W)) drive_.cutting_power_W = power_W;
+
+  Record& readings = run_.readings;
+  if (readings.time_s.empty()) {
+    if (std::isnan(hall_K_) || (wants_drive_ && !has_drive_)) return false;
+    before_ = drive_;
+    start_s_ = run_s;
+  }
+  forget();
+  const double time_s = run_s - start_s_;
+  if (!readings.time_s.empty()) run_.cyclogram.sections.push_back({time_s - readings.time_s.back(), before_});
+  readings.time_s.push_back(time_s);
+  for (std::size_t k = 0; k < values.size(); ++k) readings.channels[k].values.push_back(values[k]);
+  run_.hall.time_s.push_back(time_s);
+  run_.hall.value.push_back(hall_K_);
+  return true;
+}
+
+void LiveRun::forget() {
+  Record& readings = run_.readings;
+  if (readings.n_samples() < kMostKept) return;
+  const auto n = static_cast<std::ptrdiff_t>(readings.n_samples() - compensation::kRowsBack - 1);
+  const auto drop = [&](auto& list) { list.erase(list.begin(), list.begin() + n); };
+  drop(readings.time_s);
+  for (Channel& c : readings.channels) drop(c.values);
+  drop(run_.hall.time_s);
+  drop(run_.hall.value);
+  drop(run_.cyclogram.sections);  // one behind each row
+  run_.n_forgotten += static_cast<std::size_t>(n);
+  run_.cyclogram_from_s = readings.time_s.front();
+}
+
+LiveRun::State LiveRun::state() const {
+  State s{.start_s = start_s_,
+          .n_rows = n_rows(),
+          .time_s = run_.readings.time_s.back(),
+          .hall_K = hall_K_,
+          .top_rpm = top_rpm_,
+          .values = {},
+          .drive = drive_};
+  for (const Channel& c : run_.readings.channels) s.values.push_back(c.values.back());
+  return s;
+}
+
+void LiveRun::recall(const State& s) {
+  start_s_ = s.start_s;
+  hall_K_ = s.hall_K;
+  top_rpm_ = s.top_rpm;
+  drive_ = s.drive;
+  has_drive_ = true;
+  run_.n_forgotten = s.n_rows - 1;
+  run_.cyclogram_from_s = s.time_s;
+  run_.readings.time_s = {s.time_s};
+  for (std::size_t k = 0; k < s.values.size(); ++k) run_.readings.channels[k].values = {s.values[k]};
+  run_.hall = {{s.time_s}, {s.hall_K}};
+  run_.cyclogram.sections.clear();
+}
+
+}  // namespace driftwright::follow

@@ -1,0 +1,61 @@
+#pragma once
+// Messages of an MQTT broker as they come, and ours to it. A broker that goes away is waited for: the link comes back by itself.
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+struct mosquitto;
+struct mosquitto_message;
+
+namespace driftwright::follow {
+
+struct MqttAddress {
+  std::string host;
+  int port = 1883;
+};
+/// "localhost", "10.0.0.5:1884". @throws InputError
+[[nodiscard]] MqttAddress read_mqtt_address(const std::string& text);
+
+class MqttLink {
+ public:
+  struct Message {
+    std::string topic, payload;
+  };
+  /// Connects in the background, now and whenever the link is lost (again after 1 s, later after up to 10 s).
+  /// @param topics   that are listened to
+  /// @param will     what the broker tells on `will_topic` when we go without a word; "": nothing
+  /// @throws InputError  for a topic or host that can be none
+  MqttLink(const MqttAddress& address, std::vector<std::string> topics, const std::string& will_topic,
+           const std::string& will);
+  ~MqttLink();
+  MqttLink(const MqttLink&) = delete;
+  MqttLink& operator=(const MqttLink&) = delete;
+
+  /// The next message. @return false: none within so long
+  [[nodiscard]] bool next(Message& message, double wait_s);
+  /// Hands a message on, at most once. @return false: there is no link by now, and it is lost
+  bool publish(const std::string& topic, const std::string& payload);
+  /// Messages that came faster than they were taken, of which the oldest are lost.
+  [[nodiscard]] std::int64_t n_lost();
+
+ private:
+  struct Free {
+    void operator()(mosquitto* m) const;
+  };
+  static void connected(mosquitto* m, void* self, int code);
+  static void heard(mosquitto* m, void* self, const mosquitto_message* message);
+
+  std::vector<std::string> topics_;
+  std::mutex mutex_;
+  std::condition_variable came_;
+  std::deque<Message> waiting_;
+  std::int64_t n_lost_ = 0;
+  std::unique_ptr<mosquitto, Free> client_;
+};
+
+}  // namespace driftwright::follow

@@ -1,0 +1,69 @@
+#include "follow/state_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "base/file_bytes.hpp"
+#include "follow/state_json.hpp"
+
+namespace driftwright::follow {
+namespace {
+
+std::string compact(const Json& j) {
+  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+void write_state(const std::filesystem::path& file, const Session& session) {
+  Json j = session.state();
+  j["hash"] = content_hash(compact(j));
+  const std::string text = compact(j) + "\n", partial = file.string() + ".partial";
+  const auto fail = [&] {
+    const int why = errno;
+    (void)::unlink(partial.c_str());
+    throw InputError(fmt::format("--state {}: {}", file.string(), std::strerror(why)));
+  };
+  const int f = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (f < 0) fail();
+  for (std::size_t written = 0; written < text.size();) {
+    const ssize_t n = ::write(f, text.data() + written, text.size() - written);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) {
+      const int why = errno;
+      (void)::close(f);
+      errno = why;
+      fail();
+    }
+    written += static_cast<std::size_t>(n);
+  }
+  if (::fsync(f) != 0) {
+    const int why = errno;
+    (void)::close(f);
+    errno = why;
+    fail();
+  }
+  if (::close(f) != 0 || ::rename(partial.c_str(), file.c_str()) != 0) fail();
+}
+
+bool resume_from(const std::filesystem::path& file, Session& session) {
+  if (!std::filesystem::exists(file)) return false;
+  try {
+    Json j = Json::parse(read_bytes(file));
+    const auto hash = output::value<std::string>(j, "hash");
+    j.erase("hash");
+    if (hash != content_hash(compact(j))) throw InputError("key `hash` does not fit what the file holds: it is damaged");
+    session.recall(j);
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(fmt::format("--state {}: {}", file.string(), e.what()));
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("--state {}: {}. Without that file `follow` begins anew", file.string(), e.what()));
+  }
+  return true;
+}
+
+}  // namespace driftwright::follow

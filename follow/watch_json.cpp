@@ -1,0 +1,66 @@
+#include "follow/watch_json.hpp"
+
+#include "base/file_bytes.hpp"
+
+namespace driftwright::follow {
+namespace {
+
+using output::Json;
+
+constexpr const char* kFormat = "driftwright watch 1";
+
+WatchLimits limits_of(const Json& j, const std::string& model_hash) {
+  if (!j.is_object() || output::value<std::string>(j, "format") != kFormat)
+    throw InputError(
+        fmt::format("no limits of a watch (key `format` must be \"{}\"); `follow --calibrate-watch` writes them", kFormat));
+  if (output::value<std::string>(j, "model_hash") != model_hash)
+    throw InputError("they are those of another model file; `follow --calibrate-watch` writes them anew");
+  WatchLimits limits{.sensors = output::value<std::vector<std::string>>(j, "sensors"),
+                     .scales = {},
+                     .machine_days = output::finite(j, "machine_days"),
+                     .n_alarms = output::value<int>(j, "alarms_simulated")};
+  const Json scales = output::list(j, "scales");
+  const auto n = static_cast<Eigen::Index>(limits.sensors.size());
+  if (scales.size() != limits.scales.size())
+    throw InputError(fmt::format("`scales` has {} entries; {} are wanted", scales.size(), limits.scales.size()));
+  for (std::size_t k = 0; k < scales.size(); ++k) {
+    if (output::finite(scales[k], "mean_over_s") != kWatchedOver_s[k])
+      throw InputError(
+          fmt::format("`mean_over_s` is {}; {} is wanted", scales[k].at("mean_over_s").dump(), kWatchedOver_s[k]));
+    const auto values = output::value<std::vector<double>>(scales[k], "covariance_K2");
+    if (static_cast<Eigen::Index>(values.size()) != n * n)
+      throw InputError("`covariance_K2` is of another number of sensors");
+    limits.scales[k] = {Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n), output::positive(scales[k], "threshold")};
+  }
+  return limits;
+}
+
+}  // namespace
+
+Json watch_json(const WatchLimits& limits, const std::string& model_hash) {
+  Json scales = Json::array();
+  for (std::size_t k = 0; k < limits.scales.size(); ++k) {
+    const Eigen::MatrixXd& c = limits.scales[k].covariance;
+    scales.push_back({{"mean_over_s", kWatchedOver_s[k]},
+                      {"threshold", limits.scales[k].threshold},
+                      {"covariance_K2", std::vector<double>(c.data(), c.data() + c.size())}});
+  }
+  return {{"format", kFormat},
+          {"model_hash", model_hash},
+          {"machine_days", limits.machine_days},
+          {"alarms_simulated", limits.n_alarms},
+          {"sensors", limits.sensors},
+          {"scales", std::move(scales)}};
+}
+
+WatchLimits read_watch(const std::string& path, const std::string& model_hash) {
+  try {
+    return limits_of(Json::parse(read_bytes(path)), model_hash);
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(fmt::format("--watch {}: {}", path, e.what()));
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("--watch {}: {}", path, e.what()));
+  }
+}
+
+}  // namespace driftwright::follow

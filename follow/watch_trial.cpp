@@ -1,0 +1,293 @@
+#include "follow/watch_trial.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "base/errors.hpp"
+#include "base/quantity.hpp"
+#include "base/random.hpp"
+#include "compensation/judging/model_scatter.hpp"
+#include "effects/reading_chain.hpp"
+#include "solver/propagator.hpp"
+
+namespace driftwright::follow {
+namespace {
+
+using compensation::ObservedRun;
+using compensation::Observer;
+
+constexpr double kDay_s = 86400.0, kHour_s = 3600.0;
+constexpr double kTestedFor_s = 4.0 * kHour_s;       // of each heating and cooling test
+constexpr double kTestedSpeeds[] = {0.4, 0.7, 1.0};  // of the top
+constexpr double kFallsFor_s = 120.0;                // time constant of a thermometer in air
+constexpr double kDoor_K = -3.0;                     // air that comes in
+constexpr double kBlock_s = 1800.0;
+constexpr double kAlarmsADay = 1.0 / 300.0;  // of one scale
+constexpr double kEuler = 0.57721566490153286;
+
+/// Sections from 6 in the morning on.
+Cyclogram shop_days(double duration_s, double top_rpm, Random& random) {
+  Cyclogram c{.name = "shop", .sections = {}};
+  for (double t_s = 0.0; t_s < duration_s;) {
+    const double hour = std::fmod(t_s / kHour_s, 24.0);  // since 6
+    const bool is_week_end = static_cast<int>(t_s / kDay_s) % 7 >= 5;
+    const bool is_rest = hour >= 16.0 || is_week_end;
+    double length_s = 60.0 * std::round(random.uniform(15.0, 120.0));
+    if (is_rest) length_s = 60.0 * std::round((24.0 - hour) * 60.0);
+    length_s = std::max(60.0, std::min(length_s, duration_s - t_s));
+    const double rpm = is_rest || random.chance(0.25) ? 0.0 : top_rpm * 0.1 * (1 + random.below(10));
+    c.sections.push_back({length_s, {.speed_rpm = rpm}});
+    t_s += length_s;
+  }
+  return c;
+}
+
+/// Minus the reference temperature [K], an hour a knot: a day's wave of 1 to 3 K and what wanders by 0.3 K.
+TimeSeries shop_hall(double duration_s, double at_start_K, Random& random) {
+  TimeSeries hall;
+  const double wave_K = 0.5 * random.uniform(1.0, 3.0);
+  double wander_K = 0.0;
+  for (double t_s = 0.0; t_s <= duration_s + kHour_s; t_s += kHour_s) {
+    const double day = wave_K * std::sin(2.0 * std::numbers::pi * (t_s / kDay_s - 0.1));
+    hall.time_s.push_back(t_s);
+    hall.value.push_back(at_start_K + day - wave_K * std::sin(-0.2 * std::numbers::pi) + wander_K);
+    wander_K = 0.9 * wander_K + 0.3 * std::sqrt(1.0 - 0.81) * random.normal();
+  }
+  return hall;
+}
+
+solver::ReducedSystem broken(const solver::ReducedSystem& machine, const TrialFault& fault) {
+  using Kind = TrialFault::Kind;
+  if (fault.kind == Kind::kNone || fault.kind == Kind::kSensorFallsOff) return machine;
+  solver::ModelFactors f;
+  f.source.assign(machine.sources.size(), 1.0);
+  f.exchange.assign(machine.exchanges.size(), 1.0);
+  if (fault.kind == Kind::kPreload) f.source.at(fault.index) = fault.factor;
+  if (fault.kind == Kind::kFilm || fault.kind == Kind::kFanStops) f.exchange.at(fault.index) = fault.factor;
+  if (fault.kind == Kind::kDoorOpens) {
+    for (std::size_t e = 0; e < f.exchange.size(); ++e)
+      f.exchange[e] = machine.exchanges[e].reaches_hall() ? fault.factor : 1.0;
+  }
+  return solver::with_factors(machine, f);
+}
+
+/// The level that maxima with such values exceed with a probability.
+double gumbel_level(const std::vector<double>& maxima, double probability) {
+  const auto n = static_cast<double>(maxima.size());
+  double sum = 0.0, squares = 0.0;
+  for (double x : maxima) {
+    sum += std::log(x);
+    squares += std::log(x) * std::log(x);
+  }
+  const double mean = sum / n, scale = std::sqrt(6.0 * std::max(0.0, squares / n - mean * mean)) / std::numbers::pi;
+  return std::exp(mean - kEuler * scale - scale * std::log(-std::log1p(-probability)));
+}
+
+}  // namespace
+
+const char* words(TrialFault::Kind kind) {
+  switch (kind) {
+    case TrialFault::Kind::kNone:
+      return "nothing";
+    case TrialFault::Kind::kFilm:
+      return "film";
+    case TrialFault::Kind::kFanStops:
+      return "fan stops";
+    case TrialFault::Kind::kPreload:
+      return "preload";
+    case TrialFault::Kind::kSensorFallsOff:
+      return "thermometer falls off";
+    case TrialFault::Kind::kDoorOpens:
+      return "open door";
+  }
+  throw std::logic_error("a fault of no kind");
+}
+
+TrialMachine::TrialMachine(const Observer& model, std::vector<std::string> sensors, const TrialSettings& settings,
+                           std::uint64_t seed)
+    : model_(model.state()),
+      sensors_(std::move(sensors)),
+      settings_(settings),
+      machine_(compensation::scattered(model_.system, settings.scatter, static_cast<int>(seed), true)),
+      observer_(model_.system, model_.start, model_.start_hall_K, sensors_, model_.drift, model_.settings) {
+  const std::vector<std::string>& outputs = machine_.outputs.name;
+  for (const std::string& name : sensors_)
+    output_.push_back(std::find(outputs.begin(), outputs.end(), name) - outputs.begin());
+  std::vector<ObservedRun> tests;
+  for (const double share : kTestedSpeeds) {
+    const Cyclogram test{.name = "test",
+                         .sections = {{kTestedFor_s, {.speed_rpm = share * settings.top_rpm}}, {kTestedFor_s, {}}}};
+    tests.push_back(read(test, {{0.0}, {model_.start_hall_K}}, {}, 100 * seed + tests.size(), true));
+  }
+  observer_.learn(tests);
+}
+
+Eigen::MatrixXd TrialMachine::readings_K(const Cyclogram& cyclogram, const TimeSeries& hall,
+                                         const std::vector<double>& time_s, const TrialFault& fault) const {
+  const Eigen::VectorXd start = model_.start + (hall.at(0.0) - model_.start_hall_K) * machine_.ones;
+  const bool has_fault = fault.kind != TrialFault::Kind::kNone;
+  std::vector<double> before, behind;
+  for (double t_s : time_s) (has_fault && t_s >= fault.onset_s ? behind : before).push_back(t_s);
+  if (behind.empty()) return solver::Propagator(machine_).run(cyclogram, hall, before, start).outputs;
+  Eigen::MatrixXd states,
+      y(static_cast<Eigen::Index>(machine_.outputs.name.size()), static_cast<Eigen::Index>(time_s.size()));
+  std::vector<double> until = before;
+  until.push_back(fault.onset_s);
+  if (before.back() >= fault.onset_s) until.pop_back();
+  const auto n_before = static_cast<Eigen::Index>(before.size()), n_behind = static_cast<Eigen::Index>(behind.size());
+  y.leftCols(n_before) =
+      solver::Propagator(machine_).run(cyclogram, hall, until, start, false, &states).outputs.leftCols(n_before);
+  const solver::ReducedSystem now = broken(machine_, fault);
+  TimeSeries air = hall;
+  if (fault.kind == TrialFault::Kind::kDoorOpens) {
+    for (double& v : air.value) v += kDoor_K;
+  }
+  const Eigen::VectorXd at_onset = states.rightCols<1>();
+  y.rightCols(n_behind) =
+      solver::Propagator(now).run(cyclogram, air, behind, at_onset, false, nullptr, fault.onset_s).outputs;
+  if (fault.kind == TrialFault::Kind::kSensorFallsOff) {
+    const Eigen::Index k = output_.at(fault.index);
+    for (Eigen::Index i = n_before; i < y.cols(); ++i) {
+      const double t_s = time_s[static_cast<std::size_t>(i)], h = hall.at(t_s);
+      y(k, i) = h + (y(k, n_before - 1) - h) * std::exp(-(t_s - fault.onset_s) / kFallsFor_s);
+    }
+  }
+  return y;
+}
+
+ObservedRun TrialMachine::read(const Cyclogram& cyclogram, const TimeSeries& hall, const TrialFault& fault,
+                               std::uint64_t seed, bool with_drift) const {
+  ObservedRun run{.cyclogram = cyclogram, .hall = {}, .readings = {.source = "trial", .time_s = {}, .channels = {}}};
+  std::vector<double>& t = run.readings.time_s;
+  for (double t_s = 0.0; t_s <= cyclogram.duration_s(); t_s += settings_.period_s) t.push_back(t_s);
+  const Eigen::MatrixXd y = readings_K(cyclogram, hall, t, fault);
+  Random random(seed, 7);
+  for (double t_s : t) {
+    run.hall.time_s.push_back(t_s);
+    run.hall.value.push_back(hall.at(t_s) + model_.settings.reading_K * random.normal());
+  }
+  for (std::size_t k = 0; k < sensors_.size(); ++k) {
+    run.readings.channels.push_back({sensors_[k], "degC", {}});
+    for (Eigen::Index i = 0; i < y.cols(); ++i)
+      run.readings.channels.back().values.push_back(y(output_[k], i) + machine_.reference_K - kZeroCelsius_K +
+                                                    model_.settings.reading_K * random.normal());
+  }
+  if (with_drift) {
+    const auto& names = machine_.outputs.name;
+    const Eigen::Index d = std::find(names.begin(), names.end(), model_.drift) - names.begin();
+    run.readings.channels.push_back({model_.drift, "um", {}});
+    for (Eigen::Index i = 0; i < y.cols(); ++i)
+      run.readings.channels.back().values.push_back(1e6 * (y(d, i) - y(d, 0)) + model_.settings.drift_um * random.normal());
+  }
+  return run;
+}
+
+ObservedRun TrialMachine::work(double duration_s, const TrialFault& fault, std::uint64_t seed) const {
+  Random random(seed, 8);
+  const Cyclogram days = shop_days(duration_s, settings_.top_rpm, random);
+  return read(days, shop_hall(duration_s, model_.start_hall_K, random), fault, seed, false);
+}
+
+double TrialMachine::nats(double duration_s, const TrialFault& fault, std::uint64_t seed) const {
+  Random random(seed, 8);
+  const Cyclogram days = shop_days(duration_s, settings_.top_rpm, random);
+  const TimeSeries hall = shop_hall(duration_s, model_.start_hall_K, random);
+  std::vector<double> t;
+  for (double t_s = 0.0; t_s <= days.duration_s(); t_s += settings_.period_s) t.push_back(t_s);
+  const Eigen::MatrixXd made = readings_K(days, hall, t, fault) - readings_K(days, hall, t, {});
+  const double rows = kBlock_s / settings_.period_s;
+  const double variance = std::pow(model_.settings.model_K, 2) + std::pow(model_.settings.reading_K, 2) / rows;
+  double sum = 0.0;
+  for (const Eigen::Index k : output_) sum += made.row(k).squaredNorm() / rows;
+  return 0.5 * sum / variance;
+}
+
+double TrialMachine::time_constant_s(const TrialFault& fault) const {
+  using Kind = TrialFault::Kind;
+  const effects::Inputs at{.drive = {.speed_rpm = 0.5 * settings_.top_rpm}, .hall_K = model_.start_hall_K};
+  Eigen::MatrixXd k = machine_.conduction;
+  for (const auto& e : machine_.exchanges) k += e.coefficient(at) * e.matrix;
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(machine_.size());
+  if (fault.kind == Kind::kPreload) b = machine_.sources.at(fault.index).load;
+  if (fault.kind == Kind::kFilm || fault.kind == Kind::kFanStops) b = machine_.exchanges.at(fault.index).flow;
+  if (fault.kind == Kind::kSensorFallsOff) b = machine_.outputs.state.col(output_.at(fault.index));
+  if (fault.kind == Kind::kDoorOpens) {
+    for (const auto& e : machine_.exchanges) {
+      if (e.reaches_hall()) b += e.coefficient(at) * e.to_hall;
+    }
+  }
+  const Eigen::VectorXd x = k.ldlt().solve(b);
+  return x.squaredNorm() / b.dot(x);
+}
+
+std::vector<std::string> watchable_sensors(const Observer& observer, const std::vector<Channel>& channels) {
+  const Observer::State s = observer.state();
+  std::vector<std::string> names;
+  for (std::size_t o = 0; o < s.system.outputs.name.size(); ++o) {
+    const auto j = static_cast<Eigen::Index>(o);
+    if (s.system.outputs.unit[o] != "K" || !(s.system.outputs.state.col(j).norm() > 0.0)) continue;
+    const std::string& name = s.system.outputs.name[o];
+    const bool is_there = channels.empty() || std::any_of(channels.begin(), channels.end(), [&](const Channel& c) {
+                            return c.name == name && c.unit == "degC";
+                          });
+    if (is_there && !effects::is_mean_output(name)) names.push_back(name);
+  }
+  return names;
+}
+
+WatchLimits simulated_limits(const Observer& model, const std::vector<std::string>& sensors, const TrialSettings& settings,
+                             int n_machines, double days_each, const Listener& listener) {
+  const auto n = static_cast<Eigen::Index>(sensors.size());
+  WatchLimits limits{.sensors = sensors, .scales = {}, .machine_days = n_machines * days_each};
+  std::vector<std::array<Eigen::MatrixXd, kWatchedOver_s.size()>> courses(static_cast<std::size_t>(n_machines));
+  listener.begin(fmt::format("simulating {} machines for {:g} days", n_machines, days_each));
+  int n_done = 0;
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int m = 0; m < n_machines; ++m) {
+    const TrialMachine trial(model, sensors, settings, 1000 + static_cast<std::uint64_t>(m));
+    const ObservedRun run = trial.work(days_each * kDay_s, {}, 5000 + static_cast<std::uint64_t>(m));
+    const std::unique_ptr<compensation::ObserverFollower> follower = trial.observer().watch();
+    ResidualMeans means(sensors.size());
+    auto& course = courses[static_cast<std::size_t>(m)];
+    const std::vector<double>& t = run.readings.time_s;
+    for (Eigen::MatrixXd& c : course) c.resize(n, static_cast<Eigen::Index>(t.size()));
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      (void)follower->next(run);
+      means.take(follower->innovation_K(), i > 0 ? t[i] - t[i - 1] : 0.0);
+      for (std::size_t j = 0; j < course.size(); ++j) course[j].col(static_cast<Eigen::Index>(i)) = means.mean(j);
+    }
+#pragma omp critical(told_of_trials)
+    listener.share(static_cast<double>(++n_done) / n_machines);
+  }
+  for (std::size_t j = 0; j < kWatchedOver_s.size(); ++j) {
+    WatchLimits::Scale& scale = limits.scales[j];
+    scale.covariance = Eigen::MatrixXd::Zero(n, n);
+    double rows = 0.0;
+    for (const auto& course : courses) {
+      scale.covariance += course[j] * course[j].transpose();
+      rows += static_cast<double>(course[j].cols());
+    }
+    scale.covariance /= rows;
+    const Eigen::MatrixXd inverse = inverse_of(scale.covariance);
+    std::vector<double> maxima;
+    const auto a_day = static_cast<Eigen::Index>(kDay_s / settings.period_s);
+    for (const auto& course : courses) {
+      for (Eigen::Index from = 0; from + a_day <= course[j].cols(); from += a_day) {
+        double most = 1e-12;
+        for (Eigen::Index i = from; i < from + a_day; ++i) most = std::max(most, size_of(inverse, course[j].col(i)));
+        maxima.push_back(most);
+      }
+    }
+    scale.threshold = gumbel_level(maxima, kAlarmsADay);
+    limits.n_alarms +=
+        static_cast<int>(std::count_if(maxima.begin(), maxima.end(), [&](double x) { return x > scale.threshold; }));
+  }
+  return limits;
+}
+
+}  // namespace driftwright::follow

@@ -1,0 +1,172 @@
+// `driftwright follow` as a user runs it: the drift that `predict` tells, row by row; restarts; replays; what it refuses.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/record.hpp"
+#include "tests/command_line.hpp"
+
+namespace driftwright {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+/// One body of 60 kJ/K on 20 W/K to the hall: 15 K and 60 um at 2000 rpm with a time constant of 50 min. The hall warms.
+constexpr const char* kHead = R"(name: head
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: head, capacity: 60 kJ/K}
+  - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
+  - {type: link, node: head, to: hall, conductance: 20 W/K}
+start: hall
+hall: [[0 h, 21 degC], [2 h, 23 degC], [9 h, 22 degC]]
+sensors: [{name: t_head, node: head}]
+displacements:
+  - {name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}
+  - {name: nose_y, sensitivities: [{node: head, sensitivity: -1 um/K}]}
+cyclograms:
+  day: [[60 min, 2000 rpm], [20 min, 500 rpm], [30 min, 1000 rpm], [45 min, 2000 rpm], [25 min, 0 rpm]]
+solver: {model: reduced}
+)";
+
+struct Followed {
+  int exit_code = -1;
+  std::vector<Json> lines;
+  std::string text, words;
+};
+
+/// A line of a shell that says where rows come from.
+Followed follow(const std::string& arguments, const std::string& rows_from) {
+  const auto folder = temporary_folder();
+  const CommandOutcome outcome = run_program("--version >/dev/null; cd " + folder.string() + " && (" + rows_from + " " +
+                                             DRIFTWRIGHT_PROGRAM + " follow " + arguments + " 2>words.txt >lines.txt)");
+  Followed f{.exit_code = outcome.exit_code,
+             .lines = {},
+             .text = read_text(folder / "lines.txt"),
+             .words = read_text(folder / "words.txt")};
+  std::istringstream lines(f.text);
+  for (std::string line; std::getline(lines, line);) f.lines.push_back(Json::parse(line));
+  return f;
+}
+
+/// The record that `predict` writes of the day.
+Record predicted_day() {
+  write_file("head.yaml", kHead);
+  const CommandOutcome outcome =
+      run_program("predict " + (temporary_folder() / "head.yaml").string() + " --cyclogram day -o " +
+                  (temporary_folder() / "predicted").string() + " --force --quiet");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(temporary_folder() / "predicted")) {
+    if (entry.path().filename() == "record.csv") {
+      std::filesystem::copy_file(entry.path(), temporary_folder() / "day.csv",
+                                 std::filesystem::copy_options::overwrite_existing);
+      return read_record_csv((temporary_folder() / "day.csv").string());
+    }
+  }
+  ADD_FAILURE() << "predict has written no record";
+  return {};
+}
+
+TEST(FollowVerb, TellsTheDriftThatPredictTells) {
+  const Record day = predicted_day();
+  const Followed f = follow("head.yaml --slew '100 um/s'", "cat day.csv |");
+  ASSERT_EQ(f.exit_code, 0) << f.words;
+  ASSERT_EQ(f.lines.size(), day.n_samples());
+  for (const char* axis : {"nose_z", "nose_y"}) {
+    const std::vector<double>& drift = day.at(axis).values;
+    double most_um = 0.0, off_um = 0.0;
+    for (std::size_t i = 0; i < drift.size(); ++i) {
+      most_um = std::max(most_um, std::abs(drift[i]));
+      off_um = std::max(off_um, std::abs(f.lines[i]["axes"][axis]["predicted_um"].get<double>() - drift[i]));
+      if (i == 0) continue;  // the axis is at 0, and moves at the slew
+      off_um = std::max(off_um, std::abs(f.lines[i]["axes"][axis]["correction_um"].get<double>() - drift[i]));
+    }
+    EXPECT_GT(most_um, 10.0);
+    EXPECT_LT(off_um, 2e-5) << axis;  // seven digits of the record
+  }
+  EXPECT_EQ(f.lines.back()["state"], "on");
+}
+
+TEST(FollowVerb, AReplayGivesTheSameBytesAtAnyPace) {
+  (void)predicted_day();
+  const std::string by_pipe = follow("head.yaml", "cat day.csv |").text;
+  EXPECT_EQ(follow("head.yaml --replay day.csv", "").text, by_pipe);
+  EXPECT_EQ(follow("head.yaml --replay day.csv --pace 20000", "").text, by_pipe);
+}
+
+TEST(FollowVerb, GoesOnFromItsStateAndWritesARecord) {
+  const Record day = predicted_day();
+  const auto folder = temporary_folder();
+  const std::string whole = follow("head.yaml --replay day.csv", "").text;
+  for (const char* name : {"axis.state", "seen.csv"}) std::filesystem::remove(folder / name);
+  std::string header, head, tail;
+  std::istringstream rows(read_text(folder / "day.csv"));
+  int n = 0;
+  for (std::string line; std::getline(rows, line);) {
+    if (line.starts_with('#')) continue;
+    if (header.empty()) {
+      header = line + "\n";
+    } else {
+      (n++ < 70 ? head : tail) += line + "\n";
+    }
+  }
+  write_file("head.csv", header + head);
+  write_file("tail.csv", header + tail);
+  const std::string arguments = "head.yaml --state axis.state --record seen.csv";
+  const Followed first = follow(arguments, "cat head.csv |"), second = follow(arguments, "cat tail.csv |");
+  EXPECT_EQ(first.exit_code, 0) << first.words;
+  EXPECT_EQ(first.text + second.text, whole);
+  EXPECT_THAT(second.words, HasSubstr("goes on from axis.state"));
+  const Record seen = read_record_csv((folder / "seen.csv").string());
+  EXPECT_EQ(seen.time_s, day.time_s);
+  EXPECT_EQ(seen.at("t_head").values, day.at("t_head").values);
+  std::ofstream(folder / "head.yaml", std::ios::app) << "\n";
+  const Followed other = follow(arguments, "cat tail.csv |");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.words, HasSubstr("is not the file that the state was kept with"));
+}
+
+TEST(FollowVerb, BadRowsAreCountedAndAnsweredAll) {
+  (void)predicted_day();
+  const Followed f =
+      follow("head.yaml --slew '1 um/s'",
+             "(head -12 day.csv; echo 'a,b'; echo; sed -n 12p day.csv; sed -n 13,20p day.csv; printf '\\377\\000,1\\n') |");
+  EXPECT_EQ(f.exit_code, 0) << f.words;
+  EXPECT_THAT(f.words, AllOf(HasSubstr("unreadable_row 2"), HasSubstr("doubled 1")));
+  double last_um = 0.0;
+  for (const Json& line : f.lines) {
+    const double um = line["axes"]["nose_z"]["correction_um"].get<double>();
+    EXPECT_LE(std::abs(um - last_um), 60.0 + 1e-9);
+    last_um = um;
+  }
+}
+
+TEST(FollowVerb, SaysWhatItCannotFollow) {
+  (void)predicted_day();
+  const auto refused = [&](const std::string& arguments, const std::string& rows_from, const std::string& words) {
+    const Followed f = follow(arguments, rows_from);
+    EXPECT_EQ(f.exit_code, 2) << arguments;
+    EXPECT_THAT(f.words, HasSubstr(words)) << arguments;
+    EXPECT_EQ(f.text, "");
+  };
+  refused("head.yaml", "echo 'time_s,speed_rpm' |", "'ambient_degC', which the stream does not have");
+  refused("head.yaml", "echo 'nonsense' |", "no unit");
+  refused("head.yaml --pace 3", "true |", "--pace");
+  refused("head.yaml --slew '0 um/s'", "true |", "more than 0");
+  refused("head.yaml head.yaml", "true |", "corrected by another model");
+  refused("nowhere.json", "true |", "no such file");
+  std::string grows = kHead;
+  grows.insert(grows.find("start: hall"),
+               "  - {type: spindle_growth, displacement: nose_z, growth: 5 um, at_speed: 2000 rpm, lag: 5 min}\n");
+  write_file("grows.yaml", grows);
+  refused("grows.yaml", "true |", "spindle_growth nose_z");
+}
+
+}  // namespace
+}  // namespace driftwright
