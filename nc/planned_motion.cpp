@@ -117,16 +117,23 @@ class Planner {
       return;
     }
     s.end_m_s = at_once;
-    if (p.blend_m == 0.0 || kink > kPi - 1e-3) return;
+    if (p.blend_m == 0.0 || kink > kPi - 1e-3 || p.radius_m > 0.0 || next.radius_m > 0.0) return;  // lines alone
+    // The corner's arc turns through its plane: what every axis of it can do counts.
+    double turning = a, fastest = wanted;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(p.ends[axis]) < 1e-9 && std::abs(next.begins[axis]) < 1e-9) continue;
+      turning = std::min(turning, limits_.acceleration_m_s2[axis]);
+      fastest = std::min(fastest, limits_.velocity_m_s[axis]);
+    }
     const double theta = 0.5 * (kPi - kink);
     const double tolerance_m = p.blend_m < 0.0 ? std::numeric_limits<double>::infinity() : p.blend_m;
     double d_m = std::min(
         {0.5 * p.length_m, 0.5 * next.length_m, s.length_m, tolerance_m * std::cos(theta) / (1.0 - std::sin(theta))});
     double r_m = d_m * std::tan(theta);
-    double v = std::sqrt(kNormalShare * a * r_m);
-    if (v > wanted) {
-      v = wanted;
-      r_m = v * v / (kNormalShare * a);
+    double v = std::sqrt(kNormalShare * turning * r_m);
+    if (v > fastest) {
+      v = fastest;
+      r_m = v * v / (kNormalShare * turning);
       d_m = r_m / std::tan(theta);
     }
     if (v <= at_once) return;

@@ -30,9 +30,11 @@ struct PathPiece {
 ///
 ///     d = min(L1 / 2, L2 / 2, P cos θ / (1 - sin θ)),   R = d tan θ,   v = sqrt(0.866 a R)
 ///
-/// shortened to what the speed wants; other corners are passed at the speed at which the change of velocity within one cycle is a quarter of a.
+/// with a of the plane's weakest axis, shortened to what the speed wants; other corners, and all beside an arc, are passed at the speed at which the change of velocity within one cycle is a quarter of a.
 /// Speeds are lowered backward from the end of kLookAhead pieces, at which the planner must be able to stop, then forward; within a piece velocity rises and
 /// falls at a. With a jerk limit each change of acceleration takes a / jerk more.
+/// Against a headless LinuxCNC 2.9 (servo cycles in motion): 1500 lines of 0.1 to 0.2 mm along a wave and 1500 of 0.4 mm round a circle -0.7 and -0.3 %,
+/// 40 corners of 90 degrees -0.2 %, arcs with corners beside them -2.8 %, where the planner blends in ways that are not followed here.
 /// Source: LinuxCNC, "Trajectory Control" (user manual) and its planner (src/emc/tp: tp.c, blendmath.c).
 [[nodiscard]] std::vector<double> planned_durations_s(const std::vector<PathPiece>& pieces, const NcLimits& limits);
 
