@@ -107,6 +107,12 @@ struct CalibrateOptions : CommonOptions {
 };
 void calibrate(const CalibrateOptions& options);
 
+struct CompareOptions : CommonOptions {
+  std::string first, second;  ///< record CSVs, or folders of results that hold a record.csv
+};
+/// Two records beside each other.
+void compare(const CompareOptions& options);
+
 struct ExportOptions {
   std::string scenario;
   std::string out;  ///< file; empty: results/<name of the scenario>.fmu

@@ -10,14 +10,6 @@
 
 namespace driftwright {
 
-namespace {
-
-std::string not_known(const std::string& word, const std::vector<std::string>& allowed) {
-  return fmt::format("'{}' is not known here; one of {} is wanted", word, fmt::join(allowed, ", "));
-}
-
-}  // namespace
-
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
@@ -40,6 +32,21 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   }
   return best;
 }
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kShort = 3;  // of words as short as an axis every other is near
+  const std::string near = word.size() < kShort ? "" : nearest_word(word, candidates);
+  return near.empty() ? "" : fmt::format(" Did you mean '{}'?", near);
+}
+
+namespace {
+
+std::string not_known(const std::string& word, const std::vector<std::string>& allowed) {
+  return fmt::format("'{}' is not known here; one of {} is wanted.{}", word, fmt::join(allowed, ", "),
+                     did_you_mean(word, allowed));
+}
+
+}  // namespace
 
 ConfigMap ConfigMap::read_file(const std::string& path) {
   return of_tree(read_config_tree(path));
@@ -64,10 +71,12 @@ ConfigMap ConfigMap::described_by(const schema::Map& description) const {
   ConfigMap in = *this;
   in.description_ = &description;
   in.asked_.clear();
+  std::vector<std::string> missing;
   for (const schema::Key& key : description.keys) {
-    if (key.is_compulsory) (void)in.value(key.name);
+    if (key.is_compulsory && !holds(key.name)) missing.push_back(key.name);
   }
-  in.asked_.clear();
+  if (missing.size() == 1) (void)in.value(missing.front());
+  if (missing.size() > 1) throw InputError(where(), fmt::format("the keys '{}' are missing", fmt::join(missing, "', '")));
   for (const schema::Group& group : description.groups) in.check_group(group);
   return in;
 }

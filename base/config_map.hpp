@@ -112,5 +112,7 @@ class ConfigMap {
 
 /// The candidate nearest to `word` by edit distance, or "" when none is near.
 [[nodiscard]] std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
+/// " Did you mean '...'?" with that word, or nothing.
+[[nodiscard]] std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace driftwright

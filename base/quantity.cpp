@@ -36,9 +36,19 @@ ut_system* unit_system() {  // the one table of units, read from UDUNITS' own fi
   return system.get();
 }
 
+/// How units are often written, and what was meant: W/m2K would be W K/m2 where it is understood at all, C is the coulomb.
+std::string meant_by(const std::string& unit) {
+  static const std::map<std::string, std::string> meant = {
+      {"C", "degC"},          {"°C", "degC"},      {"deg", "degC"},       {"W/m2K", "W/(m^2 K)"},  {"W/m^2K", "W/(m^2 K)"},
+      {"W/m²K", "W/(m^2 K)"}, {"W/mK", "W/(m K)"}, {"J/kgK", "J/(kg K)"}, {"kJ/kgK", "kJ/(kg K)"}, {"um/mK", "um/(m K)"},
+      {"µm/mK", "um/(m K)"},  {"1/min", "rpm"},    {"U/min", "rpm"},      {"l/min", "L/min"},      {"Nm", "N m"}};
+  const auto at = meant.find(unit);
+  return at == meant.end() ? "" : fmt::format("; write '{}'", at->second);
+}
+
 UnitPtr parse_unit(const std::string& text) {
   UnitPtr unit(ut_parse(unit_system(), text.c_str(), UT_UTF8));
-  if (!unit) throw RangeError(fmt::format("unknown unit '{}'", text));
+  if (!unit) throw RangeError(fmt::format("unknown unit '{}'{}", text, meant_by(text)));
   return unit;
 }
 
@@ -52,7 +62,7 @@ bool carries_angle(const UnitPtr& unit) {
 ConverterPtr make_converter(const std::string& from, const std::string& to) {
   const UnitPtr a = parse_unit(from), b = parse_unit(to);
   if (ut_are_convertible(a.get(), b.get()) == 0 || carries_angle(a) != carries_angle(b)) {
-    throw RangeError(fmt::format("wrong unit '{}': a quantity in {} is wanted", from, to));
+    throw RangeError(fmt::format("wrong unit '{}': a quantity in {} is wanted{}", from, to, meant_by(from)));
   }
   return ConverterPtr(ut_get_converter(a.get(), b.get()));
 }

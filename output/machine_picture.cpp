@@ -57,6 +57,7 @@ struct Skin {
   std::vector<std::array<int, 3>> triangle;
   std::vector<int> part;
   std::vector<int> surface;  ///< of each triangle, -1: has no name
+  std::vector<int> region;   ///< of each triangle
 };
 
 Skin skin_of(const mesh::Mesh& mesh) {
@@ -77,9 +78,20 @@ Skin skin_of(const mesh::Mesh& mesh) {
       skin.triangle.push_back(t);
       skin.part.push_back(part);
       skin.surface.push_back(surface);
+      skin.region.push_back(region);
     }
   });
   return skin;
+}
+
+/// A side of a joint lies inside the machine; the reader of a mesh names it a/b@a.
+bool is_joint_side(const mesh::Mesh& mesh, int surface) {
+  return surface >= 0 && mesh.surfaces[static_cast<std::size_t>(surface)].find('@') != std::string::npos;
+}
+
+/// The dark end of the map would hide how a cold body is shaped.
+std::array<float, 3> colour_of(double share) {
+  return inferno(0.15 + 0.85 * share);
 }
 
 /// Labels in a column beside a view, each with a line to its point; none covers another.
@@ -95,10 +107,21 @@ std::string labels(const std::vector<PictureMark>& marks, const DrawnView& drawn
     sides[p.x() < 0.5 * kViewWidth ? 0 : 1].push_back({&mark, left + p.x(), p.y(), 0.0, drawn.hides(mark.at_m, slack)});
   }
   constexpr double kLine = 13.0;
+  constexpr std::size_t kMostNames = 30;  // of a side
   std::string out;
   for (int side = 0; side < 2; ++side) {
     auto& list = sides[side];
     std::sort(list.begin(), list.end(), [](const Label& a, const Label& b) { return a.y < b.y; });
+    // More than fit are dots without names.
+    for (std::size_t i = kMostNames; i < list.size(); ++i)
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\" fill=\"#ffffff\" stroke=\"#1d2329\"/>\n", list[i].x,
+                         list[i].y);
+    if (list.size() > kMostNames) {
+      out += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"{}\">and {} more</text>\n",
+                         side == 0 ? left - 6.0 : left + kViewWidth + 6.0, kViewHeight + 10, side == 0 ? "end" : "start",
+                         list.size() - kMostNames);
+      list.resize(kMostNames);
+    }
     double next = kLine;
     for (Label& l : list) next = (l.shown_y = std::max(l.y, next)) + kLine;
     double last = kViewHeight - 4.0;
@@ -123,11 +146,12 @@ std::string colour_bar(const PictureField& field, double low, double high, doubl
   std::string out;
   for (int i = 0; i < kSteps; ++i) {
     out += fmt::format("<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"12\" fill=\"{}\"/>\n",
-                       x + width * i / kSteps, y, width / kSteps + 0.3, hex(inferno((i + 0.5) / kSteps)));
+                       x + width * i / kSteps, y, width / kSteps + 0.3, hex(colour_of((i + 0.5) / kSteps)));
   }
+  const int decimals = std::clamp(static_cast<int>(std::ceil(1.0 - std::log10((high - low) / 4.0))), 0, 3);
   for (int i = 0; i <= 4; ++i) {
-    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.1f}</text>\n", x + width * i / 4.0,
-                       y + 26.0, low + (high - low) * i / 4.0);
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.{}f}</text>\n", x + width * i / 4.0,
+                       y + 26.0, low + (high - low) * i / 4.0, decimals);
   }
   return out + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", x + 0.5 * width, y - 6.0,
                            escaped(field.label));
@@ -140,7 +164,10 @@ std::string draw_machine(const MachinePicture& picture) {
   if (mesh.cells.size() == 0) throw std::logic_error("draw_machine: a mesh without cells");
   if (picture.field && picture.field->value.size() != mesh.n_nodes())
     throw std::logic_error("draw_machine: a field of another mesh");
-  const Skin skin = skin_of(mesh);
+  Skin skin = skin_of(mesh);
+  if (picture.field) {  // kept machines know regions alone, and a picture must not tell whether the machine was known
+    for (std::size_t i = 0; i < skin.part.size(); ++i) skin.part[i] = skin.region[i];
+  }
   ColouredSurface surface{.point = mesh.coords, .triangle = skin.triangle, .colour = {}, .part = skin.part};
   const double size_m = (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).norm();
   double magnified = 0.0;
@@ -156,13 +183,13 @@ std::string draw_machine(const MachinePicture& picture) {
   std::set<int> shown_surfaces;
   if (picture.field) {
     low = picture.field->value.minCoeff();
-    high = std::max(picture.field->value.maxCoeff(), low + 1e-9);
-    for (double v : picture.field->value) surface.colour.push_back(inferno((v - low) / (high - low)));
+    high = std::max(picture.field->value.maxCoeff(), low + 0.01);  // what differs by less has one colour
+    for (double v : picture.field->value) surface.colour.push_back(colour_of((v - low) / (high - low)));
   } else {
     // Points that surfaces share would mix their colours: each triangle has points of its own.
     Eigen::Matrix3Xd own(3, 3 * static_cast<Eigen::Index>(skin.triangle.size()));
     for (std::size_t i = 0; i < skin.triangle.size(); ++i) {
-      const int name = skin.surface[i];
+      const int name = is_joint_side(mesh, skin.surface[i]) ? -1 : skin.surface[i];
       if (name >= 0) shown_surfaces.insert(name);
       for (int k = 0; k < 3; ++k) {
         const auto to = static_cast<int>(3 * i) + k;

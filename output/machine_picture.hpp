@@ -19,7 +19,7 @@ struct PictureMark {
 
 /// A quantity on the nodes, as colour.
 struct PictureField {
-  std::string label;      ///< with its unit: "temperature / °C"
+  std::string label;      ///< with its unit: "temperature [°C]"
   Eigen::VectorXd value;  ///< n_nodes
 };
 

@@ -98,17 +98,17 @@ TEST_P(QuantityIsNot, ReadAndSaysWhy) {
               ThrowsMessage<RangeError>(HasSubstr(GetParam().message)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, QuantityIsNot,
-                         ::testing::Values(Bad{"80", "m", "no unit"}, Bad{"80 kg", "m", "wrong unit 'kg'"},
-                                           Bad{"80 furlongz", "m", "unknown unit"}, Bad{"mm", "m", "not a number"},
-                                           Bad{"", "m", "not a number"}, Bad{"nan mm", "m", "not a finite number"},
-                                           Bad{".nan", "1", "not a number"}, Bad{"inf", "1", "not a finite number"},
-                                           Bad{"1e999 mm", "m", "not a finite number"}, Bad{"1,5 mm", "m", "unknown unit"},
-                                           Bad{"5 degC", "K", "temperature difference"},
-                                           Bad{"5 degF", "K", "temperature difference"},
-                                           Bad{"10 W/m^2", "W/(m^2 K)", "wrong unit"},
-                                           // A frequency is no rate of turning: 2 pi would slip in.
-                                           Bad{"33 Hz", "rpm", "wrong unit"}, Bad{"2000 1/min", "rpm", "wrong unit"}));
+INSTANTIATE_TEST_SUITE_P(
+    Each, QuantityIsNot,
+    ::testing::Values(Bad{"80", "m", "no unit"}, Bad{"80 kg", "m", "wrong unit 'kg'"},
+                      Bad{"80 furlongz", "m", "unknown unit"}, Bad{"8 W/m2K", "W/(m^2 K)", "write 'W/(m^2 K)'"},
+                      Bad{"20 C", "K", "write 'degC'"}, Bad{"mm", "m", "not a number"}, Bad{"", "m", "not a number"},
+                      Bad{"nan mm", "m", "not a finite number"}, Bad{".nan", "1", "not a number"},
+                      Bad{"inf", "1", "not a finite number"}, Bad{"1e999 mm", "m", "not a finite number"},
+                      Bad{"1,5 mm", "m", "unknown unit"}, Bad{"5 degC", "K", "temperature difference"},
+                      Bad{"5 degF", "K", "temperature difference"}, Bad{"10 W/m^2", "W/(m^2 K)", "wrong unit"},
+                      // A frequency is no rate of turning: 2 pi would slip in.
+                      Bad{"33 Hz", "rpm", "wrong unit"}, Bad{"2000 1/min", "rpm", "wrong unit"}));
 
 TEST(Quantity, TemperaturesNeedAUnitOfTemperature) {
   EXPECT_THROW((void)parse_temperature_K("20"), RangeError);

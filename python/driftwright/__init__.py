@@ -1,12 +1,12 @@
 """Driftwright: a digital twin of a machine tool's thermal behaviour.
 
 Records are pandas tables: the index is the time in seconds (`time_s`), a column is a channel with its unit in its name, as in a record CSV
-(`speed_rpm`, `bearing_front_degC`, `tip_z_um`).
+(`speed_rpm`, `t01_degC`, `drift_y_um`).
 
     import driftwright as dw
     machine = dw.Machine("scenarios/fp3_spindle.yaml")
     drift = machine.predict("chaotic")          # ahead of the run, by the reduced model
-    drift.plot(y="tip_z_um")
+    drift.plot(y="drift_y_um")
 """
 
 import pathlib

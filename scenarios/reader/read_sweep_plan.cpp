@@ -266,9 +266,8 @@ std::vector<std::string> read_cyclograms(const ConfigMap& in, const Scenario& sc
   const std::vector<std::string> names = in.texts("cyclograms");
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = nearest_word(name, known);
-    in.fail("cyclograms", fmt::format("no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "),
-                                      near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+    in.fail("cyclograms",
+            fmt::format("no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
   }
   return names;
 }

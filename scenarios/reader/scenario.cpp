@@ -171,7 +171,8 @@ Study read_study(const ConfigMap& in, const Scenario& scenario) {
     for (const Cyclogram& c : scenario.cyclograms) known.push_back(c.name);
     const auto must_know = [&](const char* key, const std::string& name) {
       if (std::find(known.begin(), known.end(), name) == known.end()) {
-        in.fail(key, fmt::format("no cyclogram '{}'; there are {}", name, fmt::join(known, ", ")));
+        in.fail(key,
+                fmt::format("no cyclogram '{}'; there are {}.{}", name, fmt::join(known, ", "), did_you_mean(name, known)));
       }
     };
     for (const std::string& name : s.train) {
@@ -393,7 +394,8 @@ const Cyclogram& Scenario::cyclogram(const std::string& cyclogram_name) const {
     if (c.name == cyclogram_name) return c;
     known.push_back(c.name);
   }
-  throw InputError(fmt::format("{}: no cyclogram '{}'; there are {}", path, cyclogram_name, fmt::join(known, ", ")));
+  throw InputError(fmt::format("{}: no cyclogram '{}'; there are {}.{}", path, cyclogram_name, fmt::join(known, ", "),
+                               did_you_mean(cyclogram_name, known)));
 }
 
 void check_cyclogram(const Scenario& scenario, const Cyclogram& cyclogram) {
