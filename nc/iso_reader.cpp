@@ -77,6 +77,9 @@ class IsoReader {
     const std::vector<NcCode> g = words.take_codes('G', run_.settings().ignored);
     const std::vector<NcCode> m = words.take_codes('M', run_.settings().ignored);
     for (const std::string& word : words.unknown()) run_.pass_over(word);
+    const bool waits = !m.empty() || !words.unknown().empty() || words.has_any("ST") || of_group(g, "coordinate system") ||
+                       of_group(g, "origin") || contains(g, 100);
+    if (waits) motion_.stop();
     if (const auto language = of_group(g, "language");
         language && (*language != 2910 || run_.settings().control != NcControl::kSiemens))
       run_.fail(fmt::format("{}: Siemens programs are in ISO code (G291) as a whole or not at all here",
@@ -162,8 +165,10 @@ class IsoReader {
     if (const auto system = of_group(g, "coordinate system")) origin_.use(number_of(*system), nc_word_name('G', *system));
     if (contains(g, 100)) set_offset(words);
     if (const auto shift = of_group(g, "origin")) shift_origin(*shift, words);
+    if (contains(g, 610) || contains(g, 611)) motion_.blend_m = 0.0;
     if (contains(g, 640)) {
-      (void)words.take('P');
+      const auto tolerance = words.take('P');
+      motion_.blend_m = tolerance ? *tolerance * run_.unit_m : -1.0;
       (void)words.take('Q');
     }
     if (contains(g, 900)) run_.absolute = true;

@@ -1,5 +1,6 @@
 #include "nc/motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "nc/arc.hpp"
@@ -11,6 +12,15 @@ std::array<double, 3> travel_between(const std::array<double, 3>& a, const std::
   return {std::abs(b[0] - a[0]), std::abs(b[1] - a[1]), std::abs(b[2] - a[2])};
 }
 
+/// A straight piece between two points.
+PathPiece straight(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  PathPiece piece;
+  const double length_m = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+  for (int axis = 0; axis < 3 && length_m > 0.0; ++axis)
+    piece.begins[axis] = piece.ends[axis] = (b[axis] - a[axis]) / length_m;
+  return piece;
+}
+
 double length(const std::array<double, 3>& v) {
   return std::hypot(v[0], v[1], v[2]);
 }
@@ -20,13 +30,32 @@ double length(const std::array<double, 3>& v) {
 void NcMotion::rapid_to(const std::array<double, 3>& target_m) {
   const std::array<double, 3> travel_m = travel_between(position_m, target_m);
   const double length_m = length(travel_m);
+  PathPiece piece = straight(position_m, target_m);
+  piece.rapid = true;
   position_m = target_m;
   if (length_m == 0.0) return;
   if (!rapid_m_s_) throw InputError(where, "a rapid move, but nobody says how fast; state `rapid`, such as 15 m/min");
-  moves_.push_back({length_m / *rapid_m_s_, speed_rpm(), travel_m, false});
+  piece.length_m = length_m;
+  note({length_m / *rapid_m_s_, speed_rpm(), travel_m, false}, piece);
 }
 
-void NcMotion::feed_along(double length_m, const std::array<double, 3>& travel_m) {
+void NcMotion::note(const NcMove& move, PathPiece piece) {
+  piece.blend_m = blend_m;
+  if (piece.length_m > 0.0) {
+    piece.wanted_m_s = piece.length_m / move.duration_s;
+  } else {
+    piece.standing_s = move.duration_s;
+    stop();
+  }
+  moves_.push_back(move);
+  path_.push_back(piece);
+}
+
+void NcMotion::stop() {
+  if (!path_.empty()) path_.back().stops = true;
+}
+
+void NcMotion::feed_along(double length_m, const std::array<double, 3>& travel_m, PathPiece piece) {
   if (!(feed > 0.0)) {
     throw InputError(where, feed_mode == NcFeedMode::InverseTime
                                 ? "a feed move without F; with G93 every block of feed motion has an F above zero"
@@ -40,12 +69,13 @@ void NcMotion::feed_along(double length_m, const std::array<double, 3>& travel_m
       throw InputError(where, "a feed per revolution (G95) of a spindle at rest; M3 or M4 and an S above zero are wanted");
     duration_s = length_m / (feed * speed_rpm() / 60.0);
   }
-  if (length_m > 0.0) moves_.push_back({duration_s, speed_rpm(), travel_m, speed_rpm() > 0.0});
+  piece.length_m = length_m;
+  if (length_m > 0.0) note({duration_s, speed_rpm(), travel_m, speed_rpm() > 0.0}, piece);
 }
 
 void NcMotion::feed_to(const std::array<double, 3>& target_m) {
   const std::array<double, 3> travel_m = travel_between(position_m, target_m);
-  feed_along(length(travel_m), travel_m);
+  feed_along(length(travel_m), travel_m, straight(position_m, target_m));
   position_m = target_m;
 }
 
@@ -57,12 +87,28 @@ void NcMotion::arc_to(const std::array<double, 3>& target_m, const std::array<do
   } catch (const RangeError& e) {
     throw InputError(where, e.what());
   }
-  feed_along(path.length_m, path.travel_m);
+  const auto [u, v] = plane_axes(normal);
+  PathPiece piece;
+  const double radius_m = std::hypot(position_m[u] - centre_m[u], position_m[v] - centre_m[v]);
+  const double rise = (target_m[normal] - position_m[normal]) / path.length_m,
+               level = std::sqrt(std::max(0.0, 1.0 - rise * rise));
+  const auto tangent = [&](const std::array<double, 3>& at_m) {
+    std::array<double, 3> t = {0, 0, 0};
+    const double ru = (at_m[u] - centre_m[u]) / radius_m, rv = (at_m[v] - centre_m[v]) / radius_m;
+    t[u] = level * (clockwise ? rv : -rv);
+    t[v] = level * (clockwise ? -ru : ru);
+    t[normal] = rise;
+    return t;
+  };
+  piece.begins = tangent(position_m);
+  piece.ends = tangent(target_m);
+  piece.radius_m = radius_m / std::max(level * level, 1e-12);
+  feed_along(path.length_m, path.travel_m, piece);
   position_m = target_m;
 }
 
 void NcMotion::wait(double duration_s) {
-  if (duration_s > 0.0) moves_.push_back({duration_s, speed_rpm(), {0, 0, 0}, false});
+  if (duration_s > 0.0) note({duration_s, speed_rpm(), {0, 0, 0}, false}, {});
 }
 
 }  // namespace driftwright

@@ -1,12 +1,13 @@
 #pragma once
 // The machine that an NC program drives: where its axes stand, how its spindle turns, and what each move takes. It keeps
-// every speed as programmed: acceleration, look-ahead and overrides are not modelled, so real programs run somewhat longer.
+// every speed as programmed; times of real motion come of the path that it notes (nc/planned_motion.hpp). Overrides are not modelled.
 
 #include <array>
 #include <optional>
 #include <vector>
 
 #include "base/errors.hpp"
+#include "nc/planned_motion.hpp"
 
 namespace driftwright {
 
@@ -42,12 +43,21 @@ class NcMotion {
               int turns);
   void wait(double duration_s);
 
+  /// How far corners may be cut from here on: < 0 as far as speed asks for (G64), 0 not at all (G61), else the tolerance (G64 P).
+  double blend_m = -1.0;
+  /// The axes stand before what comes next: a spindle, a tool, an offset waits for them.
+  void stop();
+
   [[nodiscard]] const std::vector<NcMove>& moves() const { return moves_; }
+  /// Of each move its path.
+  [[nodiscard]] const std::vector<PathPiece>& path() const { return path_; }
 
  private:
-  void feed_along(double length_m, const std::array<double, 3>& travel_m);
+  void feed_along(double length_m, const std::array<double, 3>& travel_m, PathPiece piece);
+  void note(const NcMove& move, PathPiece piece);
   std::optional<double> rapid_m_s_;
   std::vector<NcMove> moves_;
+  std::vector<PathPiece> path_;
 };
 
 }  // namespace driftwright

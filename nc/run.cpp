@@ -31,6 +31,7 @@ void NcRun::begin(const Where& where, bool deletable) {
   step.no_place = transformed || modal_cycle;
   step.deletable = deletable;
   steps_.push_back(std::move(step));
+  first_move_.push_back(motion.moves().size());
 }
 
 void NcRun::end() {
@@ -125,7 +126,17 @@ NcProgram NcRun::result(const std::string& path, NcDialect dialect) && {
     const bool elsewhere = step.where.file != path;
     step.no_place = step.no_place || elsewhere || (step.n_runs > 1 && dialect != NcDialect::kLinuxCnc);
   }
-  return {motion.moves(), std::move(steps_), std::move(notes_), dialect};
+  NcProgram program{motion.moves(), std::move(steps_), std::move(notes_), dialect};
+  if (!settings_.limits) return program;
+  const std::vector<double> durations_s = planned_durations_s(motion.path(), *settings_.limits);
+  double now_s = 0.0;
+  for (std::size_t i = 0; i < program.steps.size(); ++i) {
+    const std::size_t end = i + 1 < program.steps.size() ? first_move_[i + 1] : durations_s.size();
+    program.steps[i].start_s = now_s;
+    for (std::size_t k = first_move_[i]; k < end; ++k) now_s += program.moves[k].duration_s = durations_s[k];
+    program.steps[i].end_s = now_s;
+  }
+  return program;
 }
 
 }  // namespace driftwright

@@ -81,6 +81,7 @@ class NcRun {
   std::array<bool, 3> knows_ = {false, false, false};
   std::array<bool, 3> known_ = {false, false, false};
   std::vector<NcStep> steps_;
+  std::vector<std::size_t> first_move_;  // of each step
   std::set<std::string> noted_;
   std::vector<std::string> notes_;
 };
