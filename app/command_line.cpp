@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <omp.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -23,19 +24,27 @@ using namespace driftwright;
 
 using app::kDone, app::kWrongInput;
 
-/// Adds a verb with the options that all have; `example` ends its help, `input` is what its file describes.
-CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example,
-                   app::CommonOptions& options, const std::string& input = "scenario") {
-  CLI::App* verb = app.add_subcommand(name, what);
-  verb->add_option(input, options.scenario, input + " YAML")->required();
-  verb->add_option("-o,--out", options.out, "folder of results [results/<name of the " + input + ">]");
+/// What all verbs with a folder of results can be told of it; `example` ends the help.
+void add_results(CLI::App* verb, app::CommonOptions& options, const std::string& folder, const std::string& example) {
+  verb->add_option("-o,--out", options.out, "folder of results [results/" + folder + "]");
   verb->add_flag("--force", options.force, "replace the folder of results even if it holds other files");
   CLI::Option* json =
       verb->add_flag("--json", options.json, "print the results as JSON, as in summary.json, in place of text");
   CLI::Option* quiet = verb->add_flag("--quiet", options.quiet, "print neither results nor progress");
   verb->add_flag("--details", options.details, "print all tables of the report")->excludes(json)->excludes(quiet);
   json->excludes(quiet);
+  verb->add_option_function<int>(
+          "--threads", [](int n) { omp_set_num_threads(n); }, "threads to compute with [OMP_NUM_THREADS, else all cores]")
+      ->check(CLI::Range(1, 1024));
   verb->footer("Example:\n  driftwright " + example);
+}
+
+/// Adds a verb with the options that all have; `input` is what its file describes.
+CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& what, const std::string& example,
+                   app::CommonOptions& options, const std::string& input = "scenario") {
+  CLI::App* verb = app.add_subcommand(name, what);
+  verb->add_option(input, options.scenario, input + " YAML")->required();
+  add_results(verb, options, "<name of the " + input + ">", example);
   return verb;
 }
 
@@ -177,6 +186,14 @@ void add_export(CLI::App& cli, app::ExportOptions& options) {
   verb->callback([&] { app::export_model(options); });
 }
 
+void add_compare(CLI::App& cli, app::CompareOptions& options) {
+  CLI::App* verb = cli.add_subcommand("compare", "two records beside each other: how far each channel is apart");
+  verb->add_option("first", options.first, "record CSV, or a folder of results that holds a record.csv")->required();
+  verb->add_option("second", options.second, "the same; it is shown at the rows of the first")->required();
+  add_results(verb, options, "comparison", "compare results/fp3_spindle results/other -o results/beside");
+  verb->callback([&] { app::compare(options); });
+}
+
 /// CLI11 would only say that a subcommand is required.
 void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
   std::vector<std::string> verbs;
@@ -185,6 +202,17 @@ void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
   const std::string near = nearest_word(word, verbs);
   throw InputError(fmt::format("unknown verb '{}'; there are {}.{}", word, fmt::join(verbs, ", "),
                                near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+}
+
+/// driftwright help VERB, for those who type that.
+void add_help(CLI::App& cli, std::string& of) {
+  CLI::App* verb = cli.add_subcommand("help", "the help of a verb");
+  verb->add_option("verb", of, "its name");
+  verb->footer("Example:\n  driftwright help diagnose");
+  verb->callback([&] {
+    if (!of.empty()) reject_unknown_verb(cli, of);
+    fmt::print("{}", of.empty() ? cli.help() : cli.get_subcommand(of)->help("driftwright"));
+  });
 }
 
 }  // namespace
@@ -253,18 +281,20 @@ int app::command_line(int argc, const char* const* argv) {
   verb =
       add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
                "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/fp3_part", schedule);
-  verb->add_option("--program", schedule.program, "NC program, ISO (docs/schedule.md)")->required();
+  verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/schedule.md)")
+      ->required();
   verb->add_option("--policy", schedule.policy,
                    "paper (steps of the tolerance) or minimal (fewest changes) [the scenario's, else minimal]")
       ->check(CLI::IsMember(scenarios::kSchedulePolicies));
-  verb->add_option("--dialect", schedule.dialect, "linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
-      ->check(CLI::IsMember(scenarios::kScheduleDialects));
+  verb->add_option("--dialect", schedule.dialect,
+                   "of the program: linuxcnc, siemens or heidenhain [the scenario's, else linuxcnc]")
+      ->check(CLI::IsMember(scenarios::kDialects));
   verb->add_flag("--split", schedule.split, "divide straight blocks that cannot keep the tolerance in one piece");
   add_warm_start(verb, schedule.start, schedule.after_pause, schedule.model);
-  CLI::Option* parts = verb->add_option("--parts", schedule.parts, "how many parts the program makes one after another")
-                           ->check(CLI::Range(1, 1000))
-                           ->capture_default_str();
-  verb->add_option("--between", schedule.between, "time at rest between two parts, such as '2 min' [none]")->needs(parts);
+  verb->add_option("--parts", schedule.parts, "how many parts the program makes one after another [the scenario's, else 1]")
+      ->check(CLI::Range(1, 1000));
+  verb->add_option("--between", schedule.between,
+                   "time at rest between two parts, such as '2 min' [the scenario's, else none]");
   verb->callback([&] { app::schedule(schedule); });
   add_inject(cli, inject);
   verb = add_verb(cli, "select", "rank the temperature sensors of records by grey relational analysis",
@@ -325,6 +355,8 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_flag("--merge", sweep.merge, "put together what all shards have simulated");
   verb->callback([&] { app::sweep(sweep); });
   add_follow(cli, followed);
+  app::CompareOptions compared;
+  add_compare(cli, compared);
   add_export(cli, exported);
   verb = cli.add_subcommand("list", "the catalogue of effects, or the library of materials");
   verb->add_option("what", list.what, "effects or materials")
@@ -333,6 +365,8 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_flag("--markdown", list.markdown, "effects with their places, keys, units and laws, as a table");
   verb->footer("Example:\n  driftwright list effects --markdown");
   verb->callback([&] { app::list(list); });
+  std::string help_of;
+  add_help(cli, help_of);
   app::SchemaOptions schema;
   verb = cli.add_subcommand("schema", "what a file may hold, as JSON Schema for editors and validators");
   verb->add_option("what", schema.what, "scenario, or sweep: its study")

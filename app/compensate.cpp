@@ -95,7 +95,6 @@ void refuse_trained_on_record(const Json& judged, const std::string& path, const
 
 /// --after FILE gives a whole record what came before it.
 void require_continues(const Scenario& scenario, const CompensateOptions& options) {
-  if (options.measured.empty()) throw InputError("--after goes with --measured, the record that continues it");
   if (scenario.study->count_from_start)
     throw InputError(scenario.study->where,
                      "drift counts from the start of each record (`count_from_start`), so that none continues another; "
@@ -146,12 +145,6 @@ std::string frame_csv(const studies::FrameStudy& study) {
 
 void compensate_through_frame(const Scenario& scenario, const CompensateOptions& options) {
   if (!scenario.table) throw InputError(scenario.machine->where, "--through frame wants the block `table` (docs/table.md)");
-  const auto& models = studies::kFrameModels;
-  if (std::find(models.begin(), models.end(), options.model) == models.end()) {
-    throw InputError(
-        fmt::format("--model {}: through the frame go {}; a table has six errors and more, and a model.json one",
-                    options.model, fmt::join(models, ", ")));
-  }
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   const studies::FrameStudy study = studies::correct_through_frame(scenario, options.model, progress.listener());
@@ -159,9 +152,24 @@ void compensate_through_frame(const Scenario& scenario, const CompensateOptions&
   finish(findings::document_of(study, scenario, options.model, folder.made_by()), folder, progress, options);
 }
 
+/// Before anything is read.
+void require_options_that_go_together(const CompensateOptions& options) {
+  const bool is_measured = !options.measured.empty(), through_frame = options.through == "frame";
+  if (is_measured && (options.through != "none" || !options.cyclogram.empty() || options.model == "modes"))
+    throw InputError(
+        "--measured goes with --through none and a predictor's file, and without --cyclogram: a record says what happened");
+  if (!options.after.empty() && !is_measured) throw InputError("--after goes with --measured, the record that continues it");
+  const auto& frame_models = studies::kFrameModels;
+  if (through_frame && std::find(frame_models.begin(), frame_models.end(), options.model) == frame_models.end())
+    throw InputError(
+        fmt::format("--model {}: through the frame go {}; a table has six errors and more, and a model.json one",
+                    options.model, fmt::join(frame_models, ", ")));
+}
+
 }  // namespace
 
 void compensate(const CompensateOptions& options) {
+  require_options_that_go_together(options);
   const Scenario scenario = scenarios::read_scenario(options.scenario);
   if (options.through == "frame") {
     (void)scenarios::require_machine(scenario, "compensate");
@@ -169,9 +177,6 @@ void compensate(const CompensateOptions& options) {
   }
   const scenarios::Study& study = scenarios::require_study(scenario, "compensate");
   const bool is_measured = !options.measured.empty();
-  if (is_measured && (options.through != "none" || !options.cyclogram.empty() || options.model == "modes"))
-    throw InputError(
-        "--measured goes with --through none and a predictor's file, and without --cyclogram: a record says what happened");
   if (!options.after.empty()) require_continues(scenario, options);
   if (!is_measured) (void)scenarios::require_machine(scenario, "compensate");
   std::optional<DeployedPredictor> predictor;

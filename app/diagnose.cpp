@@ -21,9 +21,11 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
     head.push_back(fmt::format("  {}{}: {} at {} ({}){}{}", diagnosis::word(c.standing),
                                c.is_written ? "" : ", not written in", c.effect, c.where, c.law,
                                c.parameters.empty() ? "" : ": ", findings::parameters_text(c)));
+    if (!c.is_written) head.push_back(fmt::format("    not written, since {}", c.why_not_written));
     for (const diagnosis::Cause& a : c.alternatives) head.push_back(fmt::format("    or {} at {}", a.effect, a.where));
   }
   if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
+  if (const std::string taken_up = findings::taken_up_text(d); !taken_up.empty()) head.push_back("  " + taken_up);
   for (const std::string& path : options.measured) head.push_back("  measured: " + path);
   if (d.written.keeps_numbers)
     head.emplace_back(options.causes_only || d.written.causes_alone
@@ -59,6 +61,7 @@ void diagnose(const DiagnoseOptions& options) {
       diagnosis::diagnose(*m.twin, m.on_other_mesh ? &*m.on_other_mesh : nullptr, m.runs, m.how, listener);
   end_request.reset();
   progress.begin("writing");
+  if (options.causes_only) diagnosis::leave_numbers(d);
   std::string difference;
   std::vector<diagnosis::StatedChange> changes;  // in the order in which the fit makes them
   if (d.written.keeps_numbers) changes = stated_scatter(d, options.causes_only);

@@ -83,8 +83,9 @@ void simulate_written(const studies::MeasuredTwin& m, const std::string& path, d
   const diagnosis::Twin& twin = *m.twin;
   diagnosis::Twin::Workspace workspace(twin);
   std::map<std::string, std::pair<double, double>> squares;  // and rows
+  d.extended.clear();
   for (const diagnosis::MeasuredRun& run : m.runs) {
-    const Eigen::MatrixXd readings = twin.read(state, run, twin.respond(state, run, workspace));
+    const Eigen::MatrixXd& readings = d.extended.emplace_back(twin.read(state, run, twin.respond(state, run, workspace)));
     for (const diagnosis::MeasuredChannel& c : run.channels) {
       auto& [sum, rows] = squares[c.name];
       for (Eigen::Index i = 0; i < c.value.size(); ++i) {

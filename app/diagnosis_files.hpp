@@ -21,7 +21,8 @@ namespace driftwright::app {
                                                          const std::vector<std::string>& head, output::ResultsFolder& folder,
                                                          std::string* difference);
 
-/// Runs the file that was written over the whole of each record, by the twin, with the effects as the file has them: ChannelGain::rmse_written.
+/// Runs the file that was written over the whole of each record, by the twin, with the effects as the file has them: Diagnosis::extended and
+/// ChannelGain::rmse_written.
 /// @throws InputError  as read_scenario()
 void simulate_written(const studies::MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d);
 

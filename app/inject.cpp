@@ -53,7 +53,7 @@ constexpr std::int64_t kFaultsSaid = 10;  // of each sort, to standard error; th
 class RowInjector {
  public:
   RowInjector(const InsertionRules& rules, bool clocked, std::int64_t separation, std::int64_t interval)
-      : rows_(rules), separation_(separation) {
+      : rows_(rules), separation_(separation), rows_per_insertion_(rules.quarters) {
     if (clocked) timed_.emplace(InsertionLimits{.rules = rules, .separation = separation, .insertion_interval = interval});
   }
 
@@ -100,10 +100,12 @@ class RowInjector {
   [[nodiscard]] const EncoderReader& encoder() const { return timed_ ? timed_->encoder() : rows_.encoder(); }
   [[nodiscard]] std::int64_t inserted() const { return timed_ ? timed_->inserted() - timed_->waiting() : rows_.inserted(); }
   [[nodiscard]] std::int64_t n_too_fast() const { return timed_ ? timed_->n_too_fast() : 0; }
+  /// Rows between two edges of the encoder that an insertion takes; 0: it needs no time of its own.
+  [[nodiscard]] std::int64_t room() const { return timed_ ? (rows_per_insertion_ + 1) * separation_ : 0; }
 
  private:
   PulseInjector rows_;
-  std::int64_t separation_;
+  std::int64_t separation_, rows_per_insertion_;
   std::optional<TimedInjector> timed_;
   std::int64_t target_ = 0, n_rows_ = 0;
   Lines last_ = 0;
@@ -248,6 +250,7 @@ class Filter {
       n_rows_ += static_cast<std::int64_t>(n);
       i += n;
       last_in_ = rows[i - 1];
+      if (injector_.room() > 0) look_for_room(rows.subspan(i - n, n));
       take({out_.data() + before, out_.size() - before}, last_in_);
     }
   }
@@ -259,6 +262,34 @@ class Filter {
       if (files_.log) *files_.log << "# fault at row " << n_rows_ << ": " << what << "\n";
     }
     if (!faults.empty() && options_.on_fault == "bypass") is_withdrawn_ = true;
+  }
+
+  /// The longest stretch of rows in which an insertion may stand.
+  void look_for_room(std::span<const Lines> rows) {
+    for (const Lines row : rows) {
+      const bool same = (row & kLinesAB) == stretch_lines_;
+      stretch_lines_ = row & kLinesAB;
+      stretch_ = same ? stretch_ + 1 : 1;
+      if (stretch_lines_ == 0 || rules_.anywhere) longest_ = std::max(longest_, stretch_);
+    }
+  }
+
+  /// What was wished and is not in.
+  void tell_what_is_missing() {
+    const std::int64_t missing = std::abs(target_ - injector_.inserted());
+    if (rules_.bypass || missing < rules_.quarters) return;
+    const char* where = rules_.anywhere ? "between two edges" : "with both lines low";
+    const std::string how_much =
+        injector_.inserted() == 0 ? "nothing was inserted" : fmt::format("{} of the counts wished are missing", missing);
+    if (injector_.room() > 0 && longest_ < injector_.room()) {
+      tell(
+          fmt::format("inject: {}: an insertion wants {} rows {}, and the longest stretch had {}; sample the encoder more "
+                      "often, drive more slowly, or lower "
+                      "--separation\n",
+                      how_much, injector_.room(), where, longest_));
+    } else if (injector_.inserted() == 0) {
+      tell(fmt::format("inject: {}: in no row {} was there room before the input ended\n", how_much, where));
+    }
   }
 
   void take(std::span<const Lines> out, Lines in) {
@@ -309,6 +340,7 @@ class Filter {
     if (injector_.n_too_fast() > 0)
       tell(fmt::format("inject: {} edges of the encoder came closer than {} rows and were held back\n",
                        injector_.n_too_fast(), options_.separation));
+    tell_what_is_missing();
     tell(fmt::format("inject: {} rows in, {} rows out; x4 counts: encoder {:+d}, inserted {:+d} of {:+d}, control {:+d}{}\n",
                      n_rows_, n_out_, encoder.count(), injector_.inserted(), target_, control_.count(),
                      counting_ == Counting::kX4 ? "" : fmt::format(" ({} {:+d})", options_.counts, counted_.count())));
@@ -329,6 +361,9 @@ class Filter {
   std::int64_t n_rows_ = 0, n_out_ = 0, target_ = 0, n_bad_rows_ = 0, n_bad_corrections_ = 0;
   bool is_withdrawn_ = false;
   std::array<std::int64_t, 3> logged_ = {-1, -1, -1};
+  Lines stretch_lines_ = 0;
+  std::int64_t stretch_ = 0,
+               longest_ = 0;  // rows alike at the end of the input so far, and the most in which an insertion may stand
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/verbs.hpp"
+#include "base/errors.hpp"
 #include "effects/catalogue_table.hpp"
 #include "effects/effect.hpp"
 #include "solver/material.hpp"
@@ -11,6 +12,7 @@ namespace driftwright::app {
 
 void list(const ListOptions& options) {
   if (options.what == "materials") {
+    if (options.markdown) throw InputError("--markdown goes with effects; materials are one table of plain text");
     fmt::print("{:<24} {:>8} {:>10} {:>10} {:>10} {:>10} {:>8}\n", "material", "kg/m^3", "J/(kg K)", "W/(m K)", "um/(m K)",
                "GPa", "Poisson");
     for (const auto& [name, m] : solver::material_library()) {

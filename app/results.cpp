@@ -95,9 +95,10 @@ std::string fields_note(const output::FieldSeries& fields) {
       fields.n_times());
 }
 
-scenarios::FieldSink sink_of(output::FieldSeries* fields, std::size_t cyclogram) {
+scenarios::FieldSink sink_of(output::FieldSeries* fields, findings::WorstMoment& worst) {
   if (!fields) return {};
-  return {.cyclogram = cyclogram, .take = [fields](const scenarios::WholeFields& whole) {
+  return {.cyclogram = 0, .take = [fields, &worst](const scenarios::WholeFields& whole) {
+            worst.take(whole);
             fields->write(whole.time_s, whole.temperature_degC, whole.displacement_um,
                           whole.stress ? &*whole.stress : nullptr);
           }};

@@ -5,6 +5,7 @@
 
 #include "app/progress.hpp"
 #include "app/verbs.hpp"
+#include "findings/machine_section.hpp"
 #include "machine/simulated_run.hpp"
 #include "output/document.hpp"
 #include "output/field_series.hpp"
@@ -37,7 +38,7 @@ void show(const output::Document& document, const CommonOptions& options);
 /// What the terminal says of a series too long for its format, a line of its own; empty otherwise.
 [[nodiscard]] std::string fields_note(const output::FieldSeries& fields);
 
-/// Writes whole fields of one cyclogram, the first unless told, to a series. @param fields  null: nobody wants any
-[[nodiscard]] scenarios::FieldSink sink_of(output::FieldSeries* fields, std::size_t cyclogram = 0);
+/// Writes whole fields of the first cyclogram to a series and lets `worst` see them; both outlive the sink. @param fields  null: nobody wants any
+[[nodiscard]] scenarios::FieldSink sink_of(output::FieldSeries* fields, findings::WorstMoment& worst);
 
 }  // namespace driftwright::app

@@ -21,9 +21,10 @@ void run(const CommonOptions& options) {
   }
 
   std::optional<output::FieldSeries> fields;
+  findings::WorstMoment worst;
   if (machine.mesh().n_nodes() > 0 && wants_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const studies::MachineStudy study =
-      studies::study_machine(scenario, machine, progress.listener(), sink_of(fields ? &*fields : nullptr));
+      studies::study_machine(scenario, machine, progress.listener(), sink_of(fields ? &*fields : nullptr, worst));
   if (fields) fields->finish();
   progress.begin("writing results");
   folder.write_text(
@@ -35,7 +36,7 @@ void run(const CommonOptions& options) {
   }
   folder.write_text("heat_flows.csv", heat_flows_csv(study.judged.trajectory, scenario.study->judge, folder.made_by()));
   folder.write_text("schedule.txt", findings::schedule_text(study));
-  finish(findings::document_of(study, scenario, machine, folder.made_by()), folder, progress, options,
+  finish(findings::document_of(study, scenario, machine, worst, folder.made_by()), folder, progress, options,
          fmt::format("{}{}{}", machine.was_known ? "the reduced model was known from disk\n" : "",
                      fields ? fmt::format("fields in {} (ParaView)\n", fields->file_to_open()) : "",
                      fields ? fields_note(*fields) : ""));

@@ -36,9 +36,10 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
   if (const scenarios::Machine* full = machine.full())
     scenarios::require_ways_out(full->placed.mesh, full->placed.balance, scenario.machine->where);
   std::optional<output::FieldSeries> fields;
+  findings::WorstMoment worst;
   if (wants_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const studies::TableStudy study =
-      studies::study_table(scenario, machine, progress.listener(), sink_of(fields ? &*fields : nullptr));
+      studies::study_table(scenario, machine, progress.listener(), sink_of(fields ? &*fields : nullptr, worst));
   if (fields) fields->finish();
   progress.begin("writing results");
   const auto comments = [&](const std::string& what) { return provenance_lines(folder.made_by(), what); };
@@ -52,7 +53,7 @@ void run_table(const CommonOptions& options, const scenarios::Scenario& scenario
          compensation::frame_programs(compensation::in_machine(program, scenario.table->origin_m)))
       folder.write_text("control/" + file.name, file.text);
   }
-  output::Document document = findings::document_of(study, scenario, folder.made_by());
+  output::Document document = findings::document_of(study, scenario, machine.mesh(), worst, folder.made_by());
   std::vector<std::string> warnings;
   if (!why_no_program.empty()) warnings.push_back("no programs for controls: " + why_no_program);
   add(document.body, output::Notes{.key = "warnings", .sort = "warning", .lines = warnings});

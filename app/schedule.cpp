@@ -19,15 +19,11 @@ using studies::CorrectedSeries;
 
 const scenarios::ScheduleSettings& require_schedule(const scenarios::Scenario& scenario) {
   if (scenario.schedule) return *scenario.schedule;
-  throw InputError(fmt::format(
-      "{}: `schedule` needs the key `schedule`, which says at least what the work offset holds and how fast rapids "
-      "are, such as\n  schedule: {{tolerance: 10 um, base_offset: [0 mm, 0 mm, 0 mm], rapid: 15 m/min}}",
-      scenario.path));
-}
-
-NcDialect dialect_of(const std::string& name) {
-  if (name == "siemens") return NcDialect::kSiemens;
-  return name == "heidenhain" ? NcDialect::kHeidenhain : NcDialect::kLinuxCnc;
+  throw InputError(
+      fmt::format("{}: `schedule` needs the key `schedule`, which says at least how fast rapids are, such as\n  schedule: "
+                  "{{tolerance: 10 um, rapid: "
+                  "15 m/min}}",
+                  scenario.path));
 }
 
 /// Times of one part from its start. Durations added up in another order end elsewhere by rounding: the last sample is the end.
@@ -55,10 +51,16 @@ std::vector<compensation::ProgramAxis> axes_of(const CorrectedSeries& series, co
   return axes;
 }
 
+std::string between(const ScheduleVerbOptions& options, const scenarios::ScheduleSettings& settings) {
+  if (!options.between.empty()) return options.between;
+  return settings.between_s > 0.0 ? fmt::format("{} s", settings.between_s) : "";
+}
+
 /// Plans all parts and writes the programs.
 void correct(CorrectedSeries& series, const std::string& bytes) {
   const scenarios::ScheduleSettings& settings = series.settings;
-  NcOffsetOptions offsets{.dialect = dialect_of(settings.dialect),
+  NcOffsetOptions offsets{.dialect = series.program.dialect,
+                          .absolute = settings.absolute,
                           .work_offset = settings.work_offset,
                           .base_m = settings.base_offset_m,
                           .axes = {false, false, false}};
@@ -96,7 +98,7 @@ void schedule(const ScheduleVerbOptions& options) {
     throw InputError(
         fmt::format("{}: `schedule` writes a file of this name of its own; rename the program", options.program));
   if (!options.policy.empty()) series.settings.policy = options.policy;
-  if (!options.dialect.empty()) series.settings.dialect = options.dialect;
+  if (!options.dialect.empty()) series.settings.nc.control = scenarios::control_of(options.dialect);
   const scenarios::ScheduleSettings& settings = series.settings;
   series.program = read_nc_program(options.program, settings.nc);
   const std::string bytes = read_bytes(options.program);
@@ -107,8 +109,8 @@ void schedule(const ScheduleVerbOptions& options) {
   scenarios::check_cyclogram(scenario, series.cyclogram);
   const studies::PredictionOptions asked{.start = options.start,
                                          .after_pause = options.after_pause,
-                                         .parts = options.parts,
-                                         .between = options.between,
+                                         .parts = options.parts > 0 ? options.parts : settings.parts,
+                                         .between = between(options, settings),
                                          .model = options.model};
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);

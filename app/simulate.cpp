@@ -42,10 +42,11 @@ void simulate(const SimulateOptions& options) {
   const bool writes_fields = wants_fields && cyclograms.size() == 1;
   const scenarios::Model machine = scenarios::open_model(scenario, cyclograms, progress.listener(), writes_fields);
   std::optional<output::FieldSeries> fields;
+  findings::WorstMoment worst;
   const bool has_mesh = machine.mesh().n_nodes() > 0;
   if (has_mesh && writes_fields) fields.emplace(folder, machine.mesh(), scenario.solver.fields_format);
   const std::vector<scenarios::SimulatedRun> runs = scenarios::simulate_cyclograms(
-      scenario, machine, cyclograms, progress.listener(), sink_of(fields ? &*fields : nullptr));
+      scenario, machine, cyclograms, progress.listener(), sink_of(fields ? &*fields : nullptr, worst));
   if (fields) fields->finish();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const scenarios::SimulatedRun& run = runs[i];
@@ -66,7 +67,7 @@ void simulate(const SimulateOptions& options) {
     scenarios::export_reduced(reduced->system, reduced->start, reduced->error, drives,
                               [&](const std::string& file) { return folder.path("reduced_model/" + file); });
   }
-  finish(findings::document_of(runs, cyclograms, scenario, machine, folder.made_by()), folder, progress, options,
+  finish(findings::document_of(runs, cyclograms, scenario, machine, worst, folder.made_by()), folder, progress, options,
          fmt::format("{}{}{}", machine.was_known ? "the reduced model was known from disk\n" : "",
                      fields                       ? fmt::format("fields in {} (ParaView)\n", fields->file_to_open())
                      : !has_mesh || !wants_fields ? ""

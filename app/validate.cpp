@@ -58,8 +58,13 @@ void validate_machine(const scenarios::Scenario& scenario, const CommonOptions& 
 }  // namespace
 
 void validate(const RecordOptions& options) {
+  const bool on_records = !options.train.empty() || !options.test.empty();
+  for (const auto& [list, name] : {std::pair{&options.train, "--train"}, std::pair{&options.test, "--test"}}) {
+    if (on_records && list->empty())
+      throw InputError(fmt::format("`validate` on records wants {} too, at least once", name));
+  }
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  if (options.train.empty() && options.test.empty()) {
+  if (!on_records) {
     if (!scenario.programme && !scenario.validation) {
       throw InputError(fmt::format(
           "{}: `validate` wants records (--train, --test), or the key `validation` or `programme` in the scenario "
@@ -67,9 +72,6 @@ void validate(const RecordOptions& options) {
           scenario.path));
     }
     return validate_machine(scenario, options);
-  }
-  for (const auto& [list, name] : {std::pair{&options.train, "--train"}, std::pair{&options.test, "--test"}}) {
-    if (list->empty()) throw InputError(fmt::format("`validate` on records wants {} too, at least once", name));
   }
   const scenarios::Study& settings = scenarios::require_study(scenario, "validate");
   studies::StudyRecords records = studies::read_records(scenario, options);

@@ -44,8 +44,8 @@ struct ScheduleVerbOptions : CommonOptions {
   std::string start;    ///< these as in PredictOptions
   std::string after_pause;
   std::string model;
-  int parts = 1;        ///< made one after another by the program
-  std::string between;  ///< at rest between two of them, such as "2 min"; empty: none
+  int parts = 0;        ///< made one after another by the program; 0: as many as the scenario says
+  std::string between;  ///< at rest between two of them, such as "2 min"; empty: the scenario's
 };
 void schedule(const ScheduleVerbOptions& options);
 
@@ -109,6 +109,12 @@ struct CalibrateOptions : CommonOptions {
   std::vector<std::string> measured;  ///< record CSVs
 };
 void calibrate(const CalibrateOptions& options);
+
+struct CompareOptions : CommonOptions {
+  std::string first, second;  ///< record CSVs, or folders of results that hold a record.csv
+};
+/// Two records beside each other.
+void compare(const CompareOptions& options);
 
 struct ExportOptions {
   std::string scenario;

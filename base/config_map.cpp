@@ -64,10 +64,12 @@ ConfigMap ConfigMap::described_by(const schema::Map& description) const {
   ConfigMap in = *this;
   in.description_ = &description;
   in.asked_.clear();
+  std::vector<std::string> missing;
   for (const schema::Key& key : description.keys) {
-    if (key.is_compulsory) (void)in.value(key.name);
+    if (key.is_compulsory && !holds(key.name)) missing.push_back(key.name);
   }
-  in.asked_.clear();
+  if (missing.size() == 1) (void)in.value(missing.front());
+  if (missing.size() > 1) throw InputError(where(), fmt::format("the keys '{}' are missing", fmt::join(missing, "', '")));
   for (const schema::Group& group : description.groups) in.check_group(group);
   return in;
 }

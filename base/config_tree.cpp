@@ -104,7 +104,7 @@ class TreeBuilder : public YAML::EventHandler {
       Extent& around = open_.back().extent;
       around.size += extent.size;
       around.depth = std::max(around.depth, extent.depth + 1);
-      require_bearable(around, *node);
+      require_bearable(around, open_.back().node);
     }
     if (open_.empty()) {
       root_ = std::move(node);

@@ -18,7 +18,7 @@ template <class MakeSpace, class Work>
 void for_each_index(std::size_t n, const MakeSpace& make_space, const Work& work, const Listener& listener = {}) {
   std::vector<std::exception_ptr> failures(n);
   std::atomic<std::size_t> n_done = 0;
-#pragma omp parallel
+#pragma omp parallel if (n > 1)  // a single piece has all cores for the loops inside it
   {
     std::optional<decltype(make_space())> space;
 #pragma omp for schedule(dynamic)
@@ -39,6 +39,14 @@ void for_each_index(std::size_t n, const MakeSpace& make_space, const Work& work
   for (const std::exception_ptr& failure : failures) {
     if (failure) std::rethrow_exception(failure);
   }
+}
+
+/// The same for work(i), which needs no space of its own.
+template <class Work>
+void parallel_for(std::size_t n, const Work& work, const Listener& listener = {}) {
+  struct NoSpace {};
+  for_each_index(
+      n, [] { return NoSpace{}; }, [&](std::size_t i, NoSpace&) { work(i); }, listener);
 }
 
 }  // namespace driftwright

@@ -60,6 +60,7 @@ Chance chance_of(const Fitter& fitter, const std::vector<Candidate>& candidates,
   const Eigen::RowVectorXd best = gains.colwise().maxCoeff();
   const double mean = best.mean(), deviation = std::sqrt((best.array() - mean).square().sum() / double(kDraws - 1));
   chance.spread = std::max(0.3, deviation * std::sqrt(6.0) / std::numbers::pi);
+  chance.n_simulated = static_cast<int>(kDraws);
   chance.mode = mean - std::numbers::egamma * chance.spread;
   return chance;
 }

@@ -1,9 +1,9 @@
 #include "diagnosis/comparison.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "base/dense.hpp"
 #include "diagnosis/residual_structure.hpp"
 #include "effects/reading_chain.hpp"
 
@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSlow_s = 1200.0;           // time constant of what instruments and integrators are off by
 constexpr double kNoMatter = 1e-3;           // variance of shared noise along a direction, in units of the channels' own
+constexpr Eigen::Index kFewestForNoise = 4;  // readings of a channel in a record
 constexpr std::size_t kRowsForColumns = 60;  // fewer tell no noise from what follows them
 
 }  // namespace
@@ -50,7 +51,7 @@ void Comparison::take_shared(Run& run, const Eigen::MatrixXd& root) {
     for (Eigen::Index k = 0; k < u.cols(); ++k)
       whiteners_[run.first_block + c].apply(rows.col(k), u.col(k).segment(block.first - run.first, block.n));
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(u.transpose() * u);
+  const dense::SymmetricEigen eigen(u.transpose() * u);
   const Eigen::VectorXd squares = eigen.eigenvalues().cwiseMax(0.0);
   const auto n_kept = (squares.array() > kNoMatter).count();
   const Eigen::VectorXd kept = squares.tail(n_kept);
@@ -150,8 +151,10 @@ std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>&
     const Eigen::MatrixXd curves = curves_of(runs[r]);
     for (const MeasuredChannel& c : runs[r].channels) {
       const Eigen::Index n_readings = (c.value.array() == c.value.array()).count();
-      series[c.name].push_back(
-          {runs[r].time_s, c.value - prediction[r].row(c.output).transpose(), telling(curves, n_readings)});
+      std::vector<NoiseSeries>& of_channel = series[c.name];
+      if (n_readings >= kFewestForNoise)
+        of_channel.push_back(
+            {runs[r].time_s, c.value - prediction[r].row(c.output).transpose(), telling(curves, n_readings)});
       const double floor = c.unit == "K" ? least.white_K : c.unit == "m" ? least.white_m : least.white_rad;
       floors[c.name] = std::max({floors[c.name], floor, c.quantum / std::sqrt(12.0)});
       slow[c.name] = c.unit == "K" ? least.slow_K : c.unit == "m" ? least.slow_m : least.slow_rad;
@@ -159,7 +162,7 @@ std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>&
   }
   std::map<std::string, NoiseModel> noise;
   for (const auto& [name, list] : series) {
-    NoiseModel& n = noise[name] = estimate_noise(list, floors[name]);
+    NoiseModel& n = noise[name] = list.empty() ? NoiseModel{.white = floors[name]} : estimate_noise(list, floors[name]);
     if (n.correlated < slow[name]) n = {n.white, slow[name], kSlow_s};
   }
   return noise;

@@ -87,7 +87,7 @@ struct NoiseFloor {
   double slow_K = 4e-3, slow_m = 1e-8, slow_rad = 1e-7;
 };
 
-/// Noise of each channel, from what measured runs and a prediction differ by.
+/// Noise of each channel, from what measured runs and a prediction differ by; the least there is where a channel has no readings.
 [[nodiscard]] std::map<std::string, NoiseModel> estimate_noise(const std::vector<MeasuredRun>& runs,
                                                                const Prediction& prediction, const NoiseFloor& least);
 

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <memory>
 
+#include "diagnosis/inquiry.hpp"
 #include "diagnosis/interval.hpp"
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/scatter.hpp"
 #include "diagnosis/unexplained.hpp"
 #include "diagnosis/verdict.hpp"
-#include "diagnosis/warm_start.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -23,8 +23,6 @@ constexpr double kBeyondBelief = 2.0;   // mean square of how far the scenario's
 constexpr double kMostWork = 2e7;       // some ten seconds
 constexpr double kSmallMachine = 15.0;  // unknowns, below which a prediction costs the same
 constexpr double kNotLinear = 6.0;      // of what one of a linear machine costs
-constexpr double kHallFault_K = 2.0;    // 1 sigma of a hall that was recorded wrongly
-constexpr double kTooFar = 3.5;         // sigmas of its prior: a number beyond is a cause
 
 /// Index of a claim's first knob in x.
 Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::Index n_nuisance) {
@@ -55,48 +53,32 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
   return c;
 }
 
-/// What a warm start and another mesh change (one column a channel): the amplitude of each is unknown.
-std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double share,
-                                        const std::vector<MeasuredRun>& runs, const TwinState& state) {
-  std::vector<Prediction> columns = start_columns(twin, runs);
-  if (!coarse) return columns;
-  Twin::Workspace fine_space(twin), coarse_space(*coarse);
-  Prediction difference;
-  for (const MeasuredRun& run : runs) {
-    difference.push_back(share * (coarse->read(state, run, coarse->respond(state, run, coarse_space)) -
-                                  twin.read(state, run, twin.respond(state, run, fine_space))));
-  }
-  std::vector<int> outputs;
-  for (const MeasuredRun& run : runs) {
-    for (const MeasuredChannel& c : run.channels) {
-      if (std::find(outputs.begin(), outputs.end(), c.output) == outputs.end()) outputs.push_back(c.output);
-    }
-  }
-  for (int o : outputs) {
-    Prediction column;
-    for (const Eigen::MatrixXd& d : difference) {
-      column.push_back(Eigen::MatrixXd::Zero(d.rows(), d.cols()));
-      column.back().row(o) = d.row(o);
-    }
-    columns.push_back(std::move(column));
-  }
-  return columns;
-}
-
 /// Claims that kept-out rows are predicted better with, and all numbers fitted beside them alone.
 Written written_of(const Fitter& fitter, const SearchResult& result, const HeldOut& held, Twin::Workspace& workspace) {
-  Written w{.hypothesis = result.hypothesis, .causes = {}, .fit = result.fit, .keeps_numbers = held.keeps_numbers};
-  std::vector<std::size_t> dropped;
-  for (std::size_t c = 0; c < result.hypothesis.size(); ++c) (held.writes_claim[c] ? w.causes : dropped).push_back(c);
-  if (dropped.empty()) return w;
-  const Remainder rest = without_claims(result.hypothesis, dropped, fitter.n_nuisance());
-  w.hypothesis = rest.hypothesis;
-  w.fit = result.without;
-  if (w.hypothesis.empty()) return w;
-  const Eigen::VectorXd x = result.fit.x(rest.x);
-  if (!has_solution([&] { w.fit = fitter.fit(w.hypothesis, x.tail(x.size() - fitter.n_nuisance()), workspace); })) {
-    w.hypothesis.clear();
-    w.causes.clear();
+  Written w{.hypothesis = result.hypothesis,
+            .causes = {},
+            .fit = result.fit,
+            .why_not = held.why_not_written,
+            .keeps_numbers = held.keeps_numbers};
+  for (std::size_t c = 0; c < result.hypothesis.size(); ++c) (w.why_not[c].empty() ? w.causes : w.taken_up).push_back(c);
+  if (!w.taken_up.empty()) {
+    const Remainder rest = without_claims(result.hypothesis, w.taken_up, fitter.n_nuisance());
+    w.hypothesis = rest.hypothesis;
+    w.fit = result.without;
+    const Eigen::VectorXd x = result.fit.x(rest.x);
+    if (!w.hypothesis.empty() &&
+        !has_solution([&] { w.fit = fitter.fit(w.hypothesis, x.tail(x.size() - fitter.n_nuisance()), workspace); })) {
+      for (std::size_t c : w.causes) w.why_not[c] = "the machine has no solution without the causes that are left out";
+      w.taken_up.insert(w.taken_up.end(), w.causes.begin(), w.causes.end());
+      w.hypothesis.clear();
+      w.causes.clear();
+    }
+  }
+  if (w.keeps_numbers) return w;
+  w.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
+  w.taken_up.clear();
+  for (std::string& why : w.why_not) {
+    if (why.empty()) why = w.why_nothing;
   }
   return w;
 }
@@ -120,6 +102,11 @@ std::vector<Estimate> calibrated_numbers(const Fitter& fitter, const Fit& fit, c
   return numbers;
 }
 
+void leave_out(Cause& cause, const std::string& why) {
+  cause.is_written = false;
+  cause.why_not_written = why;
+}
+
 /// Numbers of the scenario that have gone so far that they are no calibration: causes by their own key, as fitted.
 std::vector<Cause> moved_numbers(const Diagnosis& d) {
   std::vector<Cause> causes;
@@ -136,8 +123,14 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
     number.name = k.name;
     Cause c{k.effect, k.where, fmt::format("another {}, {:+.1f} sigmas from what is known of it", k.name, e.deviation),
             {number}, gain,    {}};
-    c.is_written = d.written.keeps_numbers;
-    c.standing = gain >= d.search.chance.gain_at(SearchOptions{}.wrongly_named) ? Standing::kNamed : Standing::kSuspected;
+    c.chance = d.search.chance.share_above(gain);
+    if (!d.written.keeps_numbers) leave_out(c, d.written.why_nothing);
+    c.standing = gain >= d.search.bars.named ? Standing::kNamed : Standing::kSuspected;
+    if (c.standing == Standing::kNamed &&
+        !d.written.keeps_numbers) {  // what was fitted does harm where it was not fitted to
+      c.standing = Standing::kSuspected;
+      c.doubt = d.written.why_nothing;
+    }
     causes.push_back(std::move(c));
   }
   std::stable_sort(causes.begin(), causes.end(),
@@ -149,30 +142,52 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
 void write_nothing(Diagnosis& d) {
   d.written.keeps_numbers = false;
   d.written.why_nothing = "a single record of which something is left that nothing explains says too little of others";
+  d.written.taken_up.clear();
   d.extended = d.as_written;
-  for (Cause& c : d.causes) c.is_written = false;
+  for (Cause& c : d.causes) leave_out(c, d.written.why_nothing);
+  for (Estimate& e : d.calibrated) e.is_written = false;
   for (ChannelGain& g : d.gain) {
     g.rmse_after = g.rmse_before;
     g.peak_after = g.peak_before;
   }
+  d.misses.extended = d.misses.as_written;
+}
+
+/// Numbers of the written causes, as they are written. @param fitter  that they were fitted with
+void say_what_is_written(Diagnosis& d, const Fitter& fitter, Twin::Workspace& workspace, const Listener& listener) {
+  for (std::size_t i = 0; i < d.written.causes.size(); ++i) {
+    Cause& c = d.causes.at(d.written.causes[i]);
+    c.parameters = cause_of(d.search.candidates, fitter, d.written.hypothesis, i, d.written.fit, c.log_evidence_gain,
+                            workspace, listener)
+                       .parameters;
+  }
 }
 
 /// Causes with the scenario's own numbers as they are written.
-void write_alone(Diagnosis& d, const CausesAlone& alone) {
+void write_alone(Diagnosis& d, const CausesAlone& alone, const Fitter& fitter, Twin::Workspace& workspace,
+                 const Listener& listener) {
   d.written = {.hypothesis = alone.hypothesis,
                .causes = alone.claims,
                .fit = alone.fit,
+               .why_not = {},
                .keeps_numbers = true,
                .causes_alone = true,
                .why_nothing =
                    "of a single record of which more is left only causes of 20 nats are written that tell of no time, are "
-                   "found again "
-                   "without its last third and do no harm there"};
-  d.extended = alone.fit.prediction;
+                   "found again without its last third and do no harm there"};
+  Fitter numbers_as_written(fitter.twin(), fitter.runs(), {}, {});
+  numbers_as_written.set_noise(fitter.noise(), fitter.shared_noise());
+  d.extended = numbers_as_written.predict_machine(alone.hypothesis, alone.fit.x, workspace);
   d.holdout = alone.how;
   d.gain = alone.channels;
-  for (std::size_t c = 0; c < d.causes.size(); ++c)
-    d.causes[c].is_written = std::find(alone.claims.begin(), alone.claims.end(), c) != alone.claims.end();
+  d.misses = alone.misses;
+  for (Estimate& e : d.calibrated) e.is_written = false;
+  for (std::size_t c = 0; c < d.causes.size(); ++c) {
+    const bool is_written = std::find(alone.claims.begin(), alone.claims.end(), c) != alone.claims.end();
+    d.causes[c].is_written = is_written;
+    d.causes[c].why_not_written = is_written ? "" : d.written.why_nothing;
+  }
+  say_what_is_written(d, numbers_as_written, workspace, listener);
 }
 
 /// Of a diagnosis that was ended: what stands so far is said, and that it was not judged.
@@ -198,6 +213,12 @@ double search_work(const Fitter& fitter, const std::vector<Candidate>& list) {
 
 }  // namespace
 
+void leave_numbers(Diagnosis& d) {
+  for (std::size_t i = 0; i < d.calibrated.size(); ++i) {
+    if (std::find(d.moved.begin(), d.moved.end(), i) == d.moved.end()) d.calibrated[i].is_written = false;
+  }
+}
+
 Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
                    const DiagnosisOptions& options, const Listener& waiting) {
   Diagnosis d;
@@ -216,83 +237,33 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     for (const MeasuredChannel& c : run.channels) n_readings += (c.value.array() == c.value.array()).count();
   }
   const std::vector<Candidate> standing = candidates(twin, runs, options.without);
-  const SearchOptions how{.most_effects = options.most_effects, .without = options.without};
 
   d.scatter = scatter(twin);
   for (Knob& k : hall_scatter(runs)) d.scatter.push_back(std::move(k));
   listener.begin(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
-  const auto fresh_fitter = [&] {
-    return std::make_unique<Fitter>(
-        twin, runs, d.scatter, unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()), listener);
-  };
-  auto own_fitter = fresh_fitter();
+  const Fitter fresh(twin, runs, d.scatter, unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()),
+                     listener);
   Twin::Workspace workspace(twin);
-  d.as_written = own_fitter->predict({}, Eigen::VectorXd::Zero(own_fitter->n_nuisance()), workspace);
-  d.noise = estimate_noise(runs, d.as_written, options.floor);
-  for (int pass = 0; pass < 2; ++pass) {
-    own_fitter->set_noise(d.noise);
-    d.search = search(*own_fitter, standing, how, listener);
-    const auto sharper = estimate_noise(runs, d.search.fit.prediction, options.floor);
-    const bool is_sharper = std::any_of(sharper.begin(), sharper.end(),
-                                        [&](const auto& s) { return s.second.total() < 0.9 * d.noise.at(s.first).total(); });
-    if (!is_sharper || pass == 1 || listener.wants_end()) break;
-    for (const auto& [name, noise] : sharper) {
-      if (noise.total() < d.noise.at(name).total()) d.noise[name] = noise;
-    }
-  }
-  listener.begin("looking at what is left");
-  const auto what_is_left = [&]() -> std::optional<Unexplained> {
-    const Fitter& f = *own_fitter;
-    std::optional<Unexplained> left = unexplained_of(f, d.search, d.noise);
-    if (!left || !coarse || d.search.hypothesis.empty()) return left;
-    // the mesh's error is another one where the machine is another one
-    Fitter again(
-        twin, runs, d.scatter,
-        unknown_columns(twin, coarse, options.mesh_error_share, runs, f.state(d.search.hypothesis, d.search.fit.x)));
-    again.set_noise(d.noise);
-    again.settle(d.search.hypothesis, d.search.fit);
-    SearchResult same = d.search;
-    same.fit = again.fit(d.search.hypothesis, d.search.fit.x.tail(d.search.fit.x.size() - f.n_nuisance()), workspace);
-    return unexplained_of(again, same, d.noise);
-  };
-  d.unexplained = what_is_left();
-  if (d.unexplained && !listener.wants_end() && models_own_error(runs, d.search.fit.prediction, d.noise)) {
-    listener.begin("weighing again by what the model misses");
-    std::map<std::string, NoiseModel> rough = d.noise;
-    std::shared_ptr<const SharedNoise> shared;
-    (void)has_solution([&] {
-      const TwinState state = own_fitter->state(d.search.hypothesis, d.search.fit.x);
-      d.wander = heat_wander(*own_fitter, state, d.search.fit.prediction, workspace);
-      if (d.wander) shared = std::make_shared<const SharedNoise>(std::move(d.wander->readings));
-    });
-    const Prediction& best = d.wander ? d.wander->prediction : d.search.fit.prediction;
-    if (const auto error = models_own_error(runs, best, d.noise)) rough = *error;
-    own_fitter = fresh_fitter();
-    own_fitter->set_noise(rough, shared);
-    d.search = search(*own_fitter, standing, how, listener);
-    d.weighed_by_model_error = true;
-    if (auto left = unexplained_of(*own_fitter, d.search, d.noise)) d.unexplained = std::move(left);
-  }
-  const std::vector<Candidate>& list = d.search.candidates;
-  d.n_candidates = static_cast<int>(list.size());
-  // Numbers that have gone too far are faults: they get the prior of one, and all are fitted anew.
+  d.as_written = fresh.predict({}, Eigen::VectorXd::Zero(fresh.n_nuisance()), workspace);
+  const InquiryGround ground{.twin = twin,
+                             .coarse = coarse,
+                             .options = options,
+                             .candidates = standing,
+                             .fresh = fresh,
+                             .as_written = d.as_written};
+  Inquiry own = inquire(ground, runs, true, listener);
+  const Fitter& fitter = *own.fitter;
+  d.noise = std::move(own.noise);
+  d.search = std::move(own.search);
+  d.unexplained = std::move(own.unexplained);
+  d.wander = std::move(own.wander);
+  d.weighed_by_model_error = own.weighed_by_model_error;
+  d.moved = std::move(own.moved);
   std::vector<double> known_to;
   for (const Knob& k : d.scatter) known_to.push_back(k.prior_sd);
-  for (std::size_t i = 0; i < d.scatter.size(); ++i) {
-    if (!(std::abs(d.search.fit.x[static_cast<Eigen::Index>(i)]) > kTooFar * known_to[i])) continue;
-    d.moved.push_back(i);
-    d.scatter[i].prior_sd = d.scatter[i].scale == Knob::Scale::kLog ? effects::kFactorSd : kHallFault_K;
-  }
-  if (!d.moved.empty()) {
-    const auto before = std::move(own_fitter);
-    own_fitter = fresh_fitter();
-    own_fitter->set_noise(before->noise(), before->shared_noise());
-    own_fitter->settle(d.search.hypothesis, d.search.fit);
-    const Eigen::Index n_n = own_fitter->n_nuisance();
-    d.search.fit = own_fitter->fit(d.search.hypothesis, d.search.fit.x.tail(d.search.fit.x.size() - n_n), workspace);
-    (void)has_solution([&] { d.search.without = own_fitter->fit({}, Eigen::VectorXd(0), workspace); });
-  }
-  const Fitter& fitter = *own_fitter;
+  d.scatter = fitter.scatter();  // with the priors of faults where numbers have gone too far
+  const std::vector<Candidate>& list = d.search.candidates;
+  d.n_candidates = static_cast<int>(list.size());
   listener.begin("one cause without a name");
   auto unnamed =
       listener.wants_end() ? std::nullopt : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
@@ -323,31 +294,35 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       other.push_back(a.claim);
       cause.alternatives.push_back(
           cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, workspace, listener));
+      leave_out(cause.alternatives.back(), "the cause that it cannot be told from is");
+      cause.alternatives.back().chance = d.search.chance.share_above(a.log_evidence_gain);
     }
     d.causes.push_back(std::move(cause));
   }
   listener.begin("measuring the gain");
   SearchAgain search_again;
   if (search_work(fitter, list) <= kMostWork) {
-    search_again = [&](Fitter& without) {
+    search_again = [&](const std::vector<MeasuredRun>& fitted) {
       listener.begin("searching again without a record");
-      return search(without, standing, how, listener.within());
+      return inquire(ground, fitted, false, listener.within()).search;
     };
   }
   const HeldOut held = held_out_gain(fitter, d.search, d.noise, search_again, listener);
   d.written = written_of(fitter, d.search, held, workspace);
-  if (!d.written.keeps_numbers)
-    d.written.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
-  d.extended = d.written.keeps_numbers ? d.written.fit.prediction : d.as_written;
+  d.extended =
+      d.written.keeps_numbers ? fitter.predict_machine(d.written.hypothesis, d.written.fit.x, workspace) : d.as_written;
+  if (d.written.keeps_numbers && !d.written.taken_up.empty()) say_what_is_written(d, fitter, workspace, listener);
   d.calibrated = calibrated_numbers(fitter, d.written.fit, known_to);
+  for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
   for (Cause& c : moved_numbers(d)) d.causes.push_back(std::move(c));
   d.holdout = held.how;
   d.gain = held.channels;
+  d.misses = held.misses;
   give_standing(d, held);
   const bool is_any_named =
       std::any_of(d.search.findings.begin(), d.search.findings.end(), [](const Finding& f) { return f.is_named; });
   if (is_any_named && held.fails) {
-    if (!d.unexplained) d.unexplained = failed_held_out(d.gain);
+    if (!d.unexplained) d.unexplained.emplace().channels.push_back(held.fails_at);
     d.unexplained->fails_held_out = true;
   }
   d.verdict = n_readings < kFewestReadings ? Verdict::kInsufficientData : verdict_of(d);
@@ -360,16 +335,20 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       const std::optional<CausesAlone> alone =
           listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise, held);
       if (alone) {
-        write_alone(d, *alone);
+        write_alone(d, *alone, fitter, workspace, listener);
       } else if (d.written.keeps_numbers) {
         write_nothing(d);
       }
     }
   }
   const bool is_open = std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });
-  if (is_open && !listener.wants_end()) {
+  std::vector<char> in_doubt(d.search.findings.size(), 0);  // what is suspected beside nothing at all
+  for (std::size_t c = 0; c < in_doubt.size() && d.verdict == Verdict::kSuspected; ++c)
+    in_doubt[c] = d.causes[c].standing == Standing::kSuspected;
+  const bool is_in_doubt = std::any_of(in_doubt.begin(), in_doubt.end(), [](char doubt) { return doubt != 0; });
+  if ((is_open || is_in_doubt) && !listener.wants_end()) {
     listener.begin("choosing an experiment");
-    d.experiment = propose_experiment(fitter, d.search);
+    d.experiment = propose_experiment(fitter, d.search, in_doubt);
   }
   d.reason = d.verdict == Verdict::kInsufficientData
                  ? what_is_missing(twin, runs, static_cast<int>(n_readings), kFewestReadings)

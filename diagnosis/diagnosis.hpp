@@ -1,6 +1,7 @@
 #pragma once
 // What measurements say about a simulation: verdict, causes, what stays unexplained, and what mending it gains.
 
+#include <limits>
 #include <optional>
 
 #include "diagnosis/experiment.hpp"
@@ -13,6 +14,9 @@ namespace driftwright::diagnosis {
 
 enum class Verdict { kConsistent, kSuspected, kNamed, kAmbiguous, kUnexplained, kInsufficientData };
 [[nodiscard]] const char* word(Verdict verdict);
+
+/// What a channel measures: temperature, displacement or tilt. @param unit  K, um or urad, or m or rad
+[[nodiscard]] const char* quantity_word(const std::string& unit);
 
 /// How surely a cause is one.
 enum class Standing {
@@ -30,6 +34,7 @@ struct Estimate {
   double deviation = 0.0;  ///< from what the scenario says, in standard deviations of its prior
   double known_to = 0.0;   ///< 1 sigma of that: of the logarithm where is_share, else in the unit
   bool is_share = false;
+  bool is_written = true;  ///< whether extended.yaml holds this value
 };
 
 struct Cause {
@@ -38,9 +43,13 @@ struct Cause {
   double log_evidence_gain = 0.0;
   std::vector<Cause> alternatives;
   Standing standing = Standing::kSuspected;
-  std::string doubt = {};           ///< why it is only suspected, a clause; "" where it is not
-  bool is_written = true;           ///< whether extended.yaml has it: it does no harm to kept-out rows
-  int n_searched = 0, n_again = 0;  ///< searches without a part of the rows, and in how many of them it was found again
+  std::string doubt = {};  ///< why it is only suspected, a clause; "" where it is not
+  double chance = 1.0;     ///< share of machines without fault at which the best candidate has as much evidence
+  double kept_out_nats =
+      0.0;  ///< how much likelier kept-out rows are with it than without it; of numbers that have gone too far 0
+  bool is_written = true;            ///< whether extended.yaml has it
+  std::string why_not_written = {};  ///< a clause; "" where it is written
+  int n_searched = 0, n_again = 0;   ///< searches without a part of the rows, and in how many of them it was found again
 };
 
 /// What extended.yaml holds: claims that predict kept-out rows better, and the scenario's own numbers as fitted beside them.
@@ -48,10 +57,13 @@ struct Written {
   Hypothesis hypothesis;
   std::vector<std::size_t> causes;  ///< of Diagnosis::causes, one a claim
   Fit fit;
-  bool keeps_numbers = true;  ///< false: nothing is written
-  bool causes_alone = false;  ///< the scenario\'s own numbers are as they were
-  std::string why_nothing =
-      {};  ///< of what is not written: why, a clause; "": kept-out rows are predicted better without it
+  std::vector<std::string> why_not =
+      {};                        ///< of each claim of the search, why it is left out, a clause; "" where it is written
+  bool keeps_numbers = true;     ///< false: nothing is written
+  bool causes_alone = false;     ///< the scenario's own numbers are as they were
+  std::string why_nothing = {};  ///< where nothing is written, or causes alone: why, a clause
+  /// Claims that stood up and are left out, while the scenario's own numbers were fitted anew without them: these may have taken up what the claims do.
+  std::vector<std::size_t> taken_up = {};
 };
 
 /// Residuals of a channel in three states of the model.
@@ -66,6 +78,15 @@ struct ChannelGain {
   double rmse_of_drive = 0.0, rmse_of_readings = 0.0;
   double rmse_written =
       0.0;  ///< of the file extended.yaml over the whole of all records, its own rows; NaN where nobody simulated it
+  /// On kept-out rows as rmse_after: the causes that are named, with the scenario's numbers fitted beside them; and what the searches without these rows found, whatever
+  /// of it is written, which these rows had no say in. NaN where there is none.
+  double rmse_named = std::numeric_limits<double>::quiet_NaN(), rmse_found = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Root mean squares of kept-out misses over the noise of their channels, all channels together; as ChannelGain has them of each.
+struct KeptOutMisses {
+  double as_written = 0.0, calibrated = 0.0, extended = 0.0;
+  double named = std::numeric_limits<double>::quiet_NaN(), found = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What no candidate explains.
@@ -98,6 +119,7 @@ struct Diagnosis {
   std::string ended_at;  ///< what was being done when somebody wanted an end; empty: it is complete
   std::string holdout;   ///< how the gain was held out
   std::vector<ChannelGain> gain;
+  KeptOutMisses misses;
   /// What the scenario with its numbers fitted, and no cause, misses over time, body by body and displacement by displacement.
   std::vector<Waveform> waveforms;
   std::vector<DataFinding> data;
@@ -108,7 +130,8 @@ struct Diagnosis {
   std::vector<Knob> scatter;         ///< what is known roughly: the scenario's own numbers and each run's hall
   std::vector<std::size_t> moved;    ///< which of these have gone so far that they are causes
   std::vector<Estimate> calibrated;  ///< of these, as fitted with the causes that are written
-  Prediction as_written, scatter_alone, extended;
+  Prediction as_written, scatter_alone;
+  Prediction extended;  ///< what extended.yaml gives over the whole of all records
 };
 
 struct DiagnosisOptions {
@@ -124,5 +147,8 @@ struct DiagnosisOptions {
 /// @param listener  once it wants an end, the diagnosis says what is known so far, and that it is incomplete
 [[nodiscard]] Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<MeasuredRun>& runs,
                                  const DiagnosisOptions& options, const Listener& listener = {});
+
+/// Marks the scenario's own numbers as not written, but for those that have gone so far that they are causes: a file of causes only.
+void leave_numbers(Diagnosis& d);
 
 }  // namespace driftwright::diagnosis

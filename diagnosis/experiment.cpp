@@ -47,16 +47,46 @@ struct Open {
   std::vector<Explanation> explanations;
   std::vector<Pair> pairs;
   std::vector<const Claim*> claims;  ///< in dispute, of each explanation; of the first, the first finding's
+  std::vector<std::string> names;    ///< of these in words
 };
 
-Open open_questions(const Fitter& fitter, const SearchResult& result) {
+std::string words(const Claim& c) {
+  return fmt::format("{} at {}", c.knobs.front().effect, c.knobs.front().where);
+}
+
+/// The search's hypothesis without one of its findings, fitted anew; none where the machine has no solution so.
+std::optional<Explanation> without_finding(const Fitter& fitter, const SearchResult& result, std::size_t finding) {
+  const Remainder rest = without_claims(result.hypothesis, {finding}, fitter.n_nuisance());
+  if (rest.hypothesis.empty()) return explanation_of(fitter, {}, result.without);
+  const Eigen::VectorXd x = result.fit.x(rest.x);
+  Twin::Workspace workspace(fitter.twin());
+  Fit fit;
+  if (!has_solution([&] { fit = fitter.fit(rest.hypothesis, x.tail(x.size() - fitter.n_nuisance()), workspace); }))
+    return std::nullopt;
+  return explanation_of(fitter, rest.hypothesis, fit);
+}
+
+Open open_questions(const Fitter& fitter, const SearchResult& result, const std::vector<char>& in_doubt) {
   Open open;
   open.explanations.push_back(explanation_of(fitter, result.hypothesis, result.fit));
   for (std::size_t f = 0; f < result.findings.size(); ++f) {
     const Finding& finding = result.findings[f];
-    if (finding.alternatives.empty()) continue;
-    if (open.claims.empty()) open.claims.push_back(&finding.claim);
+    const bool may_be_none = f < in_doubt.size() && in_doubt[f];
+    if (finding.alternatives.empty() && !may_be_none) continue;
+    const auto name = [&](const Claim& claim, std::string words) {
+      open.claims.push_back(&claim);
+      open.names.push_back(std::move(words));
+    };
+    if (open.claims.empty()) name(finding.claim, words(finding.claim));
     std::vector<std::size_t> rivals = {0};
+    if (may_be_none) {
+      if (auto without = without_finding(fitter, result, f)) {
+        open.pairs.push_back({0, open.explanations.size()});
+        rivals.push_back(open.explanations.size());
+        open.explanations.push_back(std::move(*without));
+        name(finding.claim, "nothing in its place");
+      }
+    }
     for (const Finding::Alternative& a : finding.alternatives) {
       Hypothesis other = result.hypothesis;
       other.erase(other.begin() + static_cast<std::ptrdiff_t>(f));
@@ -64,14 +94,10 @@ Open open_questions(const Fitter& fitter, const SearchResult& result) {
       for (std::size_t r : rivals) open.pairs.push_back({r, open.explanations.size()});
       rivals.push_back(open.explanations.size());
       open.explanations.push_back(explanation_of(fitter, std::move(other), a.fit));
-      open.claims.push_back(&a.claim);
+      name(a.claim, words(a.claim));
     }
   }
   return open;
-}
-
-std::string words(const Claim& c) {
-  return fmt::format("{} at {}", c.knobs.front().effect, c.knobs.front().where);
 }
 
 /// Channels of all runs, without readings.
@@ -188,9 +214,7 @@ double largest_difference_K(const Ahead& ahead, const Open& open, int output) {
 }
 
 std::string why_of(const Experiment& e, const Open& open, bool once_only) {
-  std::vector<std::string> names;
-  for (const Claim* c : open.claims) names.push_back(words(*c));
-  const std::string of = fmt::format("{}", fmt::join(names, " and "));
+  const std::string of = fmt::format("{}", fmt::join(open.names, " and "));
   if (once_only) {
     return fmt::format(
         "{} each happened in one record only, which a new one does not show again; {}", of,
@@ -217,8 +241,9 @@ std::string why_of(const Experiment& e, const Open& open, bool once_only) {
 
 }  // namespace
 
-std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchResult& result) {
-  const Open open = open_questions(fitter, result);
+std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchResult& result,
+                                             const std::vector<char>& in_doubt) {
+  const Open open = open_questions(fitter, result, in_doubt);
   if (open.pairs.empty()) return std::nullopt;
   const std::vector<MeasuredRun>& runs = fitter.runs();
   std::vector<MeasuredChannel> channels = channels_of(runs);

@@ -105,7 +105,7 @@ Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
       linear_(other.linear_),
       nuisance_(other.nuisance_),
       differences_(other.differences_) {
-  set_noise(other.noise_, other.shared_);
+  if (other.comparison_) set_noise(other.noise_, other.shared_);
 }
 
 Eigen::VectorXd Fitter::nuisance_sd() const {
@@ -148,6 +148,13 @@ Prediction Fitter::predict(const Hypothesis& hypothesis, const Eigen::VectorXd& 
     prediction.push_back(readings(s, r, x, std::move(response)));
   }
   return prediction;
+}
+
+Prediction Fitter::predict_machine(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
+                                   Twin::Workspace& workspace) const {
+  Eigen::VectorXd alone = x;
+  alone.segment(static_cast<Eigen::Index>(scatter_.size()), static_cast<Eigen::Index>(linear_.size())).setZero();
+  return predict(hypothesis, alone, workspace);
 }
 
 Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction& known, const Hypothesis& hypothesis,

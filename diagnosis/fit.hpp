@@ -56,9 +56,11 @@ class Fitter {
   Fitter(const Twin& twin, const std::vector<MeasuredRun>& runs, std::vector<Knob> scatter, std::vector<Prediction> linear,
          const Listener& listener = {});
 
-  /// The same with other readings: some of them left out, the noise as it is. @param runs  with the same rows, the missing ones NaN; outlive it
+  /// The same with other readings: some of them left out, the noise as it is, where there is one. @param runs  with the same rows, the missing ones NaN; outlive it
   Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs);
 
+  /// How well one of scatter's numbers is known: 1 sigma of its prior.
+  void set_prior_sd(std::size_t number, double prior_sd) { scatter_.at(number).prior_sd = prior_sd; }
   /// Whitens anew. @param noise  by channel. @param shared  what channels of a run have together; empty: nothing
   void set_noise(const std::map<std::string, NoiseModel>& noise, std::shared_ptr<const SharedNoise> shared = {});
   /// Takes scatter's slopes at a fit of a hypothesis: later fits of others start there.
@@ -90,7 +92,11 @@ class Fitter {
   [[nodiscard]] Prediction predict(const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace,
                                    Prediction* responses = nullptr, bool reuse = false) const;
 
-  /// The same where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects act are taken from it.
+  /// Readings as a file with these numbers would give them: of the machine alone, further columns at zero.
+  [[nodiscard]] Prediction predict_machine(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
+                                           Twin::Workspace& workspace) const;
+
+  /// The same as predict() where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects act are taken from it.
   [[nodiscard]] Prediction predict_beside(const TwinState& known_state, const Prediction& known,
                                           const Hypothesis& hypothesis, const Eigen::VectorXd& x,
                                           Twin::Workspace& workspace) const;

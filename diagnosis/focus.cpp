@@ -1,12 +1,11 @@
 #include "diagnosis/focus.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "base/dense.hpp"
 #include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "solver/reduced_model.hpp"
@@ -87,7 +86,7 @@ Focus focus(const Twin& twin, const std::vector<MeasuredRun>& runs, const std::v
     sum += squares[static_cast<std::size_t>(i)];
     n_snapshots += counts[static_cast<std::size_t>(i)];
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sum / std::max(1.0, n_snapshots));
+  const dense::SymmetricEigen eigen(sum / std::max(1.0, n_snapshots));
   double left_out = 0.0;
   Eigen::Index size = n;
   while (size > 1 && left_out + std::max(0.0, eigen.eigenvalues()[n - size]) < kLeftOut_K * kLeftOut_K) {
@@ -96,9 +95,7 @@ Focus focus(const Twin& twin, const std::vector<MeasuredRun>& runs, const std::v
   }
   Eigen::MatrixXd directions(n, size + 2);
   directions << twin.machine().start, system.ones, factor.matrixU().solve(eigen.eigenvectors().rightCols(size));
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(directions);
-  qr.setThreshold(1e-9);
-  const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(n, std::min(n, qr.rank()));
+  const Eigen::MatrixXd basis = dense::PivotedQr(directions, 1e-9).basis();
   focus.machine.system = solver::project(system, basis);
   focus.machine.start = basis.transpose() * twin.machine().start;
 

@@ -131,6 +131,7 @@ class Judge {
     /// Logarithm of the probability of the kept-out rows, the fitted ones given, summed over the folds; up to what all claims share:
     /// the evidence of all rows less that of the fitted ones.
     double log_predictive = 0.0;
+    std::vector<double> log_evidence = {};  ///< of the fitted rows of each fold
     Hypothesis hypothesis = {};
     std::vector<Eigen::VectorXd> x = {};  ///< of each fold's fit; empty where there is none
   };
@@ -157,19 +158,26 @@ class Judge {
     for (std::size_t f = 0; f < folds_.size(); ++f) {
       const bool is_solved = !fits[f].prediction.empty() && !fits.back().prediction.empty();
       j.log_predictive += is_solved ? fits.back().log_evidence - fits[f].log_evidence : kNoSolution;
+      j.log_evidence.push_back(is_solved ? fits[f].log_evidence : kNoSolution);
       j.x.push_back(fits[f].x);
       j.predicted.push_back(fits[f].prediction.empty() ? written_ : std::move(fits[f].prediction));
     }
     return judged_.emplace(claims, std::move(j)).first->second;
   }
-  /// The same where nobody knows what happens in a run that is kept out whole, as nobody would of one still to come: no window of time is open in it.
-  [[nodiscard]] std::vector<Prediction> unforeseen(Subset claims) {
+  /// What a file that holds some claims, all numbers as fitted to a fold's rows, predicts of its kept-out ones. Of a run that is kept out whole nobody knows when
+  /// something happens, as nobody would of one still to come: no window of time is open in it.
+  [[nodiscard]] std::vector<Prediction> filed(Subset claims) {
     const Judged& j = judged(claims);
-    std::vector<Prediction> predicted = j.predicted;
-    for (std::size_t f = 0; f < folds_.size(); ++f) {
-      if (folds_[f].run && j.x[f].size() > 0) predicted[f][*folds_[f].run] = ahead(j.hypothesis, j.x[f], *folds_[f].run);
-    }
+    std::vector<Prediction> predicted;
+    for (std::size_t f = 0; f < folds_.size(); ++f) predicted.push_back(filed(j.hypothesis, j.x[f], f));
     return predicted;
+  }
+  /// Least evidence of a claim in the fitted rows of a fold [nats, its price not paid]: what is known of it where some rows were never read.
+  [[nodiscard]] double least_evidence(Subset claims, Subset without) {
+    const std::vector<double> with = judged(claims).log_evidence, &fewer = judged(without).log_evidence;
+    double least = 1e300;
+    for (std::size_t f = 0; f < folds_.size(); ++f) least = std::min(least, with[f] - fewer[f]);
+    return least;
   }
   /// What comes of the search made again without the kept-out rows; of a fold of blocks, in which something happened, what the claims make of it.
   struct Refound {
@@ -178,18 +186,16 @@ class Judge {
     int n_searched = 0;
   };
   [[nodiscard]] Refound refound(const SearchAgain& search_again, Subset kept, const Listener& listener) {
-    Refound found{judged(kept).predicted, judged(0).predicted, std::vector<int>(result_.hypothesis.size(), 0), 0};
+    Refound found{filed(kept), filed(0), std::vector<int>(result_.hypothesis.size(), 0), 0};
     for (std::size_t f = 0; f < folds_.size(); ++f) {
       if (!folds_[f].is_searched()) continue;
       if (listener.wants_end()) break;
       listener.share(static_cast<double>(f) / static_cast<double>(folds_.size()));
-      Fitter fitter(whole_, folds_[f].fitted);
       SearchResult again;
-      if (!has_solution([&] { again = search_again(fitter); })) continue;
+      if (!has_solution([&] { again = search_again(folds_[f].fitted); })) continue;
       ++found.n_searched;
-      found.calibrated[f] = again.without.prediction;
-      found.extended[f] = again.fit.prediction;
-      if (folds_[f].run) found.extended[f][*folds_[f].run] = ahead(again.hypothesis, again.fit.x, *folds_[f].run);
+      found.calibrated[f] = filed({}, again.without.x, f);
+      found.extended[f] = filed(again.hypothesis, again.fit.x, f);
       for (std::size_t c = 0; c < result_.hypothesis.size(); ++c) {
         const Candidate& known = result_.candidates[result_.hypothesis[c].candidate];
         found.n_again[c] += std::any_of(again.hypothesis.begin(), again.hypothesis.end(), [&](const Claim& claim) {
@@ -216,6 +222,12 @@ class Judge {
            squares_over_noise(judged(claims).predicted) > kWorse * squares_over_noise(judged(fewer).predicted);
   }
 
+  /// Root mean square of kept-out misses over the noise of their channels.
+  [[nodiscard]] double over_noise(const std::vector<Prediction>& predicted) const {
+    double n = 0.0;
+    for_each_miss(predicted, [&](const MeasuredChannel&, double) { n += 1.0; });
+    return std::sqrt(squares_over_noise(predicted) / std::max(1.0, n));
+  }
   /// Squares of kept-out misses over those of noise, not whitened: what a user sees of them.
   [[nodiscard]] double squares_over_noise(const std::vector<Prediction>& predicted) const {
     double sum = 0.0;
@@ -237,17 +249,21 @@ class Judge {
   }
 
  private:
-  /// A run as it is predicted where no window of time is known of it.
-  [[nodiscard]] Eigen::MatrixXd ahead(const Hypothesis& hypothesis, const Eigen::VectorXd& x, std::size_t r) const {
-    const MeasuredRun& run = whole_.runs()[r];
-    TwinState state = whole_.state(hypothesis, x);
-    std::erase_if(state, [&](const effects::Effect& e) { return e.in == run.name && e.tables.contains("windows"); });
+  /// @param x  empty: no numbers fit, and the scenario stays as it is written
+  [[nodiscard]] Prediction filed(const Hypothesis& hypothesis, const Eigen::VectorXd& x, std::size_t f) const {
+    Prediction predicted = written_;
+    if (x.size() == 0) return predicted;
     Twin::Workspace workspace(whole_.twin());
-    Eigen::MatrixXd readings = written_[r];
-    (void)has_solution([&] { readings = whole_.twin().read(state, run, whole_.twin().respond(state, run, workspace)); });
-    for (std::size_t l = 0; l < whole_.linear().size(); ++l)
-      readings += x[static_cast<Eigen::Index>(whole_.scatter().size() + l)] * whole_.linear()[l][r];
-    return readings;
+    const TwinState state = whole_.state(hypothesis, x);
+    for (std::size_t r = 0; r < predicted.size(); ++r) {
+      const MeasuredRun& run = whole_.runs()[r];
+      TwinState known = state;
+      if (folds_[f].run == r)
+        std::erase_if(known, [&](const effects::Effect& e) { return e.in == run.name && e.tables.contains("windows"); });
+      (void)has_solution(
+          [&] { predicted[r] = whole_.twin().read(known, run, whole_.twin().respond(known, run, workspace)); });
+    }
+    return predicted;
   }
 
   const Fitter& whole_;
@@ -263,9 +279,22 @@ double scale_of(const std::string& unit) {
   return unit == "K" ? 1.0 : 1e6;
 }
 
+/// Predictions of all folds by several models; empty: there is none.
+struct Models {
+  std::vector<Prediction> written, calibrated, extended, named = {}, found = {};
+};
+
+KeptOutMisses misses_of(const Judge& judge, const Models& models) {
+  KeptOutMisses misses{.as_written = judge.over_noise(models.written),
+                       .calibrated = judge.over_noise(models.calibrated),
+                       .extended = judge.over_noise(models.extended)};
+  if (!models.named.empty()) misses.named = judge.over_noise(models.named);
+  if (!models.found.empty()) misses.found = judge.over_noise(models.found);
+  return misses;
+}
+
 std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise,
-                                       const Judge& judge, const std::vector<Prediction>& written,
-                                       const std::vector<Prediction>& calibrated, const std::vector<Prediction>& extended) {
+                                       const Judge& judge, const Models& models) {
   std::vector<ChannelGain> gains;
   std::map<std::string, std::size_t> index;
   for (const MeasuredRun& run : runs) {
@@ -281,7 +310,9 @@ std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, con
   }
   std::vector<double> n_rows(gains.size(), 0.0);
   const auto add = [&](const std::vector<Prediction>& predicted, double ChannelGain::*rmse, double ChannelGain::*peak) {
+    if (predicted.empty()) return;
     std::fill(n_rows.begin(), n_rows.end(), 0.0);
+    for (ChannelGain& g : gains) g.*rmse = 0.0;
     judge.for_each_miss(predicted, [&](const MeasuredChannel& c, double miss) {
       const std::size_t i = index.at(c.name);
       const double x = scale_of(c.unit) * miss;
@@ -293,9 +324,11 @@ std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, con
   };
   add(judge.regressed(Regressors::kDrive), &ChannelGain::rmse_of_drive, nullptr);
   add(judge.regressed(Regressors::kDriveAndReadings), &ChannelGain::rmse_of_readings, nullptr);
-  add(written, &ChannelGain::rmse_before, &ChannelGain::peak_before);
-  add(calibrated, &ChannelGain::rmse_calibrated, nullptr);
-  add(extended, &ChannelGain::rmse_after, &ChannelGain::peak_after);
+  add(models.written, &ChannelGain::rmse_before, &ChannelGain::peak_before);
+  add(models.calibrated, &ChannelGain::rmse_calibrated, nullptr);
+  add(models.extended, &ChannelGain::rmse_after, &ChannelGain::peak_after);
+  add(models.named, &ChannelGain::rmse_named, nullptr);
+  add(models.found, &ChannelGain::rmse_found, nullptr);
   return gains;
 }
 
@@ -304,13 +337,50 @@ HeldOut not_held_out(const Fitter& fitter, const SearchResult& result, const std
   HeldOut held;
   held.how = "the rows that were fitted to: the diagnosis was ended before any were kept out";
   held.claim_nats.assign(result.hypothesis.size(), 0.0);
-  held.keeps_claim.assign(result.hypothesis.size(), 1);
-  held.writes_claim.assign(result.hypothesis.size(), 0);
+  held.doubt.assign(result.hypothesis.size(), "");
+  held.why_not_written.assign(result.hypothesis.size(), "the diagnosis was ended before any rows were kept out");
   held.keeps_numbers = false;
   const Judge judge(fitter, result, noise, {{.fitted = fitter.runs(), .kept_out = fitter.runs()}});
-  held.channels =
-      channel_gains(fitter.runs(), noise, judge, judge.written(), {result.without.prediction}, {result.fit.prediction});
+  const Models models{
+      .written = judge.written(), .calibrated = {result.without.prediction}, .extended = {result.fit.prediction}};
+  held.misses = misses_of(judge, models);
+  held.channels = channel_gains(fitter.runs(), noise, judge, models);
   return held;
+}
+
+/// What is left of the channel whose kept-out rows some claims predict worst beside what none of them leaves.
+Unexplained::Channel worst_channel(const Judge& judge, const std::map<std::string, NoiseModel>& noise,
+                                   const std::vector<Prediction>& with, const std::vector<Prediction>& without) {
+  struct Sums {
+    std::string unit;
+    double with = 0.0, without = 0.0, n = 0.0;  // squares over those of noise; rows
+  };
+  std::map<std::string, Sums> channels;
+  const auto square = [&](const MeasuredChannel& c, double miss) { return std::pow(miss / noise.at(c.name).total(), 2); };
+  judge.for_each_miss(with, [&](const MeasuredChannel& c, double miss) {
+    Sums& sums = channels[c.name];
+    sums.unit = c.unit;
+    sums.with += square(c, miss);
+    sums.n += 1.0;
+  });
+  judge.for_each_miss(without, [&](const MeasuredChannel& c, double miss) { channels[c.name].without += square(c, miss); });
+  const auto worst = std::max_element(channels.begin(), channels.end(), [](const auto& a, const auto& b) {
+    return a.second.with - a.second.without < b.second.with - b.second.without;
+  });
+  if (worst == channels.end()) return {};
+  const auto& [name, sums] = *worst;
+  return {name,
+          sums.unit == "K"   ? "K"
+          : sums.unit == "m" ? "um"
+                             : "urad",
+          scale_of(sums.unit) * noise.at(name).total() * std::sqrt(sums.with / sums.n),
+          (sums.with - sums.n) / std::sqrt(2.0 * sums.n)};
+}
+
+/// The evidence of a claim beside what it has to pay for being one of many [nats].
+double price_of(const SearchResult& result, std::size_t claim) {
+  const Candidate& candidate = result.candidates[result.hypothesis[claim].candidate];
+  return std::log(static_cast<double>(result.candidates.size()) * static_cast<double>(candidate.variants.size()));
 }
 
 }  // namespace
@@ -328,8 +398,6 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   held.how = folds.how;
   Judge judge(fitter, result, noise, std::move(folds.list));
   const Subset all = (1U << n_claims) - 1U;
-  for (std::size_t c = 0; c < n_claims; ++c)
-    held.claim_nats.push_back(judge.judged(all).log_predictive - judge.judged(all & ~(1U << c)).log_predictive);
 
   // What kept-out rows are better off without is taken out, the worst first.
   Subset kept = all;
@@ -351,34 +419,62 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   }
   held.fails = all != 0 && (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier ||
                             judge.is_worse(all, 0));
-  for (std::size_t c = 0; c < n_claims; ++c) held.keeps_claim.push_back(((kept >> c) & 1U) != 0);
+  if (held.fails) held.fails_at = worst_channel(judge, noise, judge.judged(all).predicted, judge.judged(0).predicted);
+  Subset named = 0;
+  for (std::size_t c = 0; c < n_claims; ++c) {
+    const Subset one = 1U << c, with = kept | one;
+    const double nats = judge.judged(with).log_predictive - judge.judged(with & ~one).log_predictive;
+    held.claim_nats.push_back(nats);
+    const bool stands_in_each_part =
+        judge.least_evidence(with, with & ~one) - price_of(result, c) >= result.bars.suspected.front();
+    held.doubt.emplace_back((kept & one) == 0 ? "rows that were kept out are predicted worse with it"
+                            : nats <= 0.0 && !stands_in_each_part
+                                ? "rows that were kept out are predicted no better with it, and without some of them nobody "
+                                  "would have suspected it"
+                                : "");
+    if (result.findings[c].is_named && held.doubt[c].empty()) named |= one;
+  }
+  held.why_not_written = held.doubt;
+  kept = 0;
+  for (std::size_t c = 0; c < n_claims; ++c) kept |= held.doubt[c].empty() ? 1U << c : 0U;
   // What comes again and again at times that nobody knows ahead is true of these records, and of no use for those to come.
   for (std::size_t c = 0; c < n_claims; ++c) {
     const Subset without = kept & ~(1U << c);
     const Claim& claim = result.hypothesis[c];
     if (without == kept || !claim.happens) continue;
-    if (judge.squares_over_noise(judge.unforeseen(kept)) <=
-        kWorseUnforeseen * judge.squares_over_noise(judge.unforeseen(without)))
+    if (judge.squares_over_noise(judge.filed(kept)) <= kWorseUnforeseen * judge.squares_over_noise(judge.filed(without)))
       continue;
     kept = without;
+    held.why_not_written[c] =
+        "nobody knows ahead when it happens, and records whose times are not known are predicted worse by what was fitted "
+        "beside it";
   }
-  const std::vector<Prediction> written = judge.written();
-  std::vector<Prediction> extended = judge.unforeseen(kept), calibrated = judge.judged(0).predicted;
+  Models models{.written = judge.written(), .calibrated = judge.filed(0), .extended = judge.filed(kept)};
+  if (named != 0) models.named = judge.filed(named);
   if (search_again) {
     Judge::Refound again = judge.refound(search_again, kept, listener);
-    calibrated = std::move(again.calibrated);
+    models.calibrated = std::move(again.calibrated);
+    models.found = std::move(again.extended);
     // A search that finds what does harm to rows it has not seen would do so to records that are still to come.
-    if (kept != 0 && judge.squares_over_noise(again.extended) > kWorse * judge.squares_over_noise(calibrated)) kept = 0;
-    extended = kept != 0 ? std::move(again.extended) : calibrated;
+    if (kept != 0 && judge.squares_over_noise(models.found) > kWorse * judge.squares_over_noise(models.calibrated)) {
+      for (std::size_t c = 0; c < n_claims; ++c) {
+        if (((kept >> c) & 1U) != 0)
+          held.why_not_written[c] =
+              "searches without the kept-out rows found what predicts these worse than the scenario's own numbers do";
+      }
+      kept = 0;
+    }
+    models.extended = kept != 0 ? models.found : models.calibrated;
     held.how += "; the search for what is wrong was made again without them";
     held.n_searched = again.n_searched;
     held.n_again = std::move(again.n_again);
   } else {
     held.how += "; which effect it is was decided on all rows";
   }
-  for (std::size_t c = 0; c < n_claims; ++c) held.writes_claim.push_back(((kept >> c) & 1U) != 0);
-  held.keeps_numbers = judge.squares_over_noise(extended) <= judge.squares_over_noise(written);
-  held.channels = channel_gains(fitter.runs(), noise, judge, written, calibrated, held.keeps_numbers ? extended : written);
+  held.keeps_numbers = judge.squares_over_noise(models.extended) <= judge.squares_over_noise(models.written);
+  if (!held.keeps_numbers) models.extended = models.written;
+  held.misses = misses_of(judge, models);
+  held.channels = channel_gains(fitter.runs(), noise, judge, models);
   return held;
 }
 
@@ -420,7 +516,9 @@ std::optional<CausesAlone> causes_alone(const Fitter& fitter, const SearchResult
     if (!is_solved) continue;
     const std::vector<Prediction> extended = {before.prediction};
     if (judge.squares_over_noise(extended) * kWorse > judge.squares_over_noise(written)) continue;
-    alone.channels = channel_gains(fitter.runs(), noise, judge, written, judge.judged(0).predicted, extended);
+    const Models models{.written = written, .calibrated = judge.filed(0), .extended = extended};
+    alone.misses = misses_of(judge, models);
+    alone.channels = channel_gains(fitter.runs(), noise, judge, models);
     const bool harms_one = std::any_of(alone.channels.begin(), alone.channels.end(), [](const ChannelGain& g) {
       return g.rmse_after > kWorseOfOne * g.rmse_before && g.rmse_after > g.noise_floor;
     });

@@ -8,25 +8,31 @@ namespace driftwright::diagnosis {
 struct HeldOut {
   std::string how;
   std::vector<ChannelGain> channels;  ///< of the claims that are kept
+  KeptOutMisses misses = {};          ///< of all channels together
   /// Per claim: how much likelier the kept-out rows are with it than without it, those fitted given, whatever is not known of all numbers counted in [nats].
   std::vector<double> claim_nats;
-  std::vector<char> keeps_claim;  ///< per claim: kept-out rows are not predicted worse with it
-  /// Per claim: it is worth writing. Not so what happens in several records at times that nobody knows ahead, where a record whose times are not known is
-  /// predicted worse by what was fitted beside it; nor anything, where a search without the kept-out rows finds what does harm to them.
-  std::vector<char> writes_claim;
+  /// Per claim: why the kept-out rows make it a hint, a clause; "" where they do not. They are predicted worse with it; or no better, and no claim would have been
+  /// suspected without some of them.
+  std::vector<std::string> doubt;
+  /// Per claim: why it is not worth writing, a clause; "" where it is. It is doubted; or it happens in several records at times that nobody knows ahead, where a record
+  /// whose times are not known is predicted worse by what was fitted beside it; or a search without the kept-out rows finds what does harm to them.
+  std::vector<std::string> why_not_written;
   /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place.
   int n_searched = 0;
   std::vector<int> n_again = {};
   bool fails = false;  ///< the claims together predict kept-out rows clearly worse than none of them does
+  Unexplained::Channel
+      fails_at;  ///< where it fails, the channel that they predict worst, and how: what is left of its kept-out rows
   bool keeps_numbers =
       true;  ///< false: the scenario as written predicts kept-out rows better than any numbers that were fitted
 };
 
-/// A search for what is wrong, with the readings that a fitter has.
-using SearchAgain = std::function<SearchResult(Fitter&)>;
+/// A search for what is wrong in records that have some of their readings alone: with noise, bars, numbers and process noise of these.
+using SearchAgain = std::function<SearchResult(const std::vector<MeasuredRun>& fitted)>;
 
 /// Each run in turn is predicted with numbers fitted to the others; of a single run the last third with those of the rest. What happened in one run alone, or
-/// at a time of the only one, is judged on blocks of it, every other one kept out. Each time all numbers are fitted anew.
+/// at a time of the only one, is judged on blocks of it, every other one kept out. Each time all numbers are fitted anew. Misses are those of what a file would hold:
+/// of the machine's effects and numbers, without what is not known of a warm start or of the mesh.
 /// @param search_again  makes the search again without the rows of each run, or of the last third; null: which claims there are was decided on all rows
 /// @param listener      once it wants an end, the misses are those of rows that were fitted to, and nothing is worth writing
 [[nodiscard]] HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result,
@@ -41,6 +47,7 @@ struct CausesAlone {
   Fit fit;                            ///< of them to all rows; x is of their knobs alone
   std::string how;                    ///< the kept-out rows
   std::vector<ChannelGain> channels;  ///< on these, fitted without them
+  KeptOutMisses misses = {};
 };
 
 /// Those that bring 20 nats and are found again without the last third of the record, none of which tells of a time, if that is predicted better with them than by the scenario as it is

@@ -153,14 +153,23 @@ std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& sta
     runs.push_back(std::move(run));
   }
   Fitted best;
+  double last_s = 0.0;
   for (double time_s = kShortest * shortest_s; time_s <= kLongest * longest_s; time_s *= 4.0) {
     Fitted f = fitted(runs, gram, along, n_bodies, time_s);
     if (f.log_likelihood > best.log_likelihood) best = std::move(f);
+    last_s = time_s;
   }
   const double all = best.does.sum();
   if (!(best.log_likelihood > 0.0) || !(all > 0.0)) return std::nullopt;
 
-  HeatWander wander{.time_s = best.time_s, .bodies = {}, .readings = {}, .prediction = prediction};
+  using Limit = HeatWander::Limit;
+  HeatWander wander{.time_s = best.time_s,
+                    .limit = best.time_s == kShortest * shortest_s ? Limit::kAtMost
+                             : best.time_s == last_s               ? Limit::kAtLeast
+                                                                   : Limit::kNone,
+                    .bodies = {},
+                    .readings = {},
+                    .prediction = prediction};
   std::vector<Eigen::Index> kept;
   for (Eigen::Index b = 0; b < n_bodies; ++b) {
     if (best.does[b] > kMatters * all) kept.push_back(b);

@@ -19,7 +19,9 @@ struct BodyWander {
 };
 
 struct HeatWander {
-  double time_s = 0.0;             ///< for which heat stays alike
+  double time_s = 0.0;  ///< for which heat stays alike
+  /// The likeliest of those tried lies at an end of them: heat stays alike for no longer than this, or for this at least.
+  enum class Limit { kNone, kAtMost, kAtLeast } limit = Limit::kNone;
   std::vector<BodyWander> bodies;  ///< the largest share first; those that matter
   SharedNoise readings;            ///< what it does to them
   Prediction prediction;           ///< with the most probable heat

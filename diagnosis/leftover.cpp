@@ -5,6 +5,11 @@
 #include <cmath>
 
 namespace driftwright::diagnosis {
+namespace {
+
+constexpr Eigen::Index kFewest = 4;  // readings of a channel in a record that could leave anything smooth
+
+}  // namespace
 
 double Leftover::sigmas() const {
   return (squares - n_curves) / std::sqrt(2.0 * std::max(1.0, n_curves));
@@ -18,6 +23,7 @@ std::vector<Leftover> leftovers(const std::vector<MeasuredRun>& runs, const Pred
   std::vector<double> n_rows;
   for (std::size_t b = 0; b < comparison.blocks().size(); ++b) {
     const Comparison::Block& block = comparison.blocks()[b];
+    if (block.n < kFewest) continue;
     const MeasuredRun& run = runs[block.run];
     const Eigen::MatrixXd curves = telling(curves_of(run), block.n);
     Eigen::MatrixXd x(block.n, curves.cols());
@@ -34,7 +40,12 @@ std::vector<Leftover> leftovers(const std::vector<MeasuredRun>& runs, const Pred
     }
     found->squares += xr.dot(amplitude);
     found->n_curves += static_cast<double>(curves.cols());
-    found->rms += (curves * amplitude).squaredNorm();
+    // where there is no reading nothing is left: curves that go on beside what was measured say anything there
+    const std::vector<char> there = present(run.find(block.channel)->value);
+    const Eigen::VectorXd smooth = curves * amplitude;
+    for (Eigen::Index i = 0; i < smooth.size(); ++i) {
+      if (there[static_cast<std::size_t>(i)]) found->rms += smooth[i] * smooth[i];
+    }
     Eigen::VectorXd step(curves.rows()), whitened(block.n);
     for (Eigen::Index from = 2; from + 2 < curves.rows(); ++from) {
       step.setZero();
@@ -47,7 +58,7 @@ std::vector<Leftover> leftovers(const std::vector<MeasuredRun>& runs, const Pred
       found->jump_squares = size * size * square;
       found->jump = std::abs(size);
     }
-    n_rows[static_cast<std::size_t>(found - list.begin())] += static_cast<double>(curves.rows());
+    n_rows[static_cast<std::size_t>(found - list.begin())] += static_cast<double>(block.n);
   }
   for (std::size_t i = 0; i < list.size(); ++i) list[i].rms = std::sqrt(list[i].rms / n_rows[i]);
   std::stable_sort(list.begin(), list.end(), [](const Leftover& a, const Leftover& b) { return a.sigmas() > b.sigmas(); });

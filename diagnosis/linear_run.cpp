@@ -1,7 +1,8 @@
 #include "diagnosis/linear_run.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "base/dense.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -90,7 +91,7 @@ LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& 
       Eigen::MatrixXd k = system.conduction;
       for (std::size_t e = 0; e < system.exchanges.size(); ++e)
         k += now[static_cast<Eigen::Index>(e)] * system.exchanges[e].matrix;
-      const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (k + k.transpose()), system.mass);
+      const dense::GeneralizedSymmetricEigen eigen(0.5 * (k + k.transpose()), system.mass);
       ModalCourse::Modes m;
       m.rate_1_s = eigen.eigenvalues();
       const Eigen::MatrixXd& v = eigen.eigenvectors();

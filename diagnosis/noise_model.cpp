@@ -52,6 +52,7 @@ Likelihood likelihood(const std::vector<NoiseSeries>& series, const NoiseModel& 
   double squares = 0.0, log_determinants = 0.0, n_free = 0.0;
   for (const NoiseSeries& s : series) {
     const Whitener whitener(shape, s.time_s, present(s.residual));
+    if (whitener.n() == 0) continue;
     Eigen::VectorXd r(whitener.n());
     whitener.apply(s.residual, r);
     Eigen::MatrixXd x(whitener.n(), s.smooth.cols());

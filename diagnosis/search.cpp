@@ -224,6 +224,15 @@ double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hy
 
 }  // namespace
 
+Bars bars_of(const Chance& chance, const SearchOptions& options) {
+  const double suspected = chance.gain_at(options.wrongly_suspected), named = chance.gain_at(options.wrongly_named);
+  Bars bars{.suspected = {},
+            .named = std::max(named, options.least_named),
+            .named_beside = std::max(named, options.least_named_beside)};
+  for (double least : options.least_gain) bars.suspected.push_back(std::max(suspected, least));
+  return bars;
+}
+
 std::vector<Law> laws_of(const std::vector<Candidate>& candidates) {
   std::vector<Law> laws;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -360,9 +369,8 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   std::vector<Signature> columns = signatures(fitter, candidates, laws_of(candidates), {}, weighed_at, listener);
   result.scores = scores(fitter, candidates, columns, {}, weighed_at);
   result.chance = chance_of(fitter, candidates, columns, weighed_at);
-  const auto must_gain = [&](std::size_t claim) {  // counted from 0
-    return std::max(result.chance.gain_at(options.wrongly_suspected), options.least_gain.at(claim));
-  };
+  result.bars = bars_of(result.chance, options);
+  const auto must_gain = [&](std::size_t claim) { return result.bars.suspected.at(claim); };  // counted from 0
   double best_value = best_fit.log_evidence;
   KnownFits known;
 
@@ -455,10 +463,9 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     result.findings.push_back(std::move(finding));
     ++i;
   }
-  const double named_from = result.chance.gain_at(options.wrongly_named);
   for (Finding& f : result.findings) {
     const bool wants_more = best.size() > 1 || f.claim.price_nats > kRareOrChosen;
-    f.is_named = f.log_evidence_gain >= std::max(named_from, wants_more ? options.least_named_beside : options.least_named);
+    f.is_named = f.log_evidence_gain >= (wants_more ? result.bars.named_beside : result.bars.named);
   }
   result.candidates = std::move(candidates);
   result.hypothesis = std::move(best);

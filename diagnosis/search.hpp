@@ -11,6 +11,8 @@ namespace driftwright::diagnosis {
 /// Evidence [nats, the price of the number of candidates paid] that the best candidate has by chance where nothing is wrong: Gumbel's distribution.
 struct Chance {
   double mode = -4.0, spread = 1.0;
+  int n_simulated =
+      0;  ///< sets of readings with nothing wrong that say so; 0: nobody simulated any, as where there is no candidate
   /// Share of machines without fault at which the best candidate has as much evidence or more.
   [[nodiscard]] double share_above(double gain) const;
   /// The evidence that this share of them reaches.
@@ -31,6 +33,13 @@ struct SearchOptions {
   int refits = 16;                     ///< candidates of each round that are fitted in full
   std::set<std::string> without = {};  ///< keys of effects that are not looked for
 };
+
+/// What the evidence of a claim must reach [nats, the price of the number of candidates paid]: what chance has to offer, or what is asked for at least.
+struct Bars {
+  std::vector<double> suspected;           ///< the first claim, a second one beside it, a third
+  double named = 0.0, named_beside = 0.0;  ///< the only claim; one of several, or one whose times were chosen to make it
+};
+[[nodiscard]] Bars bars_of(const Chance& chance, const SearchOptions& options);
 
 /// A claim that stood up, and others that would do as well in its place.
 struct Finding {
@@ -75,6 +84,7 @@ struct SearchResult {
   Fit without;  ///< scatter alone
   std::vector<Finding> findings;
   Chance chance;              ///< what the best candidate would have with nothing wrong
+  Bars bars;                  ///< that were held to
   std::vector<Score> scores;  ///< of all candidates on top of scatter alone
 };
 

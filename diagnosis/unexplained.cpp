@@ -138,15 +138,4 @@ Unexplained explained_better(const Fitter& fitter, const SearchResult& result, c
   return u;
 }
 
-Unexplained failed_held_out(const std::vector<ChannelGain>& gain) {
-  const auto worst = std::max_element(gain.begin(), gain.end(), [](const ChannelGain& a, const ChannelGain& b) {
-    return a.rmse_calibrated * b.noise_floor < b.rmse_calibrated * a.noise_floor;
-  });
-  Unexplained u;
-  u.channels.push_back(
-      {worst->name, worst->unit, worst->rmse_calibrated, worst->rmse_calibrated / std::max(1e-12, worst->noise_floor)});
-  u.fails_held_out = true;
-  return u;
-}
-
 }  // namespace driftwright::diagnosis

@@ -14,7 +14,5 @@ namespace driftwright::diagnosis {
 /// Where the claims act that one cause without a name explains better, and what that cause looks like.
 [[nodiscard]] Unexplained explained_better(const Fitter& fitter, const SearchResult& result, const Unnamed& unnamed,
                                            const std::map<std::string, NoiseModel>& noise);
-/// Causes that fit all data and predict kept-out ones worse than no cause does.
-[[nodiscard]] Unexplained failed_held_out(const std::vector<ChannelGain>& gain);
 
 }  // namespace driftwright::diagnosis

@@ -34,16 +34,20 @@ std::string words(const Unnamed& u) {
                      u.where, course, u.follows == "nothing" ? "" : " " + u.follows);
 }
 
+/// "in the temperature t_head"
+std::string in_words(const Unexplained::Channel& c) {
+  return fmt::format("in the {} {}", quantity_word(c.unit), c.name);
+}
+
 /// What is left beside the causes, in a sentence.
 std::string rest_words(const Unexplained& u) {
-  return fmt::format("Beside it {:.2g} {} RMS that is not noise is left at {}", u.channels.front().rms,
-                     u.channels.front().unit, u.channels.front().name);
+  return fmt::format("Beside it {:.2g} {} RMS that is not noise is left {}", u.channels.front().rms, u.channels.front().unit,
+                     in_words(u.channels.front()));
 }
 
 /// Machines without fault per one at which chance offers as much.
-std::string odds_words(const Diagnosis& d, const Cause& c) {
-  const double share = d.search.chance.share_above(c.log_evidence_gain);
-  return share < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / share);
+std::string odds_words(const Cause& c) {
+  return c.chance < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / c.chance);
 }
 
 /// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
@@ -62,7 +66,7 @@ std::string reason_of(const Diagnosis& d) {
   for (const Cause& c : d.causes) {
     std::string text = words(c);
     if (c.standing == Standing::kSuspected)
-      text = fmt::format("suspected{}{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, odds_words(d, c), text);
+      text = fmt::format("suspected{}{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, odds_words(c), text);
     if (!c.alternatives.empty()) {
       std::vector<std::string> others;
       for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, a.where));
@@ -81,19 +85,19 @@ std::string reason_of(const Diagnosis& d) {
       if (d.causes.empty()) {
         return fmt::format(
             "The measurement holds more than scatter and noise, and none of {} candidates explains it{}.", d.n_candidates,
-            d.unexplained && !d.unexplained->channels.empty() ? ", most of all in " + d.unexplained->channels.front().name
+            d.unexplained && !d.unexplained->channels.empty() ? ", most of all " + in_words(d.unexplained->channels.front())
                                                               : "");
       }
       if (d.unexplained && d.unexplained->fails_held_out) {
         return fmt::format("What fits best predicts kept-out data worse than no cause does, most of all {}: {}.",
-                           d.unexplained->channels.front().name, text);
+                           in_words(d.unexplained->channels.front()), text);
       }
       if (d.unexplained && d.unexplained->one_cause) {
         return fmt::format("{}. The best of the catalogue: {}.", words(*d.unexplained->one_cause), text);
       }
-      return fmt::format("Something is left that no candidate explains, {:.2g} {} RMS at {}; the best so far: {}.",
+      return fmt::format("Something is left that no candidate explains, {:.2g} {} RMS {}; the best so far: {}.",
                          d.unexplained->channels.front().rms, d.unexplained->channels.front().unit,
-                         d.unexplained->channels.front().name, text);
+                         in_words(d.unexplained->channels.front()), text);
     default:
       return d.unexplained ? fmt::format("{}. {}.", text, rest_words(*d.unexplained)) : fmt::format("{}.", text);
   }
@@ -102,14 +106,15 @@ std::string reason_of(const Diagnosis& d) {
 void give_standing(Diagnosis& d, const HeldOut& held) {
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     Cause& cause = d.causes[c];
-    cause.is_written = held.writes_claim[c] && held.keeps_numbers;
+    cause.why_not_written = d.written.why_not[c];
+    cause.is_written = cause.why_not_written.empty();
+    cause.kept_out_nats = held.claim_nats[c];
+    cause.chance = d.search.chance.share_above(cause.log_evidence_gain);
     cause.n_searched = held.n_searched;
     if (held.n_searched > 0) cause.n_again = held.n_again[c];
     if (!d.search.findings[c].is_named) continue;
-    if (!held.keeps_claim[c]) {
-      cause.doubt = "rows that were kept out are predicted worse with it";
-      continue;
-    }
+    cause.doubt = held.doubt[c];
+    if (!cause.doubt.empty()) continue;
     cause.standing = cause.alternatives.empty() ? Standing::kNamed : Standing::kAmbiguous;
   }
 }
@@ -122,6 +127,11 @@ Verdict verdict_of(const Diagnosis& d) {
   if (is_any(Standing::kAmbiguous)) return Verdict::kAmbiguous;
   if (is_any(Standing::kNamed)) return Verdict::kNamed;
   return d.causes.empty() ? Verdict::kConsistent : Verdict::kSuspected;
+}
+
+const char* quantity_word(const std::string& unit) {
+  if (unit == "K") return "temperature";
+  return unit == "um" || unit == "m" ? "displacement" : "tilt";
 }
 
 const char* word(Verdict verdict) {

@@ -23,10 +23,13 @@ Section cause_item(const diagnosis::Cause& c, const std::string& key) {
   add(item, std::move(parameters));
   if (!c.doubt.empty()) put(item, "doubt", c.doubt);
   put(item, "written", c.is_written);
+  if (!c.is_written) put(item, "why_not_written", c.why_not_written);
   if (c.n_searched > 0) {
     put(item, "found_again.searches", c.n_searched);
     put(item, "found_again.found", c.n_again);
   }
+  put(item, "kept_out_nats", c.kept_out_nats);
+  put(item, "chance", c.chance);
   put(item, "log_evidence_gain", c.log_evidence_gain);
   add_causes_data(item, c.alternatives, "alternatives");
   return item;
@@ -103,6 +106,16 @@ Section search_data(const diagnosis::Diagnosis& d) {
   put(section, "chance.median", d.search.chance.gain_at(0.5));
   put(section, "chance.one_in_100", d.search.chance.gain_at(0.01));
   put(section, "chance.one_in_10000", d.search.chance.gain_at(1e-4));
+  put(section, "chance.simulations", d.search.chance.n_simulated);
+  // and the bars in force, which chance is no lower than, with the share of faultless machines at which it reaches them
+  const diagnosis::Bars& bars = d.search.bars;
+  if (bars.suspected.empty()) return section;
+  put(section, "bars.set_by", d.search.chance.n_simulated > 0 ? "simulation" : "formula");
+  put(section, "bars.suspected_nats", bars.suspected);
+  put(section, "bars.named_nats", bars.named);
+  put(section, "bars.named_beside_nats", bars.named_beside);
+  put(section, "bars.chance_of_suspected", d.search.chance.share_above(bars.suspected.front()));
+  put(section, "bars.chance_of_named", d.search.chance.share_above(bars.named));
   return section;
 }
 

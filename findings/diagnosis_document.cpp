@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -59,6 +60,15 @@ Table causes_table(const diagnosis::Diagnosis& d) {
   return table;
 }
 
+/// What is found and does not stand in the file, with the reason; and the bars that causes were held to.
+void add_beside_causes(Section& body, const diagnosis::Diagnosis& d) {
+  for (const diagnosis::Cause& c : d.causes) {
+    if (!c.is_written)
+      add(body, Text{fmt::format("{} at {} is not written into extended.yaml: {}.", c.effect, c.where, c.why_not_written)});
+  }
+  if (const std::string bars = bars_text(d); !bars.empty()) add(body, Text{bars});
+}
+
 /// What is said of one cause beside its numbers.
 Section cause_section(const diagnosis::Diagnosis& d, std::size_t i) {
   const diagnosis::Cause& c = d.causes[i];
@@ -66,11 +76,12 @@ Section cause_section(const diagnosis::Diagnosis& d, std::size_t i) {
                   .detail = true};
   if (!c.doubt.empty() || !c.is_written)
     add(section, Text{fmt::format("{}{}", c.doubt.empty() ? "" : "Only suspected, since " + c.doubt + ". ",
-                                  c.is_written ? ""
-                                               : fmt::format("It is not written into extended.yaml: {}.",
-                                                             d.written.why_nothing.empty()
-                                                                 ? "rows that were kept out are predicted better without it"
-                                                                 : d.written.why_nothing))});
+                                  c.is_written ? "" : "It is not written into extended.yaml: " + c.why_not_written + ".")});
+  const bool is_moved = i >= d.search.findings.size();
+  if (!is_moved && d.ended_at.empty())
+    add(section,
+        Text{fmt::format("Kept-out rows are {:.1f} nats {} likely with it than without it, all numbers fitted anew.",
+                         std::abs(c.kept_out_nats), c.kept_out_nats < 0.0 ? "less" : "more")});
   if (c.n_searched > 0)
     add(section,
         Text{fmt::format("The search was made again {} without a part of the rows; it found this effect at this place {}.",
@@ -173,13 +184,22 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
   return section;
 }
 
+const char* words(diagnosis::HeatWander::Limit limit) {
+  using Limit = diagnosis::HeatWander::Limit;
+  return limit == Limit::kAtMost ? "at most" : limit == Limit::kAtLeast ? "at least" : "about";
+}
+
 Section wander_section(const diagnosis::HeatWander& wander) {
   Section section{.key = "process_noise", .title = "Where the model errs"};
   add(section,
-      Text{fmt::format("Heat that comes and goes in its bodies, alike for about {:.0f} min, would explain what the first "
+      Text{fmt::format("Heat that comes and goes in its bodies, alike for {} {:.0f} min{}, would explain what the first "
                        "search left. Causes are weighed beside this process noise.",
-                       wander.time_s / 60.0)});
+                       words(wander.limit), wander.time_s / 60.0,
+                       wander.limit == diagnosis::HeatWander::Limit::kNone ? "" : ", an end of the times that were tried")});
   add(section, Value{.key = "stays_alike_min", .datum = wander.time_s / 60.0});
+  using Limit = diagnosis::HeatWander::Limit;
+  if (wander.limit != Limit::kNone)
+    add(section, Value{.key = wander.limit == Limit::kAtMost ? "at_most" : "at_least", .datum = true});
   Table table{
       .key = "bodies",
       .columns = {{.key = "where", .title = "body"},
@@ -256,15 +276,16 @@ Section waveforms_section(const diagnosis::Diagnosis& d) {
     const bool is_exchange = !w.to.empty();
     Plot plot{.title = is_exchange ? fmt::format("Conductance that is missing between {} and {}, {}", w.where, w.to, w.run)
                        : is_heat   ? fmt::format("Heat that is missing in {}, {}", w.where, w.run)
-                                   : fmt::format("Growth that is missing in {}, {}", w.where, w.run),
+                                 : fmt::format("What is missing of the {} {}, {}", diagnosis::quantity_word(w.unit), w.where,
+                                               w.run),
               .x_label = "time [min]",
               .y_label = is_exchange       ? "conductance [W/K]"
                          : is_heat         ? "heat [W]"
                          : w.unit == "rad" ? "tilt [µrad]"
-                                           : "growth [µm]",
+                                           : "displacement [µm]",
               .series = {{.label = is_exchange ? "conductance"
                                    : is_heat   ? "heat"
-                                               : "growth",
+                                               : diagnosis::quantity_word(w.unit),
                           .x = {},
                           .y = is_exchange ? w.conductance_W_K : w.value,
                           .style = output::Series::Style::kSteps}}};
@@ -288,12 +309,17 @@ Section gain_section(const diagnosis::Diagnosis& d) {
       .key = "channels",
       .caption =
           "Noise floor: what the readings scatter by themselves. Regression: ridge on memories of speed, ambient and "
-          "whatever else drives, which knows nothing of the machine; then with readings of thermometers too. The file: "
-          "what the written scenario gives over the whole of all records, to which its numbers were fitted.",
+          "whatever else drives, which knows nothing of the machine; then with readings of thermometers too. Named causes: "
+          "these alone beside the scenario's numbers; found: what the searches without these rows found, whatever of it is "
+          "written. Extended is no worse than as written by choice: where it was worse on these rows, nothing is written. "
+          "The "
+          "file: what the written scenario gives over the whole of all records, to which its numbers were fitted.",
       .columns = {{.key = "name", .title = "channel"}, {.key = "unit", .title = "unit"}}};
   for (const auto& [key, title] : {std::pair{"rmse_before", "as written"},
                                    {"rmse_calibrated", "scatter alone"},
+                                   {"rmse_named", "named causes"},
                                    {"rmse_after", "extended"},
+                                   {"rmse_found", "found"},
                                    {"rmse_regression_drive", "regression"},
                                    {"rmse_regression_readings", "with thermometers"},
                                    {"noise_floor", "noise floor"},
@@ -302,9 +328,24 @@ Section gain_section(const diagnosis::Diagnosis& d) {
                                    {"rmse_written", "the file, all rows"}})
     table.columns.push_back({.key = key, .title = title, .digits = kThree});
   for (const auto& g : d.gain)
-    table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_after, g.rmse_of_drive,
-                          g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_written});
+    table.rows.push_back({g.name, g.unit, g.rmse_before, g.rmse_calibrated, g.rmse_named, g.rmse_after, g.rmse_found,
+                          g.rmse_of_drive, g.rmse_of_readings, g.noise_floor, g.peak_before, g.peak_after, g.rmse_written});
   add(section, std::move(table));
+  add(section, Text{shares_of_gain_text(d)});
+  for (const auto& [key, over_noise] : {std::pair{"over_noise.as_written", d.misses.as_written},
+                                        {"over_noise.calibrated", d.misses.calibrated},
+                                        {"over_noise.named", d.misses.named},
+                                        {"over_noise.extended", d.misses.extended},
+                                        {"over_noise.found", d.misses.found}})
+    add(section, Value{.key = key, .datum = over_noise});
+  const bool numbers_stay =
+      std::any_of(d.calibrated.begin(), d.calibrated.end(), [](const auto& e) { return !e.is_written; });
+  if (numbers_stay && d.written.keeps_numbers && !d.written.causes_alone)
+    add(section, Text{"The file leaves the scenario's own numbers as they were (--causes-only): of that alone \"the file, "
+                      "all rows\" tells; "
+                      "on kept-out rows they are as fitted."});
+  if (const std::string taken_up = taken_up_text(d); !taken_up.empty())
+    add(section, Text{.words = taken_up, .key = "taken_up"});
   if (const std::string better = better_regression_text(d); !better.empty()) add(section, Text{better});
   return section;
 }
@@ -368,19 +409,24 @@ Section numbers_section(const diagnosis::Diagnosis& d, bool detail) {
       .key = "calibrated",
       .caption =
           "The uncertain ones as fitted. Moved: from what the scenario says, in standard deviations of what is known of "
-          "it: the scenario's `known_to`, else 10 %, exponents 3 %, the hall 0.3 K.",
+          "it: the scenario's `known_to`, else 10 %, exponents 3 %, the hall 0.3 K. What is not in the file was fitted and "
+          "left "
+          "as the scenario has it.",
       .columns = {{.key = "name", .title = "number"},
                   {.key = "value", .title = "fitted", .digits = output::significant(4)},
                   {.title = "95 % interval"},
                   {.key = "unit", .title = "unit"},
+                  {.title = "in the file"},
                   {.title = "known to"},
                   {.key = "sigmas_of_prior", .title = "moved [sigmas]", .digits = output::signed_decimals(2)},
                   {.key = "ci95"},
                   {.key = "known_to"},
-                  {.key = "known_to_unit"}}};
+                  {.key = "known_to_unit"},
+                  {.key = "written"}}};
   for (const diagnosis::Estimate& e : d.calibrated) {
-    table.rows.push_back({e.name, e.value, interval_text(e), e.unit, known_to_text(e), e.deviation,
-                          std::vector<double>{e.low, e.high}, e.known_to, e.is_share ? "of its logarithm" : e.unit});
+    table.rows.push_back({e.name, e.value, interval_text(e), e.unit, e.is_written ? "yes" : "no", known_to_text(e),
+                          e.deviation, std::vector<double>{e.low, e.high}, e.known_to,
+                          e.is_share ? "of its logarithm" : e.unit, e.is_written});
   }
   add(section, std::move(table));
   return section;
@@ -454,6 +500,7 @@ output::Document diagnosis_document(const DiagnosisFindings& found, const output
   add(body, Value{.key = "verdict", .words = "verdict", .datum = diagnosis::word(d.verdict)});
   add(body, Value{.key = "reason", .datum = d.reason});
   add(body, causes_table(d));
+  add_beside_causes(body, d);
   for (std::size_t i = 0; i < d.causes.size(); ++i) body.sections.push_back(cause_section(d, i));
   add_causes_data(body, d.causes);
   if (d.experiment)

@@ -53,6 +53,59 @@ std::string sections_text(const Cyclogram& cyclogram) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+std::string channel_text(const std::string& name, const std::string& unit) {
+  return fmt::format("{} {}", diagnosis::quantity_word(unit), name);
+}
+
+std::string taken_up_text(const diagnosis::Diagnosis& d) {
+  if (d.written.taken_up.empty()) return "";
+  std::vector<std::string> left_out, far;
+  for (std::size_t c : d.written.taken_up)
+    left_out.push_back(fmt::format("{} at {}", d.causes.at(c).effect, d.causes.at(c).where));
+  for (std::size_t i = 0; i < d.calibrated.size(); ++i) {
+    const bool is_cause = std::find(d.moved.begin(), d.moved.end(), i) != d.moved.end();
+    const Estimate& e = d.calibrated[i];
+    if (!is_cause && std::abs(e.deviation) > kTooFar)
+      far.push_back(fmt::format("{} by {:+.1f} sigmas", e.name, e.deviation));
+  }
+  return fmt::format(
+      "The scenario's own numbers were fitted anew without {}, which is not written, and may have taken up what it does{}.",
+      fmt::join(left_out, " and "), far.empty() ? "" : fmt::format(": {} moved", fmt::join(far, ", ")));
+}
+
+std::string bars_text(const diagnosis::Diagnosis& d) {
+  const diagnosis::Chance& chance = d.search.chance;
+  const diagnosis::Bars& bars = d.search.bars;
+  if (bars.suspected.empty()) return "";
+  const auto share = [&](double gain) { return fmt::format("{:.2g} %", 100.0 * chance.share_above(gain)); };
+  const std::string how =
+      chance.n_simulated > 0
+          ? fmt::format("as {} simulated sets of readings of this machine with nothing wrong say", chance.n_simulated)
+          : "by the formula, since nothing was simulated";
+  return fmt::format(
+      "A cause is suspected from {:.1f} nats on, which chance alone reaches at {} of faultless machines, and named from "
+      "{:.1f} "
+      "({}), one of several or with chosen times from {:.1f}; a second one beside another is suspected from {:.1f}; {}.",
+      bars.suspected.front(), share(bars.suspected.front()), bars.named, share(bars.named), bars.named_beside,
+      bars.suspected.size() > 1 ? bars.suspected[1] : bars.suspected.front(), how);
+}
+
+std::string shares_of_gain_text(const diagnosis::Diagnosis& d) {
+  if (!d.ended_at.empty()) return "";
+  const diagnosis::KeptOutMisses& m = d.misses;
+  std::string text = fmt::format(
+      "All channels together, the misses of kept-out rows are {:.2f} times the noise as written and {:.2f} with the "
+      "scenario's "
+      "own numbers fitted alone",
+      m.as_written, m.calibrated);
+  if (!std::isnan(m.named)) text += fmt::format("; {:.2f} with the named causes beside these", m.named);
+  text += fmt::format("; {:.2f} with all that is written", m.extended);
+  if (!std::isnan(m.found) && std::abs(m.found - m.extended) > 0.005 * m.extended)
+    text +=
+        fmt::format(". What the searches without these rows found, whether or not it is written, leaves {:.2f}", m.found);
+  return text + ".";
+}
+
 std::string better_regression_text(const diagnosis::Diagnosis& d) {
   if (!d.ended_at.empty()) return "";
   std::vector<std::string> better;
@@ -60,8 +113,8 @@ std::string better_regression_text(const diagnosis::Diagnosis& d) {
     const bool by_readings = g.rmse_of_readings < g.rmse_of_drive;
     const double rmse = by_readings ? g.rmse_of_readings : g.rmse_of_drive;
     if (rmse > 0.0 && rmse < kClearlyBetter * g.rmse_after && g.rmse_after > g.noise_floor)
-      better.push_back(fmt::format("{} ({:.3g} in place of {:.3g} {}, {})", g.name, rmse, g.rmse_after, g.unit,
-                                   by_readings ? "with the thermometers" : "of drive and ambient alone"));
+      better.push_back(fmt::format("{} ({:.3g} in place of {:.3g} {}, {})", channel_text(g.name, g.unit), rmse, g.rmse_after,
+                                   g.unit, by_readings ? "with the thermometers" : "of drive and ambient alone"));
   }
   if (better.empty()) return "";
   return fmt::format("A regression that knows nothing of the machine predicts the same kept-out rows better: {}.",
@@ -73,7 +126,8 @@ std::string calibration_warning(const diagnosis::Diagnosis& d, const std::vector
   if (d.verdict == diagnosis::Verdict::kInsufficientData) reasons.push_back(d.reason);
   if (d.unexplained) {
     const auto& worst = d.unexplained->channels.front();
-    reasons.push_back(fmt::format("{} is left with {:.2g} {} that is not noise", worst.name, worst.rms, worst.unit));
+    reasons.push_back(fmt::format("the {} is left with {:.2g} {} that is not noise", channel_text(worst.name, worst.unit),
+                                  worst.rms, worst.unit));
   }
   const double price = std::log(std::max(1.0, static_cast<double>(d.n_candidates)));
   if (!d.search.scores.empty() &&

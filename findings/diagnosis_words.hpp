@@ -19,6 +19,14 @@ namespace driftwright::findings {
 
 /// Where a regression that knows nothing of the machine predicts kept-out rows better than what is written, a sentence; else "".
 [[nodiscard]] std::string better_regression_text(const diagnosis::Diagnosis& d);
+/// "temperature t_head", "displacement drift_z", "tilt rx": a channel with what it measures. @param unit  K, um or urad
+[[nodiscard]] std::string channel_text(const std::string& name, const std::string& unit);
+/// Which causes the scenario's own numbers may have taken up, since they were fitted anew without them, and which have gone far in doing so, a sentence; else "".
+[[nodiscard]] std::string taken_up_text(const diagnosis::Diagnosis& d);
+/// The bars that causes were held to, and how often chance alone reaches them, a sentence or two.
+[[nodiscard]] std::string bars_text(const diagnosis::Diagnosis& d);
+/// What of the gain on kept-out rows is calibration's, the named causes' and that of all that is written, a sentence.
+[[nodiscard]] std::string shares_of_gain_text(const diagnosis::Diagnosis& d);
 /// Why the numbers alone do not explain a measurement that a search without effects was made on; "" where they do.
 /// @param candidates  those that the scores number
 [[nodiscard]] std::string calibration_warning(const diagnosis::Diagnosis& d,

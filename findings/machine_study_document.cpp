@@ -273,7 +273,7 @@ Section training_section(const scenarios::Scenario& scenario, const studies::Mac
 }  // namespace
 
 output::Document document_of(const studies::MachineStudy& study, const scenarios::Scenario& scenario,
-                             const scenarios::Model& model, const output::Provenance& made_by) {
+                             const scenarios::Model& model, const WorstMoment& worst, const output::Provenance& made_by) {
   const scenarios::Study& settings = *scenario.study;
   output::Document document{.made_by = made_by,
                             .title = scenario.name + ": thermal drift and its correction",
@@ -283,6 +283,7 @@ output::Document document_of(const studies::MachineStudy& study, const scenarios
   Section& body = document.body;
   add(body, Value{.key = "name", .datum = scenario.name});
   add(body, verdict(settings, study));
+  add_machine(body, *scenario.machine, model.mesh(), settings.judge, worst);
   add(body, Value{.key = "trained_on", .datum = settings.train});
   add(body, Value{.key = "judged_on", .datum = settings.judge});
   add(body, Value{.key = "target", .datum = settings.target});

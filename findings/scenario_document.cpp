@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "findings/machine_section.hpp"
 #include "mesh/quality.hpp"
 #include "solver/joint.hpp"
 
@@ -78,6 +79,7 @@ output::Document mesh_document(const scenarios::Scenario& scenario, const scenar
   const mesh::Quality quality = mesh::worst_quality(m);
   output::Document document{.made_by = made_by, .title = scenario.name + ": mesh"};
   output::Section& body = document.body;
+  add(body, surfaces_picture(*scenario.machine, m));
   add_size(body, m);
   add(body, Value{.key = "worst_cell", .words = "worst cell", .datum = quality.worst_cell});
   add(body, Value{.key = "worst_cell_region", .words = "its region", .datum = m.regions[m.cells.group[quality.worst_cell]]});

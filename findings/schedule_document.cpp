@@ -9,6 +9,7 @@
 #include "findings/iso230_3_section.hpp"
 #include "findings/prediction_document.hpp"
 #include "findings/run_section.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
 
 namespace driftwright::findings {
 namespace {
@@ -208,6 +209,57 @@ Table changes_table(const CorrectedSeries& series) {
   return table;
 }
 
+const char* language_of(NcDialect dialect) {
+  switch (dialect) {
+    case NcDialect::kLinuxCnc:
+      return "LinuxCNC";
+    case NcDialect::kSiemens:
+      return "Siemens (G290)";
+    case NcDialect::kSiemensIso:
+      return "Siemens in ISO code (G291)";
+    case NcDialect::kHeidenhainIso:
+      return "Heidenhain DIN/ISO";
+    case NcDialect::kKlartext:
+      return "Heidenhain plain language";
+  }
+  return "";
+}
+
+/// Where the corrections go, and who has run such a program.
+std::string proven_words(const CorrectedSeries& series) {
+  switch (series.program.dialect) {
+    case NcDialect::kLinuxCnc:
+      return series.settings.absolute
+                 ? "Corrections overwrite the work offset (G10 L2)."
+                 : "Corrections are added above the work offsets (G52, or G92 where the program has one), which stay as the "
+                   "operator has set "
+                   "them. After an abort the one in force stays until G92.1; the program refuses to start above it.";
+    case NcDialect::kSiemens:
+    case NcDialect::kSiemensIso:
+      return "Corrections go into the base frame in force ($P_BFRAME); the one that is set ($P_UBFR) and all work offsets "
+             "stay, and a reset brings them back. "
+             "Written by the maker's manuals: no SINUMERIK has run this program here; run it without a tool in the work "
+             "first.";
+    default:
+      return "Corrections are added to the datum shift in force by differences and taken back at the end; after an abort "
+             "select the program anew. "
+             "Written by the maker's manuals: no TNC has run this program here; run it without a tool in the work first.";
+  }
+}
+
+output::Verdict overwrites(const CorrectedSeries& series) {
+  std::string values;
+  for (const auto& axis : series.settings.axes)
+    values += fmt::format(" {} {:g} mm", std::string(1, "XYZ"[axis.axis]), 1e3 * series.settings.base_offset_m[axis.axis]);
+  return {.key = "overwrites",
+          .kind = output::Verdict::Kind::kBad,
+          .title = "Absolute offsets: what the operator has set is overwritten",
+          .text = fmt::format("`offset: absolute` of the scenario: the program sets{} and leaves them so. An offset "
+                              "measured at the machine is lost, and "
+                              "a wrong one drives the tool into the work. Without that key corrections are added.",
+                              values)};
+}
+
 output::Verdict verdict_of(const CorrectedSeries& series) {
   bool inside = true;
   for (const CorrectedProgram& program : series.programs) {
@@ -228,11 +280,11 @@ std::string parts_of(const SharedPlan& shared) {
 output::Document document_of(const CorrectedSeries& series, const std::string& scenario_name, const std::string& notation,
                              const output::Provenance& made_by) {
   const studies::Prediction& prediction = series.prediction;
-  output::Document document{
-      .made_by = made_by,
-      .title = fmt::format("{}: corrections of {}", scenario_name, series.file),
-      .subtitle = fmt::format("policy {}, written for {}; {}{}; drift predicted by the {}", series.settings.policy,
-                              series.settings.dialect, extent_words(series), start_words(series), prediction.predicted_by)};
+  output::Document document{.made_by = made_by,
+                            .title = fmt::format("{}: corrections of {}", scenario_name, series.file),
+                            .subtitle = fmt::format("policy {}, written for {}; {}{}; drift predicted by the {}",
+                                                    series.settings.policy, language_of(series.program.dialect),
+                                                    extent_words(series), start_words(series), prediction.predicted_by)};
   Section& body = document.body;
   add(body, verdict_of(series));
   const auto put = [&](const char* key, Datum datum) { add(body, Value{.key = key, .datum = std::move(datum)}); };
@@ -243,7 +295,11 @@ output::Document document_of(const CorrectedSeries& series, const std::string& s
   put("predicted_by", prediction.predicted_by);
   put("started_from", prediction.started_from.empty() ? Datum() : Datum(prediction.started_from));
   put("policy", series.settings.policy);
-  put("dialect", series.settings.dialect);
+  put("dialect", scenarios::dialect_of(series.settings.nc.control));
+  put("language", language_of(series.program.dialect));
+  put("offset", series.settings.absolute ? "absolute" : "add");
+  if (series.settings.absolute) add(body, overwrites(series));
+  add(body, output::Text{.words = proven_words(series), .key = "proven"});
   int n_divided = 0;
   for (const CorrectedProgram& program : series.programs) n_divided += program.shared.plan.n_divided;
   add(body, Value{.key = "n_divided_blocks", .words = n_divided > 0 ? "blocks divided" : "", .datum = n_divided});

@@ -25,12 +25,13 @@ output::Table end_table(const Record& record) {
 
 output::Document document_of(const std::vector<scenarios::SimulatedRun>& runs,
                              const std::vector<const Cyclogram*>& cyclograms, const scenarios::Scenario& scenario,
-                             const scenarios::Model& model, const output::Provenance& made_by) {
+                             const scenarios::Model& model, const WorstMoment& worst, const output::Provenance& made_by) {
   output::Document document{.made_by = made_by,
                             .title = scenario.name + ": simulation",
                             .subtitle = fmt::format("{} nodes, {} cells, {} lumped nodes; {}", model.mesh().n_nodes(),
                                                     model.mesh().cells.size(), model.balance.nodes.size(), model.words())};
   add(document.body, output::Value{.key = "simulated_by", .datum = model.words()});
+  add_machine(document.body, *scenario.machine, model.mesh(), cyclograms.front()->name, worst);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Cyclogram& cyclogram = *cyclograms[i];
     const solver::Trajectory& run = runs[i].trajectory;

@@ -1,6 +1,7 @@
 #pragma once
 // What `simulate` found, as a document.
 
+#include "findings/machine_section.hpp"
 #include "machine/simulated_run.hpp"
 #include "output/document.hpp"
 
@@ -10,6 +11,6 @@ namespace driftwright::findings {
 [[nodiscard]] output::Document document_of(const std::vector<scenarios::SimulatedRun>& runs,
                                            const std::vector<const Cyclogram*>& cyclograms,
                                            const scenarios::Scenario& scenario, const scenarios::Model& model,
-                                           const output::Provenance& made_by);
+                                           const WorstMoment& worst, const output::Provenance& made_by);
 
 }  // namespace driftwright::findings

@@ -327,8 +327,8 @@ const studies::IntervalRow* longest_interval(const studies::TableStudy& study, d
   return longest;
 }
 
-output::Document document_of(const studies::TableStudy& study, const scenarios::Scenario& scenario,
-                             const output::Provenance& made_by) {
+output::Document document_of(const studies::TableStudy& study, const scenarios::Scenario& scenario, const mesh::Mesh& mesh,
+                             const WorstMoment& worst, const output::Provenance& made_by) {
   const scenarios::TableSettings& s = *scenario.table;
   const auto peak_um = [&](const char* name) { return um(strategy(study, name).peak.position_m); };
   output::Document document{.made_by = made_by,
@@ -344,6 +344,7 @@ output::Document document_of(const studies::TableStudy& study, const scenarios::
                                      um(study.strategies.front().peak.position_m), peak_um("rings"),
                                      peak_um("rings, thermometers between"), peak_um("rings and model of the whole table")),
                 .text = interval_words(study, s.tolerance_m) + "."});
+  add_machine(body, *scenario.machine, mesh, s.cyclogram, worst);
   add(body, Value{.key = "judged_h", .datum = s.judge_until_s / 3600.0});
   add(body, Value{.key = "rings_every_min", .datum = s.every_s / 60.0});
   add(body, strategies_table(study));

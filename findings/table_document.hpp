@@ -1,6 +1,7 @@
 #pragma once
 // What `run` found of a scenario with a table, as a document.
 
+#include "findings/machine_section.hpp"
 #include "output/document.hpp"
 #include "studies/table_study.hpp"
 
@@ -11,6 +12,7 @@ namespace driftwright::findings {
                                                            bool with_model);
 
 [[nodiscard]] output::Document document_of(const studies::TableStudy& study, const scenarios::Scenario& scenario,
+                                           const mesh::Mesh& mesh, const WorstMoment& worst,
                                            const output::Provenance& made_by);
 
 /// Largest position error on the table over the judged time, a column a strategy, as a record CSV.

@@ -24,6 +24,7 @@ Cause plain(const diagnosis::Cause& cause) {
           .parameters = plain(cause.parameters),
           .log_evidence_gain = cause.log_evidence_gain,
           .is_written = cause.is_written,
+          .why_not_written = cause.why_not_written,
           .alternatives = {}};
   for (const diagnosis::Cause& a : cause.alternatives) c.alternatives.push_back(plain(a));
   return c;

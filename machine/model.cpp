@@ -36,9 +36,8 @@ std::string Model::words() const {
   if (full()) return fmt::format("full model of {} temperature unknowns", n_unknowns());
   const solver::ReductionError& e = reduced()->error;
   return fmt::format(
-      "reduced model of {} states for {} unknowns, estimated to miss the full one by at most {:.2g} K, {:.2g} um and "
-      "{:.2g} "
-      "urad",
+      "reduced model of {} states for {} unknowns, estimated to miss the full one by at most {:.2g} K, {:.2g} µm and "
+      "{:.2g} µrad",
       reduced()->system.size(), n_unknowns(), e.temperature_K, 1e6 * e.displacement_m, 1e6 * e.angle_rad);
 }
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <exception>
 
+#include "base/parallel.hpp"
 #include "base/quantity.hpp"
 #include "machine/as_recorded.hpp"
 #include "scenarios/reader/felt_run.hpp"
@@ -89,12 +89,10 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
   if (fields.take && settings.stresses) materials = region_materials(machine, model.mesh());
   const Eigen::VectorXd start = start_of(machine, model);
   std::vector<SimulatedRun> runs(cyclograms.size());
-  std::vector<std::exception_ptr> failures(cyclograms.size());
   double done_s = 0.0;
   // Runs are independent, so each has a core of its own and the loops inside it stay on that core: no thread waits for
   // another, which matters on a busy machine. A single run has all cores.
-#pragma omp parallel for schedule(dynamic, 1) if (cyclograms.size() > 1)
-  for (std::size_t i = 0; i < cyclograms.size(); ++i) {
+  parallel_for(cyclograms.size(), [&](std::size_t i) {
     const Cyclogram& cyclogram = *cyclograms[i];
     FieldTimes field_times(settings, cyclogram.duration_s());
     double last_s = 0.0;
@@ -107,16 +105,9 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
       }
     };
     const std::vector<double> times_s = output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
-    try {
-      const Eigen::VectorXd from = start + warmer_start_K(machine, cyclogram) * ones_of(model);
-      runs[i] = simulate_run(machine, settings.transient, model, from, cyclogram, times_s, at_output);
-    } catch (...) {
-      failures[i] = std::current_exception();  // none may leave the parallel loop
-    }
-  }
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
-  }
+    const Eigen::VectorXd from = start + warmer_start_K(machine, cyclogram) * ones_of(model);
+    runs[i] = simulate_run(machine, settings.transient, model, from, cyclogram, times_s, at_output);
+  });
   return runs;
 }
 

@@ -12,6 +12,7 @@
 #include "base/c_random.hpp"
 #include "base/errors.hpp"
 #include "mesh/quality.hpp"
+#include "mesh/read_apart.hpp"
 #include "mesh/topology.hpp"
 
 namespace driftwright::mesh {
@@ -88,15 +89,16 @@ void straighten_folded_cells() {
   }
 }
 
-/// Gmsh would mesh for hours, and then abort for want of memory, where a size is small against its part.
-void require_bearable(const std::vector<Part>& parts) {
+/// How many cells there will be. Gmsh would mesh for hours, and then abort for want of memory, where a size is small against its part.
+double require_bearable(const std::vector<Part>& parts) {
   constexpr double kMostCells = 5e6, kCellsPerCube = 8.5;  // tetrahedra of edge h in a cube of edge h, about
+  double n_all = 0.0;
   for (const Part& part : parts) {
     double n_cells = 0.0;
     for (int volume : part.volumes) {
       double volume_m3 = 0.0;
       gmsh::model::occ::getMass(3, volume, volume_m3);
-      n_cells += kCellsPerCube * volume_m3 / std::pow(part.mesh_size_m, 3);
+      n_cells += kCellsPerCube * std::abs(volume_m3) / std::pow(part.mesh_size_m, 3);
     }
     if (n_cells > kMostCells) {
       throw InputError(
@@ -104,7 +106,9 @@ void require_bearable(const std::vector<Part>& parts) {
                       "take a larger mesh size",
                       part.region, n_cells, 1e3 * part.mesh_size_m, kMostCells));
     }
+    n_all += n_cells;
   }
+  return n_all;
 }
 
 /// Node numbers of the Mesh: one per (part, Gmsh node), so that parts share none.
@@ -166,12 +170,14 @@ Mesh mesh_parts(const std::vector<Part>& parts, int order, const std::function<s
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
   gmsh::option::setNumber("Mesh.Algorithm3D", 1);  // Delaunay: repeatable, and kind to thin walls
   gmsh::option::setNumber("Mesh.Optimize", 1);
-  require_bearable(parts);
-  set_sizes(parts);
-  gmsh::model::mesh::generate(3);
-  if (order == 2) {
-    gmsh::model::mesh::setOrder(2);
-    straighten_folded_cells();
+  {
+    const BoundedTime bounded(most_to_mesh_s(require_bearable(parts)));
+    set_sizes(parts);
+    gmsh::model::mesh::generate(3);
+    if (order == 2) {
+      gmsh::model::mesh::setOrder(2);
+      straighten_folded_cells();
+    }
   }
   NodeTable table;
   std::map<int, std::vector<int>> parts_at_face;  // Gmsh surface -> parts on its sides

@@ -26,7 +26,7 @@ std::vector<Solid> import_solids(const std::string& path) {
   gmsh::option::setNumber("Geometry.OCCImportLabels", 1);
   gmsh::vectorpair shapes;
   try {
-    const ReadingTime limited(path);
+    const BoundedTime bounded(most_to_read_s(path));
     occ::importShapes(path, shapes, true, "step");
     occ::synchronize();
   } catch (const std::string& message) {

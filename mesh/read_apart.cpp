@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -27,7 +28,7 @@ namespace {
 std::atomic<bool> all_are_ours = false;  // of the process, as its threads are
 bool is_child = false;                   // set in the child alone
 
-constexpr rlim_t kLeast_s = 5, kPerMegabyte_s = 60;
+constexpr double kLeastToRead_s = 5, kPerMegabyte_s = 60, kLeastToMesh_s = 10, kCellsPerSecond = 200;
 
 /// What the child says first, and the bytes that follow it.
 enum class Answer : char { kMesh, kInputError, kRangeError, kSolveError, kNoMemory, kOther };
@@ -109,10 +110,11 @@ std::string received(int from) {
 InputError of_death(const std::string& path, int status) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU)
-    return InputError(
-        fmt::format("{}: reading it takes longer than {} s of processor time and {} s more for each megabyte; the file is "
-                    "damaged, or holds what the library that reads it cannot take. Write it anew, or as another format",
-                    path, kLeast_s, kPerMegabyte_s));
+    return InputError(fmt::format(
+        "{}: reading it takes longer than {} s of processor time and {} s more for each megabyte, or meshing it longer "
+        "than {} s and 1 s more for each {} expected cells; the file is damaged, or holds what the library that reads "
+        "it cannot take. Write it anew, or as another format",
+        path, kLeastToRead_s, kPerMegabyte_s, kLeastToMesh_s, kCellsPerSecond));
   const std::string how = signal == SIGKILL ? "was killed, perhaps for want of memory"
                           : signal != 0     ? fmt::format("crashed ({})", strsignal(signal))
                                             : "ended before its time";
@@ -171,26 +173,34 @@ Mesh read_apart(const std::string& path, const std::function<Mesh()>& read) {
   }
 }
 
-ReadingTime::ReadingTime(const std::string& path) {
+BoundedTime::BoundedTime(double most_s) {
   if (!is_child) return;
-  std::error_code unknown;
-  const auto size = std::filesystem::file_size(path, unknown);
   rusage used;
   getrusage(RUSAGE_SELF, &used);  // a child begins at 0
   rlimit limit;
   getrlimit(RLIMIT_CPU, &limit);
-  const rlim_t most_s = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + kLeast_s +
-                        (unknown ? 0 : (kPerMegabyte_s * size + 999999) / 1000000);
-  limit.rlim_cur = std::min(limit.rlim_max, most_s);
+  const auto most =
+      static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + static_cast<rlim_t>(std::ceil(most_s));
+  limit.rlim_cur = std::min(limit.rlim_max, most);
   setrlimit(RLIMIT_CPU, &limit);
 }
 
-ReadingTime::~ReadingTime() {
+BoundedTime::~BoundedTime() {
   if (!is_child) return;
   rlimit limit;
   getrlimit(RLIMIT_CPU, &limit);
   limit.rlim_cur = limit.rlim_max;
   setrlimit(RLIMIT_CPU, &limit);
+}
+
+double most_to_read_s(const std::string& path) {
+  std::error_code unknown;
+  const auto size = std::filesystem::file_size(path, unknown);
+  return kLeastToRead_s + (unknown ? 0.0 : kPerMegabyte_s * 1e-6 * static_cast<double>(size));
+}
+
+double most_to_mesh_s(double n_cells) {
+  return kLeastToMesh_s + std::max(0.0, n_cells) / kCellsPerSecond;
 }
 
 }  // namespace driftwright::mesh

@@ -25,14 +25,20 @@ namespace driftwright::mesh {
 /// Said once by a program whose threads are all made by this library and its OpenMP.
 void all_threads_are_ours();
 
-/// While it lives, in a child of read_apart(), processor time is bounded by the size of the file: 5 s and 60 s more a megabyte. Elsewhere it does nothing.
-/// What is done with the file once it is read takes as long as it takes.
-class ReadingTime {
+/// While it lives, in a child of read_apart(), processor time is bounded; elsewhere it does nothing. Libraries that read damaged files do not always
+/// come to an end.
+class BoundedTime {
  public:
-  explicit ReadingTime(const std::string& path);
-  ~ReadingTime();
-  ReadingTime(const ReadingTime&) = delete;
-  ReadingTime& operator=(const ReadingTime&) = delete;
+  /// @param most_s  [s] from now on; longer ends the process
+  explicit BoundedTime(double most_s);
+  ~BoundedTime();
+  BoundedTime(const BoundedTime&) = delete;
+  BoundedTime& operator=(const BoundedTime&) = delete;
 };
+
+/// What reading a file may take: 5 s of processor time and 60 s more a megabyte.
+[[nodiscard]] double most_to_read_s(const std::string& path);
+/// What meshing may take: 10 s of processor time and a second more for each 200 cells that are expected. Gmsh makes thousands in a second.
+[[nodiscard]] double most_to_mesh_s(double n_cells);
 
 }  // namespace driftwright::mesh

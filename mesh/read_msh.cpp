@@ -183,7 +183,7 @@ RawMesh read_msh(const std::string& path) {
   const GmshSession session;
   try {
     {
-      const ReadingTime limited(path);
+      const BoundedTime bounded(most_to_read_s(path));
       gmsh::open(path);
     }
     return Reader(path).read();

@@ -199,7 +199,7 @@ RawMesh read_vtu(const std::string& path) {
     static std::mutex one_at_a_time;  // VTK's window of words is the whole process's
     const std::lock_guard alone(one_at_a_time);
     VtkWords words;
-    const ReadingTime limited(path);
+    const BoundedTime bounded(most_to_read_s(path));
     try {
       reader->Update();
     } catch (const std::length_error&) {

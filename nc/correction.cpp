@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <map>
 #include <stdexcept>
 
 #include "nc/places.hpp"
@@ -11,19 +14,6 @@ namespace driftwright {
 namespace {
 
 constexpr double kMillimetre_m = 1e-3;
-
-/// "0.0125", "-3", "10": no trailing zeros, no exponent.
-std::string number(double x_m, double unit_m) {
-  std::string text = unit_m == kMillimetre_m ? fmt::format("{:.6f}", x_m / unit_m) : fmt::format("{:.7f}", x_m / unit_m);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text == "-0" ? "0" : text;
-}
-
-/// The work offset's number P: 1 for G54 ... 9 for G59.3.
-int offset_number(int system) {
-  return system <= 590 ? (system - 540) / 10 + 1 : 6 + system - 590;
-}
 
 /// Lines of a text with their ends.
 std::vector<std::string> lines_of(const std::string& bytes) {
@@ -42,106 +32,198 @@ std::string line_end(const std::vector<std::string>& lines, std::size_t i) {
   return like.ends_with("\r\n") ? "\r\n" : "\n";
 }
 
+/// Where a block number and '*' belong in lines of ours, as the program has them.
+struct BlockStyle {
+  bool numbered = false;
+  std::string letter = {};  ///< before the number: "N" or none
+  bool star = false;
+};
+
+bool is_digit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Where the digits of a line's block number stand, or none.
+std::optional<std::pair<std::size_t, std::size_t>> block_number(const std::string& line, const std::string& letter) {
+  std::size_t i = line.find_first_not_of(" \t/");
+  if (i == std::string::npos || line.compare(i, letter.size(), letter) != 0) return std::nullopt;
+  i += letter.size();
+  std::size_t end = i;
+  while (end < line.size() && is_digit(line[end])) ++end;
+  if (end == i || end - i > 9) return std::nullopt;
+  return std::pair{i, end};
+}
+
+BlockStyle style_of(const std::vector<std::string>& lines, const std::vector<NcStep>& steps, NcDialect dialect) {
+  BlockStyle style;
+  if (dialect != NcDialect::kHeidenhainIso && dialect != NcDialect::kKlartext) return style;
+  style.letter = dialect == NcDialect::kHeidenhainIso ? "N" : "";
+  const std::string& line = lines[static_cast<std::size_t>(steps[steps.size() / 2].where.line) - 1];
+  style.numbered = block_number(line, style.letter).has_value();
+  const auto last = line.find_last_not_of(" \t\r\n");
+  style.star = dialect == NcDialect::kHeidenhainIso && last != std::string::npos && line[last] == '*';
+  return style;
+}
+
 class Writer {
  public:
   Writer(const std::string& bytes, const std::vector<NcStep>& steps, const NcOffsetOptions& options)
-      : lines_(lines_of(bytes)), before_(lines_.size()), steps_(steps), options_(options) {}
+      : lines_(lines_of(bytes)),
+        before_(lines_.size() + 1),
+        steps_(steps),
+        options_(options),
+        style_(style_of(lines_, steps, options.dialect)) {}
 
-  /// The offset's own lines, for the axes given.
-  std::vector<std::string> offset_lines(const std::array<bool, 3>& axes, const NcModes& modes) const {
-    const double unit_m = modes.unit_m;
-    const bool absolute = modes.absolute;
-    std::vector<std::string> lines;
-    std::string words;
-    const auto word = [&](int axis) { return number(options_.base_m[axis] + shift_m_[axis], unit_m); };
-    switch (options_.dialect) {
-      case NcDialect::kLinuxCnc:
-        words = fmt::format("G10 L2 P{}", offset_number(options_.work_offset));
-        for (int axis = 0; axis < 3; ++axis) {
-          if (axes[axis]) words += fmt::format(" {}{}", "XYZ"[axis], word(axis));
-        }
-        lines.push_back(words);
-        break;
-      case NcDialect::kSiemens:
-        for (int axis = 0; axis < 3; ++axis) {
-          if (axes[axis]) lines.push_back(fmt::format("$P_BFRAME[{},TR]={}", "XYZ"[axis], word(axis)));
-        }
-        break;
-      case NcDialect::kHeidenhain:
-        words = absolute ? "G54" : "G90 G54";  // its values would be increments in G91
-        for (int axis = 0; axis < 3; ++axis) {
-          if (!options_.axes[axis]) continue;
-          const std::string value = word(axis);
-          words += fmt::format(" {}{}{}", "XYZ"[axis], value.front() == '-' ? "" : "+", value);
-        }
-        lines.push_back(words);
-        if (!absolute) lines.emplace_back("G91");
-        break;
+  void put(std::size_t step, const std::vector<std::string>& lines) { insert(index(step), lines); }
+
+  /// All axes at once, before a block, without any motion.
+  void set_all(std::size_t step, const std::array<double, 3>& shift_m) {
+    const NcModes& modes = steps_[step].before;
+    const std::array<double, 3> from_m = written_m_;
+    for (int axis = 0; axis < 3; ++axis) written_m_[axis] = as_written_m(shift_m[axis], modes.unit_m);
+    insert(index(step), offset_lines(options_, options_.axes, from_m, written_m_, modes));
+  }
+
+  /// What is in force once more, behind a block that has taken it away.
+  void renew(std::size_t step) {
+    const NcStep& own = steps_[step];
+    std::array<bool, 3> axes = {false, false, false};
+    std::array<double, 3> from_m = written_m_;
+    bool any = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      axes[axis] = options_.axes[axis] && own.resets[axis];
+      if (axes[axis]) from_m[axis] = 0.0;
+      any = any || axes[axis];
     }
-    return lines;
+    if (!any) return;
+    NcModes modes = own.before;
+    if (step + 1 < steps_.size()) modes = steps_[step + 1].before;
+    const std::vector<std::string> lines = offset_lines(options_, axes, from_m, written_m_, modes);
+    const auto [place, is_new] = renewed_.emplace(own.where.line, lines);
+    if (is_new) {
+      insert(static_cast<std::size_t>(std::max(own.where.line, own.last_line)), lines);
+    } else if (place->second != lines) {
+      throw InputError(
+          own.where,
+          "this block takes corrections away, and is run again when others are in force; write its part of the program out");
+    }
   }
 
-  /// All axes at once, before a block, without any motion. @returns how many lines stand before it there
-  std::size_t set_all(std::size_t step, const std::array<double, 3>& shift_m) {
-    shift_m_ = shift_m;
-    return insert(step, offset_lines(options_.axes, steps_[step].before));
-  }
+  /// Where a line stands: those before it at its place; of a block run more than once, in which of its runs.
+  struct Mark {
+    std::size_t step = 0, nth = 0;
+    std::optional<std::size_t> group = {};
+  };
 
-  /// What is in force once more, before a block.
-  void renew(std::size_t step) { insert(step, offset_lines(options_.axes, steps_[step].before)); }
-
-  std::size_t change(const NcOffsetChange& change) {
+  Mark change(const NcOffsetChange& change) {
     const NcStep& step = steps_[change.step];
     std::array<bool, 3> axes = {false, false, false};
+    const std::array<double, 3> from_m = written_m_;
     for (int axis = 0; axis < 3; ++axis) {
       axes[axis] = change.shift_m[axis].has_value();
-      if (axes[axis]) shift_m_[axis] = *change.shift_m[axis];
+      if (axes[axis]) written_m_[axis] = as_written_m(*change.shift_m[axis], step.before.unit_m);
     }
-    if (change.share > 0.0) insert(change.step, {part(step, change.share)});
-    const std::size_t at = insert(change.step, offset_lines(axes, step.before));
-    insert(change.step, again(change, axes));
-    return at;
+    std::vector<std::string> lines;
+    if (change.share > 0.0) lines = part(step, change.share);
+    const std::size_t before = lines.size();
+    for (const std::vector<std::string>& more :
+         {offset_lines(options_, axes, from_m, written_m_, step.before), again(change, axes)})
+      lines.insert(lines.end(), more.begin(), more.end());
+    if (step.n_runs == 1) return {change.step, insert(index(change.step), lines) + before};
+    std::vector<Counted>& groups = counted_[index(change.step)];
+    if (groups.empty() || groups.back().nth_run != step.nth_run) groups.push_back({step.nth_run, {}});
+    const std::size_t nth = groups.back().lines.size() + before;
+    groups.back().lines.insert(groups.back().lines.end(), lines.begin(), lines.end());
+    return {change.step, nth, groups.size() - 1};
   }
 
-  CorrectedNcProgram result(const std::vector<std::pair<std::size_t, std::size_t>>& marks) const {
+  /// The counters of blocks that are run more than once, from zero, in front of the program.
+  void begin_counters(std::size_t front) {
+    std::vector<std::string>& place = before_.at(index(front));
+    std::size_t at = 0;
+    for (const auto& [line, groups] : counted_)
+      place.insert(place.begin() + static_cast<std::ptrdiff_t>(at++), fmt::format("{}=0", counter(line)));
+    n_counters_ = {index(front), at};
+    for (const auto& [line, groups] : counted_) {
+      std::vector<std::string> lines = {fmt::format("{}=[{}+1]", counter(line), counter(line))};
+      for (const Counted& group : groups) {
+        const std::string label = fmt::format("o<driftwright_{}_{}>", line + 1, group.nth_run);
+        lines.push_back(fmt::format("{} if [{} EQ {}]", label, counter(line), group.nth_run));
+        lines.insert(lines.end(), group.lines.begin(), group.lines.end());
+        lines.push_back(label + " endif");
+      }
+      insert(line, lines);
+    }
+  }
+
+  CorrectedNcProgram result(const std::vector<Mark>& marks) const {
     CorrectedNcProgram program;
     std::vector<int> first_inserted(lines_.size());  // line in the result of the first line put before line i
     int n = 1;
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-      first_inserted[i] = n;
-      for (const std::string& line : before_[i]) program.text += line + line_end(lines_, i);
-      program.text += lines_[i];
+    long number = -1;  // of the block before
+    for (std::size_t i = 0; i <= lines_.size(); ++i) {
+      if (i < lines_.size()) first_inserted[i] = n;
+      for (const std::string& line : before_[i]) {
+        if (style_.numbered) program.text += fmt::format("{}{} ", style_.letter, ++number);
+        program.text += line + (style_.star ? " *" : "") + line_end(lines_, std::min(i, lines_.size() - 1));
+      }
       n += static_cast<int>(before_[i].size()) + 1;
+      if (i < lines_.size()) program.text += numbered(lines_[i], number);
     }
-    for (const auto& [step, nth] : marks) program.lines.push_back(first_inserted[index(step)] + static_cast<int>(nth));
+    for (const Mark& mark : marks) {
+      const std::size_t line = index(mark.step);
+      std::size_t n_before = mark.nth;
+      if (mark.group) {  // behind the counter, the groups before it and its own `if`
+        n_before += 2;
+        for (std::size_t g = 0; g < *mark.group; ++g) n_before += counted_.at(line)[g].lines.size() + 2;
+      } else if (line == n_counters_.first) {
+        n_before += n_counters_.second;
+      }
+      program.lines.push_back(first_inserted[line] + static_cast<int>(n_before));
+    }
     return program;
   }
 
  private:
+  struct Counted {
+    int nth_run = 1;
+    std::vector<std::string> lines;
+  };
+
+  static std::string counter(std::size_t line) { return fmt::format("#<_driftwright_{}>", line + 1); }
+
   std::size_t index(std::size_t step) const { return static_cast<std::size_t>(steps_[step].where.line) - 1; }
 
-  std::size_t insert(std::size_t step, const std::vector<std::string>& lines) {
-    std::vector<std::string>& place = before_.at(index(step));
+  /// A line of the program, its block number raised where ours have taken it.
+  std::string numbered(const std::string& line, long& number) const {
+    const auto place = style_.numbered ? block_number(line, style_.letter) : std::nullopt;
+    if (!place) return line;
+    const long own = std::stol(line.substr(place->first, place->second - place->first));
+    number = std::max(number + 1, own);
+    if (number == own) return line;
+    return line.substr(0, place->first) + fmt::format("{}", number) + line.substr(place->second);
+  }
+
+  std::size_t insert(std::size_t line, const std::vector<std::string>& lines) {
+    std::vector<std::string>& place = before_.at(line);
     const std::size_t at = place.size();
     place.insert(place.end(), lines.begin(), lines.end());
     return at;
   }
 
-  static std::string part(const NcStep& step, double share) {
-    std::string line = step.kind == NcStepKind::kRapid ? "G0" : "G1";
+  std::vector<std::string> part(const NcStep& step, double share) const {
+    std::array<std::optional<double>, 3> to_m{};
     for (int axis = 0; axis < 3; ++axis) {
-      if (!step.named[axis]) continue;
-      const double x_m = step.start_m[axis] + share * (step.end_m[axis] - step.start_m[axis]);
-      line += fmt::format(" {}{}", "XYZ"[axis], number(x_m, step.before.unit_m));
+      if (step.named[axis]) to_m[axis] = step.start_m[axis] + share * (step.end_m[axis] - step.start_m[axis]);
     }
-    return step.feed_word.empty() ? line : line + " " + step.feed_word;
+    return straight_lines(options_.dialect, step.kind == NcStepKind::kRapid, to_m, step.feed_word, step.before);
   }
 
   /// Commands the axes once more to where they stand, unless the block itself brings them all by rapid.
   std::vector<std::string> again(const NcOffsetChange& change, const std::array<bool, 3>& axes) const {
     const NcStep& step = steps_[change.step];
     const bool on_its_way = change.share > 0.0;
-    std::string words;
+    std::array<std::optional<double>, 3> to_m{};
     bool in_feed = false;
     const std::array<NcEntry, 3> entries = nc_entries(steps_, change.step);
     bool wanted = false;
@@ -152,36 +234,47 @@ class Writer {
       if (!on_its_way && entries[axis] == NcEntry::kNever)
         throw std::logic_error(fmt::format("an offset of {} may not change before line {}", "XYZ"[axis], step.where.line));
       in_feed = on_its_way ? step.kind == NcStepKind::kLine : in_feed || entries[axis] == NcEntry::kStepInFeed;
-      const double x_m = step.start_m[axis] + change.share * (step.end_m[axis] - step.start_m[axis]);
-      words += fmt::format(" {}{}", "XYZ"[axis], number(x_m, step.before.unit_m));
+      to_m[axis] = step.start_m[axis] + change.share * (step.end_m[axis] - step.start_m[axis]);
     }
-    const std::string line = (in_feed ? "G1" : "G0") + words;
-    if (step.before.absolute) return {line};
-    return {"G90 " + line, "G91"};
+    return straight_lines(options_.dialect, !in_feed, to_m, "", step.before);
   }
 
   std::vector<std::string> lines_;
-  std::vector<std::vector<std::string>> before_;
+  std::vector<std::vector<std::string>> before_;  // of each line, and behind the last
   const std::vector<NcStep>& steps_;
   const NcOffsetOptions& options_;
-  std::array<double, 3> shift_m_ = {0, 0, 0};
+  BlockStyle style_;
+  std::array<double, 3> written_m_ = {0, 0, 0};  // corrections in force
+  std::map<int, std::vector<std::string>> renewed_;
+  std::map<std::size_t, std::vector<Counted>> counted_;  // of each line that is run more than once
+  std::pair<std::size_t, std::size_t> n_counters_ = {0, 0};
 };
 
+bool has_inches(NcDialect dialect, const NcStep& step) {
+  return dialect != NcDialect::kLinuxCnc && step.before.unit_m != kMillimetre_m;
+}
+
 void check(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
+  const bool siemens = options.dialect == NcDialect::kSiemens || options.dialect == NcDialect::kSiemensIso;
   for (const NcStep& step : steps) {
+    if (has_inches(options.dialect, step))
+      throw InputError(step.where, "inches; corrections for this control are written in mm, so a program in mm is wanted");
+    if (!options.absolute || siemens) continue;
     if (options.dialect == NcDialect::kLinuxCnc) {
+      if (step.sets_offset || step.own_shift != std::array<bool, 3>{})
+        throw InputError(
+            step.where,
+            "G10, G52 and G92 move the offset that absolute corrections overwrite; `offset: add` goes with them");
       if (step.system && *step.system != options.work_offset) {
-        throw InputError(step.where, fmt::format("{}: corrections go into {}, which `work_offset` names, and into no other",
-                                                 nc_word_name('G', *step.system), nc_word_name('G', options.work_offset)));
+        throw InputError(
+            step.where,
+            fmt::format("{}: absolute offsets go into {}, which `work_offset` names, and into no other; `offset: add` "
+                        "corrects them all",
+                        nc_word_name('G', *step.system), nc_word_name('G', options.work_offset)));
       }
-    } else if (step.before.unit_m != kMillimetre_m) {
-      throw InputError(step.where, "inches; corrections for this control are written in mm, so G21 is wanted");
-    }
-    if (options.dialect == NcDialect::kHeidenhain && (step.system || step.kind == NcStepKind::kMachine)) {
-      throw InputError(
-          step.where,
-          "G53 to G59, G28 and G30: datum shifts and other words of this control, which would undo its corrections "
-          "or mean something else; leave them out");
+    } else if (step.resets[0] || step.resets[1] || step.resets[2]) {
+      throw InputError(step.where,
+                       "a datum shift of the program's own, which absolute offsets would undo; `offset: add` adds to it");
     }
   }
 }
@@ -192,7 +285,7 @@ bool moves(const NcStep& step) {
 
 /// A work offset that nobody names is the one left in force by whoever ran before: G54 after a start, otherwise unknown.
 void check_offset_named(const std::vector<NcStep>& steps, const NcOffsetOptions& options) {
-  if (options.dialect != NcDialect::kLinuxCnc || options.work_offset == 540) return;
+  if (options.dialect != NcDialect::kLinuxCnc || !options.absolute || options.work_offset == 540) return;
   for (const NcStep& step : steps) {
     if (step.system && !step.deletable) return;
     if (!moves(step)) continue;
@@ -203,23 +296,48 @@ void check_offset_named(const std::vector<NcStep>& steps, const NcOffsetOptions&
   }
 }
 
-/// The step that the first offset stands before: the first that moves or turns cutter compensation on, which forbids G10.
-std::size_t front_of(const std::vector<NcStep>& steps) {
+/// The step that the first offset stands before: the first that moves or turns cutter compensation on, which forbids offsets, or the last before it
+/// that is run once only.
+std::size_t front_of(const std::vector<NcStep>& steps, NcDialect dialect) {
   std::size_t first = 0;
   while (first + 1 < steps.size() && !moves(steps[first]) && !steps[first].compensated) ++first;
-  for (std::size_t i = 0; i < first; ++i) {
-    if (steps[i].unit_word && !steps[i].deletable) return first;
+  std::size_t front = first;
+  while (front > 0 && (steps[front].n_runs > 1 || steps[front].where.file != steps.back().where.file)) --front;
+  for (std::size_t i = 0; i < front; ++i) {
+    if (steps[i].unit_word && !steps[i].deletable) return front;
   }
-  throw InputError(
-      steps[first].where,
-      "no unit is stated before this block, and the offset that stands in front of it needs one; write G21 or G20 "
-      "in a block before the first motion, G41 and G42");
+  const bool siemens = dialect == NcDialect::kSiemens;
+  throw InputError(steps[front].where, fmt::format("no unit is stated before this block, and the offset that stands in "
+                                                   "front of it needs one; write {} in a block before "
+                                                   "the first motion, G41 and G42",
+                                                   siemens ? "G710 or G71" : "G21 or G20"));
+}
+
+/// A G92 gives the place where the tool stands another number: it keeps a correction that the axis has, and loses one that it has not come to.
+void check_own_shifts(const std::vector<NcStep>& steps, std::size_t front, const NcOffsetOptions& options) {
+  if (!options.shares_g92) return;
+  for (std::size_t i = front; i < steps.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!options.axes[axis] || !steps[i].own_shift[axis] || steps[i].resets[axis] || steps[i].known[axis]) continue;
+      throw InputError(
+          steps[i].where,
+          fmt::format(
+              "G92 of {}, which no block before has moved in G90: a correction in force would be lost in it; move {} before",
+              "XYZ"[axis], "XYZ"[axis]));
+    }
+  }
 }
 
 /// The line that takes corrections back stands before the last block.
 void check_end(const NcStep& last, std::vector<std::string>& notes) {
   if (last.before.compensated || last.compensated)
-    throw InputError(last.where, "G41 or G42 is still on at the end, where the offset must change; write G40 before it");
+    throw InputError(
+        last.where,
+        "cutter compensation (G41, G42, RL, RR) is still on at the end, where the offset must change; end it before");
+  if (last.no_place || last.n_runs > 1)
+    throw InputError(last.where,
+                     "the end stands in a subprogram or another file, or a mirror, a rotation or a modal cycle is still on "
+                     "there, where the offset must change");
   const bool offset_counts = moves(last) && last.kind != NcStepKind::kMachine;
   if (!offset_counts) return;
   if (last.kind != NcStepKind::kRapid && last.duration_s() > 0.0) {
@@ -230,11 +348,47 @@ void check_end(const NcStep& last, std::vector<std::string>& notes) {
   notes.push_back(fmt::format("line {}: the last block moves; it goes without corrections", last.where.line));
 }
 
+/// What stands in front of the program, for who runs it.
+std::string remark(const NcOffsetOptions& options) {
+  if (options.absolute) {
+    std::string values;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (options.axes[axis]) values += fmt::format(" {}{:g}", "XYZ"[axis], options.base_m[axis] / kMillimetre_m);
+    }
+    const bool linuxcnc = options.dialect == NcDialect::kLinuxCnc,
+               siemens = options.dialect == NcDialect::kSiemens || options.dialect == NcDialect::kSiemensIso;
+    return fmt::format(
+        "driftwright: ABSOLUTE OFFSETS. {} is overwritten, from{} mm on; what the operator has set there is lost",
+        linuxcnc  ? nc_word_name('G', options.work_offset)
+        : siemens ? "The base frame"
+                  : "The datum shift",
+        values);
+  }
+  switch (options.dialect) {
+    case NcDialect::kLinuxCnc:
+      return options.shares_g92 ? "driftwright: corrections of drift added by differences to the G92 or G52 of this "
+                                  "program. After an abort set that anew"
+                                : "driftwright: corrections of drift by G52, added to the work offsets, which stay. After "
+                                  "an abort G92.1 takes them away";
+    case NcDialect::kSiemens:
+    case NcDialect::kSiemensIso:
+      return "driftwright: corrections of drift in the base frame in force, added to the one that is set. A reset takes "
+             "them away";
+    default:
+      return "driftwright: corrections of drift as datum shifts, added to the one in force. After an abort select the "
+             "program anew";
+  }
+}
+
 }  // namespace
 
 CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vector<NcStep>& steps,
                                         const std::array<double, 3>& initial_m, const std::vector<NcOffsetChange>& changes,
-                                        const NcOffsetOptions& options) {
+                                        const NcOffsetOptions& asked) {
+  NcOffsetOptions options = asked;
+  options.shares_g92 =
+      options.dialect == NcDialect::kLinuxCnc &&
+      std::any_of(steps.begin(), steps.end(), [](const NcStep& s) { return s.own_shift != std::array<bool, 3>{}; });
   check(steps, options);
   check_offset_named(steps, options);
   if (changes.empty() && initial_m == std::array<double, 3>{0, 0, 0}) return {bytes, {}};
@@ -242,26 +396,32 @@ CorrectedNcProgram corrected_nc_program(const std::string& bytes, const std::vec
   Writer writer(bytes, steps, options);
   std::vector<std::string> notes;
   check_end(steps.back(), notes);
-  const std::size_t first = front_of(steps);
-  std::vector<std::pair<std::size_t, std::size_t>> marks;
-  (void)writer.set_all(first, initial_m);
+  const std::size_t first = front_of(steps, options.dialect);
+  check_own_shifts(steps, first, options);
+  std::vector<Writer::Mark> marks;
+  writer.put(first, {remark_line(options.dialect, remark(options))});
+  writer.put(first, guard_lines(options));
+  writer.set_all(first, initial_m);
   std::size_t next = first;
-  const auto renew_until = [&](std::size_t end) {  // a settable offset loads the base frame again (Siemens)
+  const auto renew_until = [&](std::size_t end) {
     for (; next < end; ++next) {
-      if (options.dialect != NcDialect::kSiemens || !steps[next].system) continue;
-      if (moves(steps[next]))
-        throw InputError(steps[next].where,
+      const NcStep& step = steps[next];
+      const bool resets = step.resets[0] || step.resets[1] || step.resets[2];
+      if (!resets) continue;
+      if (moves(step) && options.dialect != NcDialect::kLinuxCnc)
+        throw InputError(step.where,
                          "this control may load its base frame again at a work offset, so the offset is wanted "
                          "in a block of its own, before the motion");
-      writer.renew(next + 1);
+      writer.renew(next);
     }
   };
   for (const NcOffsetChange& change : changes) {
     renew_until(change.step);
-    marks.emplace_back(change.step, writer.change(change));
+    marks.push_back(writer.change(change));
   }
   renew_until(steps.size() - 1);
-  (void)writer.set_all(steps.size() - 1, {0, 0, 0});
+  writer.set_all(steps.size() - 1, {0, 0, 0});
+  writer.begin_counters(first);
   CorrectedNcProgram corrected = writer.result(marks);
   corrected.notes = std::move(notes);
   return corrected;

@@ -8,7 +8,8 @@ constexpr std::array<NcEntry, 3> kNowhere = {NcEntry::kNever, NcEntry::kNever, N
 /// @param next_motion  the block itself or the next one after it that moves
 std::array<NcEntry, 3> entries(const NcStep& step, const NcStep* next_motion) {
   std::array<NcEntry, 3> result = kNowhere;
-  if (step.deletable || step.before.compensated || step.compensated || step.before.drilling()) return result;
+  if (step.no_place || step.deletable || step.before.compensated || step.compensated || step.before.drilling())
+    return result;
   const std::optional<int>& motion = step.before.motion;
   const bool straight = motion && (*motion == 0 || *motion == 10), arc = motion && (*motion == 20 || *motion == 30);
   // A line of its own leaves G0 or G1 in force: nobody may go on with another motion word that is not written.
@@ -51,6 +52,7 @@ std::string why_not_divisible(const NcStep& step) {
   if (step.kind == NcStepKind::kDrilling) return "a canned cycle";
   if (step.kind == NcStepKind::kMachine) return "in machine coordinates";
   if (step.before.compensated || step.compensated) return "cutter compensation";
+  if (step.no_place) return step.n_runs > 1 ? "it is run more than once" : "mirrored, turned, or within a modal cycle";
   if (step.deletable) return "a block that '/' may leave out";
   if (step.before.drilling()) return "it ends a canned cycle";
   if (!step.absolute || !step.before.absolute) return "G91";

@@ -19,7 +19,7 @@ enum class NcEntry {
 /// Entry of each axis before the block `step`.
 ///
 /// kNever: before, in and after a series of canned cycles until G80 or another motion word has ended it (its sticky levels), with
-/// cutter compensation on (the contour looks ahead), before a block with '/', and, where a line of its own would be wanted: while
+/// cutter compensation on (the contour looks ahead), before a block with '/' or with NcStep::no_place, and, where a line of its own would be wanted: while
 /// the axis is not NcStep::known (after G28, G53, M6, G43, G54, '/' and the like until a G90 block names it again); where the next motion block has
 /// no motion word and goes on with an arc; and in feed without a feed per minute in force.
 /// @param step  < steps.size()

@@ -1,31 +1,39 @@
 #pragma once
-// What an NC program (RS-274, ISO 6983) makes the machine do over time: spindle speeds and travels of the axes.
+// What an NC program makes the machine do over time: spindle speeds and travels of the axes.
 //
-// Words with a meaning here, as the LinuxCNC documentation ("G-Codes", "M-Codes", "G-code Overview") defines them unless said
-// otherwise; the order of execution within a block is LinuxCNC's, too:
+// Siemens' language, and Heidenhain's two, are told in siemens_reader, heidenhain_reader and klartext_reader. Words of RS-274 (ISO 6983) with a
+// meaning here, as the LinuxCNC documentation ("G-Codes", "M-Codes", "O Codes", "G-code Overview") defines them unless said otherwise; the order of
+// execution within a block is LinuxCNC's, too:
 //   G0 G1 G2 G3 (I J K or R, P turns)       straight lines and arcs; the feed holds along the path, helix included
 //   G4 P | X | U                            dwell: P in NcSettings::dwell_P_s, X and U in seconds (Fanuc)
+//   G10 L2 L20, G52 G92 G92.1 G92.2         shifts of the origin; G54 ... G59.3: counted as if in the one before, with a note, where nobody says
+//                                           what they hold (NcSettings::parameters, G10 L2)
 //   G17 G18 G19  G20 G21  G90 G91  G90.1 G91.1   planes, inch and mm, absolute and incremental. G20 and G21 hold for their
 //                                           whole block, F included (LinuxCNC would read F before)
 //   G28 G30 G53                             need NcSettings::machine_zero_m: G28 and G30 end at it, G53 counts from it
-//   G73 G81 G82 G83 G84 G85 G80 G98 G99     canned cycles (nc_drilling.hpp); Z R Q P hold within an unbroken series
+//   G38.2 G38.3 G38.4 G38.5                 as if the probe touched at the end of its way, with a note
+//   G73 G81 G82 G83 G84 G85 G80 G98 G99     canned cycles (nc/drilling.hpp); Z R Q P hold within an unbroken series
 //   G93 G94 G95, F, S, T                    each of the three forgets the feed before it
 //   M0 M1 M60  M2 M30                       halt without time; end
 //   M3 M4 M5 M19                            spindle. S alone does not turn it; M3 at S0 waits for an S. M19 stops it
 //   M6                                      takes NcSettings::tool_change_s; the spindle stands during and after it, until the
 //                                           next M3 or M4 (one in the same block counts: it comes after the change)
-// Without effect on times and speeds: D H T, G40 G43 G49 G61 G61.1 G64 (P Q) G69 G97 G15, G54 first in the program, M7 M8 M9 M48
-// M49. Without effect, with a note: G41 G42 (the path is counted along the programmed contour) and any change of G54 ... G59.3
-// (positions are counted as if in the one before). Everything else is an InputError, unless NcSettings::ignored names it.
+//   M98 M99, O words, #parameters, [ ]      nc/iso_source.hpp
+// Without effect on times and speeds: D H T, G40 G43 G49 G61 G61.1 G64 (P Q) G69 G97 G15, G54 first in the program, G10 L1 L10 L11, M7 M8 M9 M48
+// M49. Without effect, with a note: G41 G42 (the path is counted along the programmed contour) and M words that are not known here. Every other
+// G word is an InputError, unless NcSettings::ignored names it.
 // At the start: axes at 0 of the program, G17 G21 G90 G91.1 G94 G98 (LinuxCNC starts with G99), no motion word, no feed, spindle
 // at rest.
 
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "nc/dialect.hpp"
+#include "nc/limits.hpp"
 #include "nc/step.hpp"
 
 namespace driftwright {
@@ -36,12 +44,16 @@ struct NcSettings {
   double dwell_P_s = 1.0;               ///< seconds that P1 lasts with G4 and in canned cycles: 1, or 1e-3 as Fanuc has it
   std::optional<std::array<double, 3>> machine_zero_m;  ///< in the coordinates of the program
   std::set<std::string> ignored;                        ///< G and M words to pass over with their P Q R L E, such as "M88"
+  NcControl control = NcControl::kLinuxCnc;             ///< whose language it is
+  std::map<int, double> parameters = {};  ///< numbered ones that the machine holds, such as 5221 of G54 in mm (LinuxCNC)
+  std::optional<NcLimits> limits = {};    ///< of the axes; none: every speed is kept as programmed
 };
 
 struct NcProgram {
   std::vector<NcMove> moves;
   std::vector<NcStep> steps;       ///< its blocks in their order, the last one ends it
   std::vector<std::string> notes;  ///< words that might matter and were passed over, with their lines
+  NcDialect dialect = NcDialect::kLinuxCnc;
 
   [[nodiscard]] double duration_s() const;
 };

@@ -34,6 +34,7 @@ struct NcModes {
 
 struct NcStep {
   Where where = {};
+  int last_line = 0;  ///< of the file, where a block has several; 0: that of `where`
   double start_s = 0.0, end_s = 0.0;
   NcStepKind kind = NcStepKind::kNone;
   std::array<double, 3> start_m = {0, 0, 0}, end_m = {0, 0, 0};  ///< in the coordinates of the program
@@ -52,6 +53,15 @@ struct NcStep {
   std::string feed_word = {};      ///< its F as written, or empty
   std::optional<int> system = {};  ///< G54 ... G59.3 where it names one, times ten
   bool ends_program = false;       ///< M2, M30, the last '%'
+  bool no_place = false;        ///< no line of ours may stand before it: mirrored, turned or scaled, or run more than once
+  int nth_run = 1, n_runs = 1;  ///< of its line, which loops and subprograms run again
+  /// Axes whose corrections it takes away, as a datum shift or a work offset of the program's own does on some controls.
+  std::array<bool, 3> resets = {false, false, false};
+  std::array<std::optional<double>, 3> local_shift_m = {};  ///< of a G52 of the program's own (LinuxCNC)
+  std::array<bool, 3> own_shift = {
+      false, false, false};  ///< axes of a G52 or G92 of the program's own (LinuxCNC), whose place corrections share
+  bool sets_offset = false;  ///< G10 L2, L20 (LinuxCNC)
+  bool certain = true;       ///< false: where it ends is known only at the machine (a probe, an offset read from it)
 
   [[nodiscard]] double duration_s() const { return end_s - start_s; }
 };

@@ -15,7 +15,7 @@ const std::map<NcCode, const char*>& g_groups() {  // of one group, a block may 
     const auto add = [&](const char* group, std::initializer_list<NcCode> codes) {
       for (NcCode c : codes) g[c] = group;
     };
-    add("motion", {0, 10, 20, 30, 730, 800, 810, 820, 830, 840, 850});
+    add("motion", {0, 10, 20, 30, 382, 383, 384, 385, 730, 800, 810, 820, 830, 840, 850});
     add("plane", {170, 180, 190});
     add("distance", {900, 910});
     add("arc centre", {901, 911});
@@ -31,7 +31,10 @@ const std::map<NcCode, const char*>& g_groups() {  // of one group, a block may 
     add("rotation", {690});
     add("reference point", {280, 300});
     add("dwell", {40});
+    add("settings", {100});
+    add("origin", {520, 920, 921, 922});
     add("machine coordinates", {530});
+    add("language", {2900, 2910});
     return g;
   }();
   return groups;
@@ -49,19 +52,20 @@ const char* hint(char letter, NcCode code) {
   if (letter == 'G') {
     if (code >= 50 && code <= 53) return "splines are not computed here; let the CAM system write lines and arcs";
     if (code == 330 || code == 331 || code == 760) return "threading is not computed here; write G1 with G95";
-    if (code == 100 || code == 520 || (code >= 920 && code <= 923))
-      return "shifts of the origin are not followed here; write the program about one origin";
+    if (code == 923) return "what G92.1 and G92.2 have stored is not followed here; write G92 or G52 once more";
     if (code == 680 || code == 510 || code == 500 || code == 160)
       return "rotation, scaling and polar coordinates are not computed here";
     if (code == 960) return "constant surface speed is not computed here; write the spindle speeds with G97";
-    if (code >= 382 && code <= 385) return "probing ends nobody knows when; leave it out";
     if (code == 650 || code == 660) return "macros are not run here; let the post-processor write them out";
     if (code == 740 || (code >= 860 && code <= 890))
       return "of the canned cycles G73, G81 to G85 are known; write the others out";
   }
-  if (letter == 'M' && (code == 970 || code == 980 || code == 990))
-    return "subprograms are not called here; let the post-processor write them out";
+  if (letter == 'M' && code == 970) return "subprograms are called by M98 here";
   return "its effect on times and speeds is not known here; if it has none, name it under `ignore`";
+}
+
+bool is_call(NcCode m) {
+  return m == 970;
 }
 
 }  // namespace
@@ -113,6 +117,15 @@ std::optional<double> NcWords::take(char letter) {
   return block_.words[i].value;
 }
 
+bool NcWords::certain(char letter) const {
+  const std::size_t i = find(letter);
+  return i >= used_.size() || block_.words[i].certain;
+}
+
+void NcWords::take_all(const std::string& letters) {
+  for (const char letter : letters) (void)take(letter);
+}
+
 double NcWords::take_not_negative(char letter) {
   const std::size_t i = find(letter);
   const double value = take(letter).value();
@@ -141,7 +154,12 @@ std::vector<NcCode> NcWords::take_codes(char letter, const std::set<std::string>
       continue;
     }
     const auto group = groups.find(code);
-    if (group == groups.end()) fail(i, hint(letter, code));
+    if (group == groups.end()) {
+      if (letter == 'G' || is_call(code)) fail(i, hint(letter, code));
+      unknown_.push_back(nc_word_name(letter, code));
+      pardoned_ = "PQRLE";
+      continue;
+    }
     for (NcCode other : codes) {
       if (std::string(groups.at(other)) == group->second) {
         fail(i, fmt::format("it contradicts {} in the same block (group: {})", nc_word_name(letter, other), group->second));

@@ -32,12 +32,18 @@ class NcWords {
   [[nodiscard]] bool has_any(const std::string& letters) const;
   /// An unused word's value, now used.
   std::optional<double> take(char letter);
+  /// Whether an unused word's value is known before the program runs; true where there is none.
+  [[nodiscard]] bool certain(char letter) const;
+  /// All unused words of those letters, now used.
+  void take_all(const std::string& letters);
   /// The same of a word that is there. @throws InputError  for a value below zero; for one that is no count from 1 to 100000
   double take_not_negative(char letter);
   int take_count(char letter);
-  /// G or M codes in their order, all used now; those of `ignored` are left out, and with them the words P Q R L E.
-  /// @throws InputError  for a code that is not known here, with a hint, and for two of one group
+  /// G or M codes in their order, all used now; those of `ignored` are left out, and with them the words P Q R L E. So are M codes that
+  /// are not known here: unknown() has them.
+  /// @throws InputError  for a G code that is not known here, with a hint, and for two of one group
   std::vector<NcCode> take_codes(char letter, const std::set<std::string>& ignored);
+  [[nodiscard]] const std::vector<std::string>& unknown() const { return unknown_; }
   /// @throws InputError  for the first word that nobody has used
   void reject_unused() const;
 
@@ -47,6 +53,7 @@ class NcWords {
   const NcBlock& block_;
   std::vector<bool> used_;
   std::string pardoned_;
+  std::vector<std::string> unknown_;
 };
 
 }  // namespace driftwright

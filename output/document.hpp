@@ -128,7 +128,13 @@ struct Preformatted {
   std::string text = {};
 };
 
-using Block = std::variant<Value, Table, Verdict, Text, Notes, Preformatted, Plot, Bars>;
+/// A drawing that is made already, for the page.
+struct Picture {
+  std::string title = {};
+  std::string svg = {};  ///< an <svg> element with a viewBox, as draw_machine() makes it
+};
+
+using Block = std::variant<Value, Table, Verdict, Text, Notes, Preformatted, Plot, Bars, Picture>;
 
 /// One of several alike, such as the results of one cyclogram: an element of the JSON list of its section's key, and the first cell of each
 /// row of its tables in CSV, under the item's key.

@@ -78,6 +78,7 @@ class Page {
   }
   void add(const Plot& plot) { blocks_.emplace_back(plot); }
   void add(const Bars& bars) { blocks_.emplace_back(bars); }
+  void add(const Picture& picture) { blocks_.emplace_back(html::Picture{picture.title, picture.svg}); }
 
   std::vector<html::ReportBlock> blocks_;
 };

@@ -151,6 +151,7 @@ class Writer {
   void add(const Value&) {}  // in flush()
   void add(const Plot&) {}   // pictures are no text
   void add(const Bars&) {}
+  void add(const Picture&) {}
 
   TextOptions options_;
   std::string text_;

@@ -144,6 +144,12 @@ std::string html(const Bars& bars) {
   return out + "</table></div>\n";
 }
 
+std::string html(const Picture& picture) {
+  return fmt::format("<figure>{}\n{}</figure>\n",
+                     picture.title.empty() ? "" : fmt::format("<figcaption>{}</figcaption>", escaped(picture.title)),
+                     picture.svg);
+}
+
 std::string legend(const Plot& plot) {
   std::string items;
   const auto add = [&](const std::string& kind, const std::string& color, const std::string& label) {

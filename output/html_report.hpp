@@ -36,7 +36,13 @@ struct Table {
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as headers
 };
 
-using ReportBlock = std::variant<Heading, Paragraph, Verdict, Table, Plot, Preformatted, Bars>;
+/// An <svg> element as it is.
+struct Picture {
+  std::string title = {};
+  std::string svg = {};
+};
+
+using ReportBlock = std::variant<Heading, Paragraph, Verdict, Table, Plot, Preformatted, Bars, Picture>;
 
 struct Report {
   std::string title = {};

@@ -57,6 +57,7 @@ struct Skin {
   std::vector<std::array<int, 3>> triangle;
   std::vector<int> part;
   std::vector<int> surface;  ///< of each triangle, -1: has no name
+  std::vector<int> region;   ///< of each triangle
 };
 
 Skin skin_of(const mesh::Mesh& mesh) {
@@ -77,9 +78,20 @@ Skin skin_of(const mesh::Mesh& mesh) {
       skin.triangle.push_back(t);
       skin.part.push_back(part);
       skin.surface.push_back(surface);
+      skin.region.push_back(region);
     }
   });
   return skin;
+}
+
+/// A side of a joint lies inside the machine; the reader of a mesh names it a/b@a.
+bool is_joint_side(const mesh::Mesh& mesh, int surface) {
+  return surface >= 0 && mesh.surfaces[static_cast<std::size_t>(surface)].find('@') != std::string::npos;
+}
+
+/// The dark end of the map would hide how a cold body is shaped.
+std::array<float, 3> colour_of(double share) {
+  return inferno(0.15 + 0.85 * share);
 }
 
 /// Labels in a column beside a view, each with a line to its point; none covers another.
@@ -123,7 +135,7 @@ std::string colour_bar(const PictureField& field, double low, double high, doubl
   std::string out;
   for (int i = 0; i < kSteps; ++i) {
     out += fmt::format("<rect x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"12\" fill=\"{}\"/>\n",
-                       x + width * i / kSteps, y, width / kSteps + 0.3, hex(inferno((i + 0.5) / kSteps)));
+                       x + width * i / kSteps, y, width / kSteps + 0.3, hex(colour_of((i + 0.5) / kSteps)));
   }
   for (int i = 0; i <= 4; ++i) {
     out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.1f}</text>\n", x + width * i / 4.0,
@@ -140,7 +152,10 @@ std::string draw_machine(const MachinePicture& picture) {
   if (mesh.cells.size() == 0) throw std::logic_error("draw_machine: a mesh without cells");
   if (picture.field && picture.field->value.size() != mesh.n_nodes())
     throw std::logic_error("draw_machine: a field of another mesh");
-  const Skin skin = skin_of(mesh);
+  Skin skin = skin_of(mesh);
+  if (picture.field) {  // kept machines know regions alone, and a picture must not tell whether the machine was known
+    for (std::size_t i = 0; i < skin.part.size(); ++i) skin.part[i] = skin.region[i];
+  }
   ColouredSurface surface{.point = mesh.coords, .triangle = skin.triangle, .colour = {}, .part = skin.part};
   const double size_m = (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).norm();
   double magnified = 0.0;
@@ -157,12 +172,12 @@ std::string draw_machine(const MachinePicture& picture) {
   if (picture.field) {
     low = picture.field->value.minCoeff();
     high = std::max(picture.field->value.maxCoeff(), low + 1e-9);
-    for (double v : picture.field->value) surface.colour.push_back(inferno((v - low) / (high - low)));
+    for (double v : picture.field->value) surface.colour.push_back(colour_of((v - low) / (high - low)));
   } else {
     // Points that surfaces share would mix their colours: each triangle has points of its own.
     Eigen::Matrix3Xd own(3, 3 * static_cast<Eigen::Index>(skin.triangle.size()));
     for (std::size_t i = 0; i < skin.triangle.size(); ++i) {
-      const int name = skin.surface[i];
+      const int name = is_joint_side(mesh, skin.surface[i]) ? -1 : skin.surface[i];
       if (name >= 0) shown_surfaces.insert(name);
       for (int k = 0; k < 3; ++k) {
         const auto to = static_cast<int>(3 * i) + k;

@@ -139,6 +139,7 @@ PYBIND11_MODULE(core, m) {
       .def_readonly("parameters", &Cause::parameters)
       .def_readonly("log_evidence_gain", &Cause::log_evidence_gain)
       .def_readonly("is_written", &Cause::is_written)
+      .def_readonly("why_not_written", &Cause::why_not_written)
       .def_readonly("alternatives", &Cause::alternatives)
       .def("__repr__", [](const Cause& c) { return c.standing + ": " + c.effect + " at " + c.where; });
   py::class_<ChannelGain>(m, "ChannelGain")

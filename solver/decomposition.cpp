@@ -1,6 +1,6 @@
 #include "solver/decomposition.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "base/dense.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -57,12 +57,12 @@ const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient, bool
     if (e.offset.size() > 0) offset += c * e.offset;
   }
   if (unit_mass_) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+    const dense::SymmetricEigen eigen(k);
     d.lambda_1_s = eigen.eigenvalues();
     d.vectors = eigen.eigenvectors();
     d.to_modes = d.vectors.transpose();
   } else {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k, system_.mass);
+    const dense::GeneralizedSymmetricEigen eigen(k, system_.mass);
     d.lambda_1_s = eigen.eigenvalues();
     d.vectors = eigen.eigenvectors();
     d.to_modes.noalias() = d.vectors.transpose() * system_.mass;

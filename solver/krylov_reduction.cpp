@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "solver/conduction_factor.hpp"
 #include "solver/reduced_model.hpp"
@@ -137,7 +136,7 @@ Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const 
 /// Reduced states after a step of each input, one block of columns per time.
 Eigen::MatrixXd step_states(const Eigen::MatrixXd& k, const Eigen::MatrixXd& loads, Eigen::Index start,
                             const std::vector<double>& times_s) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+  const dense::SymmetricEigen eigen(k);
   const Eigen::MatrixXd f = eigen.eigenvectors().transpose() * loads;
   Eigen::MatrixXd states(k.rows(), loads.cols() * static_cast<Eigen::Index>(times_s.size()));
   for (std::size_t t = 0; t < times_s.size(); ++t) {
@@ -249,7 +248,8 @@ class Reducer {
     std::vector<Eigen::VectorXd> steady;
     for (std::size_t p = 0; p < inputs_.size(); ++p) {
       const Eigen::VectorXd load = inputs_[p].loads.leftCols(inputs_[p].n_steps()).rowwise().sum();
-      steady.push_back(basis_.vectors() * basis_.reduced_stiffness(p).llt().solve(basis_.vectors().transpose() * load));
+      steady.push_back(basis_.vectors() *
+                       dense::solve_definite(basis_.reduced_stiffness(p), basis_.vectors().transpose() * load));
     }
     for (std::size_t p = 0; p < inputs_.size(); ++p) {
       Eigen::MatrixXd& loads = inputs_[p].loads;
@@ -286,7 +286,7 @@ class Reducer {
                           m_diagonal = Eigen::VectorXd(system_.mass.diagonal())(basis_.rows());
     for (std::size_t j = 0; j < shifts_1_s_.size(); ++j) {
       const double s = shifts_1_s_[j];
-      const Eigen::MatrixXd z = (k + s * Eigen::MatrixXd::Identity(k.rows(), k.cols())).llt().solve(f);
+      const Eigen::MatrixXd z = dense::solve_definite(k + s * Eigen::MatrixXd::Identity(k.rows(), k.cols()), f);
       const Eigen::MatrixXd residual = loads - basis_.k_rows(p) * z - s * (basis_.m_rows() * z);
       const Eigen::VectorXd weight = (k_diagonal + s * m_diagonal).cwiseInverse();
       const Eigen::VectorXd energy = (residual.cwiseAbs2().transpose() * weight);
@@ -313,8 +313,7 @@ class Reducer {
     Eigen::MatrixXd kept(n, n_kept);
     kept.col(0) = basis_.m_vectors().transpose() * system_.ones;
     if (inputs_[0].start >= 0) kept.col(1) = basis_.m_vectors().transpose() * start_;
-    const Eigen::MatrixXd held =
-        Eigen::HouseholderQR<Eigen::MatrixXd>(kept).householderQ() * Eigen::MatrixXd::Identity(n, kept.cols());
+    const Eigen::MatrixXd held = dense::orthonormal_from(kept).leftCols(kept.cols());
     std::vector<Eigen::MatrixXd> k, f, states;
     Eigen::Index n_states = 0;
     for (std::size_t p = 0; p < inputs_.size(); ++p) {
@@ -329,11 +328,10 @@ class Reducer {
       all.middleCols(at, states[static_cast<std::size_t>(p)].cols()) = states[static_cast<std::size_t>(p)];
     }
     all -= held * (held.transpose() * all);
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(all, Eigen::ComputeFullU);
+    const dense::SingularValues svd = dense::SingularValues::with_full_u(all);
     Eigen::MatrixXd directions(n, n);
-    directions << held, svd.matrixU().leftCols(n - held.cols());
-    directions =
-        Eigen::HouseholderQR<Eigen::MatrixXd>(directions).householderQ();  // clean where singular values are rounding
+    directions << held, svd.u.leftCols(n - held.cols());
+    directions = dense::orthonormal_from(directions);  // clean where singular values are rounding
     const auto truncation = [&](Eigen::Index size) {
       const Eigen::MatrixXd u = directions.leftCols(size), c = basis_.outputs() * u;
       std::vector<Eigen::MatrixXd> found;

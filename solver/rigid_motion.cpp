@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <map>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "solver/sparse.hpp"
 
@@ -46,7 +45,7 @@ struct Hold {
 
 /// The directions in which a stiffness resists, soft or stiff.
 Eigen::Matrix3d directions_of(const Eigen::Matrix3d& stiffness_N_m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stiffness_N_m);
+  const dense::SymmetricEigen eigen(stiffness_N_m);
   Eigen::Matrix3d projector = Eigen::Matrix3d::Zero();
   for (int i = 0; i < 3; ++i) {
     if (eigen.eigenvalues()[i] > 1e-12 * eigen.eigenvalues()[2]) {
@@ -88,7 +87,7 @@ Matrix6d resistance(const std::vector<Hold>& holds, const Frame& frame) {
   const MeanSquares in_frame = mean_squares(holds, frame);
   if (error2 == 0.0) return in_frame.stopped;
   const MeanSquares own = mean_squares(holds, {box.center(), box.diagonal().norm()});
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(own.stopped);
+  const dense::SymmetricEigen eigen(own.stopped);
   double in_doubt = 0.0;
   for (int i = 0; i < 6; ++i) {
     const Vector6d motion = eigen.eigenvectors().col(i);
@@ -141,20 +140,19 @@ std::string axis_words(const Eigen::Vector3d& direction, const Eigen::Vector3d& 
 /// A space of motions in words. Translations first; then turns, whose axis has a place only where no translation moves it.
 std::string motion_words(const Motions& motions, const Frame& frame) {
   std::vector<std::string> words;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> turns(motions.bottomRows<3>(), Eigen::ComputeThinU | Eigen::ComputeFullV);
+  const auto turns = dense::SingularValues::with_u_and_full_v(motions.bottomRows<3>());
   Eigen::Index n_turns = 0;
-  while (n_turns < turns.singularValues().size() && turns.singularValues()[n_turns] > kSmall) ++n_turns;
+  while (n_turns < turns.sigma.size() && turns.sigma[n_turns] > kSmall) ++n_turns;
   const Eigen::Index n_shifts = motions.cols() - n_turns;
   Eigen::Matrix3Xd shifts(3, n_shifts);
   if (n_shifts > 0) {
-    const Eigen::Matrix3Xd all = motions.topRows<3>() * turns.matrixV().rightCols(n_shifts);
-    shifts = Eigen::JacobiSVD<Eigen::MatrixXd>(all, Eigen::ComputeThinU).matrixU().leftCols(n_shifts);
+    const Eigen::Matrix3Xd all = motions.topRows<3>() * turns.v.rightCols(n_shifts);
+    shifts = dense::SingularValues::with_u(all).u.leftCols(n_shifts);
   }
   for (const Eigen::Vector3d& v : plain_basis(shifts)) words.push_back("translate along " + direction_words(v));
-  for (const Eigen::Vector3d& w : plain_basis(turns.matrixU().leftCols(n_turns))) {
-    const Eigen::VectorXd factors = turns.matrixV().leftCols(n_turns) *
-                                    turns.singularValues().head(n_turns).cwiseInverse().asDiagonal() *
-                                    (turns.matrixU().leftCols(n_turns).transpose() * w);
+  for (const Eigen::Vector3d& w : plain_basis(turns.u.leftCols(n_turns))) {
+    const Eigen::VectorXd factors = turns.v.leftCols(n_turns) * turns.sigma.head(n_turns).cwiseInverse().asDiagonal() *
+                                    (turns.u.leftCols(n_turns).transpose() * w);
     Eigen::Vector3d t_m = frame.size_m * motions.topRows<3>() * factors;  // per radian
     t_m -= shifts * (shifts.transpose() * t_m);
     const double pitch_m = t_m.dot(w);
@@ -232,7 +230,7 @@ void require_held(const Mesh& mesh, const std::vector<SpringLayer>& layers, cons
       for (int i = 0; i < 6; ++i) rows.push_back(6 * p + i);
     }
     if (parts.empty()) continue;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(form(rows, rows));
+    const dense::SymmetricEigen eigen(form(rows, rows));
     const double largest = eigen.eigenvalues().tail<1>()[0];
     Eigen::Index n_free = 0;
     while (n_free < eigen.eigenvalues().size() && !(eigen.eigenvalues()[n_free] > kFree * largest)) ++n_free;
@@ -240,10 +238,10 @@ void require_held(const Mesh& mesh, const std::vector<SpringLayer>& layers, cons
     std::map<std::string, std::vector<std::string>> regions_that;  // motion -> regions
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const Motions all = eigen.eigenvectors().block(6 * static_cast<Eigen::Index>(i), 0, 6, n_free);
-      const Eigen::JacobiSVD<Eigen::MatrixXd> own(all, Eigen::ComputeThinU);
+      const auto own = dense::SingularValues::with_u(all);
       Eigen::Index rank = 0;
-      while (rank < own.singularValues().size() && own.singularValues()[rank] > kSmall) ++rank;
-      if (rank > 0) regions_that[motion_words(own.matrixU().leftCols(rank), frame)].push_back(region_of[parts[i]]);
+      while (rank < own.sigma.size() && own.sigma[rank] > kSmall) ++rank;
+      if (rank > 0) regions_that[motion_words(own.u.leftCols(rank), frame)].push_back(region_of[parts[i]]);
     }
     for (const auto& [motion, regions] : regions_that) {
       std::string with;

@@ -1,7 +1,8 @@
 #include "solver/slope_space.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "base/dense.hpp"
 
 namespace driftwright::solver {
 
@@ -55,7 +56,7 @@ void SlopeSpace::guess(double gamma, const double* b, double* x, double* residua
   for (int j = 0; j < m; ++j) {
     if (a(j, j) > kLeastEigenvalue * kLeastEigenvalue * a.diagonal().maxCoeff()) unit[j] = 1.0 / std::sqrt(a(j, j));
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(unit.asDiagonal() * a * unit.asDiagonal());
+  const dense::SymmetricEigen parts(unit.asDiagonal() * a * unit.asDiagonal());
   Eigen::VectorXd share = parts.eigenvectors().transpose() * unit.cwiseProduct(projected);
   for (int j = 0; j < m; ++j) {
     const double eigenvalue = parts.eigenvalues()[j];

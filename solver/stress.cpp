@@ -1,10 +1,10 @@
 #include "solver/stress.hpp"
 
-#include <Eigen/QR>
 #include <array>
 #include <cmath>
 #include <map>
 
+#include "base/dense.hpp"
 #include "mesh/topology.hpp"
 
 namespace driftwright::solver {
@@ -29,7 +29,7 @@ Eigen::MatrixXd extension(mesh::CellShape shape) {
   Eigen::MatrixXd at_points(n_points, n_terms), at_nodes(nodes.size(), n_terms);
   for (Eigen::Index i = 0; i < n_points; ++i) at_points.row(i) = polynomial(points[static_cast<std::size_t>(i)].xi, n_terms);
   for (std::size_t i = 0; i < nodes.size(); ++i) at_nodes.row(static_cast<Eigen::Index>(i)) = polynomial(nodes[i], n_terms);
-  return at_nodes * at_points.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(n_points, n_points));
+  return at_nodes * dense::least_squares(at_points, Eigen::MatrixXd::Identity(n_points, n_points));
 }
 
 Stress stress_in(const CellPoint& p, const Material& material, const Eigen::VectorXd& u_m, const Eigen::VectorXd& theta_K) {

@@ -3,12 +3,12 @@
 #include <Spectra/SymGEigsShiftSolver.h>
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "solver/conduction_factor.hpp"
 
@@ -53,7 +53,7 @@ struct MassProduct {
 ThermalModes dense_modes(const FullSystem& system, const effects::Inputs& at, int n_modes) {
   const SparseRow k = stiffness_at(system, at);
   require_way_out(k);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen{Eigen::MatrixXd(k), Eigen::MatrixXd(system.mass)};
+  const dense::GeneralizedSymmetricEigen eigen(Eigen::MatrixXd(k), Eigen::MatrixXd(system.mass));
   ThermalModes modes{eigen.eigenvectors().leftCols(n_modes), {}};
   for (int i = 0; i < n_modes; ++i) modes.time_constant_s.push_back(1.0 / eigen.eigenvalues()[i]);
   return modes;

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <filesystem>
 
+#include "base/parallel.hpp"
 #include "base/quantity.hpp"
 #include "base/random.hpp"
 #include "compensation/judging/model_scatter.hpp"
@@ -214,21 +214,8 @@ compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const
   }
   listener.begin(fmt::format("simulating {} runs", jobs.size()));
   std::vector<compensation::ObservedRun> runs(jobs.size());
-  std::vector<std::exception_ptr> failures(jobs.size());
-  std::size_t n_done = 0;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    try {
-      runs[i] = simulate(scenario, model, jobs[i]);
-    } catch (...) {
-      failures[i] = std::current_exception();  // none may leave the parallel loop
-    }
-#pragma omp critical(told_of_work)
-    listener.share(static_cast<double>(++n_done) / static_cast<double>(jobs.size()));
-  }
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
-  }
+  parallel_for(jobs.size(), [&](std::size_t i) { runs[i] = simulate(scenario, model, jobs[i]); },
+               {.on_begin = {}, .on_share = listener.on_share, .wants_end_now = {}});
   const std::vector<std::string> candidates = candidate_sensors(study, runs.front().readings);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     runs[i].readings = as_read(std::move(runs[i].readings), instrument_of(v), seed_of(v, i));

@@ -204,6 +204,49 @@ TEST(BadCommand, MissingFileUnknownVerbAndMissingArgumentEndWithTwo) {
   EXPECT_THAT(run_program("rnu scenarios/fp3_spindle.yaml").output, HasSubstr("unknown verb 'rnu'"));
 }
 
+struct Conflict {
+  const char* name;
+  const char* command;
+  const char* message;
+};
+
+class OptionsThatDoNotGoTogether : public ::testing::TestWithParam<Conflict> {};
+
+// The scenario is no file: what is wrong with the options is said before anything is read.
+TEST_P(OptionsThatDoNotGoTogether, AreRefusedBeforeAnythingIsRead) {
+  const CommandOutcome outcome = run_program(GetParam().command);
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr(GetParam().message));
+  EXPECT_THAT(outcome.output, ::testing::Not(HasSubstr("no_such")));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, OptionsThatDoNotGoTogether,
+    ::testing::Values(
+        Conflict{"json_quiet", "check no_such.yaml --json --quiet", "--json excludes --quiet"},
+        Conflict{"json_details", "check no_such.yaml --json --details", "--json excludes --details"},
+        Conflict{"pause_alone", "predict no_such.yaml --cyclogram x --after-pause '3 min'",
+                 "--after-pause requires --start"},
+        Conflict{"between_alone", "schedule no_such.yaml --program x.ngc --between '3 min'", "--between requires --parts"},
+        Conflict{"train_alone", "validate no_such.yaml --train x.csv", "wants --test too"},
+        Conflict{"test_alone", "validate no_such.yaml --test x.csv", "wants --train too"},
+        Conflict{"after_alone", "compensate no_such.yaml --model x.json --through none --after x.csv",
+                 "--after goes with --measured"},
+        Conflict{"measured_cyclogram",
+                 "compensate no_such.yaml --model x.json --through none --measured x.csv --cyclogram y",
+                 "--measured goes with --through none"},
+        Conflict{"measured_injector", "compensate no_such.yaml --model x.json --through injector --measured x.csv",
+                 "--measured goes with --through none"},
+        Conflict{"file_through_frame", "compensate no_such.yaml --model x.json --through frame", "through the frame go"},
+        Conflict{"shard_merge", "sweep no_such.yaml --shard 1/2 --merge", "leave out --shard"},
+        Conflict{"observer_alone", "export no_such.yaml --fmu --of observer", "--model"},
+        Conflict{"machine_with_model", "export no_such.yaml --fmu --model x.json", "--of observer"},
+        Conflict{"materials_markdown", "list materials --markdown", "--markdown goes with effects"},
+        Conflict{"separation_alone", "inject --correction x.csv --separation 5 </dev/null", "add --clocked"},
+        Conflict{"no_threads", "check no_such.yaml --threads 0", "--threads"},
+        Conflict{"hal_alone", "inject --correction x.csv --hal x.hal </dev/null", "--halstream, which is not given"}),
+    [](const auto& conflict) { return conflict.param.name; });
+
 TEST(BadCommand, AMeshThatGmshCannotMakeEndsWithThree) {
   const std::string scenario = write_file(
       "coarse.yaml",

@@ -47,12 +47,29 @@ TEST(CausesAlone, AreWrittenWhereTheyHoldAndNothingElseIs) {
   ASSERT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
   ASSERT_TRUE(d.wander);
   EXPECT_EQ(d.wander->bodies.front().body.name, "wall");
-  ASSERT_TRUE(d.written.causes_alone);
+  ASSERT_TRUE(d.written.causes_alone) << d.reason;
   ASSERT_EQ(d.written.hypothesis.size(), d.written.causes.size());
   const Cause& first = d.causes.at(d.written.causes.front());
   EXPECT_EQ(first.effect, "heat_source");
   EXPECT_EQ(first.where, "heater");
   EXPECT_NEAR(first.parameters.front().value, 15.0, 3.0);
+  // what is printed of a written cause is what is written, and nothing else is said to be
+  const Claim& claim = d.written.hypothesis.front();
+  const Eigen::VectorXd x = d.written.fit.x.head(static_cast<Eigen::Index>(claim.knobs.size()));
+  for (std::size_t k = 0; k < claim.knobs.size(); ++k)
+    EXPECT_NEAR(first.parameters[k].value, claim.knobs[k].value(x[static_cast<Eigen::Index>(k)]), 1e-9);
+  for (const Estimate& e : d.calibrated) EXPECT_FALSE(e.is_written) << e.name;
+  for (const Cause& c : d.causes) EXPECT_EQ(c.is_written, c.why_not_written.empty()) << c.effect;
+  EXPECT_FALSE(d.causes.back().is_written) << "not all causes hold on the end";
+  const ExtendedScenario extended =
+      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
+  const TwinState read = scenarios::read_scenario(write_file("extended.yaml", extended.text)).machine->effects;
+  Twin::Workspace workspace(*beside.twin);
+  const Eigen::MatrixXd readings =
+      beside.twin->read(read, beside.runs[0], beside.twin->respond(read, beside.runs[0], workspace));
+  if (d.written.hypothesis.size() == 1) {
+    EXPECT_LT((readings - d.extended[0]).topRows(2).cwiseAbs().maxCoeff(), 1e-3) << "kelvin";
+  }
   for (const ChannelGain& g : d.gain) EXPECT_LT(g.rmse_after, 1.05 * g.rmse_before) << g.name;
   EXPECT_LT(d.gain.front().rmse_after, 0.5 * d.gain.front().rmse_before) << "the heater's thermometer";
 }

@@ -147,6 +147,14 @@ TEST(ConfigMap, OfSeveralFormsTheOneWhoseConditionHolds) {
               ThrowsMessage<InputError>(HasSubstr("key 'type' is missing")));
 }
 
+TEST(ConfigMap, AllCompulsoryKeysThatAreMissingAreNamedAtOnce) {
+  using namespace schema;
+  const Map form = {.name = "form",
+                    .keys = {compulsory("a", text(), ""), compulsory("b", text(), ""), compulsory("c", text(), "")}};
+  EXPECT_THAT([&] { (void)read("b: 1").described_by(form); },
+              ThrowsMessage<InputError>(HasSubstr("the keys 'a', 'c' are missing")));
+}
+
 TEST(NearestWord, CountsEdits) {
   EXPECT_EQ(nearest_word("convecton", {"contact", "convection"}), "convection");
   EXPECT_EQ(nearest_word("xyz", {"convection"}), "");

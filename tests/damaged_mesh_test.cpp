@@ -76,7 +76,7 @@ TEST(ReadApart, ADeathIsASentenceAboutTheFile) {
   EXPECT_THAT(dying([] { std::raise(SIGKILL); }), ThrowsMessage<InputError>(HasSubstr("want of memory")));
   EXPECT_THAT(dying([] { _exit(0); }), ThrowsMessage<InputError>(HasSubstr("ended before its time")));
   EXPECT_THAT(dying([] {
-                const ReadingTime limited("no such file");
+                const BoundedTime bounded(most_to_read_s("no such file"));
                 std::raise(SIGXCPU);  // as the system does it after 5 s
               }),
               ThrowsMessage<InputError>(HasSubstr("5 s of processor time")));

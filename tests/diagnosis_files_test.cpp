@@ -53,6 +53,26 @@ TEST(DiagnosisWords, TimesAreInMinutesAndIntervalsInOrder) {
   EXPECT_EQ(value_text({"factor", "1", 0.8, 0.7, 0.9}), "0.8");
 }
 
+TEST(DiagnosisWords, SayWhichQuantityAChannelIs) {
+  EXPECT_EQ(channel_text("t_head", "K"), "temperature t_head");
+  EXPECT_EQ(channel_text("drift_z", "um"), "displacement drift_z");
+  EXPECT_EQ(channel_text("rx", "urad"), "tilt rx");
+}
+
+TEST(DiagnosisWords, SayWhichNumbersMayHaveTakenUpWhatIsNotWritten) {
+  diagnosis::Diagnosis d;
+  EXPECT_EQ(taken_up_text(d), "");
+  d.causes = {{"heat_source", "head", "constant heat", {}, 30.0, {}}, {"exchange_window", "air", "windows", {}, 60.0, {}}};
+  d.written.taken_up = {1};
+  d.calibrated = {{"contact air,hall conductance", "W/K", 9.0, 8.0, 10.0, 4.2},
+                  {"convection nose film", "W/K", 9.0, 8.0, 10.0, 3.4}};
+  EXPECT_THAT(taken_up_text(d),
+              AllOf(HasSubstr("without exchange_window at air"), HasSubstr("contact air,hall conductance by +4.2 sigmas"),
+                    Not(HasSubstr("nose")), Not(HasSubstr("heat_source"))));
+  d.moved = {0};  // a cause by its own key
+  EXPECT_THAT(taken_up_text(d), Not(HasSubstr("sigmas")));
+}
+
 TEST(CalibrationWarning, ComesFromLeftoversFromEvidenceAndFromNumbersThatMovedFar) {
   const std::vector<diagnosis::Candidate> list = {candidate("heat_source", "head")};
   diagnosis::Diagnosis d;
@@ -69,7 +89,7 @@ TEST(CalibrationWarning, ComesFromLeftoversFromEvidenceAndFromNumbersThatMovedFa
   d.calibrated.clear();
   d.unexplained.emplace();
   d.unexplained->channels.push_back({"t_head", "K", 0.25, 9.0});
-  EXPECT_THAT(calibration_warning(d, list), HasSubstr("t_head is left with 0.25 K"));
+  EXPECT_THAT(calibration_warning(d, list), HasSubstr("the temperature t_head is left with 0.25 K"));
 }
 
 }  // namespace

@@ -160,7 +160,8 @@ TEST(FrameProgram, LeavesTheOldSiemensFrameWhereItRefuses) {
     EXPECT_LT(text.find("GOTOF REFUSED", at), text.find(":\n", at + 14)) << label;
   }
   const std::regex touch("MEAS=1[^\n]*\nSTOPRE\nIF \\$AC_MEA\\[1\\]==0 GOTOF NORING\n");
-  EXPECT_EQ(std::distance(std::sregex_iterator(ring.begin(), ring.end(), touch), std::sregex_iterator()), 5);
+  EXPECT_EQ(std::distance(std::sregex_iterator(ring.begin(), ring.end(), touch), std::sregex_iterator()),
+            6);  // four walls, the height twice
   EXPECT_THAT(ring, HasSubstr("\nNORING:\nTF_STATUS=65013\n"));
 }
 

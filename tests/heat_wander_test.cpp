@@ -2,6 +2,7 @@
 
 #include "diagnosis/heat_wander.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "diagnosis/scatter.hpp"
@@ -63,6 +64,20 @@ TEST(HeatWander, IsInTheBodyThatWasHeatedAndAsLarge) {
   EXPECT_GT(wander->bodies.front().share, 0.8);
   EXPECT_GT(wander->bodies.front().sd_W, 8.4 / 1.7);
   EXPECT_LT(wander->bodies.front().sd_W, 8.4 * 1.7);
+}
+
+// Knots are 13 min apart. What changes sign every 7 min is told to stay alike for no longer than the shortest time that is tried, what stands for all five hours for the longest at least.
+TEST(HeatWander, SaysWhereItsTimeIsAnEndOfThoseTried) {
+  std::string fast;
+  for (int i = 0; i < 20; ++i)
+    fast += fmt::format("{}{{type: heat_window, node: wall, power: {} W, windows: [[{} min, {} min]]}}",
+                        i == 0 ? "" : "\n  - ", i % 2 == 0 ? 30 : -30, 15 * i, 15 * i + 7);
+  const std::optional<HeatWander> quick = wander_of(fast);
+  ASSERT_TRUE(quick);
+  EXPECT_EQ(quick->limit, HeatWander::Limit::kAtMost) << quick->time_s;
+  const std::optional<HeatWander> slow = wander_of("{type: heat_source, node: wall, power: 12 W, exponent: 0}");
+  ASSERT_TRUE(slow);
+  EXPECT_EQ(slow->limit, HeatWander::Limit::kAtLeast) << slow->time_s;
 }
 
 TEST(HeatWander, IsHardlyAnyWhereNothingIsMissing) {

@@ -81,7 +81,25 @@ TEST(InjectVerb, ClockedItGivesARowForARow) {
   EXPECT_EQ(counted(slow.rows).n_jumps(), 0);
   const Filtered fast = inject("fast", "--clocked --period '1 um' --correction " + c, row_text(legs({40, -40}), 4));
   EXPECT_EQ(counted(fast.rows).count(), 0);
-  EXPECT_THAT(fast.words, HasSubstr("inserted +0 of +12"));
+  EXPECT_THAT(
+      fast.words,
+      AllOf(
+          HasSubstr("inserted +0 of +12"),
+          HasSubstr("nothing was inserted: an insertion wants 5 rows with both lines low, and the longest stretch had 4")));
+  EXPECT_THAT(slow.words, Not(HasSubstr("nothing was inserted")));
+}
+
+// At the turn the encoder stands twice as long: one insertion finds room there, and what is missing is told.
+TEST(InjectVerb, ClockedItTellsWhatFoundNoRoom) {
+  const std::string c = file("c.csv", "row,e_um\n1,3\n");
+  std::string rows = row_text(legs({40, -40}), 4) + row_text({0}, 6) + row_text(legs({40}), 4);
+  const Filtered f = inject("missing", "--clocked --period '1 um' --correction " + c, rows);
+  EXPECT_EQ(f.exit_code, 0);
+  EXPECT_THAT(f.words, Not(HasSubstr("nothing was inserted")));
+  const Filtered anywhere =
+      inject("anywhere", "--clocked --anywhere --period '1 um' --correction " + c, row_text(legs({40}), 3));
+  EXPECT_THAT(anywhere.words,
+              HasSubstr("nothing was inserted: an insertion wants 5 rows between two edges, and the longest stretch had 3"));
 }
 
 TEST(InjectVerb, ClockedItCompletesWhatHasBegunWhenTheInputEnds) {

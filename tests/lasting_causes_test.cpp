@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "diagnosis/extended_scenario.hpp"
 #include "tests/lumped_records.hpp"
 
@@ -47,6 +49,26 @@ struct Cause {
   double size, tolerance;
 };
 
+/// What is said of the file is what it would hold: numbers of written causes are those that are written, and what is left out says why and who may have taken it up.
+void expect_what_is_written_is_said(const Diagnosis& d) {
+  for (std::size_t c = 0; c < d.causes.size(); ++c) {
+    EXPECT_EQ(d.causes[c].is_written, d.causes[c].why_not_written.empty()) << d.causes[c].effect;
+    const bool is_taken_up = std::find(d.written.taken_up.begin(), d.written.taken_up.end(), c) != d.written.taken_up.end();
+    EXPECT_EQ(is_taken_up, d.written.keeps_numbers && !d.causes[c].is_written) << d.causes[c].effect;
+  }
+  for (const Estimate& e : d.calibrated) EXPECT_EQ(e.is_written, d.written.keeps_numbers) << e.name;
+  Eigen::Index at = d.written.fit.x.size();
+  for (const Claim& claim : d.written.hypothesis) at -= static_cast<Eigen::Index>(claim.knobs.size());
+  for (std::size_t i = 0; i < d.written.hypothesis.size(); ++i) {
+    for (std::size_t k = 0; k < d.written.hypothesis[i].knobs.size(); ++k, ++at) {
+      const Knob& knob = d.written.hypothesis[i].knobs[k];
+      const double scale = knob.is_time ? 60.0 : 1.0;
+      EXPECT_NEAR(d.causes[d.written.causes[i]].parameters[k].value, knob.value(d.written.fit.x[at]) / scale, 1e-9)
+          << knob.name;
+    }
+  }
+}
+
 class ACause : public testing::TestWithParam<Cause> {};
 
 TEST_P(ACause, IsFoundInAllItsRecordsAtOnceAndWritten) {
@@ -58,6 +80,7 @@ TEST_P(ACause, IsFoundInAllItsRecordsAtOnceAndWritten) {
   const Beside beside(write_file("plain.yaml", kMachine), records);
   const Diagnosis d = beside.diagnosed();
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  expect_what_is_written_is_said(d);
   EXPECT_EQ(d.causes[0].effect, cause.effect);
   EXPECT_EQ(d.causes[0].where, cause.where);
   EXPECT_THAT(d.causes[0].law, HasSubstr(cause.law));

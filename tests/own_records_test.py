@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """What a verb writes every verb reads: records of `simulate`, `predict`, `run` and `schedule` through select, validate, predict, calibrate and
-diagnose. Nothing may end with 1 or a signal, and where the record has what a verb asks for it must end with 0.
+diagnose. Nothing may end with 1 or a signal, and where the record has what a verb asks for it must end with 0. What a scenario has
+simulated itself is consistent with it, and diagnosis.json has the keys that others rely on (docs/diagnosis.md).
 
     own_records_test.py PROGRAM [SCENARIO ...]      [lumped_spindle]
 """
-import os, subprocess, sys, tempfile
+import json, os, subprocess, sys, tempfile
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
@@ -41,6 +42,18 @@ def scenario_of(name, work):
     return own
 
 
+def judge(diagnosis):
+    """Of a record that the scenario made itself."""
+    d = json.loads(diagnosis.read_text())
+    if d["verdict"] != "consistent":
+        failures.append(("verdict " + d["verdict"], [diagnosis.parent.name], d["reason"][:300]))
+    wanted = {"verdict", "reason", "causes", "discriminating_experiment", "unexplained", "gain", "data", "calibrated", "waveforms", "process_noise", "complete", "n_candidates", "chance", "bars", "extended"}
+    of_a_channel = {"name", "unit", "rmse_before", "rmse_calibrated", "rmse_after", "rmse_written", "noise_floor"}
+    missing = wanted - d.keys() | {"gain.holdout" for _ in [0] if "holdout" not in d["gain"]} | of_a_channel - d["gain"]["channels"][0].keys()
+    if missing:
+        failures.append(("keys missing", sorted(missing), ""))
+
+
 def try_scenario(program, name, work):
     scenario = scenario_of(name, work)
     written = []
@@ -65,7 +78,8 @@ def try_scenario(program, name, work):
     if len({a, b, c}) == 3:
         run(program, work, "validate", scenario, "--train", a, "--train", b, "--test", c, "-o", out, wanted=(0, 2))
     for verb in ("calibrate", "diagnose"):
-        run(program, work, verb, scenario, "--measured", a, "-o", out)
+        run(program, work, verb, scenario, "--measured", a, "-o", out / verb)
+    judge(out / "diagnose" / "diagnosis.json")
 
 
 def main():

@@ -1,6 +1,7 @@
 #include "base/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <atomic>
 #include <stdexcept>
@@ -32,6 +33,20 @@ TEST(ForEachIndex, CarriesAFailureToMakeTheSpace) {
   EXPECT_THROW(for_each_index(
                    3, []() -> int { throw std::logic_error("no space"); }, [](std::size_t, int&) {}),
                std::logic_error);
+}
+
+TEST(ParallelFor, GivesASinglePieceAllThreads) {
+  bool was_parallel = true;
+  parallel_for(1, [&](std::size_t) { was_parallel = omp_in_parallel() != 0; });
+  EXPECT_FALSE(was_parallel);
+}
+
+TEST(ParallelFor, LeavesOutWhatHasNotBegunOnceAnEndIsWanted) {
+  std::atomic<int> n_done = 0;
+  parallel_for(1000, [&](std::size_t) { ++n_done; },
+               {.on_begin = {}, .on_share = {}, .wants_end_now = [&] { return n_done > 20; }});
+  EXPECT_GT(n_done, 20);
+  EXPECT_LT(n_done, 200);
 }
 
 }  // namespace

@@ -181,6 +181,13 @@ TimeSeries hall(const std::string& entry) {
                    293.15);
 }
 
+TEST(Hall, OfOneTemperatureIsConstant) {
+  const TimeSeries h = hall("22.5 degC");
+  EXPECT_NEAR(h.at(0.0), 2.5, 1e-12);
+  EXPECT_NEAR(h.at(1e6), 2.5, 1e-12);
+  EXPECT_THAT([] { (void)hall("22.5 K"); }, ThrowsMessage<InputError>(HasSubstr("hall")));
+}
+
 TEST(ReadCyclogram, TakesAFileOfALoggerByItsColumns) {
   (void)write_file("drive.log", "Zeit;n\n08:00:00;1500\n08:01:00;0\n08:02:00;0\n");
   const Cyclogram c = read(

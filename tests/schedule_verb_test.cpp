@@ -43,7 +43,6 @@ cyclograms: {warm_up: [[60 min, 2000 rpm]]}
 schedule:
   axes: {x: {displacement: nose_x, sign: -1, tolerance: 4 um}, z: {displacement: nose_z}}
   tolerance: 10 um
-  base_offset: [100 mm, 50 mm, -20 mm]
   rapid: 10 m/min
 )";
 
@@ -107,10 +106,10 @@ Path rs274(const std::filesystem::path& program) {
   bool behind_an_offset = false;
   for (const std::string& line : lines_of(path.said)) {
     const auto find = [&](const char* call) { return line.find(call) != std::string::npos; };
-    if (find("SET_G5X_OFFSET(1,")) {
+    if (find("SET_G92_OFFSET(")) {
       std::array<double, 3> offset{};
-      const std::string call = line.substr(line.find("SET_G5X"));
-      if (std::sscanf(call.c_str(), "SET_G5X_OFFSET(1, %lf, %lf, %lf", &offset[0], &offset[1], &offset[2]) == 3)
+      const std::string call = line.substr(line.find("SET_G92"));
+      if (std::sscanf(call.c_str(), "SET_G92_OFFSET(%lf, %lf, %lf", &offset[0], &offset[1], &offset[2]) == 3)
         path.offsets_mm.push_back(offset);
       behind_an_offset = true;
     } else if (find("STRAIGHT_") || find("ARC_FEED(")) {
@@ -145,17 +144,32 @@ TEST(ScheduleVerb, WritesTheProgramAndItsSchedule) {
     int line = 0, corrected_line = 0;
     double time_s = 0.0;
     ASSERT_EQ(std::sscanf(table[i].c_str(), "%lf,%d,%d", &time_s, &line, &corrected_line), 3) << table[i];
-    EXPECT_THAT(corrected.at(static_cast<std::size_t>(corrected_line) - 1), HasSubstr("G10 L2 P1 "));
+    EXPECT_THAT(corrected.at(static_cast<std::size_t>(corrected_line) - 1), HasSubstr("G52 "));
   }
 }
 
+constexpr const char* kAbsolute = "  offset: absolute\n  base_offset: [100 mm, 50 mm, -20 mm]\n";
+
 // nose_z rises: Z goes back from its -20 mm in steps of 10 um. nose_x falls along -x of the program: X goes back as well.
 TEST(ScheduleVerb, MovesTheOffsetAgainstTheDriftFromItsBase) {
-  const Scheduled s = run_schedule("signs", passes(), "--policy paper");
+  const Scheduled s = run_schedule("signs", passes(), "--policy paper", std::string(kHead) + kAbsolute);
   const std::string text = read_text(s.folder / "part.ngc");
   EXPECT_THAT(text, HasSubstr("G10 L2 P1 X100 Z-20\n"));
   EXPECT_THAT(text, HasSubstr("Z-20.01\n"));
   EXPECT_THAT(text, HasSubstr("X99.996"));
+}
+
+// What the operator has set is lost: said on the terminal, on the page and in the program itself. By default nothing is overwritten.
+TEST(ScheduleVerb, SaysLoudlyThatOffsetsAreOverwritten) {
+  const Scheduled absolute = run_schedule("absolute", passes(), "", std::string(kHead) + kAbsolute),
+                  added = run_schedule("added", passes());
+  ASSERT_EQ(absolute.outcome.exit_code, 0) << absolute.outcome.output;
+  EXPECT_THAT(absolute.outcome.output, HasSubstr("what the operator has set is overwritten"));
+  EXPECT_THAT(read_text(absolute.folder / "report.html"), HasSubstr("what the operator has set is overwritten"));
+  EXPECT_THAT(read_text(absolute.folder / "part.ngc"), HasSubstr("ABSOLUTE OFFSETS. G54 is overwritten"));
+  EXPECT_THAT(added.outcome.output, Not(HasSubstr("overwritten")));
+  EXPECT_THAT(read_text(added.folder / "part.ngc"),
+              AllOf(HasSubstr("added to the work offsets"), HasSubstr("\nG52 X0 Z0\n"), Not(HasSubstr("G10"))));
 }
 
 // The machine stands 5 K above its reference, 20 um: corrected from the start on, unless the workpiece was set up warm.
@@ -165,29 +179,71 @@ TEST(ScheduleVerb, CountsTheDriftFromTheReferenceOrFromTheStart) {
   const std::string reference = read_text(run_schedule("from_reference", passes(), "", scenario).folder / "schedule.csv");
   const std::string start =
       read_text(run_schedule("from_start", passes(), "", scenario + "  drift_from: start\n").folder / "schedule.csv");
-  EXPECT_THAT(lines_of(reference).at(2), Not(HasSubstr(",0.000,0.000,-20.000000")));
-  EXPECT_THAT(lines_of(start).at(2), HasSubstr(",0.000,0.000,-20.000000"));
+  EXPECT_THAT(lines_of(reference).at(2), Not(HasSubstr(",0.000,0.000,0.000000")));
+  EXPECT_THAT(lines_of(start).at(2), HasSubstr(",0.000,0.000,0.000000"));
 }
 
-TEST(ScheduleVerb, SpeaksTheDialectThatIsAskedFor) {
-  const std::string siemens = read_text(run_schedule("siemens", passes(), "--dialect siemens").folder / "part.ngc");
-  EXPECT_THAT(siemens, AllOf(HasSubstr("$P_BFRAME[Z,TR]=-20.0"), Not(HasSubstr("G10"))));
-  const std::string own_datum = passes();
-  std::string without = own_datum;
-  without.replace(without.find(" G54"), 4, "");
-  const std::string heidenhain = read_text(run_schedule("heidenhain", without, "--dialect heidenhain").folder / "part.ngc");
-  EXPECT_THAT(heidenhain, AllOf(HasSubstr("\nG54 X+100 Z-20\n"), Not(HasSubstr("G10"))));
-  const CommandOutcome refused = run_schedule("heidenhain_datum", own_datum, "--dialect heidenhain").outcome;
-  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+/// The passes of passes() as other controls write them.
+std::string siemens_passes() {
+  std::string text = "N10 G71 G90 G17 G54 ; mm\nN20 MSG(\"passes\")\nS1=2000 M1=3\nG0 X0 Y0 Z5\n";
+  for (int i = 0; i < 12; ++i) text += "G1 Z-1 F50\nX300 F50 ; pass\nG3 X310 Y10 I0 J10\nG1 Y20\nX0 F60\nG0 Z5\nG0 X0 Y0\n";
+  return text + "M30\n";
+}
+
+std::string klartext_passes() {
+  std::string text = "0 BEGIN PGM PASSES MM\n1 TOOL CALL 1 Z S2000\n2 L X+0 Y+0 Z+5 R0 FMAX M3\n";
+  int n = 3;
+  for (int i = 0; i < 12; ++i) {
+    for (const char* block : {"L Z-1 F50", "L X+300 F50 ; pass", "CC X+300 Y+10", "C X+310 Y+10 DR+", "L Y+20", "L X+0 F60",
+                              "L Z+5 FMAX", "L X+0 Y+0 FMAX"})
+      text += std::to_string(n++) + " " + block + "\n";
+  }
+  return text + std::to_string(n) + " M30\n" + std::to_string(n + 1) + " END PGM PASSES MM\n";
+}
+
+std::string din_passes() {
+  std::string text = "%PASSES G71 *\nN10 T1 G17 S2000 *\nN20 G00 G40 G90 X+0 Y+0 Z+5 M3 *\n";
+  int n = 30;
+  for (int i = 0; i < 12; ++i) {
+    for (const char* block :
+         {"G01 Z-1 F50", "X+300 F50", "G03 X+310 Y+10 I+300 J+10", "G01 Y+20", "X+0 F60", "G00 Z+5", "G00 X+0 Y+0"})
+      text += "N" + std::to_string(n += 10) + " " + block + " *\n";
+  }
+  return text + "N99990 M30 *\nN99999 %PASSES G71 *\n";
+}
+
+TEST(ScheduleVerb, ReadsAndCorrectsProgramsInTheLanguageOfTheirControl) {
+  const std::string with_tools = std::string(kHead) + "  tool_change: 10 s\n";
+  const Scheduled siemens = run_schedule("siemens", siemens_passes(), "--dialect siemens", with_tools);
+  ASSERT_EQ(siemens.outcome.exit_code, 0) << siemens.outcome.output;
+  EXPECT_THAT(read_text(siemens.folder / "part.ngc"),
+              AllOf(HasSubstr("$P_BFRAME[Z,TR]=$P_UBFR[Z,TR]-0.0"), HasSubstr("N20 MSG(\"passes\")\n"),
+                    Not(HasSubstr("G10")), Not(HasSubstr("G52"))));
+  EXPECT_THAT(siemens.outcome.output,
+              AllOf(HasSubstr("Siemens (G290)"), HasSubstr("no SINUMERIK has run this program here")));
+  const Scheduled din = run_schedule("din", din_passes(), "--dialect heidenhain", with_tools);
+  ASSERT_EQ(din.outcome.exit_code, 0) << din.outcome.output;
+  EXPECT_THAT(read_text(din.folder / "part.ngc"),
+              AllOf(ContainsRegex("\nN[0-9]+ G54 G91 .*Z-0.0[0-9]* \\*\nN[0-9]+ G90 \\*\n"),
+                    HasSubstr("\nN99990 M30 *\nN99999 %PASSES G71 *\n")));
+  const Scheduled klartext = run_schedule("klartext", klartext_passes(), "--dialect heidenhain", with_tools);
+  ASSERT_EQ(klartext.outcome.exit_code, 0) << klartext.outcome.output;
+  EXPECT_THAT(
+      read_text(klartext.folder / "part.ngc"),
+      AllOf(ContainsRegex("CYCL DEF 7.0 DATUM SHIFT\n[0-9]+ CYCL DEF 7.1 I[XZ]"), HasSubstr(" END PGM PASSES MM\n")));
+  EXPECT_THAT(klartext.outcome.output, HasSubstr("no TNC has run this program here"));
+  // The same motions make the same drift and the same corrections.
+  const auto last = [](const Scheduled& s) {
+    return read_record_csv((s.folder / "record.csv").string()).at("nose_z").values.back();
+  };
+  EXPECT_NEAR(last(din), last(klartext), 1e-6);
+  EXPECT_EQ(run_schedule("foreign", passes(), "--dialect siemens").outcome.exit_code, 2);
+  EXPECT_EQ(run_schedule("foreign_h", passes(), "--dialect heidenhain").outcome.exit_code, 2);
 }
 
 TEST(ScheduleVerb, LinuxCncAcceptsTheProgramAndRunsTheSamePath) {
   for (const char* arguments : {"--policy paper", "--policy minimal", "--policy minimal --split"}) {
-    const Scheduled s = run_schedule("rs274", passes(), arguments, [] {
-      std::string base_at_zero = kHead;  // the interpreter's own G54, so that both programs begin at the same place
-      base_at_zero.replace(base_at_zero.find("[100 mm, 50 mm, -20 mm]"), 23, "[0 mm, 0 mm, 0 mm]");
-      return base_at_zero;
-    }());
+    const Scheduled s = run_schedule("rs274", passes(), arguments);
     ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
     if (!has_rs274()) GTEST_SKIP() << kNoRs274;
     const Path original = rs274(s.folder.parent_path() / "part.ngc"), corrected = rs274(s.folder / "part.ngc");
@@ -232,7 +288,7 @@ TEST(ScheduleVerb, NamesBlocksThatCannotKeepTheToleranceAndDividesThem) {
   EXPECT_THAT(whole.outcome.output, ContainsRegex("line 4 +z .* 60.0  --split divides it\n"));
   const Scheduled parts = run_schedule("parts", slow, "--split");
   EXPECT_THAT(parts.outcome.output, AllOf(HasSubstr("blocks divided  1\n"), Not(HasSubstr("beyond"))));
-  EXPECT_THAT(read_text(parts.folder / "part.ngc"), AllOf(HasSubstr(" F10\nG10 L2 P1 "), HasSubstr("\nG1 X600 F10\n")));
+  EXPECT_THAT(read_text(parts.folder / "part.ngc"), AllOf(HasSubstr(" F10\nG52 "), HasSubstr("\nG1 X600 F10\n")));
   if (!has_rs274()) GTEST_SKIP() << kNoRs274;
   const Path path = rs274(parts.folder / "part.ngc");
   EXPECT_TRUE(path.accepted) << path.said;
@@ -386,7 +442,10 @@ TEST_P(ScheduleMistakes, EndWithTwoAndNameTheKey) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, ScheduleMistakes,
-    ::testing::Values(BadSchedule{"no_base", "  base_offset: [100 mm, 50 mm, -20 mm]\n", "", "key 'base_offset' is missing"},
+    ::testing::Values(BadSchedule{"no_base", "  rapid: 10 m/min\n", "  rapid: 10 m/min\n  offset: absolute\n",
+                                  "absolute offsets want `base_offset`"},
+                      BadSchedule{"base_of_an_addition", "  rapid: 10 m/min\n",
+                                  "  rapid: 10 m/min\n  base_offset: [0 mm, 0 mm, 0 mm]\n", "write `offset: absolute`"},
                       BadSchedule{"sign", "sign: -1", "sign: minus", "'minus' is not known here"},
                       BadSchedule{"channel", "displacement: nose_x", "displacement: nose_q", "'nose_q' is not known here"},
                       BadSchedule{"nobody_along_y", "x: {displacement: nose_x, sign: -1, tolerance: 4 um}", "y: {}",
@@ -395,14 +454,14 @@ INSTANTIATE_TEST_SUITE_P(
                       BadSchedule{"policy", "  tolerance: 10 um", "  policy: greedy", "'greedy' is not known here"},
                       BadSchedule{"unknown_key", "  tolerance: 10 um", "  tolerances: 10 um", "unknown key 'tolerances'"},
                       BadSchedule{"no_rapid", "  rapid: 10 m/min\n", "", "state `rapid`"},
-                      BadSchedule{"work_offset", "  tolerance: 10 um", "  work_offset: G55", "G54"}),
+                      BadSchedule{"work_offset", "  tolerance: 10 um", "  work_offset: G55", "write `offset: absolute`"}),
     [](const auto& each) { return each.param.name; });
 
 TEST(ScheduleVerb, ShowsWhatToWriteWhereTheScenarioSaysNothing) {
   const std::string scenario = std::string(kHead).substr(0, std::string(kHead).find("schedule:"));
   const Scheduled s = run_schedule("no_block", passes(), "", scenario);
   EXPECT_EQ(s.outcome.exit_code, 2);
-  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("head.yaml"), HasSubstr("schedule: {tolerance: 10 um, base_offset:")));
+  EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("head.yaml"), HasSubstr("schedule: {tolerance: 10 um, rapid: 15 m/min}")));
 }
 
 TEST(ScheduleVerb, WantsAProgramAndKnownPolicies) {

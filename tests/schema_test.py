@@ -79,7 +79,7 @@ WRONG = [
     (SPINDLE, "capacity: 19 kJ/K", "capacity: 19", "has no unit"),
     (SPINDLE, "[4 h, 23.5 degC]", "[4 h, 23.5 h]", "wrong unit"),
     (SPINDLE, "warm_up: [[60 min, 12000 rpm]]", "warm_up: [[60 min, 200 Hz]]", "wrong unit"),
-    (MILL, "base_offset: [0 mm, 0 mm, 0 mm]", "base_offset: [0 mm, 0 mm, 0 s]", "wrong unit"),
+    (MILL, "machine_zero: [0 mm, 0 mm, 200 mm]", "machine_zero: [0 mm, 0 mm, 200 s]", "wrong unit"),
     (MILL, "winter: {offset: -8 K", "winter: {offset: -8 degC", "temperature difference"),
     (MILL, "at_speed: 2000 rpm", "at_speed: 2000 1/min", "wrong unit"),
     (TABLE, "probe_noise: 2 um", "probe_noise: 2 urad", "wrong unit"),

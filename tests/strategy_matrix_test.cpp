@@ -36,7 +36,7 @@ TEST(StrategyMatrix, WhatMakesAStrategyUnsafeIsACaseBeyondTheTolerance) {
   compensation::give_verdict(m, s);
   EXPECT_EQ(s.safety, compensation::Safety::kUnsafe);
   EXPECT_TRUE(s.is_worse_than_nothing);
-  EXPECT_THAT(s.why, AllOf(HasSubstr("peak 14.0 instead of 12.0 um on 'large'"), Not(HasSubstr("'small'"))));
+  EXPECT_THAT(s.why, AllOf(HasSubstr("peak 14.0 instead of 12.0 µm on 'large'"), Not(HasSubstr("'small'"))));
 }
 
 TEST(StrategyMatrix, MoreThanNothingInsideTheToleranceIsSaidAndSafe) {
@@ -45,7 +45,7 @@ TEST(StrategyMatrix, MoreThanNothingInsideTheToleranceIsSaidAndSafe) {
   s.cases = {peaks(0, 1.0, 9.0), peaks(1, 40.0, 8.0)};
   compensation::give_verdict(m, s);
   EXPECT_EQ(s.safety, compensation::Safety::kSafe);
-  EXPECT_THAT(s.why, HasSubstr("peak 9.0 instead of 1.0 um on 'small', inside the tolerance"));
+  EXPECT_THAT(s.why, HasSubstr("peak 9.0 instead of 1.0 µm on 'small', inside the tolerance"));
 }
 
 }  // namespace

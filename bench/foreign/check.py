@@ -63,9 +63,9 @@ def met(program, machine, record, dt, hidden=(), line=""):
     return off, np.ptp(temperatures, axis=0).max()
 
 
-def check(program):
+def check(program, machines):
     worst = [0.0, 0.0]
-    for i, family in enumerate(families.FAMILIES):
+    for i, family in enumerate(machines):
         for repeat in range(2):
             rng = np.random.default_rng([77, i, repeat])
             machine, plan = family(rng, families.Draw(rng))

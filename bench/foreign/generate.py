@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Writes the cases of the blind trial whose truth is not this program's own (README.md).
 
-    generate.py FOLDER [--seed 20261122] [--cases 330] [--only 7 12]
-    generate.py --check [--program driftwright]      the nominal machine against `driftwright simulate`
+    generate.py FOLDER [--set first] [--seed 20261122] [--cases 330] [--only 7 12]
+    generate.py --check [--set first] [--program driftwright]      the nominal machine against `driftwright simulate`
 """
 import argparse
 import json
@@ -16,18 +16,21 @@ import numpy as np
 import check
 import families
 import faults
+import further_families
 from nats import HALL_SIGMA_K, Judge
 from network import moved, simulate
 from writing import record_csv, scenario
 
-CLASSES = ["A"] * 140 + ["B"] * 60 + ["C16"] * 50 + ["C8"] * 50 + ["D"] * 30
+# Of each set: its own seed, the classes of its cases, the families of its machines.
+SETS = {"first": (20261122, ["A"] * 140 + ["B"] * 60 + ["C16"] * 50 + ["C8"] * 50 + ["D"] * 30, families.FAMILIES),
+        "structure_2": (20261123, ["A"] * 25 + ["B"] * 10, further_families.FAMILIES)}
 
 
-def table(seed):
+def table(seed, classes):
     """(class, kinds) of each case, mixed by the seed; kinds take turns within a class."""
     rng = np.random.default_rng([seed, 1000003])
     out, turn = [], {"A": 0, "C16": 0, "C8": 5, "D": 0}
-    for c in CLASSES:
+    for c in classes:
         kinds = []
         if c == "A":
             kinds = [faults.KINDS_A[turn[c] % len(faults.KINDS_A)]]
@@ -71,9 +74,9 @@ def noisy(rng, clean, channel, coloured, dt):
     return np.round(y / channel["step"]) * channel["step"]
 
 
-def attempt(seed, index, number, cls, kinds):
+def attempt(seed, index, number, cls, kinds, machines):
     rng = np.random.default_rng([seed, index, number])
-    family = families.FAMILIES[int(rng.integers(len(families.FAMILIES)))]
+    family = machines[int(rng.integers(len(machines)))]
     machine, plan = family(rng, families.Draw(rng))
     noise = families.instruments(rng, machine, plan)
     if cls not in ("A", "B"):
@@ -148,22 +151,25 @@ def attempt(seed, index, number, cls, kinds):
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("folder", nargs="?")
-    p.add_argument("--seed", type=int, default=20261122)
-    p.add_argument("--cases", type=int, default=len(CLASSES))
+    p.add_argument("--set", choices=list(SETS), default="first")
+    p.add_argument("--seed", type=int, help="default: the set's own")
+    p.add_argument("--cases", type=int, help="default: all")
     p.add_argument("--only", type=int, nargs="*")
     p.add_argument("--check", action="store_true")
     p.add_argument("--program", default="driftwright")
     a = p.parse_args()
     if a.check:
-        raise SystemExit(check.check(a.program))
+        raise SystemExit(check.check(a.program, SETS[a.set][2]))
     if not a.folder:
         p.error("FOLDER is missing")
-    plan = table(a.seed)
-    for index in (a.only if a.only is not None else range(a.cases)):
+    own_seed, classes, machines = SETS[a.set]
+    seed = own_seed if a.seed is None else a.seed
+    plan = table(seed, classes)
+    for index in (a.only if a.only is not None else range(a.cases if a.cases is not None else len(classes))):
         cls, kinds = plan[index]
         for number in range(400):
             try:
-                files = attempt(a.seed, index, number, cls, kinds)
+                files = attempt(seed, index, number, cls, kinds, machines)
                 break
             except faults.Impossible:
                 continue

@@ -3,7 +3,7 @@
 #
 #     trial.sh DIR [PROGRAM]          DIR: folder of case_*; PROGRAM: driftwright (default: the one on the path)
 #
-# Per case: DIR/case_*/NAME (the results), NAME.log, NAME.exit (the exit code; 124: more than 120 s) and NAME.heldout.json; NAME is
+# Per case: DIR/case_*/NAME (the results), NAME.log, NAME.exit (the exit code; 124: more than 120 s, or LIMIT_S on a machine that is shared) and NAME.heldout.json; NAME is
 # `diagnosis` or the environment's NAME, so that several versions have their own. A case that has its NAME.exit is passed over, one
 # that another run works on as well: a run may be broken off and taken up again, and several may share a set.
 set -u
@@ -22,7 +22,7 @@ one_case() {
   for record in measured_*.csv; do measured+=(--measured "$record"); done
   rm -rf "./$name"
   begin=$(date +%s)
-  timeout -k 5 120 "$program" diagnose scenario.yaml "${measured[@]}" -o "$name" > "$name.log" 2>&1 9>&-
+  timeout -k 5 "${LIMIT_S:-120}" "$program" diagnose scenario.yaml "${measured[@]}" -o "$name" > "$name.log" 2>&1 9>&-
   code=$?
   /usr/bin/python3 "$here/held_out.py" "$PWD" "$name" "$program" 9>&-
   echo "$code" > "$name.exit"

@@ -1,10 +1,13 @@
 """A machine as a user would write it down (scenario YAML), and records as a logger would write them."""
 import numpy as np
 
+import further_families
+
 TITLES = dict(lathe_headstock="headstock of a lathe", grinding_spindle="grinding spindle with coolant", motor_spindle="motor spindle with a chiller",
               printer="printer with a heated bed in a chamber; the bed's electric power is recorded", incubator="heated box with a fan; the heater's electric power is recorded",
               house="room of a house; heaters' power and outdoor temperature are recorded", gantry="gantry with two screws", heater_plate="test bench with a heater plate",
-              gearbox="gearbox with an oil sump", rotary_table="rotary table with a torque motor", hydraulic_unit="hydraulic unit with pump and manifold")
+              gearbox="gearbox with an oil sump", rotary_table="rotary table with a torque motor", hydraulic_unit="hydraulic unit with pump and manifold",
+              **further_families.TITLES)
 
 
 def g(x):

@@ -30,6 +30,11 @@ std::string origin_words(const FrameProgram& p) {
                      mm(p.origin_m[0]), mm(p.origin_m[1]), mm(p.origin_m[2]));
 }
 
+std::string arc_words(const FrameProgram& p) {
+  return fmt::format("X alone is scaled: an arc in X Y of 100 mm radius is out of round by {:.1f} um",
+                     1e5 * std::abs(p.frame.x.scale - 1.0));
+}
+
 std::string why_no_program(const std::vector<ProgramRing>& rings) {
   if (rings.size() != 2) return fmt::format("{} rings; a program measures exactly two", rings.size());
   const Eigen::Vector3d apart_m = rings[1].at_m - rings[0].at_m;

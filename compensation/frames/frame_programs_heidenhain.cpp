@@ -10,10 +10,14 @@ std::vector<ProgramFile> heidenhain_frame(const FrameProgram& p) {
   const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
   const double bore_mm = 1e3 * (p.free_diameter_m + p.ball_diameter_m);  // the cycle takes the ball off itself
   std::vector<std::string> blocks = {"BEGIN PGM THERMFRAME MM", "; " + p.made_by, "; " + last_numbers(p),
-                                     "; " + origin_words(p)};
+                                     "; " + origin_words(p), "; " + arc_words(p)};
   const auto add = [&](std::string block) { blocks.push_back(std::move(block)); };
   for (const char* block :
        {"; By PGM CALL, with the probe called and the datum at machine zero. Q40 to Q43 keep the frame in force",
+        "; X alone is scaled (cycle 26), and this control wants equal factors in the plane of arcs: programs with C, CR, "
+        "CT, CP or CC in X Y need Q45 = 1,",
+        "; which scales Y alike about the rings' Y: right for a table that grows evenly, else an error of Y by that factor "
+        "away from there",
         "; If the control itself stops in a touch no frame is in force: call again, or set cycles 7, 10, 26 to Q40 to Q43",
         "FN 10: IF +Q42 NE +0 GOTO LBL 1", "FN 0: Q42 = +1", "LBL 1", "FN 0: Q44 = +1", "CYCL DEF 7.0 DATUM SHIFT",
         "CYCL DEF 7.1 X+0", "CYCL DEF 7.2 Y+0", "CYCL DEF 7.3 Z+0", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0",
@@ -41,10 +45,13 @@ std::vector<ProgramFile> heidenhain_frame(const FrameProgram& p) {
   add(fmt::format("Q43 = ATAN ( ( Q12 - Q2 ) / ( Q11 - Q1 ) ) - ( {:.9f} )",
                   kDegrees * std::atan2(b[1] - a[1], b[0] - a[0])));
   add(fmt::format("Q41 = ( Q2 + Q12 ) / 2 - ( {} ) - SIN Q43 * ( Q1 + Q11 ) / 2", mm(0.5 * (a[1] + b[1]))));
-  for (const char* block : {"FN 0: Q44 = +0", "LBL 99", "CYCL DEF 7.0 DATUM SHIFT", "CYCL DEF 7.1 X+Q40",
-                            "CYCL DEF 7.2 Y+Q41", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+Q43",
-                            "CYCL DEF 26.0 AXIS-SPEC. SCALING", "CYCL DEF 26.1 XQ42 CCX+0 CCY+0",
-                            "FN 9: IF +Q44 EQU +0 GOTO LBL 100", "FN 14: ERROR = 1000", "LBL 100", "END PGM THERMFRAME MM"})
+  add(fmt::format("Q46 = {}", mm(0.5 * (a[1] + b[1]))));
+  for (const char* block :
+       {"FN 0: Q44 = +0", "LBL 99", "CYCL DEF 7.0 DATUM SHIFT", "CYCL DEF 7.1 X+Q40", "CYCL DEF 7.2 Y+Q41",
+        "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+Q43", "CYCL DEF 26.0 AXIS-SPEC. SCALING",
+        "CYCL DEF 26.1 XQ42 CCX+0 CCY+0", "FN 10: IF +Q45 NE +1 GOTO LBL 97", "CYCL DEF 26.0 AXIS-SPEC. SCALING",
+        "CYCL DEF 26.1 XQ42 YQ42 CCX+0 CCYQ46", "LBL 97", "FN 9: IF +Q44 EQU +0 GOTO LBL 100", "FN 14: ERROR = 1000",
+        "LBL 100", "END PGM THERMFRAME MM"})
     add(block);
   std::string text;
   for (std::size_t i = 0; i < blocks.size(); ++i) text += fmt::format("{} {}\n", i, blocks[i]);

@@ -29,8 +29,10 @@ std::string ring_touches(const FrameProgram& p, const ProgramRing& ring, std::si
     text += fmt::format("G38.3 {}{} F{:.0f}\n{}#{} = #{}\nG1 X{} Y{} F2000\n", "XY"[axis], mm(to_m), p.feed_mm_min,
                         missing(i), base + i, 5061 + axis, mm(at[0]), mm(at[1]));
   }
-  text += fmt::format("G0 Z{}\nG0 X{}\nG38.3 Z{} F{:.0f}\n{}#{} = #5063\n{}", mm(at[2] + 5e-3),
-                      mm(at[0] + 0.5 * p.free_diameter_m + 8e-3), mm(at[2] - 3e-3), p.feed_mm_min, missing(4), base + 4, up);
+  text += fmt::format("G0 Z{}\nG0 X{}\nG38.3 Z{} F{:.0f}\n{}", mm(at[2] + 5e-3), mm(at[0] + 0.5 * p.free_diameter_m + 8e-3),
+                      mm(at[2] - 3e-3), p.feed_mm_min, missing(4));
+  text += fmt::format("(once more, slowly)\nG91 G1 Z{} F2000\nG90\nG38.3 Z{} F{:.0f}\n{}#{} = #5063\n{}", mm(kBackOff_m),
+                      mm(at[2] - 3e-3), kSlowTouch * p.feed_mm_min, missing(11), base + 4, up);
   text += refusal(base + 7, fmt::format("ABS[#{} - {}] GT {:g}", base + 4, mm(at[2]), 1e3 * kMostRise_m), "",
                   fmt::format("height of ring {}: look at the length of the probe and the origin", ring.name));
   for (std::size_t side : {base, base + 2}) {

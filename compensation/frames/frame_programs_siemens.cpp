@@ -12,6 +12,11 @@ std::string therm_frame(const FrameProgram& p) {
   const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
   std::string text = fmt::format("PROC THERMFRAME(VAR INT TF_STATUS) DISPLOF\n; {}\n; {}\n; {}\n", p.made_by,
                                  last_numbers(p), origin_words(p));
+  text += fmt::format(
+      "; {}\n; and the control may refuse G2, G3 in X Y where factors differ. For such programs run THERMDATA in place of "
+      "this: it moves the axis itself, behind the "
+      "interpolation,\n; where no arc is scaled\n",
+      arc_words(p));
   text +=
       "; Call with the probe in the spindle and its D number active. TF_STATUS: 0, or the alarm; then the old frame stays.\n"
       "; The caller declares it: EXTERN THERMFRAME(VAR INT), DEF INT STATUS, THERMFRAME(STATUS), IF STATUS<>0 ...\n"
@@ -90,8 +95,11 @@ std::string ring_measurement(const FrameProgram& p) {
     text += fmt::format("IF ABS(TF_WALL[{}]-TF_WALL[{}]-{})>1 GOTOF WRONGSIDE\n", i, i + 1, mm(p.free_diameter_m, 3));
   text += fmt::format(
       "G0 Z=TF_CZ+5\nG0 X=TF_CX+{}\nMEAS=1 G1 Z=TF_CZ-3 F{:.0f}\nSTOPRE\nIF $AC_MEA[1]==0 GOTOF NORING\n"
+      "G91 G1 Z{} F2000\nG90\nMEAS=1 G1 Z=TF_CZ-3 F{:.0f}                ; once more, slowly\nSTOPRE\nIF $AC_MEA[1]==0 "
+      "GOTOF NORING\n"
       "IF ABS($AA_MW[Z]-TF_CZ)>{:g} GOTOF WRONGHEIGHT\n",
-      mm(0.5 * p.free_diameter_m + 8e-3, 3), p.feed_mm_min, 1e3 * kMostRise_m);
+      mm(0.5 * p.free_diameter_m + 8e-3, 3), p.feed_mm_min, mm(kBackOff_m, 3), kSlowTouch * p.feed_mm_min,
+      1e3 * kMostRise_m);
   text += "TF_FX=(TF_WALL[0]+TF_WALL[1])/2\nTF_FY=(TF_WALL[2]+TF_WALL[3])/2\nTF_FZ=$AA_MW[Z]\nGOTOF AWAY\n";
   const auto refusal = [](const char* label, int alarm, const char* words, const char* next) {
     return fmt::format("{}:\nTF_STATUS={}\nSETAL({})                            ; {}\n{}\n", label, alarm, alarm, words,

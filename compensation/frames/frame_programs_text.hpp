@@ -22,4 +22,11 @@ inline constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// A line of what the places count from.
 [[nodiscard]] std::string origin_words(const FrameProgram& program);
 
+/// What scaling X alone does to arcs in the plane X Y, in um of their radius.
+[[nodiscard]] std::string arc_words(const FrameProgram& program);
+
+/// The second touch of a height, from this far above the first, at this share of the feed: a probe that reports late by a servo cycle
+/// then reports a tenth as deep.
+inline constexpr double kBackOff_m = 0.5e-3, kSlowTouch = 0.1;
+
 }  // namespace driftwright::compensation

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 
 namespace driftwright::compensation {
@@ -43,7 +43,7 @@ Fit fit_linear(const std::vector<const Eigen::VectorXd*>& columns, const Eigen::
     b[row++] = y[i];
   }
   Fit fit;
-  fit.coefficients = a.colPivHouseholderQr().solve(b);
+  fit.coefficients = dense::least_squares(a, b);
   fit.square = (a * fit.coefficients - b).squaredNorm();
   return fit;
 }

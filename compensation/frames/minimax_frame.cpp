@@ -1,7 +1,8 @@
 #include "compensation/frames/minimax_frame.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
+
+#include "base/dense.hpp"
 
 namespace driftwright::compensation {
 namespace {
@@ -67,7 +68,7 @@ MinimaxFrame fit_minimax_frame(std::span<const RingPair> points) {
       normal.noalias() += weights[i] * block.transpose() * block;
       right.noalias() += weights[i] * block.transpose() * missed_m.col(i);
     }
-    step.head(n_unknowns) = normal.topLeftCorner(n_unknowns, n_unknowns).colPivHouseholderQr().solve(right.head(n_unknowns));
+    step.head(n_unknowns) = dense::least_squares(normal.topLeftCorner(n_unknowns, n_unknowns), right.head(n_unknowns));
     const Eigen::VectorXd moved_m = rows * step;
     const Eigen::VectorXd left_m = (missed_m - moved_m.reshaped(3, n)).colwise().norm().transpose();
     // a weighted mean that no frame makes smaller is not above the largest of any

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 
 namespace driftwright::compensation {
@@ -96,7 +96,7 @@ TableFrame fit_table_frame(std::span<const RingPair> rings) {
       slope.col(k) =
           (misfits(rings, u + kStep * Unknowns::Unit(k)) - misfits(rings, u - kStep * Unknowns::Unit(k))) / (2 * kStep);
     }
-    u.head(n_unknowns) -= slope.colPivHouseholderQr().solve(misfit);
+    u.head(n_unknowns) -= dense::least_squares(slope, misfit);
   }
   TableFrame table = of_unknowns(u);
   check_scale(table.x.scale);

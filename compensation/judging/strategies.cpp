@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <memory>
 
 #include "base/errors.hpp"
+#include "base/parallel.hpp"
 #include "compensation/predictors/fitted_formulas.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/memory_regression.hpp"
@@ -263,22 +263,17 @@ FittedStrategies fit_strategies(const StrategySettings& settings, std::span<cons
   const std::vector<Strategy> list = strategies(settings);
   std::vector<std::optional<DeployedPredictor>> fitted(list.size());
   std::vector<std::string> why(list.size());
-  std::vector<std::exception_ptr> failures(list.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t i = 0; i < list.size(); ++i) {
+  parallel_for(list.size(), [&](std::size_t i) {
     try {
       fitted[i] = fit_one(list[i], settings, training);
     } catch (const InputError& e) {
       why[i] = e.what();
     } catch (const SolveError& e) {  // a model that has no solution there
       why[i] = e.what();
-    } catch (...) {
-      failures[i] = std::current_exception();  // none may leave the parallel loop
     }
-  }
+  });
   FittedStrategies result;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (failures[i]) std::rethrow_exception(failures[i]);
     if (fitted[i]) {
       result.strategies.push_back(std::move(*fitted[i]));
     } else {

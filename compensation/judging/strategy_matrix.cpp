@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 
 #include "base/errors.hpp"
+#include "base/parallel.hpp"
 #include "compensation/predictors/drift_model.hpp"
 
 namespace driftwright::compensation {
@@ -158,9 +158,7 @@ std::vector<std::string> each_once(const std::vector<JudgedRunOfMachine>& runs, 
 }  // namespace
 
 const char* word(Safety safety) {
-  return safety == Safety::kSafe           ? "safe to deploy"
-         : safety == Safety::kWithinLimits ? "safe within limits"
-                                                         : "unsafe";
+  return safety == Safety::kSafe ? "safe to deploy" : safety == Safety::kWithinLimits ? "safe within limits" : "unsafe";
 }
 
 void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
@@ -175,12 +173,12 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   const Case* worse_beyond = worst_beside_nothing(s, [&](const Case& c) { return !keeps(c); });
   const auto beside_nothing = [&](const Case& c) {
     return fmt::format(
-        "more is left than without any correction, RMS {:.1f} instead of {:.1f} um and peak {:.1f} instead of {:.1f} um {}",
+        "more is left than without any correction, RMS {:.1f} instead of {:.1f} µm and peak {:.1f} instead of {:.1f} µm {}",
         c.after.rmse, c.before.rmse, c.after.peak_abs, c.before.peak_abs, where_of(m, c));
   };
   if (std::all_of(s.cases.begin(), s.cases.end(), keeps)) {
     s.safety = Safety::kSafe;
-    s.why = fmt::format("{}never more than {:.1f} um left of the drift; the most {}{}",
+    s.why = fmt::format("{}never more than {:.1f} µm left of the drift; the most {}{}",
                         worse ? fmt::format("{}, inside the tolerance, though: ", beside_nothing(*worse)) : "",
                         all.peak->after.peak_abs, where_of(m, *all.peak),
                         m.runs.size() > 2
@@ -198,7 +196,7 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   });
   if (harms(*harm)) {
     s.safety = Safety::kUnsafe;
-    s.why = fmt::format("it makes things worse, by up to {:.1f} um at one moment ({:.1f} um left of a peak of {:.1f} um) {}",
+    s.why = fmt::format("it makes things worse, by up to {:.1f} µm at one moment ({:.1f} µm left of a peak of {:.1f} µm) {}",
                         harm->harm_um, harm->after.peak_abs, harm->before.peak_abs, where_of(m, *harm));
     return;
   }
@@ -218,7 +216,7 @@ void give_verdict(const StrategyMatrix& m, JudgedStrategy& s) {
   if (!s.limits.empty() &&
       !std::all_of(s.cases.begin(), s.cases.end(), [&](const Case& c) { return c.failed.empty() || keeps(c); }))
     s.limits.emplace_back("all with sensors intact");
-  const std::string worst = fmt::format("{:.1f} um of {:.1f} um are left {}", all.peak->after.peak_abs,
+  const std::string worst = fmt::format("{:.1f} µm of {:.1f} µm are left {}", all.peak->after.peak_abs,
                                         all.peak->before.peak_abs, where_of(m, *all.peak));
   s.safety = s.limits.empty() ? Safety::kUnsafe : Safety::kWithinLimits;
   s.why = s.limits.empty() ? "nowhere does it keep the tolerance: " + worst : worst;
@@ -333,24 +331,15 @@ StrategyMatrix judge_strategies(const MatrixSettings& settings, std::vector<Obse
         fmt::format("no strategy could be fitted; {}: {}", matrix.left_out.front().name, matrix.left_out.front().why));
   const std::size_t n_runs = matrix.runs.size(), n_jobs = fitted.strategies.size() * n_runs;
   std::vector<std::vector<Case>> cases(n_jobs);
-  std::vector<std::exception_ptr> failures(n_jobs);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::size_t job = 0; job < n_jobs; ++job) {
+  parallel_for(n_jobs, [&](std::size_t job) {
     const DeployedPredictor& strategy = fitted.strategies[job / n_runs];
     const std::size_t r = job % n_runs;
-    try {
-      for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
-        cases[job].push_back(judge(strategy, run, drift_um[r]).scores);
-        cases[job].back().run = r;
-        cases[job].back().failed = failed;
-      }
-    } catch (...) {
-      failures[job] = std::current_exception();  // none may leave the parallel loop
+    for (const auto& [failed, run] : conditions(settings, strategy, matrix.runs[r])) {
+      cases[job].push_back(judge(strategy, run, drift_um[r]).scores);
+      cases[job].back().run = r;
+      cases[job].back().failed = failed;
     }
-  }
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
-  }
+  });
   for (std::size_t s = 0; s < fitted.strategies.size(); ++s) {
     JudgedStrategy judged;
     judged.fitted = std::move(fitted.strategies[s]);

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "compensation/predictors/term_columns.hpp"
 #include "compensation/sensors/product_sums.hpp"
@@ -76,7 +76,7 @@ ScaledFit fit_of(const Centred& c, const Eigen::VectorXd& slope) {
 
 ScaledFit by_principal_components(const Eigen::MatrixXd& sums, int n_components) {
   const Centred c = centred(sums);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(c.xx);
+  const dense::SymmetricEigen eigen(c.xx);
   const Eigen::Index m = c.xx.rows();
   Eigen::VectorXd slope = Eigen::VectorXd::Zero(m);
   for (Eigen::Index k = m - 1; k >= m - n_components; --k) {

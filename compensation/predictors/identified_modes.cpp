@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 
 namespace driftwright::compensation {
@@ -191,7 +191,7 @@ Linear linear(const Table& t, const Shape& shape, int powers, std::size_t left_o
     from += rows;
   }
   for (Eigen::Index c = powers; c < n_columns; c += powers + 1) columns.col(c) /= t.warmest_K;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(columns.transpose() * columns);
+  const dense::SymmetricEigen eigen(columns.transpose() * columns);
   const Eigen::VectorXd square = eigen.eigenvalues().cwiseMax(0.0);
   const Eigen::MatrixXd in_eigen = eigen.eigenvectors().transpose() * (columns.transpose() * y);
   Linear l{Eigen::MatrixXd(n_columns, y.cols()), Eigen::MatrixXd(n + n_columns, y.cols())};
@@ -264,7 +264,8 @@ Fitted fit_shape(const Table& t, Shape start, const IdentificationOptions& optio
     const auto n_levels = static_cast<int>(2 * sizes.amplitude.size());
     f.covariance.setZero(n, n);
     f.covariance.topLeftCorner(n_free, n_free) =
-        2.0 * f.cost / std::max(1, n_residuals - n_levels - n_free) * square.inverse();
+        2.0 * f.cost / std::max(1, n_residuals - n_levels - n_free) *
+        dense::solve_square(square, Eigen::MatrixXd::Identity(square.rows(), square.cols()));
   }
   return f;
 }

@@ -1,9 +1,8 @@
 #include "compensation/predictors/modal_predictor.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_model.hpp"
@@ -53,18 +52,19 @@ ModalPredictor make_ritz_predictor(const solver::ReducedSystem& system, const Ei
     if (e.reaches_hall()) hall += e.coefficient(at) * e.to_hall;
     if (e.offset.size() > 0) stratified += e.coefficient(at) * e.offset;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+  const dense::SymmetricEigen eigen(k);
   constexpr double kRounding = 1e-12;  // of the fastest rate
   if (!(eigen.eigenvalues()[0] > kRounding * eigen.eigenvalues()[k.rows() - 1]))
     throw SolveError("the reduced model has no steady state there: heat has no way out of a part of the machine");
   const Eigen::Index n = std::min<Eigen::Index>(n_modes, k.rows());
   Eigen::MatrixXd columns(k.rows(), n + static_cast<Eigen::Index>(system.sources.size()) + 3);
   columns.leftCols(n) = eigen.eigenvectors().leftCols(n);
-  const Eigen::LDLT<Eigen::MatrixXd> steady(k);
   for (std::size_t s = 0; s < system.sources.size(); ++s)
-    columns.col(n + static_cast<Eigen::Index>(s)) = steady.solve(system.sources[s].load);
-  columns.col(columns.cols() - 3) = steady.solve(hall);
-  columns.col(columns.cols() - 2) = steady.solve(stratified);
+    columns.col(n + static_cast<Eigen::Index>(s)) = system.sources[s].load;
+  columns.col(columns.cols() - 3) = hall;
+  columns.col(columns.cols() - 2) = stratified;
+  auto loads = columns.middleCols(n, columns.cols() - n - 1);
+  loads = dense::solve_symmetric(k, loads);  // what they warm in the end
   columns.col(columns.cols() - 1) = start;
   Eigen::MatrixXd basis(k.rows(), 0);
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {  // Gram-Schmidt, twice; what adds nothing is dropped

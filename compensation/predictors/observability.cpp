@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"
@@ -77,7 +77,7 @@ Selection select_by_observability(const solver::ReducedSystem& system, const Eig
         Eigen::MatrixXd readings = c(chosen, chosen);
         readings.diagonal().array() += noise;
         const Eigen::VectorXd cross = c(chosen, m - 1);
-        variance -= cross.dot(readings.llt().solve(cross));
+        variance -= cross.dot(dense::solve_definite(readings, cross).col(0));
       }
       sum += std::max(0.0, variance);
     }

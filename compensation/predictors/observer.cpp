@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
 #include <stdexcept>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 
 namespace driftwright::compensation {
@@ -230,7 +230,7 @@ class Observer::Run final : public ObserverFollower {
 
   /// The live sensor whose mean innovation is the furthest out, if any is beyond the flag.
   [[nodiscard]] int worst_suspect(std::size_t i) const {
-    constexpr double kWarm = 10;  // rows before a mean means anything
+    constexpr std::size_t kWarm = 10;  // rows before a mean means anything
     if (i < kWarm) return -1;
     const double deviation = std::sqrt((1.0 - kMemory) / (1.0 + kMemory));  // of the mean of white innovations
     int worst = -1;
@@ -276,7 +276,7 @@ class Observer::Run final : public ObserverFollower {
     if (!is_new) return at->second;
     Eigen::MatrixXd k = s_.conduction;
     for (std::size_t e = 0; e < s_.exchanges.size(); ++e) k += now.coefficient[e] * s_.exchanges[e].matrix;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(k);
+    const dense::SymmetricEigen eigen(k);
     Eigen::VectorXd decay(n_), gain(n_);
     for (Eigen::Index j = 0; j < n_; ++j) {
       const double x = eigen.eigenvalues()(j) * h_s;

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 
+#include "base/dense.hpp"
 #include "base/errors.hpp"
 #include "compensation/sensors/complete_rows.hpp"
 
@@ -17,11 +16,9 @@ constexpr double kRankThreshold = 1.0e-10;  // pivot over largest pivot
 constexpr double kConstant = 1.0e-12;       // deviation over largest magnitude: rounding, not movement
 
 /// Singular values of the columns that were kept: largest over smallest.
-double condition_of(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
+double condition_of(const dense::PivotedQr& qr) {
   if (qr.rank() == 0) return 1.0;
-  const Eigen::Index m = qr.cols();
-  const Eigen::MatrixXd r = qr.matrixR().topRows(m).triangularView<Eigen::Upper>();
-  const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(r).singularValues();
+  const Eigen::VectorXd s = dense::SingularValues::alone(qr.r()).sigma;
   return s(0) / s(qr.rank() - 1);
 }
 
@@ -56,18 +53,8 @@ Regression fit_regression(std::span<const Record> records, const std::vector<std
     }
   }
 
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(x.rows(), x.cols());
-  qr.setThreshold(kRankThreshold);
-  qr.compute(x);
-  Eigen::VectorXd scaled;
-  if (qr.rank() == m) {
-    scaled = qr.solve(y);
-  } else {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod(x.rows(), x.cols());
-    cod.setThreshold(kRankThreshold);
-    cod.compute(x);
-    scaled = cod.solve(y);
-  }
+  const dense::PivotedQr qr(x, kRankThreshold);
+  const Eigen::VectorXd scaled = qr.rank() == m ? qr.solve(y) : dense::shortest_least_squares(x, y, kRankThreshold);
   const Eigen::VectorXd coefficients = scaled.cwiseQuotient(deviation);
   const Eigen::VectorXd residual = y - x * scaled;
 

@@ -1,10 +1,10 @@
 #include "compensation/predictors/regression_quality.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/dense.hpp"
 #include "compensation/sensors/complete_rows.hpp"
 
 namespace driftwright::compensation {
@@ -25,11 +25,7 @@ Eigen::VectorXd lengths_beside_others(const Eigen::MatrixXd& x) {
   for (Eigen::Index j = 0; j < x.cols(); ++j) {
     Eigen::MatrixXd others(x.rows(), x.cols() - 1);
     others << x.leftCols(j), x.rightCols(x.cols() - 1 - j);
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(others.rows(), others.cols());
-    qr.setThreshold(kDependent);
-    qr.compute(others);
-    Eigen::VectorXd rotated = qr.householderQ().adjoint() * x.col(j);
-    left(j) = rotated.tail(x.rows() - qr.rank()).norm();
+    left(j) = dense::PivotedQr(others, kDependent).length_beside(x.col(j));
     if (!(left(j) > kDependent * whole(j))) left(j) = 0.0;
   }
   return left;

@@ -25,6 +25,7 @@ struct Cause {
   std::vector<Estimate> parameters;
   double log_evidence_gain = 0.0;   ///< logarithm of the Bayes factor, natural
   bool is_written = true;           ///< whether the extended scenario has it
+  std::string why_not_written;      ///< where it has not, a clause
   std::vector<Cause> alternatives;  ///< what the records cannot tell from it
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/delimited_text.hpp"
 #include "base/mapped_record.hpp"
 #include "base/quantity.hpp"
 #include "nc/sections.hpp"
@@ -168,20 +169,48 @@ void repeat_columns(Cyclogram& cyclogram, int times) {
 
 }  // namespace
 
+namespace {
+
+schema::Map limits_schema() {
+  using namespace schema;
+  return {.name = "limits of an NC program",
+          .keys = {compulsory("velocity", schema::vector3("m/s", 1e-6, kMostFeed_m_s), "of x, y, z"),
+                   compulsory("acceleration", schema::vector3("m/s^2", 1e-4, 1e4), "of x, y, z"),
+                   schema::optional("jerk", quantity("m/s^3", 1e-3, 1e6),
+                                    Said{"acceleration changes at once, as LinuxCNC has it"}, "along the path"),
+                   schema::optional("cycle_time", quantity("s", 1e-5, 1.0), 1e-3, "of the control's trajectory planner")},
+          .about =
+              "Times then are those of a trajectory planner as LinuxCNC's: acceleration, blending by G64 P, exact stops by "
+              "G61."};
+}
+
+}  // namespace
+
 std::vector<schema::Key> nc_keys() {
   using namespace schema;
-  return {schema::optional("rapid", quantity("m/s", 1e-6, kMostFeed_m_s),
-                           "speed of rapids along their line; compulsory for programs with rapids"),
-          schema::optional("tool_change", quantity("s", 0.0, 3600.0), "time of M6; compulsory for programs with M6"),
-          schema::optional("dwell_unit", choice({"s", "ms"}), "s",
-                           "of P with G4 and in canned cycles: s (LinuxCNC) or ms (Fanuc)"),
-          schema::optional("machine_zero", schema::vector3("m"),
-                           "in the coordinates of the program; compulsory with G28, G30, G53"),
-          schema::optional("ignore", list(text()), "G and M words to pass over, with P, Q, R, L, E of their block"),
-          schema::optional("resolution", quantity("s", 0.0, 1e6), 10.0,
-                           "moves shorter than this are merged into sections with their mean feeds"),
-          schema::optional("cutting_power", quantity("W", 0.0, kMostPower_W), 0.0,
-                           "at the edge during every feed move with the spindle turning, cuts in the air too")};
+  return {
+      schema::optional("dialect", choice(kDialects), kDialects.front().c_str(),
+                       "of the program: LinuxCNC (RS-274), Siemens (its own language, or ISO behind G291), Heidenhain "
+                       "(DIN/ISO or plain language)"),
+      schema::optional("rapid", quantity("m/s", 1e-6, kMostFeed_m_s),
+                       "speed of rapids along their line; compulsory for programs with rapids"),
+      schema::optional("tool_change", quantity("s", 0.0, 3600.0), "time of M6; compulsory for programs with M6"),
+      schema::optional("dwell_unit", choice({"s", "ms"}), "s",
+                       "of P with G4 and in canned cycles: s (LinuxCNC) or ms (Fanuc)"),
+      schema::optional("machine_zero", schema::vector3("m"),
+                       "in the coordinates of the program; compulsory with G28, G30, G53"),
+      schema::optional("ignore", list(text()),
+                       "G and M words to pass over, with P, Q, R, L, E of their block; of Siemens and Heidenhain names of "
+                       "words and calls as well"),
+      schema::optional(
+          "parameters", text(),
+          "LinuxCNC's parameter file, for what G54 to G59.3 hold where a program uses several (its #5221 and on, in mm)"),
+      schema::optional("limits", schema::map(limits_schema()),
+                       "of the axes, for the times of real motion; without it every speed is kept as programmed"),
+      schema::optional("resolution", quantity("s", 0.0, 1e6), 10.0,
+                       "moves shorter than this are merged into sections with their mean feeds"),
+      schema::optional("cutting_power", quantity("W", 0.0, kMostPower_W), 0.0,
+                       "at the edge during every feed move with the spindle turning, cuts in the air too")};
 }
 
 schema::Map cyclograms_schema() {
@@ -245,8 +274,42 @@ Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
   return cyclogram;
 }
 
+namespace {
+
+/// Numbered parameters of LinuxCNC's parameter file, such as 5221 of G54.
+std::map<int, double> read_parameter_file(const std::string& path) {
+  std::map<int, double> parameters;
+  int number = 0;
+  for (const std::string& line : read_text_lines(path)) {
+    ++number;
+    const std::size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string::npos) continue;
+    try {
+      std::size_t behind = 0;
+      const int parameter = std::stoi(line, &behind);
+      parameters[parameter] = parse_number(plain_name(line.substr(behind)), '.');
+    } catch (const std::exception&) {
+      throw InputError(Where{path, number, 1, "", line}, "a parameter's number and value are wanted, such as 5221 100.0");
+    }
+  }
+  return parameters;
+}
+
+}  // namespace
+
+NcControl control_of(const std::string& dialect) {
+  return dialect == "siemens"      ? NcControl::kSiemens
+         : dialect == "heidenhain" ? NcControl::kHeidenhain
+                                   : NcControl::kLinuxCnc;
+}
+
+const std::string& dialect_of(NcControl control) {
+  return kDialects[static_cast<std::size_t>(control)];
+}
+
 NcSettings read_nc_settings(const ConfigMap& in) {
   NcSettings settings;
+  settings.control = control_of(in.choice("dialect"));
   if (in.has("rapid")) settings.rapid_m_s = in.quantity("rapid");
   if (in.has("tool_change")) settings.tool_change_s = in.quantity("tool_change");
   settings.dwell_P_s = in.choice("dwell_unit") == "s" ? 1.0 : 1e-3;
@@ -254,11 +317,31 @@ NcSettings read_nc_settings(const ConfigMap& in) {
     const Eigen::Vector3d zero_m = in.vector3("machine_zero");
     settings.machine_zero_m = {zero_m[0], zero_m[1], zero_m[2]};
   }
+  if (in.has("parameters")) settings.parameters = read_parameter_file(beside(in, "parameters"));
+  if (const auto map = in.optional_map("limits")) {
+    NcLimits limits;
+    const Eigen::Vector3d velocity_m_s = map->vector3("velocity"), acceleration_m_s2 = map->vector3("acceleration");
+    for (int axis = 0; axis < 3; ++axis) {
+      limits.velocity_m_s[axis] = velocity_m_s[axis];
+      limits.acceleration_m_s2[axis] = acceleration_m_s2[axis];
+    }
+    if (map->has("jerk")) limits.jerk_m_s3 = map->quantity("jerk");
+    limits.cycle_s = map->quantity("cycle_time");
+    map->reject_unknown_keys();
+    settings.limits = limits;
+  }
   if (in.has("ignore")) {
     for (const std::string& word : in.texts("ignore")) {
-      const bool fine = word.size() >= 2 && (word[0] == 'G' || word[0] == 'M') && (word[1] != '0' || word.size() == 2) &&
-                        word.find_first_not_of("0123456789.", 1) == std::string::npos;
-      if (!fine) in.fail("ignore", fmt::format("'{}' is no G or M word such as M88 (capital, no leading zero)", word));
+      const bool name = settings.control != NcControl::kLinuxCnc && word.size() >= 3 && word[0] >= 'A' && word[0] <= 'Z' &&
+                        word.find_first_of("0123456789") != 1 &&
+                        word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == std::string::npos;
+      const bool fine =
+          name || (word.size() >= 2 && (word[0] == 'G' || word[0] == 'M') && (word[1] != '0' || word.size() == 2) &&
+                   word.find_first_not_of("0123456789.", 1) == std::string::npos);
+      if (!fine)
+        in.fail("ignore", fmt::format("'{}' is no G or M word such as M88 (capital, no leading zero), nor, of Siemens and "
+                                      "Heidenhain, a name such as SHOPTOOL",
+                                      word));
       settings.ignored.insert(word);
     }
   }

@@ -16,7 +16,12 @@ namespace driftwright::scenarios {
 /// @throws InputError  file, line and column of the scenario, the CSV or the NC program
 [[nodiscard]] Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name);
 
-/// The keys rapid, tool_change, dwell_unit, machine_zero, ignore of an NC program. @throws InputError
+/// Whose language a program is written in, by its name in scenarios.
+inline const std::vector<std::string> kDialects = {"linuxcnc", "siemens", "heidenhain"};
+[[nodiscard]] NcControl control_of(const std::string& dialect);
+[[nodiscard]] const std::string& dialect_of(NcControl control);
+
+/// The keys dialect, rapid, tool_change, dwell_unit, machine_zero, ignore of an NC program. @throws InputError
 [[nodiscard]] NcSettings read_nc_settings(const ConfigMap& in);
 
 /// The cyclogram that an NC program makes (nc_sections.hpp), with its remarks.

@@ -44,12 +44,16 @@ schema::Key hall_key() {
                                                         "how the file is written, where a logger wrote it")},
                               .about = "The hall's temperature from a record."};
   return compulsory(
-      "hall", Ways{rows({quantity("s"), temperature(kColdestHall_K, kHottestHall_K)}), schema::map(record)},
-      "air of the hall: rows of [time, temperature], linear between and constant outside, or a record (docs/cyclograms.md)");
+      "hall",
+      Ways{rows({quantity("s"), temperature(kColdestHall_K, kHottestHall_K)}), temperature(kColdestHall_K, kHottestHall_K),
+           schema::map(record)},
+      "air of the hall: rows of [time, temperature], linear between and constant outside; one temperature; or a record "
+      "(docs/cyclograms.md)");
 }
 
 TimeSeries read_hall(const ConfigMap& in, double reference_K) {
   if (in.is_map("hall")) return of_record(in.map("hall"), reference_K);
+  if (!in.is_list("hall")) return {{0.0}, {in.quantity("hall") - reference_K}};
   TimeSeries hall;
   for (const std::vector<double>& row : in.rows("hall")) {
     if (!hall.time_s.empty() && !(row[0] > hall.time_s.back())) in.fail("hall", "times must increase from row to row");

@@ -71,9 +71,16 @@ schema::Map schedule_schema() {
                                 "a correction may be wrong by it"),
                schema::optional("policy", choice(kSchedulePolicies), s.policy.c_str(),
                                 "`paper`: steps of the tolerance; `minimal`: fewest changes"),
-               schema::optional("dialect", choice(kScheduleDialects), s.dialect.c_str(), "that corrections are written in"),
-               schema::optional("work_offset", choice(offsets), "G54", "that the program runs in"),
-               compulsory("base_offset", schema::vector3("m"), "what the work offset holds without corrections"),
+               schema::optional(
+                   "offset", choice({"add", "absolute"}), "add",
+                   "`add`: to what the operator has set; `absolute`: base_offset and the correction overwrite it"),
+               schema::optional("base_offset", schema::vector3("m"),
+                                "what the work offset (base frame, datum shift) holds without corrections; with `offset: "
+                                "absolute`, compulsory there"),
+               schema::optional("work_offset", choice(offsets), "G54",
+                                "that the program runs in; with `offset: absolute` on LinuxCNC"),
+               schema::optional("parts", integer(1, 1000), 1, "made one after another by the program"),
+               schema::optional("between", quantity("s", 0.0, 1e7), 0.0, "at rest between two of them"),
                schema::optional("drift_from", choice({"reference", "start"}), "reference", "what the drift counts from")},
       .about = "Corrections written into an NC program (docs/schedule.md)."};
   for (Key& key : nc_keys()) map.keys.push_back(std::move(key));
@@ -104,10 +111,22 @@ ScheduleSettings read_schedule(const ConfigMap& in, const std::vector<Displaceme
   if (s.axes.empty())
     in.fail("axes", "no axis to correct; a map such as {z: {displacement: nose_z, sign: +1, tolerance: 10 um}} is wanted");
   s.policy = in.choice("policy");
-  s.dialect = in.choice("dialect");
+  s.absolute = in.choice("offset") == "absolute";
+  for (const char* key : {"base_offset", "work_offset"}) {
+    if (!s.absolute && in.has(key))
+      in.fail(key,
+              "corrections are added to what the operator has set, whatever that is; where they shall overwrite it, write "
+              "`offset: absolute`");
+  }
   s.work_offset = kWorkOffsets.at(in.choice("work_offset"));
-  const Eigen::Vector3d base_m = in.vector3("base_offset");
-  s.base_offset_m = {base_m[0], base_m[1], base_m[2]};
+  if (s.absolute && !in.has("base_offset"))
+    in.fail("offset", "absolute offsets want `base_offset`, what the offset holds without corrections");
+  if (s.absolute) {
+    const Eigen::Vector3d base_m = in.vector3("base_offset");
+    s.base_offset_m = {base_m[0], base_m[1], base_m[2]};
+  }
+  s.parts = in.integer("parts");
+  s.between_s = in.quantity("between");
   s.from_start = in.choice("drift_from") == "start";
   s.nc = read_nc_settings(in);
   s.resolution_s = in.quantity("resolution");

@@ -11,7 +11,6 @@
 namespace driftwright::scenarios {
 
 inline const std::vector<std::string> kSchedulePolicies = {"paper", "minimal"};
-inline const std::vector<std::string> kScheduleDialects = {"linuxcnc", "siemens", "heidenhain"};
 
 /// An axis of the program that is corrected.
 struct ScheduleAxis {
@@ -24,9 +23,11 @@ struct ScheduleAxis {
 struct ScheduleSettings {
   std::vector<ScheduleAxis> axes;  ///< x, y, z in this order
   std::string policy = "minimal";
-  std::string dialect = "linuxcnc";
+  bool absolute = false;  ///< corrections overwrite the offset: base_offset_m and the correction
   int work_offset = 540;  ///< times ten
   std::array<double, 3> base_offset_m = {0, 0, 0};
+  int parts = 1;            ///< that the program makes one after another
+  double between_s = 0.0;   ///< at rest between two of them
   bool from_start = false;  ///< the drift counts from the start of the program, not from the reference temperature
   NcSettings nc;
   double resolution_s = 10.0;  ///< of the cyclogram made of the program

@@ -1,11 +1,13 @@
 // Mesh files of three formats and drawings, each in a process of its own as the program reads them.
 
 #include "mesh/imported_mesh.hpp"
+#include "mesh/read_apart.hpp"
 #include "tests/fuzz/driver.hpp"
 
 using namespace driftwright;
 
 int main(int argc, char** argv) {
+  mesh::all_threads_are_ours();  // as the program says; else what OpenMP leaves behind would have the files read in this process
   const bool reads_drawings = argc > 1 && std::string(argv[1]) == "step";  // which take a hundred times as long
   if (reads_drawings) {
     --argc;

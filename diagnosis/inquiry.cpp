@@ -1,0 +1,128 @@
+#include "diagnosis/inquiry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/no_solution.hpp"
+#include "diagnosis/unexplained.hpp"
+#include "diagnosis/warm_start.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kSharper = 0.9;      // noise without what the causes explain, over that with it: it is estimated anew
+constexpr double kHallFault_K = 2.0;  // 1 sigma of a hall that was recorded wrongly
+constexpr double kTooFar = 3.5;       // sigmas of its prior: a number beyond is a cause
+
+/// What the search leaves; the mesh's error is that of the machine with what was found.
+std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const Inquiry& of,
+                                        Twin::Workspace& workspace) {
+  const Fitter& fitter = *of.fitter;
+  std::optional<Unexplained> left = unexplained_of(fitter, of.search, of.noise);
+  if (!left || !ground.coarse || of.search.hypothesis.empty()) return left;
+  Fitter again(ground.twin, runs, fitter.scatter(),
+               unknown_columns(ground.twin, ground.coarse, ground.options.mesh_error_share, runs,
+                               fitter.state(of.search.hypothesis, of.search.fit.x)));
+  again.set_noise(of.noise);
+  again.settle(of.search.hypothesis, of.search.fit);
+  SearchResult same = of.search;
+  same.fit = again.fit(of.search.hypothesis, of.search.fit.claim_x(fitter.n_nuisance()), workspace);
+  return unexplained_of(again, same, of.noise);
+}
+
+/// Searches again by what the model misses: as heat that comes and goes in its bodies, or as slow noise of its channels.
+void weigh_by_model_error(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const SearchOptions& how,
+                          Inquiry& of, Twin::Workspace& workspace, const Listener& listener) {
+  listener.begin("weighing again by what the model misses");
+  std::map<std::string, NoiseModel> rough = of.noise;
+  std::shared_ptr<const SharedNoise> shared;
+  (void)has_solution([&] {
+    const TwinState state = of.fitter->state(of.search.hypothesis, of.search.fit.x);
+    of.wander = heat_wander(*of.fitter, state, of.search.fit.prediction, workspace);
+    if (of.wander) shared = std::make_shared<const SharedNoise>(std::move(of.wander->readings));
+  });
+  const Prediction& best = of.wander ? of.wander->prediction : of.search.fit.prediction;
+  if (const auto error = models_own_error(runs, best, of.noise)) rough = *error;
+  of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
+  of.fitter->set_noise(rough, shared);
+  of.search = search(*of.fitter, ground.candidates, how, listener);
+  of.weighed_by_model_error = true;
+}
+
+/// Numbers that have gone too far are faults: they get the prior of one, and all are fitted anew.
+void widen_moved(Inquiry& of, Twin::Workspace& workspace) {
+  Fitter& fitter = *of.fitter;
+  for (std::size_t i = 0; i < fitter.scatter().size(); ++i) {
+    const Knob& k = fitter.scatter()[i];
+    if (!(std::abs(of.search.fit.x[static_cast<Eigen::Index>(i)]) > kTooFar * k.prior_sd)) continue;
+    of.moved.push_back(i);
+    fitter.set_prior_sd(i, k.scale == Knob::Scale::kLog ? effects::kFactorSd : kHallFault_K);
+  }
+  if (of.moved.empty()) return;
+  fitter.settle(of.search.hypothesis, of.search.fit);
+  of.search.fit = fitter.fit(of.search.hypothesis, of.search.fit.claim_x(fitter.n_nuisance()), workspace);
+  (void)has_solution([&] { of.search.without = fitter.fit({}, Eigen::VectorXd(0), workspace); });
+}
+
+}  // namespace
+
+std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double mesh_error_share,
+                                        const std::vector<MeasuredRun>& runs, const TwinState& state) {
+  std::vector<Prediction> columns = start_columns(twin, runs);
+  if (!coarse) return columns;
+  Twin::Workspace fine_space(twin), coarse_space(*coarse);
+  Prediction difference;
+  for (const MeasuredRun& run : runs) {
+    difference.push_back(mesh_error_share * (coarse->read(state, run, coarse->respond(state, run, coarse_space)) -
+                                             twin.read(state, run, twin.respond(state, run, fine_space))));
+  }
+  std::vector<int> outputs;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) {
+      if (std::find(outputs.begin(), outputs.end(), c.output) == outputs.end()) outputs.push_back(c.output);
+    }
+  }
+  for (int o : outputs) {
+    Prediction column;
+    for (const Eigen::MatrixXd& d : difference) {
+      column.push_back(Eigen::MatrixXd::Zero(d.rows(), d.cols()));
+      column.back().row(o) = d.row(o);
+    }
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all, const Listener& listener) {
+  const DiagnosisOptions& options = ground.options;
+  const SearchOptions how{.most_effects = options.most_effects, .without = options.without};
+  Inquiry of;
+  of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
+  of.noise = estimate_noise(runs, ground.as_written, options.floor);
+  for (int pass = 0; pass < 2; ++pass) {
+    of.fitter->set_noise(of.noise);
+    of.search = search(*of.fitter, ground.candidates, how, listener);
+    const auto sharper = estimate_noise(runs, of.search.fit.prediction, options.floor);
+    const bool is_sharper = std::any_of(sharper.begin(), sharper.end(), [&](const auto& s) {
+      return s.second.total() < kSharper * of.noise.at(s.first).total();
+    });
+    if (!is_sharper || pass == 1 || listener.wants_end()) break;
+    for (const auto& [name, noise] : sharper) {
+      if (noise.total() < of.noise.at(name).total()) of.noise[name] = noise;
+    }
+  }
+  Twin::Workspace workspace(ground.twin);
+  const bool is_rough = !listener.wants_end() && models_own_error(runs, of.search.fit.prediction, of.noise).has_value();
+  if (of_all || is_rough) {
+    listener.begin("looking at what is left");
+    of.unexplained = what_is_left(ground, runs, of, workspace);
+  }
+  if (of.unexplained && is_rough) {
+    weigh_by_model_error(ground, runs, how, of, workspace, listener);
+    if (auto left = unexplained_of(*of.fitter, of.search, of.noise)) of.unexplained = std::move(left);
+  }
+  widen_moved(of, workspace);
+  return of;
+}
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,39 @@
+#pragma once
+// What some rows of the records say by themselves: noise, process noise, causes, numbers that have gone too far. Of all rows it is what a diagnosis says; without
+// some of them it is what would have been said had they never been read, so that they can judge it.
+
+#include "diagnosis/diagnosis.hpp"
+
+namespace driftwright::diagnosis {
+
+/// What all inquiries about a machine begin with; none of it is fitted to readings.
+struct InquiryGround {
+  const Twin& twin;
+  const Twin* coarse;  ///< null: there is one mesh
+  const DiagnosisOptions& options;
+  const std::vector<Candidate>& candidates;
+  const Fitter& fresh;           ///< at the scenario's own numbers, of all rows, without noise
+  const Prediction& as_written;  ///< of all records
+};
+
+struct Inquiry {
+  std::map<std::string, NoiseModel> noise;
+  bool weighed_by_model_error = false;
+  std::optional<HeatWander> wander;
+  std::vector<std::size_t>
+      moved;  ///< of scatter: numbers that have gone so far that they are causes; their priors are those of faults
+  std::unique_ptr<Fitter> fitter;  ///< settled where the search ended, with its noise and those priors
+  SearchResult search;
+  std::optional<Unexplained> unexplained;
+};
+
+/// @param runs     all records, readings that are not to be known missing; outlive the result
+/// @param of_all   these are all rows: what is left is looked at whether or not it changes how readings are weighed
+[[nodiscard]] Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all,
+                              const Listener& listener);
+
+/// What a warm start and another mesh change (one column a channel): the amplitude of each is unknown.
+[[nodiscard]] std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double mesh_error_share,
+                                                      const std::vector<MeasuredRun>& runs, const TwinState& state);
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,358 @@
+#include "nc/heidenhain_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "nc/arc.hpp"
+#include "nc/tapping.hpp"
+
+namespace driftwright {
+namespace {
+
+constexpr std::size_t kDeepest = 8;  // subprograms within subprograms, as the control has it
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+}  // namespace
+
+double HeidenhainRun::value(const HeidenhainLine& line, const std::string& text, std::size_t& i, bool whole) const {
+  const NcLookup lookup = [this](const std::string& name) -> NcValue {
+    const auto found = q_.find(name);
+    if (found == q_.end())
+      throw RangeError(
+          fmt::format("{} is what the operator or another program has set; give it a value in the program first", name));
+    return {found->second};
+  };
+  try {
+    return evaluate(text, i, NcSyntax::kHeidenhain, lookup, whole).value;
+  } catch (const RangeError& e) {
+    fail(line, e.what());
+  }
+}
+
+bool HeidenhainRun::function(const HeidenhainLine& line, int n, const std::string& q, double a, double b) {
+  double x = 0.0;
+  switch (n) {
+    case 0:
+      x = a;
+      break;
+    case 1:
+      x = a + b;
+      break;
+    case 2:
+      x = a - b;
+      break;
+    case 3:
+      x = a * b;
+      break;
+    case 4:
+      if (b == 0.0) fail(line, "a division by zero");
+      x = a / b;
+      break;
+    case 5:
+      if (a < 0.0) fail(line, "the root of a negative number");
+      x = std::sqrt(a);
+      break;
+    case 6:
+      x = std::sin(a * kDegree);
+      break;
+    case 7:
+      x = std::cos(a * kDegree);
+      break;
+    case 8:
+      x = std::hypot(a, b);
+      break;
+    case 13:
+      x = std::atan2(a, b) / kDegree;
+      break;
+    default:
+      return false;
+  }
+  set_q(q, x);
+  return true;
+}
+
+bool HeidenhainRun::compares(const HeidenhainLine& line, int n, double a, double b) const {
+  switch (n) {
+    case 9:
+      return a == b;
+    case 10:
+      return a != b;
+    case 11:
+      return a > b;
+    case 12:
+      return a < b;
+    default:
+      fail(line, fmt::format("FN {}: not known here", n));
+  }
+}
+
+void HeidenhainRun::go_to(const HeidenhainLine& line, const std::string& label) {
+  const auto is_it = [&](const HeidenhainLine& l) { return l.label == label; };
+  const auto found = std::find_if(lines_.begin(), lines_.end(), is_it);
+  if (found == lines_.end() || label == "0") fail(line, fmt::format("no label {} in the program", label));
+  at = static_cast<std::size_t>(found - lines_.begin());
+}
+
+void HeidenhainRun::call(const HeidenhainLine& line, const std::string& label, int times) {
+  const std::size_t own = at - 1;  // the reader stands behind it
+  if (times == 0) {
+    if (returns_.size() >= kDeepest) fail(line, fmt::format("subprograms nested more than {} deep", kDeepest));
+    returns_.push_back(at);
+    go_to(line, label);
+    return;
+  }
+  const auto [left, first] = repeats_left_.emplace(own, times);
+  if (left->second == 0) {
+    repeats_left_.erase(left);
+    return;
+  }
+  --left->second;
+  (void)first;
+  go_to(line, label);
+}
+
+void HeidenhainRun::end_subprogram() {
+  if (returns_.empty()) return;
+  at = returns_.back();
+  returns_.pop_back();
+}
+
+void HeidenhainRun::shift_datum(int axis, double x_m, bool incremental) {
+  const double to_m = incremental ? shift_m_[axis] + x_m : x_m;
+  run_.motion.position_m[axis] += shift_m_[axis] - to_m;
+  shift_m_[axis] = to_m;
+  if (!incremental) run_.step().resets[axis] = true;
+  if (run_.transformed) run_.forget();
+}
+
+void HeidenhainRun::other_datum(const std::string& word) {
+  run_.note(word, "another datum; positions are counted as if in the one before");
+  run_.step().resets = {true, true, true};
+  shift_m_ = {0, 0, 0};
+  mirrored_ = turned_ = false;
+  update_transformed();
+  run_.forget();
+}
+
+void HeidenhainRun::mirror(bool on, const std::string& word) {
+  if (on) run_.note(word, "mirrored; the path is counted as written, and no correction changes while it is in force");
+  mirrored_ = on;
+  update_transformed();
+  run_.forget();
+}
+
+void HeidenhainRun::turn(bool on, const std::string& word) {
+  if (on) run_.note(word, "turned; the path is counted as written, and no correction changes while it is in force");
+  turned_ = on;
+  update_transformed();
+  run_.forget();
+}
+
+void HeidenhainRun::change_tool() {
+  run_.change_tool("a tool call");
+  run_.forget();
+}
+
+bool HeidenhainRun::m_word(int m) {
+  switch (m) {
+    case 0:
+    case 1:
+      run_.halt(fmt::format("M{}", m));
+      if (m == 0) run_.motion.turning = false;
+      return false;
+    case 2:
+    case 30:
+      return true;
+    case 3:
+    case 4:
+    case 13:
+    case 14:
+      run_.motion.turning = true;
+      return false;
+    case 5:
+      run_.motion.turning = false;
+      return false;
+    case 6:  // the tool call has had its time
+      run_.motion.turning = false;
+      run_.halt("M6");
+      return false;
+    case 7:
+    case 8:
+    case 9:
+    case 90:
+    case 97:
+    case 98:
+    case 101:
+    case 102:
+    case 107:
+    case 108:
+    case 120:
+    case 126:
+    case 127:
+    case 129:
+    case 148:
+    case 149:
+      return false;
+    case 89:
+      run_.modal_cycle = true;
+      return false;
+    case 99:
+      run_.modal_cycle = false;
+      call_cycle();
+      return false;
+    case 128:
+      run_.fail("M128: the tool's tip is not followed through rotary axes here");
+    case 136:
+      run_.set_feed_mode(NcFeedMode::PerRevolution);
+      return false;
+    case 137:
+      run_.set_feed_mode(NcFeedMode::PerMinute);
+      return false;
+    default:
+      run_.pass_over(fmt::format("M{}", m));
+      return false;
+  }
+}
+
+void HeidenhainRun::line_to(const std::array<double, 3>& target_m, bool rapid) {
+  const auto [u, v] = plane_axes(run_.normal);
+  const double du = target_m[u] - run_.motion.position_m[u], dv = target_m[v] - run_.motion.position_m[v],
+               length_m = std::hypot(du, dv);
+  if (length_m > 0.0) direction = {{du / length_m, dv / length_m}};
+  rapid ? run_.rapid_to(target_m) : run_.feed_to(target_m);
+  run_.motion_word = rapid ? 0 : 10;
+}
+
+void HeidenhainRun::circle_to(const std::array<double, 3>& target_m, const std::array<double, 3>& centre_m, bool clockwise,
+                              int turns) {
+  run_.arc_to(target_m, centre_m, clockwise, turns);
+  run_.motion_word = 10;  // a line of ours goes on at the feed
+  const auto [u, v] = plane_axes(run_.normal);
+  const double ru = target_m[u] - centre_m[u], rv = target_m[v] - centre_m[v], r = std::hypot(ru, rv);
+  direction = clockwise ? std::array<double, 2>{rv / r, -ru / r} : std::array<double, 2>{-rv / r, ru / r};
+}
+
+void HeidenhainRun::tangent_arc_to(const std::array<double, 3>& target_m) {
+  if (!direction) run_.fail("a tangential arc with no motion before it");
+  const auto [u, v] = plane_axes(run_.normal);
+  const std::array<double, 3>& start_m = run_.motion.position_m;
+  const double du = target_m[u] - start_m[u], dv = target_m[v] - start_m[v];
+  const double nu = -(*direction)[1], nv = (*direction)[0];  // to the left of the direction
+  const double across_m = du * nu + dv * nv;
+  if (std::abs(across_m) < 1e-9) {
+    line_to(target_m, false);
+    return;
+  }
+  const double radius_m = (du * du + dv * dv) / (2.0 * across_m);  // > 0: to the left
+  std::array<double, 3> centre_m = start_m;
+  centre_m[u] += radius_m * nu;
+  centre_m[v] += radius_m * nv;
+  circle_to(target_m, centre_m, radius_m < 0.0, 1);
+}
+
+void HeidenhainRun::call_cycle() {
+  if (!cycle_) run_.fail("a cycle call with no cycle defined before it");
+  drill(*cycle_);
+  run_.step().kind = NcStepKind::kDrilling;
+  run_.step().named[run_.normal] = true;
+}
+
+void HeidenhainRun::drill(const HeidenhainCycle& c) {
+  const auto q = [&](int n) {
+    const auto found = c.q.find(n);
+    if (found == c.q.end()) run_.fail(fmt::format("cycle {} without its Q{}", c.number, n));
+    return found->second;
+  };
+  const auto q_or = [&](int n, double otherwise) {
+    const auto found = c.q.find(n);
+    return found == c.q.end() ? otherwise : found->second;
+  };
+  NcMotion& motion = run_.motion;
+  const double surface_m = q(203) * run_.unit_m, clearance_m = q(200) * run_.unit_m,
+               bottom_m = surface_m + q(201) * run_.unit_m, safe_m = surface_m + clearance_m,
+               second_m = surface_m + q_or(204, 0.0) * run_.unit_m;
+  if (!(q(201) < 0.0))
+    run_.fail(fmt::format("cycle {}: Q201, the depth, is below zero; with zero nothing is drilled", c.number));
+  const auto at_level = [&](double level_m) {
+    std::array<double, 3> target_m = motion.position_m;
+    target_m[run_.normal] = level_m;
+    return target_m;
+  };
+  const double modal_feed = motion.feed;
+  const NcFeedMode modal_mode = motion.feed_mode;
+  const auto feed = [&](double q_feed) {
+    motion.feed_mode = NcFeedMode::PerMinute;
+    run_.set_feed(q_feed);
+  };
+  motion.rapid_to(at_level(safe_m));
+  switch (c.number) {
+    case 200:
+    case 203: {
+      const double bite_m = q(202) * run_.unit_m, decrement_m = q_or(212, 0.0) * run_.unit_m,
+                   least_m = q_or(205, 0.0) * run_.unit_m;
+      const auto breaks = static_cast<int>(q_or(213, 0.0));
+      const double break_m = q_or(256, 0.2) * run_.unit_m;
+      if (!(bite_m > 0.0 && -q(201) * run_.unit_m / bite_m < 1e5))
+        run_.fail(fmt::format("cycle {}: Q202, the depth of a peck, is above zero", c.number));
+      double depth_m = surface_m, now_m = bite_m;
+      int n_broken = 0;
+      for (int n = 0; depth_m > bottom_m; ++n) {
+        if (n > 100000) run_.fail(fmt::format("cycle {} of more than 100000 pecks", c.number));
+        depth_m = std::max(bottom_m, depth_m - now_m);
+        feed(q(206));
+        motion.feed_to(at_level(depth_m));
+        if (depth_m <= bottom_m) break;
+        if (n_broken < breaks) {  // chips are broken on the way, and cleared after so many
+          ++n_broken;
+          motion.rapid_to(at_level(depth_m + break_m));
+        } else {
+          n_broken = 0;
+          motion.rapid_to(at_level(safe_m));
+          motion.wait(q_or(210, 0.0));
+          motion.rapid_to(at_level(std::min(safe_m, depth_m + clearance_m)));
+        }
+        now_m = std::max(now_m - decrement_m, least_m > 0.0 ? std::min(least_m, now_m) : decrement_m > 0.0 ? 1e-6 : now_m);
+      }
+      motion.wait(q_or(211, 0.0));
+      if (c.number == 203 && q_or(208, 0.0) > 0.0) {
+        feed(q(208));
+        motion.feed_to(at_level(safe_m));
+      }
+      break;
+    }
+    case 201:
+    case 202:
+      feed(q(206));
+      motion.feed_to(at_level(bottom_m));
+      motion.wait(q_or(211, 0.0));
+      feed(q_or(208, 0.0) > 0.0 ? q(208) : q(206));
+      motion.feed_to(at_level(safe_m));
+      break;
+    case 206:
+      feed(q(206));
+      motion.feed_to(at_level(bottom_m));
+      motion.wait(q_or(211, 0.0));
+      motion.feed_to(at_level(safe_m));
+      break;
+    case 207:
+      tap_to(run_, at_level(bottom_m), std::abs(q(239)) * run_.unit_m, motion.programmed_rpm);
+      tap_to(run_, at_level(safe_m), std::abs(q(239)) * run_.unit_m, motion.programmed_rpm);
+      break;
+    case 240:
+      feed(q(206));
+      motion.feed_to(at_level(bottom_m));
+      motion.wait(q_or(211, 0.0));
+      break;
+    default:
+      run_.fail(fmt::format(
+          "cycle {}: of cycles 200, 201, 202, 203, 206, 207 and 240 are computed here; write the others out", c.number));
+  }
+  motion.feed = modal_feed;
+  motion.feed_mode = modal_mode;
+  motion.rapid_to(at_level(std::max(safe_m, second_m)));
+}
+
+}  // namespace driftwright

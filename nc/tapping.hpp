@@ -1,0 +1,11 @@
+#pragma once
+// Tapping: a feed along the thread, one pitch a turn.
+
+#include "nc/run.hpp"
+
+namespace driftwright {
+
+/// A straight line on which the spindle turns once for each pitch. @throws InputError  without speed or pitch
+void tap_to(NcRun& run, const std::array<double, 3>& target_m, double pitch_m, double speed_rpm);
+
+}  // namespace driftwright

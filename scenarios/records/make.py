@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Makes the records of this folder anew: make.py PROGRAM   (from the folder of the project; the same bytes each time but for the program's version)"""
+import pathlib, random, subprocess, sys, tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+SCENARIO = HERE.parent / "fp3_spindle.yaml"
+NOISE = {"degC": 0.1, "um": 0.5, "urad": 0.3}  # standard deviations of readings
+DAYS = {  # minutes, rpm
+    "morning": [(40, 800), (50, 2000), (30, 1200), (60, 1600)],
+    "monday": [(90, 1600), (60, 0), (90, 1000), (60, 2000)],
+    "tuesday": [(60, 2000), (30, 600), (60, 1400), (120, 0)],
+    "good": [(120, 1800), (90, 0), (60, 1200)],
+}
+FILM = "surface: headstock_outer, film: {} W/(m^2 K)"
+
+
+def plan_of(sections):
+    """A cyclogram as a record: a row each minute, whose speed holds until the next."""
+    speeds = [rpm for minutes, rpm in sections for _ in range(minutes)]
+    speeds.append(speeds[-1])
+    return "time_s,speed_rpm\n" + "".join(f"{60 * minute},{rpm}\n" for minute, rpm in enumerate(speeds))
+
+
+def simulated(program, scenario, sections, work):
+    plan = work / "plan.csv"
+    plan.write_text(plan_of(sections))
+    subprocess.run([program, "simulate", scenario, "--cyclogram", plan, "-o", work / "out", "--force", "--quiet"], check=True)
+    return [line for line in (work / "out/record.csv").read_text().splitlines() if not line.startswith("#")]
+
+
+def measured(rows, seed):
+    """Every second row, with noise; speeds change at even minutes."""
+    noise = random.Random(seed)
+    head = rows[0].split(",")
+    sd = [NOISE.get(name.rsplit("_", 1)[-1], 0.0) if name not in ("hall_degC", "ambient_degC") else 0.0 for name in head]
+    out = [rows[0]]
+    for row in rows[1::2]:
+        out.append(",".join(f"{float(v) + noise.gauss(0, s):.2f}" if s else v for v, s in zip(row.split(","), sd)))
+    return out
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        text = SCENARIO.read_text()
+        assert text.count(FILM.format(9)) == 1, "the scenario's film has changed"
+        other = work / "other.yaml"
+        other.write_text(text.replace(FILM.format(9), FILM.format(16)))
+        (HERE / "plan.csv").write_text("# a shift to predict: rows of speed (docs/cyclograms.md)\n" + plan_of([(60, 1200), (20, 0), (100, 1800), (60, 600)]))
+        for seed, (name, sections) in enumerate(DAYS.items()):
+            rows = simulated(program, other if name in ("monday", "tuesday") else SCENARIO, sections, work)
+            if name != "morning":
+                rows = measured(rows, seed)
+            (HERE / f"{name}.csv").write_text(f"# made by scenarios/records/make.py, not measured on a machine\n" + "\n".join(rows) + "\n")
+        rows = [f"{int(i % 4 in (1, 2))} {int(i % 4 in (2, 3))}" for i in range(1000)]
+        (HERE / "encoder_rows.txt").write_text("\n".join(rows) + "\n")
+        (HERE / "drift.csv").write_text("time_s,drift_um\n0,0\n0.5,6\n1,12\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+#!/usr/bin/env python3
+"""Every indented `driftwright` command of README and docs runs as it stands, and prints what the page shows under it.
+
+    documents_test.py PROGRAM FOLDER_OF_THE_PROJECT [PAGE ...]
+
+Commands run in a folder that holds scenarios/ and docs/ of the project, in the order of the pages, so that a command may read what one before it wrote. Of a shown output each line must
+be printed (blanks count as one; a line that ends with "..." is the beginning of one; "..." alone stands for any lines).
+"""
+import os, re, subprocess, sys, tempfile, time
+from pathlib import Path
+
+PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md"]
+COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
+
+
+def blocks(text):
+    """(line number, command, lines shown under it) of a page."""
+    found, shown = [], None
+    for number, line in enumerate(text.splitlines(), 1):
+        if COMMAND.match(line):
+            shown = []
+            found.append((number, line.strip(), shown))
+        elif line.startswith("    ") and shown is not None:
+            shown.append(line.strip())
+        else:
+            shown = None
+    return found
+
+
+def plain(line):
+    return " ".join(line.split())
+
+
+def not_printed(shown, printed):
+    lines = [plain(line) for line in printed.splitlines()]
+    for line in map(plain, shown):
+        if line == "..." or line.startswith("#"):
+            continue
+        beginning = line[:-3].rstrip() if line.endswith("...") else None
+        if not any(p == line if beginning is None else p.startswith(beginning) for p in lines):
+            return line
+    return None
+
+
+def main():
+    program, top = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    failures = n = 0
+    with tempfile.TemporaryDirectory(prefix="driftwright-documents-") as folder:
+        work = Path(folder)
+        (work / "scenarios").symlink_to(top / "scenarios")
+        (work / "docs").symlink_to(top / "docs")
+        (work / "driftwright").symlink_to(program)
+        env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"), PATH=f"{work}:{os.environ['PATH']}")
+        for page in sys.argv[3:] or PAGES:
+            for number, command, shown in blocks((top / page).read_text()):
+                n += 1
+                begun = time.monotonic()
+                done = subprocess.run(["bash", "-c", command], cwd=work, env=env, capture_output=True, text=True)
+                missed = not_printed(shown, done.stdout) if done.returncode == 0 else None
+                print(f"{time.monotonic() - begun:6.1f} s  {page}:{number}: {command}", flush=True)
+                if done.returncode != 0 or missed:
+                    failures += 1
+                    print(f"  FAILED: {done.stderr.strip()[-400:] if done.returncode else 'not printed: ' + missed}", flush=True)
+    print(f"{n} commands, {failures} failed")
+    return 1 if failures or n < 20 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

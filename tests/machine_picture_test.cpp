@@ -1,0 +1,52 @@
+#include "output/machine_picture.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/fixtures.hpp"
+
+namespace driftwright::output {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+mesh::Mesh box() {
+  return fixtures::box_mesh({.size_m = {0.1, 0.1, 0.2}, .n = {2, 2, 4}});
+}
+
+TEST(MachinePicture, NamesSurfacesAndMarks) {
+  mesh::Mesh mesh = box();
+  const std::string plain =
+      draw_machine({.mesh = &mesh, .marks = {{"t<1>", {0.0, 0.05, 0.1}}, {"nose", {0.1, 0.1, 0.2}, true}}});
+  for (const std::string& surface : mesh.surfaces) EXPECT_THAT(plain, HasSubstr(">" + surface + "</text>"));
+  EXPECT_THAT(plain, HasSubstr(">t&lt;1&gt;</text>"));
+  EXPECT_THAT(plain, HasSubstr(">nose</text>"));
+  EXPECT_THAT(plain, Not(HasSubstr("temperature")));
+  // A side of a joint lies inside: it has neither a colour nor a name.
+  mesh.surfaces.front() = "a/b@a";
+  EXPECT_THAT(draw_machine({.mesh = &mesh}), Not(HasSubstr("a/b@a")));
+}
+
+TEST(MachinePicture, ShowsTheRangeOfAFieldAndARoundMagnification) {
+  const mesh::Mesh mesh = box();
+  Eigen::Matrix3Xd up_m = Eigen::Matrix3Xd::Zero(3, mesh.n_nodes());
+  up_m.row(2) = 1e-5 / 0.2 * mesh.coords.row(2);
+  const std::string drawn =
+      draw_machine({.mesh = &mesh,
+                    .field = PictureField{"temperature [°C]", 20.0 + 50.0 * mesh.coords.row(2).transpose().array()},
+                    .displacement_m = up_m});
+  for (const char* tick : {">20.0<", ">22.5<", ">25.0<", ">27.5<", ">30.0<", ">temperature [°C]<"})
+    EXPECT_THAT(drawn, HasSubstr(tick));
+  // A twentieth of the diagonal, 0.245 m, is 1225 times 10 µm: 1000 of 1, 2 and 5 times a power of ten.
+  EXPECT_THAT(drawn, HasSubstr("displacement magnified 1000 times"));
+}
+
+TEST(MachinePicture, OfAnotherMeshIsOurMistake) {
+  const mesh::Mesh mesh = box();
+  EXPECT_THROW((void)draw_machine({.mesh = &mesh, .field = PictureField{"x", Eigen::VectorXd::Zero(3)}}), std::logic_error);
+  const mesh::Mesh nothing;
+  EXPECT_THROW((void)draw_machine({.mesh = &nothing}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace driftwright::output
