@@ -67,7 +67,9 @@ TEST(FollowSession, GivesTheCorrectionThatWasJudged) {
     const FollowLine line = session.take(row_of(r, i));
     ASSERT_EQ(line.axes.size(), 1u);
     EXPECT_EQ(line.axes[0].predicted_um, judged.correction_um[i]);
-    if (i > 5) EXPECT_NEAR(line.axes[0].correction_um, judged.correction_um[i], 1e-9) << i;  // once the axis is there
+    if (i > 5) {  // once the axis is there
+      EXPECT_NEAR(line.axes[0].correction_um, judged.correction_um[i], 1e-9) << i;
+    }
     EXPECT_EQ(line.axes[0].trust, judged.trust[i]);
     EXPECT_EQ(line.run_s, r.time_s[i] - r.time_s[0]);
     EXPECT_EQ(line.axes[0].verdict, "safe within limits");
