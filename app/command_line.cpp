@@ -16,6 +16,7 @@
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
 #include "base/version.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
 #include "scenarios/reader/read_schedule.hpp"
 
 namespace {

@@ -230,7 +230,6 @@ INSTANTIATE_TEST_SUITE_P(
         Conflict{"json_details", "check no_such.yaml --json --details", "--json excludes --details"},
         Conflict{"pause_alone", "predict no_such.yaml --cyclogram x --after-pause '3 min'",
                  "--after-pause requires --start"},
-        Conflict{"between_alone", "schedule no_such.yaml --program x.ngc --between '3 min'", "--between requires --parts"},
         Conflict{"train_alone", "validate no_such.yaml --train x.csv", "wants --test too"},
         Conflict{"test_alone", "validate no_such.yaml --test x.csv", "wants --train too"},
         Conflict{"after_alone", "compensate no_such.yaml --model x.json --through none --after x.csv",
