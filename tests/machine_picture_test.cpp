@@ -1,5 +1,6 @@
 #include "output/machine_picture.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <regex>
@@ -46,7 +47,7 @@ TEST(MachinePicture, ShowsTheRangeOfAFieldAndARoundMagnification) {
 TEST(MachinePicture, KeepsAllNamesInside) {
   const mesh::Mesh mesh = box();
   std::vector<PictureMark> marks;
-  for (int i = 0; i < 80; ++i) marks.push_back({"t" + std::to_string(i), {0.0, 0.05, 0.2 * i / 80.0}});
+  for (int i = 0; i < 80; ++i) marks.push_back({fmt::format("t{}", i), {0.0, 0.05, 0.2 * i / 80.0}});
   const std::string drawn = draw_machine({.mesh = &mesh, .marks = marks});
   const std::regex text("<text x=\"[^\"]*\" y=\"([^\"]*)\"");
   int n = 0;

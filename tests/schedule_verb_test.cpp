@@ -1,5 +1,6 @@
 // `driftwright schedule` as a user runs it; its LinuxCNC programs read by LinuxCNC's own interpreter, where that is installed.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -207,7 +208,7 @@ std::string din_passes() {
   for (int i = 0; i < 12; ++i) {
     for (const char* block :
          {"G01 Z-1 F50", "X+300 F50", "G03 X+310 Y+10 I+300 J+10", "G01 Y+20", "X+0 F60", "G00 Z+5", "G00 X+0 Y+0"})
-      text += "N" + std::to_string(n += 10) + " " + block + " *\n";
+      text += fmt::format("N{} {} *\n", n += 10, block);
   }
   return text + "N99990 M30 *\nN99999 %PASSES G71 *\n";
 }
