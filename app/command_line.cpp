@@ -205,6 +205,22 @@ void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
                                near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
 }
 
+/// What is wrong with the words behind a verb, with the option that was meant where one is near.
+std::string wrong_words(const CLI::App& cli, const CLI::ParseError& e) {
+  const std::vector<CLI::App*> verbs = cli.get_subcommands();
+  const CLI::App& verb = verbs.empty() ? cli : *verbs.front();
+  std::vector<std::string> options;
+  for (const CLI::Option* option : verb.get_options()) {
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  std::string meant;
+  for (const std::string& word : verb.remaining()) {
+    if (meant.empty() && word.rfind("--", 0) == 0) meant = did_you_mean(word.substr(0, word.find('=')), options);
+  }
+  const std::string command = verbs.empty() ? "driftwright" : "driftwright " + verb.get_name();
+  return fmt::format("{}: {}.{}\n`{} --help` shows what it takes, with an example", command, e.what(), meant, command);
+}
+
 /// driftwright help VERB, for those who type that.
 void add_help(CLI::App& cli, std::string& of) {
   CLI::App* verb = cli.add_subcommand("help", "the help of a verb");
@@ -370,10 +386,10 @@ int app::command_line(int argc, const char* const* argv) {
   add_help(cli, help_of);
   app::SchemaOptions schema;
   verb = cli.add_subcommand("schema", "what a file may hold, as JSON Schema for editors and validators");
-  verb->add_option("what", schema.what, "scenario, or sweep: its study")
-      ->check(CLI::IsMember({"scenario", "sweep"}))
+  verb->add_option("what", schema.what, "scenario; sweep: its study; diagnosis or calibration: their JSON")
+      ->check(CLI::IsMember({"scenario", "sweep", "diagnosis", "calibration"}))
       ->capture_default_str();
-  verb->add_flag("--markdown", schema.markdown, "as tables, which docs/scenario.md and docs/sweep.md hold");
+  verb->add_flag("--markdown", schema.markdown, "as tables, which docs/scenario.md, docs/sweep.md and docs/diagnosis.md hold");
   verb->footer("Example:\n  driftwright schema scenario > scenario.schema.json");
   verb->callback([&] { app::schema(schema); });
 
@@ -384,7 +400,8 @@ int app::command_line(int argc, const char* const* argv) {
       throw InputError("what the program says cannot be written to standard output; is it full?");
     return kDone;
   } catch (const CLI::ParseError& e) {
-    return cli.exit(e) == 0 ? kDone : kWrongInput;
+    if (e.get_exit_code() == 0) return cli.exit(e) == 0 ? kDone : kWrongInput;  // what was asked for: help, version
+    return app::exit_code_of(std::make_exception_ptr(InputError(wrong_words(cli, e))));
   } catch (...) {
     return app::exit_code_of(std::current_exception());
   }

@@ -119,12 +119,12 @@ class Following {
       const auto got = source.next(line, kLongestPoll_s);
       if (got == follow::LineSource::Got::kEnd) break;
       if (got == follow::LineSource::Got::kLine) {
-        take(line);
-        last = Clock::now();
-        is_silent_ = false;
-      } else {
-        tell_silence(last);
+        if (take(line)) {
+          last = Clock::now();
+          is_silent_ = false;
+        }
       }
+      tell_silence(last);
       if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
     }
   }
@@ -160,8 +160,7 @@ class Following {
         for (std::size_t k = 0; k < topics.size(); ++k) {
           if (topics[k] == message.topic) heard[k] = Heard{message.payload, Clock::now()};
         }
-        if (!makes_rows) {
-          take_lines(message.payload);
+        if (!makes_rows && take_lines(message.payload)) {
           last = Clock::now();
           is_silent_ = false;
         }
@@ -189,16 +188,19 @@ class Following {
     }
   }
 
-  void take_lines(const std::string& text) {
+  /// @return whether a row was taken
+  bool take_lines(const std::string& text) {
+    bool is_taken = false;
     std::size_t begin = 0;
     while (begin < text.size()) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
-      take(text.substr(begin, end - begin));
+      is_taken |= take(text.substr(begin, end - begin));
       begin = end + 1;
     }
+    return is_taken;
   }
 
-  /// Writes a line without a row where none has come for long. @param last  line, or one written so
+  /// Writes a line without a row where none was taken for long. @param last  row taken, or line written so
   void tell_silence(Clock::time_point& last) {
     if (!session_.has_channels()) return;
     const double silent_s = seconds_since(last);
@@ -232,7 +234,8 @@ class Following {
       std::this_thread::sleep_for(std::min<Clock::duration>(due - Clock::now(), std::chrono::milliseconds(250)));
   }
 
-  void take(const std::string& line) {
+  /// @return whether a row was taken
+  bool take(const std::string& line) {
     std::optional<follow::StreamRow> row;
     std::string why;
     try {
@@ -243,9 +246,9 @@ class Following {
     if (!session_.has_channels() && !text_.channels().empty()) begin();
     if (!session_.has_channels()) {
       if (!why.empty()) throw InputError(fmt::format("{}: {}; a header or a JSON row comes first", source_name_, why));
-      return;
+      return false;
     }
-    if (!row && why.empty()) return;
+    if (!row && why.empty()) return false;
     if (row) keep_pace(row->time_s);
     ++n_rows_;
     const follow::FollowLine said = row ? session_.take(std::move(*row)) : session_.pass_over(why);
@@ -254,6 +257,7 @@ class Following {
       if (record_) record_->add(session_.taken());
     }
     write(said);
+    return said.run_s.has_value();
   }
 
   void begin() {

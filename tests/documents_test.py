@@ -10,6 +10,8 @@ be printed (blanks count as one; a line that ends with "..." is the beginning of
 import os, re, subprocess, sys, tempfile, time
 from pathlib import Path
 
+from result_schema import errors
+
 PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md"]
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
@@ -62,6 +64,10 @@ def main():
                 if done.returncode != 0 or missed:
                     failures += 1
                     print(f"  FAILED: {done.stderr.strip()[-400:] if done.returncode else 'not printed: ' + missed}", flush=True)
+        for file in [*work.rglob("diagnosis.json"), *work.rglob("calibration.json")]:
+            for error in errors(program, file):
+                failures += 1
+                print(f"  FAILED: {file.relative_to(work)}, by its schema: {error}", flush=True)
     print(f"{n} commands, {failures} failed")
     return 1 if failures or n < 20 else 0
 
