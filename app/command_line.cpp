@@ -213,12 +213,15 @@ std::string wrong_words(const CLI::App& cli, const CLI::ParseError& e) {
   for (const CLI::Option* option : verb.get_options()) {
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
   }
-  std::string meant;
-  for (const std::string& word : verb.remaining()) {
-    if (meant.empty() && word.rfind("--", 0) == 0) meant = did_you_mean(word.substr(0, word.find('=')), options);
-  }
   const std::string command = verbs.empty() ? "driftwright" : "driftwright " + verb.get_name();
-  return fmt::format("{}: {}.{}\n`{} --help` shows what it takes, with an example", command, e.what(), meant, command);
+  const std::string help = fmt::format("`{} --help` shows what it takes{}", command, verbs.empty() ? "" : ", with an example");
+  for (const std::string& word : verb.remaining()) {
+    if (word.rfind("--", 0) != 0) continue;
+    const std::string option = word.substr(0, word.find('='));
+    return fmt::format("{} has no option {}.{}\n{}", command, option, did_you_mean(option, options), help);
+  }
+  if (verbs.empty()) return fmt::format("a verb is required, such as `driftwright run scenario.yaml`\n{}", help);
+  return fmt::format("{}: {}\n{}", command, e.what(), help);
 }
 
 /// driftwright help VERB, for those who type that.

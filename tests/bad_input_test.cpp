@@ -207,6 +207,20 @@ TEST(BadCommand, MissingFileUnknownVerbAndMissingArgumentEndWithTwo) {
   EXPECT_THAT(run_program("rnu scenarios/fp3_spindle.yaml").output, HasSubstr("unknown verb 'rnu'"));
 }
 
+TEST(BadCommand, WordsThatAreNoneNameTheOneThatWasMeant) {
+  for (const auto& [command, message] : {
+           std::pair{"run no_such.yaml --threds 3", "error: driftwright run has no option --threds. Did you mean '--threads'?"},
+           {"diagnose no_such.yaml", "error: driftwright diagnose: --measured is required"},
+           {"", "error: a verb is required"}, {"--json", "error: driftwright has no option --json"},
+           {"run scenarios/lumped_sweep.yaml", "lumped_sweep.yaml:16:3: this file is a study that varies a scenario: `driftwright sweep`"},
+           {"sweep scenarios/lumped_spindle.yaml", "lumped_spindle.yaml:15:3: this file is a scenario: `driftwright run`"},
+       }) {
+    const CommandOutcome outcome = run_program(command);
+    EXPECT_EQ(outcome.exit_code, 2) << command;
+    EXPECT_THAT(outcome.output, HasSubstr(message));
+  }
+}
+
 struct Conflict {
   const char* name;
   const char* command;

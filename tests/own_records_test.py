@@ -82,7 +82,7 @@ def try_scenario(program, name, work):
     for verb in ("calibrate", "diagnose"):
         run(program, work, verb, scenario, "--measured", a, "-o", out / verb)
     for file in (out / "calibrate" / "calibration.json", out / "diagnose" / "diagnosis.json"):
-        failures += [(file.name, ["schema"], error) for error in errors(program, file)]
+        failures.extend((file.name, ["schema"], error) for error in errors(program, file))
     judge(out / "diagnose" / "diagnosis.json")
 
 
