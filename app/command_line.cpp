@@ -133,9 +133,13 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   CLI::Option* from =
       verb->add_option("--from", options.from, "topic whose messages are rows, such as {\"time_s\": 60, \"t01_degC\": 21.5}")
           ->needs(mqtt);
+  verb->add_option("--mtconnect", options.mtconnect,
+                   "address of an MTConnect agent in place of standard input, such as http://10.0.0.7:5000")
+      ->excludes(replay)
+      ->excludes(mqtt);
   verb->add_option("--topic", options.topics,
-                   "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers; may be repeated")
-      ->needs(mqtt)
+                   "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers, or the id or name of "
+                   "the agent's data item; may be repeated")
       ->excludes(from)
       ->allow_extra_args(false);
   verb->add_option("--every", options.every, "time from row to row that is made of --topic")->capture_default_str();

@@ -259,6 +259,9 @@ INSTANTIATE_TEST_SUITE_P(
         Conflict{"machine_with_model", "export no_such.yaml --fmu --model x.json", "--of observer"},
         Conflict{"materials_markdown", "list materials --markdown", "--markdown goes with effects"},
         Conflict{"separation_alone", "inject --correction x.csv --separation 5 </dev/null", "add --clocked"},
+        Conflict{"topic_alone", "follow no_such.yaml --topic speed_rpm=mill/speed </dev/null", "wants --mqtt HOST or --mtconnect"},
+        Conflict{"two_links", "follow no_such.yaml --mqtt localhost --mtconnect http://localhost:5000",
+                 "--mqtt excludes --mtconnect"},
         Conflict{"no_threads", "check no_such.yaml --threads 0", "--threads"},
         Conflict{"hal_alone", "inject --correction x.csv --hal x.hal </dev/null", "--halstream, which is not given"}),
     [](const auto& conflict) { return conflict.param.name; });
