@@ -15,7 +15,7 @@ HEAD = """name: head
 reference_temperature: 20 degC
 machine: {generator: lumped}
 effects:
-  - {type: node, node: head, capacity: 60 J/K}
+  - {type: node, node: head, capacity: 12 J/K}
   - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
   - {type: link, node: head, to: hall, conductance: 20 W/K}
 start: hall
@@ -101,7 +101,7 @@ def main():
         running = follow(program, folder, address + "/mill", "speed_rpm=S1speed", "ambient_degC=e2")
         threading.Thread(target=lambda: lines.extend(json.loads(line) for line in running.stdout), daemon=True).start()
 
-        def is_at(um):  # 60 J/K on 20 W/K settle within 3 s to 300 W / 2000 rpm / 20 W/K * 4 um/K above the hall
+        def is_at(um):  # 12 J/K on 20 W/K settle within 4 s to 300 W / 2000 rpm / 20 W/K * 4 um/K above the hall
             return bool(lines) and abs(lines[-1]["axes"]["nose_z"]["predicted_um"] - um) < 0.05 and lines[-1]["state"] == "on"
 
         wait_for("drift of 1000 rpm", lambda: is_at(1000 * 0.15 / 20 * 4))
@@ -109,7 +109,7 @@ def main():
         wait_for("drift of 500 rpm in a warmer hall", lambda: is_at((500 * 0.15 / 20 + 1.5) * 4))
         agent.values = {"speed": "UNAVAILABLE", "hall": "21.5"}
         n = len(lines)
-        wait_for("rows without a speed", lambda: len(lines) > n + 40)  # 8 s; the body settles in 3
+        wait_for("rows without a speed", lambda: len(lines) > n + 40)  # 8 s; the body settles in 4
         assert is_at((500 * 0.15 / 20 + 1.5) * 4), lines[-1]  # what is missing is held, and is not 0
         agent.values = {"speed": "500", "hall": "21.5"}
         agent.leave()
