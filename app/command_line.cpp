@@ -133,9 +133,13 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   CLI::Option* from =
       verb->add_option("--from", options.from, "topic whose messages are rows, such as {\"time_s\": 60, \"t01_degC\": 21.5}")
           ->needs(mqtt);
+  verb->add_option("--mtconnect", options.mtconnect,
+                   "address of an MTConnect agent in place of standard input, such as http://10.0.0.7:5000")
+      ->excludes(replay)
+      ->excludes(mqtt);
   verb->add_option("--topic", options.topics,
-                   "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers; may be repeated")
-      ->needs(mqtt)
+                   "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers, or the id or name of "
+                   "the agent's data item; may be repeated")
       ->excludes(from)
       ->allow_extra_args(false);
   verb->add_option("--every", options.every, "time from row to row that is made of --topic")->capture_default_str();
@@ -252,6 +256,25 @@ void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
   const std::string near = nearest_word(word, verbs);
   throw InputError(fmt::format("unknown verb '{}'; there are {}.{}", word, fmt::join(verbs, ", "),
                                near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
+}
+
+/// What is wrong with the words behind a verb, with the option that was meant where one is near.
+std::string wrong_words(const CLI::App& cli, const CLI::ParseError& e) {
+  const std::vector<CLI::App*> verbs = cli.get_subcommands();
+  const CLI::App& verb = verbs.empty() ? cli : *verbs.front();
+  std::vector<std::string> options;
+  for (const CLI::Option* option : verb.get_options()) {
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  const std::string command = verbs.empty() ? "driftwright" : "driftwright " + verb.get_name();
+  const std::string help = fmt::format("`{} --help` shows what it takes{}", command, verbs.empty() ? "" : ", with an example");
+  for (const std::string& word : verb.remaining()) {
+    if (word.rfind("--", 0) != 0) continue;
+    const std::string option = word.substr(0, word.find('='));
+    return fmt::format("{} has no option {}.{}\n{}", command, option, did_you_mean(option, options), help);
+  }
+  if (verbs.empty()) return fmt::format("a verb is required, such as `driftwright run scenario.yaml`\n{}", help);
+  return fmt::format("{}: {}\n{}", command, e.what(), help);
 }
 
 /// driftwright help VERB, for those who type that.
@@ -431,10 +454,10 @@ int app::command_line(int argc, const char* const* argv) {
   add_help(cli, help_of);
   app::SchemaOptions schema;
   verb = cli.add_subcommand("schema", "what a file may hold, as JSON Schema for editors and validators");
-  verb->add_option("what", schema.what, "scenario, or sweep: its study")
-      ->check(CLI::IsMember({"scenario", "sweep"}))
+  verb->add_option("what", schema.what, "scenario; sweep: its study; diagnosis or calibration: their JSON")
+      ->check(CLI::IsMember({"scenario", "sweep", "diagnosis", "calibration"}))
       ->capture_default_str();
-  verb->add_flag("--markdown", schema.markdown, "as tables, which docs/scenario.md and docs/sweep.md hold");
+  verb->add_flag("--markdown", schema.markdown, "as tables, which docs/scenario.md, docs/sweep.md and docs/diagnosis.md hold");
   verb->footer("Example:\n  driftwright schema scenario > scenario.schema.json");
   verb->callback([&] { app::schema(schema); });
 
@@ -445,7 +468,8 @@ int app::command_line(int argc, const char* const* argv) {
       throw InputError("what the program says cannot be written to standard output; is it full?");
     return kDone;
   } catch (const CLI::ParseError& e) {
-    return cli.exit(e) == 0 ? kDone : kWrongInput;
+    if (e.get_exit_code() == 0) return cli.exit(e) == 0 ? kDone : kWrongInput;  // what was asked for: help, version
+    return app::exit_code_of(std::make_exception_ptr(InputError(wrong_words(cli, e))));
   } catch (...) {
     return app::exit_code_of(std::current_exception());
   }

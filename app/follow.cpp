@@ -10,11 +10,13 @@
 #include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <thread>
 
 #include "app/end_request.hpp"
 #include "app/progress.hpp"
+#include "base/config_map.hpp"
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
 #include "base/quantity.hpp"
@@ -22,6 +24,7 @@
 #include "follow/followed_machine.hpp"
 #include "follow/line_source.hpp"
 #include "follow/mqtt_link.hpp"
+#include "follow/mtconnect_agent.hpp"
 #include "follow/record_file.hpp"
 #include "follow/row_text.hpp"
 #include "follow/state_file.hpp"
@@ -37,6 +40,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kSaveEvery_s = 1.0;
 constexpr double kLongestPoll_s = 0.25;  // so soon an end that is asked for is noticed
 constexpr double kStale_s = 60.0;        // after so long without a message a channel is missing, at least
+constexpr double kLongestAnswer_s = 2.0;  // of an agent
 constexpr double kFirstSilence_s = 5.0;  // without a line, at least, before one is written without
 
 std::optional<double> quantity(const char* option, const std::string& text, const std::string& unit) {
@@ -101,6 +105,8 @@ class Following {
     const EndRequest end_request;
     if (!options_.mqtt.empty()) {
       follow_broker();
+    } else if (!options_.mtconnect.empty()) {
+      follow_agent();
     } else if (options_.replay.empty()) {
       follow_input();
     } else {
@@ -119,64 +125,134 @@ class Following {
       const auto got = source.next(line, kLongestPoll_s);
       if (got == follow::LineSource::Got::kEnd) break;
       if (got == follow::LineSource::Got::kLine) {
-        take(line);
-        last = Clock::now();
-        is_silent_ = false;
-      } else {
-        tell_silence(last);
+        if (take(line)) {
+          last = Clock::now();
+          is_silent_ = false;
+        }
       }
+      tell_silence(last);
       if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
     }
   }
 
-  void follow_broker() {
-    constexpr const char* kWill = R"({"state":"off","why":"follow has ended without a word","axes":{}})";
-    std::vector<std::string> topics, headers;
+  /// A channel and where its numbers come from, as --topic says it.
+  struct Source {
+    std::string header, from;
+    std::string text = {};  ///< heard last
+    std::optional<Clock::time_point> at = {};
+  };
+  [[nodiscard]] std::vector<Source> sources() const {
+    std::vector<Source> list;
     for (const std::string& given : options_.topics) {
       const std::size_t equals = given.find('=');
       if (equals == std::string::npos || equals == 0 || equals + 1 == given.size())
         throw InputError(fmt::format("--topic '{}': CHANNEL=TOPIC is wanted, such as t01_degC=shop/mill/t01", given));
-      headers.push_back(given.substr(0, equals));
-      topics.push_back(given.substr(equals + 1));
+      list.push_back({given.substr(0, equals), given.substr(equals + 1)});
     }
-    if (topics.empty() == options_.from.empty())
+    return list;
+  }
+
+  /// Makes a row of what was heard last of each channel, by this computer's clock.
+  void take_row_of(const std::vector<Source>& heard, double stale_s) {
+    std::vector<std::string> cells;
+    for (const Source& h : heard) cells.push_back(h.at && seconds_since(*h.at) < stale_s ? cell_of(h.text) : "");
+    const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    take(fmt::format("{:.3f},{}", now_s, fmt::join(cells, ",")));
+  }
+
+  /// When a row is to be made next; of the time in which the computer was asleep none are made up.
+  static Clock::time_point next_due(Clock::time_point due, double every_s) {
+    due += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(every_s));
+    return std::max(due, Clock::now());
+  }
+
+  static std::string header_of(const std::vector<Source>& heard) {
+    std::vector<std::string> headers;
+    for (const Source& h : heard) headers.push_back(h.header);
+    return fmt::format("time_s,{}", fmt::join(headers, ","));
+  }
+
+  void follow_broker() {
+    constexpr const char* kWill = R"({"state":"off","why":"follow has ended without a word","axes":{}})";
+    std::vector<Source> heard = sources();
+    if (heard.empty() == options_.from.empty())
       throw InputError("--mqtt wants --from TOPIC, whose messages are rows, or --topic CHANNEL=TOPIC for each channel");
-    const bool makes_rows = !topics.empty();
+    const bool makes_rows = !heard.empty();
     const double every_s = *quantity("--every", options_.every, "s"), stale_s = std::max(kStale_s, 5.0 * every_s);
+    std::vector<std::string> topics;
+    for (const Source& h : heard) topics.push_back(h.from);
     link_ = std::make_unique<follow::MqttLink>(follow::read_mqtt_address(options_.mqtt),
                                                makes_rows ? topics : std::vector{options_.from}, options_.to, kWill);
-    struct Heard {
-      std::string text;
-      Clock::time_point at;
-    };
-    std::vector<std::optional<Heard>> heard(topics.size());
-    if (makes_rows) take(fmt::format("time_s,{}", fmt::join(headers, ",")));
+    if (makes_rows) take(header_of(heard));
     Clock::time_point last = Clock::now(), due = last;
     follow::MqttLink::Message message;
     while (is_read_ && !EndRequest::is_made()) {
       const double until_due_s =
           makes_rows ? std::max(0.0, std::chrono::duration<double>(due - Clock::now()).count()) : kLongestPoll_s;
       if (link_->next(message, std::min(kLongestPoll_s, until_due_s))) {
-        for (std::size_t k = 0; k < topics.size(); ++k) {
-          if (topics[k] == message.topic) heard[k] = Heard{message.payload, Clock::now()};
+        for (Source& h : heard) {
+          if (h.from != message.topic) continue;
+          h.text = message.payload;
+          h.at = Clock::now();
         }
-        if (!makes_rows) {
-          take_lines(message.payload);
+        if (!makes_rows && take_lines(message.payload)) {
           last = Clock::now();
           is_silent_ = false;
         }
       }
       if (makes_rows && Clock::now() >= due) {
-        due += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(every_s));
-        if (Clock::now() > due) due = Clock::now();  // asleep: no rows are made up for that
-        std::vector<std::string> cells;
-        for (const auto& h : heard) cells.push_back(h && seconds_since(h->at) < stale_s ? cell_of(h->text) : "");
-        const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-        take(fmt::format("{:.3f},{}", now_s, fmt::join(cells, ",")));
+        due = next_due(due, every_s);
+        take_row_of(heard, stale_s);
       } else if (!makes_rows) {
         tell_silence(last);
       }
       if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
+    }
+  }
+
+  /// Asks an agent for what it tells now, row by row. While it does not answer, what it said last holds until it is stale.
+  void follow_agent() {
+    std::vector<Source> heard = sources();
+    if (heard.empty()) throw InputError("--mtconnect wants --topic CHANNEL=ITEM for each channel, a data item's id or name");
+    const double every_s = *quantity("--every", options_.every, "s"), stale_s = std::max(kStale_s, 5.0 * every_s);
+    follow::MtconnectAgent agent(options_.mtconnect);
+    take(header_of(heard));
+    bool has_answered = false, is_away = false;
+    for (Clock::time_point due = Clock::now(); is_read_ && !EndRequest::is_made();) {
+      if (Clock::now() < due) {
+        std::this_thread::sleep_for(std::min<Clock::duration>(due - Clock::now(), std::chrono::milliseconds(100)));
+        continue;
+      }
+      due = next_due(due, every_s);
+      try {
+        const std::map<std::string, std::string> told = agent.current(std::min(every_s, kLongestAnswer_s));
+        if (!has_answered) require_items(heard, told);
+        for (Source& h : heard) {
+          const auto item = told.find(h.from);
+          h.at.reset();
+          if (item == told.end() || item->second.empty()) continue;  // UNAVAILABLE
+          h.text = item->second;
+          h.at = Clock::now();
+        }
+        if (is_away) fmt::print(stderr, "{} answers again\n", options_.mtconnect);
+        has_answered = true;
+        is_away = false;
+      } catch (const RangeError& e) {
+        if (!is_away) fmt::print(stderr, "warning: {}: {}; it is asked again every {:g} s\n", options_.mtconnect, e.what(), every_s);
+        is_away = true;
+      }
+      if (has_answered) take_row_of(heard, stale_s);
+      if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
+    }
+  }
+
+  void require_items(const std::vector<Source>& heard, const std::map<std::string, std::string>& told) const {
+    std::vector<std::string> known;
+    for (const auto& [item, value] : told) known.push_back(item);
+    for (const Source& h : heard) {
+      if (!told.contains(h.from))
+        throw InputError(fmt::format("--topic {}={}: the agent has no data item of this id or name; it has {}.{}", h.header, h.from,
+                                     fmt::join(known, ", "), did_you_mean(h.from, known)));
     }
   }
 
@@ -189,16 +265,19 @@ class Following {
     }
   }
 
-  void take_lines(const std::string& text) {
+  /// @return whether a row was taken
+  bool take_lines(const std::string& text) {
+    bool is_taken = false;
     std::size_t begin = 0;
     while (begin < text.size()) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
-      take(text.substr(begin, end - begin));
+      is_taken |= take(text.substr(begin, end - begin));
       begin = end + 1;
     }
+    return is_taken;
   }
 
-  /// Writes a line without a row where none has come for long. @param last  line, or one written so
+  /// Writes a line without a row where none was taken for long. @param last  row taken, or line written so
   void tell_silence(Clock::time_point& last) {
     if (!session_.has_channels()) return;
     const double silent_s = seconds_since(last);
@@ -232,7 +311,8 @@ class Following {
       std::this_thread::sleep_for(std::min<Clock::duration>(due - Clock::now(), std::chrono::milliseconds(250)));
   }
 
-  void take(const std::string& line) {
+  /// @return whether a row was taken
+  bool take(const std::string& line) {
     std::optional<follow::StreamRow> row;
     std::string why;
     try {
@@ -243,9 +323,9 @@ class Following {
     if (!session_.has_channels() && !text_.channels().empty()) begin();
     if (!session_.has_channels()) {
       if (!why.empty()) throw InputError(fmt::format("{}: {}; a header or a JSON row comes first", source_name_, why));
-      return;
+      return false;
     }
-    if (!row && why.empty()) return;
+    if (!row && why.empty()) return false;
     if (row) keep_pace(row->time_s);
     ++n_rows_;
     const follow::FollowLine said = row ? session_.take(std::move(*row)) : session_.pass_over(why);
@@ -254,6 +334,7 @@ class Following {
       if (record_) record_->add(session_.taken());
     }
     write(said);
+    return said.run_s.has_value();
   }
 
   void begin() {
@@ -345,6 +426,8 @@ void calibrate_watch(const FollowVerbOptions& options) {
 }  // namespace
 
 void follow_stream(const FollowVerbOptions& options) {
+  if (!options.topics.empty() && options.mqtt.empty() && options.mtconnect.empty())
+    throw InputError("--topic says where a channel's numbers come from, which wants --mqtt HOST or --mtconnect ADDRESS");
   if (!options.calibrate_watch.empty()) return calibrate_watch(options);
   if (options.pace < 0.0) throw InputError("--pace: 0 (as fast as it goes) or more is wanted");
   if (options.pace > 0.0 && options.replay.empty()) throw InputError("--pace goes with --replay FILE");

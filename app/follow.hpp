@@ -12,8 +12,9 @@ struct FollowVerbOptions {
   std::string replay;               ///< a file in place of standard input
   double pace = 0.0;                ///< of the replay: times its own; 0: as fast as it goes
   std::string mqtt;                 ///< broker HOST:PORT in place of standard input; empty: none
+  std::string mtconnect;            ///< address of an agent in place of standard input; empty: none
   std::string from;                 ///< topic whose messages are rows
-  std::vector<std::string> topics;  ///< or one a channel: "t01_degC=shop/mill/t01"
+  std::vector<std::string> topics;  ///< or one a channel: "t01_degC=shop/mill/t01"; of an agent its data item
   std::string every = "1 s";        ///< of the rows that are made of those
   std::string to;                   ///< topic that lines go to, too; empty: none
   std::string state, record;        ///< files; empty: none

@@ -100,6 +100,9 @@ void schedule(const ScheduleVerbOptions& options) {
   if (!options.policy.empty()) series.settings.policy = options.policy;
   if (!options.dialect.empty()) series.settings.nc.control = scenarios::control_of(options.dialect);
   const scenarios::ScheduleSettings& settings = series.settings;
+  const int parts = options.parts > 0 ? options.parts : settings.parts;
+  if (!options.between.empty() && parts == 1)
+    throw InputError("--between is the time between two parts, and there is one: give --parts, or `parts` in the schedule");
   series.program = read_nc_program(options.program, settings.nc);
   const std::string bytes = read_bytes(options.program);
   series.cyclogram = scenarios::cyclogram_of(series.program, std::filesystem::path(series.file).stem().string(),
@@ -109,7 +112,7 @@ void schedule(const ScheduleVerbOptions& options) {
   scenarios::check_cyclogram(scenario, series.cyclogram);
   const studies::PredictionOptions asked{.start = options.start,
                                          .after_pause = options.after_pause,
-                                         .parts = options.parts > 0 ? options.parts : settings.parts,
+                                         .parts = parts,
                                          .between = between(options, settings),
                                          .model = options.model};
   output::ResultsFolder folder = open_results(options, scenario.name);

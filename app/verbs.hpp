@@ -112,8 +112,8 @@ struct ListOptions {
 void list(const ListOptions& options);
 
 struct SchemaOptions {
-  std::string what = "scenario";  ///< or "sweep"
-  bool markdown = false;          ///< tables, as docs/scenario.md and docs/sweep.md have them
+  std::string what = "scenario";  ///< or "sweep", "diagnosis", "calibration"
+  bool markdown = false;          ///< tables, as docs/scenario.md, docs/sweep.md and docs/diagnosis.md have them
 };
 /// Prints what a file may hold, as JSON Schema.
 void schema(const SchemaOptions& options);

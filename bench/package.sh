@@ -12,7 +12,7 @@ cmake --build "$build" --target package
 [ -d "$bare/usr" ] || debootstrap --variant=minbase bookworm "$bare" "$mirror"
 cp /etc/apt/apt.conf.d/*proxy* "$bare/etc/apt/apt.conf.d/" 2>/dev/null || true
 cp "$build"/*.deb "$bare/tmp/"
-chroot "$bare" sh -ec '
+chroot "$bare" bash -ec '
   apt-get update -q >/dev/null
   time apt-get install -q -y --no-install-recommends /tmp/driftwright_*.deb >/tmp/apt.log
   cp -r /usr/share/driftwright/scenarios /tmp/scenarios

@@ -79,8 +79,6 @@ FollowLine Session::take(StreamRow row) {
     for (const Model& m : models_) (void)m.followed->take(judged.run_s, row.values, step_s);
     taken_ = std::move(row);
     taken_.time_s = judged.run_s;
-  } else if (std::any_of(judged.faults.begin(), judged.faults.end(), [](Fault f) { return f == Fault::kUnconfirmed; })) {
-    wait_all(usual_s);
   }
   FollowLine l = line(judged.is_taken, judged.faults, "");
   if (std::isfinite(time_s)) l.time_s = time_s;
@@ -90,7 +88,6 @@ FollowLine Session::take(StreamRow row) {
 
 FollowLine Session::pass_over(const std::string& why) {
   guard_.count_unreadable();
-  wait_all(guard_.usual_step_s());
   return line(false, {Fault::kUnreadableRow}, why);
 }
 

@@ -11,6 +11,8 @@ import os, re, subprocess, sys, tempfile, time
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
+from result_schema import errors
+
 PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md", "docs/record.md"]
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
@@ -98,6 +100,10 @@ def main():
         if not sys.argv[3:] and len(figures) < 20:
             failures += 1
             print(f"  FAILED: {len(figures)} figures stand beside reports", flush=True)
+        for file in [*work.rglob("diagnosis.json"), *work.rglob("calibration.json")]:
+            for error in errors(program, file):
+                failures += 1
+                print(f"  FAILED: {file.relative_to(work)}, by its schema: {error}", flush=True)
     print(f"{n} commands, {failures} failed")
     return 1 if failures or n < 20 else 0
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Lines of `driftwright follow` on pins of a real HAL, and what stays there when it is killed. follow_hal_test.py PROGRAM PROJECT"""
+import fcntl
 import json
 import os
 import pathlib
@@ -41,6 +42,9 @@ def main():
     feeder = project / "compensation/control/follow_hal.py"
     (folder / "feed.sh").write_text(f"#!/bin/sh\nexec {feeder} --axes nose_z <{folder}/lines\n")
     (folder / "feed.sh").chmod(0o755)
+    # one HAL a machine: as tests/one_hal.hpp has it
+    turn = open("/tmp/driftwright_one_hal", "a")
+    fcntl.flock(turn, fcntl.LOCK_EX)
     # halrun would take its HAL away with its shell; it lives as long as its standard input
     hal = subprocess.Popen(["halrun", "-s"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.STDOUT, cwd=folder, text=True)
     follow = None

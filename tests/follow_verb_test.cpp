@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -91,6 +92,37 @@ TEST(FollowVerb, TellsTheDriftThatPredictTells) {
     EXPECT_LT(off_um, 2e-5) << axis;  // seven digits of the record
   }
   EXPECT_EQ(f.lines.back()["state"], "on");
+}
+
+// What was followed is what a job starts from: the day as it was recorded, a rest and a job drift as all of it in one simulation does.
+TEST(FollowVerb, LeavesARecordThatJobsStartFrom) {
+  (void)predicted_day();
+  const Followed f = follow("head.yaml --record seen.csv", "cat day.csv |");
+  ASSERT_EQ(f.exit_code, 0) << f.words;
+  std::string yaml = kHead;
+  const std::string day = "[60 min, 2000 rpm], [20 min, 500 rpm], [30 min, 1000 rpm], [45 min, 2000 rpm], [25 min, 0 rpm]";
+  yaml.insert(yaml.find("solver:"), "  job: [[50 min, 1500 rpm]]\n  all: [" + day + ", [20 min, 0 rpm], [50 min, 1500 rpm]]\n");
+  write_file("jobs.yaml", yaml);
+  const auto predicted = [&](const std::string& out, const std::string& arguments) {
+    const std::string folder = temporary_folder().string();
+    const CommandOutcome outcome = run_program("predict " + folder + "/jobs.yaml --cyclogram " + arguments + " -o " + folder +
+                                               "/" + out + " --force --quiet");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return read_record_csv(folder + "/" + out + "/record.csv");
+  };
+  const Record whole = predicted("whole", "all");
+  const Record warm = predicted("warm", "job --start " + (temporary_folder() / "seen.csv").string() + " --after-pause '20 min'");
+  const Record cold = predicted("cold", "job");
+  const auto at = [](const Record& record, double time_s) {
+    const auto i = std::lower_bound(record.time_s.begin(), record.time_s.end(), time_s - 1e-6) - record.time_s.begin();
+    return record.at("nose_z").values.at(static_cast<std::size_t>(i));
+  };
+  const double begun_s = 200.0 * 60.0;
+  for (const double t_s : {600.0, 1500.0, 3000.0}) {
+    const double drift_um = at(whole, begun_s + t_s) - at(whole, begun_s);
+    EXPECT_NEAR(at(warm, t_s) - at(warm, 0.0), drift_um, 0.15) << t_s;
+    EXPECT_GT(std::abs(at(cold, t_s) - at(cold, 0.0) - drift_um), 1.0) << t_s;
+  }
 }
 
 TEST(FollowVerb, AReplayGivesTheSameBytesAtAnyPace) {

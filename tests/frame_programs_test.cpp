@@ -12,6 +12,7 @@
 
 #include "base/errors.hpp"
 #include "scenarios/reader/read_table.hpp"
+#include "tests/one_hal.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::compensation {
@@ -228,7 +229,7 @@ TEST(FrameProgram, IsReadByTheInterpreterOfLinuxcnc) {
   const std::string values =
       write_file("rs274.var", "5220 1\n5221 4000\n5222 50\n5223 -10\n5230 30\n5381 7\n5382 0\n5383 0\n5390 0\n");
   EXPECT_EQ(std::system(
-                ("cd " + temporary_folder().string() + " && rs274 -g -v rs274.var thermframe.ngc > rs274.out 2>&1").c_str()),
+                ("cd " + temporary_folder().string() + " && " + kOneHal + "rs274 -g -v rs274.var thermframe.ngc > rs274.out 2>&1").c_str()),
             0);
   const std::string said = read_text(temporary_folder() / "rs274.out");
   EXPECT_THAT(said, AllOf(HasSubstr("STRAIGHT_PROBE(-4775"), HasSubstr("PROGRAM_END"),
@@ -236,7 +237,7 @@ TEST(FrameProgram, IsReadByTheInterpreterOfLinuxcnc) {
   std::size_t n_probes = 0;
   for (std::size_t at = said.find("STRAIGHT_PROBE"); at != std::string::npos; at = said.find("STRAIGHT_PROBE", at + 1))
     ++n_probes;
-  EXPECT_EQ(n_probes, 10u);
+  EXPECT_EQ(n_probes, 12u);  // of each ring four for the middle, one for the height and a second, slow one
   // Each touch ends where it was sent: both middles as they were, both edges 3 mm lower; rs274 keeps inches. G59.3 is G54 with that; G54 stays.
   const std::map<int, double> wanted = {
       {5221, 4000}, {5222, 50}, {5223, -10}, {5230, 30}, {5381, 4000}, {5382, 50}, {5383, -10 - 3 / 25.4}, {5390, 30}};

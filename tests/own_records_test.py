@@ -8,6 +8,8 @@ simulated itself is consistent with it, and diagnosis.json has the keys that oth
 import json, os, subprocess, sys, tempfile
 from pathlib import Path
 
+from result_schema import errors
+
 TOP = Path(__file__).resolve().parent.parent
 failures = []
 
@@ -79,6 +81,8 @@ def try_scenario(program, name, work):
         run(program, work, "validate", scenario, "--train", a, "--train", b, "--test", c, "-o", out, wanted=(0, 2))
     for verb in ("calibrate", "diagnose"):
         run(program, work, verb, scenario, "--measured", a, "-o", out / verb)
+    for file in (out / "calibrate" / "calibration.json", out / "diagnose" / "diagnosis.json"):
+        failures.extend((file.name, ["schema"], error) for error in errors(program, file))
     judge(out / "diagnose" / "diagnosis.json")
 
 

@@ -1,6 +1,7 @@
 // What other people's programs count in the files of `driftwright inject`: LinuxCNC's HAL encoder and sigrok's rotary decoder.
 // A machine has one HAL at a time; CTest keeps others off by the resource lock `hal`.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,6 +9,7 @@
 #include <regex>
 
 #include "tests/inject_filter.hpp"
+#include "tests/one_hal.hpp"
 
 namespace driftwright {
 namespace {
@@ -43,8 +45,9 @@ std::string said_by_hal(const std::filesystem::path& folder) {
   std::filesystem::permissions(folder, std::filesystem::perms::all);
   // As root, LinuxCNC runs under a user of its own, which must be able to write its pipe.
   const std::string user = geteuid() == 0 ? "RTAPI_UID=65534 " : "";
-  const std::string command = "cd " + folder.string() + " && " + user + "RTAPI_FIFO_PATH=" + (folder / "rtapi").string() +
-                              " timeout 60 halrun -f play.hal";
+  const std::string command =
+      fmt::format("cd {} && {}RTAPI_FIFO_PATH={} {}timeout 60 halrun -f play.hal", folder.string(), user,
+                  (folder / "rtapi").string(), kOneHal);
   std::string text;
   for (int i = 0; i < 60; ++i) {
     text = said_by(command);
@@ -122,7 +125,7 @@ TEST(RealCounters, SitsInARunningHal) {
       "setp sim-encoder.0.speed 0\nloadusr -w sleep 1\nshow pin encoder.0.rawcounts\nshow pin encoder.1.rawcounts\n"
       "show pin sampler.0.overruns\n");
   const std::string text = said_by_hal(folder);
-  const int encoder = std::stoi("0" + last_match(text, R"((\d+)\s+encoder\.0\.rawcounts)"));
+  const int encoder = std::stoi(fmt::format("0{}", last_match(text, R"((\d+)\s+encoder\.0\.rawcounts)")));
   ASSERT_EQ(last_match(text, R"((\d+)\s+sampler\.0\.overruns)"), "0") << text;
   EXPECT_GT(encoder, 50) << text;
   EXPECT_EQ(last_match(text, R"((-?\d+)\s+encoder\.1\.rawcounts)"), std::to_string(encoder - 8)) << text;

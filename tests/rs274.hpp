@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/one_hal.hpp"
+
 namespace driftwright {
 
 inline bool has_rs274() {
@@ -51,7 +53,7 @@ inline Rs274Run run_rs274(const std::filesystem::path& program, const std::map<i
   }
   Rs274Run run;
   const std::string command =
-      "cd " + program.parent_path().string() + " && rs274 -g -v " + var.string() + " " + program.string() + " 2>&1";
+      "cd " + program.parent_path().string() + " && " + kOneHal + "rs274 -g -v " + var.string() + " " + program.string() + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   char buffer[4096];
   while (std::fgets(buffer, sizeof buffer, pipe)) run.said += buffer;

@@ -12,6 +12,7 @@
 
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
+#include "tests/one_hal.hpp"
 
 namespace driftwright {
 namespace {
@@ -99,7 +100,7 @@ constexpr const char* kNoRs274 = "no rs274 here; Debian's linuxcnc-uspace has it
 
 Path rs274(const std::filesystem::path& program) {
   // In a folder of the test's own: the interpreter keeps its parameters in a file where it runs.
-  FILE* pipe = popen(("cd " + program.parent_path().string() + " && rs274 -g " + program.string() + " 2>&1").c_str(), "r");
+  FILE* pipe = popen(("cd " + program.parent_path().string() + " && " + kOneHal + "rs274 -g " + program.string() + " 2>&1").c_str(), "r");
   Path path;
   char buffer[4096];
   while (std::fgets(buffer, sizeof buffer, pipe)) path.said += buffer;
@@ -130,7 +131,7 @@ TEST(ScheduleVerb, WritesTheProgramAndItsSchedule) {
   const Scheduled s = run_schedule("verb", passes(), "--policy paper");
   ASSERT_EQ(s.outcome.exit_code, 0) << s.outcome.output;
   EXPECT_THAT(s.outcome.output, AllOf(HasSubstr("part.ngc"), ContainsRegex("z +nose_z +10.0 "),
-                                      ContainsRegex("x +nose_x +4.0 "), HasSubstr("policy paper, written for linuxcnc")));
+                                      ContainsRegex("x +nose_x +4.0 "), HasSubstr("policy paper, written for LinuxCNC")));
   EXPECT_THAT(read_text(s.folder / "schedule.txt"), AllOf(HasSubstr("# axis z, nose_z"), HasSubstr("}-{0,10,10")));
   EXPECT_THAT(read_text(s.folder / "report.html"), HasSubstr("what is left"));
   EXPECT_GT(read_record_csv((s.folder / "record.csv").string()).at("nose_z").values.back(), 30.0);

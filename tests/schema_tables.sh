@@ -3,7 +3,7 @@
 #
 #     schema_tables.sh PROGRAM FOLDER_OF_THE_PROJECT
 set -eu
-for page in scenario sweep; do
+for page in scenario sweep diagnosis; do
   file="$2/docs/$page.md"
   "$1" schema "$page" --markdown >"$file.tables"
   awk -v tables="$file.tables" -v begin="<!-- driftwright schema $page --markdown -->" '

@@ -169,7 +169,7 @@ class Schema(unittest.TestCase):
                 self.assertEqual(outcome.returncode, 0, outcome.stdout + outcome.stderr)
 
     def test_tables_of_the_documentation_are_those_of_the_program(self):
-        for page, what in (("scenario.md", "scenario"), ("sweep.md", "sweep")):
+        for page, what in (("scenario.md", "scenario"), ("sweep.md", "sweep"), ("diagnosis.md", "diagnosis")):
             with self.subTest(page):
                 text = (TOP / "docs" / page).read_text()
                 begin, end = f"<!-- driftwright schema {what} --markdown -->\n", "<!-- end -->\n"

@@ -332,7 +332,11 @@ SweepPlan read_sweep_plan(const std::string& path) {
   SweepPlan plan;
   plan.path = path;
   plan.study = read_config_tree(path);
-  const ConfigMap in = ConfigMap::of_tree(plan.study).described_by(sweep_schemas());
+  const ConfigMap whole = ConfigMap::of_tree(plan.study);
+  if (whole.has("machine") && !whole.has("vary"))
+    whole.fail("machine", "this file is a scenario: `driftwright run` runs it; a study names it under `scenario` and says under `vary` "
+                          "what differs");
+  const ConfigMap in = whole.described_by(sweep_schemas());
   plan.name = in.name("name");
   const auto scenario_path = std::filesystem::path(path).parent_path() / in.text("scenario");  // an absolute path stays
   if (!std::filesystem::is_regular_file(scenario_path))

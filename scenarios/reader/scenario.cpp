@@ -318,6 +318,8 @@ schema::Map records_scenario_schema() {
 /// Else a missing `machine` would make all that goes with it unknown keys.
 void reject_what_wants_a_machine(const ConfigMap& top) {
   if (top.has("machine")) return;
+  if (top.has("vary"))
+    top.fail("vary", "this file is a study that varies a scenario: `driftwright sweep` runs it, and `scenario` in it names the scenario");
   if (!top.has("study")) top.fail("machine", "neither a machine to simulate nor a study of records");
   const schema::Map& with = scenario_schemas()[0];
   const schema::Map& without = scenario_schemas()[1];

@@ -1,0 +1,251 @@
+#include "findings/diagnosis_keys.hpp"
+
+#include "diagnosis/diagnosis.hpp"
+
+namespace driftwright::findings {
+namespace {
+
+using output::ResultKey;
+using Kind = ResultKey::Kind;
+
+ResultKey text(const char* path, const char* meaning) {
+  return {.path = path, .kind = Kind::kText, .meaning = meaning};
+}
+ResultKey words(const char* path, std::vector<std::string> all, const char* meaning) {
+  return {.path = path, .kind = Kind::kText, .meaning = meaning, .words = std::move(all)};
+}
+ResultKey number(const char* path, const char* meaning) {
+  return {.path = path, .kind = Kind::kNumber, .meaning = meaning};
+}
+ResultKey count(const char* path, const char* meaning) {
+  return {.path = path, .kind = Kind::kCount, .meaning = meaning};
+}
+ResultKey flag(const char* path, const char* meaning) {
+  return {.path = path, .kind = Kind::kFlag, .meaning = meaning};
+}
+ResultKey object(const char* path, const char* meaning = "") {
+  return {.path = path, .kind = Kind::kObject, .meaning = meaning};
+}
+ResultKey sometimes(ResultKey key) {
+  key.is_always = false;
+  return key;
+}
+ResultKey or_null(ResultKey key) {
+  key.or_null = true;
+  return key;
+}
+
+void add_causes(std::vector<ResultKey>& keys) {
+  using diagnosis::Standing;
+  const std::vector<std::string> standings = {diagnosis::word(Standing::kSuspected), diagnosis::word(Standing::kAmbiguous),
+                                              diagnosis::word(Standing::kNamed)};
+  keys.insert(keys.end(),
+              {object("causes[]", "what the simulation gets wrong, surest first"),
+               text("causes[].effect", "key of the catalogue of effects"),
+               words("causes[].standing", standings, "how surely it is a cause"),
+               text("causes[].where", "where it acts; of two places \"a,b\""),
+               text("causes[].law", "its law in a sentence; empty where the effect has one law alone"),
+               object("causes[].parameters[]", "its numbers"),
+               text("causes[].parameters[].name", "key in the scenario"),
+               number("causes[].parameters[].value", "in `unit`"),
+               text("causes[].parameters[].unit", "\"1\" or empty: none"),
+               number("causes[].parameters[].ci95[]", "interval of 95 %, from and to"),
+               sometimes(text("causes[].doubt", "why it is only suspected")),
+               flag("causes[].written", "whether the extended scenario holds it"),
+               sometimes(text("causes[].why_not_written", "why it does not")),
+               sometimes(object("causes[].found_again")),
+               count("causes[].found_again.searches", "searches that were made without a part of the rows"),
+               count("causes[].found_again.found", "of these, how many found it again"),
+               or_null(number("causes[].kept_out_nats", "how much likelier rows kept out of the fit are with it than without it [nats]")),
+               or_null(number("causes[].chance", "share of faultless machines of which the best candidate has as much evidence")),
+               number("causes[].log_evidence_gain", "logarithm of how much more probable the data are with it, after its price [nats]"),
+               ResultKey{.path = "causes[].alternatives",
+                         .kind = Kind::kLike,
+                         .meaning = "what the data cannot tell from it",
+                         .like = "causes[]"}});
+}
+
+void add_experiment(std::vector<ResultKey>& keys) {
+  keys.insert(
+      keys.end(),
+      {or_null(object("discriminating_experiment", "what would tell the first cause from its alternatives")),
+       text("discriminating_experiment.why", "what it is to tell apart"),
+       words("discriminating_experiment.proposes", {"cyclogram", "extra_sensor"}, "the better of the two"),
+       number("discriminating_experiment.discrimination", "expected difference of the two claims [nats]"),
+       object("discriminating_experiment.simulated"),
+       count("discriminating_experiment.simulated.records", "simulated records of the experiment"),
+       count("discriminating_experiment.simulated.told", "of these, in how many the true claim was told"),
+       sometimes(object("discriminating_experiment.extra_sensor", "a thermometer more")),
+       text("discriminating_experiment.extra_sensor.region", "where it would sit"),
+       number("discriminating_experiment.extra_sensor.difference_K", "how far the two claims differ there [K]"),
+       number("discriminating_experiment.extra_sensor.discrimination", "[nats]"),
+       object("discriminating_experiment.cyclogram", "another run"),
+       text("discriminating_experiment.cyclogram.name", ""),
+       object("discriminating_experiment.cyclogram.sections[]"),
+       number("discriminating_experiment.cyclogram.sections[].duration_min", "[min]"),
+       number("discriminating_experiment.cyclogram.sections[].speed_rpm", "[rpm]"),
+       sometimes(number("discriminating_experiment.cyclogram.sections[].feed_x_mm_min", "[mm/min]; so of y and z")),
+       sometimes(number("discriminating_experiment.cyclogram.sections[].feed_y_mm_min", "[mm/min]")),
+       sometimes(number("discriminating_experiment.cyclogram.sections[].feed_z_mm_min", "[mm/min]"))});
+}
+
+void add_unexplained(std::vector<ResultKey>& keys) {
+  keys.insert(keys.end(),
+              {or_null(object("unexplained", "what no candidate explains, more than noise")),
+               number("unexplained.rms", "of the channel where it is greatest, in `unit`"),
+               text("unexplained.unit", "K, um or urad"),
+               text("unexplained.where", "that channel"),
+               object("unexplained.channels[]", "all in which it stands out, greatest first"),
+               text("unexplained.channels[].name", ""),
+               number("unexplained.channels[].rms", "in `unit`"),
+               text("unexplained.channels[].unit", "K, um or urad"),
+               number("unexplained.channels[].sigmas", "beyond what noise would have, in standard deviations of that"),
+               text("unexplained.waveform_correlates_with", "the drive that it looks like; empty: none"),
+               number("unexplained.correlation", "with that"),
+               sometimes(text("unexplained.heat_would_sit_in", "region of which missing heat would explain most of it")),
+               sometimes(object("unexplained.one_cause", "one unknown quantity that explains more than the causes named")),
+               words("unexplained.one_cause.quantity", {"heat", "hall temperature", "reading"}, ""),
+               text("unexplained.one_cause.where", ""),
+               text("unexplained.one_cause.follows", "what it follows; empty: nothing that is recorded"),
+               count("unexplained.one_cause.instead_of[]", "indices of the causes that it would replace"),
+               number("unexplained.one_cause.log_evidence_gain", "over these [nats]"),
+               or_null(object("process_noise", "where the model errs more than three times the noise")),
+               number("process_noise.stays_alike_min", "time for which the heat stays alike [min]"),
+               sometimes(flag("process_noise.at_most", "true where that time is the shortest of those tried")),
+               sometimes(flag("process_noise.at_least", "true where it is the longest of them")),
+               object("process_noise.bodies[]"),
+               text("process_noise.bodies[].where", "body"),
+               number("process_noise.bodies[].standard_deviation_W", "of heat that comes and goes [W]"),
+               number("process_noise.bodies[].share", "of what all of it does to the readings")});
+}
+
+void add_waveforms(std::vector<ResultKey>& keys) {
+  keys.insert(keys.end(),
+              {object("waveforms[]", "heat or growth that is missing, over time"),
+               text("waveforms[].record", "file of the record"),
+               words("waveforms[].of", {"heat", "growth"}, ""),
+               text("waveforms[].where", "body, or displacement"),
+               sometimes(text("waveforms[].to", "the other body: `value` is then a conductance between them [W/K]")),
+               sometimes(number("waveforms[].log_likelihood_gain", "over no such heat [nats]")),
+               sometimes(number("waveforms[].explained", "share of the squared misses of the readings")),
+               object("waveforms[].shape"),
+               text("waveforms[].shape.class", "constant, step, windows, decay, proportional, periodic or none of these"),
+               number("waveforms[].shape.size", "in `unit`"),
+               text("waveforms[].shape.unit", "W, W/K, um or urad"),
+               number("waveforms[].shape.standard_deviation", "of the size, in `unit`"),
+               number("waveforms[].shape.explained", "share of the squares of the waveform"),
+               sometimes(number("waveforms[].shape.time_min", "of a step or decay: when it begins [min]")),
+               sometimes(number("waveforms[].shape.time_constant_min", "of a decay [min]")),
+               sometimes(number("waveforms[].shape.period_min", "of a periodic one [min]")),
+               sometimes(text("waveforms[].shape.follows", "of a proportional one: the channel")),
+               sometimes(number("waveforms[].shape.windows_min[][]", "of windows: from and to [min]")),
+               number("waveforms[].time_min[]", "[min]"),
+               number("waveforms[].value[]", "in `shape.unit`")});
+}
+
+void add_gain(std::vector<ResultKey>& keys) {
+  keys.insert(
+      keys.end(),
+      {object("data[]", "what is wrong with the records themselves"),
+       text("data[].channel", ""),
+       text("data[].what", "in words"),
+       flag("data[].left_out", "whether these readings take no part"),
+       object("gain", "measured minus simulated, before and after"),
+       text("gain.holdout", "how rows were kept out of search and fit"),
+       object("gain.channels[]"),
+       text("gain.channels[].name", ""),
+       text("gain.channels[].unit", "K, um or urad, of all below"),
+       number("gain.channels[].rmse_before", "of the scenario as written, on rows kept out"),
+       number("gain.channels[].rmse_calibrated", "with its own numbers fitted"),
+       or_null(number("gain.channels[].rmse_named", "with the named causes and numbers fitted beside them")),
+       number("gain.channels[].rmse_after", "of what is written"),
+       or_null(number("gain.channels[].rmse_found", "of what searches without these rows found")),
+       or_null(number("gain.channels[].rmse_regression_drive", "of a regression on speed, ambient and recorded drives")),
+       or_null(number("gain.channels[].rmse_regression_readings", "of one on thermometers besides")),
+       number("gain.channels[].noise_floor", "what the readings scatter by themselves"),
+       number("gain.channels[].peak_before", "on rows kept out"),
+       number("gain.channels[].peak_after", "on rows kept out"),
+       or_null(number("gain.channels[].rmse_written", "of the file written, over the whole of all records")),
+       sometimes(object("gain.over_noise", "all channels together, over their noise")),
+       number("gain.over_noise.as_written", ""),
+       number("gain.over_noise.calibrated", ""),
+       or_null(number("gain.over_noise.named", "")),
+       number("gain.over_noise.extended", ""),
+       or_null(number("gain.over_noise.found", "")),
+       sometimes(text("gain.taken_up", "causes left out, of which the fitted numbers may hold a part")),
+       object("iso_230_3[]", "figures of ISO 230-3, one a record"),
+       text("iso_230_3[].run", "file of the record"),
+       sometimes(text("iso_230_3[].not_available", "why there are none")),
+       sometimes(number("iso_230_3[].spindle_running_period_min", "[min]")),
+       sometimes(object("iso_230_3[].channels[]")),
+       text("iso_230_3[].channels[].name", ""),
+       text("iso_230_3[].channels[].unit", "um or urad, of all below"),
+       or_null(number("iso_230_3[].channels[].range_first_60_min", "d(X),60")),
+       or_null(number("iso_230_3[].channels[].range_running_period", "d(X),t")),
+       or_null(number("iso_230_3[].channels[].at_end_of_running_period", "X at t")),
+       or_null(number("iso_230_3[].channels[].range_whole_record", ""))});
+}
+
+void add_search(std::vector<ResultKey>& keys) {
+  keys.insert(
+      keys.end(),
+      {flag("complete", "false: it was ended early, and tells what it knew by then"),
+       flag("weighed_by_model_error", "whether what the model misses counts as noise"),
+       count("n_candidates", "causes that were weighed"),
+       object("chance", "evidence of the best candidate where nothing is wrong [nats]"),
+       or_null(number("chance.median", "")),
+       or_null(number("chance.one_in_100", "of machines")),
+       or_null(number("chance.one_in_10000", "of machines")),
+       count("chance.simulations", "0: by a formula"),
+       sometimes(object("bars", "evidence that a cause must have")),
+       words("bars.set_by", {"simulation", "formula"}, ""),
+       number("bars.suspected_nats[]", "of a first, a second and a third cause [nats]"),
+       number("bars.named_nats", "[nats]"),
+       number("bars.named_beside_nats", "of a second cause [nats]"),
+       number("bars.chance_of_suspected", "share of faultless machines of which a candidate reaches it"),
+       number("bars.chance_of_named", "the same"),
+       object("calibrated[]", "the scenario's own numbers as fitted"),
+       text("calibrated[].name", "as the scenario calls it"),
+       number("calibrated[].value", "in `unit`"),
+       text("calibrated[].unit", ""),
+       number("calibrated[].sigmas_of_prior", "how far it moved, in standard deviations of what is known of it"),
+       number("calibrated[].ci95[]", "interval of 95 %, from and to"),
+       number("calibrated[].known_to", "one standard deviation of what is known of it, in `known_to_unit`"),
+       text("calibrated[].known_to_unit", "% of the number, or a unit"),
+       sometimes(flag("calibrated[].written", "whether the scenario written holds it"))});
+}
+
+std::vector<ResultKey> common_keys(const std::string& scenario) {
+  using diagnosis::Verdict;
+  std::vector<std::string> verdicts;
+  for (const Verdict v : {Verdict::kConsistent, Verdict::kSuspected, Verdict::kNamed, Verdict::kAmbiguous,
+                          Verdict::kUnexplained, Verdict::kInsufficientData})
+    verdicts.emplace_back(diagnosis::word(v));
+  std::vector<ResultKey> keys = {text("program", "driftwright"), text("version", "of the program"),
+                                 text("scenario", "its file"), words("verdict", verdicts, "what it comes to"),
+                                 text("reason", "in a sentence")};
+  add_causes(keys);
+  add_experiment(keys);
+  add_unexplained(keys);
+  add_waveforms(keys);
+  add_gain(keys);
+  add_search(keys);
+  keys.push_back(object(scenario.c_str(), "the scenario that is written"));
+  keys.push_back(text((scenario + ".not_written[]").c_str(), "what it could not take, in sentences"));
+  keys.push_back(text((scenario + ".written[]").c_str(), "what was changed, in sentences"));
+  return keys;
+}
+
+}  // namespace
+
+std::vector<ResultKey> diagnosis_keys() {
+  return common_keys("extended");
+}
+
+std::vector<ResultKey> calibration_keys() {
+  std::vector<ResultKey> keys = common_keys("calibrated_scenario");
+  keys.push_back(text("warning", "why the numbers alone do not explain the measurement; empty: they do"));
+  return keys;
+}
+
+}  // namespace driftwright::findings

@@ -1,0 +1,121 @@
+#include "follow/mtconnect_agent.hpp"
+
+#include <curl/curl.h>
+#include <fmt/format.h>
+#include <libxml/parser.h>
+
+#include <algorithm>
+#include <new>
+
+#include "base/errors.hpp"
+
+namespace driftwright::follow {
+namespace {
+
+constexpr std::size_t kMostBytes = 16u << 20;  // of an answer
+constexpr const char* kUnavailable = "UNAVAILABLE";
+
+struct FreeDocument {
+  void operator()(xmlDoc* document) const { xmlFreeDoc(document); }
+};
+
+std::string attribute(xmlNode* element, const char* name) {
+  xmlChar* value = xmlGetProp(element, reinterpret_cast<const xmlChar*>(name));
+  if (!value) return "";
+  std::string text = reinterpret_cast<const char*>(value);
+  xmlFree(value);
+  return text;
+}
+
+std::string content(xmlNode* element) {
+  xmlChar* value = xmlNodeGetContent(element);
+  if (!value) return "";
+  std::string text = reinterpret_cast<const char*>(value);
+  xmlFree(value);
+  const auto first = text.find_first_not_of(" \t\r\n"), last = text.find_last_not_of(" \t\r\n");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+std::string name_of(const xmlNode* element) {
+  return reinterpret_cast<const char*>(element->name);
+}
+
+/// Elements below one another, in their order.
+void gather(xmlNode* first, std::map<std::string, std::string>& found, std::string& error) {
+  for (xmlNode* node = first; node; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    if (const std::string id = attribute(node, "dataItemId"); !id.empty()) {
+      std::string value = content(node);
+      if (value == kUnavailable) value.clear();
+      if (const std::string name = attribute(node, "name"); !name.empty()) found[name] = value;
+      found[id] = std::move(value);
+      continue;
+    }
+    if (name_of(node) == "Error" && error.empty()) error = content(node);
+    gather(node->children, found, error);
+  }
+}
+
+std::size_t append(char* data, std::size_t size, std::size_t n, void* to) {
+  auto& text = *static_cast<std::string*>(to);
+  if (text.size() + size * n > kMostBytes) return 0;  // ends the transfer
+  text.append(data, size * n);
+  return size * n;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> read_mtconnect_streams(const std::string& xml) {
+  constexpr int kQuietly = XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_NONET;
+  const std::unique_ptr<xmlDoc, FreeDocument> document(
+      xmlReadMemory(xml.data(), static_cast<int>(std::min(xml.size(), kMostBytes)), "current.xml", nullptr, kQuietly));
+  xmlNode* root = document ? xmlDocGetRootElement(document.get()) : nullptr;
+  if (!root) throw RangeError("its answer is no XML");
+  std::map<std::string, std::string> found;
+  std::string error;
+  gather(root->children, found, error);
+  if (name_of(root) == "MTConnectError") throw RangeError("it answers: " + error);
+  if (name_of(root) != "MTConnectStreams")
+    throw RangeError(fmt::format("its answer is '{}', where MTConnectStreams is required", name_of(root)));
+  return found;
+}
+
+struct MtconnectAgent::Connection {
+  CURL* curl = curl_easy_init();
+  char error[CURL_ERROR_SIZE] = "";
+  Connection() {
+    if (!curl) throw std::bad_alloc();
+  }
+  ~Connection() { curl_easy_cleanup(curl); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+};
+
+MtconnectAgent::MtconnectAgent(const std::string& url) : url_(url) {
+  if (!url.starts_with("http://") && !url.starts_with("https://"))
+    throw InputError(fmt::format("--mtconnect '{}': the address of an agent is required, such as http://10.0.0.7:5000", url));
+  while (url_.ends_with('/')) url_.pop_back();
+  url_ += "/current";
+  connection_ = std::make_unique<Connection>();
+}
+
+MtconnectAgent::~MtconnectAgent() = default;
+
+std::map<std::string, std::string> MtconnectAgent::current(double most_s) {
+  CURL* curl = connection_->curl;
+  std::string answer;
+  connection_->error[0] = '\0';
+  curl_easy_setopt(curl, CURLOPT_URL, url_.c_str());
+  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
+  curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
+  curl_easy_setopt(curl, CURLOPT_FAILONERROR, 0L);  // an agent says what is wrong in the answer
+  curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, static_cast<long>(1e3 * most_s));
+  curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, connection_->error);
+  curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, &append);
+  curl_easy_setopt(curl, CURLOPT_WRITEDATA, &answer);
+  if (const CURLcode code = curl_easy_perform(curl); code != CURLE_OK)
+    throw RangeError(connection_->error[0] != '\0' ? connection_->error : curl_easy_strerror(code));
+  return read_mtconnect_streams(answer);
+}
+
+}  // namespace driftwright::follow

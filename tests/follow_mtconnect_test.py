@@ -1,0 +1,138 @@
+#!/usr/bin/python3
+"""`driftwright follow` at an agent of MTConnect: a server of HTTP that answers as the standard says, is away, lacks an item. follow_mtconnect_test.py PROGRAM"""
+import http.server
+import json
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import os
+
+HEAD = """name: head
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: head, capacity: 12 J/K}
+  - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
+  - {type: link, node: head, to: hall, conductance: 20 W/K}
+start: hall
+hall: [[0 h, 20 degC], [9 h, 20 degC]]
+displacements: [{name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}]
+cyclograms: {day: [[60 min, 2000 rpm]]}
+solver: {model: reduced}
+"""
+CURRENT = """<?xml version="1.0" encoding="UTF-8"?>
+<MTConnectStreams xmlns="urn:mtconnect.org:MTConnectStreams:1.5">
+  <Header creationTime="2026-11-23T12:00:00Z" sender="shop" instanceId="1" version="1.5" bufferSize="131072" nextSequence="9" firstSequence="1" lastSequence="8"/>
+  <Streams>
+    <DeviceStream name="mill" uuid="000">
+      <ComponentStream component="Rotary" name="C" componentId="c1">
+        <Samples>
+          <RotaryVelocity dataItemId="c3" name="S1speed" sequence="4" subType="ACTUAL" timestamp="2026-11-23T11:59:59.1Z">{speed}</RotaryVelocity>
+          <Load dataItemId="c4" sequence="5" timestamp="2026-11-23T11:59:59.1Z">12</Load>
+        </Samples>
+      </ComponentStream>
+      <ComponentStream component="Environmental" componentId="e1">
+        <Samples><Temperature dataItemId="e2" sequence="7" timestamp="2026-11-23T11:50:00Z">{hall}</Temperature></Samples>
+        <Condition><Normal dataItemId="e3" sequence="8" timestamp="2026-11-23T11:50:00Z" type="TEMPERATURE"/></Condition>
+      </ComponentStream>
+    </DeviceStream>
+  </Streams>
+</MTConnectStreams>
+"""
+WRONG = """<?xml version="1.0"?><MTConnectError xmlns="urn:mtconnect.org:MTConnectError:1.5"><Header/><Errors>
+<Error errorCode="NO_DEVICE">Could not find the device turn</Error></Errors></MTConnectError>"""
+
+
+class Agent:
+    """What it tells is `values`; None: it is away."""
+
+    def __init__(self, values, port=0):
+        agent = self
+        self.values = values
+
+        class Answer(http.server.BaseHTTPRequestHandler):
+            def do_GET(self):
+                text = CURRENT.format(**agent.values) if self.path in ("/current", "/mill/current") else WRONG
+                self.send_response(200 if text is not WRONG else 404)
+                self.send_header("Content-Type", "text/xml")
+                self.end_headers()
+                self.wfile.write(text.encode())
+
+            def log_message(self, *_):
+                pass
+
+        http.server.ThreadingHTTPServer.allow_reuse_address = True
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", port), Answer)
+        self.port = self.server.server_address[1]
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def leave(self):
+        self.server.shutdown()
+        self.server.server_close()
+
+
+def follow(program, folder, address, *topics):
+    return subprocess.Popen([program, "follow", "head.yaml", "--mtconnect", address, "--every", "0.2 s", "--slew", "1000 um/s",
+                             *(word for topic in topics for word in ("--topic", topic))],
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=folder, text=True)
+
+
+lines = []
+
+
+def wait_for(what, is_so, seconds=60.0):
+    end = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < end, f"no {what}: {lines[-3:]}"
+        time.sleep(0.05)
+
+
+def main():
+    program = str(pathlib.Path(sys.argv[1]).resolve())
+    with tempfile.TemporaryDirectory(prefix="driftwright_mtconnect-") as folder:
+        os.environ["XDG_CACHE_HOME"] = folder + "/cache"
+        pathlib.Path(folder, "head.yaml").write_text(HEAD)
+        agent = Agent({"speed": "1000", "hall": "20"})
+        address = f"http://127.0.0.1:{agent.port}"
+        running = follow(program, folder, address + "/mill", "speed_rpm=S1speed", "ambient_degC=e2")
+        threading.Thread(target=lambda: lines.extend(json.loads(line) for line in running.stdout), daemon=True).start()
+
+        def is_at(um):  # 12 J/K on 20 W/K settle within 4 s to 300 W / 2000 rpm / 20 W/K * 4 um/K above the hall
+            return bool(lines) and abs(lines[-1]["axes"]["nose_z"]["predicted_um"] - um) < 0.05 and lines[-1]["state"] == "on"
+
+        wait_for("drift of 1000 rpm", lambda: is_at(1000 * 0.15 / 20 * 4))
+        agent.values = {"speed": "500", "hall": "21.5"}
+        wait_for("drift of 500 rpm in a warmer hall", lambda: is_at((500 * 0.15 / 20 + 1.5) * 4))
+        agent.values = {"speed": "UNAVAILABLE", "hall": "21.5"}
+        n = len(lines)
+        wait_for("rows without a speed", lambda: len(lines) > n + 40)  # 8 s; the body settles in 4
+        assert is_at((500 * 0.15 / 20 + 1.5) * 4), lines[-1]  # what is missing is held, and is not 0
+        agent.values = {"speed": "500", "hall": "21.5"}
+        agent.leave()
+        n = len(lines)
+        wait_for("rows while it is away", lambda: len(lines) > n + 4)
+        again = Agent({"speed": "2000", "hall": "20"}, agent.port)
+        wait_for("drift after it has come back", lambda: is_at(2000 * 0.15 / 20 * 4))
+        running.send_signal(signal.SIGTERM)
+        assert running.wait(30) == 0
+        words = running.stderr.read()
+        assert "it is asked again every 0.2 s" in words and "answers again" in words, words
+        # items that are not there, a device that is not there, an address that is none
+        for where, topics, code, said in [(address, ["speed_rpm=S1speeed", "ambient_degC=e2"], 2, "Did you mean 'S1speed'?"), ("ftp://x", ["speed_rpm=c3", "ambient_degC=e2"], 2, "http://10.0.0.7:5000")]:
+            wrong = follow(program, folder, where, *topics)
+            assert wrong.wait(60) == code, (where, wrong.stderr.read())
+            text = wrong.stderr.read()
+            assert said in text, text
+        nobody = follow(program, folder, address + "/turn", "speed_rpm=c3", "ambient_degC=e2")
+        assert "Could not find the device turn" in nobody.stderr.readline()
+        nobody.send_signal(signal.SIGTERM)
+        assert nobody.wait(30) == 0
+        again.leave()
+        print(f"{len(lines)} lines")
+
+
+main()

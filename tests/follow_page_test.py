@@ -1,0 +1,41 @@
+#!/usr/bin/python3
+"""The commands of docs/follow.md, "From a thermometer to a corrected axis", as they stand there, with a real broker. follow_page_test.py PROGRAM PROJECT"""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+
+
+def main():
+    program, project = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    os.environ["PATH"] += ":/usr/sbin"
+    with socket.socket() as s:
+        is_taken = s.connect_ex(("127.0.0.1", 1883)) == 0
+    if is_taken or not shutil.which("mosquitto") or not shutil.which("mosquitto_pub"):
+        print("no mosquitto here (Debian's mosquitto and mosquitto-clients have it), or a broker runs already")
+        sys.exit(77)
+    page = (project / "docs/follow.md").read_text()
+    commands = page.split("## From a thermometer to a corrected axis")[1].split("```\n")[1]
+    with tempfile.TemporaryDirectory(prefix="driftwright_page-") as folder:
+        work = pathlib.Path(folder)
+        (work / "scenarios").symlink_to(project / "scenarios")
+        env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"), PATH=f"{program.parent}:{os.environ['PATH']}")
+        # daemons leave the group of their shell, so the broker is ended by the port it listens on
+        shell = subprocess.Popen(["bash", "-ec", commands], cwd=work, env=env, stdout=subprocess.PIPE, text=True, start_new_session=True)
+        try:
+            heard = [json.loads(line) for line in iter(shell.stdout.readline, "") if line.strip()][:3] if shell.wait(240) == 0 else []
+        finally:
+            os.killpg(shell.pid, signal.SIGTERM)
+            subprocess.run(["pkill", "-f", "mosquitto -p 1883 -d"])
+    assert len(heard) == 3, heard
+    for line in heard:
+        assert "drift_y" in line["axes"] and abs(line["axes"]["drift_y"]["correction_um"]) < 5.0, line
+    print("heard:", json.dumps(heard[-1])[:300])
+
+
+main()
