@@ -1,6 +1,7 @@
 #include "app/results.hpp"
 #include "base/version.hpp"
 #include "findings/scenario_document.hpp"
+#include "machine/runnable.hpp"
 
 namespace driftwright::app {
 
@@ -9,7 +10,10 @@ void check(const CommonOptions& options) {
   std::optional<scenarios::PlacedMachine> placed;
   Progress progress(options.quiet);
   progress.begin("meshing");
-  if (scenario.machine) placed = scenarios::place(*scenario.machine);
+  if (scenario.machine) {
+    placed = scenarios::place(*scenario.machine);
+    scenarios::require_runnable(scenario, *placed);
+  }
   progress.end();
   show(findings::scenario_document(scenario, placed ? &*placed : nullptr, {kVersion, options.scenario}), options);
 }

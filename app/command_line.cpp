@@ -111,9 +111,9 @@ void add_inject(CLI::App& cli, app::InjectOptions& options) {
   verb->add_option("--hal", options.hal, "HAL file that plays them into LinuxCNC's encoder");
   verb->add_option("--log", options.log, "CSV of counts in, inserted and out");
   verb->footer(
-      "Example:\n  halsampler | driftwright inject --clocked --period '4 um' --row-time '1 ms' --correction drift.csv | "
-      "halstreamer\n"
-      "  with drift.csv: 'time_s,drift_um', then '0,0', '60,4.5', ... (docs/injector.md)");
+      "Example:\n  driftwright inject --correction scenarios/records/drift.csv --period '4 um' --row-time '1 ms' < "
+      "scenarios/records/encoder_rows.txt > injected_rows.txt\n"
+      "  with drift.csv: 'time_s,drift_um', then '0,0', '0.5,6', ... (docs/injector.md)");
   verb->callback([&] { app::inject(options); });
 }
 
@@ -161,9 +161,9 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   verb->add_option("--top-speed", options.top_speed, "of the spindle, that they are simulated to, such as '2500 rpm'")
       ->needs(calibrate);
   verb->footer(
-      "Example:\n  thermometers | driftwright follow results/validation/models/observer.json --state axis.state\n  "
-      "driftwright follow "
-      "scenarios/fp3_spindle.yaml --replay monday.csv --pace 60");
+      "Example:\n  driftwright follow scenarios/fp3_spindle.yaml --replay scenarios/records/monday.csv > lines.txt\n  "
+      "driftwright "
+      "follow results/validation/models/observer.json --state axis.state < scenarios/records/monday.csv > lines.txt");
   verb->callback([&] { app::follow_stream(options); });
 }
 
@@ -191,12 +191,61 @@ void add_export(CLI::App& cli, app::ExportOptions& options) {
   verb->callback([&] { app::export_model(options); });
 }
 
+void add_import(CLI::App& cli, app::ImportOptions& options) {
+  CLI::App* verb =
+      cli.add_subcommand("import", "a logger's file as a record CSV, with what was understood of it (docs/record.md)");
+  verb->add_option("file", options.scenario,
+                   "of a logger or a control: text with cells, in any of the forms of docs/record.md")
+      ->required();
+  CLI::Option* by = verb->add_option(
+      "--by", options.by,
+      "YAML with the key `columns`: a scenario, or the columns.yaml of an import before [guessed from the file]");
+  verb->add_option("--zone", options.zone, "time zone of its stamps, such as Europe/Berlin [a clock that is never set]")
+      ->excludes(by);
+  verb->add_option("--interval", options.interval, "from row to row, such as '10 s', where no column tells the time")
+      ->excludes(by);
+  verb->add_option("--every", options.every,
+                   "from row to row of the record, such as '10 s', of a log with a tag in each row [at each time]")
+      ->excludes(by);
+  add_results(verb, options, "<name of the file>",
+              "import scenarios/records/logger_file.csv -o results/import\n  driftwright import "
+              "scenarios/records/logger_file.csv --by "
+              "results/import/columns.yaml -o results/imported_again");
+  verb->callback([&] { app::import_file(options); });
+}
+
 void add_compare(CLI::App& cli, app::CompareOptions& options) {
   CLI::App* verb = cli.add_subcommand("compare", "two records beside each other: how far each channel is apart");
   verb->add_option("first", options.first, "record CSV, or a folder of results that holds a record.csv")->required();
   verb->add_option("second", options.second, "the same; it is shown at the rows of the first")->required();
-  add_results(verb, options, "comparison", "compare results/fp3_spindle results/other -o results/beside");
+  add_results(verb, options, "comparison", "compare results/plan results/warm_plan -o results/cold_and_warm");
   verb->callback([&] { app::compare(options); });
+}
+
+/// A first scenario: a folder of its own.
+void add_init(CLI::App& cli, app::InitOptions& options) {
+  CLI::App* verb =
+      cli.add_subcommand("init", "a first scenario, commented, that runs: of a mesh or drawing, or of lumped nodes");
+  verb->add_option("folder", options.folder, "that is made; its name is that of the scenario")->required();
+  verb->add_option("--from", options.from, "a drawing or mesh (.step, .msh, .inp, .vtu), which is copied, or lumped")
+      ->capture_default_str();
+  verb->add_option("--units", options.units, "of a mesh: mm, cm, m or inch [by its size]");
+  verb->footer(
+      "Example:\n  driftwright init results/mill --from scenarios/parts/vertical_mill.step\n  driftwright init "
+      "results/two_nodes");
+  verb->callback([&] { app::init(options); });
+}
+
+void add_list(CLI::App& cli, app::ListOptions& options) {
+  CLI::App* verb =
+      cli.add_subcommand("list", "what there is to choose from: effects, materials, scenarios, joints, cyclograms");
+  verb->add_option("what", options.what, "effects, materials, scenarios, joints or cyclograms")
+      ->check(CLI::IsMember({"effects", "materials", "scenarios", "joints", "cyclograms"}))
+      ->capture_default_str();
+  verb->add_option("of", options.of, "scenario YAML, of joints and cyclograms; folder, of scenarios [scenarios]");
+  verb->add_flag("--markdown", options.markdown, "effects with their places, keys, units and laws, as a table");
+  verb->footer("Example:\n  driftwright list effects --markdown\n  driftwright list joints scenarios/c_frame.yaml");
+  verb->callback([&] { app::list(options); });
 }
 
 /// CLI11 would only say that a subcommand is required.
@@ -266,7 +315,9 @@ int app::command_line(int argc, const char* const* argv) {
       "Exit codes: 0 done, 2 the input is wrong, 3 the numerics gave up, 130 ended by Ctrl-C, 1 a bug of ours.\nExample:\n  "
       "driftwright run scenarios/fp3_spindle.yaml");
 
-  app::CommonOptions run, check, mesh;
+  app::CommonOptions run, check;
+  app::MeshOptions mesh;
+  app::InitOptions init;
   app::SimulateOptions simulate;
   app::PredictOptions predict;
   app::ScheduleVerbOptions schedule;
@@ -285,26 +336,34 @@ int app::command_line(int argc, const char* const* argv) {
   add_verb(cli, "check", "read and mesh a scenario, place its sensors, compute nothing", "check scenarios/fp3_spindle.yaml",
            check)
       ->callback([&] { app::check(check); });
-  add_verb(cli, "mesh", "build the mesh, report its quality, write mesh.vtu",
-           "mesh scenarios/fp3_spindle.yaml -o results/mesh", mesh)
-      ->callback([&] { app::mesh(mesh); });
-  CLI::App* verb = add_verb(cli, "simulate", "temperatures and drift of cyclograms; fields too where one is named",
-                            "simulate scenarios/fp3_spindle.yaml --cyclogram warm_up_2000 -o results/warm_up", simulate);
+  CLI::App* verb =
+      cli.add_subcommand("mesh", "build or read a mesh, report its quality, picture its named surfaces, write mesh.vtu");
+  verb->add_option(
+          "scenario", mesh.scenario,
+          "scenario YAML, of which the mesh is looked at alone, or a mesh or drawing itself: .step, .msh, .inp, .vtu")
+      ->required();
+  verb->add_option("--units", mesh.units, "of a mesh file itself: mm, cm, m or inch [by its size]");
+  add_results(verb, mesh, "<name of the scenario>",
+              "mesh scenarios/fp3_spindle.yaml -o results/mesh\n  driftwright mesh scenarios/parts/vertical_mill.step -o "
+              "results/drawing");
+  verb->callback([&] { app::mesh(mesh); });
+  add_init(cli, init);
+  verb = add_verb(cli, "simulate", "temperatures and drift of cyclograms; fields too where one is named",
+                  "simulate scenarios/fp3_spindle.yaml --cyclogram warm_up_2000 -o results/warm_up", simulate);
   verb->add_option("--cyclogram", simulate.cyclograms,
                    "name in the scenario, or a record CSV with the column speed_rpm; may be repeated [all of the scenario]")
       ->allow_extra_args(false);
   verb->callback([&] { app::simulate(simulate); });
   verb = add_verb(cli, "predict",
                   "drift of a cyclogram ahead of its run, by the reduced model; warm after another run where one is given",
-                  "predict scenarios/fp3_spindle.yaml --cyclogram plan.csv -o results/plan", predict);
+                  "predict scenarios/fp3_spindle.yaml --cyclogram scenarios/records/plan.csv -o results/plan", predict);
   verb->add_option("--cyclogram", predict.cyclogram,
                    "name in the scenario, or a record CSV with the column speed_rpm (docs/cyclograms.md)")
       ->required();
   add_warm_start(verb, predict.start, predict.after_pause, predict.model);
   verb->callback([&] { app::predict(predict); });
-  verb =
-      add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
-               "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/fp3_part", schedule);
+  verb = add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
+                  "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/part", schedule);
   verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/schedule.md)")
       ->required();
   verb->add_option("--policy", schedule.policy,
@@ -321,23 +380,26 @@ int app::command_line(int argc, const char* const* argv) {
                    "time at rest between two parts, such as '2 min' [the scenario's, else none]");
   verb->callback([&] { app::schedule(schedule); });
   add_inject(cli, inject);
-  verb = add_verb(cli, "select", "rank the temperature sensors of records by grey relational analysis",
-                  "select scenarios/spindle_22.yaml --train run1.csv --train run2.csv", select);
+  verb = add_verb(
+      cli, "select", "rank the temperature sensors of records by grey relational analysis",
+      "select scenarios/fp3_spindle.yaml --train scenarios/records/monday.csv --train scenarios/records/tuesday.csv -o "
+      "results/sensors",
+      select);
   add_records(verb, select, false);
   verb->callback([&] { app::select(select); });
-  verb = add_verb(cli, "validate",
-                  "judge predictors: a regression on records it was not fitted on, or those of the scenario's programme",
-                  "validate scenarios/fp3_spindle.yaml\n  driftwright validate scenarios/spindle_22.yaml --train run1.csv "
-                  "--train run2.csv --test run3.csv",
-                  validate);
+  verb = add_verb(
+      cli, "validate",
+      "judge predictors: a regression on records it was not fitted on, or those of the scenario's programme",
+      "validate scenarios/fp3_spindle.yaml -o results/validation\n  driftwright validate scenarios/fp3_spindle.yaml "
+      "--train scenarios/records/monday.csv --test scenarios/records/tuesday.csv -o results/two_days",
+      validate);
   add_records(verb, validate, true);
   verb->callback([&] { app::validate(validate); });
-  verb = add_verb(cli, "compensate", "a cyclogram with its drift corrected by a predictor through an actuator",
-                  "compensate scenarios/fp3_spindle.yaml --model results/fp3_spindle/models/regression_forward.json "
-                  "--through injector -o "
-                  "results/corrected\n  driftwright compensate scenarios/gantry_table.yaml --model observer --through frame "
-                  "-o results/table",
-                  compensate);
+  verb =
+      add_verb(cli, "compensate", "a cyclogram with its drift corrected by a predictor through an actuator",
+               "compensate scenarios/fp3_spindle.yaml --model results/validation/models/observer.json --through injector -o "
+               "results/corrected",
+               compensate);
   verb->add_option("--model", compensate.model,
                    "a file models/NAME.json that `validate` has written, or modes; through the frame modes, observer, "
                    "regression")
@@ -355,13 +417,15 @@ int app::command_line(int argc, const char* const* argv) {
                    "before");
   verb->callback([&] { app::compensate(compensate); });
   verb = add_verb(cli, "calibrate", "the scenario's uncertain numbers, fitted to measured records, with intervals",
-                  "calibrate scenarios/fp3_spindle.yaml --measured good.csv -o results/calibration", calibrate);
+                  "calibrate scenarios/fp3_spindle.yaml --measured scenarios/records/good.csv -o results/calibration",
+                  calibrate);
   verb->add_option("--measured", calibrate.measured, "record CSV (docs/record.md); may be repeated")
       ->required()
       ->allow_extra_args(false);
   verb->callback([&] { app::calibrate(calibrate); });
   verb = add_verb(cli, "diagnose", "what a simulation gets wrong against measured records, why, and what mending it gains",
-                  "diagnose scenarios/fp3_spindle.yaml --measured monday.csv --measured tuesday.csv -o results/diagnosis",
+                  "diagnose scenarios/fp3_spindle.yaml --measured scenarios/records/monday.csv --measured "
+                  "scenarios/records/tuesday.csv -o results/diagnosis",
                   diagnose);
   verb->add_option("--measured", diagnose.measured, "record CSV (docs/record.md); may be repeated")
       ->required()
@@ -371,24 +435,21 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--without", diagnose.without, "key of an effect that is not looked for; may be repeated")
       ->allow_extra_args(false);
   verb->callback([&] { app::diagnose(diagnose); });
-  verb = add_verb(cli, "sweep", "many variants of one scenario, one table (docs/sweep.md)",
-                  "sweep scenarios/lumped_sweep.yaml\n  driftwright sweep scenarios/lumped_sweep.yaml --shard 3/8\n  "
-                  "driftwright sweep scenarios/lumped_sweep.yaml --merge",
-                  sweep, "study");
+  verb = add_verb(
+      cli, "sweep", "many variants of one scenario, one table (docs/sweep.md)",
+      "sweep scenarios/lumped_sweep.yaml\n  driftwright sweep scenarios/lumped_sweep.yaml --shard 1/1 -o results/shards\n  "
+      "driftwright sweep scenarios/lumped_sweep.yaml --merge -o results/shards",
+      sweep, "study");
   verb->add_option("--shard", sweep.shard, "i/n: simulate the i-th of n parts alone, as a task of a job array does");
   verb->add_flag("--merge", sweep.merge, "put together what all shards have simulated");
   verb->callback([&] { app::sweep(sweep); });
   app::CompareOptions compared;
   add_compare(cli, compared);
+  app::ImportOptions imported;
+  add_import(cli, imported);
   add_follow(cli, followed);
   add_export(cli, exported);
-  verb = cli.add_subcommand("list", "the catalogue of effects, or the library of materials");
-  verb->add_option("what", list.what, "effects or materials")
-      ->check(CLI::IsMember({"effects", "materials"}))
-      ->capture_default_str();
-  verb->add_flag("--markdown", list.markdown, "effects with their places, keys, units and laws, as a table");
-  verb->footer("Example:\n  driftwright list effects --markdown");
-  verb->callback([&] { app::list(list); });
+  add_list(cli, list);
   std::string help_of;
   add_help(cli, help_of);
   app::SchemaOptions schema;

@@ -1,21 +1,49 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
 #include "app/results.hpp"
+#include "base/delimited_text.hpp"
 #include "findings/scenario_document.hpp"
 #include "mesh/quality.hpp"
+#include "mesh/unnamed_geometry.hpp"
 #include "output/vtk_fields.hpp"
+#include "scenarios/reader/geometry.hpp"
 
 namespace driftwright::app {
+namespace {
 
-void mesh(const CommonOptions& options) {
-  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  const scenarios::MachineModel& model = scenarios::require_machine(scenario, "mesh");
-  if (std::holds_alternative<scenarios::LumpedMachine>(model.mesh))
-    throw InputError(model.where, "a lumped machine has no mesh");
-  output::ResultsFolder folder = open_results(options, scenario.name);
+/// The file itself: nothing is known of it but what it says.
+mesh::Mesh read_file(const MeshOptions& options) {
+  mesh::UnnamedGeometry read = mesh::read_unnamed_geometry(options.scenario, options.units);
+  if (read.unit_is_a_guess) {
+    read.mesh.notes.push_back(
+        fmt::format("lengths are taken to be in {}, by the size of the machine; --units says another unit", read.unit));
+  }
+  return std::move(read.mesh);
+}
+
+scenarios::Geometry geometry_of(const MeshOptions& options, bool is_file) {
+  if (is_file) return {clean_name(std::filesystem::path(options.scenario).stem().string()), {}};
+  if (!options.units.empty())
+    throw InputError("--units goes with a mesh file; a scenario says the unit of its mesh itself (`machine: units`)");
+  scenarios::Geometry geometry = scenarios::read_geometry(options.scenario);
+  if (std::holds_alternative<scenarios::LumpedMachine>(geometry.machine.mesh))
+    throw InputError(geometry.machine.where, "a lumped machine has no mesh");
+  return geometry;
+}
+
+}  // namespace
+
+void mesh(const MeshOptions& options) {
+  const bool is_file = mesh::is_geometry_file(options.scenario);
+  const scenarios::Geometry geometry = geometry_of(options, is_file);
+  output::ResultsFolder folder = open_results(options, geometry.name);
   Progress progress(options.quiet);
   progress.begin("meshing");
-  const scenarios::PlacedMachine placed = scenarios::place(model);
-  output::write_mesh(placed.mesh, mesh::scaled_jacobians(placed.mesh), folder.path("mesh.vtu"));
-  finish(findings::mesh_document(scenario, placed, folder.made_by()), folder, progress, options);
+  const mesh::Mesh mesh = is_file ? read_file(options) : scenarios::build_mesh(geometry.machine.mesh);
+  output::write_mesh(mesh, mesh::scaled_jacobians(mesh), folder.path("mesh.vtu"));
+  finish(findings::mesh_document(geometry.name, geometry.machine, mesh, folder.made_by()), folder, progress, options);
 }
 
 }  // namespace driftwright::app

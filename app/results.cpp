@@ -62,7 +62,10 @@ void finish(const output::Document& document, output::ResultsFolder& folder, Pro
   folder.write_text("summary.json", json);  // of every verb
   if (json_file != "summary.json") folder.write_text(json_file, json);
   for (const output::CsvFile& csv : output::document_csv(document)) folder.write_text(csv.path, csv.text);
-  folder.write_text("report.html", output::document_html(document));
+  const output::html::Rendered rendered = output::document_html(document);
+  folder.write_text("report.html", rendered.page);
+  for (const output::html::Figure& figure : rendered.figures)
+    folder.write_text("figures/" + figure.name + ".svg", figure.svg);
   folder.commit();
   progress.end();
   show(document, options);

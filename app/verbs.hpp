@@ -21,7 +21,19 @@ struct CommonOptions {
 
 void run(const CommonOptions& options);
 void check(const CommonOptions& options);
-void mesh(const CommonOptions& options);
+
+struct MeshOptions : CommonOptions {  ///< `scenario` may be a mesh or a drawing, too
+  std::string units;                  ///< of a mesh file: mm, cm, m, inch; empty: by its size
+};
+void mesh(const MeshOptions& options);
+
+struct InitOptions {
+  std::string folder;           ///< that is made; its last part names the scenario
+  std::string from = "lumped";  ///< or a mesh or drawing
+  std::string units;            ///< as in MeshOptions
+};
+/// A first scenario, commented, that runs.
+void init(const InitOptions& options);
 
 struct SimulateOptions : CommonOptions {
   std::vector<std::string> cyclograms;  ///< names, or record CSVs; empty: all of the scenario
@@ -92,10 +104,11 @@ struct DiagnoseOptions : CommonOptions {
 void diagnose(const DiagnoseOptions& options);
 
 struct ListOptions {
-  std::string what = "effects";  ///< or "materials"
+  std::string what = "effects";  ///< materials, scenarios, joints, cyclograms
+  std::string of;                ///< scenario, of joints and cyclograms; folder, of scenarios; empty: scenarios/
   bool markdown = false;         ///< effects with places, keys and laws, as docs/effects.md has them
 };
-/// Prints the catalogue of effects or the library of materials.
+/// Prints what there is to choose from.
 void list(const ListOptions& options);
 
 struct SchemaOptions {
@@ -109,6 +122,13 @@ struct CalibrateOptions : CommonOptions {
   std::vector<std::string> measured;  ///< record CSVs
 };
 void calibrate(const CalibrateOptions& options);
+
+struct ImportOptions : CommonOptions {  ///< `scenario` is the logger's file
+  std::string by;                       ///< YAML with the key `columns`; empty: guessed
+  std::string zone, interval, every;    ///< what a guess is helped by (base/guess_columns.hpp)
+};
+/// A logger's file as a record.
+void import_file(const ImportOptions& options);
 
 struct CompareOptions : CommonOptions {
   std::string first, second;  ///< record CSVs, or folders of results that hold a record.csv

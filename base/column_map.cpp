@@ -88,6 +88,11 @@ std::vector<std::string> words(const ColumnMap& columns) {
                                         time.format.empty() ? "ISO 8601" : fmt::format("format '{}'", time.format),
                                         time.zone.empty() ? "a clock that is never set" : "local time of " + time.zone)
                             : fmt::format("{} in {}", fmt::join(places, " and "), time.unit)));
+  if (columns.tags) {
+    lines.push_back(fmt::format(
+        "{:<20} tag {}, value {}; {}", "rows", columns.tags->tag.words(), columns.tags->value.words(),
+        columns.tags->every_s > 0.0 ? fmt::format("one row every {:g} s", columns.tags->every_s) : "one row at each time"));
+  }
   for (const MappedChannel& c : columns.channels) {
     std::string line = fmt::format("{:<20} {} in {}", c.name + "_" + c.unit, c.column.words(), c.written_unit);
     if (c.factor != 1.0) line += fmt::format(", times {:g}", c.factor);

@@ -44,6 +44,13 @@ struct MappedChannel {
   [[nodiscard]] double value(double number) const;  ///< in `unit`
 };
 
+/// Where a row is one tag's value at one time, as controls log what has changed: a value holds until the next of its tag. The columns of the channels are then
+/// names of tags.
+struct TagColumns {
+  ColumnPlace tag, value;
+  double every_s = 0.0;  ///< rows of the record are so far apart; 0: there is one at each time of the log
+};
+
 struct ColumnMap {
   enum class Header { kFound, kAtLine, kNone };
   char separator = '\0';  ///< of cells; ' ': any number of blanks; 0: found from the header
@@ -53,6 +60,7 @@ struct ColumnMap {
   std::string end;                   ///< the first line that begins with it ends the rows; empty: the file's end does
   std::vector<std::string> missing;  ///< cells that stand for a missing reading, beside empty ones
   TimeColumns time;
+  std::optional<TagColumns> tags;
   std::vector<MappedChannel> channels;
   Where where;
 };

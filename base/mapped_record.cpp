@@ -7,132 +7,22 @@
 #include <cmath>
 #include <limits>
 
-#include "base/config_map.hpp"
 #include "base/delimited_text.hpp"
-#include "base/quantity.hpp"
-#include "base/time_stamps.hpp"
+#include "base/logger_header.hpp"
+#include "base/row_clock.hpp"
+#include "base/tag_log.hpp"
 
 namespace driftwright {
 namespace {
 
-constexpr std::size_t kMostBeforeHeader = 1000;     // lines in which a header is looked for
 constexpr std::size_t kMostUnderHeader = 5;         // lines of units and the like between header and rows
 constexpr double kHour_s = 3600.0, kAnHour = 0.01;  // a step of an hour and a row, as clocks are set; so far off at most
-
-const std::vector<char> kSeparators = {';', '\t', ',', '|'};
-
-std::vector<ColumnPlace> places_of(const ColumnMap& map) {
-  std::vector<ColumnPlace> places = map.time.columns;
-  if (map.time.milliseconds) places.push_back(*map.time.milliseconds);
-  for (const MappedChannel& c : map.channels) places.push_back(c.column);
-  return places;
-}
-
-std::vector<std::string> names_of(const std::vector<Cell>& cells) {
-  std::vector<std::string> names;
-  for (const Cell& cell : cells) names.push_back(plain_name(cell.text));
-  return names;
-}
-
-/// Cells of a line that may be no row at all.
-std::vector<Cell> cells_of(const std::string& line, char separator) {
-  try {
-    return split_cells(line, separator);
-  } catch (const RangeError&) {
-    return {};
-  }
-}
-
-/// Where the header is and what it holds.
-struct Header {
-  std::size_t line = 0;  ///< index; rows begin behind it, or at it where there is no header
-  char separator = '\0';
-  std::vector<std::string> names;  ///< of columns
-};
-
-std::vector<char> separators_of(const ColumnMap& map) {
-  if (map.separator != '\0') return {map.separator};
-  std::vector<char> list = kSeparators;
-  if (map.decimal == ',') std::erase(list, ',');
-  return list;
-}
-
-int n_found(const std::vector<std::string>& names, const std::vector<ColumnPlace>& places) {
-  return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const ColumnPlace& p) {
-    if (p.position > 0) return p.position <= static_cast<int>(names.size());
-    return std::find(names.begin(), names.end(), plain_name(p.name)) != names.end();
-  }));
-}
-
-/// The line that has most of the named columns, the first of several.
-Header header_of(const std::string& path, const std::vector<std::string>& lines, const ColumnMap& map) {
-  const std::vector<ColumnPlace> places = places_of(map);
-  const bool is_given = map.header == ColumnMap::Header::kAtLine;
-  if (is_given && static_cast<std::size_t>(map.header_line) > lines.size())
-    throw InputError(
-        fmt::format("{}: the header is wanted in line {}; the file has {} lines", path, map.header_line, lines.size()));
-  const std::size_t first = is_given ? static_cast<std::size_t>(map.header_line) - 1 : 0,
-                    last = is_given ? first + 1 : std::min(kMostBeforeHeader, lines.size());
-  Header best;
-  int most = -1;
-  for (std::size_t i = first; i < last; ++i) {
-    for (const char separator : separators_of(map)) {
-      const std::vector<std::string> names = names_of(cells_of(lines[i], separator));
-      const int n = n_found(names, places);
-      if (n < most || (n == most && names.size() <= best.names.size()) || names.empty()) continue;
-      most = n;
-      best = {i, separator, names};
-      if (n == static_cast<int>(places.size())) return best;
-    }
-  }
-  for (const ColumnPlace& p : places) {
-    if (n_found(best.names, {p}) > 0) continue;
-    const std::string near = p.position > 0 ? "" : nearest_word(p.name, best.names);
-    throw InputError(Where{path, static_cast<int>(best.line) + 1, 1, "", ""},
-                     fmt::format("no column {}, which {}:{} names; this line comes nearest to a header, and has '{}'.{}",
-                                 p.words(), p.where.file, p.where.line, fmt::join(best.names, "', '"),
-                                 near.empty() ? "" : fmt::format(" Did you mean '{}'?", near)));
-  }
-  return best;
-}
-
-/// Without a header: columns by position, in the first line that is none of comments.
-Header no_header(const std::string& path, const std::vector<std::string>& lines, const ColumnMap& map) {
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (lines[i].empty() || lines[i].starts_with('#')) continue;
-    std::vector<char> separators = separators_of(map);
-    if (map.separator == '\0') separators.push_back(' ');
-    Header best{i, separators.front(), {}};
-    for (const char separator : separators) {
-      const std::vector<std::string> cells = names_of(cells_of(lines[i], separator));
-      if (cells.size() > best.names.size()) best = {i, separator, cells};
-    }
-    return best;
-  }
-  throw InputError(fmt::format("{}: the file is empty", path));
-}
-
-std::size_t index_of(const std::string& path, const Header& header, const ColumnPlace& place) {
-  if (place.position > 0) return static_cast<std::size_t>(place.position) - 1;
-  const std::string name = plain_name(place.name);
-  const auto hit = std::find(header.names.begin(), header.names.end(), name);
-  if (const auto again = std::find(hit + 1, header.names.end(), name); again != header.names.end()) {
-    throw InputError(
-        Where{path, static_cast<int>(header.line) + 1, 1, "", ""},
-        fmt::format("two columns are called {} (columns {} and {}); `position: {}` in its place says which, at {}:{}",
-                    place.words(), hit - header.names.begin() + 1, again - header.names.begin() + 1,
-                    hit - header.names.begin() + 1, place.where.file, place.where.line));
-  }
-  return static_cast<std::size_t>(hit - header.names.begin());
-}
 
 /// The rows of a file, read one after another.
 class Rows {
  public:
-  Rows(const std::string& path, const ColumnMap& map, const Header& header)
-      : path_(path), map_(map), stamps_(map.time.format, map.time.zone) {
-    for (const ColumnPlace& p : map.time.columns) time_.push_back(index_of(path, header, p));
-    if (map.time.milliseconds) milliseconds_ = index_of(path, header, *map.time.milliseconds);
+  Rows(const std::string& path, const ColumnMap& map, const LoggerHeader& header)
+      : path_(path), map_(map), clock_(path, map, header) {
     for (const MappedChannel& c : map.channels) {
       channel_.push_back(index_of(path, header, c.column));
       read_.record.channels.push_back({c.name, c.unit, {}});
@@ -145,27 +35,10 @@ class Rows {
       zero_.push_back(plain.value(0.0));
       slope_.push_back(plain.value(1.0) - zero_.back());
     }
-    if (!map.time.unit.empty()) seconds_ = unit_factor(map.time.unit, "s");
   }
 
   /// The time of a row [s]. @throws InputError
-  double time_s(const std::vector<Cell>& cells, int line) {
-    if (map_.time.interval_s > 0.0) return map_.time.interval_s * static_cast<double>(read_.record.n_samples());
-    std::string text;
-    for (const std::size_t i : time_) text += (text.empty() ? "" : " ") + cell(cells, i, line, "time").text;
-    const Where where = at(cells, time_.front(), line, "time");
-    try {
-      if (!stamps_wanted()) return seconds_ * parse_number(text, map_.decimal);
-      std::chrono::nanoseconds time = stamps_.read(text);
-      if (milliseconds_)
-        time += std::chrono::nanoseconds(static_cast<std::int64_t>(
-            std::llround(1e6 * parse_number(cell(cells, *milliseconds_, line, "time").text, map_.decimal))));
-      if (!first_) first_ = time;
-      return static_cast<double>((time - *first_).count()) / 1e9;
-    } catch (const RangeError& e) {
-      throw InputError(where, e.what());
-    }
-  }
+  double time_s(const std::vector<Cell>& cells, int line) { return clock_.time_s(cells, line, read_.record.n_samples()); }
 
   void add(const std::vector<Cell>& cells, int line, double time_s) {
     Record& record = read_.record;
@@ -173,12 +46,12 @@ class Rows {
     record.time_s.push_back(time_s);
     for (std::size_t c = 0; c < channel_.size(); ++c) {
       const MappedChannel& channel = map_.channels[c];
-      const Cell& there = cell(cells, channel_[c], line, channel.name);
+      const Cell& there = cell_of(path_, cells, channel_[c], line, channel.name);
       double value = std::numeric_limits<double>::quiet_NaN();
       try {
-        if (!is_missing(there.text)) value = zero_[c] + slope_[c] * parse_number(there.text, map_.decimal);
+        if (!is_missing(map_, there.text)) value = zero_[c] + slope_[c] * parse_number(there.text, map_.decimal);
       } catch (const RangeError& e) {
-        throw InputError(at(cells, channel_[c], line, channel.name), e.what());
+        throw InputError(place_of(path_, cells, channel_[c], line, channel.name), e.what());
       }
       record.channels[c].values.push_back(channel.magnitude ? std::abs(value) : value);
     }
@@ -190,30 +63,11 @@ class Rows {
   void note(std::string sentence) { read_.notes.push_back(std::move(sentence)); }
 
  private:
-  [[nodiscard]] bool stamps_wanted() const { return map_.time.has_stamps(); }
-
-  [[nodiscard]] bool is_missing(const std::string& text) const {
-    return text.empty() || std::find(map_.missing.begin(), map_.missing.end(), text) != map_.missing.end();
-  }
-
-  [[nodiscard]] Where at(const std::vector<Cell>& cells, std::size_t i, int line, const std::string& key) const {
-    return {path_, line, i < cells.size() ? cells[i].column : 1, key, ""};
-  }
-
-  [[nodiscard]] const Cell& cell(const std::vector<Cell>& cells, std::size_t i, int line, const std::string& key) const {
-    if (i < cells.size()) return cells[i];
-    throw InputError(
-        Where{path_, line, 1, key, ""},
-        fmt::format("{} cells; column {} is wanted. A row that was cut short can be taken out, and `end` names the "
-                    "first line behind the rows",
-                    cells.size(), i + 1));
-  }
-
   /// @throws InputError  for a time that does not follow the one before
   void must_follow(const std::vector<Cell>& cells, int line, double time_s) {
     const std::vector<double>& t = read_.record.time_s;
     const double step_s = time_s - t.back(), usual_s = t.size() > 1 ? t[1] - t[0] : std::abs(step_s);
-    const bool knows_clock = !stamps_wanted() || stamps_.has_zone() || !stamps_.has_date();
+    const bool knows_clock = clock_.knows_clock_changes();
     const auto is_hour = [&](double hour_s) { return std::abs(step_s - usual_s - hour_s) <= kAnHour * kHour_s; };
     if (step_s > 0.0) {
       if (!knows_clock && t.size() > 1 && is_hour(kHour_s))
@@ -222,7 +76,7 @@ class Rows {
             path_, step_s / 60.0, last_line_, line));
       return;
     }
-    const Where where = time_.empty() ? Where{path_, line, 1, "time", ""} : at(cells, time_.front(), line, "time");
+    const Where where = clock_.place(cells, line);
     if (step_s == 0.0)
       throw InputError(where,
                        fmt::format("the time of this row is that of line {}; rows must increase in time. Take out rows that "
@@ -237,18 +91,15 @@ class Rows {
 
   std::string path_;
   const ColumnMap& map_;
-  TimeStamps stamps_;
-  std::vector<std::size_t> time_, channel_;
-  std::optional<std::size_t> milliseconds_;
-  double seconds_ = 1.0;
+  RowClock clock_;
+  std::vector<std::size_t> channel_;
   std::vector<double> zero_, slope_;  // of each channel: what 0 is in its unit, and what 1 adds
-  std::optional<std::chrono::nanoseconds> first_;
   int last_line_ = 0;
   ReadRecord read_;
 };
 
 /// What was left unread of the columns, once for the file.
-void note_ignored(const std::string& path, const ColumnMap& map, const Header& header, Rows& rows) {
+void note_ignored(const std::string& path, const ColumnMap& map, const LoggerHeader& header, Rows& rows) {
   std::vector<bool> is_used(header.names.size());
   for (const ColumnPlace& p : places_of(map)) {
     if (const std::size_t i = index_of(path, header, p); i < is_used.size()) is_used[i] = true;
@@ -267,7 +118,8 @@ void note_ignored(const std::string& path, const ColumnMap& map, const Header& h
 ReadRecord read_mapped(const std::string& path, const ColumnMap& map) {
   const std::vector<std::string> lines = read_text_lines(path);
   const bool has_header = map.header != ColumnMap::Header::kNone;
-  const Header header = has_header ? header_of(path, lines, map) : no_header(path, lines, map);
+  const LoggerHeader header = find_header(path, lines, map);
+  if (map.tags) return read_tag_log(path, lines, header, map);
   Rows rows(path, map, header);
   note_ignored(path, map, header, rows);
   std::vector<std::string> passed_over;

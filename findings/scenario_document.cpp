@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "findings/machine_section.hpp"
 #include "mesh/quality.hpp"
@@ -44,6 +45,32 @@ void add_size(output::Section& section, const mesh::Mesh& mesh) {
                      .digits = output::decimals(4)});
 }
 
+/// Area in contact of each joint, and how far its sides are apart.
+Table joints_table(const mesh::Mesh& m) {
+  Table joints{
+      .key = "contacts",
+      .columns = {{.key = "joint", .title = "joint"},
+                  {.key = "area_m2", .title = "in contact", .unit = "m2", .digits = output::decimals(4)},
+                  {.key = "largest_gap_mm", .title = "sides apart by up to", .unit = "mm", .digits = output::decimals(3)}}};
+  for (const mesh::Joint& joint : m.joints) {
+    double area_m2 = 0.0, gap_m = 0.0;
+    for (const solver::JointPoint& p : solver::joint_points(m, joint)) {
+      area_m2 += p.area_m2;
+      gap_m = std::max(gap_m, p.gap_m);
+    }
+    joints.rows.push_back({joint.name, area_m2, 1e3 * gap_m});
+  }
+  return joints;
+}
+
+/// NaN where it is not known yet.
+double density_kg_m3(const scenarios::MachineModel& machine, const std::string& region) {
+  for (const scenarios::MaterialEntry& entry : machine.materials) {
+    if (entry.region == region) return entry.material.density_kg_m3;
+  }
+  return std::nan("");
+}
+
 }  // namespace
 
 output::Document scenario_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine* placed,
@@ -73,13 +100,12 @@ output::Document scenario_document(const scenarios::Scenario& scenario, const sc
   return document;
 }
 
-output::Document mesh_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine& placed,
+output::Document mesh_document(const std::string& name, const scenarios::MachineModel& machine, const mesh::Mesh& m,
                                const output::Provenance& made_by) {
-  const mesh::Mesh& m = placed.mesh;
   const mesh::Quality quality = mesh::worst_quality(m);
-  output::Document document{.made_by = made_by, .title = scenario.name + ": mesh"};
+  output::Document document{.made_by = made_by, .title = name + ": mesh"};
   output::Section& body = document.body;
-  add(body, surfaces_picture(*scenario.machine, m));
+  add(body, surfaces_picture(machine, m));
   add_size(body, m);
   add(body, Value{.key = "worst_cell", .words = "worst cell", .datum = quality.worst_cell});
   add(body, Value{.key = "worst_cell_region", .words = "its region", .datum = m.regions[m.cells.group[quality.worst_cell]]});
@@ -96,7 +122,7 @@ output::Document mesh_document(const scenarios::Scenario& scenario, const scenar
     const int region = static_cast<int>(r);
     const double volume_m3 = mesh::volume_m3(m, region);
     regions.rows.push_back(
-        {m.regions[r], 1e3 * volume_m3, volume_m3 * placed.materials[r].density_kg_m3, m.cells_in(region).size()});
+        {m.regions[r], 1e3 * volume_m3, volume_m3 * density_kg_m3(machine, m.regions[r]), m.cells_in(region).size()});
   }
   Table surfaces{.key = "surfaces",
                  .columns = {{.key = "surface", .title = "surface"},
@@ -105,21 +131,21 @@ output::Document mesh_document(const scenarios::Scenario& scenario, const scenar
     if (m.surfaces[s].find('@') == std::string::npos)
       surfaces.rows.push_back({m.surfaces[s], mesh::area_m2(m, static_cast<int>(s))});
   }
-  Table joints{
-      .key = "contacts",
-      .columns = {{.key = "joint", .title = "joint"},
-                  {.key = "area_m2", .title = "in contact", .unit = "m2", .digits = output::decimals(4)},
-                  {.key = "largest_gap_mm", .title = "sides apart by up to", .unit = "mm", .digits = output::decimals(3)}}};
-  for (const mesh::Joint& joint : m.joints) {
-    double area_m2 = 0.0, gap_m = 0.0;
-    for (const solver::JointPoint& p : solver::joint_points(m, joint)) {
-      area_m2 += p.area_m2;
-      gap_m = std::max(gap_m, p.gap_m);
-    }
-    joints.rows.push_back({joint.name, area_m2, 1e3 * gap_m});
-  }
+  Table joints = joints_table(m);
   for (Table* table : {&regions, &surfaces, &joints}) add(body, std::move(*table));
   add(body, output::Notes{.key = "notes", .sort = "note", .lines = m.notes});
+  return document;
+}
+
+output::Document cyclograms_document(const scenarios::Scenario& scenario, const output::Provenance& made_by) {
+  output::Document document{.made_by = made_by, .title = scenario.name + ": cyclograms"};
+  add(document.body, cyclograms_table(scenario.cyclograms));
+  return document;
+}
+
+output::Document joints_document(const std::string& name, const mesh::Mesh& mesh, const output::Provenance& made_by) {
+  output::Document document{.made_by = made_by, .title = name + ": joints"};
+  add(document.body, joints_table(mesh));
   return document;
 }
 

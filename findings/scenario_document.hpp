@@ -11,8 +11,13 @@ namespace driftwright::findings {
 [[nodiscard]] output::Document scenario_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine* placed,
                                                  const output::Provenance& made_by);
 
-/// Size and quality of a mesh, its regions, surfaces and joints.
-[[nodiscard]] output::Document mesh_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine& placed,
-                                             const output::Provenance& made_by);
+/// Size and quality of a mesh, its regions, surfaces and joints. @param machine  marks and masses come from it, as far as it has them
+[[nodiscard]] output::Document mesh_document(const std::string& name, const scenarios::MachineModel& machine,
+                                             const mesh::Mesh& mesh, const output::Provenance& made_by);
+
+/// The cyclograms of a scenario, and the joints of a mesh, as `list` shows them.
+[[nodiscard]] output::Document cyclograms_document(const scenarios::Scenario& scenario, const output::Provenance& made_by);
+[[nodiscard]] output::Document joints_document(const std::string& name, const mesh::Mesh& mesh,
+                                               const output::Provenance& made_by);
 
 }  // namespace driftwright::findings

@@ -10,6 +10,7 @@
 #include "compensation/predictors/formula_predictor.hpp"
 #include "findings/iso230_3_section.hpp"
 #include "output/drift_model_files.hpp"
+#include "output/heat_map.hpp"
 
 namespace driftwright::findings {
 namespace {
@@ -44,6 +45,12 @@ std::vector<Column> columns(const StrategyMatrix& m) {
   if (has_failures(m)) list.push_back({"sensor failed", [](const Case& c) { return !is_intact(c); }});
   return list;
 }
+
+/// A column of a picture of the matrix.
+struct MapColumn {
+  output::HeatMap::Column heading;
+  std::function<bool(const Case&)> counts;
+};
 
 /// The run on which a regression on few sensors leaves most compared with the observer (or, without one, with the best strategy).
 struct Contrast {
@@ -241,6 +248,63 @@ std::string enough_text(const StrategyMatrix& m, const std::string& family) {
   return s->fitted.name;
 }
 
+/// What is left in µm, coloured by the tolerance. @param columns  and which cases each of them is the worst of
+output::Picture map_of(const StrategyMatrix& m, const std::string& title, const std::vector<MapColumn>& columns) {
+  output::HeatMap map{.columns = {}, .rows = {}, .values = {}, .limit = m.settings.tolerance_um, .unit = "µm"};
+  for (const MapColumn& c : columns) map.columns.push_back(c.heading);
+  for (const JudgedStrategy& s : m.strategies) {
+    std::vector<double> row;
+    for (const MapColumn& c : columns) {
+      const Worst w = worst_of(s, c.counts);
+      row.push_back(w.peak ? w.peak->after.peak_abs : std::nan(""));
+    }
+    if (std::all_of(row.begin(), row.end(), [](double um) { return std::isnan(um); }))
+      continue;  // no sensor that could fail
+    map.rows.push_back(s.fitted.name);
+    map.values.push_back(std::move(row));
+  }
+  return {.title = title, .svg = output::draw_heat_map(map)};
+}
+
+/// Families x seasons; the runs themselves where there is one family without seasons, as of records.
+output::Picture intact_map(const StrategyMatrix& m) {
+  std::vector<MapColumn> columns;
+  const std::vector<std::string> families = families_of(m), seasons = seasons_of(m);
+  const bool of_runs = families.size() == 1 && seasons.size() == 1 && seasons.front().empty();
+  for (std::size_t i = 0; of_runs && i < m.runs.size(); ++i)
+    columns.push_back({{families.front(), m.runs[i].name}, [i](const Case& c) { return is_intact(c) && c.run == i; }});
+  for (const std::string& family : families) {
+    for (const std::string& season : seasons) {
+      const auto is_here = [family, season](const JudgedRunOfMachine& r) {
+        return r.family == family && r.season == season;
+      };
+      if (of_runs || std::none_of(m.runs.begin(), m.runs.end(), is_here)) continue;
+      columns.push_back({{family, season}, [&m, is_here](const Case& c) { return is_intact(c) && is_here(m.runs[c.run]); }});
+    }
+  }
+  return map_of(m, fmt::format("Largest |residual| of {} in µm, all sensors intact", m.settings.strategies.target), columns);
+}
+
+/// Families x ways in which a sensor failed, the worst of all sensors.
+std::optional<output::Picture> failed_map(const StrategyMatrix& m) {
+  const auto way_of = [](const Case& c) -> std::string {  // "t05 stuck", "t05 and t11 exchanged"
+    return c.failed.ends_with(" exchanged") ? "exchanged" : c.failed.substr(c.failed.find(' ') + 1);
+  };
+  std::vector<std::string> ways;
+  for (const JudgedStrategy& s : m.strategies) {
+    for (const Case& c : s.cases) {
+      if (!is_intact(c) && std::find(ways.begin(), ways.end(), way_of(c)) == ways.end()) ways.push_back(way_of(c));
+    }
+  }
+  if (ways.empty()) return std::nullopt;
+  std::vector<MapColumn> columns;
+  for (const std::string& way : ways)
+    columns.push_back({{"one sensor failed half-way, the worst of all", way},
+                       [way, way_of](const Case& c) { return !is_intact(c) && way_of(c) == way; }});
+  return map_of(m, fmt::format("Largest |residual| of {} in µm with one failed sensor", m.settings.strategies.target),
+                columns);
+}
+
 output::Verdict verdict_of(const JudgedStrategy& best) {
   const Worst intact = worst_of(best, is_intact), failed = worst_of(best, has_failed);
   using Kind = output::Verdict::Kind;
@@ -361,6 +425,8 @@ Section strategy_section(const StrategyMatrix& m) {
   Section section = conditions_of(m);
   section.key = "validation";
   if (const JudgedStrategy* best = best_strategy(m)) add(section, verdict_of(*best));
+  add(section, intact_map(m));
+  if (std::optional<output::Picture> failed = failed_map(m)) add(section, std::move(*failed));
   if (const std::string axis = axis_text(m); !axis.empty()) add(section, output::Text{axis});
   add(section,
       output::Text{

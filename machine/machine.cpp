@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
+#include "machine/runnable.hpp"
 #include "machine/ways_out.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/shape.hpp"
@@ -241,9 +242,8 @@ std::optional<solver::Elasticity> factorise(const MachineModel& model, const Pla
   try {
     return solver::Elasticity(placed.mesh, placed.materials, placed.supports, placed.joints,
                               solver::ElasticMethod::kAutomatic, n_solves);
-  } catch (const InputError& e) {  // it knows what is wrong, not where that stands
-    const bool about_supports = std::string_view(e.what()).starts_with("supports");
-    throw InputError(about_supports ? model.supports.front().where : model.where, e.what());
+  } catch (const InputError& e) {
+    throw located(model, e);
   }
 }
 

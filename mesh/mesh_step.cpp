@@ -5,6 +5,7 @@
 #include <gmsh.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/delimited_text.hpp"
@@ -86,13 +87,56 @@ std::string describe(int solid) {
                      1e3 * z);
 }
 
+/// For what nobody has given a name: OpenCASCADE calls such solids "Open CASCADE STEP translator 7.6 1.3" when it writes them.
+void make_up_names(std::vector<Solid>& solids) {
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    if (solids[i].region.empty() || solids[i].region.starts_with("Open CASCADE STEP translator"))
+      solids[i].region = fmt::format("solid_{}", i + 1);
+  }
+}
+
+void make_up_sizes(std::vector<Part>& parts) {
+  std::vector<PartExtent> extents;
+  for (const Part& part : parts) {
+    PartExtent& extent = extents.emplace_back(PartExtent{0.0, 0.0});
+    for (int volume : part.volumes) {
+      double volume_m3 = 0.0;
+      occ::getMass(3, volume, volume_m3);
+      extent.volume_m3 += std::abs(volume_m3);
+      gmsh::vectorpair faces;
+      gmsh::model::getBoundary({{3, volume}}, faces, false, false);
+      for (const auto& [dim, face] : faces) {
+        double area_m2 = 0.0;
+        occ::getMass(2, std::abs(face), area_m2);
+        extent.area_m2 += area_m2;
+      }
+    }
+  }
+  const std::vector<double> sizes_m = suggested_mesh_sizes_m(extents);
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i].mesh_size_m = sizes_m[i];
+}
+
 }  // namespace
 
-Mesh mesh_step(const ImportedMesh& recipe) {
+std::vector<double> suggested_mesh_sizes_m(const std::vector<PartExtent>& parts) {
+  constexpr double kMostCells = 15000, kCellsPerCube = 8.5;  // tetrahedra of edge h in a cube of edge h, about
+  std::vector<double> sizes_m;
+  double n_cells = 0.0;
+  for (const PartExtent& part : parts) {  // V/A is a sixth of a cube's edge and half of a plate's thickness
+    sizes_m.push_back(3.0 * part.volume_m3 / part.area_m2);
+    n_cells += kCellsPerCube * part.volume_m3 / std::pow(sizes_m.back(), 3);
+  }
+  const double coarser = n_cells > kMostCells ? std::cbrt(n_cells / kMostCells) : 1.0;
+  for (double& size_m : sizes_m) size_m *= coarser;
+  return sizes_m;
+}
+
+Mesh mesh_step(const ImportedMesh& recipe, bool as_it_comes) {
   const GmshSession session;
   return with_gmsh_errors([&] {
     std::vector<Solid> solids = import_solids(recipe.path);
     name_by_points(solids, recipe.region_points);
+    if (as_it_comes) make_up_names(solids);
     gmsh::vectorpair all, out;
     std::vector<gmsh::vectorpair> map;
     for (const Solid& solid : solids) {
@@ -134,6 +178,7 @@ Mesh mesh_step(const ImportedMesh& recipe) {
                          fmt::format("`mesh_size` names the region '{}'; there are {}", region, fmt::join(known, ", ")));
       }
     }
+    if (as_it_comes) make_up_sizes(parts);
     const std::string outer = "outer";
     Mesh mesh = mesh_parts(parts, recipe.element_order, [&](const OuterFace&) { return outer; });
     // Outer faces get their names by picking; until then they are on no surface.

@@ -15,6 +15,7 @@
 #include "base/config_map.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
+#include "mesh/outer_faces.hpp"
 #include "mesh/topology.hpp"
 
 namespace driftwright::mesh {
@@ -69,6 +70,18 @@ std::optional<CellShape> shape_of_type(const std::string& type) {
   }
 }
 
+/// Corners of a plane, shell or membrane element of a type such as "cps6" or "s4r", which stands for a face of 3-D elements; 0 for other
+/// types.
+int facet_corners_of_type(const std::string& type) {
+  for (const std::string_view family : {"cps", "cpe", "cax", "sfm3d", "stri", "m3d", "r3d", "ds", "s"}) {
+    if (!type.starts_with(family)) continue;
+    int n = 0;
+    (void)std::from_chars(type.data() + family.size(), type.data() + type.size(), n);
+    return n == 3 || n == 6 || n == 65 ? 3 : n == 4 || n == 8 ? 4 : 0;  // STRI65 has six nodes
+  }
+  return 0;
+}
+
 struct Keyword {
   std::string name;                           // "*element", without blanks
   std::map<std::string, std::string> option;  // keys and values in lower case; "" for one without a value
@@ -103,19 +116,22 @@ class InpReader {
   }
 
   RawMesh read(const std::vector<std::string>& region_sets) {
-    assign_regions(region_sets);
+    assign_regions(region_sets.empty() ? named_volumes() : region_sets);
+    add_facet_surfaces();
     for (const auto& [name, nodes] : node_sets_) {
       RawMesh::NodeSurface surface{name, {}, true};
       for (long n : nodes) surface.nodes.push_back(node_.at(n));
       const bool is_region = std::find(raw_.regions.begin(), raw_.regions.end(), name) != raw_.regions.end();
-      const bool is_surface = std::any_of(raw_.face_surfaces.begin(), raw_.face_surfaces.end(),
-                                          [&, &set = name](const auto& s) { return s.name == set; });
+      const auto has_name = [&, &set = name](const auto& s) { return s.name == set; };
+      const bool is_surface = std::any_of(raw_.face_surfaces.begin(), raw_.face_surfaces.end(), has_name) ||
+                              std::any_of(raw_.facet_surfaces.begin(), raw_.facet_surfaces.end(), has_name);
       const bool all_nodes = std::set<long>(nodes.begin(), nodes.end()).size() == node_.size();
       if (!is_region && !is_surface && !all_nodes) raw_.node_surfaces.push_back(std::move(surface));
     }
     raw_.coords.resize(3, static_cast<Eigen::Index>(position_.size()));
     for (std::size_t i = 0; i < position_.size(); ++i) raw_.coords.col(static_cast<Eigen::Index>(i)) = position_[i];
-    if (n_left_out_ > 0) raw_.notes.push_back(fmt::format("{} elements that are not 3-D were left out", n_left_out_));
+    if (const std::size_t n = left_out_.size() - n_facets_taken_; n > 0)
+      raw_.notes.push_back(fmt::format("{} elements that are not 3-D were left out", n));
     return std::move(raw_);
   }
 
@@ -190,6 +206,7 @@ class InpReader {
   void begin_elements() {
     const std::string type = keyword_.at("type");
     shape_ = shape_of_type(type);
+    facet_corners_ = facet_corners_of_type(type);
     if (!shape_ && (type.find("c3d") != std::string::npos || type.starts_with("sc") || type.starts_with("csc"))) {
       fail(fmt::format("elements of type {} are not computed with; C3D4, C3D10, C3D8, C3D20, C3D6, C3D15 and their DC3D are",
                        type.empty() ? "?" : type));
@@ -211,9 +228,10 @@ class InpReader {
     const std::vector<std::string> words = std::move(element_words_);
     element_words_.clear();
     if (!shape_) {
-      ++n_left_out_;
-      left_out_.insert(integer(words[0]));
-      if (keyword_.has("elset")) element_sets_[keyword_.at("elset")].push_back(integer(words[0]));
+      const long n = integer(words[0]);
+      left_out_.insert(n);
+      if (keyword_.has("elset")) element_sets_[keyword_.at("elset")].push_back(n);
+      if (facet_corners_ > 0 && static_cast<int>(words.size()) > facet_corners_) add_facet(n, words);
       return;
     }
     const long n = integer(words[0]);
@@ -234,6 +252,65 @@ class InpReader {
     const std::string set = keyword_.at("elset");
     set_of_line_.push_back(set);
     if (!set.empty()) element_sets_[set].push_back(n);
+  }
+
+  void add_facet(long n, const std::vector<std::string>& words) {
+    std::vector<int>& corners = facet_[n];
+    for (int i = 1; i <= facet_corners_; ++i) {
+      const auto hit = node_.find(integer(words[static_cast<std::size_t>(i)]));
+      if (hit == node_.end())
+        fail(element_line_, fmt::format("element {}: there is no node {}", n, words[static_cast<std::size_t>(i)]));
+      corners.push_back(hit->second);
+    }
+    set_of_facet_line_.insert(keyword_.at("elset"));
+  }
+
+  /// ELSETs of 2-D elements that are faces of 3-D ones are surfaces, as Gmsh writes physical surfaces. Those on *ELEMENT lines only where there are no
+  /// others: Gmsh names there what the user has not named.
+  void add_facet_surfaces() {
+    if (facet_.empty()) return;
+    const FaceTable faces(raw_.cells);
+    std::set<long> taken;
+    for (const bool on_element_line : {false, true}) {
+      if (on_element_line && !raw_.facet_surfaces.empty()) break;
+      for (const auto& [name, elements] : element_sets_) {
+        if (name.empty() || set_of_facet_line_.contains(name) != on_element_line) continue;
+        RawMesh::FacetSurface surface{name, {}, {}};
+        const std::set<long> each(elements.begin(), elements.end());
+        for (const long n : each) {
+          const auto facet = facet_.find(n);
+          if (facet == facet_.end() || !faces.find(face_key(facet->second))) break;
+          surface.corners.push_back(facet->second);
+          surface.number.push_back(n);
+        }
+        if (surface.number.empty() || surface.number.size() != each.size()) continue;
+        taken.insert(each.begin(), each.end());
+        raw_.facet_surfaces.push_back(std::move(surface));
+      }
+    }
+    n_facets_taken_ = taken.size();
+  }
+
+  /// The ELSETs that are regions where the *ELEMENT lines name none but Gmsh's Volume1, Volume2 ...: those of 3-D elements alone, if each element lies in
+  /// one of them.
+  [[nodiscard]] std::vector<std::string> named_volumes() const {
+    const auto by_gmsh = [](const std::string& set) {
+      return set.starts_with("volume") && set.size() > 6 && set.find_first_not_of("0123456789", 6) == std::string::npos;
+    };
+    if (!std::all_of(set_of_line_.begin(), set_of_line_.end(), by_gmsh)) return {};
+    std::vector<std::string> names;
+    std::size_t n_in_one = 0;
+    std::set<long> in_some;
+    for (const auto& [name, elements] : element_sets_) {
+      const bool is_volume = std::all_of(elements.begin(), elements.end(), [&](long n) { return element_.contains(n); });
+      if (!is_volume || elements.empty() || by_gmsh(name)) continue;
+      names.push_back(name);
+      const std::set<long> each(elements.begin(), elements.end());
+      n_in_one += each.size();
+      in_some.insert(each.begin(), each.end());
+    }
+    const bool covers_once = n_in_one == element_.size() && in_some.size() == element_.size();
+    return covers_once ? names : std::vector<std::string>{};
   }
 
   using Sets = std::map<std::string, std::vector<long>>;
@@ -364,7 +441,11 @@ class InpReader {
   RawMesh raw_;
   Keyword keyword_;
   std::string more_;
-  int line_ = 0, element_line_ = 0, n_left_out_ = 0;
+  int line_ = 0, element_line_ = 0;
+  int facet_corners_ = 0;                   // of the type that is read
+  std::map<long, std::vector<int>> facet_;  // 2-D elements by number: their corners
+  std::set<std::string> set_of_facet_line_;
+  std::size_t n_facets_taken_ = 0;
   std::map<long, int> node_, element_;
   std::vector<Eigen::Vector3d> position_;
   std::optional<CellShape> shape_;

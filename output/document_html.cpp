@@ -9,7 +9,7 @@ namespace driftwright::output {
 namespace {
 
 html::Table page_table(const Table& table) {
-  html::Table page{.caption = table.title};
+  html::Table page{.caption = table.title, .folded = table.detail};
   if (!table.caption.empty()) page.caption += (page.caption.empty() ? "" : ". ") + table.caption;
   for (const Column& column : table.columns) {
     if (!column.title.empty()) page.headers.push_back(heading_of(column));
@@ -91,7 +91,7 @@ std::vector<html::ReportBlock> page_blocks(const Section& section) {
   return std::move(page).blocks();
 }
 
-std::string document_html(const Document& document) {
+html::Rendered document_html(const Document& document) {
   const std::string& before = document.subtitle;
   return html::render_html({.title = document.title,
                             .subtitle = fmt::format("{}{}Driftwright {}, scenario {}", before, before.empty() ? "" : "; ",

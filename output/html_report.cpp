@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "output/figure_file.hpp"
 #include "output/markup.hpp"
 
 namespace driftwright::output::html {
@@ -36,9 +37,16 @@ th, td { padding: 6px 10px; text-align: left; vertical-align: top; border-bottom
 th { border-bottom: 2px solid var(--soft); vertical-align: bottom; }
 .number { text-align: right; }
 td.number { white-space: nowrap; }
+.wide table { font-size: 13px; } .wide th, .wide td { padding: 5px 7px; }
+.wide th, .wide td:not(.number) { overflow-wrap: anywhere; min-width: 5em; }
+.fold { margin: 14px 0; } .fold > input { position: absolute; opacity: 0; } .fold > .table { margin-top: 4px; }
+.fold > label { cursor: pointer; color: var(--neutral); } .fold > label::before { content: "▸ "; } .fold > input:checked + label::before { content: "▾ "; }
+.fold > input:focus-visible + label { outline: 2px solid var(--neutral); }
+@media screen { .fold > input:not(:checked) ~ .table { display: none; } }
 .plots { display: grid; grid-template-columns: 1fr 1fr; gap: 20px 16px; margin: 20px 0; }
 figure { margin: 0; padding: 12px 0 10px; background: #ffffff; color: #1d2329; border: 1px solid #d9dee3;
   border-radius: 4px; grid-column: 1 / -1; min-width: 0; break-inside: avoid; }
+figure + figure { margin-top: 20px; } .plots figure + figure { margin-top: 0; }
 figure.half { grid-column: auto; }
 figcaption { font-weight: 600; padding: 0 16px 6px; }
 figure svg { display: block; width: 100%; height: auto; }
@@ -55,7 +63,10 @@ figure svg { display: block; width: 100%; height: auto; }
 pre { background: var(--card); border: 1px solid var(--line); border-radius: 4px; padding: 12px 16px; overflow-x: auto;
   font: 13px/1.45 ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; }
 @media (max-width: 640px) { figure.half { grid-column: 1 / -1; } }
-@media print { body { padding: 0; max-width: none; font-size: 11pt; } table { font-size: 9pt; } th, td { padding: 4px 6px; } h2, h3 { break-after: avoid; }
+@media print { .table { overflow: visible; } .table table { max-width: 100%; } .table:not(.wide) td:not(.number), .table:not(.wide) th { overflow-wrap: break-word; }
+  .wide table { font-size: 7pt; } .wide th, .wide td { padding: 3px 4px; min-width: 0; } .fold > input { display: none; } .fold > label { color: var(--soft); cursor: auto; }
+  .fold > label::before, .fold > input:checked + label::before { content: ""; }
+  body { padding: 0; max-width: none; font-size: 11pt; } table { font-size: 9pt; } th, td { padding: 4px 6px; } h2, h3 { break-after: avoid; }
   tr, .verdict { break-inside: avoid; } pre { white-space: pre-wrap; } * { print-color-adjust: exact; } }
 )css";
 
@@ -104,7 +115,9 @@ std::string html(const Verdict& verdict) {
                      verdict.text.empty() ? "" : fmt::format("<p>{}</p>", escaped(verdict.text)));
 }
 
-std::string html(const Table& table) {
+constexpr std::size_t kWide = 8;  // columns that a page still holds at its own size
+
+std::string html(const Table& table, std::size_t& n_folded) {
   const bool has_headers = !table.headers.empty();
   const std::size_t n_columns = has_headers ? table.headers.size() : table.rows.empty() ? 0 : table.rows.front().size();
   for (const auto& row : table.rows) {
@@ -116,8 +129,15 @@ std::string html(const Table& table) {
   for (std::size_t c = 0; c < n_columns; ++c) {
     attribute.emplace_back(is_number_column(table, c) ? " class=\"number\"" : "");
   }
-  std::string out = "<div class=\"table\"><table>\n";
-  if (!table.caption.empty()) out += fmt::format("<caption>{}</caption>\n", escaped(table.caption));
+  std::string out;
+  const bool folds = table.folded && !table.caption.empty();
+  if (folds) {
+    ++n_folded;
+    out += fmt::format("<div class=\"fold\"><input type=\"checkbox\" id=\"fold{0}\"><label for=\"fold{0}\">{1}</label>\n",
+                       n_folded, escaped(table.caption));
+  }
+  out += fmt::format("<div class=\"table{}\"><table>\n", n_columns > kWide ? " wide" : "");
+  if (!table.caption.empty() && !folds) out += fmt::format("<caption>{}</caption>\n", escaped(table.caption));
   if (has_headers) out += "<thead><tr>";
   for (std::size_t c = 0; c < table.headers.size(); ++c) {
     out += fmt::format("<th{}>{}</th>", attribute[c], escaped(table.headers[c]));
@@ -128,7 +148,7 @@ std::string html(const Table& table) {
     for (std::size_t c = 0; c < row.size(); ++c) out += fmt::format("<td{}>{}</td>", attribute[c], escaped(row[c]));
     out += "</tr>\n";
   }
-  return out + "</tbody></table></div>\n";
+  return out + (folds ? "</tbody></table></div></div>\n" : "</tbody></table></div>\n");
 }
 
 std::string html(const Bars& bars) {
@@ -174,7 +194,7 @@ std::string html(const Plot& plot, const std::string& svg) {
 
 }  // namespace
 
-std::string render_html(const Report& report) {
+Rendered render_html(const Report& report) {
   std::vector<Plot> plots;
   for (const ReportBlock& block : report.blocks) {
     if (const auto* plot = std::get_if<Plot>(&block)) plots.push_back(*plot);
@@ -182,30 +202,39 @@ std::string render_html(const Report& report) {
   const std::vector<std::string> svgs = draw_svgs(plots);
 
   std::string body;
-  std::size_t n_drawn = 0;
+  std::size_t n_drawn = 0, n_folded = 0;
+  FigureFiles figures;
   bool in_plots = false;  // plots that follow each other share a grid, so that halves pair up
   for (const ReportBlock& block : report.blocks) {
     const auto* plot = std::get_if<Plot>(&block);
     if ((plot != nullptr) != in_plots) body += in_plots ? "</div>\n" : "<div class=\"plots\">\n";
     in_plots = plot != nullptr;
     if (plot != nullptr) {
+      figures.add(plot->title, plot_file(*plot, svgs[n_drawn]));
       body += html(*plot, svgs[n_drawn++]);
     } else {
       std::visit(
           [&](const auto& other) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(other)>, Plot>) body += html(other);
+            using Kind = std::decay_t<decltype(other)>;
+            if constexpr (std::is_same_v<Kind, Picture>) figures.add(other.title, svg_file(other.svg));
+            if constexpr (std::is_same_v<Kind, Table>) {
+              body += html(other, n_folded);
+            } else if constexpr (!std::is_same_v<Kind, Plot>) {
+              body += html(other);
+            }
           },
           block);
     }
   }
   if (in_plots) body += "</div>\n";
 
-  return fmt::format(
+  std::string page = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
       "<style>{1}</style>\n</head>\n<body>\n<header><h1>{0}</h1>{2}</header>\n{3}</body>\n</html>\n",
       escaped(report.title), kStyle, report.subtitle.empty() ? "" : fmt::format("<p>{}</p>", escaped(report.subtitle)),
       body);
+  return {std::move(page), std::move(figures).take()};
 }
 
 }  // namespace driftwright::output::html

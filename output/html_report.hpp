@@ -34,6 +34,7 @@ struct Table {
   std::string caption = {};
   std::vector<std::string> headers = {};            ///< none: the first cells say what stands in the others
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as headers
+  bool folded = false;  ///< on the screen its caption alone stands there until it is asked for; on paper it is whole
 };
 
 /// An <svg> element as it is.
@@ -44,17 +45,28 @@ struct Picture {
 
 using ReportBlock = std::variant<Heading, Paragraph, Verdict, Table, Plot, Preformatted, Bars, Picture>;
 
+/// A figure of a report as a file of its own.
+struct Figure {
+  std::string name;  ///< of its title, unlike all others of the report; without extension
+  std::string svg;   ///< a whole SVG file, with title and legend
+};
+
+struct Rendered {
+  std::string page;  ///< the text of the HTML file
+  std::vector<Figure> figures;
+};
+
 struct Report {
   std::string title = {};
   std::string subtitle = {};  ///< say version and scenario here
   std::vector<ReportBlock> blocks = {};
 };
 
-/// The text of the HTML file. All text is escaped; nothing is loaded from elsewhere. The same report gives
+/// The page and its figures. All text is escaped; nothing is loaded from elsewhere. The same report gives
 /// the same bytes.
 /// @throws std::runtime_error  when plots cannot be drawn, see draw_svgs()
 /// @throws std::logic_error    when a table's row has another length than its headers, or a plot is
 /// ill-formed
-[[nodiscard]] std::string render_html(const Report& report);
+[[nodiscard]] Rendered render_html(const Report& report);
 
 }  // namespace driftwright::output::html

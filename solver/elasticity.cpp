@@ -105,18 +105,7 @@ Elasticity::Elasticity(const Mesh& mesh, const RegionMaterials& materials, const
   check_materials(mesh, materials);
   parts_ = std::make_unique<Parts>(mesh, materials);
   Parts& p = *parts_;
-  std::vector<bool> fixed(3 * static_cast<std::size_t>(mesh.n_nodes()), false);
-  for (const Support& support : supports) {
-    for (int facet : mesh.facets_on(mesh.surface(support.surface))) {
-      for (int node : mesh.facets.nodes(facet)) {
-        for (int i = 0; i < 3; ++i) {
-          if (support.fixed[i]) fixed[3 * node + i] = true;
-        }
-      }
-    }
-  }
-  const std::vector<SpringLayer> layers = spring_layers(mesh, materials, supports, joints);
-  require_held(mesh, layers, fixed);
+  const auto [fixed, layers] = holding(mesh, materials, supports, joints);
   p.held.assign(fixed.size(), 1);  // nodes in no cell have no stiffness
   for (int node : mesh.cells.node) {
     for (int i = 0; i < 3; ++i) p.held[3 * static_cast<std::size_t>(node) + i] = fixed[3 * node + i] ? 1 : 0;

@@ -258,4 +258,21 @@ void require_held(const Mesh& mesh, const std::vector<SpringLayer>& layers, cons
       fmt::format("supports: {}. Fix more surfaces or directions, or add springs or joints", fmt::join(complaints, "; ")));
 }
 
+Holding holding(const Mesh& mesh, const RegionMaterials& materials, const std::vector<Support>& supports,
+                const std::vector<JointMechanics>& joints) {
+  Holding held{std::vector<bool>(3 * static_cast<std::size_t>(mesh.n_nodes()), false), {}};
+  for (const Support& support : supports) {
+    for (int facet : mesh.facets_on(mesh.surface(support.surface))) {
+      for (int node : mesh.facets.nodes(facet)) {
+        for (int i = 0; i < 3; ++i) {
+          if (support.fixed[i]) held.fixed[3 * node + i] = true;
+        }
+      }
+    }
+  }
+  held.layers = spring_layers(mesh, materials, supports, joints);
+  require_held(mesh, held.layers, held.fixed);
+  return held;
+}
+
 }  // namespace driftwright::solver

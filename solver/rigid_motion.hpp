@@ -16,4 +16,13 @@ namespace driftwright::solver {
 ///                     x = 0.0 mm, y = 120.0 mm"
 void require_held(const mesh::Mesh& mesh, const std::vector<SpringLayer>& layers, const std::vector<bool>& fixed);
 
+/// What holds a machine.
+struct Holding {
+  std::vector<bool> fixed;  ///< true for dof 3 node + direction that a support fixes
+  std::vector<SpringLayer> layers;
+};
+/// Of supports and joints. @throws InputError  as spring_layers() and require_held(): nothing is solved for, so that a scenario can be checked by it
+[[nodiscard]] Holding holding(const mesh::Mesh& mesh, const RegionMaterials& materials, const std::vector<Support>& supports,
+                              const std::vector<JointMechanics>& joints);
+
 }  // namespace driftwright::solver

@@ -126,7 +126,7 @@ TEST(Document, IsOneCsvATable) {
 TEST(Document, IsAPageWithPicturesAndUnitsInHeadings) {
   Document d = document();
   std::get<Table>(d.body.sections[0].blocks[1]).columns[2].unit = "um";
-  EXPECT_THAT(document_html(d),
+  EXPECT_THAT(document_html(d).page,
               AllOf(HasSubstr("<h1>A title</h1>"), HasSubstr("a subtitle; Driftwright 9.9, scenario a.yaml"),
                     HasSubstr("It is &lt;so&gt;."), HasSubstr("An explanation."), HasSubstr("87.7 %"), HasSubstr("<svg"),
                     HasSubstr("<h2>Cyclogram warm, up</h2>"), HasSubstr("peak [µm]"), HasSubstr(">12.3<"),

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every indented `driftwright` command of README and of the pages below runs as it stands, and prints what the page shows under it. Not among them: docs/fl_thermal.md and docs/measured.md, whose
+"""Every indented `driftwright` command of README and of the pages below runs as it stands, and prints what the page shows under it; so does every example that a verb's --help shows. Not among them: docs/fl_thermal.md and docs/measured.md, whose
 records others published, and docs/library.md, whose programs `installed_test.sh` and `python_test.py` build and run.
 
     documents_test.py PROGRAM FOLDER_OF_THE_PROJECT [PAGE ...]
@@ -8,11 +8,12 @@ Commands run in a folder that holds scenarios/ and docs/ of the project, in the 
 be printed (blanks count as one; a line that ends with "..." is the beginning of one; "..." alone stands for any lines).
 """
 import os, re, subprocess, sys, tempfile, time
+import xml.etree.ElementTree as xml
 from pathlib import Path
 
 from result_schema import errors
 
-PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md"]
+PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md", "docs/record.md"]
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
 
@@ -45,9 +46,22 @@ def not_printed(shown, printed):
     return None
 
 
+def examples(program):
+    """(verb, command) that --help shows."""
+    verbs = re.findall(r"^  ([a-z]+) ", subprocess.run([program, "--help"], capture_output=True, text=True).stdout.split("Subcommands:")[1], re.M)
+    for verb in verbs:
+        text = subprocess.run([program, verb, "--help"], capture_output=True, text=True).stdout.split("Example:")
+        if len(text) != 2:
+            yield verb, "false  # no example"
+            continue
+        for command in re.findall(r"^  (driftwright .*)$", text[1], re.M):
+            yield verb, command
+
+
 def main():
     program, top = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     failures = n = 0
+    done_before = set()
     with tempfile.TemporaryDirectory(prefix="driftwright-documents-") as folder:
         work = Path(folder)
         (work / "scenarios").symlink_to(top / "scenarios")
@@ -57,6 +71,7 @@ def main():
         for page in sys.argv[3:] or PAGES:
             for number, command, shown in blocks((top / page).read_text()):
                 n += 1
+                done_before.add(command.removeprefix("./").split("  #")[0].strip())
                 begun = time.monotonic()
                 done = subprocess.run(["bash", "-c", command], cwd=work, env=env, capture_output=True, text=True)
                 missed = not_printed(shown, done.stdout) if done.returncode == 0 else None
@@ -64,6 +79,27 @@ def main():
                 if done.returncode != 0 or missed:
                     failures += 1
                     print(f"  FAILED: {done.stderr.strip()[-400:] if done.returncode else 'not printed: ' + missed}", flush=True)
+        for verb, command in () if sys.argv[3:] else examples(program):
+            if command in done_before:
+                continue
+            n += 1
+            begun = time.monotonic()
+            done = subprocess.run(["bash", "-c", command], cwd=work, env=env, capture_output=True, text=True)
+            print(f"{time.monotonic() - begun:6.1f} s  {verb} --help: {command}", flush=True)
+            if done.returncode != 0:
+                failures += 1
+                print(f"  FAILED: {done.stderr.strip()[-400:]}", flush=True)
+        figures = sorted(work.glob("results/*/figures/*.svg"))
+        for figure in figures:
+            try:
+                if not xml.parse(figure).getroot().get("viewBox"):
+                    raise ValueError("no viewBox")
+            except Exception as wrong:
+                failures += 1
+                print(f"  FAILED: {figure.relative_to(work)} is no SVG file: {wrong}", flush=True)
+        if not sys.argv[3:] and len(figures) < 20:
+            failures += 1
+            print(f"  FAILED: {len(figures)} figures stand beside reports", flush=True)
         for file in [*work.rglob("diagnosis.json"), *work.rglob("calibration.json")]:
             for error in errors(program, file):
                 failures += 1

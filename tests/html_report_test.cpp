@@ -53,7 +53,7 @@ std::string curve(const std::string& svg, int index) {
 }
 
 TEST(HtmlReport, LoadsNothingFromElsewhere) {
-  std::string html = render_html(report());
+  std::string html = render_html(report()).page;
   html = std::regex_replace(html, std::regex(R"(xmlns(:xlink)?="http://www\.w3\.org/[^"]*")"), "");
   EXPECT_THAT(html, AllOf(Not(HasSubstr("http:")), Not(HasSubstr("https:")), Not(HasSubstr("src=")),
                           Not(HasSubstr("<script")), Not(HasSubstr("<link")), Not(HasSubstr("@import"))));
@@ -63,20 +63,20 @@ TEST(HtmlReport, BarsAreAsLongAsTheirShareOfTheLongest) {
   const std::string html =
       render_html({.title = "t",
                    .subtitle = "",
-                   .blocks = {Bars{"Evidence", {{"a<b", 8.0, "8 nats"}, {"c", 2.0, "2"}, {"d", -1.0, "-1"}}}}});
+                   .blocks = {Bars{"Evidence", {{"a<b", 8.0, "8 nats"}, {"c", 2.0, "2"}, {"d", -1.0, "-1"}}}}}).page;
   EXPECT_THAT(matches(html, "style=\"width:([0-9.]*)%\""), ::testing::ElementsAre("100.0", "25.0", "0.0"));
   EXPECT_THAT(html, AllOf(HasSubstr("a&lt;b"), HasSubstr("8 nats"), HasSubstr("Evidence")));
 }
 
 TEST(HtmlReport, EscapesAllText) {
-  const std::string html = render_html(report());
+  const std::string html = render_html(report()).page;
   EXPECT_THAT(html, AllOf(HasSubstr("A &lt;b&gt;bold&lt;/b&gt; title &amp; more"), HasSubstr("1 &lt; 2"),
                           HasSubstr("worse &quot;after&quot;"), HasSubstr("a: &lt;b&gt;"),
                           HasSubstr("it's &lt;predicted&gt;"), Not(HasSubstr("<b>")), Not(HasSubstr("<predicted>"))));
 }
 
 TEST(HtmlReport, HasOneSvgPerPlotAndIdsThatDiffer) {
-  const std::string html = render_html(report());
+  const std::string html = render_html(report()).page;
   EXPECT_EQ(matches(html, "<(svg)").size(), 3u);
   EXPECT_EQ(matches(html, "</(svg)>").size(), 3u);
   const std::vector<std::string> ids = matches(html, R"(\bid=["']([^"']*)["'])");
@@ -87,19 +87,19 @@ TEST(HtmlReport, HasOneSvgPerPlotAndIdsThatDiffer) {
 }
 
 TEST(HtmlReport, AlignsColumnsOfNumbersOnly) {
-  const std::string html = render_html(report());
+  const std::string html = render_html(report()).page;
   EXPECT_THAT(html, AllOf(HasSubstr("<th>strategy</th><th class=\"number\">max [µm]</th>"),
                           HasSubstr("<td>modal</td><td class=\"number\">−3.1</td>")));
 }
 
 TEST(HtmlReport, LegendNamesCurvesAndBands) {
-  const std::string html = render_html({"t", "", {ramp("One")}});
+  const std::string html = render_html({"t", "", {ramp("One")}}).page;
   EXPECT_THAT(html, AllOf(HasSubstr("--c:#0072B2\"></i>measured"), HasSubstr("--c:#D55E00\"></i>it's"),
                           HasSubstr("</i>tolerance"), HasSubstr("class=\"limit\"")));
 }
 
 TEST(HtmlReport, SameReportGivesTheSameBytes) {
-  EXPECT_EQ(render_html(report()), render_html(report()));
+  EXPECT_EQ(render_html(report()).page, render_html(report()).page);
 }
 
 TEST(HtmlReport, RefusesARaggedTable) {

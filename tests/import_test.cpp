@@ -236,11 +236,10 @@ class GmshInp : public ::testing::TestWithParam<GmshFile> {};
 TEST_P(GmshInp, GivesTheSameBlock) {
   const std::string path = path_of("block.inp");
   write_block(path, GetParam().kind, GetParam().order, 4.1, false);
-  ImportedMesh r = recipe(path, 1e-3);
-  r.region_sets = {"lower", "upper"};
-  r.surfaces = {{"foot", "lower", PlanePick{{0, 0, 0}, {0, 0, -1}}, {}},
-                {"top", "", PlanePick{{0, 0, 0.08}, {0, 0, 1}}, {}}};
-  expect_block(import_mesh(r), GetParam().kind, GetParam().order);
+  expect_block(import_mesh(recipe(path, 1e-3)), GetParam().kind, GetParam().order);  // its physical groups, as they are
+  ImportedMesh named = recipe(path, 1e-3);
+  named.region_sets = {"lower", "upper"};
+  expect_block(import_mesh(named), GetParam().kind, GetParam().order);
 }
 INSTANTIATE_TEST_SUITE_P(Each, GmshInp,
                          ::testing::Values(GmshFile{Kind::kTet, 1, 4.1, false}, GmshFile{Kind::kTet, 2, 4.1, false},
@@ -280,6 +279,8 @@ const char* const kThreeCells = R"(** a comment
 13, 20, 21, 22, 23
 *Element, Type=S4, Elset=shells
 14, 1, 2, 3, 4
+*Element, Type=S3, Elset=loose
+15, 1, 2, 7
 *ELSET, ELSET=all, GENERATE
 11, 13
 *ELSET, ELSET=both
@@ -311,10 +312,12 @@ TEST(InpFile, SetsSurfacesContinuationLinesAndForeignKeywordsAreUnderstood) {
   EXPECT_NEAR(volume(m, "hex"), 1e-6, 1e-18);
   EXPECT_NEAR(volume(m, "wedge"), 0.5e-6, 1e-18);
   EXPECT_NEAR(volume(m, "tet"), 1e-6 / 6, 1e-18);
-  EXPECT_THAT(m.surfaces, UnorderedElementsAre("top", "back", "underside"));  // `edge`, `some` cover no face, Nall is all
+  EXPECT_THAT(m.surfaces, UnorderedElementsAre("top", "back", "underside",
+                                               "shells"));  // `edge`, `some`, `loose` cover no face, Nall is all
   EXPECT_NEAR(area(m, "top"), 1.5e-4, 1e-16);
   EXPECT_NEAR(area(m, "back"), 1.5e-4, 1e-16);
   EXPECT_NEAR(area(m, "underside"), 1.5e-4, 1e-16);
+  EXPECT_NEAR(area(m, "shells"), 1e-4, 1e-16);
   EXPECT_EQ(m.n_nodes(), 14);
   EXPECT_THAT(m.notes,
               UnorderedElementsAre("1 nodes that no cell uses were left out", "1 elements that are not 3-D were left out"));

@@ -301,7 +301,7 @@ INSTANTIATE_TEST_SUITE_P(
                {"not both", "[time.format]"}},
         BadMap{"column_and_position",
                "time: {column: t}\nchannels: {x: {column: X, position: 2, unit: um}}\n",
-               {"either `column`"}},
+               {"one of `column`"}},
         BadMap{"name_without_header",
                "header_line: none\ntime: {column: t}\nchannels: {x: {position: 2, unit: um}}\n",
                {"`position` (from 1) is wanted"}},

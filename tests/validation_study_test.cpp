@@ -92,7 +92,7 @@ TEST_F(ValidationStudy, TheObserverLeavesATenthAndThreeTenthsWithAFailedSensor) 
   EXPECT_EQ(strategy("observer")["worse_than_nothing"], false);
 }
 
-// Source paper C: temperatures alone, learned while running continuously, do not tell the drift of another cyclogram.
+// Polyakov, Marusich & Nikitina: temperatures alone, learned while running continuously, do not tell the drift of another cyclogram.
 TEST_F(ValidationStudy, TemperaturesAloneFailWhereTheyWereNotTrained) {
   const auto chaotic_as_trained = [](const CsvRow& r) {
     return is_intact(r) && r.family == "chaotic" && r.season == "as trained";

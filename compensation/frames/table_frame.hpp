@@ -10,7 +10,7 @@
 
 namespace driftwright::compensation {
 
-/// Scale and shift along X as source paper D has them: x -> scale (x + shift), the shift first.
+/// Scale and shift along X as Li et al. have them: x -> scale (x + shift), the shift first.
 struct TempFrame {
   double scale = 1.0;    ///< TEMP_SCALE = (X2' - X1') / (X2 - X1)
   double shift_m = 0.0;  ///< TEMP_SHIFT = X1' / TEMP_SCALE - X1

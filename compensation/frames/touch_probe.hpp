@@ -1,5 +1,5 @@
 #pragma once
-// A touch probe that reports late to a control that looks once a cycle, and how the lag is undone (source paper B).
+// A touch probe that reports late to a control that looks once a cycle, and how the lag is undone (Wang & Jia).
 //
 // The probe touches, gives way by its pre-travel, and its signal arrives `lag` later. The control has latched the time of the
 // arrival to about a microsecond and knows the axis at the ends of its cycles, from a counter that rolls over.

@@ -85,10 +85,28 @@ TimeColumns read_time(const ConfigMap& in, bool has_header) {
   return time;
 }
 
-MappedChannel read_channel(const ConfigMap& in, const std::string& name, bool has_header) {
+TagColumns read_tags(const ConfigMap& in, bool has_header, const TimeColumns& time) {
+  if (time.interval_s > 0.0) in.fail("column", "a row of tags is no step of time; `interval` cannot count them");
+  const auto place = [&](const char* key) {
+    if (!has_header) in.fail(key, "a log of tags without a header is not read");
+    return ColumnPlace{.name = in.text(key), .position = 0, .where = in.where(key)};
+  };
+  TagColumns tags{place("column"), place("value"), 0.0};
+  if (in.has("every")) tags.every_s = in.quantity("every");
+  in.reject_unknown_keys();
+  return tags;
+}
+
+MappedChannel read_channel(const ConfigMap& in, const std::string& name, bool has_header, bool has_tags) {
   MappedChannel channel;
   channel.name = name;
-  channel.column = read_place(in, has_header);
+  if (has_tags != in.has("tag")) {
+    in.fail(has_tags ? "column" : "tag", has_tags
+                                             ? "a log of tags names its channels by `tag`"
+                                             : "`tag` goes with the key `tags` of the map, which says where tags stand");
+  }
+  channel.column =
+      has_tags ? ColumnPlace{.name = in.text("tag"), .position = 0, .where = in.where("tag")} : read_place(in, has_header);
   channel.written_unit = in.text("unit");
   try {
     channel.unit = record_unit(channel.written_unit);
@@ -129,15 +147,24 @@ schema::Map columns_schema() {
   const schema::Map channel = {
       .name = "columns, channels",
       .keys = {schema::optional("column", text(), "its name in the header"), position(),
+               schema::optional("tag", text(), "or: its name in the rows of a log of tags"),
                compulsory("unit", text(), "that its numbers are in; what records carry is converted"),
                schema::optional("factor", quantity("1", -1e12, 1e12), 1.0, "on its numbers, not 0"),
                schema::optional("offset", quantity("", -1e12, 1e12), Said{"0"},
                                 "added behind the factor; in its unit, of a temperature in K"),
                schema::optional("magnitude", flag(), "false", "true: without its sign")},
       .groups = {{Group::Rule::kExactlyOne,
-                  {"column", "position"},
-                  "either `column` (a name) or `position` (from 1) of the channel is wanted"}},
+                  {"column", "position", "tag"},
+                  "one of `column` (a name), `position` (from 1) and, in a log of tags, `tag` is wanted for the channel"}},
       .about = "A channel of the record, by its name without unit."};
+  const schema::Map tags = {
+      .name = "columns, tags",
+      .keys = {compulsory("column", text(), "that names the tag of a row"), compulsory("value", text(), "its value"),
+               schema::optional("every", quantity("s", 1e-3, 1e7), Said{"a row at each time of the log"},
+                                "from row to row of the record")},
+      .about =
+          "Where each row is one tag's value at one time, as controls log what changes. A value holds until the next of its "
+          "tag."};
   const schema::Map channels = {
       .name = "columns, channels by name",
       .others = {schema::optional("channel", schema::map(channel), "where it is and what it is in")}};
@@ -151,6 +178,7 @@ schema::Map columns_schema() {
                                     "what the first line behind the data begins with"),
                    schema::optional("missing", list(text()), "words that stand for a missing value"),
                    compulsory("time", schema::map(time), "which columns tell it"),
+                   schema::optional("tags", schema::map(tags), "of a log with a tag in each row: where tag and value stand"),
                    compulsory("channels", schema::map(channels), "by name: which columns become channels")},
           .about = "How records are written where a logger wrote them (docs/record.md)."};
 }
@@ -165,10 +193,11 @@ ColumnMap read_columns(const ConfigMap& in) {
   if (in.has("missing")) map.missing = in.texts("missing");
   const bool has_header = map.header != ColumnMap::Header::kNone;
   map.time = read_time(in.map("time"), has_header);
+  if (const auto tags = in.optional_map("tags")) map.tags = read_tags(*tags, has_header, map.time);
   const ConfigMap channels = in.map("channels");
   for (const std::string& name : channels.keys()) {
     if (!is_name(name)) channels.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", name));
-    map.channels.push_back(read_channel(channels.map(name), name, has_header));
+    map.channels.push_back(read_channel(channels.map(name), name, has_header, map.tags.has_value()));
   }
   if (map.channels.empty()) in.fail("channels", "no channel; at least one column is wanted");
   in.reject_unknown_keys();

@@ -12,34 +12,10 @@
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 #include "scenarios/reader/read_hall.hpp"
+#include "scenarios/reader/read_materials.hpp"
 
 namespace driftwright::scenarios {
 namespace {
-
-const std::vector<std::string> kKnownRoughly = {"conductivity", "heat_capacity", "expansion"};
-
-/// `materials:` maps each region to a name of the library or to a map: of values, or of such a name and how well it is known.
-std::vector<MaterialEntry> read_materials(const ConfigMap& in) {
-  std::vector<MaterialEntry> entries;
-  for (const std::string& region : in.keys()) {
-    MaterialEntry& entry = entries.emplace_back();
-    entry.region = region;
-    entry.where = in.where(region);
-    if (!in.is_map(region)) {
-      entry.material = solver::material_library().at(in.choice(region));
-      continue;
-    }
-    const ConfigMap values = in.map(region);
-    entry.known_to = effects::read_known_to(values, kKnownRoughly);
-    if (values.description().when_key == "like") {
-      entry.material = solver::material_library().at(values.choice("like"));
-      values.reject_unknown_keys();
-    } else {
-      entry.material = solver::read_material(values);
-    }
-  }
-  return entries;
-}
 
 void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
   std::set<std::string> names = {"speed",  "time",   "feed_x",  // columns that records have beside these
@@ -226,22 +202,6 @@ AxisLoopSettings read_axis_loop_of(const ConfigMap& in, const ConfigMap& axis_lo
   for (const DisplacementOutput& d : scenario.machine->displacements) context.displacements.push_back(d.name);
   for (const Sensor& s : scenario.machine->sensors) context.sensors.push_back(s.name);
   return read_axis_loop(axis_loop, context);
-}
-
-schema::Map materials_schema() {
-  using namespace schema;
-  std::vector<std::string> names;
-  for (const auto& [name, material] : solver::material_library()) names.push_back(name);
-  const Key known_to = effects::known_to_key(kKnownRoughly);
-  const schema::Map like = {.name = "materials, like one of the library",
-                            .keys = {compulsory("like", choice(names), "of the library (docs/materials.md)"), known_to},
-                            .when_key = "like"};
-  schema::Map values = solver::material_schema();
-  values.name = "materials, by values";
-  values.keys.push_back(known_to);
-  return {.name = "materials",
-          .others = {schema::optional("region", Ways{choice(names), one_of({like, values})},
-                                      "a material of the library, or a map: as one of it, or by values")}};
 }
 
 schema::Map solver_schema() {

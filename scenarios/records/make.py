@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Makes the records of this folder anew: make.py PROGRAM   (from the folder of the project; the same bytes each time)"""
-import pathlib, random, subprocess, sys, tempfile
+import datetime, pathlib, random, subprocess, sys, tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCENARIO = HERE.parent / "fp3_spindle.yaml"
@@ -39,6 +39,21 @@ def measured(rows, seed):
     return out
 
 
+def as_a_logger(rows):
+    """A record as a logger in Germany might have written it: stamps, semicolons, decimal commas, Latin-1, other names, mm."""
+    columns = [name.split(",") for name in rows]
+    head, start = columns[0], datetime.datetime(2024, 3, 9, 7, 0)
+    names = {"speed_rpm": "Spindel [U/min]", "hall_degC": "Halle (°C)", "drift_y_um": "Drift Y (mm)"}
+    names |= {f"t{i:02}_degC": f"T{i:02} (°C)" for i in range(1, 13)}
+    taken = [i for i, name in enumerate(head) if name in names]
+    lines = ["Messprotokoll;Fräsmaschine", "", "Zeitstempel;" + ";".join(names[head[i]] for i in taken)]
+    for row in columns[1:]:
+        at = start + datetime.timedelta(seconds=float(row[0]))
+        cells = [f"{float(row[i]) / 1000:.4f}" if head[i].endswith("_um") else f"{float(row[i]):.1f}" for i in taken]
+        lines.append(at.strftime("%d.%m.%Y %H:%M:%S;") + ";".join(cell.replace(".", ",") for cell in cells))
+    return "\r\n".join(lines) + "\r\n"
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as folder:
@@ -52,6 +67,8 @@ def main():
             rows = simulated(program, other if name in ("monday", "tuesday") else SCENARIO, sections, work)
             if name != "morning":
                 rows = measured(rows, seed)
+            if name == "tuesday":
+                (HERE / "logger_file.csv").write_text(as_a_logger(rows), encoding="latin-1", newline="")
             (HERE / f"{name}.csv").write_text(f"# made by scenarios/records/make.py, not measured on a machine\n" + "\n".join(rows) + "\n")
         rows = [f"{int(i % 4 in (1, 2))} {int(i % 4 in (2, 3))}" for i in range(1000)]
         (HERE / "encoder_rows.txt").write_text("\n".join(rows) + "\n")

@@ -1,0 +1,25 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/results.hpp"
+#include "base/delimited_text.hpp"
+#include "findings/import_document.hpp"
+
+namespace driftwright::app {
+
+void import_file(const ImportOptions& options) {
+  const studies::LoggerImport import =
+      studies::import_logger(options.scenario, options.by, {options.zone, options.interval, options.every});
+  const std::string stem = clean_name(std::filesystem::path(options.scenario).stem().string());
+  output::ResultsFolder folder = open_results(options, stem);
+  Progress progress(options.quiet);
+  folder.write_text("record.csv", record_csv(import.read.record, provenance_lines(folder.made_by(), "import")));
+  folder.write_text(
+      "columns.yaml",
+      fmt::format("# How {} was read; the same key in a scenario makes every verb read such files (docs/record.md).\n{}",
+                  stem, yaml_text(import.map)));
+  finish(findings::document_of(import, folder.made_by()), folder, progress, options);
+}
+
+}  // namespace driftwright::app

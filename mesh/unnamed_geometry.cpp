@@ -1,0 +1,71 @@
+#include "mesh/unnamed_geometry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "base/errors.hpp"
+#include "mesh/imported_mesh.hpp"
+#include "mesh/mesh_step.hpp"
+#include "mesh/read_apart.hpp"
+
+namespace driftwright::mesh {
+namespace {
+
+constexpr double kLargestMachine_m = 20.0;  // in m; a machine in mm would have to be smaller than 20 mm
+
+const std::map<std::string, double> kUnits_m = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"inch", 0.0254}};
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+Mesh import_in(const std::string& path, double unit_m) {
+  ImportedMesh recipe;
+  recipe.path = path;
+  recipe.unit_m = unit_m;
+  recipe.where.file = path;
+  return import_mesh(recipe);
+}
+
+}  // namespace
+
+bool is_drawing(const std::string& path) {
+  return extension_of(path) == ".step" || extension_of(path) == ".stp";
+}
+
+bool is_geometry_file(const std::string& path) {
+  const std::string extension = extension_of(path);
+  return is_drawing(path) || extension == ".msh" || extension == ".inp" || extension == ".vtu";
+}
+
+UnnamedGeometry read_unnamed_geometry(const std::string& path, const std::string& unit) {
+  if (!is_geometry_file(path))
+    throw InputError(fmt::format("{}: no geometry that is read; .step, .stp, .msh, .inp and .vtu are", path));
+  if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("there is no file '{}'", path));
+  if (is_drawing(path)) {
+    if (!unit.empty()) throw InputError(fmt::format("{}: a STEP file says its unit itself; leave --units out", path));
+    ImportedMesh recipe;
+    recipe.path = path;
+    recipe.where.file = path;
+    return {read_apart(path, [&] { return mesh_step(recipe, true); }), "", false};
+  }
+  if (!unit.empty()) {
+    const auto known = kUnits_m.find(unit);
+    if (known == kUnits_m.end()) throw InputError(fmt::format("--units {}: mm, cm, m and inch are allowed", unit));
+    return {import_in(path, known->second), unit, false};
+  }
+  try {
+    Mesh in_m = import_in(path, 1.0);
+    const double size_m = (in_m.coords.rowwise().maxCoeff() - in_m.coords.rowwise().minCoeff()).maxCoeff();
+    if (size_m <= kLargestMachine_m) return {std::move(in_m), "m", true};
+  } catch (const InputError&) {  // too large to be in m, or damaged: then it is said in mm, too
+  }
+  return {import_in(path, 1e-3), "mm", true};
+}
+
+}  // namespace driftwright::mesh

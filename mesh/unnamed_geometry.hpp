@@ -1,0 +1,24 @@
+#pragma once
+// A mesh or a drawing that no scenario describes yet: read as it comes.
+
+#include <string>
+
+#include "mesh/mesh.hpp"
+
+namespace driftwright::mesh {
+
+/// The extension says that it is one of the formats of docs/meshes.md.
+[[nodiscard]] bool is_geometry_file(const std::string& path);
+/// It is a drawing, which is meshed here; other files say their nodes.
+[[nodiscard]] bool is_drawing(const std::string& path);
+
+struct UnnamedGeometry {
+  Mesh mesh;         ///< regions, surfaces and joints as the file names them; solids without a name are solid_1, solid_2 ...
+  std::string unit;  ///< of the file's lengths: mm, cm, m or inch; "" of a drawing, which says it
+  bool unit_is_a_guess;
+};
+/// @param unit  mm, cm, m or inch; empty: m where the body then is at most 20 m large, else mm
+/// @throws InputError, SolveError  as import_mesh()
+[[nodiscard]] UnnamedGeometry read_unnamed_geometry(const std::string& path, const std::string& unit);
+
+}  // namespace driftwright::mesh

@@ -1,0 +1,38 @@
+#include "scenarios/reader/geometry.hpp"
+
+#include "scenarios/reader/read_materials.hpp"
+
+namespace driftwright::scenarios {
+namespace {
+
+const schema::Map& geometry_schema() {
+  using namespace schema;
+  static const schema::Map description = {
+      .name = "scenario (geometry alone)",
+      .keys = {compulsory("name", schema::name(), "of the scenario"),
+               compulsory("machine", mesh_recipe_schema(), "the mesh"),
+               schema::optional("materials", schema::map(materials_schema()), "of each region"),
+               schema::optional("sensors", schema::maps(sensor_schema()), "thermometers"),
+               schema::optional("displacements", schema::maps(displacement_schema()),
+                                "errors of the tool against the table")},
+      .others = {schema::optional("key", schema::anything(), "of the whole scenario")}};
+  return description;
+}
+
+}  // namespace
+
+Geometry read_geometry(const std::string& path) {
+  const ConfigMap in = ConfigMap::read_file(path).described_by(geometry_schema());
+  Geometry geometry{in.name("name"), {}};
+  MachineModel& m = geometry.machine;
+  m.mesh = read_mesh_recipe(in.map("machine"));
+  m.where = in.where("machine");
+  if (const auto materials = in.optional_map("materials")) m.materials = read_materials(*materials);
+  for (const ConfigMap& entry : in.maps("sensors")) m.sensors.push_back(read_sensor(entry));
+  for (const ConfigMap& entry : in.maps("displacements")) {
+    for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));
+  }
+  return geometry;
+}
+
+}  // namespace driftwright::scenarios

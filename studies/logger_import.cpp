@@ -1,0 +1,34 @@
+#include "studies/logger_import.hpp"
+
+#include "base/config_map.hpp"
+#include "scenarios/reader/read_columns.hpp"
+
+namespace driftwright::studies {
+namespace {
+
+const schema::Map& holder_of_columns() {
+  using namespace schema;
+  static const schema::Map description = {
+      .name = "columns alone",
+      .keys = {compulsory("columns", schema::map(scenarios::columns_schema()), "how a logger writes its files")},
+      .others = {schema::optional("key", anything(), "of the whole scenario")}};
+  return description;
+}
+
+}  // namespace
+
+LoggerImport import_logger(const std::string& path, const std::string& by, const GuessHints& hints) {
+  LoggerImport import;
+  if (by.empty()) {
+    GuessedColumns guessed = guess_columns(path, hints);
+    import.map = std::move(guessed.map);
+    import.guesses = std::move(guessed.guesses);
+  } else {
+    import.read_by = by;
+    import.map = scenarios::read_columns(ConfigMap::read_file(by).described_by(holder_of_columns()).map("columns"));
+  }
+  import.read = read_record(path, import.map);
+  return import;
+}
+
+}  // namespace driftwright::studies

@@ -1,0 +1,18 @@
+#pragma once
+// A draft of a machine as a scenario: YAML whose comments say what was read and what was guessed.
+
+#include <string>
+
+#include "studies/machine_draft.hpp"
+
+namespace driftwright::studies {
+
+/// @param name   of the scenario
+/// @param file   of the geometry, relative to the scenario
+[[nodiscard]] std::string scenario_text(const MachineDraft& draft, const mesh::UnnamedGeometry& geometry,
+                                        const std::string& name, const std::string& file);
+
+/// A machine of two lumped nodes, all of it guesses.
+[[nodiscard]] std::string lumped_scenario_text(const std::string& name);
+
+}  // namespace driftwright::studies
