@@ -187,6 +187,18 @@ void add_export(CLI::App& cli, app::ExportOptions& options) {
   verb->callback([&] { app::export_model(options); });
 }
 
+/// The machine in a browser: one file.
+void add_view(CLI::App& cli, app::ViewOptions& options) {
+  CLI::App* verb = cli.add_subcommand(
+      "view", "the machine as one HTML page in which it turns, warms, bends and runs any cyclogram (docs/view.md)");
+  verb->add_option("scenario", options.scenario, "scenario YAML")->required();
+  verb->add_option("-o,--out", options.out, "file NAME.html [results/<name of the scenario>.html]");
+  verb->add_option("--cyclogram", options.cyclogram,
+                   "that the page begins with [the one that `study` judges by, else the first]");
+  verb->footer("Example:\n  driftwright view scenarios/fp3_spindle.yaml -o twin.html");
+  verb->callback([&] { app::view(options); });
+}
+
 void add_compare(CLI::App& cli, app::CompareOptions& options) {
   CLI::App* verb = cli.add_subcommand("compare", "two records beside each other: how far each channel is apart");
   verb->add_option("first", options.first, "record CSV, or a folder of results that holds a record.csv")->required();
@@ -256,6 +268,7 @@ int app::command_line(int argc, const char* const* argv) {
   app::ListOptions list;
   app::ExportOptions exported;
   app::FollowVerbOptions followed;
+  app::ViewOptions viewed;
   add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
@@ -359,6 +372,7 @@ int app::command_line(int argc, const char* const* argv) {
   add_compare(cli, compared);
   add_follow(cli, followed);
   add_export(cli, exported);
+  add_view(cli, viewed);
   verb = cli.add_subcommand("list", "the catalogue of effects, or the library of materials");
   verb->add_option("what", list.what, "effects or materials")
       ->check(CLI::IsMember({"effects", "materials"}))
