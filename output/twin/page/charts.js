@@ -1,6 +1,7 @@
 // Curves over time on a canvas. The mark of the present time is an element beside it, so that playing draws nothing anew.
 
-const MARGIN = {left: 52, right: 10, top: 10, bottom: 24};
+const LEAST_SPAN = 0.02;  // of an axis: what differs by less is level
+const MARGIN = {left: 60, right: 14, top: 10, bottom: 24};
 const CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8a5fbf"];
 const styleOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -65,7 +66,7 @@ class Chart {
       if (v < low) low = v;
       if (v > high) high = v;
     }
-    if (!(high > low)) [low, high] = [Number.isFinite(low) ? low - 1 : 0, Number.isFinite(high) ? high + 1 : 1];
+    if (!(high - low > LEAST_SPAN)) [low, high] = [Number.isFinite(low) ? low - 1 : 0, Number.isFinite(high) ? high + 1 : 1];
     const air = 0.05 * (high - low);
     return [low - air, high + air];
   }
@@ -95,6 +96,6 @@ class Chart {
     const along = ticks(0, this.end_s / 60, Math.max(3, this.canvas.clientWidth / 90));
     for (const m of along.list) pen.fillText(m.toFixed(along.decimals), this.x(60 * m), bottom + 16);
     pen.textAlign = "right";
-    pen.fillText("min", this.canvas.clientWidth - 2, bottom - 4);
+    pen.fillText("min", MARGIN.left - 8, bottom + 16);
   }
 }

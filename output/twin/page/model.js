@@ -46,8 +46,10 @@ function hallAt(hall, time_s) {
 class Machine {
   static MOST_KEPT = 240;  // decompositions
   static FIRST_STEP_S = 5;
-  static HELD_WITHIN = 0.15;
-  static ERROR_K = 2e-3;   // of a step's first guess, at the outputs; 2 um count as 1 K
+  static HELD_FROM = 0.6;    // what coefficients of temperature are held at, over what they are
+  static HELD_TO = 1.7;
+  static TYPICAL_K = 4;
+  static ERROR_K = 1e-3;   // of a step's first guess, at the outputs; 2 um count as 1 K
 
   // @param m  the system, as the page's data have it
   constructor(m) {
@@ -108,12 +110,18 @@ class Machine {
   // A law under a drive; tables of temperature are kept for the drive met last.
   under(choices, drive, time_s) {
     const law = this.lawAt(choices, time_s), key = drive.join();
-    if (law.key !== key) Object.assign(law, {key, rest: driveLaw(law.drive, drive), live: tablesUnder(law.tables, drive)});
-    return {rest: law.rest, tables: law.live, thermostat: law.thermostat};
+    if (law.key !== key) {
+      Object.assign(law, {key, rest: driveLaw(law.drive, drive), live: tablesUnder(law.tables, drive)});
+      const warm_K = new Float64Array(this.n_probes).fill(this.reference_K);
+      for (const {axes} of law.live) warm_K[axes[0].probe] += Machine.TYPICAL_K;
+      law.typical = valueOfTables(law.rest, law.live, warm_K);
+    }
+    return {rest: law.rest, tables: law.live, thermostat: law.thermostat, typical: law.typical};
   }
 
   // What holds from a state on while the drive stays: laws, decomposition, loads in the eigenvectors. Coefficients that follow temperatures are
-  // held at what they were (now.held) while that is near enough: a decomposition costs more than what they change.
+  // held at one value (now.held) while that is near enough: a decomposition costs more than what they change. It is no less than half of what is
+  // typical: what is left then damps less than what is held, however steep free convection begins.
   * stretch(drive, time_s, now) {
     const n = this.n, {z, isOn} = now;
     const powers = this.powers.map(choices => this.under(choices, drive, time_s));
@@ -121,8 +129,9 @@ class Machine {
     const hall_K = hallAt(this.hall, time_s), probe_K = this.probes(z, hall_K);
     const value = law => (law.thermostat >= 0 && !isOn[law.thermostat]) ? 0 : valueOfTables(law.rest, law.tables, probe_K);
     const c = now.held = coefficients.map((law, e) => {
-      const is = Math.max(0, value(law)), was = now.held?.[e];
-      return law.tables.length > 0 && Math.abs(is - was) <= Machine.HELD_WITHIN * was ? was : is;
+      if (law.tables.length === 0) return Math.max(0, value(law));
+      const is = Math.max(value(law), 0.5 * law.typical), was = now.held?.[e];
+      return is > Machine.HELD_FROM * was && is < Machine.HELD_TO * was ? was : is;
     });
     const p = powers.map(value);
     const d = yield* this.decomposition(c);

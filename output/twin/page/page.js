@@ -107,6 +107,7 @@ class Page {
     if (data.target >= 0) channel.value = data.target;
     channel.addEventListener("change", () => this.dirty.charts = true);
     byId("left-words").textContent = `as the correction leaves it (${data.correction.name})`;
+    for (const element of document.querySelectorAll(".driven")) element.hidden = data.drive.length === 0;  // a machine that stands still in its hall
     if (data.drive.length > 1) {
       const variable = document.createElement("select");
       variable.setAttribute("aria-label", "variable of the drive that is drawn");
@@ -274,16 +275,7 @@ class Page {
 
   drawCharts() {
     const {twin, charts, data} = this, {run} = twin, time_s = run.time_s.subarray(0, run.n_done);
-    const d = data.drive[this.variable], starts = [], values = [];
-    let start = 0;
-    for (const section of run.plan) {
-      starts.push(start);
-      values.push(section.drive[this.variable]);
-      start += section.duration_s;
-    }
-    charts.plan.unit = `${d.label} [${d.unit}]`;
-    charts.plan.draw([{time_s: [...starts, start], values: [...values, values[values.length - 1]], colour: styleOf("--text"), isStepped: true}],
-                     run.end_s, [0, 1.04 * d.most]);
+    if (data.drive.length > 0) this.drawPlan();
     if (this.drawn.length > 0) {
       const output = Number(byId("channel").value), {drift, left} = corrected(run, output, data.correction);
       const unit = UNIT[this.outputs[output].unit], isDrift = unit === "µm";
@@ -303,18 +295,31 @@ class Page {
     if (run.isDone) this.dirty.charts = false;
   }
 
+  drawPlan() {
+    const {run} = this.twin, d = this.data.drive[this.variable], chart = this.charts.plan, starts = [], values = [];
+    let start = 0;
+    for (const section of run.plan) {
+      starts.push(start);
+      values.push(section.drive[this.variable]);
+      start += section.duration_s;
+    }
+    chart.unit = `${d.label} [${d.unit}]`;
+    chart.draw([{time_s: [...starts, start], values: [...values, values[values.length - 1]], colour: styleOf("--text"), isStepped: true}],
+               run.end_s, [0, 1.04 * d.most]);
+  }
+
   // The moment of the largest drift, and a magnification at which the displacement then is seen.
   showWorst() {
     const {twin, fields, scene} = this;
-    if (!scene) return;
-    const at = this.data.target >= 0 ? twin.run.column(this.data.target) : new Float64Array(twin.run.n_done);
+    const shown = this.drawn.length > 0 ? Number(byId("channel").value) : 0, at = twin.run.column(shown);
     let worst = at.length - 1;
     at.forEach((v, row) => { if (Math.abs(v) > Math.abs(at[worst])) worst = row; });
+    this.goTo(twin.run.time_s[worst]);
+    if (!scene) return;
     fields.whole(twin.run.stateAt(twin.run.time_s[worst], new Float64Array(twin.machine.n)));
     let most_m = 0;
     for (let i = 0; i < fields.n; ++i) most_m = Math.max(most_m, Math.hypot(...fields.displaced_m.subarray(3 * i, 3 * i + 3)));
     this.reach(fields.temperature_K);
-    this.goTo(twin.run.time_s[worst]);
     const exact = most_m > 0 ? Math.min(1e5, 0.1 * scene.radius / most_m) : 1, decade = 10 ** Math.floor(Math.log10(exact));
     this.magnify(decade * [5, 2, 1].find(s => s * decade <= exact));
   }

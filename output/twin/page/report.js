@@ -12,7 +12,8 @@ function reportOf(page) {
     for (const i of page.drawn) if (page.outputs[i].unit === "um") left[page.outputs[i].name] = Array.from(corrected(run, i, data.correction).left);
     report.cyclograms[name] = {milliseconds, time_s: Array.from(run.time_s), outputs, left_um: left};
   }
-  report.frames = {playing: framesWhile(page, () => {}, FRAMES), dragging: framesWhile(page, dragSpeed, FRAMES), drawing: framesWhile(page, drawSpeed, FRAMES)};
+  const acts = {playing: () => {}, ...(data.drive.length > 0 ? {dragging: dragSpeed, drawing: drawSpeed} : {})};
+  report.frames = Object.fromEntries(Object.entries(acts).map(([name, act]) => [name, framesWhile(page, act, FRAMES)]));
   if (page.scene) {
     const gl = page.scene.gl, pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
     gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
