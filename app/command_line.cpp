@@ -214,6 +214,18 @@ void add_import(CLI::App& cli, app::ImportOptions& options) {
   verb->callback([&] { app::import_file(options); });
 }
 
+/// The machine in a browser: one file.
+void add_view(CLI::App& cli, app::ViewOptions& options) {
+  CLI::App* verb = cli.add_subcommand(
+      "view", "the machine as one HTML page in which it turns, warms, bends and runs any cyclogram (docs/view.md)");
+  verb->add_option("scenario", options.scenario, "scenario YAML")->required();
+  verb->add_option("-o,--out", options.out, "file NAME.html [results/<name of the scenario>.html]");
+  verb->add_option("--cyclogram", options.cyclogram,
+                   "that the page begins with [the one that `study` judges by, else the first]");
+  verb->footer("Example:\n  driftwright view scenarios/fp3_spindle.yaml -o twin.html");
+  verb->callback([&] { app::view(options); });
+}
+
 void add_compare(CLI::App& cli, app::CompareOptions& options) {
   CLI::App* verb = cli.add_subcommand("compare", "two records beside each other: how far each channel is apart");
   verb->add_option("first", options.first, "record CSV, or a folder of results that holds a record.csv")->required();
@@ -330,6 +342,7 @@ int app::command_line(int argc, const char* const* argv) {
   app::ListOptions list;
   app::ExportOptions exported;
   app::FollowVerbOptions followed;
+  app::ViewOptions viewed;
   add_verb(cli, "run", "the whole chain: simulate, fit on the training cyclograms, correct and judge on another",
            "run scenarios/fp3_spindle.yaml", run)
       ->callback([&] { app::run(run); });
@@ -450,6 +463,7 @@ int app::command_line(int argc, const char* const* argv) {
   add_follow(cli, followed);
   add_export(cli, exported);
   add_list(cli, list);
+  add_view(cli, viewed);
   std::string help_of;
   add_help(cli, help_of);
   app::SchemaOptions schema;

@@ -147,6 +147,14 @@ struct ExportOptions {
 };
 void export_model(const ExportOptions& options);
 
+struct ViewOptions {
+  std::string scenario;
+  std::string out;        ///< file; empty: results/<name of the scenario>.html
+  std::string cyclogram;  ///< that the page begins with; empty: the one that the study judges by, else the first
+};
+/// A machine in one page.
+void view(const ViewOptions& options);
+
 struct SweepOptions : CommonOptions {  ///< `scenario` is the study
   std::string shard;                   ///< "i/n", or empty for all members
   bool merge = false;                  ///< only put together what shards have simulated

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 
-#include "output/machine_picture.hpp"
 
 namespace driftwright::findings {
-namespace {
 
 std::vector<output::PictureMark> marks_of(const scenarios::MachineModel& machine) {
   std::vector<output::PictureMark> marks;
@@ -37,8 +35,6 @@ std::vector<output::PictureMark> marks_of(const scenarios::MachineModel& machine
   }
   return marks;
 }
-
-}  // namespace
 
 output::Picture surfaces_picture(const scenarios::MachineModel& machine, const mesh::Mesh& mesh) {
   return {.title = "Named surfaces, thermometers (dots) and indicators (rings); grey names lie behind",

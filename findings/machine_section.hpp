@@ -6,9 +6,13 @@
 
 #include "machine/simulated_run.hpp"
 #include "output/document.hpp"
+#include "output/machine_picture.hpp"
 #include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::findings {
+
+/// Its thermometers at points of it, and its indicators: few enough to be read.
+[[nodiscard]] std::vector<output::PictureMark> marks_of(const scenarios::MachineModel& machine);
 
 /// Its surfaces in colours of their own, with their names. @pre the mesh has cells
 [[nodiscard]] output::Picture surfaces_picture(const scenarios::MachineModel& machine, const mesh::Mesh& mesh);

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <stdexcept>
 
-#include "mesh/outer_faces.hpp"
+#include "output/base64.hpp"
+#include "output/machine_skin.hpp"
 #include "output/markup.hpp"
 #include "output/surface_view.hpp"
 
@@ -18,70 +18,9 @@ namespace {
 constexpr int kViewWidth = 300, kViewHeight = 420, kDense = 2;  // units of the SVG; pixels a unit
 constexpr double kShownBend = 0.05;  // largest displacement in the picture over the machine's size
 
-std::string base64(const std::string& bytes) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
-    unsigned v = 0;
-    for (std::size_t k = 0; k < 3; ++k) v = v << 8U | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= n ? kDigits[v >> (18 - 6 * k) & 63U] : '=';
-  }
-  return text;
-}
-
 std::string hex(const std::array<float, 3>& colour) {
   const auto byte = [](float v) { return static_cast<int>(std::lround(255.0F * v)); };
   return fmt::format("#{:02x}{:02x}{:02x}", byte(colour[0]), byte(colour[1]), byte(colour[2]));
-}
-
-/// Triangles of a face; mid-side nodes are corners of them.
-std::vector<std::array<int, 3>> triangles_of(mesh::CellShape shape, const std::vector<int>& n) {
-  switch (shape) {
-    case mesh::CellShape::kTri3:
-      return {{n[0], n[1], n[2]}};
-    case mesh::CellShape::kTri6:
-      return {{n[0], n[3], n[5]}, {n[3], n[1], n[4]}, {n[5], n[4], n[2]}, {n[3], n[4], n[5]}};
-    case mesh::CellShape::kQuad4:
-      return {{n[0], n[1], n[2]}, {n[0], n[2], n[3]}};
-    case mesh::CellShape::kQuad8:
-      return {{n[0], n[4], n[7]}, {n[4], n[1], n[5]}, {n[5], n[2], n[6]},
-              {n[6], n[3], n[7]}, {n[4], n[5], n[6]}, {n[4], n[6], n[7]}};
-    default:
-      throw std::logic_error("a face that is no facet");
-  }
-}
-
-/// The machine's outside. Parts of triangles: the named surface, or behind these the region.
-struct Skin {
-  std::vector<std::array<int, 3>> triangle;
-  std::vector<int> part;
-  std::vector<int> surface;  ///< of each triangle, -1: has no name
-  std::vector<int> region;   ///< of each triangle
-};
-
-Skin skin_of(const mesh::Mesh& mesh) {
-  std::map<mesh::FaceKey, int> named;
-  for (int f = 0; f < mesh.facets.size(); ++f) {
-    const auto nodes = mesh.facets.nodes(f);
-    const int corners = mesh::n_corners_of(mesh.facets.shape[static_cast<std::size_t>(f)]);
-    named[mesh::face_key(nodes.first(static_cast<std::size_t>(corners)))] = mesh.facets.group[static_cast<std::size_t>(f)];
-  }
-  Skin skin;
-  mesh::FaceTable(mesh.cells).for_each([&](const mesh::FaceKey& key, std::span<const mesh::FaceTable::Entry> at) {
-    if (at.size() != 1) return;
-    const auto name = named.find(key);
-    const int surface = name == named.end() ? -1 : name->second;
-    const int region = mesh.cells.group[static_cast<std::size_t>(at[0].at.cell)];
-    const int part = surface >= 0 ? surface : static_cast<int>(mesh.surfaces.size()) + region;
-    for (const auto& t : triangles_of(mesh::shape_of(mesh.cells, at[0].at), mesh::nodes_of(mesh.cells, at[0].at))) {
-      skin.triangle.push_back(t);
-      skin.part.push_back(part);
-      skin.surface.push_back(surface);
-      skin.region.push_back(region);
-    }
-  });
-  return skin;
 }
 
 /// A side of a joint lies inside the machine; the reader of a mesh names it a/b@a.
@@ -164,7 +103,7 @@ std::string draw_machine(const MachinePicture& picture) {
   if (mesh.cells.size() == 0) throw std::logic_error("draw_machine: a mesh without cells");
   if (picture.field && picture.field->value.size() != mesh.n_nodes())
     throw std::logic_error("draw_machine: a field of another mesh");
-  Skin skin = skin_of(mesh);
+  MachineSkin skin = skin_of(mesh);
   if (picture.field) {  // kept machines know regions alone, and a picture must not tell whether the machine was known
     for (std::size_t i = 0; i < skin.part.size(); ++i) skin.part[i] = skin.region[i];
   }

@@ -9,6 +9,7 @@
 #include "compensation/sensors/thermometers.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "studies/planner.hpp"
+#include "studies/sensor_regressions.hpp"
 #include "studies/thermal_modes.hpp"
 
 namespace driftwright::studies {
@@ -18,10 +19,6 @@ using namespace compensation;
 using scenarios::Scenario;
 
 constexpr const char* kByRegression = "regression";  // what goes through the axis, too
-
-std::vector<std::string> candidates(const scenarios::Study& study, const Record& record) {
-  return study.candidates.empty() ? scenarios::sensor_channels(record) : study.candidates;
-}
 
 std::vector<Record> training_records(const MachineStudy& study) {
   std::vector<Record> records;
@@ -73,17 +70,6 @@ ModalPredictor fit_modal(MachineStudy& study, const Scenario& scenario, const sc
   }
   study.modal_time_constant_s = predictors.completed.time_constant_s;
   return predictors.completed;
-}
-
-void fit_regression_on_best(MachineStudy& study, const scenarios::Study& settings) {
-  std::vector<Record> records = training_records(study);
-  for (Record& record : records) record = as_read(std::move(record), {.resolution_K = settings.sensor_resolution_K}, 0);
-  study.ranking = rank_channels(records, settings.target, candidates(settings, records.front()), {.image = settings.image});
-  const std::vector<std::string> inputs = best(study.ranking, settings.sensors_to_choose);
-  for (const std::string& d : study.displacements) {
-    study.regressions.push_back(fit_regression(records, inputs, d));
-    study.single_sensor.push_back(fit_regression(records, {inputs.front()}, d));
-  }
 }
 
 compensation::DeployedPredictor by_regression(const char* name, const Regression& regression) {
@@ -180,7 +166,10 @@ MachineStudy study_machine(const Scenario& scenario, const scenarios::Model& mod
   study.train.pop_back();
   for (const auto& d : scenario.machine->displacements) study.displacements.push_back(d.name);
   listener.begin("fitting and correcting");
-  fit_regression_on_best(study, settings);
+  SensorRegressions fitted = fit_on_best_sensors(training_records(study), settings, study.displacements);
+  study.ranking = std::move(fitted.ranking);
+  study.regressions = std::move(fitted.regressions);
+  study.single_sensor = std::move(fitted.single_sensor);
   const ModalPredictor modes = fit_modal(study, scenario, model);
   for (std::size_t d = 0; d < study.displacements.size(); ++d) {
     study.predictors.push_back(by_regression("one thermometer", study.single_sensor[d]));

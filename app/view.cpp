@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/results.hpp"
+#include "app/verbs.hpp"
+#include "base/file_bytes.hpp"
+#include "base/version.hpp"
+#include "findings/machine_section.hpp"
+#include "output/twin/twin_page.hpp"
+#include "studies/prediction.hpp"
+#include "studies/sensor_regressions.hpp"
+
+namespace driftwright::app {
+namespace {
+
+namespace fs = std::filesystem;
+using scenarios::Scenario;
+
+fs::path target_of(const ViewOptions& options, const Scenario& scenario) {
+  const fs::path target = options.out.empty() ? fs::path("results") / (scenario.name + ".html") : fs::path(options.out);
+  if (target.extension() != ".html")
+    throw InputError(fmt::format("-o '{}': a page is one file; a name that ends with .html is required", target.string()));
+  if (fs::is_directory(target)) throw InputError(fmt::format("-o '{}' is a folder; a file is required", target.string()));
+  std::error_code failed;
+  if (target.has_parent_path()) fs::create_directories(target.parent_path(), failed);
+  if (failed) throw InputError(fmt::format("-o '{}': {}", target.string(), failed.message()));
+  return target;
+}
+
+const Cyclogram& first_cyclogram(const ViewOptions& options, const Scenario& scenario) {
+  if (!options.cyclogram.empty()) return scenario.cyclogram(options.cyclogram);
+  return scenario.study ? scenario.cyclogram(scenario.study->judge) : scenario.cyclograms.front();
+}
+
+/// Regressions on the study's thermometers, fitted on its training cyclograms as `run` fits them; without a study the model itself, one row late.
+output::TwinCorrection correction_of(const Scenario& scenario, const scenarios::Model& model, const Listener& listener) {
+  if (!scenario.study) {
+    return {.name = "this model, one row late",
+            .words = fmt::format("The correction is what this model said {:g} s before: the scenario has no `study` that says "
+                                 "which predictor corrects.",
+                                 scenario.solver.output_interval_s)};
+  }
+  const scenarios::Study& study = *scenario.study;
+  std::vector<const Cyclogram*> cyclograms;
+  for (const std::string& name : study.train) cyclograms.push_back(&scenario.cyclogram(name));
+  std::vector<Record> training;
+  for (scenarios::SimulatedRun& run : scenarios::simulate_cyclograms(scenario, model, cyclograms, listener))
+    training.push_back(std::move(run.record));
+  std::vector<std::string> displacements;
+  for (const auto& d : scenario.machine->displacements) displacements.push_back(d.name);
+  studies::SensorRegressions fitted = studies::fit_on_best_sensors(std::move(training), study, displacements);
+  const std::string sensors = fmt::format("{}", fmt::join(fitted.regressions.front().inputs, ", "));
+  return {.name = "regression",
+          .words = fmt::format("The correction is the regression on {} that `driftwright run` fits on {}, from readings rounded to "
+                               "{:g} K, in steps of {:g} µm of the encoder.",
+                               sensors, fmt::join(study.train, ", "), study.sensor_resolution_K, study.encoder_period_um),
+          .formulas = std::move(fitted.regressions),
+          .resolution_K = study.sensor_resolution_K,
+          .period_um = study.encoder_period_um};
+}
+
+output::TwinNetwork network_of(const effects::HeatBalance& balance, Eigen::MatrixXd temperature) {
+  output::TwinNetwork network{.temperature = std::move(temperature)};
+  for (const effects::LumpedNode& node : balance.nodes) network.node.push_back(node.name);
+  network.node.emplace_back(effects::kHallName);
+  const auto index_of = [&](const std::string& name) {
+    return static_cast<int>(std::find(network.node.begin(), network.node.end(), name) - network.node.begin());
+  };
+  for (const effects::Exchange& e : balance.exchanges) {
+    const std::pair<int, int> link{index_of(e.body.name), index_of(e.medium_K ? effects::kHallName : e.surrounding)};
+    if (!e.medium_K && std::find(network.link.begin(), network.link.end(), link) == network.link.end())
+      network.link.push_back(link);
+  }
+  return network;
+}
+
+void write_whole(const fs::path& target, const std::string& text) {
+  const fs::path partial = target.string() + fmt::format(".partial-{}", getpid());
+  try {
+    write_bytes(partial, text);
+    fs::rename(partial, target);
+  } catch (const std::exception& e) {
+    std::error_code ignored;
+    fs::remove(partial, ignored);
+    throw InputError(fmt::format("-o '{}' cannot be written: {}", target.string(), e.what()));
+  }
+}
+
+}  // namespace
+
+void view(const ViewOptions& options) {
+  Scenario scenario = scenarios::read_scenario(options.scenario);
+  const scenarios::MachineModel& machine = scenarios::require_machine(scenario, "view");
+  const Cyclogram first = first_cyclogram(options, scenario);
+  const fs::path target = target_of(options, scenario);
+  const bool is_lumped = std::holds_alternative<scenarios::LumpedMachine>(machine.mesh);
+  scenario.solver.model = is_lumped ? studies::predicting_model(scenario) : scenarios::ModelKind::kReduced;
+  if (scenario.solver.fields_format == FieldsFormat::kNone) scenario.solver.fields_format = FieldsFormat::kVtu;
+
+  Progress progress;
+  const scenarios::Model model = scenarios::open_model(scenario, {}, progress.listener(), true);
+  output::TwinPage page{.name = scenario.name, .cyclograms = scenario.cyclograms, .first = first.name,
+                        .interval_s = scenario.solver.output_interval_s};
+  if (is_lumped) {
+    output::LumpedSystem lumped = output::lumped_system(machine);
+    page.model = output::twin_model(scenario, lumped.system, lumped.start);
+    page.network = network_of(model.balance, std::move(lumped.node_temperature));
+    page.subtitle = fmt::format("Twin of a machine of {} lumped nodes.", model.balance.nodes.size());
+  } else {
+    page.model = output::twin_model(scenario, model.reduced()->system, model.reduced()->start);
+    page.surface = output::twin_surface(*model.reduced());
+    page.marks = findings::marks_of(machine);
+    page.subtitle = fmt::format("Twin of a machine tool: {}.", model.words());
+  }
+  const studies::Prediction prediction = studies::predict_drift(scenario, first, {}, progress.listener(), "view");
+  page.check = prediction.record;
+  page.check_by = fmt::format("`driftwright predict` ({})", prediction.predicted_by);
+  page.correction = correction_of(scenario, model, progress.listener());
+  if (scenario.study) {
+    page.target = scenario.study->target;
+    page.tolerance_um = scenario.study->tolerance_um;
+  }
+  progress.listener().begin("writing the page");
+  const std::string text = output::twin_html(page, {kVersion, options.scenario});
+  write_whole(target, text);
+  progress.end();
+  fmt::print("{}: {:.1f} MB, opens in any browser with WebGL 2, offline\n{}\n", shown_path(fs::absolute(target)), 1e-6 * static_cast<double>(text.size()),
+             page.subtitle);
+  for (const std::string& note : page.model.notes) fmt::print("left out: {}\n", note);
+}
+
+}  // namespace driftwright::app

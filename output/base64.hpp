@@ -1,0 +1,12 @@
+#pragma once
+// Bytes as text that markup and JSON take.
+
+#include <string>
+#include <string_view>
+
+namespace driftwright::output {
+
+/// RFC 4648, with padding.
+[[nodiscard]] std::string base64(std::string_view bytes);
+
+}  // namespace driftwright::output

@@ -1,0 +1,101 @@
+// Curves over time on a canvas. The mark of the present time is an element beside it, so that playing draws nothing anew.
+
+const LEAST_SPAN = 0.02;  // of an axis: what differs by less is level
+const MARGIN = {left: 60, right: 14, top: 10, bottom: 24};
+const CURVES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8a5fbf"];
+const styleOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+// Round steps for an axis: 1, 2 or 5 times a power of ten.
+function ticks(low, high, most) {
+  const rough = (high - low) / most, decade = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map(s => s * decade).find(s => s >= rough);
+  const list = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) list.push(k * step);
+  return {list, decimals: Math.max(0, -Math.floor(Math.log10(step) + 1e-9))};
+}
+
+class Chart {
+  constructor(canvas, unit) {
+    Object.assign(this, {canvas, unit, end_s: 1, low: 0, high: 1});
+    this.mark = canvas.parentElement.querySelector("i");
+  }
+
+  x(time_s) { return MARGIN.left + (this.canvas.clientWidth - MARGIN.left - MARGIN.right) * time_s / this.end_s; }
+  y(value) {
+    return this.canvas.clientHeight - MARGIN.bottom -
+        (this.canvas.clientHeight - MARGIN.top - MARGIN.bottom) * (value - this.low) / (this.high - this.low);
+  }
+  timeAt(x) { return (x - MARGIN.left) / (this.canvas.clientWidth - MARGIN.left - MARGIN.right) * this.end_s; }
+  valueAt(y) {
+    return this.low + (this.canvas.clientHeight - MARGIN.bottom - y) / (this.canvas.clientHeight - MARGIN.top - MARGIN.bottom) *
+        (this.high - this.low);
+  }
+  markAt(time_s) { this.mark.style.transform = `translateX(${this.x(time_s)}px)`; }
+
+  // @param curves  [{time_s, values, colour, isStepped}]
+  // @param range   [low, high], or null: what the curves take
+  draw(curves, end_s, range = null, band = null) {
+    const {canvas} = this, dense = window.devicePixelRatio || 1, pen = canvas.getContext("2d");
+    canvas.width = Math.round(canvas.clientWidth * dense);
+    canvas.height = Math.round(canvas.clientHeight * dense);
+    pen.scale(dense, dense);
+    this.end_s = end_s;
+    [this.low, this.high] = range ?? this.reach(curves, band);
+    this.drawAxes(pen);
+    if (band) {
+      pen.fillStyle = styleOf("--band");
+      pen.globalAlpha = 0.12;
+      pen.fillRect(this.x(0), this.y(band), this.x(end_s) - this.x(0), this.y(-band) - this.y(band));
+      pen.globalAlpha = 1;
+    }
+    pen.lineWidth = 2;
+    for (const curve of curves) {
+      pen.strokeStyle = curve.colour;
+      pen.beginPath();
+      for (let i = 0; i < curve.values.length; ++i) {
+        if (curve.isStepped && i > 0) pen.lineTo(this.x(curve.time_s[i]), this.y(curve.values[i - 1]));
+        pen.lineTo(this.x(curve.time_s[i]), this.y(curve.values[i]));
+      }
+      pen.stroke();
+    }
+  }
+
+  reach(curves, band) {
+    let low = band ? -1.1 * band : Infinity, high = band ? 1.1 * band : -Infinity;
+    for (const {values} of curves) for (const v of values) {
+      if (v < low) low = v;
+      if (v > high) high = v;
+    }
+    if (!(high - low > LEAST_SPAN)) [low, high] = [Number.isFinite(low) ? low - 1 : 0, Number.isFinite(high) ? high + 1 : 1];
+    const air = 0.05 * (high - low);
+    return [low - air, high + air];
+  }
+
+  drawAxes(pen) {
+    pen.font = "12px system-ui, sans-serif";
+    pen.strokeStyle = styleOf("--line");
+    pen.fillStyle = styleOf("--soft");
+    pen.lineWidth = 1;
+    const bottom = this.canvas.clientHeight - MARGIN.bottom;
+    pen.textAlign = "right";
+    const up = ticks(this.low, this.high, 5);
+    for (const v of up.list) {
+      pen.beginPath();
+      pen.moveTo(MARGIN.left, this.y(v));
+      pen.lineTo(this.canvas.clientWidth - MARGIN.right, this.y(v));
+      pen.stroke();
+      pen.fillText(v.toFixed(up.decimals), MARGIN.left - 6, this.y(v) + 4);
+    }
+    pen.save();
+    pen.translate(11, 0.5 * (MARGIN.top + bottom));
+    pen.rotate(-0.5 * Math.PI);
+    pen.textAlign = "center";
+    pen.fillText(this.unit, 0, 0);
+    pen.restore();
+    pen.textAlign = "center";
+    const along = ticks(0, this.end_s / 60, Math.max(3, this.canvas.clientWidth / 90));
+    for (const m of along.list) pen.fillText(m.toFixed(along.decimals), this.x(60 * m), bottom + 16);
+    pen.textAlign = "right";
+    pen.fillText("min", MARGIN.left - 8, bottom + 16);
+  }
+}

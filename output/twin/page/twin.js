@@ -1,0 +1,81 @@
+// The twin without a page: the data made into a machine, the plan that runs, the present time.
+
+function machineOf(m) {
+  const laws = list => list.map(choices => ({
+    of_stretch: choices.of_stretch,
+    laws: choices.laws.map(law => ({
+      drive: lawOf(law.drive), thermostat: choices.thermostat,
+      tables: law.tables.map(t => ({axes: t.axes.map(a => ({...a, probe: choices.probes[a.probe],
+                                                            minus: a.minus < 0 ? -1 : choices.probes[a.minus],
+                                                            nodes: doubles(a.nodes)})),
+                                    at: t.at.map(lawOf)})),
+    }))}));
+  const numbers = Object.fromEntries(Object.entries(m.numbers).map(([name, text]) => [name, doubles(text)]));
+  return new Machine({...m, ...numbers, powers: laws(m.powers), coefficients: laws(m.coefficients),
+                      hall: {time_s: doubles(m.hall.time_s), value_K: doubles(m.hall.value_K)}});
+}
+// A law of the drive; a mere number where it is constant.
+const lawOf = law => typeof law === "number" ? {rest: law, terms: []} :
+    {rest: law.rest, terms: law.terms.map(t => ({variable: t.variable, log_x: doubles(t.log_x), c: doubles(t.c)}))};
+
+class Twin {
+  static MOST_ROWS = 3000;  // of a run that is shown
+
+  constructor(data) {
+    this.data = data;
+    this.machine = machineOf(data.machine);
+    this.cyclograms = data.cyclograms.map(c => ({name: c.name, plan: c.sections.map(s => ({duration_s: s[0], drive: Float64Array.from(s.slice(1))}))}));
+    this.time_s = 0;
+    this.state = new Float64Array(this.machine.n);
+    this.told = new Float64Array(this.machine.n_outputs);
+    this.take(this.cyclogram(data.first));
+  }
+
+  cyclogram(name) { return this.cyclograms.find(c => c.name === name).plan; }
+
+  // The rows that `driftwright predict` would give of a plan.
+  rowsOf(plan) { return new Run(this.machine, plan, this.data.interval_s).finish(); }
+
+  // Runs another plan; rows before from_s are those of the plan before.
+  take(plan, from_s = 0) {
+    const interval_s = this.data.interval_s, rows = planDuration(plan) / interval_s;
+    const shown_s = interval_s * Math.max(1, Math.ceil(rows / Twin.MOST_ROWS));
+    this.run = new Run(this.machine, plan, shown_s, from_s > 0 ? this.run : null, from_s);
+    this.working = this.run.work();
+    this.time_s = Math.min(this.time_s, this.run.end_s);
+  }
+
+  // Goes on with the run for some milliseconds. @returns whether it has gone on
+  work(budget_ms) {
+    if (this.run.isDone) return false;
+    const until = performance.now() + budget_ms;
+    while (!this.run.isDone && performance.now() < until) this.working.next();
+    return true;
+  }
+
+  // One variable of the drive from now on.
+  setDrive(variable, value) { this.take(changedFrom(this.run.plan, this.time_s, variable, value), this.time_s); }
+
+  // Time goes on; what is not known yet is waited for. @returns outputs()
+  step(dt_s) {
+    this.time_s = Math.min(this.run.end_s, this.time_s + dt_s);
+    while (!this.isKnown()) this.working.next();
+    return this.outputs();
+  }
+  isKnown() { return this.run.isDone || (this.run.n_done > 0 && this.run.time_s[this.run.n_done - 1] >= this.time_s); }
+
+  // What the instruments say now, by name, in their units.
+  outputs() {
+    this.run.outputsAt(this.time_s, this.told);
+    return Object.fromEntries(this.machine.outputs_told.map((o, i) => [o.name, this.told[i]]));
+  }
+  stateNow() { return this.run.stateAt(this.time_s, this.state); }
+  hallNow_K() { return hallAt(this.machine.hall, this.time_s); }
+
+  // Whether the page says what `driftwright predict` says: the largest differences over the rows that came with it.
+  check() {
+    const {check} = this.data, values = doubles(check.values);
+    const run = this.rowsOf(this.cyclogram(check.cyclogram));
+    return largestDifference(run, {n_rows: run.time_s.length, values});
+  }
+}

@@ -1,0 +1,308 @@
+#include "output/twin/twin_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "base/quantity.hpp"
+#include "effects/reading_chain.hpp"
+#include "output/base64.hpp"
+#include "output/markup.hpp"
+#include "output/surface_view.hpp"
+#include "output/twin/page_files.hpp"
+
+namespace driftwright::output {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kColours = 256;
+constexpr double kDarkest = 0.22;  // of the palette: darker ones would hide how a cold body is shaped
+
+template <class Number>
+std::string bytes_of(const Number* data, std::size_t n) {
+  return base64({reinterpret_cast<const char*>(data), n * sizeof(Number)});  // NOLINT: little-endian, as pages read it
+}
+template <class Number>
+std::string text_of(const std::vector<Number>& v) {
+  return bytes_of(v.data(), v.size());
+}
+template <class Derived>
+std::string text_of(const Eigen::PlainObjectBase<Derived>& m) {
+  return bytes_of(m.data(), static_cast<std::size_t>(m.size()));
+}
+
+/// Vectors one after the other, each n numbers; empty ones as zeros.
+class Rows {
+ public:
+  explicit Rows(Eigen::Index n) : n_(n) {}
+  void add(const Eigen::VectorXd& v) {
+    for (Eigen::Index i = 0; i < n_; ++i) values_.push_back(v.size() > 0 ? v[i] : 0.0);
+  }
+  [[nodiscard]] std::string text() const { return text_of(values_); }
+
+ private:
+  Eigen::Index n_;
+  std::vector<double> values_;
+};
+
+Json json_of(const DriveLaw& law) {
+  if (law.terms.empty()) return law.at_rest;
+  Json terms = Json::array();
+  for (const LawTerm& t : law.terms)
+    terms.push_back({{"variable", t.variable}, {"log_x", text_of(t.log_x)}, {"c", text_of(t.coefficients)}});
+  return {{"rest", law.at_rest}, {"terms", terms}};
+}
+
+Json json_of(const TwinTimedLaw& timed) {
+  Json laws = Json::array();
+  for (const TwinLaw& law : timed.laws) {
+    Json tables = Json::array();
+    for (const TwinTable& table : law.tables) {
+      Json axes = Json::array(), at = Json::array();
+      for (const TwinAxis& a : table.axes)
+        axes.push_back({{"probe", a.probe}, {"minus", a.minus}, {"nodes", text_of(a.nodes_K)}});
+      for (const DriveLaw& l : table.at) at.push_back(json_of(l));
+      tables.push_back({{"axes", axes}, {"at", at}});
+    }
+    laws.push_back({{"drive", json_of(law.drive)}, {"tables", tables}});
+  }
+  return {{"laws", laws}, {"of_stretch", timed.of_stretch}, {"probes", timed.probes}, {"thermostat", timed.thermostat}};
+}
+
+/// Outputs that instruments tell.
+std::vector<Eigen::Index> told_outputs(const solver::Outputs& outputs) {
+  std::vector<Eigen::Index> told;
+  for (std::size_t o = 0; o < outputs.name.size(); ++o) {
+    if (!effects::is_mean_output(outputs.name[o])) told.push_back(static_cast<Eigen::Index>(o));
+  }
+  return told;
+}
+
+Json json_of(const TwinModel& model) {
+  const solver::ReducedSystem& s = model.system;
+  const Eigen::Index n = s.size();
+  Rows loads(n), exchanges(n * n), to_hall(n), offsets(n), probes(n), outputs(n);
+  std::vector<double> probe_hall, probe_offset_K, output_hall;
+  Json powers = Json::array(), coefficients = Json::array(), told = Json::array(), thermostats = Json::array();
+  for (const solver::HeatSource& source : s.sources) loads.add(source.load);
+  for (const auto& e : s.exchanges) {
+    exchanges.add(e.matrix.reshaped());
+    to_hall.add(e.reaches_hall() ? e.to_hall : Eigen::VectorXd());
+    offsets.add(e.offset);
+  }
+  for (const solver::Probe& p : s.probes) {
+    probes.add(p.weights);
+    probe_hall.push_back(p.hall_share);
+    probe_offset_K.push_back(p.offset_K);
+  }
+  for (Eigen::Index o : told_outputs(s.outputs)) {
+    const auto i = static_cast<std::size_t>(o);
+    outputs.add(s.outputs.state.col(o));
+    output_hall.push_back(s.outputs.hall[o]);
+    const bool is_temperature = s.outputs.unit[i] == "K";
+    told.push_back({{"name", s.outputs.name[i]},
+                    {"unit", is_temperature ? "degC" : s.outputs.unit[i] == "m" ? "um" : "urad"},
+                    {"factor", is_temperature ? 1.0 : 1e6},
+                    {"offset", is_temperature ? s.reference_K - kZeroCelsius_K : 0.0}});
+  }
+  for (const TwinTimedLaw& law : model.powers_W) powers.push_back(json_of(law));
+  for (const TwinTimedLaw& law : model.coefficients) coefficients.push_back(json_of(law));
+  for (const solver::Thermostat& t : s.thermostats)
+    thermostats.push_back({{"probe", t.probe}, {"on_above_K", t.on_above_K}, {"off_below_K", t.off_below_K}});
+  return {{"n", n},
+          {"n_sources", s.sources.size()},
+          {"n_exchanges", s.exchanges.size()},
+          {"n_probes", s.probes.size()},
+          {"n_outputs", told.size()},
+          {"reference_K", s.reference_K},
+          {"numbers",
+           {{"conduction", text_of(s.conduction)},
+            {"loads", loads.text()},
+            {"exchanges", exchanges.text()},
+            {"to_hall", to_hall.text()},
+            {"offsets", offsets.text()},
+            {"probe_weights", probes.text()},
+            {"probe_hall", text_of(probe_hall)},
+            {"probe_offset_K", text_of(probe_offset_K)},
+            {"output_state", outputs.text()},
+            {"output_hall", text_of(output_hall)},
+            {"start", text_of(model.start)}}},
+          {"powers", powers},
+          {"coefficients", coefficients},
+          {"change_times_s", s.change_times_s},
+          {"thermostats", thermostats},
+          {"outputs_told", told},
+          {"hall", {{"time_s", text_of(model.hall.time_s)}, {"value_K", text_of(model.hall.value)}}}};
+}
+
+struct DriveWords {
+  const char *label, *unit;
+};
+DriveWords words_of(DriveVariable variable) {
+  switch (variable) {
+    case DriveVariable::kSpeed:
+      return {"Spindle speed", "rpm"};
+    case DriveVariable::kFeedX:
+      return {"Feed x", "mm/min"};
+    case DriveVariable::kFeedY:
+      return {"Feed y", "mm/min"};
+    case DriveVariable::kFeedZ:
+      return {"Feed z", "mm/min"};
+    case DriveVariable::kCuttingPower:
+      return {"Cutting power", "W"};
+  }
+  return {"", ""};
+}
+
+Json json_of(const Quantised& q) {
+  return {{"scale", text_of(q.scale)}, {"value", text_of(q.value)}};
+}
+
+Json json_of(const TwinSurface& surface) {
+  return {{"n_nodes", surface.node.size()},         {"coords", text_of(surface.coords_m)},
+          {"triangles", text_of(surface.triangle)}, {"edges", text_of(surface.edge)},
+          {"temperature", json_of(surface.temperature)}, {"displacement", json_of(surface.displacement_m)}};
+}
+
+Json json_of(const TwinNetwork& network) {
+  const Eigen::MatrixXd by_rows = network.temperature.transpose();
+  return {{"names", network.node}, {"links", network.link}, {"temperature", text_of(by_rows)}};
+}
+
+Json marks_json(const TwinPage& page) {
+  Json list = Json::array();
+  for (const PictureMark& mark : page.marks) {
+    Eigen::Index nearest = 0;
+    (page.surface->coords_m.colwise() - mark.at_m.cast<float>()).colwise().squaredNorm().minCoeff(&nearest);
+    list.push_back({{"name", mark.name},
+                    {"at_m", {mark.at_m.x(), mark.at_m.y(), mark.at_m.z()}},
+                    {"is_indicator", mark.is_indicator},
+                    {"node", nearest}});
+  }
+  return list;
+}
+
+int index_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  return at == names.end() ? -1 : static_cast<int>(at - names.begin());
+}
+
+Json json_of(const TwinCorrection& correction, const std::vector<std::string>& names) {
+  Json formulas = Json::array();
+  for (const compensation::Regression& r : correction.formulas) {
+    Json inputs = Json::array();
+    for (const std::string& input : r.inputs) inputs.push_back(index_of(names, input));
+    formulas.push_back({{"output", index_of(names, r.target)},
+                        {"inputs", inputs},
+                        {"coefficients", r.coefficients},
+                        {"intercept", r.intercept}});
+  }
+  return {{"name", correction.name},
+          {"words", correction.words},
+          {"formulas", formulas},
+          {"resolution_K", correction.resolution_K},
+          {"period_um", correction.period_um}};
+}
+
+Json check_json(const TwinPage& page, const std::vector<std::string>& names) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < page.check.n_samples(); ++row) {
+    for (const std::string& name : names) values.push_back(page.check.at(name).values[row]);
+  }
+  return {{"cyclogram", page.first}, {"by", page.check_by}, {"values", text_of(values)}};
+}
+
+std::string palette() {
+  std::string bytes;
+  for (int i = 0; i < kColours; ++i) {
+    for (float part : inferno(kDarkest + (1.0 - kDarkest) * i / (kColours - 1)))
+      bytes += static_cast<char>(static_cast<unsigned char>(std::lround(255.0F * part)));
+  }
+  return base64(bytes);
+}
+
+Json cyclograms_json(const TwinPage& page) {
+  Json list = Json::array();
+  for (const Cyclogram& c : page.cyclograms) {
+    Json sections = Json::array();
+    for (const Cyclogram::Section& s : c.sections) {
+      Json section = {s.duration_s};
+      for (const DriveRange& r : page.model.drive) section.push_back(value_of(r.variable, s.drive));
+      sections.push_back(section);
+    }
+    list.push_back({{"name", c.name}, {"sections", sections}});
+  }
+  return list;
+}
+
+std::string data_of(const TwinPage& page, const Provenance& made_by) {
+  std::vector<std::string> names;
+  for (Eigen::Index o : told_outputs(page.model.system.outputs))
+    names.push_back(page.model.system.outputs.name[static_cast<std::size_t>(o)]);
+  Json drive = Json::array();
+  for (const DriveRange& r : page.model.drive)
+    drive.push_back({{"label", words_of(r.variable).label}, {"unit", words_of(r.variable).unit}, {"most", r.most}});
+  Json data = {{"name", page.name},
+               {"subtitle", page.subtitle},
+               {"made_by", "Made by Driftwright " + made_by.version + " of the scenario " + made_by.scenario + "."},
+               {"reference_degC", page.model.system.reference_K - kZeroCelsius_K},
+               {"interval_s", page.interval_s},
+               {"drive", drive},
+               {"machine", json_of(page.model)},
+               {"cyclograms", cyclograms_json(page)},
+               {"first", page.first},
+               {"check", check_json(page, names)},
+               {"correction", json_of(page.correction, names)},
+               {"target", page.target.empty() ? -1 : index_of(names, page.target)},
+               {"tolerance_um", page.tolerance_um},
+               {"notes", page.model.notes},
+               {"palette", palette()}};
+  if (page.surface) {
+    data["surface"] = json_of(*page.surface);
+    data["marks"] = marks_json(page);
+  } else {
+    data["network"] = json_of(page.network);
+  }
+  // Nothing in it may end the element that it stands in.
+  std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
+  safe.reserve(text.size());
+  for (char ch : text) {
+    if (ch == '<')
+      safe += "\\u003c";
+    else
+      safe += ch;
+  }
+  return safe;
+}
+
+const std::string& file(const std::string& name) {
+  for (const PageFile& f : twin_page_files()) {
+    if (f.name == name) return f.text;
+  }
+  throw std::logic_error("twin_html: there is no " + name);
+}
+
+}  // namespace
+
+std::string twin_html(const TwinPage& page, const Provenance& made_by) {
+  std::string script;
+  for (const char* name : {"eigen.js", "law.js", "model.js", "run.js", "correction.js", "twin.js", "fields.js", "scene.js", "network.js",
+                           "charts.js", "plan.js", "page.js", "report.js"})
+    script += file(name) + "\n";
+  const std::string& frame = file("page.html");
+  const std::vector<std::pair<std::string, std::string>> parts = {
+      {"@TITLE@", escaped(page.name)}, {"@STYLE@", file("page.css")}, {"@DATA@", data_of(page, made_by)}, {"@SCRIPT@", script}};
+  std::string text;
+  std::size_t from = 0;
+  for (const auto& [mark, part] : parts) {  // in their order: what was put in is not looked at again
+    const std::size_t at = frame.find(mark, from);
+    text += frame.substr(from, at - from) + part;
+    from = at + mark.size();
+  }
+  return text + frame.substr(from);
+}
+
+}  // namespace driftwright::output

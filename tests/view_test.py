@@ -1,0 +1,158 @@
+#!/usr/bin/python3
+"""`driftwright view` in a real browser: what the page computes against `predict` and `run`, script of its frames, its picture, hostile names, bad input.
+
+    view_test.py PROGRAM FOLDER_OF_THE_PROJECT
+"""
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+MOST_UM, MOST_K = 0.1, 0.02   # between the page and `predict`
+MOST_MB, MOST_FRAME_MS = 15.0, 8.0
+
+HOSTILE = """name: "</script><script>document.title='broken out'</script>"
+reference_temperature: 20 degC
+hall: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: spindle, capacity: 5.6 kJ/K}
+  - {type: heat_source, node: spindle, power: 150 W, at_speed: 6000 rpm, exponent: 1.5}
+  - {type: link, node: spindle, to: hall, conductance: 5 W/K}
+sensors: [{name: t_spindle, node: spindle}]
+cyclograms: {"<img src=x onerror=document.title='broken out'>": [[60 min, 6000 rpm]]}
+"""
+failures = []
+
+
+def expect(holds, what):
+    print(("" if holds else "FAILED: ") + what, flush=True)
+    if not holds:
+        failures.append(what)
+
+
+def browse(browser, page, *options):
+    """What the browser prints of a page with #report."""
+    call = [browser, "--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+            "--hide-scrollbars", f"--user-data-dir={page.parent}/profile", *options]
+    return subprocess.run(call, capture_output=True, text=True, timeout=300).stdout
+
+
+def report_of(browser, page):
+    dom = browse(browser, page, "--dump-dom", f"file://{page}#report")
+    found = re.search(r'<pre id="report">(.*)</pre>', dom, re.S)
+    if not found:
+        sys.exit(f"{page.name}: the page reports nothing:\n{dom[-2000:]}")
+    return json.loads(found[1].replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")), dom
+
+
+def record_of(path):
+    rows = list(csv.reader(line for line in path.open() if not line.startswith("#")))
+    return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(rows[0])}
+
+
+def farthest(page, record):
+    """(K, um) between outputs of the page and a record."""
+    far = {"degC": 0.0, "um": 0.0, "urad": 0.0}
+    for name, values in page["outputs"].items():
+        unit = next(u for u in far if f"{name}_{u}" in record)
+        told = record[f"{name}_{unit}"]
+        if len(told) != len(values):
+            return 1e9, 1e9
+        far[unit] = max([far[unit]] + [abs(a - b) for a, b in zip(values, told)])
+    return far["degC"], max(far["um"], far["urad"])
+
+
+def main():
+    program, top = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="driftwright_view-"))
+    try:
+        return check(program, top, browser, folder)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def check(program, top, browser, folder):
+    env = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"))
+
+    def call(*words):
+        return subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=folder, env=env)
+
+    fp3, lumped = top / "scenarios/fp3_spindle.yaml", top / "scenarios/first_machine.yaml"
+    for words, says in [((lumped, "-o", "twin.txt"), ".html is required"), ((lumped, "-o", folder), ".html is required"),
+                        ((lumped, "--cyclogram", "night"), "night"), ((top / "scenarios/spindle_22.yaml",), "machine"),
+                        ((folder / "none.yaml",), "none.yaml"), ((lumped, "-o", "/proc/no/twin.html"), "/proc/no")]:
+        done = call("view", *words)
+        expect(done.returncode == 2 and says in done.stderr, f"view {words[1:] or words}: exit {done.returncode}, {done.stderr.strip()[:90]}")
+    expect(not list(folder.glob("**/*.html*")), "no page is left of what was refused")
+
+    made = call("view", fp3, "-o", "fp3.html")
+    expect(made.returncode == 0, f"view fp3_spindle: {made.stderr.strip()[-300:]}")
+    page = folder / "fp3.html"
+    expect(page.stat().st_size <= MOST_MB * 1e6, f"the page of the FP3 has {page.stat().st_size / 1e6:.1f} MB of at most {MOST_MB} MB")
+    again = call("view", fp3, "-o", "again.html")
+    expect(again.returncode == 0 and (folder / "again.html").read_bytes() == page.read_bytes(), "the same scenario gives the same bytes")
+    if not browser:
+        print("no chromium here; Debian's chromium runs the pages")
+        return 77 if not failures else 1
+
+    report, _ = report_of(browser, page)
+    for cyclogram in ["chaotic", "heat_cool_1000"]:
+        call("predict", fp3, "--cyclogram", cyclogram, "-o", cyclogram)
+        K, um = farthest(report["cyclograms"][cyclogram], record_of(folder / cyclogram / "record.csv"))
+        expect(K <= MOST_K and um <= MOST_UM, f"FP3, {cyclogram}: {K:.2g} K and {um:.2g} um from predict")
+    expect(report["differences"]["K"] <= MOST_K and report["differences"]["um"] <= MOST_UM, f"what the page says of itself: {report['differences']}")
+    call("run", fp3, "-o", "run")
+    summary = json.loads((folder / "run/summary.json").read_text())
+    for name, left in report["cyclograms"]["chaotic"]["left_um"].items():
+        told = peak_after(summary, name)
+        most = max(map(abs, left))
+        expect(abs(most - told) <= 0.1, f"FP3, {name}: the correction leaves {most:.2f} um; run says {told:.2f}")
+    frames = [report["frames"]]
+    while len(frames) < 4 and any(best_of(frames, act)["p95"] > MOST_FRAME_MS for act in frames[0]):
+        frames.append(report_of(browser, page)[0]["frames"])
+    for act in frames[0]:
+        best = best_of(frames, act)
+        expect(best["p95"] <= MOST_FRAME_MS, f"script of a frame while {act} [ms], of {len(frames)} reports: {best}")
+    expect(0.1 < report["picture"]["covered"] < 0.9, f"the picture: {report['picture']}")
+
+    for scenario, first in [(lumped, "shift"), (top / "scenarios/lumped_spindle.yaml", None)]:
+        name = scenario.stem
+        done = call("view", scenario, "-o", f"{name}.html")
+        expect(done.returncode == 0, f"view {name}: {done.stderr.strip()[-300:]}")
+        report, _ = report_of(browser, folder / f"{name}.html")
+        for cyclogram in [first] if first else list(report["cyclograms"])[:2]:
+            call("predict", scenario, "--cyclogram", cyclogram, "-o", f"{name}-{cyclogram}")
+            K, um = farthest(report["cyclograms"][cyclogram], record_of(folder / f"{name}-{cyclogram}/record.csv"))
+            expect(K <= MOST_K and um <= MOST_UM, f"{name}, {cyclogram}: {K:.2g} K and {um:.2g} um from predict")
+
+    (folder / "hostile.yaml").write_text(HOSTILE)
+    done = call("view", "hostile.yaml", "-o", "hostile.html")
+    expect(done.returncode == 0, f"view of hostile names: {done.stderr.strip()[-300:]}")
+    report, dom = report_of(browser, folder / "hostile.html")
+    expect("<title>broken out" not in dom and dom.count("<script") == 2 and "<img" not in dom, "names of the scenario do not break out of the page")
+
+    browse(browser, page, "--window-size=1200,1400", f"--screenshot={folder}/fp3.png", f"file://{page}")
+    expect((folder / "fp3.png").exists() and (folder / "fp3.png").stat().st_size > 60e3, "a screenshot of the page is no empty one")
+    return 1 if failures else 0
+
+
+def best_of(frames, act):
+    """Of several reports: other work on the computer stretches what a clock tells."""
+    return {k: min(f[act][k] for f in frames) for k in ("median", "p95", "most")}
+
+
+def peak_after(summary, channel):
+    """Largest drift that the regression leaves through the injector, by `run` [um]."""
+    return next(c["after"]["peak_um"] for c in summary["corrections"]
+                if (c["channel"], c["predictor"], c["actuator"]) == (channel, "regression", "pulse injector"))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
