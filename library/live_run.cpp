@@ -76,10 +76,9 @@ Run Machine::start(std::optional<double> ambient_degC, const std::string& run_na
   s->machine = own;
   s->tolerances = asked.solver.transient;
   s->cyclogram.name = run_name;
-  Cyclogram fastest;  // the model is made for all speeds of the scenario
-  for (const Cyclogram& c : asked.cyclograms)
-    fastest.sections.insert(fastest.sections.end(), c.sections.begin(), c.sections.end());
-  s->model = parts_->predicting.of(asked, fastest, parts_->listener);
+  // The model is that of the scenario's own cyclograms, which `predict` takes for them too.
+  const Cyclogram own_job = asked.cyclograms.empty() ? Cyclogram{} : asked.cyclograms.front();
+  s->model = parts_->predicting.of(asked, own_job, parts_->listener);
   const auto has_thermostats = [](const auto& system) { return !system.thermostats.empty(); };
   if (s->model->reduced() ? has_thermostats(s->model->reduced()->system) : has_thermostats(s->model->full()->system)) {
     throw InputError(own.where,
