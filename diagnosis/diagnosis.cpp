@@ -296,7 +296,10 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
           cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, workspace, listener));
       leave_out(cause.alternatives.back(), "the cause that it cannot be told from is");
       cause.alternatives.back().chance = d.search.chance.share_above(a.log_evidence_gain);
+      cause.alternatives.back().share = a.share;
     }
+    cause.share = f.share;
+    cause.odds = f.odds;
     d.causes.push_back(std::move(cause));
   }
   listener.begin("measuring the gain");
