@@ -10,7 +10,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNoSolution = -1e6;  // nats of a fold that no numbers fit
+constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
+constexpr double kNoSolution = -1e6;       // nats of a fold that no numbers fit
 // What a kept-out record has of its own, such as its hall, is in the misses and says nothing of a claim: they count where likelihood is not clear.
 constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorse = 1.1;            // of the squares
@@ -43,6 +44,16 @@ const Judge::Judged& Judge::judged(Subset claims) {
         if (!has_solution([&] { fits[f] = fitter.fit(rest.hypothesis, x.tail(x.size() - n_n), workspace); }))
           fits[f] = Fit{};
       });
+  // Fewer readings are never missed by more than all of them: a fit to them that is has stopped short, and goes on from where the fit to all ended.
+  const Fit& all = fits.back();
+  for (std::size_t f = 0; f < folds_.size() && !all.prediction.empty(); ++f) {
+    if (!fits[f].prediction.empty() && fits[f].misfit <= all.misfit) continue;
+    Twin::Workspace workspace(whole_.twin());
+    Fit again;
+    const bool is_solved =
+        has_solution([&] { again = fitters_[f]->fit_others(rest.hypothesis, all.x, kNothingHeld, workspace); });
+    if (is_solved && (fits[f].prediction.empty() || again.misfit < fits[f].misfit)) fits[f] = std::move(again);
+  }
   Judged j;
   j.hypothesis = rest.hypothesis;
   for (std::size_t f = 0; f < folds_.size(); ++f) {
