@@ -139,9 +139,9 @@ std::vector<Cause> moved_numbers(const Diagnosis& d) {
 }
 
 /// Of one record of a machine that is wrong in a way that nothing explains: what was fitted to it held for its own rows alone wherever that was tried (docs/measured.md).
-void write_nothing(Diagnosis& d) {
+void write_nothing(Diagnosis& d, const std::string& why) {
   d.written.keeps_numbers = false;
-  d.written.why_nothing = "a single record of which something is left that nothing explains says too little of others";
+  d.written.why_nothing = why;
   d.written.taken_up.clear();
   d.extended = d.as_written;
   for (Cause& c : d.causes) leave_out(c, d.written.why_nothing);
@@ -151,6 +151,14 @@ void write_nothing(Diagnosis& d) {
     g.peak_after = g.peak_before;
   }
   d.misses.extended = d.misses.as_written;
+}
+
+/// Takes from every cause that it is sure.
+void doubt_all(Diagnosis& d, const std::string& why) {
+  for (Cause& c : d.causes) {
+    if (c.standing != Standing::kSuspected && c.doubt.empty()) c.doubt = why;
+    c.standing = Standing::kSuspected;
+  }
 }
 
 /// Numbers of the written causes, as they are written. @param fitter  that they were fitted with
@@ -296,7 +304,10 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
           cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, workspace, listener));
       leave_out(cause.alternatives.back(), "the cause that it cannot be told from is");
       cause.alternatives.back().chance = d.search.chance.share_above(a.log_evidence_gain);
+      cause.alternatives.back().share = a.share;
     }
+    cause.share = f.share;
+    cause.odds = f.odds;
     d.causes.push_back(std::move(cause));
   }
   listener.begin("measuring the gain");
@@ -326,18 +337,19 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     d.unexplained->fails_held_out = true;
   }
   d.verdict = n_readings < kFewestReadings ? Verdict::kInsufficientData : verdict_of(d);
+  if (d.verdict == Verdict::kInsufficientData) {
+    doubt_all(d, "the readings are too few to tell causes apart");
+    if (d.written.keeps_numbers) write_nothing(d, "the readings are too few");
+  }
   if (d.verdict == Verdict::kUnexplained) {
-    for (Cause& c : d.causes) {
-      if (c.standing != Standing::kSuspected && c.doubt.empty()) c.doubt = "more is left than it explains";
-      c.standing = Standing::kSuspected;
-    }
+    doubt_all(d, "more is left than it explains");
     if (runs.size() == 1 && options.most_effects > 0) {
       const std::optional<CausesAlone> alone =
           listener.wants_end() ? std::nullopt : causes_alone(fitter, d.search, d.noise, held);
       if (alone) {
         write_alone(d, *alone, fitter, workspace, listener);
       } else if (d.written.keeps_numbers) {
-        write_nothing(d);
+        write_nothing(d, "a single record of which something is left that nothing explains says too little of others");
       }
     }
   }

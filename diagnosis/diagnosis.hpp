@@ -49,6 +49,9 @@ struct Cause {
       0.0;  ///< how much likelier kept-out rows are with it than without it; of numbers that have gone too far 0
   bool is_written = true;            ///< whether extended.yaml has it
   std::string why_not_written = {};  ///< a clause; "" where it is written
+  /// Share of the odds of all that was fitted in its place (rivals.hpp): its own; of its kind wherever it sits; and, of the kind's, that of its place.
+  double share = 1.0;
+  Odds odds = {};
   int n_searched = 0, n_again = 0;   ///< searches without a part of the rows, and in how many of them it was found again
 };
 

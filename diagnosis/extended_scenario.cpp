@@ -15,6 +15,7 @@
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
 #include "base/yaml_text.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -107,7 +108,7 @@ class Writer {
         out += "cyclograms:\n";
         for (std::size_t c = 0; c < root.items[i]->keys.size(); ++c)
           out += fmt::format("  {}: {}\n", root.items[i]->keys[c].text, anew(*root.items[i]->items[c]));
-        for (const auto& [name, path] : added_cyclograms_) out += fmt::format("  {}: {{csv: \"{}\"}}\n", name, path);
+        for (const auto& [name, written] : added_cyclograms_) out += fmt::format("  {}: {}\n", name, written);
       } else {
         out += fmt::format("{}: {}\n", key, anew(*root.items[i]));
       }
@@ -191,12 +192,15 @@ class Writer {
     if (std::find(cyclograms_.begin(), cyclograms_.end(), name) != cyclograms_.end()) return;
     const auto run = std::find_if(runs_.begin(), runs_.end(), [&](const MeasuredRun& r) { return r.name == name; });
     if (run == runs_.end()) throw std::logic_error("extended_scenario: a change in a run that is not there, " + name);
-    const std::string path = std::filesystem::absolute(run->path).lexically_normal().string();
+    std::error_code none;  // of a record that a program holds there is no file
+    const std::string written =
+        std::filesystem::is_regular_file(run->path, none)
+            ? fmt::format("{{csv: \"{}\"}}", std::filesystem::absolute(run->path).lexically_normal().string())
+            : scenarios::rows_yaml(run->cyclogram);
     const ConfigNode* list = yaml_.root().find("cyclograms");
-    if (!yaml_.append(*list, fmt::format("{}: {{csv: \"{}\"}}", name, path), "diagnosis: the measured run"))
-      in_one_piece_ = true;
+    if (!yaml_.append(*list, fmt::format("{}: {}", name, written), "diagnosis: the measured run")) in_one_piece_ = true;
     cyclograms_.push_back(name);
-    added_cyclograms_.emplace_back(name, path);
+    added_cyclograms_.emplace_back(name, written);
     done_.push_back(fmt::format("added the cyclogram {} from its record", name));
   }
 
@@ -241,7 +245,7 @@ class Writer {
   const StatedChange* change_ = nullptr;
   std::set<std::size_t> replaced_;
   std::vector<std::string> cyclograms_, done_;
-  std::vector<std::pair<std::string, std::string>> added_cyclograms_;  ///< names and paths
+  std::vector<std::pair<std::string, std::string>> added_cyclograms_;  ///< names and YAML
   std::map<int, std::vector<std::string>> notes_;                      ///< what changed, by line
   bool in_one_piece_ = false;                                          ///< the text could not be edited: it is written anew
 };

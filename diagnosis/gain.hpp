@@ -17,7 +17,7 @@ struct HeldOut {
   /// Per claim: why it is not worth writing, a clause; "" where it is. It is doubted; or it happens in several records at times that nobody knows ahead, where a record
   /// whose times are not known is predicted worse by what was fitted beside it; or a search without the kept-out rows finds what does harm to them.
   std::vector<std::string> why_not_written;
-  /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place.
+  /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place, or at one that this is not told from.
   int n_searched = 0;
   std::vector<int> n_again = {};
   bool fails = false;  ///< the claims together predict kept-out rows clearly worse than none of them does

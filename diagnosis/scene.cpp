@@ -99,7 +99,7 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
   s.balance = twin.balance(s.own);
   double turning_s = 0.0, turned = 0.0;
   for (const MeasuredRun& run : runs) {
-    s.runs.push_back({run.name, run.time_s.back()});
+    s.runs.push_back({run.name, run.time_s.back(), run.has_ambient});
     for (const auto& section : run.cyclogram.sections) {
       if (section.drive.speed_rpm > 0.0) turning_s += section.duration_s;
       turned += section.duration_s * section.drive.speed_rpm;
@@ -124,6 +124,10 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
     if (h.power_W.probes.empty()) s.heat_W += std::abs(h.power_W(top)) + most_of_record_W(h, runs, s.own);
   }
   s.columns = columns_of(runs, s.own);
+  for (const scenarios::Sensor& sensor : twin.augmented().model.sensors) {
+    if (const auto* on_node = std::get_if<std::string>(&sensor.place))
+      s.sensor_bodies[sensor.name] = *on_node == effects::kHallName ? effects::hall() : effects::node(*on_node);
+  }
   const auto& system = twin.machine().system;
   for (const auto& part : system.parts) {
     const effects::Body body = twin.body_of(part.body);

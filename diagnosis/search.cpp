@@ -12,7 +12,7 @@
 #include "diagnosis/chance.hpp"
 #include "diagnosis/event_candidates.hpp"
 #include "diagnosis/no_solution.hpp"
-#include "diagnosis/projection.hpp"
+#include "diagnosis/rivals.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -20,10 +20,13 @@ namespace {
 constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a name
 constexpr int kMostTurns = 6;
 constexpr double kSettled = 0.05;  // of Φ
+constexpr int kMostTurnsOfRival = 3;
+constexpr double kNear = 12.0;  // nats: what fits on may make up for
+constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
 
-constexpr double kSame = 2.0;  // squares of whitened readings: one nat
+constexpr double kSame = 6.0;  // squares of whitened readings: what noise makes of two numbers more, at 95 %
 
 // What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full.
 constexpr double kHopeless = 0.5, kHope = 8.0;
@@ -32,20 +35,9 @@ constexpr std::size_t kMostKnown = 64;
 
 constexpr double kRareOrChosen = 5.0;  // nats of a claim's price: several windows that were chosen to make it
 
-constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which other numbers grow
-
 Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
   const Variant& v = candidates[score.candidate].variants[score.variant];
   return {score.candidate, score.variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens};
-}
-
-/// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x. Readings are condensed.
-Projection projection_of(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit) {
-  Eigen::MatrixXd slopes(fit.residual.size(), fitter.n_nuisance() + fit.slopes.cols());
-  slopes << fitter.nuisance_slopes(), fit.slopes;
-  const Eigen::VectorXd about_zero = fit.residual + slopes * fit.x;
-  const Comparison& c = fitter.comparison();
-  return {c.condensed(slopes), fitter.prior_sd(hypothesis), c.condensed(about_zero)};
 }
 
 /// Fits some hypotheses side by side.
@@ -63,11 +55,6 @@ std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypot
 
 bool overlaps(const Hypothesis& hypothesis, std::size_t candidate) {
   return std::any_of(hypothesis.begin(), hypothesis.end(), [&](const Claim& c) { return c.candidate == candidate; });
-}
-
-Hypothesis with(Hypothesis hypothesis, Claim claim) {
-  hypothesis.push_back(std::move(claim));
-  return hypothesis;
 }
 
 Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
@@ -126,10 +113,11 @@ class KnownFits {
 };
 
 /// The best candidates on top of a hypothesis, fitted in full, best first.
-/// @param known  null: all are fitted anew, from where scatter was settled last
+/// @param known      null: all are fitted anew, from where scatter was settled last
+/// @param each_kind  the best of each effect is among them, though the first n be of others: which kind it is must not hang on linear theory
 std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                    const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit, int n,
-                                   KnownFits* known, const Listener& listener) {
+                                   KnownFits* known, const Listener& listener, bool each_kind = false) {
   if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
   std::vector<Score> list = scores(fitter, candidates, columns, base, base_fit);
   std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
@@ -137,8 +125,12 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
   for (const Score& s : list) {  // a second law of a good candidate counts as well, but only a few
     const auto n_same =
         std::count_if(chosen.begin(), chosen.end(), [&](const Score& c) { return c.candidate == s.candidate; });
-    if (n_same < 2) chosen.push_back(s);
-    if (static_cast<int>(chosen.size()) >= n) break;
+    const bool is_full = static_cast<int>(chosen.size()) >= n;
+    if (is_full && !each_kind) break;
+    const bool is_new_kind = std::none_of(chosen.begin(), chosen.end(), [&](const Score& c) {
+      return candidates[c.candidate].effect == candidates[s.candidate].effect;
+    });
+    if (is_full ? is_new_kind : n_same < 2) chosen.push_back(s);
   }
   const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
   std::vector<Fitted> fitted;
@@ -216,6 +208,19 @@ void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
   }
 }
 
+/// Fits a rival on from where its fit ended, as settle_well() does the hypothesis it is held against: slopes that were taken elsewhere must not cost it anything.
+void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
+  Twin::Workspace workspace(fitter.twin());
+  for (int turn = 0; turn < kMostTurnsOfRival; ++turn) {
+    Fit again;
+    if (!has_solution([&] { again = fitter.fit_others(hypothesis, fit.x, kNothingHeld, workspace); })) return;
+    const double gained = fit.misfit - again.misfit;
+    if (!(gained > 0.0)) return;
+    fit = std::move(again);
+    if (gained < kSettled) return;
+  }
+}
+
 double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
   double price = 0.0;
   for (const Claim& c : hypothesis) price += law_price(candidates, c.candidate);
@@ -231,103 +236,6 @@ Bars bars_of(const Chance& chance, const SearchOptions& options) {
             .named_beside = std::max(named, options.least_named_beside)};
   for (double least : options.least_gain) bars.suspected.push_back(std::max(suspected, least));
   return bars;
-}
-
-std::vector<Law> laws_of(const std::vector<Candidate>& candidates) {
-  std::vector<Law> laws;
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    for (std::size_t v = 0; v < candidates[c].variants.size(); ++v) laws.push_back({c, v});
-  }
-  return laws;
-}
-
-std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                  const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
-                                  const Listener& listener) {
-  const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
-  std::vector<std::vector<Signature>> lists(laws.size());
-  Prediction responses;
-  {
-    Twin::Workspace workspace(fitter.twin());
-    (void)fitter.predict(hypothesis, fit.x, workspace, &responses);
-  }
-  const TwinState known = fitter.state(hypothesis, fit.x);
-  struct Space {
-    Twin::Workspace workspace;
-    Prediction kept;
-  };
-  for_each_index(
-      laws.size(),
-      [&] {
-        return Space{Twin::Workspace(fitter.twin()), responses};
-      },
-      [&](std::size_t j, Space& space) {
-        const Variant& v = candidates[laws[j].candidate].variants[laws[j].variant];
-        const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
-        const Hypothesis tried =
-            with(hypothesis, {laws[j].candidate, laws[j].variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens});
-        for (const std::vector<double>& shape : v.grid) {
-          Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
-          claim[0] = v.trial_x;
-          for (std::size_t k = 0; k < shape.size(); ++k) claim[static_cast<Eigen::Index>(k + 1)] = shape[k];
-          Prediction p;
-          const bool is_solved = has_solution([&] {
-            p = reading_only ? fitter.predict(tried, joined(fit.x, claim), space.workspace, &space.kept, true)
-                             : fitter.predict_beside(known, fit.prediction, tried, joined(fit.x, claim), space.workspace);
-          });
-          if (!is_solved) continue;
-          Eigen::VectorXd column = fitter.comparison().condensed((fitter.comparison().whitened(p) - base) / v.trial_x);
-          if (!column.allFinite() || !(column.squaredNorm() > 1e-12)) continue;
-          lists[j].push_back({laws[j].candidate, laws[j].variant, std::move(claim), std::move(column)});
-        }
-      },
-      listener);
-  std::vector<Signature> all;
-  for (auto& list : lists) {
-    for (Signature& s : list) all.push_back(std::move(s));
-  }
-  return all;
-}
-
-std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                          const std::vector<Signature>& signatures, const Hypothesis& hypothesis, const Fit& fit) {
-  const Projection projection = projection_of(fitter, hypothesis, fit);
-  std::vector<Score> of_each(signatures.size());
-#pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < signatures.size(); ++i) {
-    const Signature& signature = signatures[i];
-    const Variant& v = candidates[signature.candidate].variants[signature.variant];
-    const Eigen::VectorXd& s = signature.column;
-    const double ss = projection.square(s), sr = s.dot(projection.rest), sd = v.knobs[0].prior_sd;
-    if (!(ss > 1e-12)) continue;
-    double x = v.all_or_nothing ? v.trial_x : sr / (ss + 1.0 / (sd * sd));
-    double gain = v.all_or_nothing ? sr * x - 0.5 * ss * x * x
-                                   : 0.5 * sr * sr / (ss + 1.0 / (sd * sd)) - 0.5 * std::log1p(sd * sd * ss);
-    const Knob& size = v.knobs[0];
-    if (size.scale == Knob::Scale::kLinear && size.x(size.value(x)) != x) {  // out of range: at the bound
-      x = size.x(size.value(x));
-      gain = sr * x - 0.5 * ss * x * x - 0.5 * std::log1p(sd * sd * ss);
-    }
-    if (size.scale == Knob::Scale::kLog) x = std::clamp(x, -2.0, 2.0);
-    of_each[i] = {signature.candidate, signature.variant, gain - v.price_nats - std::log(static_cast<double>(v.grid.size())),
-                  signature.shape};
-    of_each[i].start[0] = x;
-    if (const double grown = x / v.trial_x; size.scale == Knob::Scale::kLinear && grown > kLeastGrowth) {
-      for (std::size_t k = 1; k < v.knobs.size(); ++k) {
-        if (v.knobs[k].grows_with_size) of_each[i].start[static_cast<Eigen::Index>(k)] += std::log(grown);
-      }
-    }
-  }
-  std::vector<Score> list;
-  for (const Score& s : of_each) {  // those of one law follow each other
-    if (!list.empty() && list.back().candidate == s.candidate && list.back().variant == s.variant) {
-      if (s.gain > list.back().gain) list.back() = s;
-    } else if (s.start.size() > 0) {
-      list.push_back(s);
-    }
-  }
-  std::stable_sort(list.begin(), list.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
-  return list;
 }
 
 SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
@@ -382,7 +290,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
         const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
         const Fit fit = fit_all(fitter, {{others, x}}).front();
         const std::vector<Fitted> replacements =
-            best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener);
+            best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener, true);
         if (replacements.empty()) continue;
         const Hypothesis exchanged = with(others, replacements.front().claim);
         const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
@@ -453,12 +361,34 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       result.findings.clear();
       continue;
     }
-    Finding finding{best[i], best_value - without_value, false, {}};
-    for (Fitted& f : best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener)) {
-      const double value = evidence(f.fit, with(others, f.claim)) - laws_price(candidates, others);
-      if (f.claim.candidate == best[i].candidate || value < best_value - options.cannot_tell) continue;
-      if (says_the_same(fitter, candidates[best[i].candidate], best_fit, candidates[f.claim.candidate], f.fit)) continue;
-      finding.alternatives.push_back({std::move(f.claim), std::move(f.fit), value - without_value});
+    Finding finding{.claim = best[i], .log_evidence_gain = best_value - without_value};
+    const auto rival = [&](const Claim& c, double value) {
+      return Rival{candidates[c.candidate].effect, candidates[c.candidate].where, value};
+    };
+    std::vector<Rival> rivals = {rival(best[i], best_value)};
+    std::vector<Finding::Alternative> others_fitted = {{}};  // beside `rivals`; the first is the claim
+    for (Fitted& f : best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener, true)) {
+      if (f.claim.candidate == best[i].candidate) continue;
+      const Hypothesis instead = with(others, f.claim);
+      double value = evidence(f.fit, instead) - laws_price(candidates, others);
+      if (value > best_value - kNear) {
+        const double law_nats = law_price(candidates, f.claim.candidate);
+        f.fit.log_evidence += law_nats;  // which best_additions() has taken off
+        fit_on(fitter, instead, f.fit);
+        f.fit.log_evidence -= law_nats;
+        value = evidence(f.fit, instead) - laws_price(candidates, others);
+      }
+      rivals.push_back(rival(f.claim, value));
+      rivals.back().says_the_same =
+          says_the_same(fitter, candidates[best[i].candidate], best_fit, candidates[f.claim.candidate], f.fit);
+      others_fitted.push_back({std::move(f.claim), std::move(f.fit), value - without_value});
+    }
+    finding.odds = odds_of(rivals);
+    const std::vector<double> shares = shares_of(rivals);
+    finding.share = shares.front();
+    for (std::size_t r : open_rivals(rivals)) {
+      others_fitted[r].share = shares[r];
+      finding.alternatives.push_back(std::move(others_fitted[r]));
     }
     result.findings.push_back(std::move(finding));
     ++i;

@@ -3,8 +3,8 @@
 
 #include <set>
 
-#include "base/listener.hpp"
-#include "diagnosis/fit.hpp"
+#include "diagnosis/rivals.hpp"
+#include "diagnosis/signatures.hpp"
 
 namespace driftwright::diagnosis {
 
@@ -26,10 +26,8 @@ struct SearchOptions {
   /// Evidence [nats] that a second, third, ... claim must bring at least, beyond the logarithm of how many candidates there are: chance is judged for machines
   /// without fault, a fault that is not quite of a law of the catalogue leaves something, and few machines are wrong in three ways.
   std::vector<double> least_gain = {0.5, 3.0, 12.0};
-  double least_named = 4.0;         ///< nor anything below, however little chance has to offer: it is even odds
-  double least_named_beside = 8.0;  ///< one of several is not named below, nor one whose times were chosen to make it
-  /// Two claims whose evidence differs by less than this cannot be told apart.
-  double cannot_tell = 3.0;
+  double least_named = 4.0;            ///< nor anything below, however little chance has to offer: it is even odds
+  double least_named_beside = 8.0;     ///< one of several is not named below, nor one whose times were chosen to make it
   int refits = 16;                     ///< candidates of each round that are fitted in full
   std::set<std::string> without = {};  ///< keys of effects that are not looked for
 };
@@ -41,7 +39,7 @@ struct Bars {
 };
 [[nodiscard]] Bars bars_of(const Chance& chance, const SearchOptions& options);
 
-/// A claim that stood up, and others that would do as well in its place.
+/// A claim that stood up, and others beside which its kind, or its place, is not told (rivals.hpp).
 struct Finding {
   Claim claim;
   double log_evidence_gain = 0.0;  ///< over the best hypothesis without it, after the price of the number of candidates
@@ -50,31 +48,11 @@ struct Finding {
     Claim claim;
     Fit fit;  ///< of the hypothesis with it in the finding's place
     double log_evidence_gain = 0.0;
+    double share = 0.0;  ///< of the odds
   };
-  std::vector<Alternative> alternatives;
-};
-
-/// What one law of a candidate does to the whitened readings, condensed (Comparison::condensed()), at trial size and one shape, per unit of its size.
-struct Signature {
-  std::size_t candidate = 0, variant = 0;
-  Eigen::VectorXd shape;  ///< x of the claim's knobs, the size at its trial
-  Eigen::VectorXd column;
-};
-/// One law of a candidate.
-struct Law {
-  std::size_t candidate = 0, variant = 0;
-};
-[[nodiscard]] std::vector<Law> laws_of(const std::vector<Candidate>& candidates);
-/// Those of some laws, on top of a fit. They change little with what else is claimed.
-[[nodiscard]] std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                                const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
-                                                const Listener& listener = {});
-
-/// How much evidence a candidate would bring on top of a fit: what the linear theory says.
-struct Score {
-  std::size_t candidate = 0, variant = 0;
-  double gain = -1e300;   ///< nats
-  Eigen::VectorXd start;  ///< x of the claim's knobs
+  std::vector<Alternative> alternatives = {};
+  Odds odds = {};
+  double share = 1.0;  ///< of the odds, its own
 };
 
 struct SearchResult {
@@ -92,10 +70,5 @@ struct SearchResult {
 /// @param listener    once it wants an end, what has stood up so far is the result
 [[nodiscard]] SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
                                   const Listener& listener);
-
-/// The best shape of each law of each candidate, best first.
-[[nodiscard]] std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
-                                        const std::vector<Signature>& signatures, const Hypothesis& hypothesis,
-                                        const Fit& fit);
 
 }  // namespace driftwright::diagnosis

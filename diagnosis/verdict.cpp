@@ -9,7 +9,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSureCause = 20.0;    // nats: no smaller rest hides it
+constexpr double kSureCause = 20.0;  // nats: no smaller rest hides it
+constexpr int kSomeSearches = 2;
 constexpr double kRestOfCause = 0.35;  // of what the causes explain: more left, and they are not what is wrong
 
 std::string words(const Cause& c) {
@@ -50,6 +51,13 @@ std::string odds_words(const Cause& c) {
   return c.chance < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / c.chance);
 }
 
+/// Whether a claim that stands beside a stronger one was found in none of several searches without a part of the rows: it is what the stronger one leaves of these rows.
+bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
+  if (held.n_searched < kSomeSearches || held.n_again[claim] > 0) return false;
+  return std::any_of(d.search.findings.begin(), d.search.findings.end(),
+                     [&](const Finding& f) { return f.log_evidence_gain > d.search.findings[claim].log_evidence_gain; });
+}
+
 /// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
 bool rest_rules(const Diagnosis& d) {
   if (!d.unexplained) return false;
@@ -70,7 +78,11 @@ std::string reason_of(const Diagnosis& d) {
     if (!c.alternatives.empty()) {
       std::vector<std::string> others;
       for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, a.where));
-      text += fmt::format("; the data cannot tell it from {}", fmt::join(others, " or "));
+      text +=
+          fmt::format(fmt::runtime(c.odds.kind < kSure
+                                       ? "; the data cannot tell it from {} (odds of its kind {:.0f} %)"
+                                       : "; which place it has the data do not tell: or {} (odds of its place {:.0f} %)"),
+                      fmt::join(others, " or "), 100.0 * (c.odds.kind < kSure ? c.odds.kind : c.odds.place));
     }
     parts.push_back(text);
   }
@@ -114,8 +126,10 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     if (held.n_searched > 0) cause.n_again = held.n_again[c];
     if (!d.search.findings[c].is_named) continue;
     cause.doubt = held.doubt[c];
+    if (cause.doubt.empty() && is_found_once(d, c, held))
+      cause.doubt = "it stands beside a stronger cause, and no search without a part of the rows found it";
     if (!cause.doubt.empty()) continue;
-    cause.standing = cause.alternatives.empty() ? Standing::kNamed : Standing::kAmbiguous;
+    cause.standing = cause.odds.kind >= kSure ? Standing::kNamed : Standing::kAmbiguous;
   }
 }
 

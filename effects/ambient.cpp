@@ -6,6 +6,9 @@ namespace driftwright::effects {
 namespace {
 
 constexpr double kStep_s = 1e-3;  // that a jump of the hall takes
+// Nats: a hall that was recorded is wrong by an offset, which the scatter of 0.3 K has; a step or a slow change its thermometer would
+// have seen, unless it hangs where the machine does not stand.
+constexpr double kSeenByItsThermometer = 3.0;
 
 /// Adds offset + ramp (t - from) from a time on.
 TimeSeries with_error(const TimeSeries& hall, double offset_K, double ramp_K_s, double from_s, double end_s) {
@@ -56,6 +59,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   const auto offset = [] { return doubted("offset", "K", 2.0, 0.3); };
   const auto ramp = [] { return doubted("ramp", "K/h", 0.7, 0.1); };
   std::vector<Doubt> list = {doubt("offset", "", offset(), 0.5), doubt("ramp", "", ramp(), 0.2)};
+  const bool is_recorded = std::all_of(s.runs.begin(), s.runs.end(), [](const auto& run) { return run.has_hall; });
+  if (is_recorded && !s.runs.empty()) list.back().rarity = kSeenByItsThermometer;
   for (std::size_t r = 0; r < s.runs.size(); ++r) {
     const DoubtScene::Run& run = s.runs[r];
     DoubtedNumber step = offset();
@@ -67,10 +72,12 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     stepped.numbers.push_back(doubted_time(
         "time", run.length_s, [](std::span<Effect> added, double value) { added[0].set("from", value / 60.0); }));
     stepped.grid = time_grid(run.length_s, 10);
+    stepped.rarity = run.has_hall ? kSeenByItsThermometer : 0.0;
     add_with_lasting(s, r, stepped, list);
     if (s.runs.size() < 2) continue;
     list.push_back(doubt("offset", run.name, offset(), 0.5));
     list.push_back(doubt("ramp", run.name, ramp(), 0.2));
+    list.back().rarity = stepped.rarity;
   }
   return list;
 }

@@ -19,14 +19,6 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e.body() == e.references.at("to")) in.fail("to", "a link joins two bodies");
 }
 
-/// Whether an exchange of its own joins two bodies.
-bool is_joined(const DoubtScene& s, const Body& a, const Body& b) {
-  return std::any_of(s.balance.exchanges.begin(), s.balance.exchanges.end(), [&](const Exchange& e) {
-    if (e.body.kind == BodyKind::kJoint || e.medium_K) return false;
-    return (e.body == a && node(e.surrounding) == b) || (e.body == b && node(e.surrounding) == a);
-  });
-}
-
 /// Air that films lie in. Regions meet it by their surfaces' films, which are doubted as such.
 bool is_air_of_films(const DoubtScene& s, const Body& body) {
   return std::any_of(s.balance.exchanges.begin(), s.balance.exchanges.end(),
@@ -35,7 +27,7 @@ bool is_air_of_films(const DoubtScene& s, const Body& body) {
 
 bool has_common_neighbour(const DoubtScene& s, const Body& a, const Body& b) {
   return std::any_of(s.bodies.begin(), s.bodies.end(),
-                     [&](const Body& c) { return !(c == a) && !(c == b) && is_joined(s, a, c) && is_joined(s, b, c); });
+                     [&](const Body& c) { return !(c == a) && !(c == b) && are_joined(s, a, c) && are_joined(s, b, c); });
 }
 
 /// A path between two bodies that nothing joins: nodes with each other, with the hall, and with regions.
@@ -60,12 +52,12 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     const bool is_node = from.kind == BodyKind::kNode;
     for (std::size_t j = is_node ? i + 1 : 0; j < s.bodies.size(); ++j) {
       const Body& to = s.bodies[j];
-      if (to.kind != BodyKind::kNode || is_joined(s, from, to)) continue;
+      if (to.kind != BodyKind::kNode || are_joined(s, from, to)) continue;
       if (!is_node && is_air_of_films(s, to)) continue;
       if (is_small || has_common_neighbour(s, from, to)) add(from, to);
     }
     // A region loses its heat to the hall by films.
-    if (is_node && !is_joined(s, from, hall())) add(from, hall());
+    if (is_node && !are_joined(s, from, hall())) add(from, hall());
   }
   return list;
 }

@@ -8,6 +8,8 @@
 namespace driftwright::effects {
 namespace {
 
+constexpr double kOfSolids =
+    3.0;  // nats: a joint of solid bodies does not change in the middle of a record, unless somebody works on it
 constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // of speed, of all laws together
 
 void change(const Effect& e, const Body& body, Law& law) {
@@ -118,6 +120,14 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
   list.push_back(friction);
 }
 
+/// Whether air or a medium takes part, which a door, a fan or a valve changes from one minute to the next.
+bool is_of_air(const DoubtScene& s, const Exchange& exchange) {
+  if (exchange.surrounding == kHallName || exchange.medium_K || exchange.body.kind == BodyKind::kSurface) return true;
+  return std::any_of(s.own.begin(), s.own.end(), [&](const Effect& e) {
+    return e.kind->key == "air_node" && (e.place == exchange.surrounding || e.place == exchange.body.name);
+  });
+}
+
 /// Another coefficient of an exchange, in all records or in one from a time on.
 void doubt_exchange(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
   const bool is_growth = finding == "forced_convection";
@@ -144,6 +154,7 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
     late.numbers.push_back(doubted_time(
         "time", run.length_s, [](std::span<Effect> added, double value) { added[0].from_s = std::max(1.0, value); }));
     late.trial = 0.3;
+    late.rarity = is_of_air(s, exchange) ? 0.0 : kOfSolids;
     late.grid = time_grid(run.length_s, 8);
     add_with_lasting(s, r, late, list);
   }

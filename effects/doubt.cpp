@@ -53,6 +53,13 @@ std::vector<std::vector<double>> time_grid(double run_length_s, int n) {
   return grid;
 }
 
+bool are_joined(const DoubtScene& s, const Body& a, const Body& b) {
+  return std::any_of(s.balance.exchanges.begin(), s.balance.exchanges.end(), [&](const Exchange& e) {
+    if (e.body.kind == BodyKind::kJoint || e.medium_K) return false;
+    return (e.body == a && node(e.surrounding) == b) || (e.body == b && node(e.surrounding) == a);
+  });
+}
+
 bool has_film(const HeatBalance& balance, const std::string& on) {
   return std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
                      [&](const Exchange& e) { return e.body == surface(on) && e.per == Per::kArea; });

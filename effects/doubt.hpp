@@ -2,6 +2,7 @@
 // What may be wrong with a machine: effects that it may have beside those written, and the numbers of them that a diagnosis turns. Each kind says so
 // for itself in EffectKind::doubts; what it says is plain data.
 
+#include <map>
 #include <span>
 
 #include "effects/effect.hpp"
@@ -20,6 +21,7 @@ struct DoubtScene {
   struct Run {
     std::string name;
     double length_s = 0.0;
+    bool has_hall = false;  ///< its temperature was recorded
   };
   std::vector<Run> runs;
   struct Displacement {
@@ -29,10 +31,11 @@ struct DoubtScene {
   };
   std::vector<Displacement> displacements;  ///< that were measured, as the sensors
   std::vector<std::string> sensors;
-  std::vector<Effect> own;            ///< of the scenario
-  HeatBalance balance;                ///< of these, radiation as films
-  std::vector<Body> bodies;           ///< regions and lumped nodes
-  std::vector<std::string> surfaces;  ///< outer ones
+  std::map<std::string, Body> sensor_bodies;  ///< where they are said to sit, of those on lumped nodes
+  std::vector<Effect> own;                    ///< of the scenario
+  HeatBalance balance;                        ///< of these, radiation as films
+  std::vector<Body> bodies;                   ///< regions and lumped nodes
+  std::vector<std::string> surfaces;          ///< outer ones
   struct Material {
     Body body;
     bool conducts = false, stores = false;
@@ -95,6 +98,9 @@ struct Doubt {
 [[nodiscard]] DoubtedNumber doubted_time(std::string name, double run_length_s,
                                          std::function<void(std::span<Effect>, double)> set = {});
 [[nodiscard]] std::vector<std::vector<double>> time_grid(double run_length_s, int n);
+
+/// Whether an exchange of its own joins two bodies.
+[[nodiscard]] bool are_joined(const DoubtScene& s, const Body& a, const Body& b);
 
 /// Whether some film lies on a surface.
 [[nodiscard]] bool has_film(const HeatBalance& balance, const std::string& surface);

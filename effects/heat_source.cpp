@@ -92,7 +92,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
         later.added[0].in = s.runs[run].name;
         later.numbers = {power(), doubted_time("from", s.runs[run].length_s,
                                                [](std::span<Effect> added, double value) { added[0].from_s = value; })};
-        later.numbers[0].low = 0.0;
+        if (with_speed) later.numbers[0].low = 0.0;  // else a blower that was switched on, a heater that gave up
         later.at_speed_rpm = with_speed ? s.typical_rpm : 0.0;
         later.grid = time_grid(s.runs[run].length_s, 8);
         add_with_lasting(s, run, later, since);

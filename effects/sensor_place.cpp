@@ -5,6 +5,9 @@
 namespace driftwright::effects {
 namespace {
 
+// Nats: between two bodies that touch there is a path of heat as well; where the scenario has none, two things would have to be wrong at once.
+constexpr double kTouchWithoutPath = 3.0;
+
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kDetachment, [sensor = e.place, share = e["share"], body = e.references.at("body")](Readings& r) {
     const Eigen::Index row = r.sensor(sensor);
@@ -37,6 +40,9 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .added = {place},
                       .numbers = {share},
                       .trial = 0.3});
+      const auto at = s.sensor_bodies.find(sensor);
+      const bool may_touch = body == hall() || at == s.sensor_bodies.end() || are_joined(s, at->second, body);
+      list.back().rarity = may_touch ? 0.0 : kTouchWithoutPath;
     }
   }
   return list;

@@ -30,6 +30,9 @@ Section cause_item(const diagnosis::Cause& c, const std::string& key) {
   }
   put(item, "kept_out_nats", c.kept_out_nats);
   put(item, "chance", c.chance);
+  put(item, "odds.share", c.share);
+  put(item, "odds.kind", c.odds.kind);
+  put(item, "odds.place", c.odds.place);
   put(item, "log_evidence_gain", c.log_evidence_gain);
   add_causes_data(item, c.alternatives, "alternatives");
   return item;

@@ -46,7 +46,9 @@ Table causes_table(const diagnosis::Diagnosis& d) {
       .title = "Causes",
       .caption =
           "Gain: logarithm of how much more probable the data are with it than without, after the price of having looked "
-          "for it among all candidates. Alternatives are what the data cannot tell from a cause (less than 3 nats apart).",
+          "for it among all candidates. Under a cause stands what it cannot be told from: claims that hold more than a "
+          "tenth of the odds with "
+          "others of their kind, or of its own kind at other places.",
       .columns = {{.title = "effect"},
                   {.title = "standing"},
                   {.title = "gain", .unit = "nats"},
@@ -89,16 +91,21 @@ Section cause_section(const diagnosis::Diagnosis& d, std::size_t i) {
                          c.n_again == 0              ? "in none of them"
                          : c.n_again == c.n_searched ? "each time"
                                                      : fmt::format("{} of them", c.n_again))});
-  Table table{.title = c.alternatives.empty()
-                           ? "No other claim comes within 3 nats"
-                           : "The first line is the best; the data cannot tell it from the others (less than 3 nats apart)",
-              .columns = {{.title = "effect"},
-                          {.title = "where"},
-                          {.title = "law"},
-                          {.title = "numbers (95 % interval)"},
-                          {.title = "gain", .unit = "nats"}}};
+  Table table{
+      .title = c.alternatives.empty()
+                   ? "All other claims that were fitted in its place hold less than a tenth of the odds together"
+               : c.odds.kind < diagnosis::kSure
+                   ? fmt::format("The data cannot tell it from the others; its kind has {:.0f} % of the odds",
+                                 100.0 * c.odds.kind)
+                   : fmt::format("What it is has {:.0f} % of the odds; where, the data do not tell", 100.0 * c.odds.kind),
+      .columns = {{.title = "effect"},
+                  {.title = "where"},
+                  {.title = "law"},
+                  {.title = "numbers (95 % interval)"},
+                  {.title = "gain", .unit = "nats"},
+                  {.title = "odds", .unit = "%"}}};
   const auto add_row = [&](const diagnosis::Cause& x) {
-    table.rows.push_back({x.effect, x.where, x.law, parameters_text(x), x.log_evidence_gain});
+    table.rows.push_back({x.effect, x.where, x.law, parameters_text(x), x.log_evidence_gain, std::round(100.0 * x.share)});
   };
   add_row(c);
   for (const diagnosis::Cause& a : c.alternatives) add_row(a);

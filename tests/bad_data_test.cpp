@@ -191,6 +191,27 @@ TEST(WarmStart, IsNotTakenForABiasOrAHallThatIsOff) {
   EXPECT_EQ(b.runs[0].start_K.size(), 0);
 }
 
+TEST(MissingData, NamesNothingAndWritesNothing) {  // 60 readings, of which one thermometer is plainly off
+  Bench b;
+  MeasuredRun& run = b.runs[0];
+  run.time_s.resize(20);
+  run.cyclogram.sections = {{run.time_s.back(), {.speed_rpm = 1000.0}}};
+  for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd(c.value.head(20));
+  set_grid(run);
+  add_noise(b.channel(0), 0.05);
+  add_noise(b.channel(1), 0.05);
+  add_noise(b.channel(2), 0.2e-6);
+  b.channel(1).value.array() += 3.0;
+  const Diagnosis d = diagnose(*b.twin, nullptr, b.runs, {});
+  EXPECT_EQ(d.verdict, Verdict::kInsufficientData) << d.reason;
+  ASSERT_FALSE(d.causes.empty());
+  for (const Cause& c : d.causes) {
+    EXPECT_EQ(c.standing, Standing::kSuspected) << c.effect;
+    EXPECT_NE(c.doubt, "") << c.effect;
+    EXPECT_FALSE(c.is_written) << c.effect;
+  }
+}
+
 TEST(MissingData, NamesTheChannelsTheThermometersAndTheTime) {
   Bench b;
   b.runs[0].channels.erase(b.runs[0].channels.begin(), b.runs[0].channels.begin() + 2);

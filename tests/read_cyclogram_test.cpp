@@ -31,6 +31,22 @@ TEST(ReadCyclogram, TakesAPlainList) {
   EXPECT_EQ(c.sections, (std::vector<Cyclogram::Section>{{18000, {.speed_rpm = 2000}}, {3600, {}}}));
 }
 
+TEST(ReadCyclogram, ReadsTheRowsThatItWrites) {
+  const Cyclogram c = read(
+      "  day:\n    columns: [duration, speed, feed_z, bed_degC, heater_W]\n"
+      "    rows: [[30 min, 2000 rpm, 1.5 m/min, 60 degC, 0 W], [1 min, 2000 rpm, 1.5 m/min, 60 degC, 0 W],\n"
+      "           [90 s, 2000 rpm, 1.5 m/min, 60 degC, 123.456789 W], [1 h, 0 rpm, 0 m/s, 21.5 degC, 0 W]]\n");
+  const std::string written = rows_yaml(c);
+  EXPECT_THAT(written, ::testing::StartsWith("{columns: [duration, speed, feed_z, bed_degC, heater_W], rows: [[1860 s, 2000 rpm, "));
+  const Cyclogram again = read("  day: " + written + "\n");
+  EXPECT_DOUBLE_EQ(again.duration_s(), c.duration_s());
+  for (double t_s : {1.0, 1859.0, 1861.0, 1949.0, 1951.0, 5000.0}) {
+    EXPECT_EQ(again.drive(t_s), c.drive(t_s)) << t_s;
+    EXPECT_NEAR(again.column("bed")->at(t_s), c.column("bed")->at(t_s), 1e-9) << t_s;
+    EXPECT_NEAR(again.column("heater")->at(t_s), c.column("heater")->at(t_s), 1e-6) << t_s;
+  }
+}
+
 TEST(ReadCyclogram, TakesNamedColumnsAndRepeats) {
   const Cyclogram c = read(
       "  milling:\n    columns: [duration, speed, feed_x, feed_z, cutting_power]\n"

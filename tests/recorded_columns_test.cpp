@@ -158,6 +158,28 @@ INSTANTIATE_TEST_SUITE_P(
                              "displacement_path", "nose", "sensitivity", 0.5, "column: stove_degC"}),
     [](const auto& one) { return std::string(one.param.name); });
 
+// Two wings alike in everything, thermometers beside them: that the sun heats a wing the readings say, and nobody can say of which.
+TEST(RecordedColumns, ThatHeatOneOfTwoLikeBodiesAreNamedAndTheirPlaceIsLeftOpen) {
+  const std::string wings =
+      "{type: node, node: left, capacity: 9 kJ/K}\n  - {type: node, node: right, capacity: 9 kJ/K}\n"
+      "  - {type: link, node: left, to: column, conductance: 7 W/K}\n"
+      "  - {type: link, node: right, to: column, conductance: 7 W/K}";
+  const std::string sun = "\n  - {type: recorded_drive, node: left, column: sun_W_m2, gain: 0.3}";
+  const std::vector<std::string> files = records(write_file("truth.yaml", scenario_with(wings + sun)), "columns_wings");
+  const Beside beside(write_file("believed.yaml", scenario_with(wings, false)), files);
+  const Diagnosis d = beside.diagnosed();
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  const Cause& cause = d.causes[0];
+  EXPECT_EQ(cause.effect, "recorded_drive");
+  EXPECT_GE(cause.odds.kind, kSure);
+  EXPECT_NEAR(cause.odds.place, 0.5, 0.05);  // what the two fits converge to
+  ASSERT_THAT(cause.alternatives, SizeIs(1)) << d.reason;
+  EXPECT_EQ(cause.alternatives[0].effect, "recorded_drive");
+  EXPECT_THAT((std::vector<std::string>{cause.where, cause.alternatives[0].where}),
+              testing::UnorderedElementsAre("left", "right"));
+}
+
 TEST(RecordedColumns, AreNoCauseWhereNothingIsWrong) {
   const std::vector<std::string> files = records(write_file("truth.yaml", scenario_with("")), "columns_none");
   const Beside beside(write_file("believed.yaml", scenario_with("", false)), files);

@@ -39,6 +39,18 @@ TEST(RecordedRun, IsDrivenFromEachRowOnAndCountsFromTheFirst) {
   EXPECT_EQ(run.cyclogram.sections[1].drive.speed_rpm, 0.0);
 }
 
+// A tachometer comes back to what it read; a command of 0.7 % less stays, and a twin that does not hear of it misses its heat.
+TEST(RecordedRun, ASmallChangeOfSpeedThatStaysIsNoJitter) {
+  Record r = record();
+  r.time_s.clear();
+  r.channels[0].values = {15400, 15410, 15400, 15300, 15300, 15300, 15310, 15300};
+  for (int i = 0; i < 8; ++i) r.time_s.push_back(60.0 * i);
+  const RecordedRun run = run_of(r, nullptr, {}, Reading::kStrict);
+  ASSERT_THAT(run.cyclogram.sections, SizeIs(2));
+  EXPECT_EQ(run.cyclogram.sections[0].duration_s, 180.0);
+  EXPECT_EQ(run.cyclogram.sections[1].drive.speed_rpm, 15300.0);
+}
+
 TEST(RecordedRun, TakesFeedsAndCuttingPowerWhereTheyAreRecorded) {
   const Record r =
       with(with(record(), {"feed_y", "mm_min", {600, 600, 600, 0, 0}}), {"cutting_power", "W", {0, 0, 0, 250, 250}});

@@ -303,6 +303,40 @@ NcControl control_of(const std::string& dialect) {
                                    : NcControl::kLinuxCnc;
 }
 
+std::string rows_yaml(const Cyclogram& cyclogram) {
+  std::vector<double> changes_s;
+  for (const Cyclogram::Column& column : cyclogram.columns)
+    changes_s.insert(changes_s.end(), column.rows.time_s.begin(), column.rows.time_s.end());
+  Cyclogram cut = split_at(cyclogram, changes_s);
+  std::vector<const Column*> driven;
+  for (const Column& column : columns()) {
+    if (std::any_of(cut.sections.begin(), cut.sections.end(), [&](auto& s) { return *column.place(s.drive) != 0.0; }))
+      driven.push_back(&column);
+  }
+  std::vector<std::string> names = {"duration"};
+  for (const Column* column : driven) names.emplace_back(column->name);
+  for (const Cyclogram::Column& column : cyclogram.columns) names.push_back(column.header());
+
+  std::vector<std::pair<double, std::string>> rows;  // durations [s] and the rest of the row
+  double start_s = 0.0;
+  for (Cyclogram::Section& section : cut.sections) {
+    std::string rest;
+    for (const Column* column : driven) rest += fmt::format(", {:.9g} {}", *column->place(section.drive), column->unit);
+    for (const Cyclogram::Column& column : cyclogram.columns)
+      rest += fmt::format(", {:.9g} {}", column.at(start_s + 1e-6), FurtherColumn{column.name, column.unit}.quantity_unit());
+    if (!rows.empty() && rows.back().second == rest) {
+      rows.back().first += section.duration_s;
+    } else {
+      rows.emplace_back(section.duration_s, rest);
+    }
+    start_s += section.duration_s;
+  }
+  std::string text;
+  for (const auto& [duration_s, rest] : rows)
+    text += fmt::format("{}[{:.9g} s{}]", text.empty() ? "" : ", ", duration_s, rest);
+  return fmt::format("{{columns: [{}], rows: [{}]}}", fmt::join(names, ", "), text);
+}
+
 const std::string& dialect_of(NcControl control) {
   return kDialects[static_cast<std::size_t>(control)];
 }

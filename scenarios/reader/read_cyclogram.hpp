@@ -16,6 +16,10 @@ namespace driftwright::scenarios {
 /// @throws InputError  file, line and column of the scenario, the CSV or the NC program
 [[nodiscard]] Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name);
 
+/// The map {columns, rows} that read_cyclogram() reads as this cyclogram: a row for each stretch in which the drive and all columns stay as they
+/// are. Numbers have 9 digits.
+[[nodiscard]] std::string rows_yaml(const Cyclogram& cyclogram);
+
 /// Whose language a program is written in, by its name in scenarios.
 inline const std::vector<std::string> kDialects = {"linuxcnc", "siemens", "heidenhain"};
 [[nodiscard]] NcControl control_of(const std::string& dialect);

@@ -14,7 +14,8 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr double kJitter = 0.01;      // of the top speed: no change of the drive
+constexpr double kJitter = 0.01;      // of the top speed: no change of the drive, unless it stays
+constexpr std::size_t kStays = 3;     // rows of one and the same value, which no tachometer that jitters shows
 constexpr double kRoom_K = 293.15;    // the reference where there is no machine
 constexpr double kManyMissing = 0.1;  // of the readings of speed or hall
 
@@ -56,6 +57,13 @@ const Channel* drive_channel(const Record& record, const DriveKind& kind, bool i
   return channel;
 }
 
+/// Whether a channel reads the same in a row and those after it: what was commanded, however small the change.
+bool stays(const Channel& channel, std::size_t row) {
+  if (row + kStays > channel.values.size()) return false;
+  const auto first = channel.values.begin() + static_cast<std::ptrdiff_t>(row);
+  return std::all_of(first, first + kStays, [&](double v) { return v == *first; });
+}
+
 /// Sections of constant drive, each row's from its time on; what is missing is held.
 /// @throws InputError  where the record does not say one
 Cyclogram drive_of(const Record& record, const std::vector<double>& time_s, bool is_plan) {
@@ -82,8 +90,8 @@ Cyclogram drive_of(const Record& record, const std::vector<double>& time_s, bool
   for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
     if (!std::isnan(speed->values[i])) last_rpm = speed->values[i];
     const double held_rpm = cyclogram.sections.empty() ? last_rpm : cyclogram.sections.back().drive.speed_rpm;
-    const bool is_jitter =
-        !is_plan && held_rpm > 0.0 && last_rpm > 0.0 && std::abs(last_rpm - held_rpm) <= kJitter * top_rpm;
+    const bool is_jitter = !is_plan && held_rpm > 0.0 && last_rpm > 0.0 &&
+                           std::abs(last_rpm - held_rpm) <= kJitter * top_rpm && !stays(*speed, i);
     drive.speed_rpm = is_jitter ? held_rpm : last_rpm;
     for (std::size_t a = 0; a < 3; ++a) {
       if (feeds[a] && !std::isnan(feeds[a]->values[i])) drive.feed_m_s[a] = std::abs(feeds[a]->values[i]) / 60e3;

@@ -1,0 +1,206 @@
+#include "diagnosis/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.hpp"
+#include "diagnosis/no_solution.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
+constexpr double kNoSolution = -1e6;       // nats of a fold that no numbers fit
+// What a kept-out record has of its own, such as its hall, is in the misses and says nothing of a claim: they count where likelihood is not clear.
+constexpr double kSurelyLikelier = 10.0;  // nats
+constexpr double kWorse = 1.1;            // of the squares
+
+}  // namespace
+
+Judge::Judge(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
+             std::vector<Fold> folds)
+    : whole_(fitter), result_(result), noise_(noise), folds_(std::move(folds)) {
+  for (const Fold& fold : folds_) fitters_.push_back(std::make_unique<Fitter>(fitter, fold.fitted));
+  Twin::Workspace workspace(fitter.twin());
+  written_ = fitter.predict({}, Eigen::VectorXd::Zero(fitter.n_nuisance()), workspace);
+}
+
+const Judge::Judged& Judge::judged(Subset claims) {
+  const auto known = judged_.find(claims);
+  if (known != judged_.end()) return known->second;
+  std::vector<std::size_t> left_out;
+  for (std::size_t c = 0; c < result_.hypothesis.size(); ++c) {
+    if (((claims >> c) & 1U) == 0) left_out.push_back(c);
+  }
+  const Eigen::Index n_n = whole_.n_nuisance();
+  const Remainder rest = without_claims(result_.hypothesis, left_out, n_n);
+  const Eigen::VectorXd x = result_.fit.x(rest.x);
+  std::vector<Fit> fits(folds_.size() + 1);  // the last one to all rows
+  for_each_index(
+      fits.size(), [&] { return Twin::Workspace(whole_.twin()); },
+      [&](std::size_t f, Twin::Workspace& workspace) {
+        const Fitter& fitter = f < folds_.size() ? *fitters_[f] : whole_;
+        if (!has_solution([&] { fits[f] = fitter.fit(rest.hypothesis, x.tail(x.size() - n_n), workspace); }))
+          fits[f] = Fit{};
+      });
+  // Fewer readings are never missed by more than all of them: a fit to them that is has stopped short, and goes on from where the fit to all ended.
+  const Fit& all = fits.back();
+  for (std::size_t f = 0; f < folds_.size() && !all.prediction.empty(); ++f) {
+    if (!fits[f].prediction.empty() && fits[f].misfit <= all.misfit) continue;
+    Twin::Workspace workspace(whole_.twin());
+    Fit again;
+    const bool is_solved =
+        has_solution([&] { again = fitters_[f]->fit_others(rest.hypothesis, all.x, kNothingHeld, workspace); });
+    if (is_solved && (fits[f].prediction.empty() || again.misfit < fits[f].misfit)) fits[f] = std::move(again);
+  }
+  Judged j;
+  j.hypothesis = rest.hypothesis;
+  for (std::size_t f = 0; f < folds_.size(); ++f) {
+    const bool is_solved = !fits[f].prediction.empty() && !fits.back().prediction.empty();
+    j.log_predictive += is_solved ? fits.back().log_evidence - fits[f].log_evidence : kNoSolution;
+    j.log_evidence.push_back(is_solved ? fits[f].log_evidence : kNoSolution);
+    j.x.push_back(fits[f].x);
+    j.predicted.push_back(fits[f].prediction.empty() ? written_ : std::move(fits[f].prediction));
+  }
+  return judged_.emplace(claims, std::move(j)).first->second;
+}
+
+std::vector<Prediction> Judge::filed(Subset claims) {
+  const Judged& j = judged(claims);
+  std::vector<Prediction> predicted;
+  for (std::size_t f = 0; f < folds_.size(); ++f) predicted.push_back(filed(j.hypothesis, j.x[f], f));
+  return predicted;
+}
+
+double Judge::least_evidence(Subset claims, Subset without) {
+  const std::vector<double> with = judged(claims).log_evidence, &fewer = judged(without).log_evidence;
+  double least = 1e300;
+  for (std::size_t f = 0; f < folds_.size(); ++f) least = std::min(least, with[f] - fewer[f]);
+  return least;
+}
+
+Judge::Refound Judge::refound(const SearchAgain& search_again, Subset kept, const Listener& listener) {
+  Refound found{filed(kept), filed(0), std::vector<int>(result_.hypothesis.size(), 0), 0};
+  for (std::size_t f = 0; f < folds_.size(); ++f) {
+    if (!folds_[f].is_searched()) continue;
+    if (listener.wants_end()) break;
+    listener.share(static_cast<double>(f) / static_cast<double>(folds_.size()));
+    SearchResult again;
+    if (!has_solution([&] { again = search_again(folds_[f].fitted); })) continue;
+    ++found.n_searched;
+    found.calibrated[f] = filed({}, again.without.x, f);
+    found.extended[f] = filed(again.hypothesis, again.fit.x, f);
+    for (std::size_t c = 0; c < result_.hypothesis.size(); ++c) {
+      found.n_again[c] += std::any_of(again.hypothesis.begin(), again.hypothesis.end(),
+                                      [&](const Claim& claim) { return is_told_as(c, again.candidates[claim.candidate]); });
+    }
+  }
+  return found;
+}
+
+bool Judge::is_told_as(std::size_t claim, const Candidate& found) const {
+  const auto is_same = [&](const Claim& told) {
+    const Candidate& c = result_.candidates[told.candidate];
+    return c.effect == found.effect && c.where == found.where;
+  };
+  const std::string& effect = result_.candidates[result_.hypothesis[claim].candidate].effect;
+  const auto& others = result_.findings[claim].alternatives;
+  return is_same(result_.hypothesis[claim]) ||
+         (found.effect == effect &&
+          std::any_of(others.begin(), others.end(), [&](const auto& a) { return is_same(a.claim); }));
+}
+
+std::vector<Prediction> Judge::regressed(Regressors regressors) const {
+  std::vector<Prediction> predicted;
+  for (const Fold& fold : folds_)
+    predicted.push_back(plain_regression(whole_.runs(), fold.fitted, static_cast<int>(written_.front().rows()), regressors));
+  return predicted;
+}
+
+bool Judge::is_worse(Subset claims, Subset fewer) {
+  return judged(fewer).log_predictive - judged(claims).log_predictive > -kSurelyLikelier &&
+         squares_over_noise(judged(claims).predicted) > kWorse * squares_over_noise(judged(fewer).predicted);
+}
+
+double Judge::over_noise(const std::vector<Prediction>& predicted) const {
+  double n = 0.0;
+  for_each_miss(predicted, [&](const MeasuredChannel&, double) { n += 1.0; });
+  return std::sqrt(squares_over_noise(predicted) / std::max(1.0, n));
+}
+
+double Judge::squares_over_noise(const std::vector<Prediction>& predicted) const {
+  double sum = 0.0;
+  for_each_miss(predicted,
+                [&](const MeasuredChannel& c, double miss) { sum += std::pow(miss / noise_.at(c.name).total(), 2); });
+  return sum;
+}
+
+Prediction Judge::filed(const Hypothesis& hypothesis, const Eigen::VectorXd& x, std::size_t f) const {
+  Prediction predicted = written_;
+  if (x.size() == 0) return predicted;
+  Twin::Workspace workspace(whole_.twin());
+  const TwinState state = whole_.state(hypothesis, x);
+  for (std::size_t r = 0; r < predicted.size(); ++r) {
+    const MeasuredRun& run = whole_.runs()[r];
+    TwinState known = state;
+    if (folds_[f].run == r)
+      std::erase_if(known, [&](const effects::Effect& e) { return e.in == run.name && e.tables.contains("windows"); });
+    (void)has_solution([&] { predicted[r] = whole_.twin().read(known, run, whole_.twin().respond(known, run, workspace)); });
+  }
+  return predicted;
+}
+
+double shown_scale(const std::string& unit) {
+  return unit == "K" ? 1.0 : 1e6;
+}
+
+KeptOutMisses misses_of(const Judge& judge, const Models& models) {
+  KeptOutMisses misses{.as_written = judge.over_noise(models.written),
+                       .calibrated = judge.over_noise(models.calibrated),
+                       .extended = judge.over_noise(models.extended)};
+  if (!models.named.empty()) misses.named = judge.over_noise(models.named);
+  if (!models.found.empty()) misses.found = judge.over_noise(models.found);
+  return misses;
+}
+
+std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, const std::map<std::string, NoiseModel>& noise,
+                                       const Judge& judge, const Models& models) {
+  std::vector<ChannelGain> gains;
+  std::map<std::string, std::size_t> index;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) {
+      if (!index.emplace(c.name, gains.size()).second) continue;
+      gains.push_back({.name = c.name,
+                       .unit = c.unit == "K"   ? "K"
+                               : c.unit == "m" ? "um"
+                                               : "urad",
+                       .noise_floor = shown_scale(c.unit) * noise.at(c.name).total(),
+                       .rmse_written = std::numeric_limits<double>::quiet_NaN()});
+    }
+  }
+  std::vector<double> n_rows(gains.size(), 0.0);
+  const auto add = [&](const std::vector<Prediction>& predicted, double ChannelGain::*rmse, double ChannelGain::*peak) {
+    if (predicted.empty()) return;
+    std::fill(n_rows.begin(), n_rows.end(), 0.0);
+    for (ChannelGain& g : gains) g.*rmse = 0.0;
+    judge.for_each_miss(predicted, [&](const MeasuredChannel& c, double miss) {
+      const std::size_t i = index.at(c.name);
+      const double x = shown_scale(c.unit) * miss;
+      gains[i].*rmse += x * x;
+      if (peak) gains[i].*peak = std::max(gains[i].*peak, std::abs(x));
+      n_rows[i] += 1.0;
+    });
+    for (std::size_t i = 0; i < gains.size(); ++i) gains[i].*rmse = std::sqrt(gains[i].*rmse / std::max(1.0, n_rows[i]));
+  };
+  add(judge.regressed(Regressors::kDrive), &ChannelGain::rmse_of_drive, nullptr);
+  add(judge.regressed(Regressors::kDriveAndReadings), &ChannelGain::rmse_of_readings, nullptr);
+  add(models.written, &ChannelGain::rmse_before, &ChannelGain::peak_before);
+  add(models.calibrated, &ChannelGain::rmse_calibrated, nullptr);
+  add(models.extended, &ChannelGain::rmse_after, &ChannelGain::peak_after);
+  add(models.named, &ChannelGain::rmse_named, nullptr);
+  add(models.found, &ChannelGain::rmse_found, nullptr);
+  return gains;
+}
+
+}  // namespace driftwright::diagnosis

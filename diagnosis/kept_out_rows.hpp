@@ -1,0 +1,34 @@
+#pragma once
+// Which rows numbers are fitted to, and which are kept out to judge them on.
+
+#include <optional>
+
+#include "diagnosis/search.hpp"
+
+namespace driftwright::diagnosis {
+
+inline constexpr const char* kAheadWords =
+    "the last third of the only record, predicted with numbers fitted to the first two thirds";
+
+/// Rows that numbers are fitted to, and the others. Both have all runs; readings that are not theirs are missing.
+struct Fold {
+  std::vector<MeasuredRun> fitted, kept_out;
+  std::optional<std::size_t> run = {};  ///< that is kept out whole
+  bool is_ahead = false;                ///< the end of the only run
+  [[nodiscard]] bool is_searched() const { return run || is_ahead; }
+};
+
+/// Whether a claim happens at a time of its own.
+[[nodiscard]] bool has_time(const Claim& claim);
+/// The end of a single run.
+[[nodiscard]] Fold ahead_of(const std::vector<MeasuredRun>& runs);
+
+struct Folds {
+  std::vector<Fold> list;
+  std::string how;
+};
+
+/// Each run in turn; of a single one its last third; of one in which alone something happened blocks, every other one.
+[[nodiscard]] Folds folds_of(const Fitter& fitter, const SearchResult& result, Twin::Workspace& workspace);
+
+}  // namespace driftwright::diagnosis

@@ -1,0 +1,132 @@
+#include "diagnosis/signatures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+#include "diagnosis/no_solution.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which other numbers grow
+
+Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  Eigen::VectorXd both(a.size() + b.size());
+  both << a, b;
+  return both;
+}
+
+}  // namespace
+
+Hypothesis with(Hypothesis hypothesis, Claim claim) {
+  hypothesis.push_back(std::move(claim));
+  return hypothesis;
+}
+
+Projection projection_of(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit) {
+  Eigen::MatrixXd slopes(fit.residual.size(), fitter.n_nuisance() + fit.slopes.cols());
+  slopes << fitter.nuisance_slopes(), fit.slopes;
+  const Eigen::VectorXd about_zero = fit.residual + slopes * fit.x;
+  const Comparison& c = fitter.comparison();
+  return {c.condensed(slopes), fitter.prior_sd(hypothesis), c.condensed(about_zero)};
+}
+
+std::vector<Law> laws_of(const std::vector<Candidate>& candidates) {
+  std::vector<Law> laws;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    for (std::size_t v = 0; v < candidates[c].variants.size(); ++v) laws.push_back({c, v});
+  }
+  return laws;
+}
+
+std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
+                                  const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
+                                  const Listener& listener) {
+  const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
+  std::vector<std::vector<Signature>> lists(laws.size());
+  Prediction responses;
+  {
+    Twin::Workspace workspace(fitter.twin());
+    (void)fitter.predict(hypothesis, fit.x, workspace, &responses);
+  }
+  const TwinState known = fitter.state(hypothesis, fit.x);
+  struct Space {
+    Twin::Workspace workspace;
+    Prediction kept;
+  };
+  for_each_index(
+      laws.size(),
+      [&] {
+        return Space{Twin::Workspace(fitter.twin()), responses};
+      },
+      [&](std::size_t j, Space& space) {
+        const Variant& v = candidates[laws[j].candidate].variants[laws[j].variant];
+        const bool reading_only = std::all_of(v.knobs.begin(), v.knobs.end(), [](const Knob& k) { return k.reading_only; });
+        const Hypothesis tried =
+            with(hypothesis, {laws[j].candidate, laws[j].variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens});
+        for (const std::vector<double>& shape : v.grid) {
+          Eigen::VectorXd claim = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(v.knobs.size()));
+          claim[0] = v.trial_x;
+          for (std::size_t k = 0; k < shape.size(); ++k) claim[static_cast<Eigen::Index>(k + 1)] = shape[k];
+          Prediction p;
+          const bool is_solved = has_solution([&] {
+            p = reading_only ? fitter.predict(tried, joined(fit.x, claim), space.workspace, &space.kept, true)
+                             : fitter.predict_beside(known, fit.prediction, tried, joined(fit.x, claim), space.workspace);
+          });
+          if (!is_solved) continue;
+          Eigen::VectorXd column = fitter.comparison().condensed((fitter.comparison().whitened(p) - base) / v.trial_x);
+          if (!column.allFinite() || !(column.squaredNorm() > 1e-12)) continue;
+          lists[j].push_back({laws[j].candidate, laws[j].variant, std::move(claim), std::move(column)});
+        }
+      },
+      listener);
+  std::vector<Signature> all;
+  for (auto& list : lists) {
+    for (Signature& s : list) all.push_back(std::move(s));
+  }
+  return all;
+}
+
+std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
+                          const std::vector<Signature>& signatures, const Hypothesis& hypothesis, const Fit& fit) {
+  const Projection projection = projection_of(fitter, hypothesis, fit);
+  std::vector<Score> of_each(signatures.size());
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < signatures.size(); ++i) {
+    const Signature& signature = signatures[i];
+    const Variant& v = candidates[signature.candidate].variants[signature.variant];
+    const Eigen::VectorXd& s = signature.column;
+    const double ss = projection.square(s), sr = s.dot(projection.rest), sd = v.knobs[0].prior_sd;
+    if (!(ss > 1e-12)) continue;
+    double x = v.all_or_nothing ? v.trial_x : sr / (ss + 1.0 / (sd * sd));
+    double gain = v.all_or_nothing ? sr * x - 0.5 * ss * x * x
+                                   : 0.5 * sr * sr / (ss + 1.0 / (sd * sd)) - 0.5 * std::log1p(sd * sd * ss);
+    const Knob& size = v.knobs[0];
+    if (size.scale == Knob::Scale::kLinear && size.x(size.value(x)) != x) {  // out of range: at the bound
+      x = size.x(size.value(x));
+      gain = sr * x - 0.5 * ss * x * x - 0.5 * std::log1p(sd * sd * ss);
+    }
+    if (size.scale == Knob::Scale::kLog) x = std::clamp(x, -2.0, 2.0);
+    of_each[i] = {signature.candidate, signature.variant, gain - v.price_nats - std::log(static_cast<double>(v.grid.size())),
+                  signature.shape};
+    of_each[i].start[0] = x;
+    if (const double grown = x / v.trial_x; size.scale == Knob::Scale::kLinear && grown > kLeastGrowth) {
+      for (std::size_t k = 1; k < v.knobs.size(); ++k) {
+        if (v.knobs[k].grows_with_size) of_each[i].start[static_cast<Eigen::Index>(k)] += std::log(grown);
+      }
+    }
+  }
+  std::vector<Score> list;
+  for (const Score& s : of_each) {  // those of one law follow each other
+    if (!list.empty() && list.back().candidate == s.candidate && list.back().variant == s.variant) {
+      if (s.gain > list.back().gain) list.back() = s;
+    } else if (s.start.size() > 0) {
+      list.push_back(s);
+    }
+  }
+  std::stable_sort(list.begin(), list.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
+  return list;
+}
+
+}  // namespace driftwright::diagnosis
