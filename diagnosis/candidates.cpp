@@ -90,6 +90,7 @@ std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidat
     Variant v{e.doubt.law, knobs_of(e.doubt), e.doubt.trial, e.doubt.grid};
     v.price_nats = e.price_nats;
     v.happens = true;
+    v.in = e.doubt.added.front().in;
     Candidate& of = candidate(list, e.doubt.finding, e.doubt.where);
     of.variants.push_back(std::move(v));
     added.emplace_back(&of - list.data(), of.variants.size() - 1);
@@ -105,7 +106,14 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
     if (!kind.doubts) continue;
     for (const effects::Doubt& d : kind.doubts(scene)) {
       candidate(list, d.finding, d.where)
-          .variants.push_back({d.law, knobs_of(d), d.trial, d.grid, d.at_speed_rpm, d.all_or_nothing, d.rarity});
+          .variants.push_back({.law = d.law,
+                               .knobs = knobs_of(d),
+                               .trial_x = d.trial,
+                               .grid = d.grid,
+                               .at_speed_rpm = d.at_speed_rpm,
+                               .all_or_nothing = d.all_or_nothing,
+                               .price_nats = d.rarity,
+                               .in = d.added.front().in});
     }
   }
   for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {
@@ -117,6 +125,17 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
     }
   }
   std::erase_if(list, [&](const Candidate& c) { return without.contains(c.effect) || c.variants.empty(); });
+  return list;
+}
+
+std::vector<Candidate> told_of_by(const std::vector<MeasuredRun>& runs, std::vector<Candidate> list) {
+  std::set<std::string> silent;
+  for (const MeasuredRun& run : runs) {
+    if (std::all_of(run.channels.begin(), run.channels.end(), [](const auto& c) { return c.value.array().isNaN().all(); }))
+      silent.insert(run.name);
+  }
+  for (Candidate& c : list) std::erase_if(c.variants, [&](const Variant& v) { return silent.contains(v.in); });
+  std::erase_if(list, [](const Candidate& c) { return c.variants.empty(); });
   return list;
 }
 

@@ -21,6 +21,7 @@ struct Variant {
   double price_nats =
       0.0;  ///< before any reading: how much rarer it is than other laws, or what was chosen to make it, such as windows seen in a waveform
   bool happens = false;  ///< for a while or from a time on, not throughout
+  std::string in = {};   ///< run in which it is, or begins; "": all
 };
 
 /// An effect at a place. One candidate among many, whatever laws it may follow.
@@ -36,6 +37,10 @@ struct Candidate {
 /// Adds windows that were found as further laws of heat or exchange for a while. @returns  candidate and law of each
 std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidate>& list, const std::vector<Event>& events,
                                                             const std::set<std::string>& without);
+
+/// Those that some readings may tell of. What is or begins in a run without any looks, in the others, like what is always there.
+/// @param runs  readings that are not to be known missing (NaN)
+[[nodiscard]] std::vector<Candidate> told_of_by(const std::vector<MeasuredRun>& runs, std::vector<Candidate> list);
 
 /// The knobs of a doubt: the first one adds its effects to a state, the others turn numbers of those added last.
 [[nodiscard]] std::vector<Knob> knobs_of(const effects::Doubt& doubt);

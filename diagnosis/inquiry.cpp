@@ -45,7 +45,7 @@ void weigh_by_model_error(const InquiryGround& ground, const std::vector<Measure
   if (const auto error = models_own_error(runs, best, of.noise)) rough = *error;
   of.fitter = std::make_unique<Fitter>(ground.fresh, runs);
   of.fitter->set_noise(rough, shared);
-  of.search = search(*of.fitter, ground.candidates, how, listener);
+  of.search = search(*of.fitter, told_of_by(runs, ground.candidates), how, listener);
   of.weighed_by_model_error = true;
 }
 
@@ -101,7 +101,7 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   of.noise = estimate_noise(runs, ground.as_written, options.floor);
   for (int pass = 0; pass < 2; ++pass) {
     of.fitter->set_noise(of.noise);
-    of.search = search(*of.fitter, ground.candidates, how, listener);
+    of.search = search(*of.fitter, told_of_by(runs, ground.candidates), how, listener);
     const auto sharper = estimate_noise(runs, of.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(), [&](const auto& s) {
       return s.second.total() < kSharper * of.noise.at(s.first).total();

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "diagnosis/candidates.hpp"
 #include "diagnosis/extended_scenario.hpp"
 #include "tests/lumped_records.hpp"
 
@@ -144,6 +146,50 @@ INSTANTIATE_TEST_SUITE_P(
               1.6,
               0.1}),
     [](const auto& one) { return one.param.name; });
+
+constexpr const char* kTwoRecords = R"(name: first_machine
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: spindle, capacity: 5.6 kJ/K}
+  - {type: node, node: housing, capacity: 19 kJ/K}
+  - {type: heat_source, node: spindle, power: 150 W, at_speed: 6000 rpm, exponent: 1.5}
+  - {type: link, node: spindle, to: housing, conductance: 12 W/K}
+  - {type: link, node: housing, to: hall, conductance: 5 W/K}
+hall: [[0 min, 20 degC]]
+sensors:
+  - {name: t_spindle, node: spindle}
+  - {name: t_housing, node: housing}
+displacements: [{name: nose_z, sensitivities: [{node: spindle, sensitivity: 2.5 um/K}]}]
+cyclograms:
+  warm_up: [[90 min, 6000 rpm], [60 min, 0 rpm]]
+  shift: [[120 min, 6000 rpm], [30 min, 0 rpm], [90 min, 3000 rpm]]
+)";
+
+// A search without the first record cannot know that a pump ran from some hour of it on: in the other one that looks as if it always had.
+TEST(KeptOutRecords, AreJudgedByWhatTheOthersTell) {
+  const std::string truth = with_effect(kTwoRecords, "{type: heat_source, node: housing, power: 40 W}");
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "pump_", 60.0, 0.1, 0.5);
+  const Beside beside(write_file("plain.yaml", kTwoRecords), records);
+  const Diagnosis d = beside.diagnosed();
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, "heat_source");
+  EXPECT_EQ(d.causes[0].n_again, 2);
+  EXPECT_GT(d.misses.as_written, 5.0);
+  EXPECT_LT(d.misses.found, 1.3);
+
+  std::vector<MeasuredRun> without = beside.runs;
+  for (MeasuredChannel& c : without[0].channels) c.value.setConstant(std::nan(""));
+  const std::vector<Candidate> all = candidates(*beside.twin, beside.runs, {}), told = told_of_by(without, all);
+  const auto n_in = [](const std::vector<Candidate>& list, const std::string& run) {
+    std::ptrdiff_t n = 0;
+    for (const Candidate& c : list) n += std::count_if(c.variants.begin(), c.variants.end(), [&](auto& v) { return v.in == run; });
+    return n;
+  };
+  EXPECT_GT(n_in(all, without[0].name), 0);
+  EXPECT_EQ(n_in(told, without[0].name), 0);
+  for (const std::string& run : {std::string(), without[1].name}) EXPECT_EQ(n_in(told, run), n_in(all, run));
+}
 
 }  // namespace
 }  // namespace driftwright::diagnosis

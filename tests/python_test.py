@@ -16,6 +16,7 @@ import driftwright as dw
 PROGRAM = sys.argv.pop(1)
 FP3 = "scenarios/fp3_spindle.yaml"
 LUMPED = "scenarios/lumped_spindle.yaml"
+FIRST = "scenarios/first_machine.yaml"
 
 
 def program(*arguments):
@@ -98,10 +99,10 @@ class Package(unittest.TestCase):
         self.assertEqual(len(meshio.read(self.folder / "hot.vtu").points), len(mesh.points_m))
 
     def test_a_diagnosis_is_the_program_s(self):
-        text = pathlib.Path(LUMPED).read_text()
-        link = "node: bearing_front, to: housing, conductance: 30 W/K"
-        self.assertIn(link, text)
-        (self.folder / "truth.yaml").write_text(text.replace(link, link.replace("30", "15")))
+        machine = self.folder / "machine.yaml"
+        machine.write_text(pathlib.Path(FIRST).read_text().replace("sensors: [", "sensors: [{name: t_spindle, node: spindle}, "))
+        pump = "  - {type: heat_source, node: housing, power: 40 W}\n"
+        (self.folder / "truth.yaml").write_text(machine.read_text().replace("sensors: [", pump + "sensors: ["))
         truth = dw.Machine(self.folder / "truth.yaml")
         random = np.random.default_rng(3)
         files = []
@@ -113,10 +114,11 @@ class Package(unittest.TestCase):
             files.append(self.folder / f"{cyclogram}_measured.csv")
             dw.write_record(record, files[-1])
         arguments = [a for file in files for a in ("--measured", file)]
-        program("diagnose", LUMPED, *arguments, "-o", self.folder / "diagnosis")
+        program("diagnose", machine, *arguments, "-o", self.folder / "diagnosis")
         import json
         expected = json.loads((self.folder / "diagnosis" / "diagnosis.json").read_text())
-        found = dw.Machine(LUMPED).diagnose(files)
+        found = dw.Machine(machine).diagnose(files)
+        self.assertEqual(found.causes[0].effect, "heat_source")
         self.assertEqual(found.verdict, expected["verdict"])
         self.assertEqual(found.reason, expected["reason"])
         self.assertEqual([(c.effect, c.where) for c in found.causes], [(c["effect"], c["where"]) for c in expected["causes"]])
