@@ -378,6 +378,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
         f.fit.log_evidence -= law_nats;
         value = evidence(f.fit, instead) - laws_price(candidates, others);
       }
+      if (f.fit.prediction.empty()) continue;  // no solution near it
       rivals.push_back(rival(f.claim, value));
       rivals.back().says_the_same =
           says_the_same(fitter, candidates[best[i].candidate], best_fit, candidates[f.claim.candidate], f.fit);

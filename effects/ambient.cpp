@@ -8,7 +8,7 @@ namespace {
 constexpr double kStep_s = 1e-3;  // that a jump of the hall takes
 // Nats: a hall that was recorded is wrong by an offset, which the scatter of 0.3 K has; a step or a slow change its thermometer would
 // have seen, unless it hangs where the machine does not stand.
-constexpr double kSeenByItsThermometer = 3.0;
+constexpr double kSeenByItsThermometer = 2.0;
 
 /// Adds offset + ramp (t - from) from a time on.
 TimeSeries with_error(const TimeSeries& hall, double offset_K, double ramp_K_s, double from_s, double end_s) {

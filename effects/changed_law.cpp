@@ -9,7 +9,7 @@ namespace driftwright::effects {
 namespace {
 
 constexpr double kOfSolids =
-    3.0;  // nats: a joint of solid bodies does not change in the middle of a record, unless somebody works on it
+    2.0;  // nats: a joint of solid bodies does not change in the middle of a record, unless somebody works on it
 constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // of speed, of all laws together
 
 void change(const Effect& e, const Body& body, Law& law) {

@@ -6,7 +6,7 @@ namespace driftwright::effects {
 namespace {
 
 // Nats: between two bodies that touch there is a path of heat as well; where the scenario has none, two things would have to be wrong at once.
-constexpr double kTouchWithoutPath = 3.0;
+constexpr double kTouchWithoutPath = 2.0;
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kDetachment, [sensor = e.place, share = e["share"], body = e.references.at("body")](Readings& r) {

@@ -27,6 +27,7 @@ effects:
   - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
   - {type: link, node: head, to: column, conductance: 12 W/K}
   - {type: link, node: column, to: hall, conductance: 14 W/K}
+  - {type: link, node: head, to: hall, conductance: 4 W/K}
 hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
 sensors:
   - {name: t_head, node: head}

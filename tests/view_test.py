@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """`driftwright view` in a real browser: what the page computes against `predict` and `run`, script of its frames, its picture, hostile names, bad input.
 
-    view_test.py PROGRAM FOLDER_OF_THE_PROJECT
+    view_test.py PROGRAM FOLDER_OF_THE_PROJECT [frames]     frames: on a quiet machine, fails above 8 ms of script a frame (bench/README.md)
 """
 import csv
 import json
@@ -114,12 +114,7 @@ def check(program, top, browser, folder):
         told = peak_after(summary, name)
         most = max(map(abs, left))
         expect(abs(most - told) <= 0.1, f"FP3, {name}: the correction leaves {most:.2f} um; run says {told:.2f}")
-    frames = [report["frames"]]
-    while len(frames) < 4 and any(best_of(frames, act)["p95"] > MOST_FRAME_MS for act in frames[0]):
-        frames.append(report_of(browser, page)[0]["frames"])
-    for act in frames[0]:
-        best = best_of(frames, act)
-        expect(best["p95"] <= MOST_FRAME_MS, f"script of a frame while {act} [ms], of {len(frames)} reports: {best}")
+    measure_frames(browser, page, report["frames"], judges=sys.argv[3:] == ["frames"])
     expect(0.1 < report["picture"]["covered"] < 0.9, f"the picture: {report['picture']}")
 
     # A chiller that switches every four minutes: `predict` at the scenario's own tolerances is 0.06 K from itself at tight ones, by the times of
@@ -152,6 +147,16 @@ def check(program, top, browser, folder):
     browse(browser, page, "--window-size=1200,1400", f"--screenshot={folder}/fp3.png", f"file://{page}")
     expect((folder / "fp3.png").exists() and (folder / "fp3.png").stat().st_size > 60e3, "a screenshot of the page is no empty one")
     return 1 if failures else 0
+
+
+def measure_frames(browser, page, first, judges):
+    """Milliseconds of script a frame; on a machine with other work they say nothing, so they are judged where that was asked for."""
+    frames = [first]
+    while judges and len(frames) < 4 and any(best_of(frames, act)["p95"] > MOST_FRAME_MS for act in first):
+        frames.append(report_of(browser, page)[0]["frames"])
+    for act in first:
+        best = best_of(frames, act)
+        expect(not judges or best["p95"] <= MOST_FRAME_MS, f"script of a frame while {act} [ms], of {len(frames)} reports: {best}")
 
 
 def best_of(frames, act):
