@@ -332,6 +332,7 @@ int app::command_line(int argc, const char* const* argv) {
   app::InitOptions init;
   app::SimulateOptions simulate;
   app::PredictOptions predict;
+  app::WarmUpVerbOptions warmup;
   app::ScheduleVerbOptions schedule;
   app::InjectOptions inject;
   app::RecordOptions select, validate;
@@ -375,6 +376,18 @@ int app::command_line(int argc, const char* const* argv) {
       ->required();
   add_warm_start(verb, predict.start, predict.after_pause, predict.model);
   verb->callback([&] { app::predict(predict); });
+  verb = add_verb(cli, "warmup", "the shortest warm-up behind which a job keeps its tolerance (docs/warmup.md)",
+                  "warmup scenarios/fp3_spindle.yaml --then chaotic --tolerance '12 um' -o results/warmup", warmup);
+  verb->add_option("--then", warmup.then, "the job: a cyclogram of the scenario, a record CSV or an NC program")->required();
+  verb->add_option("--tolerance", warmup.tolerance, "of the job's drift, such as '10 um' [the study's, else 10 um]");
+  verb->add_option("--margin", warmup.margin,
+                   "share of the tolerance that is kept free for what the model does not know, such as '20 %' [none]");
+  verb->add_option("--speed-limit", warmup.speed_limit,
+                   "of the warm-up, such as '3000 rpm' [the fastest of the scenario and the job]");
+  verb->add_option("--time-limit", warmup.time_limit, "of the warm-up, such as '2 h' [4 h]");
+  verb->add_option("--channel", warmup.channels, "displacement that counts; may be repeated [all]")->allow_extra_args(false);
+  add_warm_start(verb, warmup.start, warmup.after_pause, warmup.model);
+  verb->callback([&] { app::warmup(warmup); });
   verb = add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
                   "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/part", schedule);
   verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/schedule.md)")

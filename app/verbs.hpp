@@ -48,6 +48,20 @@ struct PredictOptions : CommonOptions {
 };
 void predict(const PredictOptions& options);
 
+struct WarmUpVerbOptions : CommonOptions {
+  std::string then;                   ///< the job: a cyclogram of the scenario, a record CSV or an NC program
+  std::string tolerance;              ///< such as "10 um"; empty: the study's, else 10 um
+  std::string margin;                 ///< share of it that is kept free, such as "20 %"; empty: none
+  std::string speed_limit;            ///< such as "3000 rpm"; empty: the fastest of the scenario and the job
+  std::string time_limit;             ///< such as "2 h"; empty: 4 h
+  std::vector<std::string> channels;  ///< displacements; empty: all
+  std::string start;                  ///< these as in PredictOptions
+  std::string after_pause;
+  std::string model;
+};
+/// The shortest warm-up behind which a job stays within a tolerance.
+void warmup(const WarmUpVerbOptions& options);
+
 struct ScheduleVerbOptions : CommonOptions {
   std::string program;  ///< NC program
   std::string policy;   ///< empty: the scenario's

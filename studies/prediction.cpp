@@ -163,10 +163,10 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
   return predict_drift(scenario, job, options, listener, verb, models);
 }
 
-Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
-                         const Listener& listener, const std::string& verb, PredictingModels& models) {
+Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
+                   const Listener& listener, const std::string& verb, PredictingModels& models) {
   const scenarios::MachineModel& own = scenarios::require_machine(scenario, verb);
-  const Before before = read_before(scenario, options, job.name);
+  Before before = read_before(scenario, options, job.name);
   scenarios::JobSeries series = scenarios::job_series(job, before.order, own.hall, scenario.solver.output_interval_s);
   scenarios::check_cyclogram(scenario, series.cyclogram);
   scenarios::Scenario asked = scenario;
@@ -179,19 +179,30 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
     hall.time_s.push_back(hall.time_s.back() + 1.0);
     hall.value.push_back(value_K);
   }
-  const std::shared_ptr<const scenarios::Model> opened = models.of(asked, series.cyclogram, listener);
-  const scenarios::Model& model = *opened;
-  listener.begin(fmt::format("simulating {:.0f} min", series.cyclogram.duration_s() / 60.0));
-  scenarios::MachineModel machine = own;
-  machine.hall = series.hall;
+  Outlook ahead{.machine = own,
+                .model = models.of(asked, series.cyclogram, listener),
+                .start = {},
+                .series = std::move(series),
+                .before = std::move(before.record),
+                .started_from = start_words(before, options)};
+  ahead.machine.hall = ahead.series.hall;
   // The model's start is that of the scenario's hall; a run that began in another hall began as much warmer.
-  double warmer_K = scenarios::warmer_start_K(machine, series.cyclogram);
-  if (machine.start == scenarios::Start::kHall || machine.start == scenarios::Start::kSteady)
-    warmer_K += scenarios::felt_hall_at_start_K(machine) - scenarios::felt_hall_at_start_K(own);
+  double warmer_K = scenarios::warmer_start_K(ahead.machine, ahead.series.cyclogram);
+  if (own.start == scenarios::Start::kHall || own.start == scenarios::Start::kSteady)
+    warmer_K += scenarios::felt_hall_at_start_K(ahead.machine) - scenarios::felt_hall_at_start_K(own);
+  ahead.start = scenarios::start_of(own, *ahead.model) + warmer_K * scenarios::ones_of(*ahead.model);
+  return ahead;
+}
+
+Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
+                         const Listener& listener, const std::string& verb, PredictingModels& models) {
+  Outlook ahead = outlook_of(scenario, job, options, listener, verb, models);
+  scenarios::JobSeries& series = ahead.series;
   const double total_s = series.cyclogram.duration_s();
+  listener.begin(fmt::format("simulating {:.0f} min", total_s / 60.0));
   const scenarios::SimulatedRun run = scenarios::simulate_run(
-      machine, scenario.solver.transient, model, scenarios::start_of(own, model) + warmer_K * scenarios::ones_of(model),
-      series.cyclogram, series.time_s, [&](double time_s, const Eigen::VectorXd&) { listener.share(time_s / total_s); });
+      ahead.machine, scenario.solver.transient, *ahead.model, ahead.start, series.cyclogram, series.time_s,
+      [&](double time_s, const Eigen::VectorXd&) { listener.share(time_s / total_s); });
   const std::size_t first = series.parts.front().first;
   for (scenarios::PartRows& rows : series.parts) {
     rows.first -= first;
@@ -199,9 +210,9 @@ Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& j
   }
   return {.record = from_row(run.record, first),
           .parts = std::move(series.parts),
-          .predicted_by = model.words(),
-          .started_from = start_words(before, options),
-          .start_checks = before.record ? start_checks(*before.record, run.record) : std::vector<StartCheck>{}};
+          .predicted_by = ahead.model->words(),
+          .started_from = std::move(ahead.started_from),
+          .start_checks = ahead.before ? start_checks(*ahead.before, run.record) : std::vector<StartCheck>{}};
 }
 
 compensation::Iso230Figures iso_figures(const Prediction& prediction) {

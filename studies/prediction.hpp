@@ -2,6 +2,7 @@
 // The drift of a job ahead of its run, by the machine's model: what `predict` shows and `schedule` corrects.
 
 #include <memory>
+#include <optional>
 
 #include "compensation/judging/iso230_3.hpp"
 #include "machine/job_series.hpp"
@@ -51,6 +52,19 @@ class PredictingModels {
   struct Known;
   std::unique_ptr<Known> known_;
 };
+
+/// A machine that is about to do a job.
+struct Outlook {
+  scenarios::MachineModel machine;  ///< the scenario's, in the hall of the series
+  std::shared_ptr<const scenarios::Model> model;
+  Eigen::VectorXd start;        ///< state of the model at the start of the series
+  scenarios::JobSeries series;  ///< what was before, the pause, the job
+  std::optional<Record> before; ///< the record that the series starts from
+  std::string started_from;     ///< in words; empty: the scenario's start
+};
+/// @param job, verb  as predict_drift() @throws InputError  the same
+[[nodiscard]] Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, const PredictionOptions& options,
+                                 const Listener& listener, const std::string& verb, PredictingModels& models);
 
 /// Simulates the job, after what was before it.
 /// @param job   a cyclogram that has passed check_cyclogram()

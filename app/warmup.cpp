@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/results.hpp"
+#include "base/quantity.hpp"
+#include "findings/warm_up_document.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
+
+namespace driftwright::app {
+namespace {
+
+/// @param least, most  in `unit`
+double quantity(const std::string& option, const std::string& text, const char* unit, double least, double most) {
+  try {
+    const double value = parse_quantity(text, unit);
+    if (value >= least && value <= most) return value;
+  } catch (const RangeError& e) {
+    throw InputError(fmt::format("{} '{}': {}", option, text, e.what()));
+  }
+  throw InputError(fmt::format("{} '{}': {:g} to {:g} {} is allowed", option, text, least, most, unit));
+}
+
+/// A cyclogram of the scenario, a record CSV, or an NC program as the scenario's schedule reads it.
+Cyclogram job_of(const scenarios::Scenario& scenario, const std::string& then) {
+  const std::filesystem::path path(then);
+  const bool is_known =
+      std::any_of(scenario.cyclograms.begin(), scenario.cyclograms.end(), [&](const auto& c) { return c.name == then; });
+  if (is_known || path.extension() == ".csv" || !std::filesystem::is_regular_file(path))
+    return studies::named_cyclogram(scenario, then);
+  if (!scenario.schedule)
+    throw InputError(fmt::format("{}: an NC program needs the scenario's key `schedule`, which says how fast rapids are, "
+                                 "such as\n  schedule: {{tolerance: 10 um, rapid: 15 m/min}}",
+                                 then));
+  const scenarios::ScheduleSettings& settings = *scenario.schedule;
+  Cyclogram job = scenarios::cyclogram_of(read_nc_program(then, settings.nc), path.stem().string(), settings.resolution_s,
+                                          settings.cutting_power_W);
+  if (job.sections.empty()) throw InputError(fmt::format("{}: the program takes no time; it warms nothing", then));
+  scenarios::check_cyclogram(scenario, job);
+  return job;
+}
+
+}  // namespace
+
+void warmup(const WarmUpVerbOptions& options) {
+  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  (void)scenarios::require_machine(scenario, "warmup");
+  studies::WarmUpOptions how{.from = {.start = options.start, .after_pause = options.after_pause, .model = options.model},
+                             .channels = options.channels,
+                             .tolerance_um = scenario.study ? scenario.study->tolerance_um : 10.0};
+  if (!options.tolerance.empty()) how.tolerance_um = 1e6 * quantity("--tolerance", options.tolerance, "m", 1e-9, 1e-2);
+  if (!options.margin.empty()) how.kept_free = quantity("--margin", options.margin, "1", 0.0, 0.95);
+  if (!options.speed_limit.empty()) how.most_speed_rpm = quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
+  if (!options.time_limit.empty()) how.most_s = quantity("--time-limit", options.time_limit, "s", 60.0, 7.0 * 86400.0);
+  const Cyclogram job = job_of(scenario, options.then);
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress(options.quiet);
+  const studies::WarmUpPlan plan = studies::plan_warm_up(scenario, job, how, progress.listener());
+  const std::string what = fmt::format("warm-up of {} before {}", scenario.name, job.name);
+  if (!plan.staged.sections.empty()) {
+    folder.write_text("warmup.ngc", studies::warm_up_program(plan.staged.sections, what));
+    std::string rows;
+    for (const std::string& line : provenance_lines(folder.made_by(), what)) rows += fmt::format("# {}\n", line);
+    rows += "time_s,speed_rpm\n";
+    double time_s = 0.0;
+    for (const Cyclogram::Section& section : plan.staged.sections) {
+      rows += fmt::format("{:.0f},{:.0f}\n", time_s, section.drive.speed_rpm);
+      time_s += section.duration_s;
+    }
+    folder.write_text("warmup.csv", rows + fmt::format("{:.0f},0\n", time_s));
+  }
+  folder.write_text("record.csv", record_csv(plan.job_warm, provenance_lines(folder.made_by(), fmt::format("{} behind its {}", job.name, what))));
+  finish(findings::document_of(plan, scenario, job, options.then, folder.made_by()), folder, progress, options);
+}
+
+}  // namespace driftwright::app
