@@ -22,7 +22,7 @@ struct WarmUpOptions {
 
 /// What a job does behind one way to begin it.
 struct WarmUp {
-  std::string way;                              ///< in words
+  std::string way = {};                           ///< in words
   std::vector<Cyclogram::Section> sections = {};  ///< before the job; empty: it begins at once
   bool is_enough = false;                       ///< the job then stays within the tolerance
   double peak_um = 0.0;                         ///< of the job's drift from its first row
@@ -39,13 +39,11 @@ struct WarmUpLevel {
 struct WarmUpPlan {
   std::vector<std::string> channels;
   double tolerance_um = 0.0, most_speed_rpm = 0.0, most_s = 0.0, kept_free = 0.0;
-  WarmUp at_once, at_rest, by_jobs, constant, staged;
-  std::vector<WarmUpLevel> levels;  ///< by time
-  Record job_at_once, job_warm;     ///< the job's rows at once, and behind the shortest warm-up that is enough or comes nearest
+  WarmUp at_once = {}, at_rest = {}, by_jobs = {}, constant = {}, staged = {};
+  std::vector<WarmUpLevel> levels = {};   ///< by time
+  Record job_at_once = {}, job_warm = {};  ///< the job's rows at once, and behind the shortest warm-up that is enough or comes nearest
   int n_tried = 0;                  ///< programmes run on the model
-  std::string predicted_by, started_from;
-
-  [[nodiscard]] const WarmUp& shortest() const { return staged; }
+  std::string predicted_by = {}, started_from = {};
 };
 
 /// Looks for the shortest warm-ups.
