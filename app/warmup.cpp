@@ -18,7 +18,8 @@ double quantity(const std::string& option, const std::string& text, const char* 
   } catch (const RangeError& e) {
     throw InputError(fmt::format("{} '{}': {}", option, text, e.what()));
   }
-  throw InputError(fmt::format("{} '{}': {:g} to {:g} {} is allowed", option, text, least, most, unit));
+  const std::string of = unit == std::string_view("1") ? "" : fmt::format(" {}", unit);
+  throw InputError(fmt::format("{} '{}': {:g}{} to {:g}{} is allowed", option, text, least, of, most, of));
 }
 
 /// A cyclogram of the scenario, a record CSV, or an NC program as the scenario's schedule reads it.
@@ -48,7 +49,7 @@ void warmup(const WarmUpVerbOptions& options) {
   studies::WarmUpOptions how{.from = {.start = options.start, .after_pause = options.after_pause, .model = options.model},
                              .channels = options.channels,
                              .tolerance_um = scenario.study ? scenario.study->tolerance_um : 10.0};
-  if (!options.tolerance.empty()) how.tolerance_um = 1e6 * quantity("--tolerance", options.tolerance, "m", 1e-9, 1e-2);
+  if (!options.tolerance.empty()) how.tolerance_um = quantity("--tolerance", options.tolerance, "um", 1e-3, 1e4);
   if (!options.margin.empty()) how.kept_free = quantity("--margin", options.margin, "1", 0.0, 0.95);
   if (!options.speed_limit.empty()) how.most_speed_rpm = quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
   if (!options.time_limit.empty()) how.most_s = quantity("--time-limit", options.time_limit, "s", 60.0, 7.0 * 86400.0);

@@ -108,12 +108,14 @@ Plot programme_plot(const WarmUpPlan& plan) {
   for (const WarmUp* way : {&plan.constant, &plan.staged}) {
     Series series{.label = way->way, .style = Series::Style::kSteps};
     double time_s = -way->duration_s();
+    series.x.push_back(time_s / 60.0);  // from rest
+    series.y.push_back(0.0);
     for (const Cyclogram::Section& section : way->sections) {
       series.x.push_back(time_s / 60.0);
       series.y.push_back(section.drive.speed_rpm);
       time_s += section.duration_s;
     }
-    if (series.x.empty()) continue;
+    if (way->sections.empty()) continue;
     series.x.push_back(0.0);
     series.y.push_back(series.y.back());
     plot.series.push_back(std::move(series));

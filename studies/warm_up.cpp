@@ -23,6 +23,7 @@ constexpr int kTimes = 16;               // at which one speed is tried before t
 constexpr int kSpeeds = 12;              // up to the limit, of one speed
 constexpr int kFirst = 6, kSecond = 7, kShares = 7;  // of two: speeds, and shares of the first in the time
 constexpr int kMostParts = 200;
+constexpr double kWorthTelling = 0.99;  // of a peak: a time that is not enough and takes off less is not worth the wait
 
 double total_s(const Sections& sections) {
   double sum_s = 0.0;
@@ -93,7 +94,7 @@ class Trials {
     }
   }
 
-  /// Rows of the last of `n_jobs` jobs behind a warm-up, from its start on.
+  /// Rows of the job behind a warm-up, times and displacements from its first row on.
   [[nodiscard]] Record job_rows(const Sections& sections) const {
     Cyclogram all = before_;
     all.sections.insert(all.sections.end(), sections.begin(), sections.end());
@@ -165,7 +166,7 @@ class Search {
     for (int i = 1; i <= kTimes; ++i) {
       const double time_s = most_s * std::pow(static_cast<double>(i) / kTimes, 2.0);
       const WarmUp next = constant(time_s, share);
-      if (next.peak_um < best.peak_um) best = next;
+      if (next.peak_um < kWorthTelling * best.peak_um) best = next;
       if (next.is_enough) {
         best = next;
         break;

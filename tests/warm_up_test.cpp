@@ -1,0 +1,181 @@
+// Warm-ups against closed forms of one and two bodies.
+
+#include "studies/warm_up.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "tests/temporary_file.hpp"
+
+namespace driftwright::studies {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+// 20 K at 1000 rpm, 4000 s, 1 um/K.
+constexpr const char* kOneBody = R"(name: one_body
+reference_temperature: 20 degC
+hall: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: body, capacity: 20 kJ/K}
+  - {type: heat_source, node: body, power: 100 W, at_speed: 1000 rpm, exponent: 1}
+  - {type: link, node: body, to: hall, conductance: 5 W/K}
+sensors: [{name: t_body, node: body}]
+displacements: [{name: nose, sensitivities: [{node: body, sensitivity: 1 um/K}]}]
+cyclograms:
+  job: [[120 min, 600 rpm]]
+  before: [[30 min, 1000 rpm]]
+)";
+
+WarmUpPlan planned(const std::string& text, const WarmUpOptions& options) {
+  const scenarios::Scenario scenario = scenarios::read_scenario(write_file("warm_up.yaml", text));
+  return plan_warm_up(scenario, scenario.cyclogram("job"), options, {});
+}
+
+// The job ends at 12 K and goes 1 - e^-1.8 of the way there: it drifts by 3 um from 8.406 K on, which 1000 rpm reach after 2181 s.
+TEST(WarmUp, OfOneBodyIsTheFastestSpeedUntilTheJobsOwnWarmthIsNear) {
+  const WarmUpPlan plan = planned(kOneBody, {.tolerance_um = 3.0});
+  const double needed_K = 12.0 - 3.0 / (1.0 - std::exp(-7200.0 / 4000.0));
+  const double least_s = -4000.0 * std::log(1.0 - needed_K / 20.0);
+  EXPECT_NEAR(least_s, 2181.0, 1.0);
+  EXPECT_FALSE(plan.at_once.is_enough);
+  EXPECT_NEAR(plan.at_once.peak_um, 12.0 * (1.0 - std::exp(-1.8)), 0.01);
+  EXPECT_FALSE(plan.at_rest.is_enough);
+  for (const WarmUp* way : {&plan.constant, &plan.staged}) {
+    EXPECT_TRUE(way->is_enough);
+    EXPECT_NEAR(way->duration_s(), least_s, 0.006 * least_s + 1.0) << way->way;
+    EXPECT_EQ(way->sections.front().drive.speed_rpm, 1000.0);
+    EXPECT_LE(way->peak_um, 3.0);
+  }
+  // The job warms for as long as one part, and from then on drifts by e^-1.8 of what it did: enough after one.
+  EXPECT_TRUE(plan.by_jobs.is_enough);
+  EXPECT_NEAR(plan.by_jobs.duration_s(), 7200.0, 1e-6);
+  EXPECT_NEAR(plan.by_jobs.peak_um, 12.0 * std::exp(-1.8) * (1.0 - std::exp(-1.8)), 0.01);
+  ASSERT_GT(plan.levels.size(), 3u);
+  for (std::size_t i = 1; i < plan.levels.size(); ++i) {
+    EXPECT_LE(plan.levels[i].staged_um, plan.levels[i].constant_um);
+    EXPECT_LE(plan.levels[i].constant_um, plan.levels[i - 1].constant_um + 1e-9);
+  }
+}
+
+TEST(WarmUp, GoesOnFromWhatWasBeforeAndTheRestBehindIt) {
+  const WarmUpPlan plan = planned(kOneBody, {.from = {.start = "before", .after_pause = "20 min"}, .tolerance_um = 3.0});
+  const double now_K = 20.0 * (1.0 - std::exp(-1800.0 / 4000.0)) * std::exp(-1200.0 / 4000.0);
+  const double needed_K = 12.0 - 3.0 / (1.0 - std::exp(-1.8));
+  const double least_s = 4000.0 * std::log((20.0 - now_K) / (20.0 - needed_K));
+  EXPECT_NEAR(plan.staged.duration_s(), least_s, 0.006 * least_s + 1.0);
+  const WarmUpPlan cold = planned(kOneBody, {.from = {.start = "before", .after_pause = "10 h"}, .tolerance_um = 3.0});
+  EXPECT_NEAR(cold.staged.duration_s(), 2181.0, 15.0);
+}
+
+TEST(WarmUp, OfAMachineThatIsTooWarmIsRest) {  // 20 K from before, and a job that keeps it cold
+  std::string text = kOneBody;
+  text.replace(text.find("600 rpm"), 7, "100 rpm");
+  text.replace(text.find("[[30 min"), 8, "[[20 h");
+  const WarmUpPlan plan = planned(text, {.from = {.start = "before"}, .tolerance_um = 3.0});
+  const double needed_K = 2.0 + 3.0 / (1.0 - std::exp(-1.8));
+  EXPECT_TRUE(plan.at_rest.is_enough);
+  EXPECT_NEAR(plan.at_rest.duration_s(), 4000.0 * std::log(20.0 / needed_K), 30.0);
+  EXPECT_LE(plan.staged.duration_s(), 1.006 * plan.at_rest.duration_s() + 1.0);
+}
+
+TEST(WarmUp, KeepsAMarginFreeAndAsksForNothingWhereTheJobIsWithinItAtOnce) {
+  const WarmUpPlan plan = planned(kOneBody, {.tolerance_um = 4.0, .kept_free = 0.25});
+  EXPECT_LE(plan.staged.peak_um, 3.0);
+  EXPECT_NEAR(plan.staged.duration_s(), 2181.0, 15.0);
+  const WarmUpPlan none = planned(kOneBody, {.tolerance_um = 15.0});
+  EXPECT_TRUE(none.at_once.is_enough);
+  EXPECT_TRUE(none.staged.sections.empty());
+}
+
+// A spindle that warms in 8 min on a column that takes hours: full speed makes the column warm and the spindle too warm, which a second speed mends.
+constexpr const char* kTwoBodies = R"(name: two_bodies
+reference_temperature: 20 degC
+hall: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: spindle, capacity: 5 kJ/K}
+  - {type: node, node: column, capacity: 30 kJ/K}
+  - {type: heat_source, node: spindle, power: 200 W, at_speed: 1000 rpm, exponent: 1}
+  - {type: link, node: spindle, to: column, conductance: 10 W/K}
+  - {type: link, node: column, to: hall, conductance: 8 W/K}
+sensors: [{name: t_spindle, node: spindle}]
+displacements: [{name: nose, sensitivities: [{node: spindle, sensitivity: 1 um/K}, {node: column, sensitivity: 1 um/K}]}]
+cyclograms:
+  job: [[180 min, 400 rpm]]
+  fast: [[1 min, 1000 rpm]]
+solver: {relative_tolerance: 1e-7, absolute_tolerance: 1e-6 K}
+)";
+
+/// The same two bodies by eigenvectors.
+class TwoBodies {
+ public:
+  TwoBodies() {
+    Eigen::Matrix2d k;
+    k << 10.0 / 5e3, -10.0 / 5e3, -10.0 / 30e3, 18.0 / 30e3;
+    const Eigen::EigenSolver<Eigen::Matrix2d> of(k);
+    rate_ = of.eigenvalues().real();
+    v_ = of.eigenvectors().real();
+    inverse_ = v_.inverse();
+    steady_at_1000_ = k.inverse() * Eigen::Vector2d(200.0 / 5e3, 0.0);
+  }
+  [[nodiscard]] Eigen::Vector2d after(const Eigen::Vector2d& from_K, double speed_rpm, double time_s) const {
+    const Eigen::Vector2d end = speed_rpm / 1000.0 * steady_at_1000_, decay = (-rate_ * time_s).array().exp();
+    return end + v_ * (decay.cwiseProduct(inverse_ * (from_K - end)));
+  }
+  [[nodiscard]] double peak_um(const Eigen::Vector2d& start_K) const {
+    double peak = 0.0;
+    for (int minute = 1; minute <= 180; ++minute)
+      peak = std::max(peak, std::abs(after(start_K, 400.0, 60.0 * minute).sum() - start_K.sum()));
+    return peak;
+  }
+
+ private:
+  Eigen::Vector2d rate_, steady_at_1000_;
+  Eigen::Matrix2d v_, inverse_;
+};
+
+TEST(WarmUp, OfTwoBodiesIsTheShortestOfAllTriedOneByOne) {
+  const WarmUpPlan plan = planned(kTwoBodies, {.tolerance_um = 3.0});
+  ASSERT_TRUE(plan.constant.is_enough);
+  ASSERT_TRUE(plan.staged.is_enough);
+  const TwoBodies machine;
+  Eigen::Vector2d state_K = Eigen::Vector2d::Zero();
+  for (const auto& section : plan.staged.sections) state_K = machine.after(state_K, section.drive.speed_rpm, section.duration_s);
+  EXPECT_NEAR(machine.peak_um(state_K), plan.staged.peak_um, 0.01);
+
+  double least_s = 1e9;
+  for (double time_s = 60.0; time_s < plan.constant.duration_s() && least_s > 1e8; time_s += 15.0) {
+    for (int i = 1; i <= 20; ++i) {
+      for (int share = 1; share < 25; ++share) {
+        const Eigen::Vector2d first_K = machine.after({0.0, 0.0}, 50.0 * i, time_s * share / 25.0);
+        for (int j = 0; j <= 20; ++j) {
+          if (machine.peak_um(machine.after(first_K, 50.0 * j, time_s * (25 - share) / 25.0)) <= 3.0) least_s = time_s;
+        }
+      }
+    }
+  }
+  EXPECT_LE(plan.staged.duration_s(), 1.02 * least_s);
+  EXPECT_LT(plan.staged.duration_s(), 0.85 * plan.constant.duration_s());
+}
+
+TEST(WarmUp, RefusesWhatCannotBe) {
+  EXPECT_THAT([] { (void)planned(kOneBody, {.channels = {"nos"}}); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("--channel 'nos'"), HasSubstr("there are nose"))));
+  std::string still = kOneBody;
+  for (const char* speed : {"600 rpm", "1000 rpm]]"}) still.replace(still.find(speed), 4, "0   ");
+  EXPECT_THAT([&] { (void)planned(still, {}); }, ThrowsMessage<InputError>(HasSubstr("--speed-limit")));
+}
+
+TEST(WarmUp, IsWrittenAsAProgram) {
+  EXPECT_EQ(warm_up_program({{600.0, {.speed_rpm = 2000.0}}, {90.0, {.speed_rpm = 500.0}}, {60.0, {}}}, "warm-up of a"),
+            "(warm-up of a)\nG21 G94\nS2000 M3\nG4 P600 (10 min)\nS500\nG4 P90 (1.5 min)\nM5\nG4 P60 (1 min)\nM2\n");
+}
+
+}  // namespace
+}  // namespace driftwright::studies
