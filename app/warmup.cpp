@@ -58,10 +58,12 @@ void warmup(const WarmUpVerbOptions& options) {
   Progress progress(options.quiet);
   const studies::WarmUpPlan plan = studies::plan_warm_up(scenario, job, how, progress.listener());
   const std::string what = fmt::format("warm-up of {} before {}", scenario.name, job.name);
-  if (!plan.staged.sections.empty()) {
+  if (plan.staged.is_enough && !plan.staged.sections.empty()) {
     folder.write_text("warmup.ngc", studies::warm_up_program(plan.staged.sections, what));
     std::string rows;
-    for (const std::string& line : provenance_lines(folder.made_by(), what)) rows += fmt::format("# {}\n", line);
+    const std::string from = plan.started_from.empty() ? "from the scenario's start" : "after " + plan.started_from;
+    for (const std::string& line : provenance_lines(folder.made_by(), fmt::format("{}, {}", what, from)))
+      rows += fmt::format("# {}\n", line);
     rows += "time_s,speed_rpm\n";
     double time_s = 0.0;
     for (const Cyclogram::Section& section : plan.staged.sections) {

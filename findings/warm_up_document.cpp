@@ -18,8 +18,6 @@ using output::Verdict;
 using studies::WarmUp;
 using studies::WarmUpPlan;
 
-constexpr double kShorter = 0.3;  // a second speed that saves less is not worth a programme of its own
-
 std::string speeds_words(const std::vector<Cyclogram::Section>& sections) {
   if (sections.size() > 6) return fmt::format("{} sections", sections.size());
   std::vector<std::string> words;
@@ -32,7 +30,7 @@ std::string speeds_words(const std::vector<Cyclogram::Section>& sections) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-Table ways_table(const WarmUpPlan& plan) {
+Table ways_table(const WarmUpPlan& plan, const Cyclogram& job) {
   Table table{.key = "ways",
               .title = "Ways to begin",
               .caption = "Peak: of the job's drift from its first row, where the tool is set. Where no time is enough, the least peak that was found.",
@@ -43,42 +41,58 @@ Table ways_table(const WarmUpPlan& plan) {
                           {.key = "channel", .title = "of"},
                           {.key = "programme", .title = "programme"}}};
   for (const WarmUp* way : {&plan.at_once, &plan.at_rest, &plan.by_jobs, &plan.constant, &plan.staged}) {
+    const bool is_tried = way != &plan.by_jobs || !way->sections.empty() || job.duration_s() <= plan.most_s;
     table.rows.push_back({way->way, way->is_enough, way->duration_s() / 60.0, way->peak_um, way->peak_channel,
-                          way->sections.empty() ? "nothing" : speeds_words(way->sections)});
+                          !is_tried               ? "not tried: one part is longer than the time limit"
+                          : way->sections.empty() ? "nothing"
+                                                  : speeds_words(way->sections)});
   }
   return table;
 }
 
+double kept_um(const WarmUpPlan& plan) {
+  return plan.tolerance_um * (1.0 - plan.kept_free);
+}
+
+std::string tolerance_words(const WarmUpPlan& plan) {
+  if (plan.kept_free == 0.0) return fmt::format("{:g} µm", plan.tolerance_um);
+  return fmt::format("{:.3g} µm, of {:g} µm with {:.0f} % kept free", kept_um(plan), plan.tolerance_um, 100.0 * plan.kept_free);
+}
+
 Verdict verdict_of(const WarmUpPlan& plan, const Cyclogram& job) {
-  const std::string tolerance = fmt::format("{:g} µm", plan.tolerance_um);
+  const std::string tolerance = tolerance_words(plan);
   if (plan.at_once.is_enough)
     return {.kind = Verdict::Kind::kGood,
             .title = "No warm-up is needed",
-            .text = fmt::format("{} drifts by {:.1f} µm at most when it begins at once, within {}.", job.name, plan.at_once.peak_um, tolerance)};
-  if (!plan.staged.is_enough)
+            .text = fmt::format("{} drifts by {:.2f} µm at most when it begins at once, within {}.", job.name,
+                                plan.at_once.peak_um, tolerance)};
+  if (!plan.staged.is_enough) {
+    std::string text = fmt::format("Of warm-ups up to {:.0f} min and {:.0f} rpm none was found behind which {} drifts by less than {:.2f} µm ({}); "
+                                   "allowed are {}.",
+                                   plan.most_s / 60.0, plan.most_speed_rpm, job.name, plan.staged.peak_um,
+                                   plan.staged.peak_channel, tolerance);
+    if (plan.by_jobs.is_enough)
+      text += fmt::format(" Behind {:.0f} min of the job itself it drifts by {:.2f} µm: the parts before are the warm-up.",
+                          plan.by_jobs.duration_s() / 60.0, plan.by_jobs.peak_um);
     return {.kind = Verdict::Kind::kBad,
-            .title = "No warm-up is enough",
-            .text = fmt::format("Within {:.0f} min and {:.0f} rpm the job drifts by {:.1f} µm at least ({}), more than {}: its own changes of speed move "
-                                "the machine by as much. Correct the drift (`schedule`, `compensate`), or allow more time or speed.",
-                                plan.most_s / 60.0, plan.most_speed_rpm, plan.staged.peak_um, plan.staged.peak_channel, tolerance)};
-  std::string text = fmt::format("{}; then {} drifts by {:.1f} µm at most, within {}.", speeds_words(plan.staged.sections), job.name,
-                                 plan.staged.peak_um, tolerance);
-  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  if (plan.constant.is_enough) {
-    const double saved = 1.0 - plan.staged.duration_s() / plan.constant.duration_s();
-    text += fmt::format(" The best single speed takes {:.1f} min", plan.constant.duration_s() / 60.0);
-    const bool at_limit = !plan.constant.sections.empty() && plan.constant.sections.front().drive.speed_rpm > 0.95 * plan.most_speed_rpm;
-    if (saved >= kShorter) {
-      text += fmt::format(", {:.0f} % more of it saved by two.", 100.0 * saved);
-    } else if (at_limit) {
-      text += fmt::format("; two save {:.0f} %, since the fastest speed already is the best single one: what is missing is heat, and nothing brings it sooner.", 100.0 * saved);
-    } else {
-      text += fmt::format("; two save {:.0f} %: the single speed that is best leaves the machine nearly as the job keeps it.", 100.0 * saved);
-    }
-  } else {
-    text += " No single speed is enough.";
+            .title = "No warm-up was found that is enough",
+            .text = text + " Allow more time or speed, or correct the drift (`schedule`, `compensate`)."};
   }
-  return {.kind = Verdict::Kind::kGood, .title = fmt::format("Warm up for {:.1f} min", plan.staged.duration_s() / 60.0), .text = text};
+  std::string text = fmt::format("{}; then {} drifts by {:.2f} µm at most, within {}.", speeds_words(plan.staged.sections),
+                                 job.name, plan.staged.peak_um, tolerance);
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  if (plan.staged.sections.size() == 1) {
+    text += " No programme of two speeds was found that is shorter.";
+  } else if (!plan.constant.is_enough) {
+    text += " No single speed was found that is enough.";
+  } else {
+    const double saved = 1.0 - plan.staged.duration_s() / plan.constant.duration_s();
+    text += fmt::format(" The best single speed takes {:.1f} min; the second saves {:.0f} % of that.",
+                        plan.constant.duration_s() / 60.0, 100.0 * saved);
+  }
+  return {.kind = Verdict::Kind::kGood,
+          .title = fmt::format("Warm up for {:.1f} min", plan.staged.duration_s() / 60.0),
+          .text = text};
 }
 
 Plot levels_plot(const WarmUpPlan& plan) {
@@ -86,7 +100,7 @@ Plot levels_plot(const WarmUpPlan& plan) {
             .x_label = "warm-up [min]",
             .y_label = "least peak of the job's drift [µm]",
             .series = {{.label = "one speed"}, {.label = "two speeds"}},
-            .bands = {{.label = "tolerance", .low = 0.0, .high = plan.tolerance_um}},
+            .bands = {{.label = "allowed", .low = 0.0, .high = kept_um(plan)}},
             .marks = {},
             .half_width = true};
   for (const studies::WarmUpLevel& level : plan.levels) {
@@ -128,7 +142,7 @@ Plot job_plot(const WarmUpPlan& plan, const Cyclogram& job) {
             .x_label = "time in the job [min]",
             .y_label = "drift from its first row [µm]",
             .series = {},
-            .bands = {{.label = "tolerance", .low = -plan.tolerance_um, .high = plan.tolerance_um}},
+            .bands = {{.label = "allowed", .low = -kept_um(plan), .high = kept_um(plan)}},
             .marks = section_marks(job)};
   for (const std::string& name : plan.channels) {
     const int color = static_cast<int>(plot.series.size() / 2);
@@ -155,7 +169,7 @@ output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::S
   add(body, Value{.key = "time_limit_min", .words = "time limit", .datum = plan.most_s / 60.0, .unit = "min", .digits = output::decimals(0)});
   add(body, Value{.key = "predicted_by", .datum = plan.predicted_by});
   add(body, Value{.key = "started_from", .datum = plan.started_from.empty() ? output::Datum() : output::Datum(plan.started_from)});
-  add(body, ways_table(plan));
+  add(body, ways_table(plan, job));
   add(body, Value{.key = "programmes_tried", .words = "programmes run on the model", .datum = plan.n_tried});
   add(body, levels_plot(plan));
   add(body, programme_plot(plan));

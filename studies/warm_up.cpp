@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -21,8 +23,10 @@ constexpr double kSpeedStep_rpm = 10.0;  // speeds are whole multiples of it, ti
 constexpr double kExact = 0.005;         // of a warm-up's time: how closely the shortest is looked for
 constexpr int kTimes = 16;               // at which one speed is tried before times are halved
 constexpr int kSpeeds = 12;              // up to the limit, of one speed
-constexpr int kFirst = 6, kSecond = 7, kShares = 7;  // of two: speeds, and shares of the first in the time
+constexpr int kStages = 7, kShares = 7;  // of two: speeds from rest to the limit, and shares of the first in the time
+constexpr int kScanned = 8;              // times at which two are tried where one is never enough
 constexpr int kMostParts = 200;
+constexpr std::size_t kLongestRemark = 200;
 constexpr double kWorthTelling = 0.99;  // of a peak: a time that is not enough and takes off less is not worth the wait
 
 double total_s(const Sections& sections) {
@@ -76,15 +80,15 @@ class Trials {
     }
     if (channels_.empty()) throw InputError(ahead_.machine.where, "`warmup` needs a displacement that drifts: add one to `displacements`");
     before_.name = job.name;
+    reads_back_ = !effects::reading_chain(ahead_.machine.effects, job.name).empty();
     for (const Cyclogram::Section& section : ahead_.series.cyclogram.sections) {
       if (before_.duration_s() >= now_s_) break;
       before_.sections.push_back(section);
     }
     const auto has_thermostats = [](const auto& system) { return !system.thermostats.empty(); };
     const scenarios::Model& model = *ahead_.model;
-    const bool remembers = !effects::reading_chain(ahead_.machine.effects, job.name).empty() ||
-                           (model.reduced() ? has_thermostats(model.reduced()->system) : has_thermostats(model.full()->system));
-    if (!remembers && now_s_ > 0.0) {  // what was before is in the state alone
+    const bool switches = model.reduced() ? has_thermostats(model.reduced()->system) : has_thermostats(model.full()->system);
+    if (!reads_back_ && !switches && now_s_ > 0.0) {  // what was before is in the state alone
       (void)scenarios::simulate_run(ahead_.machine, transient_, model, ahead_.start, before_, {now_s_},
                                     [&](double, const Eigen::VectorXd& state) { now_ = state; });
       transient_.from_s = now_s_;
@@ -102,11 +106,19 @@ class Trials {
     all.sections.insert(all.sections.end(), job_.sections.begin(), job_.sections.end());
     std::vector<double> time_s;
     const double end_s = all.duration_s();
+    if (reads_back_) {  // instruments remember what was before, from the first row on
+      for (double t_s : scenarios::output_times_s(all, interval_s_)) {
+        if (t_s < start_s - 1e-6) time_s.push_back(t_s);
+      }
+    }
+    const auto n_before = static_cast<std::ptrdiff_t>(time_s.size());
     for (double t_s : scenarios::output_times_s(job_, interval_s_)) time_s.push_back(std::min(start_s + t_s, end_s));
     time_s.back() = end_s;
     ++n_tried_;
     Record rows = scenarios::simulate_run(ahead_.machine, transient_, *ahead_.model, now_, all, time_s).record;
+    rows.time_s.erase(rows.time_s.begin(), rows.time_s.begin() + n_before);
     for (double& t_s : rows.time_s) t_s -= start_s;
+    for (Channel& channel : rows.channels) channel.values.erase(channel.values.begin(), channel.values.begin() + n_before);
     for (Channel& channel : rows.channels) {
       if (channel.unit != "um" && channel.unit != "urad") continue;
       const double zero = channel.values.front();
@@ -115,9 +127,17 @@ class Trials {
     return rows;
   }
 
+  /// A programme that the machine has no solution for is not enough.
   [[nodiscard]] WarmUp tried(Sections sections, double tolerance_um) const {
-    const Record rows = job_rows(sections);
     WarmUp result{.way = {}, .sections = std::move(sections)};
+    Record rows;
+    try {
+      rows = job_rows(result.sections);
+    } catch (const SolveError&) {
+      if (result.sections.empty()) throw;
+      result.peak_um = std::numeric_limits<double>::max();
+      return result;
+    }
     for (const std::string& name : channels_) {
       for (double value_um : rows.at(name).values) {
         if (std::abs(value_um) < result.peak_um) continue;
@@ -141,6 +161,7 @@ class Trials {
   Outlook ahead_;
   double now_s_ = 0.0;
   Cyclogram before_;
+  bool reads_back_ = false;  ///< instruments remember
   Eigen::VectorXd now_;
   std::vector<std::string> channels_;
   mutable std::atomic<int> n_tried_ = 0;
@@ -160,28 +181,25 @@ class Search {
 
   /// The least time at one speed; where none is enough, what comes nearest. @param most_s  no longer one is of interest
   [[nodiscard]] WarmUp least_time(double share, double most_s) const {
-    WarmUp best = trials_.tried({}, tolerance_um_);
-    if (best.is_enough) return best;
-    double low_s = 0.0;
-    for (int i = 1; i <= kTimes; ++i) {
-      const double time_s = most_s * std::pow(static_cast<double>(i) / kTimes, 2.0);
-      const WarmUp next = constant(time_s, share);
-      if (next.peak_um < kWorthTelling * best.peak_um) best = next;
-      if (next.is_enough) {
-        best = next;
-        break;
-      }
-      low_s = time_s;
+    const WarmUp at_once = trials_.tried({}, tolerance_um_);
+    if (at_once.is_enough) return at_once;
+    std::vector<double> time_s = {0.0};
+    std::vector<WarmUp> ways = {at_once};
+    while (!ways.back().is_enough && static_cast<int>(ways.size()) <= kTimes) {
+      time_s.push_back(most_s * std::pow(static_cast<double>(ways.size()) / kTimes, 2.0));
+      ways.push_back(constant(time_s.back(), share));
     }
-    if (!best.is_enough) return best;
-    while (best.duration_s() - low_s > std::max(1.0, kExact * best.duration_s())) {
-      const double time_s = std::round(0.5 * (low_s + best.duration_s()));
-      const WarmUp next = constant(time_s, share);
-      if (next.is_enough && next.duration_s() < best.duration_s()) {
-        best = next;
-      } else {
-        low_s = time_s;
-      }
+    // A job may be within the tolerance for a moment between two of these, on the way from too cold to too warm: there the peak has a least.
+    for (std::size_t i = 1; i + 1 < ways.size(); ++i) {
+      if (ways[i].peak_um > ways[i - 1].peak_um || ways[i].peak_um > ways[i + 1].peak_um) continue;
+      const WarmUp least = least_between(time_s[i - 1], time_s[i + 1], share);
+      if (least.is_enough) return shortened(least, time_s[i - 1], share);
+      if (least.peak_um < ways[i].peak_um) ways[i] = least;
+    }
+    if (ways.back().is_enough) return shortened(ways.back(), time_s[time_s.size() - 2], share);
+    WarmUp best = at_once;
+    for (const WarmUp& way : ways) {
+      if (way.peak_um < kWorthTelling * best.peak_um) best = way;
     }
     return best;
   }
@@ -202,10 +220,10 @@ class Search {
   }
 
   /// The least drift at one speed in a given time.
-  [[nodiscard]] double constant_um(double time_s) const {
-    std::vector<double> peaks(kSpeeds + 1);
-    parallel_for(peaks.size(), [&](std::size_t i) { peaks[i] = constant(time_s, static_cast<double>(i) / kSpeeds).peak_um; });
-    return *std::min_element(peaks.begin(), peaks.end());
+  [[nodiscard]] WarmUp constant_in(double time_s) const {
+    std::vector<WarmUp> ways(kSpeeds + 1);
+    parallel_for(ways.size(), [&](std::size_t i) { ways[i] = constant(time_s, static_cast<double>(i) / kSpeeds); });
+    return *std::min_element(ways.begin(), ways.end(), [](const WarmUp& a, const WarmUp& b) { return a.peak_um < b.peak_um; });
   }
 
   /// The best of two speeds in a given time; the first that is within the tolerance. @param shape  where to begin, and where it ended
@@ -213,10 +231,10 @@ class Search {
     WarmUp best = improved(of(time_s, shape), time_s, shape);
     if (best.is_enough) return best;
     std::vector<Shape> grid;
-    for (int i = 1; i <= kFirst; ++i) {
-      for (int j = 0; j < kSecond; ++j) {
+    for (int i = 0; i < kStages; ++i) {
+      for (int j = 0; j < kStages; ++j) {
         for (int k = 1; k <= kShares; ++k)
-          grid.push_back({static_cast<double>(i) / kFirst, static_cast<double>(j) / (kSecond - 1),
+          grid.push_back({static_cast<double>(i) / (kStages - 1), static_cast<double>(j) / (kStages - 1),
                           static_cast<double>(k) / (kShares + 1)});
       }
     }
@@ -235,19 +253,22 @@ class Search {
     return best;
   }
 
-  /// The shortest of two speeds. @param constant  the best of one, which is one of them
-  [[nodiscard]] WarmUp staged_best(const WarmUp& constant) const {
+  /// The shortest of two speeds. @param known  the shortest that is known, or what comes nearest
+  [[nodiscard]] WarmUp staged_best(const WarmUp& known) const {
     listener_.begin("two speeds");
-    if (constant.sections.empty()) return constant;
-    const double share = constant.sections.front().drive.speed_rpm / most_rpm_;
+    if (known.is_enough && known.sections.empty()) return known;
+    const double share = known.sections.empty() ? 0.5 : known.sections.front().drive.speed_rpm / most_rpm_;
     Shape shape = {share, share, 0.5};
-    WarmUp best = constant;
-    if (!best.is_enough) {
-      const WarmUp longest = staged_in(most_s_, shape);
-      if (longest.peak_um < best.peak_um) best = longest;
-      if (!best.is_enough) return best;
-    }
+    WarmUp best = known;
     double low_s = 0.0;
+    for (int i = 1; i <= kScanned && !best.is_enough && !listener_.wants_end(); ++i) {
+      const double time_s = most_s_ * std::pow(static_cast<double>(i) / kScanned, 2.0);
+      const WarmUp next = staged_in(time_s, shape);
+      if (next.is_enough || next.peak_um < kWorthTelling * best.peak_um) best = next;
+      if (!best.is_enough) low_s = time_s;
+      listener_.share(static_cast<double>(i) / kScanned);
+    }
+    if (!best.is_enough) return best;
     const double first_s = best.duration_s();
     while (best.duration_s() - low_s > std::max(1.0, kExact * best.duration_s())) {
       if (listener_.wants_end()) break;
@@ -266,6 +287,41 @@ class Search {
   }
 
  private:
+  /// The least peak at one speed between two times, or the first that is enough, by golden section.
+  [[nodiscard]] WarmUp least_between(double low_s, double high_s, double share) const {
+    constexpr double kGolden = 0.6180339887498949;
+    double a_s = high_s - kGolden * (high_s - low_s), b_s = low_s + kGolden * (high_s - low_s);
+    WarmUp a = constant(a_s, share), b = constant(b_s, share);
+    for (int i = 0; i < 14 && !a.is_enough && !b.is_enough && high_s - low_s > 2.0; ++i) {
+      if (a.peak_um < b.peak_um) {
+        high_s = b_s;
+        b = a;
+        b_s = a_s;
+        a_s = high_s - kGolden * (high_s - low_s);
+        a = constant(a_s, share);
+      } else {
+        low_s = a_s;
+        a = b;
+        a_s = b_s;
+        b_s = low_s + kGolden * (high_s - low_s);
+        b = constant(b_s, share);
+      }
+    }
+    return a.is_enough || (!b.is_enough && a.peak_um < b.peak_um) ? a : b;
+  }
+  /// The least time at one speed that is enough, by halves. @param low_s  at which it is not
+  [[nodiscard]] WarmUp shortened(WarmUp best, double low_s, double share) const {
+    while (best.duration_s() - low_s > std::max(1.0, kExact * best.duration_s())) {
+      const double time_s = std::round(0.5 * (low_s + best.duration_s()));
+      const WarmUp next = constant(time_s, share);
+      if (next.is_enough && next.duration_s() < best.duration_s()) {
+        best = next;
+      } else {
+        low_s = time_s;
+      }
+    }
+    return best;
+  }
   [[nodiscard]] WarmUp best_of(const std::vector<double>& shares, double most_s) const {
     std::vector<WarmUp> tried(shares.size());
     parallel_for(shares.size(), [&](std::size_t i) { tried[i] = least_time(shares[i], most_s); });
@@ -343,7 +399,8 @@ double WarmUp::duration_s() const {
 
 WarmUpPlan plan_warm_up(const scenarios::Scenario& scenario, const Cyclogram& job, const WarmUpOptions& options,
                         const Listener& listener) {
-  const double most_rpm = options.most_speed_rpm > 0.0 ? options.most_speed_rpm : fastest_rpm(scenario, job);
+  const double asked_rpm = options.most_speed_rpm > 0.0 ? options.most_speed_rpm : fastest_rpm(scenario, job);
+  const double most_rpm = kSpeedStep_rpm * std::floor(asked_rpm / kSpeedStep_rpm);
   if (!(most_rpm >= kSpeedStep_rpm))
     throw InputError("no cyclogram of the scenario turns the spindle; say with --speed-limit how fast a warm-up may");
   const Trials trials(scenario, job, options, most_rpm, listener);
@@ -362,24 +419,33 @@ WarmUpPlan plan_warm_up(const scenarios::Scenario& scenario, const Cyclogram& jo
   plan.at_rest = rested(search, options.most_s);
   plan.by_jobs = by_jobs(trials, tolerance_um, options.most_s);
   plan.constant = search.constant();
-  plan.constant.way = "one speed";
-  plan.staged = search.staged_best(plan.constant);
-  plan.staged.way = "two speeds";
+  const bool rests = plan.at_rest.is_enough && (!plan.constant.is_enough || plan.at_rest.duration_s() < plan.constant.duration_s());
+  plan.staged = search.staged_best(rests ? plan.at_rest : plan.constant);
   listener.begin("minutes against micrometres");
   constexpr int kLevels = 8;
-  const double longest_s = plan.constant.is_enough ? std::max(1.25 * plan.constant.duration_s(), 600.0) : options.most_s;
+  const double longest_s = plan.staged.is_enough ? std::max(1.5 * plan.staged.duration_s(), 600.0) : options.most_s;
+  const Search least(trials, 0.0, most_rpm, options.most_s, listener);  // of no tolerance: as little as there can be
   Shape shape = {1.0, 0.5, 0.5};
   for (int i = 0; i <= kLevels && !listener.wants_end(); ++i) {
-    const double time_s = longest_s * i / kLevels;
-    WarmUpLevel level{.duration_s = time_s, .constant_um = plan.at_once.peak_um, .staged_um = plan.at_once.peak_um};
+    const double time_s = std::min(longest_s, options.most_s) * i / kLevels;
+    WarmUp one = plan.at_once, two = plan.at_once;
     if (i > 0) {
-      const Search least(trials, 0.0, most_rpm, options.most_s, listener);  // of no tolerance: as little as there can be
-      level.constant_um = least.constant_um(time_s);
-      level.staged_um = std::min(level.constant_um, least.staged_in(time_s, shape).peak_um);
+      one = least.constant_in(time_s);
+      two = least.staged_in(time_s, shape);
+      if (one.peak_um < two.peak_um) two = one;
+      two.is_enough = two.peak_um <= tolerance_um;
+      const bool is_better = plan.staged.is_enough ? two.is_enough && two.duration_s() < plan.staged.duration_s()
+                                                   : two.is_enough || two.peak_um < kWorthTelling * plan.staged.peak_um;
+      if (is_better) plan.staged = two;
     }
-    plan.levels.push_back(level);
+    plan.levels.push_back({.duration_s = time_s, .constant_um = one.peak_um, .staged_um = two.peak_um});
     listener.share(static_cast<double>(i) / kLevels);
   }
+  const auto is_one_speed = [](const Sections& sections) { return sections.size() == 1 && sections.front().drive.speed_rpm > 0.0; };
+  if (is_one_speed(plan.staged.sections)) plan.constant = plan.staged;
+  plan.at_once.way = "at once";
+  plan.constant.way = "one speed";
+  plan.staged.way = "two speeds";
   plan.job_at_once = trials.job_rows({});
   plan.job_warm = trials.job_rows(plan.staged.sections);
   plan.n_tried = trials.n_tried();
@@ -387,7 +453,9 @@ WarmUpPlan plan_warm_up(const scenarios::Scenario& scenario, const Cyclogram& jo
 }
 
 std::string warm_up_program(const std::vector<Cyclogram::Section>& sections, const std::string& remark) {
-  std::string text = fmt::format("({})\nG21 G94\n", remark);
+  std::string plain;  // a bracket would end the comment, and what follows would be read
+  for (char c : remark.substr(0, kLongestRemark)) plain += c >= ' ' && c <= '~' && c != '(' && c != ')' && c != ';' ? c : '_';
+  std::string text = fmt::format("({})\nG21 G94\n", plain);
   bool turns = false;
   for (const Cyclogram::Section& section : sections) {
     const double rpm = section.drive.speed_rpm;

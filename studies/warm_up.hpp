@@ -48,8 +48,8 @@ struct WarmUpPlan {
 
 /// Looks for the shortest warm-ups.
 ///
-/// One speed: for speeds up to the limit, the least time is looked for on a grid and then by halves, to 0.5 %. Two speeds, of which either may be
-/// rest: the time is halved; at each, programmes (first speed, second speed, share of the first) are tried on a grid and the best improved by a pattern
+/// One speed: for speeds up to the limit, the least time is looked for on a grid, between its points where the peak has a least, and then by halves, to
+/// 0.5 %. Two speeds, of which either may be rest: the time is halved from the shortest known on, or tried upwards where none is known; at each, programmes (first speed, second speed, share of the first) are tried on a grid and the best improved by a pattern
 /// search, until one is within the tolerance. By jobs: the job itself, part after part, until one stays within it.
 ///
 /// @param job  has passed check_cyclogram()
@@ -58,7 +58,7 @@ struct WarmUpPlan {
                                       const Listener& listener);
 
 /// An NC program for LinuxCNC that turns the spindle as the sections say, and stops it: G21 G94, M3 S, G4 P in seconds.
-/// @param remark  in the first comment, no brackets
+/// @param remark  in the first comment; what NC programs do not take in one becomes "_"
 [[nodiscard]] std::string warm_up_program(const std::vector<Cyclogram::Section>& sections, const std::string& remark);
 
 }  // namespace driftwright::studies

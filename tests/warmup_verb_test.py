@@ -23,9 +23,26 @@ def expect(holds, what):
         failures.append(what)
 
 
-def peak_um(record):
+LAG = """name: lag
+reference_temperature: 20 degC
+hall: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: body, capacity: 20 kJ/K}
+  - {type: heat_source, node: body, power: 100 W, at_speed: 1000 rpm, exponent: 1}
+  - {type: link, node: body, to: hall, conductance: 5 W/K}
+  - {type: scale_expansion, displacement: nose, lag: 60 min}
+sensors: [{name: t_body, node: body}]
+displacements: [{name: nose, sensitivities: [{node: body, sensitivity: 1 um/K}]}]
+cyclograms:
+  job: [[120 min, 600 rpm]]
+  fast: [[1 min, 1000 rpm]]
+"""
+
+
+def peak_um(record, columns=("drift_x_um", "drift_y_um", "drift_z_um")):
     rows = list(csv.DictReader(line for line in record.open() if not line.startswith("#")))
-    return max(abs(float(row[c]) - float(rows[0][c])) for c in ("drift_x_um", "drift_y_um", "drift_z_um") for row in rows)
+    return max(abs(float(row[c]) - float(rows[0][c])) for c in columns for row in rows)
 
 
 def main():
@@ -58,6 +75,13 @@ def main():
         expect(done.returncode == 0, f"predict behind warmup.csv: {done.stderr.strip()[-300:]}")
         expect(abs(peak_um(folder / "again/record.csv") - told) < 0.01, f"peak told {told:.4f} um, of predict {peak_um(folder / 'again/record.csv'):.4f} um")
         expect(abs(peak_um(folder / "cold/record.csv") - told) < 1e-4, "record.csv holds that peak")
+
+        (folder / "lag.yaml").write_text(LAG)  # an instrument that remembers what was before the job
+        done = call("warmup", "lag.yaml", "--then", "job", "--tolerance", "3 um", "-o", "lag")
+        told = way(json.loads((folder / "lag/summary.json").read_text()), "two speeds")
+        call("predict", "lag.yaml", "--cyclogram", "job", "--start", "lag/warmup.csv", "-o", "lag_again")
+        expect(told["is_enough"] and abs(peak_um(folder / "lag_again/record.csv", ["nose_um"]) - told["peak_um"]) < 0.01,
+               f"behind a scale that lags: told {told['peak_um']:.4f} um, of predict {peak_um(folder / 'lag_again/record.csv', ['nose_um']):.4f} um")
 
         if shutil.which("rs274"):
             with open("/tmp/driftwright_one_hal", "a") as turn:  # one HAL a machine: as tests/one_hal.hpp has it
