@@ -22,7 +22,8 @@ constexpr double kLeast_s = 1.0;         // shorter sections are left out
 constexpr double kSpeedStep_rpm = 10.0;  // speeds are whole multiples of it, times whole seconds
 constexpr double kExact = 0.005;         // of a warm-up's time: how closely the shortest is looked for
 constexpr int kTimes = 16;               // at which one speed is tried before times are halved
-constexpr int kSpeeds = 12;              // up to the limit, of one speed
+constexpr int kSpeeds = 25;              // up to the limit, of one speed
+constexpr double kBeyond = 1.2;  // of the best time so far: the least of a peak shows between times alone
 constexpr int kStages = 7, kShares = 7;  // of two: speeds from rest to the limit, and shares of the first in the time
 constexpr int kScanned = 8;              // times at which two are tried where one is never enough
 constexpr int kMostParts = 200;
@@ -211,10 +212,14 @@ class Search {
     for (int i = 1; i <= kSpeeds; ++i) shares.push_back(static_cast<double>(i) / kSpeeds);
     WarmUp best = best_of(shares, most_s_);
     if (best.sections.empty() || !best.is_enough) return best;
-    for (double step = 0.5 / kSpeeds; step * most_rpm_ >= kSpeedStep_rpm; step *= 0.5) {
-      const double at = best.sections.front().drive.speed_rpm / most_rpm_;
-      const WarmUp next = best_of({std::max(at - step, 0.0), std::min(at + step, 1.0)}, best.duration_s());
-      if (next.is_enough && next.duration_s() < best.duration_s()) best = next;
+    for (double step = 0.5 / kSpeeds; step * most_rpm_ >= 0.5 * kSpeedStep_rpm; step *= 0.5) {
+      for (bool helped = true; helped;) {
+        const double at = best.sections.front().drive.speed_rpm / most_rpm_;
+        const WarmUp next = best_of({std::max(at - step, 0.0), std::min(at + step, 1.0)},
+                                    std::min(most_s_, kBeyond * best.duration_s()));
+        helped = next.is_enough && next.duration_s() < best.duration_s() && !next.sections.empty();
+        if (helped) best = next;
+      }
     }
     return best;
   }
