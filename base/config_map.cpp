@@ -236,7 +236,12 @@ bool is_name(const std::string& text) {
 
 std::string ConfigMap::name(const std::string& key) const {
   std::string value = text(key);
-  if (!is_name(value)) fail(key, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", value));
+  if (!is_name(value)) {
+    std::string near = value;  // "my machine" was meant to be my_machine
+    std::replace(near.begin(), near.end(), ' ', '_');
+    fail(key, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed{}", value,
+                          is_name(near) ? fmt::format(". Did you mean '{}'?", near) : ""));
+  }
   return value;
 }
 

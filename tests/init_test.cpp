@@ -94,6 +94,16 @@ TEST(Init, RefusesWhatIsNoName) {
             2);
 }
 
+TEST(Check, OffersANameWithoutBlanks) {
+  const auto folder = fresh_folder("blank_in_name");
+  std::string text = read_text("scenarios/first_machine.yaml");
+  text.replace(text.find("name: first_machine"), 19, "name: first machine");
+  std::ofstream(folder / "scenario.yaml") << text;
+  const CommandOutcome outcome = run_program("check " + (folder / "scenario.yaml").string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, HasSubstr("Did you mean 'first_machine'?"));
+}
+
 TEST(Mesh, OfAGeometryAlone) {
   const auto folder = fresh_folder("geometry_alone");
   std::ofstream(folder / "geometry.yaml")
