@@ -40,7 +40,8 @@ const Cyclogram& first_cyclogram(const ViewOptions& options, const Scenario& sce
 output::TwinCorrection correction_of(const Scenario& scenario, const scenarios::Model& model, const Listener& listener) {
   if (!scenario.study) {
     return {.name = "this model, one row late",
-            .words = fmt::format("The correction is what this model said {:g} s before: the scenario has no `study` that says "
+            .words = fmt::format("The correction is what this model said {:g} s before, zeroed at the start: the scenario "
+                                 "has no `study` that says "
                                  "which predictor corrects.",
                                  scenario.solver.output_interval_s)};
   }
@@ -55,9 +56,10 @@ output::TwinCorrection correction_of(const Scenario& scenario, const scenarios::
   studies::SensorRegressions fitted = studies::fit_on_best_sensors(std::move(training), study, displacements);
   const std::string sensors = fmt::format("{}", fmt::join(fitted.regressions.front().inputs, ", "));
   return {.name = "regression",
-          .words = fmt::format("The correction is the regression on {} that `driftwright run` fits on {}, from readings rounded to "
-                               "{:g} K, in steps of {:g} µm of the encoder.",
-                               sensors, fmt::join(study.train, ", "), study.sensor_resolution_K, study.encoder_period_um),
+          .words = fmt::format(
+              "The correction is the regression on {} that `driftwright run` fits on {}, from readings rounded to "
+              "{:g} K, in steps of {:g} µm of the encoder.",
+              sensors, fmt::join(study.train, ", "), study.sensor_resolution_K, study.encoder_period_um),
           .formulas = std::move(fitted.regressions),
           .resolution_K = study.sensor_resolution_K,
           .period_um = study.encoder_period_um};
@@ -103,13 +105,16 @@ void view(const ViewOptions& options) {
 
   Progress progress;
   const scenarios::Model model = scenarios::open_model(scenario, {}, progress.listener(), true);
-  output::TwinPage page{.name = scenario.name, .cyclograms = scenario.cyclograms, .first = first.name,
+  output::TwinPage page{.name = scenario.name,
+                        .cyclograms = scenario.cyclograms,
+                        .first = first.name,
                         .interval_s = scenario.solver.output_interval_s};
   if (is_lumped) {
     output::LumpedSystem lumped = output::lumped_system(machine);
     page.model = output::twin_model(scenario, lumped.system, lumped.start);
     page.network = network_of(model.balance, std::move(lumped.node_temperature));
-    page.subtitle = fmt::format("Twin of a machine of {} lumped nodes.", model.balance.nodes.size());
+    const std::size_t n = model.balance.nodes.size();
+    page.subtitle = fmt::format("Twin of a machine of {} lumped node{}.", n, n == 1 ? "" : "s");
   } else {
     page.model = output::twin_model(scenario, model.reduced()->system, model.reduced()->start);
     page.surface = output::twin_surface(*model.reduced());
@@ -128,8 +133,8 @@ void view(const ViewOptions& options) {
   const std::string text = output::twin_html(page, {kVersion, options.scenario});
   write_whole(target, text);
   progress.end();
-  fmt::print("{}: {:.1f} MB, opens in any browser with WebGL 2, offline\n{}\n", shown_path(fs::absolute(target)), 1e-6 * static_cast<double>(text.size()),
-             page.subtitle);
+  fmt::print("{}: {:.1f} MB, opens in any browser with WebGL 2, offline\n{}\n", shown_path(fs::absolute(target)),
+             1e-6 * static_cast<double>(text.size()), page.subtitle);
   for (const std::string& note : page.model.notes) fmt::print("left out: {}\n", note);
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-
 namespace driftwright::findings {
 
 std::vector<output::PictureMark> marks_of(const scenarios::MachineModel& machine) {

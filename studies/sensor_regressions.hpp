@@ -8,8 +8,8 @@
 namespace driftwright::studies {
 
 struct SensorRegressions {
-  compensation::Ranking ranking = {};                   ///< of the thermometers against the study's target
-  std::vector<compensation::Regression> regressions = {};  ///< on the best sensors, one per displacement
+  compensation::Ranking ranking = {};                        ///< of the thermometers against the study's target
+  std::vector<compensation::Regression> regressions = {};    ///< on the best sensors, one per displacement
   std::vector<compensation::Regression> single_sensor = {};  ///< on the very best one: what temperature alone can do
 };
 

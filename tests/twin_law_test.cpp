@@ -60,8 +60,9 @@ TEST(TwinLaw, FollowsOilThatThinsAndPreloadThatGrows) {
   // Front bearing of scenarios/lumped_spindle.yaml: oil by itself, both rings by their difference alone.
   const Law friction = [](const Drive& d, const std::vector<double>& t_K) {
     if (d.speed_rpm <= 0.0) return 0.0;
-    const double torque_Nmm = effects::palmgren_viscous_torque_Nmm(0.4, effects::walther_viscosity_mm2_s(25, 5.4, t_K[0]), d.speed_rpm, 90) +
-                              effects::palmgren_load_torque_Nmm(6e-4, effects::thermal_preload_N(300, 15, t_K[1], t_K[2]), 90);
+    const double torque_Nmm =
+        effects::palmgren_viscous_torque_Nmm(0.4, effects::walther_viscosity_mm2_s(25, 5.4, t_K[0]), d.speed_rpm, 90) +
+        effects::palmgren_load_torque_Nmm(6e-4, effects::thermal_preload_N(300, 15, t_K[1], t_K[2]), 90);
     return 2.0 * effects::friction_power_W(torque_Nmm, d.speed_rpm);
   };
   const auto table = twin_law(friction, 3, kSpeed, kRange);
@@ -87,7 +88,9 @@ TEST(TwinLaw, FollowsRadiationAndFreeConvectionOfTwoTemperatures) {
 }
 
 TEST(TwinLaw, OfTheDriveAloneHasNoTables) {
-  const Law motor = [](const Drive& d, const std::vector<double>&) { return 25.0 + 70.0 * std::pow(d.speed_rpm / 2000.0, 1.2); };
+  const Law motor = [](const Drive& d, const std::vector<double>&) {
+    return 25.0 + 70.0 * std::pow(d.speed_rpm / 2000.0, 1.2);
+  };
   const auto table = twin_law(motor, 1, kSpeed, kRange);
   ASSERT_TRUE(table);
   EXPECT_TRUE(table->tables.empty());
@@ -95,7 +98,8 @@ TEST(TwinLaw, OfTheDriveAloneHasNoTables) {
 }
 
 TEST(TwinLaw, ThreeTemperaturesTogetherAreNoTable) {
-  EXPECT_FALSE(twin_law([](const Drive&, const std::vector<double>& t_K) { return t_K[0] * t_K[1] * t_K[2]; }, 3, kSpeed, kRange));
+  EXPECT_FALSE(
+      twin_law([](const Drive&, const std::vector<double>& t_K) { return t_K[0] * t_K[1] * t_K[2]; }, 3, kSpeed, kRange));
 }
 
 }  // namespace

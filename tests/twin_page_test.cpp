@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <map>
 
 #include "tests/column_and_head.hpp"
@@ -40,7 +39,8 @@ scenarios::ReducedMachine boxes() {
   machine.displacement_m.resize(3 * n, 2);
   for (Eigen::Index i = 0; i < n; ++i) {
     machine.temperature.row(i) << static_cast<float>(machine.mesh.coords(0, i)), 1.0F;
-    for (Eigen::Index k = 0; k < 3; ++k) machine.displacement_m.row(3 * i + k) << static_cast<float>(machine.mesh.coords(k, i)), 0.0F;
+    for (Eigen::Index k = 0; k < 3; ++k)
+      machine.displacement_m.row(3 * i + k) << static_cast<float>(machine.mesh.coords(k, i)), 0.0F;
   }
   return machine;
 }
@@ -70,7 +70,8 @@ TEST(TwinSurface, IsTheOutsideWithTheFieldsOfItsNodes) {
     const auto column = static_cast<Eigen::Index>(i);
     EXPECT_NEAR(s.temperature.scale[0] * s.temperature.value[i], s.coords_m(0, column), 1e-5);
     for (std::size_t k = 0; k < 3; ++k)
-      EXPECT_NEAR(s.displacement_m.scale[0] * s.displacement_m.value[3 * i + k], s.coords_m(static_cast<Eigen::Index>(k), column), 1e-5);
+      EXPECT_NEAR(s.displacement_m.scale[0] * s.displacement_m.value[3 * i + k],
+                  s.coords_m(static_cast<Eigen::Index>(k), column), 1e-5);
   }
 }
 
@@ -79,7 +80,8 @@ TEST(TwinPage, NamesAreTextWhateverTheyHold) {
   solver::ReducedSystem system;
   system.mass = system.conduction = Eigen::MatrixXd::Identity(1, 1);
   system.ones = Eigen::VectorXd::Ones(1);
-  system.outputs = {.name = {hostile}, .unit = {"K"}, .state = Eigen::MatrixXd::Ones(1, 1), .hall = Eigen::VectorXd::Zero(1)};
+  system.outputs = {
+      .name = {hostile}, .unit = {"K"}, .state = Eigen::MatrixXd::Ones(1, 1), .hall = Eigen::VectorXd::Zero(1)};
   TwinPage page{.name = hostile, .subtitle = hostile, .first = hostile};
   page.model = {.system = system, .start = Eigen::VectorXd::Zero(1), .hall = {{0.0}, {0.0}}, .notes = {hostile}};
   page.cyclograms = {{.name = hostile, .sections = {{60.0, {}}}}};

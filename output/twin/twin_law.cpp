@@ -9,11 +9,12 @@ namespace {
 
 using AnyLaw = std::function<double(const Drive&, const std::vector<double>&)>;
 
-constexpr double kSame = 1e-9;      // parts of a law, relative, that do not act together
+constexpr double kSame = 1e-9;  // parts of a law, relative, that do not act together
 constexpr int kTrials = 24;
-constexpr double kNode_K = 1.0;     // nodes of a temperature by itself
+constexpr double kNode_K = 1.0;      // nodes of a temperature by itself
 constexpr double kWideNode_K = 4.0;  // and of one beside a difference
-constexpr int kDifferences = 80;    // nodes of a difference on either side of zero, by their cube: dense where free convection begins
+constexpr int kDifferences =
+    80;  // nodes of a difference on either side of zero, by their cube: dense where free convection begins
 
 /// Drives and temperatures at which it is looked what acts together.
 struct Trial {

@@ -18,8 +18,8 @@ struct TemperatureRange {
 
 /// What a table varies over: one of the law's probes, or how much warmer it is than another.
 struct TwinAxis {
-  int probe = 0;                    ///< index in the law's list of probes
-  int minus = -1;                   ///< of the other one; -1: none
+  int probe = 0;                     ///< index in the law's list of probes
+  int minus = -1;                    ///< of the other one; -1: none
   std::vector<double> nodes_K = {};  ///< increasing; a law is linear between them
 };
 /// A law over one or two of its probes, the others at their usual temperature.

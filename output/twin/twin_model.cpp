@@ -14,7 +14,7 @@ namespace {
 using scenarios::MachineModel;
 using scenarios::Scenario;
 
-constexpr std::size_t kMostTimes = 200;              // at which laws change by themselves
+constexpr std::size_t kMostTimes = 200;               // at which laws change by themselves
 constexpr double kColder_K = 25.0, kWarmer_K = 90.0;  // than hall and reference, what laws of temperature are tabulated for
 
 std::vector<DriveRange> ranges_of(const Scenario& scenario) {
@@ -91,7 +91,8 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
       notes.push_back(fmt::format("{} acts on what instruments say; here they say what is.", e.name()));
     if (e.kind->change_drive)
       notes.push_back(fmt::format("{} changes the recorded drive or hall; here both are as they are set.", e.name()));
-    if (!e.in.empty()) notes.push_back(fmt::format("{} acts in the cyclogram '{}' alone, and here not at all.", e.name(), e.in));
+    if (!e.in.empty())
+      notes.push_back(fmt::format("{} acts in the cyclogram '{}' alone, and here not at all.", e.name(), e.in));
   }
   return notes;
 }
@@ -103,15 +104,16 @@ TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& syst
   if (!system.mass.isIdentity(1e-8)) throw std::logic_error("twin_model: a unit mass matrix is wanted");
   for (const Cyclogram& c : scenario.cyclograms) {
     if (const auto columns = scenarios::wanted_columns(machine, c.name); !columns.empty())
-      throw InputError(machine.where, fmt::format("an effect follows the recorded column '{}', which is no input of the page "
-                                                  "yet (docs/view.md)",
-                                                  columns.front()));
+      throw InputError(machine.where,
+                       fmt::format("an effect follows the recorded column '{}', which is no input of the page "
+                                   "yet (docs/view.md)",
+                                   columns.front()));
   }
   if (system.change_times_s.size() > kMostTimes)
     throw InputError(machine.where, fmt::format("laws change {} times by themselves; the page holds up to {} (docs/view.md)",
                                                 system.change_times_s.size(), kMostTimes));
-  TwinModel model{.drive = ranges_of(scenario), .system = system, .start = start, .hall = machine.hall,
-                  .notes = notes_of(machine)};
+  TwinModel model{
+      .drive = ranges_of(scenario), .system = system, .start = start, .hall = machine.hall, .notes = notes_of(machine)};
   for (const solver::HeatSource& s : system.sources)
     model.powers_W.push_back(timed_law(scenario, s.power_W, s.name, model, system.change_times_s));
   for (const auto& e : system.exchanges)
@@ -123,8 +125,9 @@ LumpedSystem lumped_system(const MachineModel& model) {
   const scenarios::Machine machine = scenarios::build(model, scenarios::place(model), false);
   for (const solver::FixedUnknowns& f : machine.system.fixed) {
     if (!f.follows_hall && f.theta.value.size() > 1)
-      throw InputError(model.where,
-                       fmt::format("{} is prescribed over time; no page is made of such a machine yet (docs/view.md)", f.name));
+      throw InputError(
+          model.where,
+          fmt::format("{} is prescribed over time; no page is made of such a machine yet (docs/view.md)", f.name));
   }
   solver::FullSystem system = machine.system;
   solver::hold_by_exchanges(system);

@@ -104,7 +104,9 @@ Json json_of(const TwinModel& model) {
     output_hall.push_back(s.outputs.hall[o]);
     const bool is_temperature = s.outputs.unit[i] == "K";
     told.push_back({{"name", s.outputs.name[i]},
-                    {"unit", is_temperature ? "degC" : s.outputs.unit[i] == "m" ? "um" : "urad"},
+                    {"unit", is_temperature             ? "degC"
+                             : s.outputs.unit[i] == "m" ? "um"
+                                                        : "urad"},
                     {"factor", is_temperature ? 1.0 : 1e6},
                     {"offset", is_temperature ? s.reference_K - kZeroCelsius_K : 0.0}});
   }
@@ -162,9 +164,12 @@ Json json_of(const Quantised& q) {
 }
 
 Json json_of(const TwinSurface& surface) {
-  return {{"n_nodes", surface.node.size()},         {"coords", text_of(surface.coords_m)},
-          {"triangles", text_of(surface.triangle)}, {"edges", text_of(surface.edge)},
-          {"temperature", json_of(surface.temperature)}, {"displacement", json_of(surface.displacement_m)}};
+  return {{"n_nodes", surface.node.size()},
+          {"coords", text_of(surface.coords_m)},
+          {"triangles", text_of(surface.triangle)},
+          {"edges", text_of(surface.edge)},
+          {"temperature", json_of(surface.temperature)},
+          {"displacement", json_of(surface.displacement_m)}};
 }
 
 Json json_of(const TwinNetwork& network) {
@@ -289,12 +294,14 @@ const std::string& file(const std::string& name) {
 
 std::string twin_html(const TwinPage& page, const Provenance& made_by) {
   std::string script;
-  for (const char* name : {"eigen.js", "law.js", "model.js", "run.js", "correction.js", "twin.js", "fields.js", "scene.js", "network.js",
-                           "charts.js", "plan.js", "page.js", "report.js"})
+  for (const char* name : {"eigen.js", "law.js", "model.js", "run.js", "correction.js", "twin.js", "fields.js", "scene.js",
+                           "network.js", "charts.js", "plan.js", "page.js", "report.js"})
     script += file(name) + "\n";
   const std::string& frame = file("page.html");
-  const std::vector<std::pair<std::string, std::string>> parts = {
-      {"@TITLE@", escaped(page.name)}, {"@STYLE@", file("page.css")}, {"@DATA@", data_of(page, made_by)}, {"@SCRIPT@", script}};
+  const std::vector<std::pair<std::string, std::string>> parts = {{"@TITLE@", escaped(page.name)},
+                                                                  {"@STYLE@", file("page.css")},
+                                                                  {"@DATA@", data_of(page, made_by)},
+                                                                  {"@SCRIPT@", script}};
   std::string text;
   std::size_t from = 0;
   for (const auto& [mark, part] : parts) {  // in their order: what was put in is not looked at again

@@ -23,7 +23,7 @@ struct TwinNetwork {
 
 /// What corrects the drift in the page.
 struct TwinCorrection {
-  std::string name = {}, words = {};                           ///< a few words; a sentence
+  std::string name = {}, words = {};                    ///< a few words; a sentence
   std::vector<compensation::Regression> formulas = {};  ///< by displacement; none: the model itself, one row late
   double resolution_K = 0.0, period_um = 0.0;           ///< of thermometers; of the encoder, 0: no steps
 };

@@ -1,4 +1,4 @@
-// What a correction leaves of a drift: by the scenario's regression on its thermometers, or, where it has none, by this model one row late.
+// What a correction leaves of a drift: by the scenario's regression on its thermometers, or, where it has none, by this model one row late and zeroed at the start.
 
 // Whole periods of the encoder that follow a prediction: the pulse injector puts in the next one when half of it is due.
 // Math.round is away from zero here, as C's.
@@ -18,11 +18,11 @@ function corrected(run, output, correction) {
       });
       predicted[row] = sum;
     } else {
-      predicted[row] = row > 0 ? drift[row - 1] : 0;
+      predicted[row] = drift[Math.max(0, row - 1)];
     }
     const period = correction.period_um;
     inForce[row] = period > 0 ? period * rounded(predicted[row] / period) : predicted[row];
-    const after = drift[row] - inForce[row], before = drift[row] - (row > 0 ? inForce[row - 1] : 0);
+    const after = drift[row] - inForce[row], before = drift[row] - (row > 0 ? inForce[row - 1] : formula ? 0 : drift[0]);
     left[row] = Math.abs(before) > Math.abs(after) ? before : after;
   }
   return {drift, correction: inForce, left};

@@ -15,7 +15,7 @@ class Network {
     Object.assign(this, {network, palette, n: network.names.length - 1});
     this.temperature = doubles(network.temperature);
     svg.removeAttribute("hidden");
-    svg.setAttribute("viewBox", "0 0 600 420");
+    svg.setAttribute("viewBox", "0 0 700 420");
     const place = i => i === this.n ? [300, 385] : [300 + 230 * Math.sin(this.angle(i)), 180 - 140 * Math.cos(this.angle(i))];
     for (const [a, b] of network.links) {
       const [x1, y1] = place(a), [x2, y2] = place(b);
