@@ -19,7 +19,7 @@
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
-#include "base/quantity.hpp"
+#include "base/option_quantity.hpp"
 #include "base/version.hpp"
 #include "follow/followed_machine.hpp"
 #include "follow/line_source.hpp"
@@ -45,12 +45,8 @@ constexpr double kFirstSilence_s = 5.0;  // without a line, at least, before one
 
 std::optional<double> quantity(const char* option, const std::string& text, const std::string& unit) {
   if (text.empty()) return std::nullopt;
-  try {
-    const double value = parse_quantity(text, unit);
-    if (value > 0.0 && std::isfinite(value)) return value;
-  } catch (const RangeError& e) {
-    throw InputError(fmt::format("{} '{}': {}", option, text, e.what()));
-  }
+  const double value = option_quantity(option, text, unit);
+  if (value > 0.0 && std::isfinite(value)) return value;
   throw InputError(fmt::format("{} '{}': more than 0 is wanted", option, text));
 }
 

@@ -15,7 +15,7 @@
 
 #include "app/verbs.hpp"
 #include "base/errors.hpp"
-#include "base/quantity.hpp"
+#include "base/option_quantity.hpp"
 #include "base/version.hpp"
 #include "compensation/injector/axis_loop.hpp"
 #include "compensation/injector/correction_input.hpp"
@@ -37,12 +37,8 @@ int quarters_of(const std::string& name) {
 
 double positive_quantity(const std::string& option, const std::string& text, const std::string& unit) {
   if (text.empty()) return 0.0;
-  try {
-    const double value = parse_quantity(text, unit);
-    if (value > 0.0) return value;
-  } catch (const RangeError& e) {
-    throw InputError(fmt::format("{} '{}': {}", option, text, e.what()));
-  }
+  const double value = option_quantity(option, text, unit);
+  if (value > 0.0) return value;
   throw InputError(fmt::format("{} '{}': more than 0 is wanted", option, text));
 }
 

@@ -9,7 +9,7 @@
 #include <mutex>
 
 #include "base/mapped_record.hpp"
-#include "base/quantity.hpp"
+#include "base/option_quantity.hpp"
 #include "compensation/sensors/interpolate.hpp"
 #include "machine/machine_key.hpp"
 #include "scenarios/reader/felt_run.hpp"
@@ -21,12 +21,8 @@ namespace {
 double duration_s(const std::string& option, const std::string& text) {
   if (text.empty()) return 0.0;
   constexpr double kMost_s = 1e7;
-  try {
-    const double value_s = parse_quantity(text, "s");
-    if (value_s >= 0.0 && value_s <= kMost_s) return value_s;
-  } catch (const RangeError& e) {
-    throw InputError(fmt::format("{} '{}': {}", option, text, e.what()));
-  }
+  const double value_s = option_quantity(option, text, "s");
+  if (value_s >= 0.0 && value_s <= kMost_s) return value_s;
   throw InputError(fmt::format("{} '{}': a time from 0 s to {:g} s is wanted", option, text, kMost_s));
 }
 
