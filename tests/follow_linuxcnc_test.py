@@ -17,19 +17,6 @@ import time
 
 MODULES = pathlib.Path("/usr/lib/linuxcnc/modules")
 RATE_UM_S, MOST_AGE_S, LOW_MM = 20.0, 5.0, -10.0
-HEAD = """name: head
-reference_temperature: 20 degC
-machine: {generator: lumped}
-effects:
-  - {type: node, node: head, capacity: 60 kJ/K}
-  - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
-  - {type: link, node: head, to: hall, conductance: 20 W/K}
-start: hall
-hall: [[0 h, 20 degC], [9 h, 20 degC]]
-displacements: [{name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}]
-cyclograms: {day: [[60 min, 2000 rpm]]}
-solver: {model: reduced}
-"""
 INI = f"""[EMC]
 MACHINE = mill
 VERSION = 1.1
@@ -90,6 +77,8 @@ setp thermal.most-age-s {MOST_AGE_S}
 # Stands in the place of a screen: homes, and then does what is asked for, line by line.
 SCRIPT = """#!/usr/bin/python3
 import linuxcnc, time
+
+from one_head import HEAD
 c, s, e = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
 c.state(linuxcnc.STATE_ESTOP_RESET); c.wait_complete(10)
 c.state(linuxcnc.STATE_ON); c.wait_complete(10)
