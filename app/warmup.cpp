@@ -3,21 +3,18 @@
 #include <filesystem>
 
 #include "app/results.hpp"
-#include "base/quantity.hpp"
+#include "base/option_quantity.hpp"
 #include "findings/warm_up_document.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
+#include "studies/warm_up_program.hpp"
 
 namespace driftwright::app {
 namespace {
 
 /// @param least, most  in `unit`
 double quantity(const std::string& option, const std::string& text, const char* unit, double least, double most) {
-  try {
-    const double value = parse_quantity(text, unit);
-    if (value >= least && value <= most) return value;
-  } catch (const RangeError& e) {
-    throw InputError(fmt::format("{} '{}': {}", option, text, e.what()));
-  }
+  const double value = option_quantity(option, text, unit);
+  if (value >= least && value <= most) return value;
   const std::string of = unit == std::string_view("1") ? "" : fmt::format(" {}", unit);
   throw InputError(fmt::format("{} '{}': {:g}{} to {:g}{} is allowed", option, text, least, of, most, of));
 }
@@ -60,19 +57,17 @@ void warmup(const WarmUpVerbOptions& options) {
   const std::string what = fmt::format("warm-up of {} before {}", scenario.name, job.name);
   if (plan.staged.is_enough && !plan.staged.sections.empty()) {
     folder.write_text("warmup.ngc", studies::warm_up_program(plan.staged.sections, what));
-    std::string rows;
-    const std::string from = plan.started_from.empty() ? "from the scenario's start" : "after " + plan.started_from;
-    for (const std::string& line : provenance_lines(folder.made_by(), fmt::format("{}, {}", what, from)))
-      rows += fmt::format("# {}\n", line);
-    rows += "time_s,speed_rpm\n";
-    double time_s = 0.0;
+    Record rows{.source = "warmup", .time_s = {0.0}, .channels = {{"speed", "rpm", {}}}};
     for (const Cyclogram::Section& section : plan.staged.sections) {
-      rows += fmt::format("{:.0f},{:.0f}\n", time_s, section.drive.speed_rpm);
-      time_s += section.duration_s;
+      rows.channels.front().values.push_back(section.drive.speed_rpm);
+      rows.time_s.push_back(rows.time_s.back() + section.duration_s);
     }
-    folder.write_text("warmup.csv", rows + fmt::format("{:.0f},0\n", time_s));
+    rows.channels.front().values.push_back(0.0);  // at the end
+    const std::string from = plan.started_from.empty() ? "from the scenario's start" : "after " + plan.started_from;
+    folder.write_text("warmup.csv", record_csv(rows, provenance_lines(folder.made_by(), fmt::format("{}, {}", what, from))));
   }
-  folder.write_text("record.csv", record_csv(plan.job_warm, provenance_lines(folder.made_by(), fmt::format("{} behind its {}", job.name, what))));
+  folder.write_text("record.csv",
+                    record_csv(plan.job_warm, provenance_lines(folder.made_by(), fmt::format("{} behind its {}", job.name, what))));
   finish(findings::document_of(plan, scenario, job, options.then, folder.made_by()), folder, progress, options);
 }
 
