@@ -15,6 +15,8 @@ import sys
 import tempfile
 import time
 
+from one_head import HEAD
+
 MODULES = pathlib.Path("/usr/lib/linuxcnc/modules")
 RATE_UM_S, MOST_AGE_S, LOW_MM = 20.0, 5.0, -10.0
 INI = f"""[EMC]
@@ -77,8 +79,6 @@ setp thermal.most-age-s {MOST_AGE_S}
 # Stands in the place of a screen: homes, and then does what is asked for, line by line.
 SCRIPT = """#!/usr/bin/python3
 import linuxcnc, time
-
-from one_head import HEAD
 c, s, e = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
 c.state(linuxcnc.STATE_ESTOP_RESET); c.wait_complete(10)
 c.state(linuxcnc.STATE_ON); c.wait_complete(10)
