@@ -176,7 +176,8 @@ def follow_drift(program, folder, control):
     assert abs(place_mm() - 2.0) < 1e-9
     halcmd("setp", "thermal.enable", "1")
     rows(60)  # 60 min at 2000 rpm
-    # Once the slew limit has let it, Z stands off its place by the correction, and takes it along wherever it goes.
+    # Once the reader of `follow` runs and the slew limit has let it, Z stands off its place by the correction, and takes it along wherever it goes.
+    wait_for("correction", lambda: correction_um() > 35.0)
     wait_for("offset", lambda: is_led(2.0))
     assert 35.0 < correction_um() < 60.0, correction_um()
     assert control.do("G0 Z5")[0] == "done"
