@@ -152,9 +152,8 @@ def compiled(folder, project):
     return folder / "followed_axis.so"
 
 
-def follow_drift(program, folder, control):
-    """What is asked of the mill while `follow` runs, and what it must do."""
-    lines = open(folder / "lines", "w")
+def follow_drift(program, folder, control, lines):
+    """What is asked of the mill while `follow` runs and writes to `lines`, and what it must do."""
     follow = subprocess.Popen([program, "follow", "head.yaml", "--slew", "100 um/s"], stdin=subprocess.PIPE, stdout=lines, cwd=folder, text=True)
     n_rows = 0
 
@@ -242,8 +241,9 @@ def main():
             shutil.copy(compiled(folder, project), module)
         control = Control(folder)
         assert control.answer() == ["homed"]
-        os.close(keeper)
-        follow_drift(program, folder, control)
+        lines = open(folder / "lines", "w")
+        os.close(keeper)  # no sooner: a reader without any writer takes that for the end of its lines
+        follow_drift(program, folder, control, lines)
         assert control.do("end") == ["ending"]
         control.process.wait(60)
     finally:
