@@ -82,6 +82,32 @@ std::vector<Knob> knobs_of(const effects::Doubt& doubt) {
   return knobs;
 }
 
+namespace {
+
+constexpr double kSameTime_s = 60.0;
+
+/// Stops that a record does not have are looked for at some times of it; where a window was seen they are looked for as well, for as long.
+void add_stop(std::vector<Candidate>& list, const Event::Window& seen,
+              std::vector<std::pair<std::size_t, std::size_t>>& added) {
+  for (Candidate& c : list) {
+    if (c.effect != "missing_stop") continue;
+    const auto of_run =
+        std::find_if(c.variants.begin(), c.variants.end(), [&](const Variant& v) { return v.in == seen.in; });
+    if (of_run == c.variants.end()) continue;
+    Variant stop = *of_run;
+    stop.trial_x = stop.knobs[0].x((seen.end_s - seen.begin_s) / 60.0);
+    stop.grid = {{stop.knobs[1].x(seen.begin_s)}};
+    const auto is_known = [&](const Variant& v) {  // seen in another body
+      return v.in == stop.in && v.grid.size() == 1 && std::abs(v.grid[0][0] - stop.grid[0][0]) < kSameTime_s;
+    };
+    if (std::any_of(c.variants.begin(), c.variants.end(), is_known)) continue;
+    c.variants.push_back(std::move(stop));
+    added.emplace_back(&c - list.data(), c.variants.size() - 1);
+  }
+}
+
+}  // namespace
+
 std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidate>& list, const std::vector<Event>& events,
                                                             const std::set<std::string>& without) {
   std::vector<std::pair<std::size_t, std::size_t>> added;
@@ -94,6 +120,7 @@ std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidat
     Candidate& of = candidate(list, e.doubt.finding, e.doubt.where);
     of.variants.push_back(std::move(v));
     added.emplace_back(&of - list.data(), of.variants.size() - 1);
+    if (e.once) add_stop(list, *e.once, added);
   }
   return added;
 }

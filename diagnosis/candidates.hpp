@@ -34,7 +34,7 @@ struct Candidate {
 [[nodiscard]] std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRun>& runs,
                                                 const std::set<std::string>& without);
 
-/// Adds windows that were found as further laws of heat or exchange for a while. @returns  candidate and law of each
+/// Adds windows that were found as further laws of heat or exchange for a while, and stops of the spindle at the same times. @returns  candidate and law of each
 std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidate>& list, const std::vector<Event>& events,
                                                             const std::set<std::string>& without);
 

@@ -1,6 +1,8 @@
 #pragma once
 // Events that come again and again, as one cause: windows of one size, in one run or in several.
 
+#include <optional>
+
 #include "base/listener.hpp"
 #include "diagnosis/fit.hpp"
 #include "diagnosis/projection.hpp"
@@ -12,6 +14,11 @@ struct Event {
   effects::Doubt
       doubt;  ///< windows of heat or of an exchange; its numbers: the size, and how much longer, or when they come again
   double price_nats = 0.0;  ///< of their times, which were read off the data
+  struct Window {
+    std::string in;  ///< run
+    double begin_s = 0.0, end_s = 0.0;
+  };
+  std::optional<Window> once = {};  ///< where there is one window in all
 };
 
 /// Keys of effects that events may have.

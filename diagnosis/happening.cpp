@@ -71,7 +71,8 @@ std::optional<Event> one_event(const effects::DoubtScene& scene, const Happening
   if (!(end_s - begin_s > kShortest_s)) return std::nullopt;
   const auto of_run = std::find_if(scene.runs.begin(), scene.runs.end(), [&](const auto& r) { return r.name == run->name; });
   const std::string what = h.other ? effects::kLid : "heat for a while";
-  Event event{.doubt = effects::one_window(*of_run, window, size, h.size, what), .price_nats = 0.0};
+  Event event{.doubt = effects::one_window(*of_run, window, size, h.size, what),
+              .once = Event::Window{run->name, begin_s, end_s}};
   const std::vector<effects::DoubtedNumber>& n = event.doubt.numbers;
   event.doubt.grid = {{begin_s - n[1].nominal, (end_s - begin_s) / 60.0 - n[2].nominal}};
   return event;

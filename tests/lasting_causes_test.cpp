@@ -184,12 +184,25 @@ TEST(KeptOutRecords, AreJudgedByWhatTheOthersTell) {
   const std::vector<Candidate> all = candidates(*beside.twin, beside.runs, {}), told = told_of_by(without, all);
   const auto n_in = [](const std::vector<Candidate>& list, const std::string& run) {
     std::ptrdiff_t n = 0;
-    for (const Candidate& c : list) n += std::count_if(c.variants.begin(), c.variants.end(), [&](auto& v) { return v.in == run; });
+    for (const Candidate& c : list)
+      n += std::count_if(c.variants.begin(), c.variants.end(), [&](auto& v) { return v.in == run; });
     return n;
   };
   EXPECT_GT(n_in(all, without[0].name), 0);
   EXPECT_EQ(n_in(told, without[0].name), 0);
   for (const std::string& run : {std::string(), without[1].name}) EXPECT_EQ(n_in(told, run), n_in(all, run));
+}
+
+TEST(AShortStop,
+     IsNamedThoughItLiesBetweenTheTimesThatAreTriedFirst) {  // 2.5 min of a record of 5 h: rarer than any grid of stops
+  const std::string truth = with_effect(kMachine, "{type: missing_stop, start: 216 min, length: 2.5 min, in: monday}");
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "stop_", 30.0, 0.1, 1.0);
+  const Diagnosis d = Beside(write_file("plain.yaml", kMachine), records).diagnosed();
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, "missing_stop");
+  EXPECT_EQ(d.causes[0].standing, Standing::kNamed);
+  EXPECT_NEAR(d.causes[0].parameters[0].value, 2.5, 0.3);
+  EXPECT_NEAR(d.causes[0].parameters[1].value, 216.0, 0.5);
 }
 
 }  // namespace
