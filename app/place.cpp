@@ -18,9 +18,7 @@ int count(const std::string& option, int value, int least, int most) {
 
 studies::PlacementOptions options_of(const PlaceOptions& options, const scenarios::Scenario& scenario) {
   studies::PlacementOptions how;
-  how.n = scenario.study ? scenario.study->sensors_to_choose : how.n;
-  if (options.count) how.n = *options.count;
-  count("--count", how.n, 1, kMostThermometers);
+  if (options.count) how.n = count("--count", *options.count, 1, kMostThermometers);
   how.where = {.regions = options.regions, .excluded = options.excluded};
   if (options.points) how.where.n_points = count("--points", *options.points, kLeastPoints, kMostPoints);
   how.mounted = options.mounted;

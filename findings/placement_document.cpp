@@ -22,7 +22,9 @@ using studies::PlacedFor;
 using studies::Placement;
 using studies::Residual;
 
-constexpr double kWorthBuying = 0.9;  // of what is left: one more that leaves more than this is not bought
+constexpr double kWorthBuying = 0.9;  // of what is left: one more that leaves more than this is not worth it
+
+constexpr double kOutOfPicture = 4.0;  // times what one thermometer leaves: the curves of interest would lie on the axis
 
 /// Which of the curve's numbers the places were chosen for.
 double of(const Placement& p, const Residual& left) {
@@ -56,10 +58,16 @@ std::string spot_name(const Placement& p, int spot) {
   return fmt::format("{} [{:.0f}, {:.0f}, {:.0f}] mm", s.region, 1e3 * s.at_m.x(), 1e3 * s.at_m.y(), 1e3 * s.at_m.z());
 }
 
-/// How many are worth their money: the first number from which on the next leaves more than nine tenths.
+/// How many are worth their money: the first number behind which no more of them take off a tenth each.
 std::size_t enough(const Placement& p) {
-  for (std::size_t n = 0; n + 1 < p.chosen.left.size(); ++n) {
-    if (of(p, p.chosen.left[n + 1]) > kWorthBuying * of(p, p.chosen.left[n])) return n + 1;
+  for (std::size_t n = 0; n < p.chosen.left.size(); ++n) {
+    double worth_um = of(p, p.chosen.left[n]);
+    bool is_enough = true;
+    for (std::size_t more = n + 1; more < p.chosen.left.size(); ++more) {
+      worth_um *= kWorthBuying;
+      is_enough = is_enough && of(p, p.chosen.left[more]) > worth_um;
+    }
+    if (is_enough) return n + 1;
   }
   return p.chosen.left.size();
 }
@@ -67,13 +75,13 @@ std::size_t enough(const Placement& p) {
 Verdict verdict_of(const Placement& p) {
   const auto n = static_cast<std::size_t>(p.options.n);
   const Residual& left = p.chosen.left[n - 1];
-  std::string text = fmt::format("On cyclograms and machines that they were not chosen on, {} leave {:.2f} µm of {:.1f} µm (RMS) to the observer and {:.2f} µm to a regression. ",
-                                 n_words(n), left.observer_um, p.drift_um, left.regression_um);
+  std::string text = fmt::format("On cyclograms and machines that they were not chosen on, {} {} {:.2f} µm of {:.1f} µm (RMS) to the observer and {:.2f} µm to a regression. ",
+                                 n_words(n), n == 1 ? "leaves" : "leave", left.observer_um, p.drift_um, left.regression_um);
   const std::size_t n_enough = enough(p);
   if (n_enough < p.chosen.left.size()) {
-    text += fmt::format("The next one behind {} takes off less than a tenth.", n_words(n_enough));
-  } else {
-    text += fmt::format("Each of {} still takes off a tenth or more.", n_enough);
+    text += fmt::format("Behind {} no more of them take off a tenth each: stop there.", n_words(n_enough));
+  } else if (n_enough > 1) {
+    text += fmt::format("Even the last of {} takes off a tenth.", n_enough);
   }
   return {.kind = Verdict::Kind::kGood, .title = fmt::format("{} placed", n_words(n)), .text = text};
 }
@@ -107,16 +115,18 @@ Table curve_table(const Placement& p) {
               .columns = {{.key = "n", .title = "thermometers"},
                           {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)},
                           {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
+                          {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
+                          {.key = "regression_lost_um", .title = "regression, worst loss", .unit = "um", .digits = output::decimals(2)},
                           {.key = "design_observer_um", .title = "observer, as designed", .unit = "um", .digits = output::decimals(2)},
                           {.key = "design_regression_um", .title = "regression, as designed", .unit = "um", .digits = output::decimals(2)},
                           {.key = "objective_um", .title = "objective", .unit = "um", .digits = output::decimals(2)},
                           {.key = "places", .title = "places"}},
               .rows = {}};
-  table.rows.push_back({std::size_t{0}, p.without.observer_um, p.without.regression_um, output::Datum(), output::Datum(), output::Datum(), std::vector<std::string>{}});
+  table.rows.push_back({std::size_t{0}, p.without.observer_um, p.without.regression_um, output::Datum(), output::Datum(), output::Datum(), output::Datum(), output::Datum(), std::vector<std::string>{}});
   for (std::size_t n = 0; n < p.chosen.sets.size(); ++n) {
     std::vector<std::string> places;
     for (std::size_t i = p.mounted.size(); i < p.chosen.sets[n].size(); ++i) places.push_back(spot_name(p, p.chosen.sets[n][i]));
-    table.rows.push_back({n + 1, p.chosen.left[n].observer_um, p.chosen.left[n].regression_um, p.observer_um[n], p.regression_um[n], p.objective_um[n], places});
+    table.rows.push_back({n + 1, p.chosen.left[n].observer_um, p.chosen.left[n].regression_um, p.chosen_lost[n].observer_um, p.chosen_lost[n].regression_um, p.observer_um[n], p.regression_um[n], p.objective_um[n], places});
   }
   return table;
 }
@@ -124,7 +134,7 @@ Table curve_table(const Placement& p) {
 Table ways_table(const Placement& p, double Residual::*value, const std::string& predictor) {
   Table table{.key = predictor + "_by_way",
               .title = fmt::format("Ways to choose: drift left to the {}", predictor),
-              .caption = fmt::format("Random: {}root mean square and best of several sets.", ""),
+              .caption = "Random: root mean square and best of several sets.",
               .columns = {{.key = "way", .title = "way"}},
               .rows = {}};
   for (std::size_t n = 1; n <= p.chosen.sets.size(); ++n)
@@ -193,13 +203,14 @@ Plot curve_plot(const Placement& p, double Residual::*value, const std::string& 
       series.y.push_back(p.without.observer_um);
     }
     for (std::size_t n = 0; n < left.size(); ++n) {
-      if (!std::isfinite(left[n].*value)) continue;
+      if (!std::isfinite(left[n].*value) || !(left[n].*value < kOutOfPicture * p.chosen.left.front().*value)) continue;
       series.x.push_back(static_cast<double>(n + 1));
       series.y.push_back(left[n].*value);
     }
     plot.series.push_back(std::move(series));
   };
   add_curve("chosen", p.chosen.left, true, Series::Style::kLine, 0);
+  add_curve("chosen, worst one lost", p.chosen_lost, false, Series::Style::kDashed, 0);
   int color = 1;
   for (const ChosenBy& other : p.others) {
     const bool is_random = !other.best.empty();
@@ -254,7 +265,7 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
   add(body, Value{.key = "noise_K", .words = "noise of a reading", .datum = p.options.noise_K, .unit = "K", .digits = output::significant(2)});
   add(body, Value{.key = "drift_um", .words = "drift without correction, RMS", .datum = p.drift_um, .unit = "um", .digits = output::decimals(2)});
   add(body, Value{.key = "model_alone_um", .words = p.mounted.empty() ? "left by the model alone" : "left with those mounted", .datum = p.without.observer_um, .unit = "um", .digits = output::decimals(2)});
-  add(body, Value{.key = "enough", .words = "the next takes off less than a tenth behind", .datum = enough(p)});
+  add(body, Value{.key = "enough", .words = "thermometers behind which no more take off a tenth each", .datum = enough(p)});
   add(body, curve_table(p));
   add(body, curve_plot(p, &Residual::observer_um, "observer"));
   add(body, curve_plot(p, &Residual::regression_um, "regression"));

@@ -12,7 +12,9 @@ namespace {
 
 constexpr int kPixels = 700;
 constexpr double kFlattest = 0.25;  // cosine between the outward normal and the direction to the eye
-constexpr double kSlack = 2.5;      // pixels by which a point may lie behind what hides it
+constexpr double kSlack = 1.0;      // pixels by which a point may lie beside what hides it
+
+constexpr double kFloor = 0.02;     // of the machine's size that the floor lies beneath it, so that it hides what stands on it
 
 /// Depths towards an eye, in pixels.
 class DepthBuffer {
@@ -89,7 +91,10 @@ std::vector<bool> reachable_nodes(const Mesh& mesh, const MachineSkin& skin) {
   parallel_for(eyes.size(), [&](std::size_t e) {
     DepthBuffer buffer(mesh.coords, eyes[e]);
     for (const auto& t : skin.triangle) buffer.draw(mesh.coords.col(t[0]), mesh.coords.col(t[1]), mesh.coords.col(t[2]));
-    const Eigen::Vector3d a = low, b(high.x(), low.y(), low.z()), c(high.x(), high.y(), low.z()), d(low.x(), high.y(), low.z());
+    const double beneath_m = kFloor * (high - low).norm(), beyond_m = 2.0 * beneath_m;  // what stands on the floor is not seen past its edge
+    const double left = low.x() - beyond_m, right = high.x() + beyond_m, front = low.y() - beyond_m, back = high.y() + beyond_m;
+    const double z = low.z() - beneath_m;
+    const Eigen::Vector3d a(left, front, z), b(right, front, z), c(right, back, z), d(left, back, z);
     buffer.draw(a, b, c);
     buffer.draw(a, c, d);
     for (Eigen::Index node = 0; node < n_nodes; ++node) {

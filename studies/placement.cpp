@@ -18,6 +18,7 @@ namespace {
 using compensation::DriftLeft;
 using Sets = std::vector<std::vector<int>>;
 
+constexpr int kUsual = 4, kMostUnasked = 8;        // thermometers, where nobody says how many
 constexpr int kRows = 36;                          // of each run that is chosen on
 constexpr double kJudgedRow_s = 300.0;
 constexpr int kBlock = 400;                        // nodes of the picture at once
@@ -172,6 +173,7 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
     for (const Cyclogram& c : *list) cyclograms.push_back(&c);
   }
   const PlacementModel model = placement_model(scenario, cyclograms, how.where, how.mounted, how.channels, listener);
+  if (how.n == 0) how.n = std::min({scenario.study ? scenario.study->sensors_to_choose : kUsual, kMostUnasked, model.n_free()});
   if (how.n > model.n_free())
     throw InputError(fmt::format("{} thermometers are to be placed, and there are {} places for them", how.n, model.n_free()));
   how.n_most = std::min(std::max(how.n, how.n_most), model.n_free());
@@ -201,6 +203,7 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
                       .others = {},
                       .own = {},
                       .losses = {},
+                      .chosen_lost = {},
                       .tests = {},
                       .told_um = {},
                       .model = model.opened.words(),
@@ -208,7 +211,7 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
                       .mesh = {}};
   for (const auto& hall : families.halls) placement.halls.push_back(hall.name);
   listener.begin("choosing");
-  for (const compensation::ThermometerSet& set : compensation::best_sets(objective, how.n_most, mounted, 1, listener)) {
+  for (const compensation::ThermometerSet& set : compensation::best_sets(objective, how.n_most, mounted, listener)) {
     placement.chosen.sets.push_back(set.members);
     placement.objective_um.push_back(set.left_um);
     placement.observer_um.push_back(criteria.observer.of(set.members));
@@ -238,6 +241,8 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
   placement.chosen.left = judged.of(placement.chosen.sets);
   const auto at_n = static_cast<std::size_t>(how.n) - 1;
   placement.losses.push_back(loss_of_one(judged, "chosen", placement.chosen.sets[at_n], mounted.size()));
+  for (const std::vector<int>& set : placement.chosen.sets)
+    placement.chosen_lost.push_back(loss_of_one(judged, "chosen", set, mounted.size()).worst);
   for (ChosenBy& other : placement.others) {
     other.left = judged.of(other.sets);
     if (!other.sets[at_n].empty()) placement.losses.push_back(loss_of_one(judged, other.way, other.sets[at_n], mounted.size()));

@@ -13,7 +13,7 @@ namespace driftwright::studies {
 enum class PlacedFor { kBoth, kObserver, kRegression };
 
 struct PlacementOptions {
-  int n = 4;                               ///< that are to be bought
+  int n = 0;                               ///< that are to be bought; 0: those of the study, else four, or all places if there are fewer
   int n_most = 8;                          ///< up to which the curve goes, >= n
   SpotRules where = {};
   std::vector<std::string> mounted = {};   ///< sensors of the scenario that are there already, and used beside
@@ -58,7 +58,8 @@ struct Placement {
   std::vector<double> objective_um, observer_um, regression_um;  ///< of the chosen sets, as designed: with what may fail; all there
   std::vector<ChosenBy> others;
   std::optional<ChosenBy> own;         ///< all of the scenario's sensors that are candidates' equals, one set
-  std::vector<LossOfOne> losses;
+  std::vector<LossOfOne> losses;       ///< of n
+  std::vector<Residual> chosen_lost;   ///< of the chosen sets, without the one whose loss is worst
   std::vector<TriedTest> tests;
   double drift_um = 0.0;               ///< without correction
   Residual without = {};                    ///< without thermometers beside those mounted

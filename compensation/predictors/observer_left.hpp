@@ -37,13 +37,12 @@ class ObserverLeft final : public DriftLeft {
 
  private:
   static constexpr int kMost = 20;  ///< directions
-  using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost>;
   struct Moment {
-    Eigen::MatrixXd told;   ///< n_directions² x n_candidates: J'J / r summed over the rows until then
+    Eigen::MatrixXd told;   ///< J'J / r summed over the rows until then: of each candidate (rows, up to a whole number of packs) the lower triangle by rows
     Eigen::MatrixXd drift;  ///< n_directions x n_drifts
   };
-  [[nodiscard]] Information information(const Moment& moment, std::span<const int> set, double scatter) const;
-  [[nodiscard]] static double variance(const Information& information, const Eigen::MatrixXd& drift);
+  /// 1/σ² + Σ J'J / r of a set, its lower triangle by rows.
+  [[nodiscard]] Eigen::VectorXd information(const Moment& moment, std::span<const int> set, double scatter) const;
 
   int n_candidates_ = 0;
   Eigen::Index n_directions_ = 0, n_drifts_ = 0;

@@ -50,17 +50,19 @@ std::vector<double> LeftWithLoss::known(std::vector<int> set) const {
 }
 
 std::vector<double> LeftWithLoss::with_each(std::span<const int> set) const {
-  std::vector<double> left = known({set.begin(), set.end()});
-  std::vector<double> worst_um(left.size(), whole_.of(set));  // the one that is added fails
-  for (std::size_t c = 0; c < left.size(); ++c) {
-    if (!can_fail(static_cast<int>(c))) worst_um[c] = 0.0;
-  }
+  std::vector<std::vector<int>> sets = {{set.begin(), set.end()}};
   for (std::size_t i = 0; i < set.size(); ++i) {
-    if (!can_fail(set[i])) continue;
-    const std::vector<double> lost = known(without(set, i));
-    for (std::size_t c = 0; c < left.size(); ++c) worst_um[c] = std::max(worst_um[c], lost[c]);
+    if (can_fail(set[i])) sets.push_back(without(set, i));
   }
-  for (std::size_t c = 0; c < left.size(); ++c) left[c] = rms(left[c], worst_um[c]);
+  std::vector<std::vector<double>> with(sets.size());
+  for_each_part(sets.size(), n_candidates(), [&](std::size_t i) { with[i] = known(sets[i]); });
+  std::vector<double> left = with.front();
+  const double without_added_um = whole_.of(set);
+  for (std::size_t c = 0; c < left.size(); ++c) {
+    double worst_um = can_fail(static_cast<int>(c)) ? without_added_um : 0.0;
+    for (std::size_t i = 1; i < with.size(); ++i) worst_um = std::max(worst_um, with[i][c]);
+    left[c] = rms(left[c], worst_um);
+  }
   return left;
 }
 

@@ -6,7 +6,18 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel.hpp"
+
 namespace driftwright::compensation {
+
+/// Fewer candidates than these are done before other threads have woken up.
+inline constexpr int kWorthThreads = 64;
+/// work(i) for each i < n; on all cores where there are enough candidates.
+template <class Work>
+void for_each_part(std::size_t n, int n_candidates, const Work& work) {
+  if (n_candidates >= kWorthThreads) return parallel_for(n, work);
+  for (std::size_t i = 0; i < n; ++i) work(i);
+}
 
 /// An RMS of drift in um, by which of n_candidates() thermometers there are. Calls may come from several threads.
 class DriftLeft {

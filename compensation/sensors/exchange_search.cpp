@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kHelps = 1e-9;  // of what is left: less is rounding
 constexpr std::uint64_t kSeed = 1;
+constexpr int kTriedAtRandom = 400, kMostBeginnings = 20;  // candidates times random beginnings
 
 bool holds(const std::vector<int>& set, int candidate) {
   return std::find(set.begin(), set.end(), candidate) != set.end();
@@ -51,9 +52,9 @@ ThermometerSet exchanged(const DriftLeft& left, std::vector<int> members, std::s
 
 }  // namespace
 
-std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed, int n_random,
-                                      const Listener& listener) {
+std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed, const Listener& listener) {
   const int n_free = left.n_candidates() - static_cast<int>(fixed.size());
+  const int n_random = std::clamp(kTriedAtRandom / left.n_candidates(), 1, kMostBeginnings);
   Random random(kSeed);
   std::vector<ThermometerSet> best;
   std::vector<int> members = fixed;

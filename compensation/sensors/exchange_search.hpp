@@ -15,10 +15,9 @@ struct ThermometerSet {
 /// helps it most, and as some sets drawn at random; of each beginning, members are exchanged, each for the candidate that leaves least in its place,
 /// until no single exchange leaves less. Sets need not hold one another. It ends early when the listener wants an end.
 ///
-/// @param fixed     in every set
-/// @param n_random  beginnings drawn at random for each n; the same seed draws the same
+/// @param fixed  in every set. Of few candidates there are many random beginnings, of hundreds one
 /// Source: exchange after Fedorov, Theory of Optimal Experiments (1972), ch. 3.
-[[nodiscard]] std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed = {}, int n_random = 2,
+[[nodiscard]] std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed = {},
                                                     const Listener& listener = {});
 
 /// The best of all sets of n beside those that are fixed, by trying each.

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "base/dense.hpp"
-#include "base/parallel.hpp"
 
 namespace driftwright::compensation {
 
@@ -87,7 +86,7 @@ Eigen::ArrayXd RegressionLeft::squares(const Fold& fold, std::span<const int> se
 
 std::vector<double> RegressionLeft::with_each(std::span<const int> set) const {
   std::vector<Eigen::ArrayXd> by_fold(folds_.size());
-  parallel_for(folds_.size(), [&](std::size_t f) { by_fold[f] = squares(folds_[f], set); });
+  for_each_part(folds_.size(), n_candidates_, [&](std::size_t f) { by_fold[f] = squares(folds_[f], set); });
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(n_candidates_);
   for (const Eigen::ArrayXd& of_fold : by_fold) sum += of_fold;
   std::vector<double> left;
