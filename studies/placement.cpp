@@ -21,9 +21,15 @@ using Sets = std::vector<std::vector<int>>;
 constexpr int kUsual = 4, kMostUnasked = 8;        // thermometers, where nobody says how many
 constexpr int kRows = 36;                          // of each run that is chosen on
 constexpr double kJudgedRow_s = 300.0;
-constexpr int kBlock = 400;                        // nodes of the picture at once
+constexpr int kBlock = 250;                        // nodes of the picture at once
 const std::vector<int> kDesignSeeds = {1, 2, 3};   // machines that regressions are chosen on, of each scatter
 const std::vector<int> kJudgedSeeds = {1001, 1002};
+
+/// Runs that are chosen on, as all candidates need them.
+struct DesignRuns {
+  const std::vector<PlacementRun>& runs;
+  std::vector<std::vector<Eigen::MatrixXd>> by_factor, scattered;
+};
 
 /// The three criteria of one list of candidates.
 struct Criteria {
@@ -31,10 +37,10 @@ struct Criteria {
   compensation::RegressionLeft regression;
   compensation::LeftOfBoth both;
 
-  Criteria(const PlacementModel& model, const std::vector<PlacementRun>& runs, const PlacementOptions& how, const Eigen::MatrixXd& rows,
+  Criteria(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how, const Eigen::MatrixXd& rows,
            const Eigen::VectorXd& hall)
-      : observer(sensitivities(model, runs, how.noise_K, rows), how.scatter),
-        regression(scattered_runs(model, runs, how.scatter, kDesignSeeds, rows, hall), how.noise_K),
+      : observer(sensitivities(model, design.runs, design.by_factor, how.noise_K, rows), how.scatter),
+        regression(scattered_runs(model, design.runs, design.scattered, rows, hall), how.noise_K),
         both(observer, regression) {}
   Criteria(const Criteria&) = delete;
   Criteria& operator=(const Criteria&) = delete;
@@ -52,7 +58,7 @@ std::vector<std::string> names_of(const std::vector<Cyclogram>& cyclograms) {
 }
 
 /// What one thermometer at each node leaves; NaN at nodes inside, and of regions that may carry none.
-Eigen::VectorXd told_everywhere(const PlacementModel& model, const std::vector<PlacementRun>& runs, const PlacementOptions& how,
+Eigen::VectorXd told_everywhere(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how,
                                 const Listener& listener) {
   const scenarios::ReducedMachine& machine = *model.opened.reduced();
   const mesh::MachineSkin skin = mesh::skin_of(machine.mesh);
@@ -77,7 +83,7 @@ Eigen::VectorXd told_everywhere(const PlacementModel& model, const std::vector<P
     hall.head(n_mounted) = model.hall(mounted);
     for (Eigen::Index i = 0; i < n; ++i)
       rows.row(n_mounted + i) = machine.temperature.row(nodes[first + static_cast<std::size_t>(i)]).cast<double>();
-    const Criteria criteria(model, runs, how, rows, hall);
+    const Criteria criteria(model, design, how, rows, hall);
     const std::vector<double> left = criteria.of(how.placed_for).with_each(beside);
     for (Eigen::Index i = 0; i < n; ++i) told[nodes[first + static_cast<std::size_t>(i)]] = left[static_cast<std::size_t>(n_mounted + i)];
     listener.share(static_cast<double>(first) / static_cast<double>(nodes.size()));
@@ -180,7 +186,8 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
   const std::vector<int> mounted = model.mounted();
   const std::vector<PlacementRun> chosen_on = runs_in_all_halls(scenario, families.chosen_on, families.halls, kRows);
   listener.begin(fmt::format("{} places in {} runs", model.n_free(), chosen_on.size()));
-  const Criteria criteria(model, chosen_on, how, model.rows.topRows(model.n_candidates), model.hall.head(model.n_candidates));
+  const DesignRuns design{chosen_on, factor_states(model, chosen_on), scattered_states(model, chosen_on, how.scatter, kDesignSeeds)};
+  const Criteria criteria(model, design, how, model.rows.topRows(model.n_candidates), model.hall.head(model.n_candidates));
   const DriftLeft& whole = criteria.of(how.placed_for);
   const compensation::LeftWithLoss with_loss(whole, mounted);
   const DriftLeft& objective = how.any_may_fail ? static_cast<const DriftLeft&>(with_loss) : whole;
@@ -255,7 +262,7 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
   const scenarios::ReducedMachine& machine = *model.opened.reduced();
   if (machine.mesh.n_nodes() > 0) {
     listener.begin("the picture");
-    placement.told_um = told_everywhere(model, chosen_on, how, listener);
+    placement.told_um = told_everywhere(model, design, how, listener);
     placement.mesh = machine.mesh;
   }
   return placement;

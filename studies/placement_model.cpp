@@ -192,51 +192,62 @@ std::vector<std::string> factor_names(const PlacementModel& model) {
   return names;
 }
 
-std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& model, const std::vector<PlacementRun>& runs, double noise_K,
-                                                        const Eigen::MatrixXd& rows) {
+std::vector<std::vector<Eigen::MatrixXd>> factor_states(const PlacementModel& model, const std::vector<PlacementRun>& runs) {
   const std::size_t n_factors = factor_names(model).size();
-  std::vector<compensation::RunSensitivity> result(runs.size());
   std::vector<Eigen::MatrixXd> nominal(runs.size());
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    nominal[r] = states_of(model, model.system, runs[r]);
-    result[r].reading_K.resize(n_factors);
-    result[r].drift_um.resize(n_factors);
-    const compensation::ObserverSettings usual;
-    const double step_s = runs[r].times_s.size() > 1 ? runs[r].times_s[1] - runs[r].times_s[0] : usual.period_s;
-    result[r].reading_K2 = noise_K * noise_K + usual.model_K * usual.model_K * std::max(1.0, usual.model_holds_s / step_s);
-  }
+  parallel_for(runs.size(), [&](std::size_t r) { nominal[r] = states_of(model, model.system, runs[r]); });
+  std::vector<std::vector<Eigen::MatrixXd>> by_factor(runs.size(), std::vector<Eigen::MatrixXd>(n_factors));
   parallel_for(n_factors, [&](std::size_t f) {
     const solver::ReducedSystem changed = with_factor(model.system, f, 1.0 + kStep);
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-      const Eigen::MatrixXd by_factor = (states_of(model, changed, runs[r]) - nominal[r]) / std::log1p(kStep);
-      result[r].reading_K[f] = rows * by_factor;
-      result[r].drift_um[f].resize(static_cast<Eigen::Index>(model.drifts.size()), by_factor.cols());
-      for (std::size_t d = 0; d < model.drifts.size(); ++d)
-        result[r].drift_um[f].row(static_cast<Eigen::Index>(d)) =
-            1e6 * model.system.outputs.state.col(model.drifts[d]).transpose() * by_factor;
+    for (std::size_t r = 0; r < runs.size(); ++r) by_factor[r][f] = (states_of(model, changed, runs[r]) - nominal[r]) / std::log1p(kStep);
+  });
+  return by_factor;
+}
+
+std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& model, const std::vector<PlacementRun>& runs,
+                                                        const std::vector<std::vector<Eigen::MatrixXd>>& by_factor, double noise_K,
+                                                        const Eigen::MatrixXd& rows) {
+  const compensation::ObserverSettings usual;
+  Eigen::MatrixXd drifts(static_cast<Eigen::Index>(model.drifts.size()), model.system.size());
+  for (std::size_t d = 0; d < model.drifts.size(); ++d)
+    drifts.row(static_cast<Eigen::Index>(d)) = 1e6 * model.system.outputs.state.col(model.drifts[d]).transpose();
+  std::vector<compensation::RunSensitivity> result(runs.size());
+  parallel_for(runs.size(), [&](std::size_t r) {
+    const double step_s = runs[r].times_s.size() > 1 ? runs[r].times_s[1] - runs[r].times_s[0] : usual.period_s;
+    result[r].reading_K2 = noise_K * noise_K + usual.model_K * usual.model_K * std::max(1.0, usual.model_holds_s / step_s);
+    for (const Eigen::MatrixXd& states : by_factor[r]) {
+      result[r].reading_K.emplace_back(rows * states);
+      result[r].drift_um.emplace_back(drifts * states);
     }
   });
   return result;
 }
 
-std::vector<compensation::RunOfCandidates> scattered_runs(const PlacementModel& model, const std::vector<PlacementRun>& runs,
-                                                          const std::vector<double>& scatter, const std::vector<int>& seeds,
-                                                          const Eigen::MatrixXd& rows, const Eigen::VectorXd& hall) {
-  std::vector<compensation::RunOfCandidates> result(scatter.size() * seeds.size() * runs.size());
-  parallel_for(scatter.size() * seeds.size(), [&](std::size_t m) {
+std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel& model, const std::vector<PlacementRun>& runs,
+                                                           const std::vector<double>& scatter, const std::vector<int>& seeds) {
+  std::vector<std::vector<Eigen::MatrixXd>> states(scatter.size() * seeds.size(), std::vector<Eigen::MatrixXd>(runs.size()));
+  parallel_for(states.size(), [&](std::size_t m) {
     const solver::ReducedSystem other =
         compensation::scattered(model.system, scatter[m / seeds.size()], seeds[m % seeds.size()], true);
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-      const Eigen::MatrixXd states = states_of(model, other, runs[r]);
-      const double warmer_K = runs[r].felt.hall.at(0.0) - model.start_hall_K;
-      compensation::RunOfCandidates& run = result[m * runs.size() + r];
-      run.machine = static_cast<int>(m);
-      run.group = runs[r].group;
-      run.reading_K = rows * (states.colwise() - (model.start + warmer_K * model.system.ones));
-      for (Eigen::Index i = 0; i < states.cols(); ++i)
-        run.reading_K.col(i) += (runs[r].felt.hall.at(runs[r].times_s[static_cast<std::size_t>(i)]) - runs[r].felt.hall.at(0.0)) * hall;
-      run.drift_um = drift_um(model, runs[r], states);
-    }
+    for (std::size_t r = 0; r < runs.size(); ++r) states[m][r] = states_of(model, other, runs[r]);
+  });
+  return states;
+}
+
+std::vector<compensation::RunOfCandidates> scattered_runs(const PlacementModel& model, const std::vector<PlacementRun>& runs,
+                                                          const std::vector<std::vector<Eigen::MatrixXd>>& states,
+                                                          const Eigen::MatrixXd& rows, const Eigen::VectorXd& hall) {
+  std::vector<compensation::RunOfCandidates> result(states.size() * runs.size());
+  parallel_for(result.size(), [&](std::size_t i) {
+    const std::size_t m = i / runs.size(), r = i % runs.size();
+    const double warmer_K = runs[r].felt.hall.at(0.0) - model.start_hall_K;
+    compensation::RunOfCandidates& run = result[i];
+    run.machine = static_cast<int>(m);
+    run.group = runs[r].group;
+    run.reading_K = rows * (states[m][r].colwise() - (model.start + warmer_K * model.system.ones));
+    for (Eigen::Index k = 0; k < run.reading_K.cols(); ++k)
+      run.reading_K.col(k) += (runs[r].felt.hall.at(runs[r].times_s[static_cast<std::size_t>(k)]) - runs[r].felt.hall.at(0.0)) * hall;
+    run.drift_um = drift_um(model, runs[r], states[m][r]);
   });
   return result;
 }

@@ -49,17 +49,25 @@ struct PlacementModel {
 /// Drifts since the start, n_rows x n_drifts [um].
 [[nodiscard]] Eigen::MatrixXd drift_um(const PlacementModel& model, const PlacementRun& run, const Eigen::MatrixXd& states);
 
-/// What each heat source, film, joint and link, all conduction and all rates of change do to candidates and drifts, by differences over 1 % of each.
-/// @param rows  of the candidates, as PlacementModel::rows
+/// What each heat source, film, joint and link, all conduction and all rates of change do to the states of runs, by differences over 1 % of each:
+/// of each run and factor, size x n_rows.
+[[nodiscard]] std::vector<std::vector<Eigen::MatrixXd>> factor_states(const PlacementModel& model, const std::vector<PlacementRun>& runs);
+/// What they do to candidates and drifts.
+/// @param by_factor  factor_states() of the runs
+/// @param rows       of the candidates, as PlacementModel::rows
 [[nodiscard]] std::vector<compensation::RunSensitivity> sensitivities(const PlacementModel& model, const std::vector<PlacementRun>& runs,
+                                                                      const std::vector<std::vector<Eigen::MatrixXd>>& by_factor,
                                                                       double noise_K, const Eigen::MatrixXd& rows);
 /// Names of these factors.
 [[nodiscard]] std::vector<std::string> factor_names(const PlacementModel& model);
 
-/// Runs of machines that differ from the model by random factors (compensation::scattered()).
+/// States of runs of machines that differ from the model by random factors (compensation::scattered()), of each machine and run.
 /// @param seeds  of each scatter, one machine each
+[[nodiscard]] std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel& model, const std::vector<PlacementRun>& runs,
+                                                                         const std::vector<double>& scatter, const std::vector<int>& seeds);
+/// Those machines as candidates and drifts see them. @param states  scattered_states() of the runs
 [[nodiscard]] std::vector<compensation::RunOfCandidates> scattered_runs(const PlacementModel& model, const std::vector<PlacementRun>& runs,
-                                                                        const std::vector<double>& scatter, const std::vector<int>& seeds,
+                                                                        const std::vector<std::vector<Eigen::MatrixXd>>& states,
                                                                         const Eigen::MatrixXd& rows, const Eigen::VectorXd& hall);
 
 }  // namespace driftwright::studies

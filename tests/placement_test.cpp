@@ -63,7 +63,7 @@ TEST(Placement, OfTwoBodiesLeavesTheVarianceThatIsWorkedOutByHand) {
   const std::vector<PlacementRun> runs = runs_in_all_halls(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 0.0}}, 36);
   ASSERT_EQ(runs.size(), 1u);
   const double noise_K = 0.1, scatter = 0.3, row_s = 300.0;
-  const std::vector<compensation::RunSensitivity> numerical = sensitivities(model, runs, noise_K, model.rows);
+  const std::vector<compensation::RunSensitivity> numerical = sensitivities(model, runs, factor_states(model, runs), noise_K, model.rows);
   const double r = noise_K * noise_K + 0.1 * 0.1 * 1800.0 / row_s;  // the model misses by 0.1 K in the same way for half an hour
   EXPECT_NEAR(numerical.front().reading_K2, r, 1e-12);
   const Eigen::Index n_rows = 37;
@@ -114,8 +114,8 @@ TEST(Placement, OnTwelveBodiesIsTheBestOfAllSetsOfThree) {
     const scenarios::Scenario scenario = scenario_of(chain(seed));
     const PlacementModel model = model_of(scenario);
     const std::vector<PlacementRun> runs = runs_in_all_halls(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 3.0}}, 24);
-    const compensation::ObserverLeft observer(sensitivities(model, runs, 0.1, model.rows), {0.1, 0.3});
-    const compensation::RegressionLeft regression(scattered_runs(model, runs, {0.1, 0.3}, {1, 2}, model.rows, model.hall), 0.1);
+    const compensation::ObserverLeft observer(sensitivities(model, runs, factor_states(model, runs), 0.1, model.rows), {0.1, 0.3});
+    const compensation::RegressionLeft regression(scattered_runs(model, runs, scattered_states(model, runs, {0.1, 0.3}, {1, 2}), model.rows, model.hall), 0.1);
     const compensation::LeftOfBoth both(observer, regression);
     const compensation::LeftWithLoss with_loss(both);
     for (const compensation::DriftLeft* left : {static_cast<const compensation::DriftLeft*>(&observer), static_cast<const compensation::DriftLeft*>(&regression),

@@ -15,7 +15,7 @@ struct ThermometerSet {
 /// helps it most, and as some sets drawn at random; of each beginning, members are exchanged, each for the candidate that leaves least in its place,
 /// until no single exchange leaves less. Sets need not hold one another. It ends early when the listener wants an end.
 ///
-/// @param fixed  in every set. Of few candidates there are many random beginnings, of hundreds one
+/// @param fixed  in every set. Of few candidates there are many random beginnings (of 20 or fewer twenty), of 400 and more one
 /// Source: exchange after Fedorov, Theory of Optimal Experiments (1972), ch. 3.
 [[nodiscard]] std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed = {},
                                                     const Listener& listener = {});
