@@ -39,6 +39,10 @@ std::string for_words(PlacedFor placed_for) {
   return "both";
 }
 
+std::string told_for_words(PlacedFor placed_for) {
+  return placed_for == PlacedFor::kBoth ? "both (geometric mean of observer and regression)" : "the " + for_words(placed_for);
+}
+
 std::string n_words(std::size_t n) {
   return n == 1 ? "1 thermometer" : fmt::format("{} thermometers", n);
 }
@@ -112,7 +116,7 @@ Table curve_table(const Placement& p) {
               .title = "How many",
               .caption = "RMS of the drift left on cyclograms and machines that were not chosen on. As designed: what the criteria say of the same places; with the loss of the worst one "
                          "where that is counted.",
-              .columns = {{.key = "n", .title = "thermometers"},
+              .columns = {{.key = "n", .title = "n"},
                           {.key = "observer_um", .title = "observer", .unit = "um", .digits = output::decimals(2)},
                           {.key = "regression_um", .title = "regression", .unit = "um", .digits = output::decimals(2)},
                           {.key = "observer_lost_um", .title = "observer, worst loss", .unit = "um", .digits = output::decimals(2)},
@@ -134,7 +138,7 @@ Table curve_table(const Placement& p) {
 Table ways_table(const Placement& p, double Residual::*value, const std::string& predictor) {
   Table table{.key = predictor + "_by_way",
               .title = fmt::format("Ways to choose: drift left to the {}", predictor),
-              .caption = "Random: root mean square and best of several sets.",
+              .caption = "Random: median and best of eight sets; which is best is known behindhand only.",
               .columns = {{.key = "way", .title = "way"}},
               .rows = {}};
   for (std::size_t n = 1; n <= p.chosen.sets.size(); ++n)
@@ -148,7 +152,7 @@ Table ways_table(const Placement& p, double Residual::*value, const std::string&
   add_row("chosen", p.chosen.left, p.chosen.sets);
   for (const ChosenBy& other : p.others) {
     const bool is_random = !other.best.empty();
-    add_row(is_random ? "random, RMS" : other.way, other.left, is_random ? std::vector<std::vector<int>>{} : other.sets);
+    add_row(is_random ? "random, median" : other.way, other.left, is_random ? std::vector<std::vector<int>>{} : other.sets);
     if (is_random) add_row("random, best", other.best, {});
   }
   return table;
@@ -218,7 +222,7 @@ Plot curve_plot(const Placement& p, double Residual::*value, const std::string& 
     for (std::size_t n = 0; n < left.size(); ++n) {
       if (!is_random && other.sets[n].empty()) left[n].*value = std::nan("");
     }
-    add_curve(is_random ? "random, RMS" : other.way, left, false, is_random ? Series::Style::kDashed : Series::Style::kLine, color++);
+    add_curve(is_random ? "random, median" : other.way, left, false, is_random ? Series::Style::kDashed : Series::Style::kLine, color++);
   }
   return plot;
 }
@@ -234,8 +238,8 @@ output::Picture told_picture(const Placement& p, const scenarios::MachineModel& 
     const studies::Spot& s = p.spots[static_cast<std::size_t>(spot)];
     marks.push_back({s.sensor, s.at_m});
   }
-  return {.title = fmt::format("What one thermometer would leave of the drift, as designed; {:.2f} µm without any. Dots: the {} that were chosen together; rings: indicators; grey: no place for one",
-                               p.told_nothing_um, p.options.n),
+  return {.title = fmt::format("What one thermometer would leave of the drift, as designed for {}; {:.2f} µm without any. Dots: the {} that were chosen together; rings: indicators; grey: no place for one",
+                               told_for_words(p.options.placed_for), p.told_nothing_um, p.options.n),
           .svg = output::draw_machine({.mesh = &p.mesh, .field = output::PictureField{"drift left by one thermometer there [µm]", p.told_um}, .marks = marks})};
 }
 

@@ -152,19 +152,23 @@ LossOfOne loss_of_one(JudgedOnce& judge, const std::string& way, const std::vect
   return loss;
 }
 
-/// Random sets of each number as one way: root mean squares, and the best.
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+}
+
+/// Random sets of each number as one way: medians, and the best.
 ChosenBy of_random(const std::vector<Residual>& left, int n_most) {
   ChosenBy by{.way = "random", .sets = Sets(static_cast<std::size_t>(n_most)), .left = {}};
   for (int n = 0; n < n_most; ++n) {
-    Residual sum, best{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    std::vector<double> observer_um, regression_um;
     for (int k = 0; k < kRandomSets; ++k) {
-      const Residual& one = left[static_cast<std::size_t>(n * kRandomSets + k)];
-      sum.observer_um += one.observer_um * one.observer_um / kRandomSets;
-      sum.regression_um += one.regression_um * one.regression_um / kRandomSets;
-      best = {std::min(best.observer_um, one.observer_um), std::min(best.regression_um, one.regression_um)};
+      observer_um.push_back(left[static_cast<std::size_t>(n * kRandomSets + k)].observer_um);
+      regression_um.push_back(left[static_cast<std::size_t>(n * kRandomSets + k)].regression_um);
     }
-    by.left.push_back({std::sqrt(sum.observer_um), std::sqrt(sum.regression_um)});
-    by.best.push_back(best);
+    by.left.push_back({median(observer_um), median(regression_um)});
+    by.best.push_back({*std::min_element(observer_um.begin(), observer_um.end()), *std::min_element(regression_um.begin(), regression_um.end())});
   }
   return by;
 }

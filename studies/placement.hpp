@@ -30,7 +30,7 @@ struct ChosenBy {
   std::string way;                      ///< "chosen", "grey grade", ...
   std::vector<std::vector<int>> sets;   ///< spots; empty where the way has none of so many
   std::vector<Residual> left;           ///< on what was not chosen on
-  std::vector<Residual> best = {};      ///< of several sets of a number, as random ones: the best of each; `left` is their root mean square
+  std::vector<Residual> best = {};      ///< of several sets of a number, as random ones: the best of each, known behindhand; `left` is their median
 };
 
 /// What the loss of one of the sets of n does: the worst of them.

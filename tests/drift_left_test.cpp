@@ -123,7 +123,14 @@ TEST(LeftWithLoss, IsTheMeanSquareOfAllAndOfTheWorstLoss) {
   for (const std::vector<int>& rest : {std::vector<int>{5, 7}, {2, 7}, {2, 5}}) worst_um = std::max(worst_um, whole.of(rest));
   const LeftWithLoss left(whole);
   EXPECT_NEAR(left.of(set), std::sqrt(0.5 * (whole.of(set) * whole.of(set) + worst_um * worst_um)), 1e-12);
-  EXPECT_NEAR(left.with_each(std::vector<int>{2, 5})[7], left.of(set), 1e-12);
+  for (int a = 0; a < 9; ++a) {  // whichever's loss is the worst
+    for (int b = 0; b < a; ++b) {
+      const std::vector<double> with = left.with_each(std::vector<int>{a, b});
+      for (int c = 0; c < 9; ++c) {
+        if (c != a && c != b) EXPECT_NEAR(with[static_cast<std::size_t>(c)], left.of(std::vector<int>{a, b, c}), 1e-12);
+      }
+    }
+  }
   const LeftWithLoss lasting(whole, {2});  // it never fails
   worst_um = std::max(whole.of(std::vector<int>{2, 7}), whole.of(std::vector<int>{2, 5}));
   EXPECT_NEAR(lasting.of(set), std::sqrt(0.5 * (whole.of(set) * whole.of(set) + worst_um * worst_um)), 1e-12);

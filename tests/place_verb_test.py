@@ -39,7 +39,7 @@ def main():
         for predictor in ("observer", "regression"):
             ways = {w["way"]: w for w in result[f"{predictor}_by_way"]}
             chosen = ways["chosen"]["n3_um"]
-            for other in ("grey grade", "random, RMS"):
+            for other in ("grey grade", "random, median"):
                 expect(chosen < ways[other]["n3_um"], f"{predictor}: chosen {chosen} um, {other} {ways[other]['n3_um']} um")
             expect(abs(chosen - result["curve"][3][f"{predictor}_um"]) < 1e-9, f"{predictor}: curve and comparison say the same")
         expect(result["curve"][3]["observer_um"] < 0.5 * result["model_alone_um"] < result["drift_um"], "three take off half of what the model alone leaves")
