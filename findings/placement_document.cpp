@@ -138,7 +138,7 @@ Table curve_table(const Placement& p) {
 Table ways_table(const Placement& p, double Residual::*value, const std::string& predictor) {
   Table table{.key = predictor + "_by_way",
               .title = fmt::format("Ways to choose: drift left to the {}", predictor),
-              .caption = "Random: median and best of eight sets; which is best is known behindhand only.",
+              .caption = "Random: median and best of six sets; which is best is known behindhand only.",
               .columns = {{.key = "way", .title = "way"}},
               .rows = {}};
   for (std::size_t n = 1; n <= p.chosen.sets.size(); ++n)

@@ -57,16 +57,47 @@ std::vector<std::string> names_of(const std::vector<Cyclogram>& cyclograms) {
   return names;
 }
 
+/// Corners of cells.
+std::vector<bool> corners_of(const mesh::Mesh& mesh) {
+  std::vector<bool> is_corner(static_cast<std::size_t>(mesh.n_nodes()));
+  for (int c = 0; c < mesh.cells.size(); ++c) {
+    const auto n_corners = static_cast<std::size_t>(mesh::n_corners_of(mesh.cells.shape[static_cast<std::size_t>(c)]));
+    for (int node : mesh.cells.nodes(c).first(n_corners)) is_corner[static_cast<std::size_t>(node)] = true;
+  }
+  return is_corner;
+}
+
+/// Mid-side nodes of the skin as the mean of the corners beside them.
+void fill_mid_sides(Eigen::VectorXd& told_um, const mesh::MachineSkin& skin, const std::vector<bool>& is_corner) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(told_um.size()), n = sum;
+  for (const auto& triangle : skin.triangle) {
+    for (int mid : triangle) {
+      if (is_corner[static_cast<std::size_t>(mid)]) continue;
+      for (int corner : triangle) {
+        if (!is_corner[static_cast<std::size_t>(corner)]) continue;
+        sum[mid] += told_um[corner];
+        n[mid] += 1.0;
+      }
+    }
+  }
+  for (Eigen::Index node = 0; node < told_um.size(); ++node) {
+    if (n[node] > 0.0) told_um[node] = sum[node] / n[node];
+  }
+}
+
 /// What one thermometer at each node leaves; NaN at nodes inside, and of regions that may carry none.
 Eigen::VectorXd told_everywhere(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how,
                                 const Listener& listener) {
   const scenarios::ReducedMachine& machine = *model.opened.reduced();
   const mesh::MachineSkin skin = mesh::skin_of(machine.mesh);
+  const std::vector<bool> is_corner = corners_of(machine.mesh);
   std::vector<int> nodes;
   for (std::size_t i = 0; i < skin.triangle.size(); ++i) {
     const std::string& region = machine.mesh.regions[static_cast<std::size_t>(skin.region[i])];
     if (std::find(model.regions.begin(), model.regions.end(), region) == model.regions.end()) continue;
-    nodes.insert(nodes.end(), skin.triangle[i].begin(), skin.triangle[i].end());
+    for (int node : skin.triangle[i]) {
+      if (is_corner[static_cast<std::size_t>(node)]) nodes.push_back(node);
+    }
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -88,6 +119,7 @@ Eigen::VectorXd told_everywhere(const PlacementModel& model, const DesignRuns& d
     for (Eigen::Index i = 0; i < n; ++i) told[nodes[first + static_cast<std::size_t>(i)]] = left[static_cast<std::size_t>(n_mounted + i)];
     listener.share(static_cast<double>(first) / static_cast<double>(nodes.size()));
   }
+  fill_mid_sides(told, skin, is_corner);
   return told;
 }
 

@@ -5,7 +5,7 @@
 
 namespace driftwright::studies {
 
-inline constexpr int kRandomSets = 8;  ///< of each number
+inline constexpr int kRandomSets = 6;  ///< of each number
 
 /// Grey grade, correlation and clusters (compensation::selectors()) on the runs that places are chosen on, as the scenario's machine would record them with noise; of 1 to n_most
 /// thermometers. Their `left` is empty. @param runs  of the first drift
