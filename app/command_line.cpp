@@ -333,6 +333,7 @@ int app::command_line(int argc, const char* const* argv) {
   app::SimulateOptions simulate;
   app::PredictOptions predict;
   app::WarmUpVerbOptions warmup;
+  app::PlaceOptions place;
   app::ScheduleVerbOptions schedule;
   app::InjectOptions inject;
   app::RecordOptions select, validate;
@@ -388,6 +389,24 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--channel", warmup.channels, "displacement that counts; may be repeated [all]")->allow_extra_args(false);
   add_warm_start(verb, warmup.start, warmup.after_pause, warmup.model);
   verb->callback([&] { app::warmup(warmup); });
+  verb = add_verb(cli, "place", "where to mount thermometers, how many and which test they need (docs/placement.md)",
+                  "place scenarios/fp3_spindle.yaml --count 4 --exclude table -o results/place", place);
+  verb->add_option("--count", place.count, "thermometers to place, 1 to 12 [the study's, else 4]");
+  verb->add_option("--region", place.regions, "that may carry them; may be repeated [all but those that turn, flow or hang by their names]")
+      ->allow_extra_args(false);
+  verb->add_option("--exclude", place.excluded, "region that may not carry them; may be repeated")->allow_extra_args(false);
+  verb->add_option("--mounted", place.mounted, "sensor of the scenario that is there already; may be repeated")->allow_extra_args(false);
+  verb->add_option("--channel", place.channels, "displacement that counts; may be repeated [the study's target, else all]")
+      ->allow_extra_args(false);
+  verb->add_option("--for", place.placed_for, "both, observer or regression [both]")->check(CLI::IsMember({"both", "observer", "regression"}));
+  verb->add_flag("--none-fails", place.none_fails, "count only the case in which all thermometers work");
+  verb->add_option("--train", place.train, "cyclogram to choose on; may be repeated [those that `validation` trains on, else all]")
+      ->allow_extra_args(false);
+  verb->add_option("--test", place.test, "cyclogram to judge by; may be repeated [those of `validation`, else made ones]")
+      ->allow_extra_args(false);
+  verb->add_option("--noise", place.noise, "of a reading, 1 sigma, such as '0.1 K' [that of `validation`, else 0.1 K]");
+  verb->add_option("--points", place.points, "of a mesh that are tried, 50 to 3000 [400]");
+  verb->callback([&] { app::place(place); });
   verb = add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
                   "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/part", schedule);
   verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/schedule.md)")

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "output/base64.hpp"
-#include "output/machine_skin.hpp"
+#include "mesh/machine_skin.hpp"
 #include "output/markup.hpp"
 #include "output/surface_view.hpp"
 
@@ -30,6 +30,7 @@ bool is_joint_side(const mesh::Mesh& mesh, int surface) {
 
 /// The dark end of the map would hide how a cold body is shaped.
 std::array<float, 3> colour_of(double share) {
+  if (std::isnan(share)) return {0.82F, 0.84F, 0.86F};
   return inferno(0.15 + 0.85 * share);
 }
 
@@ -103,7 +104,7 @@ std::string draw_machine(const MachinePicture& picture) {
   if (mesh.cells.size() == 0) throw std::logic_error("draw_machine: a mesh without cells");
   if (picture.field && picture.field->value.size() != mesh.n_nodes())
     throw std::logic_error("draw_machine: a field of another mesh");
-  MachineSkin skin = skin_of(mesh);
+  mesh::MachineSkin skin = mesh::skin_of(mesh);
   if (picture.field) {  // kept machines know regions alone, and a picture must not tell whether the machine was known
     for (std::size_t i = 0; i < skin.part.size(); ++i) skin.part[i] = skin.region[i];
   }
@@ -121,8 +122,8 @@ std::string draw_machine(const MachinePicture& picture) {
   double low = 0.0, high = 1.0;
   std::set<int> shown_surfaces;
   if (picture.field) {
-    low = picture.field->value.minCoeff();
-    high = std::max(picture.field->value.maxCoeff(), low + 0.01);  // what differs by less has one colour
+    low = picture.field->value.minCoeff<Eigen::PropagateNumbers>();
+    high = std::max(picture.field->value.maxCoeff<Eigen::PropagateNumbers>(), low + 0.01);  // what differs by less has one colour
     for (double v : picture.field->value) surface.colour.push_back(colour_of((v - low) / (high - low)));
   } else {
     // Points that surfaces share would mix their colours: each triangle has points of its own.

@@ -20,7 +20,7 @@ struct PictureMark {
 /// A quantity on the nodes, as colour.
 struct PictureField {
   std::string label;      ///< with its unit: "temperature [°C]"
-  Eigen::VectorXd value;  ///< n_nodes
+  Eigen::VectorXd value;  ///< n_nodes; NaN, grey: has none. One node at least has a value
 };
 
 struct MachinePicture {

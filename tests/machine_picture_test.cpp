@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <regex>
 
 #include "tests/fixtures.hpp"
@@ -42,6 +43,20 @@ TEST(MachinePicture, ShowsTheRangeOfAFieldAndARoundMagnification) {
     EXPECT_THAT(drawn, HasSubstr(tick));
   // A twentieth of the diagonal, 0.245 m, is 1225 times 10 µm: 1000 of 1, 2 and 5 times a power of ten.
   EXPECT_THAT(drawn, HasSubstr("displacement magnified 1000 times"));
+}
+
+// Half of the box has no value: its range is that of the other half.
+TEST(MachinePicture, LeavesNodesWithoutAValueOutOfTheRange) {
+  const mesh::Mesh mesh = box();
+  Eigen::VectorXd value = 20.0 + 50.0 * mesh.coords.row(2).transpose().array();
+  const std::string whole = draw_machine({.mesh = &mesh, .field = PictureField{"left [µm]", value}});
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    if (mesh.coords(2, i) > 0.1 + 1e-9) value[i] = std::nan("");
+  }
+  const std::string half = draw_machine({.mesh = &mesh, .field = PictureField{"left [µm]", value}});
+  EXPECT_THAT(whole, HasSubstr(">30.0<"));
+  EXPECT_THAT(half, HasSubstr(">25.0<"));
+  EXPECT_THAT(half, Not(HasSubstr(">30.0<")));
 }
 
 TEST(MachinePicture, KeepsAllNamesInside) {

@@ -6,7 +6,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "output/machine_skin.hpp"
+#include "mesh/machine_skin.hpp"
 
 namespace driftwright::output {
 namespace {
@@ -52,7 +52,7 @@ Quantised quantised(const Eigen::MatrixXf& modes) {
 
 TwinSurface twin_surface(const scenarios::ReducedMachine& machine) {
   if (machine.temperature.rows() != machine.mesh.n_nodes()) throw std::logic_error("twin_surface: a machine without fields");
-  const MachineSkin skin = skin_of(machine.mesh);
+  const mesh::MachineSkin skin = mesh::skin_of(machine.mesh);
   TwinSurface surface;
   std::vector<std::int64_t> place(static_cast<std::size_t>(machine.mesh.n_nodes()), -1);
   for (const auto& triangle : skin.triangle) {

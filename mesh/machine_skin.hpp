@@ -6,7 +6,7 @@
 
 #include "mesh/mesh.hpp"
 
-namespace driftwright::output {
+namespace driftwright::mesh {
 
 /// The machine's outside. Mid-side nodes are corners of triangles, too.
 struct MachineSkin {
@@ -16,6 +16,6 @@ struct MachineSkin {
   std::vector<int> region;                   ///< of each triangle
 };
 /// In the order of the mesh's faces: the same mesh gives the same triangles.
-[[nodiscard]] MachineSkin skin_of(const mesh::Mesh& mesh);
+[[nodiscard]] MachineSkin skin_of(const Mesh& mesh);
 
-}  // namespace driftwright::output
+}  // namespace driftwright::mesh

@@ -1,23 +1,23 @@
-#include "output/machine_skin.hpp"
+#include "mesh/machine_skin.hpp"
 
 #include <map>
 #include <stdexcept>
 
 #include "mesh/outer_faces.hpp"
 
-namespace driftwright::output {
+namespace driftwright::mesh {
 namespace {
 
 /// Triangles of a face; mid-side nodes are corners of them.
-std::vector<std::array<int, 3>> triangles_of(mesh::CellShape shape, const std::vector<int>& n) {
+std::vector<std::array<int, 3>> triangles_of(CellShape shape, const std::vector<int>& n) {
   switch (shape) {
-    case mesh::CellShape::kTri3:
+    case CellShape::kTri3:
       return {{n[0], n[1], n[2]}};
-    case mesh::CellShape::kTri6:
+    case CellShape::kTri6:
       return {{n[0], n[3], n[5]}, {n[3], n[1], n[4]}, {n[5], n[4], n[2]}, {n[3], n[4], n[5]}};
-    case mesh::CellShape::kQuad4:
+    case CellShape::kQuad4:
       return {{n[0], n[1], n[2]}, {n[0], n[2], n[3]}};
-    case mesh::CellShape::kQuad8:
+    case CellShape::kQuad8:
       return {{n[0], n[4], n[7]}, {n[4], n[1], n[5]}, {n[5], n[2], n[6]},
               {n[6], n[3], n[7]}, {n[4], n[5], n[6]}, {n[4], n[6], n[7]}};
     default:
@@ -27,21 +27,21 @@ std::vector<std::array<int, 3>> triangles_of(mesh::CellShape shape, const std::v
 
 }  // namespace
 
-MachineSkin skin_of(const mesh::Mesh& mesh) {
-  std::map<mesh::FaceKey, int> named;
+MachineSkin skin_of(const Mesh& mesh) {
+  std::map<FaceKey, int> named;
   for (int f = 0; f < mesh.facets.size(); ++f) {
     const auto nodes = mesh.facets.nodes(f);
-    const int corners = mesh::n_corners_of(mesh.facets.shape[static_cast<std::size_t>(f)]);
-    named[mesh::face_key(nodes.first(static_cast<std::size_t>(corners)))] = mesh.facets.group[static_cast<std::size_t>(f)];
+    const int corners = n_corners_of(mesh.facets.shape[static_cast<std::size_t>(f)]);
+    named[face_key(nodes.first(static_cast<std::size_t>(corners)))] = mesh.facets.group[static_cast<std::size_t>(f)];
   }
   MachineSkin skin;
-  mesh::FaceTable(mesh.cells).for_each([&](const mesh::FaceKey& key, std::span<const mesh::FaceTable::Entry> at) {
+  FaceTable(mesh.cells).for_each([&](const FaceKey& key, std::span<const FaceTable::Entry> at) {
     if (at.size() != 1) return;
     const auto name = named.find(key);
     const int surface = name == named.end() ? -1 : name->second;
     const int region = mesh.cells.group[static_cast<std::size_t>(at[0].at.cell)];
     const int part = surface >= 0 ? surface : static_cast<int>(mesh.surfaces.size()) + region;
-    for (const auto& t : triangles_of(mesh::shape_of(mesh.cells, at[0].at), mesh::nodes_of(mesh.cells, at[0].at))) {
+    for (const auto& t : triangles_of(shape_of(mesh.cells, at[0].at), nodes_of(mesh.cells, at[0].at))) {
       skin.triangle.push_back(t);
       skin.part.push_back(part);
       skin.surface.push_back(surface);
@@ -51,4 +51,4 @@ MachineSkin skin_of(const mesh::Mesh& mesh) {
   return skin;
 }
 
-}  // namespace driftwright::output
+}  // namespace driftwright::mesh

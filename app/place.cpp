@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/results.hpp"
+#include "base/option_quantity.hpp"
+#include "findings/placement_document.hpp"
+#include "studies/placement_yaml.hpp"
+
+namespace driftwright::app {
+namespace {
+
+constexpr int kMostThermometers = 12, kLeastPoints = 50, kMostPoints = 3000;
+
+int count(const std::string& option, int value, int least, int most) {
+  if (value >= least && value <= most) return value;
+  throw InputError(fmt::format("{} {}: {} to {} is allowed", option, value, least, most));
+}
+
+studies::PlacementOptions options_of(const PlaceOptions& options, const scenarios::Scenario& scenario) {
+  studies::PlacementOptions how;
+  if (options.count) how.n = count("--count", *options.count, 1, kMostThermometers);
+  how.where = {.regions = options.regions, .excluded = options.excluded};
+  if (options.points) how.where.n_points = count("--points", *options.points, kLeastPoints, kMostPoints);
+  how.mounted = options.mounted;
+  how.channels = options.channels;
+  how.train = options.train;
+  how.test = options.test;
+  if (options.placed_for == "observer") how.placed_for = studies::PlacedFor::kObserver;
+  if (options.placed_for == "regression") how.placed_for = studies::PlacedFor::kRegression;
+  how.any_may_fail = !options.none_fails;
+  if (!options.noise.empty()) {
+    how.noise_K = option_quantity("--noise", options.noise, "K");
+    if (!(how.noise_K >= 1e-3 && how.noise_K <= 10.0)) throw InputError(fmt::format("--noise '{}': 0.001 K to 10 K is allowed", options.noise));
+  } else if (scenario.validation) {
+    how.noise_K = std::max(0.01, scenario.validation->noise_K);
+  }
+  return how;
+}
+
+}  // namespace
+
+void place(const PlaceOptions& options) {
+  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  (void)scenarios::require_machine(scenario, "place");
+  const studies::PlacementOptions how = options_of(options, scenario);
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress(options.quiet);
+  const studies::Placement placement = studies::place_thermometers(scenario, how, progress.listener());
+  const std::vector<int>& set = placement.chosen.sets[static_cast<std::size_t>(placement.options.n) - 1];
+  std::vector<std::string> entries;
+  for (std::size_t i = 0; i < placement.names.size(); ++i)
+    entries.push_back(studies::sensor_entry(placement.names[i], placement.spots[static_cast<std::size_t>(set[placement.mounted.size() + i])]));
+  const std::vector<std::string> head = provenance_lines(folder.made_by(), fmt::format("thermometers placed on {}", scenario.name));
+  std::string sensors;
+  for (const std::string& line : head) sensors += fmt::format("# {}\n", line);
+  folder.write_text("sensors.yaml", sensors + fmt::format("sensors:\n  - {}\n", fmt::join(entries, "\n  - ")));
+  folder.write_text("placed.yaml", studies::with_sensors(scenario.path, entries, head));
+  finish(findings::document_of(placement, scenario, entries, folder.made_by()), folder, progress, options, "", "place.json");
+}
+
+}  // namespace driftwright::app

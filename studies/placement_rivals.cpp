@@ -1,0 +1,82 @@
+#include "studies/placement_rivals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+#include "base/quantity.hpp"
+#include "base/random.hpp"
+#include "compensation/sensors/sensor_selection.hpp"
+
+namespace driftwright::studies {
+namespace {
+
+constexpr std::uint64_t kSeed = 11;
+
+/// Temperatures of all free candidates and the first drift, named by their numbers.
+Record record_of(const PlacementModel& model, const PlacementRun& run, double noise_K, std::uint64_t seed) {
+  const Eigen::MatrixXd states = states_of(model, model.system, run);
+  Record record{.source = run.cyclogram + ", " + run.hall, .time_s = run.times_s, .channels = {}};
+  const double zero_K = model.system.reference_K - kZeroCelsius_K;
+  for (Eigen::Index c = 0; c < model.n_free(); ++c) {
+    Random random(seed, static_cast<std::uint64_t>(c));
+    const Eigen::VectorXd values = states.transpose() * model.rows.row(c).transpose();
+    Channel channel{.name = fmt::format("{}", c), .unit = "degC", .values = {}};
+    for (double v : values) channel.values.push_back(zero_K + v + noise_K * random.normal());
+    record.channels.push_back(std::move(channel));
+  }
+  const Eigen::VectorXd drift = drift_um(model, run, states).col(0);
+  record.channels.push_back({.name = "drift", .unit = "um", .values = {drift.begin(), drift.end()}});
+  return record;
+}
+
+}  // namespace
+
+std::vector<ChosenBy> rival_places(const PlacementModel& model, const std::vector<PlacementRun>& runs, int n_most, double noise_K) {
+  std::vector<Record> records;
+  for (const PlacementRun& run : runs) records.push_back(record_of(model, run, noise_K, kSeed + records.size()));
+  std::vector<std::string> candidates;
+  for (int c = 0; c < model.n_free(); ++c) candidates.push_back(fmt::format("{}", c));
+  using Select = compensation::Selection (*)(std::span<const Record>, const std::vector<std::string>&, const std::string&, int);
+  const Select by_grade = [](std::span<const Record> r, const std::vector<std::string>& c, const std::string& t, int n) {
+    return compensation::select_by_grey_grade(r, c, t, n);
+  };
+  const std::pair<const char*, Select> ways[] = {
+      {"grey grade", by_grade}, {"correlation", compensation::select_by_correlation}, {"clusters", compensation::select_by_clusters}};
+  std::vector<ChosenBy> rivals;
+  for (const auto& [way, select] : ways) {
+    ChosenBy by{.way = way, .sets = {}, .left = {}};
+    for (int n = 1; n <= n_most; ++n) {
+      std::vector<int> set = model.mounted();
+      for (const std::string& name : select(records, candidates, "drift", n).sensors) {
+        int candidate = 0;
+        std::from_chars(name.data(), name.data() + name.size(), candidate);
+        set.push_back(candidate);
+      }
+      if (set.size() != static_cast<std::size_t>(n + model.n_mounted)) set.clear();  // fewer clusters, or candidates that move
+      by.sets.push_back(std::move(set));
+    }
+    rivals.push_back(std::move(by));
+  }
+  return rivals;
+}
+
+std::vector<std::vector<int>> random_places(const PlacementModel& model, int n_most) {
+  const int n_free = model.n_free();
+  Random random(kSeed);
+  std::vector<std::vector<int>> sets;
+  for (int n = 1; n <= n_most; ++n) {
+    for (int k = 0; k < kRandomSets; ++k) {
+      std::set<int> drawn;
+      while (static_cast<int>(drawn.size()) < n) drawn.insert(random.below(n_free));
+      std::vector<int> set = model.mounted();
+      set.insert(set.end(), drawn.begin(), drawn.end());
+      sets.push_back(std::move(set));
+    }
+  }
+  return sets;
+}
+
+}  // namespace driftwright::studies

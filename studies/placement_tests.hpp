@@ -1,0 +1,19 @@
+#pragma once
+// Which test thermometers need: hours and speeds that a regression is fitted to.
+
+#include "studies/placement.hpp"
+
+namespace driftwright::studies {
+
+/// Programmes of one, two, four and eight hours: the top speed, the middle one or both, held or on and off, with and without rest behind; of other drives
+/// where speeds do not differ. In the scenario's own hall.
+[[nodiscard]] std::vector<Cyclogram> possible_tests(const std::vector<Drive>& drives);
+
+/// What a set leaves behind each of them (PlacementJudge::behind_test()).
+[[nodiscard]] std::vector<TriedTest> tried_tests(const scenarios::Scenario& scenario, const PlacementJudge& judge, const std::vector<int>& set,
+                                                 const Listener& listener);
+
+/// The shortest of those that leave at most a tenth more than the best; of equally long ones the best. -1: none was tried.
+[[nodiscard]] int least_test(const std::vector<TriedTest>& tests, double Residual::*of);
+
+}  // namespace driftwright::studies
