@@ -396,7 +396,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--interval", plan_test.interval, "of the rows that are read, such as '30 s' [the scenario's output_interval]");
   verb->add_option("--noise-temperature", plan_test.noise_K, "standard deviation of a thermometer's reading ['0.05 K']");
   verb->add_option("--noise-displacement", plan_test.noise_um, "standard deviation of a displacement's reading ['0.5 um']");
-  verb->add_option("--programmes", plan_test.n_programmes, "how many are tried [10000]")->check(CLI::Range(10, 10000000));
+  verb->add_option("--programmes", plan_test.n_programmes, "how many are tried [10000, fewer for large machines]")->check(CLI::Range(10, 10000000));
   verb->add_option("--seed", plan_test.seed, "of the search [1]");
   verb->callback([&] { app::plan_test(plan_test); });
   verb = add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",

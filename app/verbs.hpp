@@ -68,7 +68,7 @@ struct PlanTestOptions : CommonOptions {
   std::string interval;     ///< of rows, such as "30 s"; empty: the scenario's
   std::string noise_K;      ///< of a thermometer's reading, such as "0.05 K"; empty: that
   std::string noise_um;     ///< of a displacement's, such as "0.5 um"; empty: that
-  int n_programmes = 10000;
+  int n_programmes = 0;     ///< 0: 10000, fewer for large machines
   unsigned seed = 1;
 };
 /// The test programme behind which most effects would be named, before anything is measured.

@@ -15,15 +15,15 @@ bool may_be_planned_for(const Variant& v) {
 
 /// Kinds count alike, places of a kind alike, laws of a place alike.
 void weigh(Doubts& doubts) {
-  std::map<std::string, int> n_places;
-  for (const Candidate& c : doubts.candidates) ++n_places[c.effect];
+  std::map<std::string, std::set<std::size_t>> places;
+  for (const Doubts::Shape& s : doubts.shapes) places[doubts.candidates[s.candidate].effect].insert(s.candidate);
   for (std::size_t i = 0; i < doubts.shapes.size(); ++i) {
     const Doubts::Shape& s = doubts.shapes[i];
     const Candidate& c = doubts.candidates[s.candidate];
     double n_of_place = 0.0;
     for (const Doubts::Shape& other : doubts.shapes) n_of_place += other.candidate == s.candidate ? 1.0 : 0.0;
     doubts.question.laws[i].weight =
-        1.0 / (static_cast<double>(n_places.size()) * static_cast<double>(n_places.at(c.effect)) * n_of_place);
+        1.0 / (static_cast<double>(places.size()) * static_cast<double>(places.at(c.effect).size()) * n_of_place);
   }
 }
 
@@ -76,6 +76,44 @@ Doubts doubts_before(const Twin& twin, const MeasuredRun& run, const std::set<st
   return doubts;
 }
 
+TwinState with_law(const Twin& twin, const Doubts& doubts, const Doubts::Shape& law) {
+  TwinState state = twin.as_written();
+  const std::vector<Knob>& knobs = doubts.variant(law).knobs;
+  for (std::size_t k = 0; k < knobs.size(); ++k) knobs[k].set(state, knobs[k].value(law.x[static_cast<Eigen::Index>(k)]));
+  return state;
+}
+
+TwinState with_number(const Twin& twin, const Knob& number) {
+  TwinState state = twin.as_written();
+  number.set(state, number.value(number.step));
+  return state;
+}
+
+Doubts thinned(const Twin& twin, Doubts doubts, const MeasuredRun& run, std::size_t most_of_a_kind) {
+  Twin::Workspace workspace(twin);
+  const std::size_t n_times = twin.bound(twin.as_written(), run, workspace).system.change_times_s.size();
+  std::vector<std::size_t> kept;
+  std::map<std::string, std::size_t> n_of, passed;
+  for (std::size_t i = 0; i < doubts.shapes.size(); ++i) {
+    if (twin.bound(with_law(twin, doubts, doubts.shapes[i]), run, workspace).system.change_times_s.size() != n_times) continue;
+    kept.push_back(i);
+    ++n_of[doubts.question.laws[i].effect];
+  }
+  std::vector<Doubts::Shape> shapes;
+  std::vector<DoubtedLaw> laws;
+  for (std::size_t i : kept) {
+    const DoubtedLaw& law = doubts.question.laws[i];
+    const std::size_t n = n_of.at(law.effect), at = passed[law.effect]++;
+    if (n > most_of_a_kind && at * most_of_a_kind / n == (at + 1) * most_of_a_kind / n) continue;
+    shapes.push_back(doubts.shapes[i]);
+    laws.push_back(law);
+  }
+  doubts.shapes = std::move(shapes);
+  doubts.question.laws = std::move(laws);
+  weigh(doubts);
+  return doubts;
+}
+
 std::vector<Eigen::MatrixXd> information_by_channel(const Twin& twin, const Doubts& doubts, const MeasuredRun& run,
                                                     const std::map<std::string, NoiseModel>& noise) {
   const std::vector<MeasuredRun> runs = {run};
@@ -94,7 +132,7 @@ std::vector<Eigen::MatrixXd> information_by_channel(const Twin& twin, const Doub
     const auto of = std::find_if(doubts.shapes.begin(), doubts.shapes.end(), [&](const Doubts::Shape& shape) {
       return shape.candidate == s.candidate && shape.variant == s.variant && shape.x == s.shape;
     });
-    columns.col(fitter.n_nuisance() + (of - doubts.shapes.begin())) = s.column;
+    if (of != doubts.shapes.end()) columns.col(fitter.n_nuisance() + (of - doubts.shapes.begin())) = s.column;
   }
   std::vector<Eigen::MatrixXd> list;
   for (std::size_t b = 0; b < comparison.blocks().size(); ++b) {

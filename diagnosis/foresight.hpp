@@ -29,6 +29,13 @@ struct Doubts {
 /// @param run  a programme that turns as fast as any: at which speed laws are stated
 [[nodiscard]] Doubts doubts_before(const Twin& twin, const MeasuredRun& run, const std::set<std::string>& without = {});
 
+/// The effects of the machine where a law has its trial size; where a number is turned by its step.
+[[nodiscard]] TwinState with_law(const Twin& twin, const Doubts& doubts, const Doubts::Shape& law);
+[[nodiscard]] TwinState with_number(const Twin& twin, const Knob& number);
+
+/// Enough to look for a programme by: without laws that follow time by themselves, and with as many of each kind as that at the most, evenly from its list.
+[[nodiscard]] Doubts thinned(const Twin& twin, Doubts doubts, const MeasuredRun& run, std::size_t most_of_a_kind);
+
 /// Of the readings of each channel of a run, in their order: what they add up to is that of all of them.
 /// @param noise  by channel
 /// @throws SolveError  where the machine as written has no solution

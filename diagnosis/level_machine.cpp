@@ -31,17 +31,8 @@ LevelMachine::LevelMachine(const Twin& twin, const Doubts& doubts, const std::ve
     whiteners_.emplace_back(of_row, run_.time_s, std::vector<char>(run_.time_s.size(), 1));
   }
   turned_.push_back({.state = twin.as_written()});
-  for (const Knob& k : doubts.numbers) {
-    Turned t{.state = twin.as_written(), .by = k.step};
-    k.set(t.state, k.value(k.step));
-    turned_.push_back(std::move(t));
-  }
-  for (const Doubts::Shape& s : doubts.shapes) {
-    const Variant& v = doubts.variant(s);
-    Turned t{.state = twin.as_written(), .by = v.trial_x};
-    for (std::size_t k = 0; k < v.knobs.size(); ++k) v.knobs[k].set(t.state, v.knobs[k].value(s.x[static_cast<Eigen::Index>(k)]));
-    turned_.push_back(std::move(t));
-  }
+  for (const Knob& k : doubts.numbers) turned_.push_back({.state = with_number(twin, k), .by = k.step});
+  for (const Doubts::Shape& s : doubts.shapes) turned_.push_back({.state = with_law(twin, doubts, s), .by = s.x[0]});
   courses_.resize(turned_.size());
   for_each_index(
       turned_.size(), [&] { return Twin::Workspace(twin); },

@@ -99,21 +99,24 @@ Prospect prospect(const Question& question, const Eigen::MatrixXd& information) 
   const Sizes sizes(question, left);
   const Eigen::Index m = left.rows(), n = question.number_sd.size();
   Prospect p;
+  p.seen.resize(m);
   p.named.resize(m);
   p.nats.resize(m);
   p.d = Eigen::MatrixXd::Zero(m, m);
   p.taken = Eigen::MatrixXd::Zero(m, m);
   for (Eigen::Index a = 0; a < m; ++a) {
-    double square = sizes.from_nothing(a);
+    const double seen = sizes.from_nothing(a);
+    double square = seen;
     p.nats[a] = 0.5 * sizes.own[a] - sizes.half_log[a];
     for (Eigen::Index b = 0; b < m; ++b) {
       if (a == b) continue;
       p.d(a, b) = std::sqrt(std::max(0.0, left(a, a) - left(a, b) * left(a, b) / (1.0 + left(b, b))));
       if (sizes.are_alike(a, b)) continue;
-      const double beyond = sizes.from(a, b);
-      p.taken(a, b) = 1.0 - share_beyond(beyond);
+      const double beyond = std::max(seen, sizes.from(a, b));
+      if (share_beyond(seen) > 0.0) p.taken(a, b) = 1.0 - share_beyond(beyond) / share_beyond(seen);
       square = std::max(square, beyond);
     }
+    p.seen[a] = share_beyond(seen);
     p.named[a] = share_beyond(square);
     p.share_named += question.laws[static_cast<std::size_t>(a)].weight * p.named[a];
   }

@@ -68,8 +68,8 @@ Verdict verdict_of(const TestPlan& plan) {
   const bool is_usual = plan.planned.cyclogram.sections == plan.usual.cyclogram.sections;
   return {.kind = Verdict::Kind::kGood,
           .title = is_usual ? "No better test was found than the usual one" : fmt::format("Behind this test {:.0f} % of faults would be named, behind the usual one {:.0f} %", planned, usual),
-          .text = fmt::format("In {:.4g} h: {}. Of faults as large as the catalogue expects them, drawn evenly over the kinds of effects; the rest are too small, or another "
-                              "kind of effect does the same.",
+          .text = fmt::format("In {:.4g} h: {}. Faults are drawn evenly over the kinds of effects, and from a hundredth to twice what the catalogue expects; the others are too small, or "
+                              "another kind of effect does the same.",
                               plan.duration_s / 3600.0, fmt::join(sections, ", "))};
 }
 
@@ -89,10 +89,12 @@ Table tests_table(const TestPlan& plan) {
 Table kinds_table(const TestPlan& plan) {
   Table table{.key = "kinds",
               .title = "Effects",
-              .caption = "Faults named: of those of this kind, wherever it may sit. Evidence: of a fault of one standard deviation of its prior, what the machine's own "
+              .caption = "Seen: large enough to be told from nothing. Named: told from every other kind of effect, too. Evidence: of a fault of one standard deviation of its prior, what the machine's own "
                          "numbers can take of it taken off; the median of its places and laws.",
               .columns = {{.key = "effect", .title = "effect"},
                           {.key = "n_laws", .title = "places and laws"},
+                          {.key = "seen_usual", .title = "seen, usual", .digits = output::percent(0)},
+                          {.key = "seen_planned", .title = "seen, planned", .digits = output::percent(0)},
                           {.key = "named_usual", .title = "named, usual", .digits = output::percent(0)},
                           {.key = "named_planned", .title = "named, planned", .digits = output::percent(0)},
                           {.key = "nats_usual", .title = "evidence, usual", .unit = "nats", .digits = output::significant(3)},
@@ -106,19 +108,20 @@ Table kinds_table(const TestPlan& plan) {
   for (const auto& [effect, laws] : laws_by_kind(plan.question)) {
     const auto& before = plan.usual.prospect;
     const auto& after = plan.planned.prospect;
-    table.rows.push_back({effect, laws.size(), mean(plan, laws, [&](Eigen::Index a) { return before.named[a]; }),
+    table.rows.push_back({effect, laws.size(), mean(plan, laws, [&](Eigen::Index a) { return before.seen[a]; }),
+                          mean(plan, laws, [&](Eigen::Index a) { return after.seen[a]; }), mean(plan, laws, [&](Eigen::Index a) { return before.named[a]; }),
                           mean(plan, laws, [&](Eigen::Index a) { return after.named[a]; }), median(before.nats, laws), median(after.nats, laws)});
   }
   return table;
 }
 
-/// Of faults of each kind, the share that the other kind may stand in for.
+/// Of the faults of each kind that are seen, the share that the other kind may stand in for. Kinds are numbered: their names are longer than a cell.
 output::Picture taken_picture(const TestPlan& plan, const JudgedTest& test, const std::string& title) {
   const auto kinds = laws_by_kind(plan.question);
   output::HeatMap map{.columns = {}, .rows = {}, .values = {}, .limit = 100.0 * kOften, .unit = "%"};
-  for (const auto& kind : kinds) map.columns.push_back({"", kind.first});
+  for (std::size_t k = 0; k < kinds.size(); ++k) map.columns.push_back({"", std::to_string(k + 1)});
   for (const auto& [effect, laws] : kinds) {
-    map.rows.push_back(effect);
+    map.rows.push_back(fmt::format("{} {}", effect, map.rows.size() + 1));
     std::vector<double> row;
     for (const auto& [other, others] : kinds) {
       row.push_back(other == effect ? std::nan("") : 100.0 * mean(plan, laws, [&, &others = others](Eigen::Index a) {
@@ -267,7 +270,7 @@ output::Document document_of(const TestPlan& plan, const scenarios::Scenario& sc
     Plot plot = readings_plot(plan.planned_record, unit, title, label);
     if (!plot.series.empty()) add(body, std::move(plot));
   }
-  add(body, taken_picture(plan, plan.usual, "Usual test: share of the faults of a row that the effect of a column may stand in for"));
+  add(body, taken_picture(plan, plan.usual, "Usual test: share of a row's faults, of those large enough to be seen, that a column's effect may stand in for"));
   add(body, taken_picture(plan, plan.planned, "Planned test: the same"));
   add(body, kinds_table(plan));
   add(body, channels_table(plan));

@@ -29,7 +29,7 @@ void list_channels(const scenarios::MachineModel& model, PlannedTwin& p) {
 }
 
 diagnosis::NoiseModel noise_of(const std::string& unit, const InstrumentNoise& noise, const diagnosis::Focus& focus) {
-  const diagnosis::NoiseFloor floor;
+  const diagnosis::NoiseFloor floor = floor_of(focus.machine.system);
   if (unit == "K") return {std::hypot(noise.temperature_K, std::max(floor.white_K, focus.error_K)), floor.slow_K, 1200.0};
   if (unit == "m") return {std::hypot(1e-6 * noise.displacement_um, std::max(floor.white_m, focus.error_m)), floor.slow_m, 1200.0};
   return {std::hypot(1e-6 * noise.tilt_urad, floor.white_rad), floor.slow_rad, 1200.0};

@@ -17,6 +17,9 @@ namespace {
 constexpr int kRowsPerSlot = 3;
 constexpr std::size_t kBatch = 250, kBest = 20;
 constexpr double kRandom = 0.5;       // share of all that is tried
+constexpr std::size_t kMostOfAKind = 8;  // laws that the search looks at
+constexpr int kMostProgrammes = 10000, kFewestProgrammes = 300;
+constexpr double kWork = 1.5e11;         // multiplications, some ten seconds of two cores
 constexpr double kWorthASection = 0.01;  // of the best
 
 struct Tried {
@@ -71,15 +74,15 @@ Tried simplified(const Search& search, const Tried& best) {
 }
 
 Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& question, const TestLevels& levels,
-            const TestPlanOptions& options, int& n_tried, const Listener& listener) {
+            int n_programmes, unsigned seed, int& n_tried, const Listener& listener) {
   Search search(machine, question);
   search.attempt({usual_test(levels), stepped_test(levels)});
-  std::mt19937_64 random(options.seed);
-  for (int asked = 2; asked < options.n_programmes && !listener.wants_end();) {
-    const std::size_t n = std::min(kBatch, static_cast<std::size_t>(options.n_programmes - asked));
+  std::mt19937_64 random(seed);
+  for (int asked = 2; asked < n_programmes && !listener.wants_end();) {
+    const std::size_t n = std::min(kBatch, static_cast<std::size_t>(n_programmes - asked));
     std::vector<TestProgramme> programmes;
     while (programmes.size() < n) {
-      if (asked < kRandom * options.n_programmes) {
+      if (asked < kRandom * n_programmes) {
         programmes.push_back(random_test(levels, random));
         continue;
       }
@@ -89,10 +92,18 @@ Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& q
     }
     asked += static_cast<int>(n);
     search.attempt(std::move(programmes));
-    listener.share(static_cast<double>(asked) / options.n_programmes);
+    listener.share(static_cast<double>(asked) / n_programmes);
   }
   n_tried = search.n_tried();
   return simplified(search, search.best().front());
+}
+
+/// A programme's cost: every doubt from row to row, and the products of its columns.
+int programmes_of(const PlannedTwin& p, const diagnosis::Doubts& doubts) {
+  const double size = p.twin->machine().system.size(), n_doubts = static_cast<double>(doubts.question.n());
+  const double n_rows = kTestSlots * kRowsPerSlot, n_readings = n_rows * static_cast<double>(p.channels.size());
+  const double each = n_doubts * n_rows * size * (size + static_cast<double>(p.twin->outputs().name.size())) + 0.5 * n_doubts * n_doubts * n_readings;
+  return std::clamp(static_cast<int>(kWork / each), kFewestProgrammes, kMostProgrammes);
 }
 
 Record record_of(const PlannedTwin& p, const diagnosis::MeasuredRun& run) {
@@ -130,12 +141,14 @@ TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& o
   TestPlan plan{.duration_s = options.duration_s, .interval_s = options.interval_s, .noise = options.noise,
                 .numbers = doubts.numbers, .question = doubts.question};
   for (const diagnosis::MeasuredChannel& c : p.channels) plan.channels.push_back(c.name);
-  listener.begin(fmt::format("{} doubts at {} levels", doubts.question.n(), levels.drives.size()));
+  const diagnosis::Doubts searched = diagnosis::thinned(*p.twin, doubts, usual, kMostOfAKind);
+  const int n_programmes = options.n_programmes > 0 ? options.n_programmes : programmes_of(p, searched);
+  listener.begin(fmt::format("{} doubts at {} levels", searched.question.n(), levels.drives.size()));
   const double row_s = options.duration_s / (kTestSlots * kRowsPerSlot);
-  const diagnosis::LevelMachine machine(*p.twin, doubts, levels.drives, usual, row_s, options.interval_s, p.noise);
-  listener.begin(fmt::format("trying {} programmes", options.n_programmes));
+  const diagnosis::LevelMachine machine(*p.twin, searched, levels.drives, usual, row_s, options.interval_s, p.noise);
+  listener.begin(fmt::format("trying {} programmes", n_programmes));
   const auto begin = std::chrono::steady_clock::now();
-  const Tried best = found(machine, doubts.question, levels, options, plan.n_tried, listener);
+  const Tried best = found(machine, searched.question, levels, n_programmes, options.seed, plan.n_tried, listener);
   plan.search_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   plan.search_share = best.share;
 

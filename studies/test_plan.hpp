@@ -12,7 +12,7 @@ struct TestPlanOptions {
   double interval_s = 60.0;        ///< of rows
   double most_speed_rpm = 0.0;     ///< 0: the fastest of the scenario
   InstrumentNoise noise = {};
-  int n_programmes = 10000;        ///< tried
+  int n_programmes = 0;            ///< tried; 0: 10000, of a large machine as many as some ten seconds allow
   unsigned seed = 1;
 };
 
@@ -43,7 +43,7 @@ struct TestPlan {
   Record usual_record = {}, planned_record = {};  ///< of the machine as written, without noise
 };
 
-/// Tries programmes on a linear machine (diagnosis/level_machine.hpp): half of them random, the others one change off the best so far; takes away sections that
+/// Tries programmes on a linear machine (diagnosis/level_machine.hpp) by up to eight laws of each kind of effect: half of them random, the others one change off the best so far; takes away sections that
 /// are worth less than 1 % of the best; judges the best by the signatures that `diagnose` itself takes. Where the usual or the stepped test is as good, it is that.
 /// @throws InputError  as open_planned_twin(), test_levels()
 [[nodiscard]] TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options, const Listener& listener);
