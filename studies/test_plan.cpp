@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kRowsPerSlot = 3;
 constexpr std::size_t kBatch = 250, kBest = 20;
+constexpr int kAsked = 4;             // programmes asked for, for each one that shall be tried: some come twice
 constexpr double kRandom = 0.5;       // share of all that is tried
 constexpr std::size_t kMostOfAKind = 8;  // laws that the search looks at
 constexpr int kMostProgrammes = 10000, kFewestProgrammes = 300;
@@ -78,11 +79,12 @@ Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& q
   Search search(machine, question);
   search.attempt({usual_test(levels), stepped_test(levels)});
   std::mt19937_64 random(seed);
-  for (int asked = 2; asked < n_programmes && !listener.wants_end();) {
-    const std::size_t n = std::min(kBatch, static_cast<std::size_t>(n_programmes - asked));
+  const int most_asked = kAsked * n_programmes;  // a small machine has fewer programmes than that
+  for (int asked = 0; search.n_tried() < n_programmes && asked < most_asked && !listener.wants_end();) {
+    const std::size_t n = std::min(kBatch, static_cast<std::size_t>(n_programmes - search.n_tried()));
     std::vector<TestProgramme> programmes;
     while (programmes.size() < n) {
-      if (asked < kRandom * n_programmes) {
+      if (search.n_tried() < kRandom * n_programmes) {
         programmes.push_back(random_test(levels, random));
         continue;
       }
@@ -92,7 +94,7 @@ Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& q
     }
     asked += static_cast<int>(n);
     search.attempt(std::move(programmes));
-    listener.share(static_cast<double>(asked) / n_programmes);
+    listener.share(static_cast<double>(search.n_tried()) / n_programmes);
   }
   n_tried = search.n_tried();
   return simplified(search, search.best().front());
