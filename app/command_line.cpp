@@ -390,7 +390,7 @@ int app::command_line(int argc, const char* const* argv) {
   add_warm_start(verb, warmup.start, warmup.after_pause, warmup.model);
   verb->callback([&] { app::warmup(warmup); });
   verb = add_verb(cli, "plan-test", "before anything is measured: the test behind which most faults would be named (docs/test_planning.md)",
-                  "plan-test scenarios/fp3_spindle.yaml --time '8 h' -o results/plan_test", plan_test);
+                  "plan-test scenarios/first_machine.yaml --time '8 h' -o results/plan_test", plan_test);
   verb->add_option("--time", plan_test.time, "length of the test, such as '4 h' [8 h]");
   verb->add_option("--speed-limit", plan_test.speed_limit, "of the test, such as '3000 rpm' [the fastest of the scenario]");
   verb->add_option("--interval", plan_test.interval, "of the rows that are read, such as '30 s' [the scenario's output_interval]");
