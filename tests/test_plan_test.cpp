@@ -140,6 +140,37 @@ TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
   EXPECT_NEAR(prospect(q, both).d(0, 1) / std::sqrt(a - ab * ab / (1.0 + b)), 1.0, 0.06);
 }
 
+// C T' = P - G (T - h), h rising evenly over the step: T is the sum of e^-x T0, (P/G + h0) (1 - e^-x) and rise (1 - (1 - e^-x) / x).
+TEST(LinearStep, OfOneBodyInAHallThatRisesIsTheClosedForm) {
+  const diagnosis::LinearSystem body{Eigen::MatrixXd::Constant(1, 1, 5.0), Eigen::VectorXd::Constant(1, 100.0), Eigen::VectorXd::Constant(1, 5.0)};
+  const diagnosis::LinearStep step = linear_step(body, Eigen::MatrixXd::Constant(1, 1, 20e3), 3000.0);
+  const double x = 3000.0 * 5.0 / 20e3, gone = 1.0 - std::exp(-x);
+  EXPECT_NEAR(step.phi(0, 0), std::exp(-x), 1e-12);
+  EXPECT_NEAR(step.constant[0], 20.0 * gone, 1e-10);
+  EXPECT_NEAR(step.of_hall[0], gone, 1e-12);
+  EXPECT_NEAR(step.of_rise[0], 1.0 - gone / x, 1e-12);
+}
+
+// A power that falls with the body's temperature, P (1 - b T) with b = 0.02 / K, is linear: its loss is G + P b. At 1000 rpm on 5 W/K it comes to 100 / (5 + 2) K.
+TEST(LinearStep, TakesALawOfTemperatureToFirstOrder) {
+  solver::ReducedSystem system;
+  system.reference_K = 293.15;
+  system.mass = Eigen::MatrixXd::Constant(1, 1, 20e3);
+  system.conduction = Eigen::MatrixXd::Constant(1, 1, 5.0);
+  solver::Probe probe;
+  probe.weights = Eigen::VectorXd::Ones(1);
+  system.probes.push_back(probe);
+  solver::BoundLaw law(effects::Law([](const effects::Inputs& u) { return 100.0 * (1.0 - 0.02 * (u.probe_K.front() - 293.15)); }, {effects::node("body")}));
+  law.probes = {0};
+  solver::HeatSource friction;
+  friction.load = Eigen::VectorXd::Ones(1);
+  friction.power_W = law;
+  system.sources.push_back(friction);
+  const diagnosis::LinearSystem linear = diagnosis::linear_system(system, {}, Eigen::VectorXd::Zero(1));
+  EXPECT_NEAR(linear.stiffness(0, 0), 7.0, 1e-9);
+  EXPECT_NEAR(linear.constant[0], 100.0, 1e-8);
+}
+
 // What the search runs on says of a programme what the fitter says: slots of a quarter of an hour, axes and a hall that warms.
 TEST(LevelMachine, HasTheInformationOfTheFittersOwnSlopes) {
   Planned planned(kTwoBodies);
