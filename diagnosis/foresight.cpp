@@ -53,7 +53,8 @@ Doubts doubts_before(const Twin& twin, const MeasuredRun& run, const std::set<st
   std::erase_if(doubts.candidates, [](const Candidate& c) { return c.variants.empty(); });
   Question& q = doubts.question;
   q.number_sd.resize(static_cast<Eigen::Index>(doubts.numbers.size()));
-  for (std::size_t i = 0; i < doubts.numbers.size(); ++i) q.number_sd[static_cast<Eigen::Index>(i)] = doubts.numbers[i].prior_sd;
+  for (std::size_t i = 0; i < doubts.numbers.size(); ++i)
+    q.number_sd[static_cast<Eigen::Index>(i)] = doubts.numbers[i].prior_sd;
   for (std::size_t c = 0; c < doubts.candidates.size(); ++c) {
     const Candidate& candidate = doubts.candidates[c];
     for (std::size_t v = 0; v < candidate.variants.size(); ++v) {
@@ -95,7 +96,8 @@ Doubts thinned(const Twin& twin, Doubts doubts, const MeasuredRun& run, std::siz
   std::vector<std::size_t> kept;
   std::map<std::string, std::size_t> n_of, passed;
   for (std::size_t i = 0; i < doubts.shapes.size(); ++i) {
-    if (twin.bound(with_law(twin, doubts, doubts.shapes[i]), run, workspace).system.change_times_s.size() != n_times) continue;
+    if (twin.bound(with_law(twin, doubts, doubts.shapes[i]), run, workspace).system.change_times_s.size() != n_times)
+      continue;
     kept.push_back(i);
     ++n_of[doubts.question.laws[i].effect];
   }

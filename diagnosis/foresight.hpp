@@ -39,7 +39,8 @@ struct Doubts {
 /// Of the readings of each channel of a run, in their order: what they add up to is that of all of them.
 /// @param noise  by channel
 /// @throws SolveError  where the machine as written has no solution
-[[nodiscard]] std::vector<Eigen::MatrixXd> information_by_channel(const Twin& twin, const Doubts& doubts, const MeasuredRun& run,
+[[nodiscard]] std::vector<Eigen::MatrixXd> information_by_channel(const Twin& twin, const Doubts& doubts,
+                                                                  const MeasuredRun& run,
                                                                   const std::map<std::string, NoiseModel>& noise);
 
 }  // namespace driftwright::diagnosis

@@ -19,7 +19,10 @@ Drive felt(const effects::DriveChange& change, const Drive& level, double durati
 
 LevelMachine::LevelMachine(const Twin& twin, const Doubts& doubts, const std::vector<Drive>& levels, const MeasuredRun& like,
                            double row_s, double interval_s, const std::map<std::string, NoiseModel>& noise)
-    : twin_(twin), run_(planned_run(like.cyclogram, row_s, like.hall, like.has_ambient, like.channels)), levels_(levels), row_s_(row_s),
+    : twin_(twin),
+      run_(planned_run(like.cyclogram, row_s, like.hall, like.has_ambient, like.channels)),
+      levels_(levels),
+      row_s_(row_s),
       n_steps_(run_.time_s.size() - 1) {
   run_.grid_s = run_.time_s;
   for (std::size_t i = 0; i < run_.grid_s.size(); ++i) run_.row_in_grid[i] = static_cast<Eigen::Index>(i);
@@ -40,7 +43,8 @@ LevelMachine::LevelMachine(const Twin& twin, const Doubts& doubts, const std::ve
         Turned& t = turned_[i];
         t.reads = !effects::reading_chain(t.state, run_.name).empty();
         t.course = i;
-        const bool of_instruments = i > doubts.numbers.size() && doubts.variant(doubts.shapes[i - 1 - doubts.numbers.size()]).knobs.front().reading_only;
+        const bool of_instruments = i > doubts.numbers.size() &&
+                                    doubts.variant(doubts.shapes[i - 1 - doubts.numbers.size()]).knobs.front().reading_only;
         if (of_instruments || !has_solution([&] { courses_[i] = course_of(t.state, levels_, workspace); })) t.course = 0;
       });
 }

@@ -21,8 +21,8 @@ class LevelMachine {
   /// @param like    a run as long as all programmes, with their channels and hall; its name is theirs
   /// @param row_s   a reading stands for so much time; the run is a whole number of these
   /// @param noise   of readings every `interval_s`, by channel
-  LevelMachine(const Twin& twin, const Doubts& doubts, const std::vector<Drive>& levels, const MeasuredRun& like, double row_s,
-               double interval_s, const std::map<std::string, NoiseModel>& noise);
+  LevelMachine(const Twin& twin, const Doubts& doubts, const std::vector<Drive>& levels, const MeasuredRun& like,
+               double row_s, double interval_s, const std::map<std::string, NoiseModel>& noise);
 
   [[nodiscard]] std::size_t n_steps() const { return n_steps_; }
   /// Of the readings of all channels, as Question wants it. @param level_of_step  n_steps() of them. Any thread
@@ -33,14 +33,14 @@ class LevelMachine {
   struct Course {
     std::vector<LinearStep> steps;  ///< by level
     Eigen::VectorXd start;
-    Eigen::VectorXd hall_K;    ///< at the rows
-    Eigen::MatrixXd observe;   ///< n_outputs x size
+    Eigen::VectorXd hall_K;   ///< at the rows
+    Eigen::MatrixXd observe;  ///< n_outputs x size
   };
   struct Turned {
     TwinState state;
-    double by = 1.0;        ///< x of the knob
-    std::size_t course = 0; ///< whose machine it is
-    bool reads = false;     ///< instruments do something of their own
+    double by = 1.0;         ///< x of the knob
+    std::size_t course = 0;  ///< whose machine it is
+    bool reads = false;      ///< instruments do something of their own
   };
   [[nodiscard]] Course course_of(const TwinState& state, const std::vector<Drive>& levels, Twin::Workspace& workspace) const;
   [[nodiscard]] Eigen::MatrixXd response(const Course& course, const std::vector<int>& level_of_step) const;

@@ -16,7 +16,8 @@ struct Said {
   std::vector<double> by_probe;
 };
 
-Said said_by(const solver::BoundLaw& law, const solver::ReducedSystem& system, effects::Inputs at, const Eigen::VectorXd& state) {
+Said said_by(const solver::BoundLaw& law, const solver::ReducedSystem& system, effects::Inputs at,
+             const Eigen::VectorXd& state) {
   if (!law.looks_at_state()) return {law(at), {}};
   at.probe_K.clear();
   for (int p : law.probes)
@@ -55,7 +56,8 @@ LinearSystem about(const solver::ReducedSystem& system, const effects::Inputs& a
       add_slopes(s.power_W, said, s.load);
       continue;
     }
-    const solver::Thermostat& thermostat = system.thermostats[static_cast<std::size_t>(t)];  // in proportion between its limits
+    const solver::Thermostat& thermostat =
+        system.thermostats[static_cast<std::size_t>(t)];  // in proportion between its limits
     const solver::Probe& probe = system.probes[static_cast<std::size_t>(thermostat.probe)];
     const double per_K = said.value / (thermostat.on_above_K - thermostat.off_below_K);
     linear.stiffness.noalias() -= per_K * s.load * probe.weights.transpose();

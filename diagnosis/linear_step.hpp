@@ -13,7 +13,8 @@ struct LinearSystem {
 
 /// About the state halfway from `start` to balance at this drive.
 /// @param at  its hall is the one to be about
-[[nodiscard]] LinearSystem linear_system(const solver::ReducedSystem& system, const effects::Inputs& at, const Eigen::VectorXd& start);
+[[nodiscard]] LinearSystem linear_system(const solver::ReducedSystem& system, const effects::Inputs& at,
+                                         const Eigen::VectorXd& start);
 
 /// From one row to the next, z' = phi z + constant + hall of_hall + rise of_rise, exactly while the hall rises evenly.
 struct LinearStep {

@@ -39,12 +39,13 @@ struct Question {
 };
 
 struct Prospect {
-  double share_named = 0.0;      ///< of faults drawn as the question weighs them, 0 to 1
-  Eigen::VectorXd seen;          ///< share of the faults of each law that are large enough to be told from nothing
-  Eigen::VectorXd named;         ///< and from every other kind
-  Eigen::VectorXd nats;          ///< E[log Z_a - log Z_0] at one standard deviation, without prices
-  Eigen::MatrixXd d;             ///< d'_ab, 0 on the diagonal
-  Eigen::MatrixXd taken;         ///< share of the faults a that are seen and that b may stand in for; 0 where both are of one kind, or none is seen
+  double share_named = 0.0;  ///< of faults drawn as the question weighs them, 0 to 1
+  Eigen::VectorXd seen;      ///< share of the faults of each law that are large enough to be told from nothing
+  Eigen::VectorXd named;     ///< and from every other kind
+  Eigen::VectorXd nats;      ///< E[log Z_a - log Z_0] at one standard deviation, without prices
+  Eigen::MatrixXd d;         ///< d'_ab, 0 on the diagonal
+  Eigen::MatrixXd
+      taken;  ///< share of the faults a that are seen and that b may stand in for; 0 where both are of one kind, or none is seen
   Eigen::VectorXd number_sigma;  ///< of each number, afterwards over before, 0 to 1
 };
 

@@ -21,7 +21,7 @@ using output::Verdict;
 using studies::JudgedTest;
 using studies::TestPlan;
 
-constexpr double kOften = 0.25;            // of the faults of a kind: from there on a map is orange
+constexpr double kOften = 0.25;  // of the faults of a kind: from there on a map is orange
 constexpr std::size_t kMostPairs = 25;
 
 /// Laws of the question by kind, kinds in their order.
@@ -64,11 +64,16 @@ std::string drive_words(const Drive& d) {
 Verdict verdict_of(const TestPlan& plan) {
   const double usual = 100.0 * plan.usual.prospect.share_named, planned = 100.0 * plan.planned.prospect.share_named;
   std::vector<std::string> sections;
-  for (const auto& s : plan.planned.cyclogram.sections) sections.push_back(fmt::format("{:.4g} min {}", s.duration_s / 60.0, drive_words(s.drive)));
+  for (const auto& s : plan.planned.cyclogram.sections)
+    sections.push_back(fmt::format("{:.4g} min {}", s.duration_s / 60.0, drive_words(s.drive)));
   const bool is_usual = plan.planned.cyclogram.sections == plan.usual.cyclogram.sections;
   return {.kind = Verdict::Kind::kGood,
-          .title = is_usual ? "No better test was found than the usual one" : fmt::format("Behind this test {:.0f} % of faults would be named, behind the usual one {:.0f} %", planned, usual),
-          .text = fmt::format("In {:.4g} h: {}. Faults are drawn evenly over the kinds of effects, and from a hundredth to twice what the catalogue expects; the others are too small, or "
+          .title = is_usual
+                       ? "No better test was found than the usual one"
+                       : fmt::format("Behind this test {:.0f} % of faults would be named, behind the usual one {:.0f} %",
+                                     planned, usual),
+          .text = fmt::format("In {:.4g} h: {}. Faults are drawn evenly over the kinds of effects, and from a hundredth to "
+                              "twice what the catalogue expects; the others are too small, or "
                               "another kind of effect does the same.",
                               plan.duration_s / 3600.0, fmt::join(sections, ", "))};
 }
@@ -76,7 +81,9 @@ Verdict verdict_of(const TestPlan& plan) {
 Table tests_table(const TestPlan& plan) {
   Table table{.key = "tests",
               .title = "Tests of the same length",
-              .caption = "Usual: full drive for half of the time, rest for the other half. Stepped: a quarter, half, three quarters of and all of it, then rest.",
+              .caption =
+                  "Usual: full drive for half of the time, rest for the other half. Stepped: a quarter, half, three "
+                  "quarters of and all of it, then rest.",
               .columns = {{.key = "test", .title = "test"},
                           {.key = "share_named", .title = "faults named", .digits = output::percent(1)},
                           {.key = "number_sigma", .title = "own numbers known to, of before", .digits = output::percent(0)},
@@ -87,18 +94,21 @@ Table tests_table(const TestPlan& plan) {
 }
 
 Table kinds_table(const TestPlan& plan) {
-  Table table{.key = "kinds",
-              .title = "Effects",
-              .caption = "Seen: large enough to be told from nothing. Named: told from every other kind of effect, too. Evidence: of a fault of one standard deviation of its prior, what the machine's own "
-                         "numbers can take of it taken off; the median of its places and laws.",
-              .columns = {{.key = "effect", .title = "effect"},
-                          {.key = "n_laws", .title = "places and laws"},
-                          {.key = "seen_usual", .title = "seen, usual", .digits = output::percent(0)},
-                          {.key = "seen_planned", .title = "seen, planned", .digits = output::percent(0)},
-                          {.key = "named_usual", .title = "named, usual", .digits = output::percent(0)},
-                          {.key = "named_planned", .title = "named, planned", .digits = output::percent(0)},
-                          {.key = "nats_usual", .title = "evidence, usual", .unit = "nats", .digits = output::significant(3)},
-                          {.key = "nats_planned", .title = "evidence, planned", .unit = "nats", .digits = output::significant(3)}}};
+  Table table{
+      .key = "kinds",
+      .title = "Effects",
+      .caption =
+          "Seen: large enough to be told from nothing. Named: told from every other kind of effect, too. Evidence: of a "
+          "fault of one standard deviation of its prior, what the machine's own "
+          "numbers can take of it taken off; the median of its places and laws.",
+      .columns = {{.key = "effect", .title = "effect"},
+                  {.key = "n_laws", .title = "places and laws"},
+                  {.key = "seen_usual", .title = "seen, usual", .digits = output::percent(0)},
+                  {.key = "seen_planned", .title = "seen, planned", .digits = output::percent(0)},
+                  {.key = "named_usual", .title = "named, usual", .digits = output::percent(0)},
+                  {.key = "named_planned", .title = "named, planned", .digits = output::percent(0)},
+                  {.key = "nats_usual", .title = "evidence, usual", .unit = "nats", .digits = output::significant(3)},
+                  {.key = "nats_planned", .title = "evidence, planned", .unit = "nats", .digits = output::significant(3)}}};
   const auto median = [](const Eigen::VectorXd& of, const std::vector<Eigen::Index>& laws) {
     std::vector<double> list;
     for (Eigen::Index a : laws) list.push_back(of[a]);
@@ -109,8 +119,10 @@ Table kinds_table(const TestPlan& plan) {
     const auto& before = plan.usual.prospect;
     const auto& after = plan.planned.prospect;
     table.rows.push_back({effect, laws.size(), mean(plan, laws, [&](Eigen::Index a) { return before.seen[a]; }),
-                          mean(plan, laws, [&](Eigen::Index a) { return after.seen[a]; }), mean(plan, laws, [&](Eigen::Index a) { return before.named[a]; }),
-                          mean(plan, laws, [&](Eigen::Index a) { return after.named[a]; }), median(before.nats, laws), median(after.nats, laws)});
+                          mean(plan, laws, [&](Eigen::Index a) { return after.seen[a]; }),
+                          mean(plan, laws, [&](Eigen::Index a) { return before.named[a]; }),
+                          mean(plan, laws, [&](Eigen::Index a) { return after.named[a]; }), median(before.nats, laws),
+                          median(after.nats, laws)});
   }
   return table;
 }
@@ -125,10 +137,11 @@ output::Picture taken_picture(const TestPlan& plan, const JudgedTest& test, cons
     std::vector<double> row;
     for (const auto& [other, others] : kinds) {
       row.push_back(other == effect ? std::nan("") : 100.0 * mean(plan, laws, [&, &others = others](Eigen::Index a) {
-        double most = 0.0;
-        for (Eigen::Index b : others) most = std::max(most, test.prospect.taken(a, b));
-        return most;
-      }));
+                                                       double most = 0.0;
+                                                       for (Eigen::Index b : others)
+                                                         most = std::max(most, test.prospect.taken(a, b));
+                                                       return most;
+                                                     }));
     }
     map.values.push_back(std::move(row));
   }
@@ -136,7 +149,12 @@ output::Picture taken_picture(const TestPlan& plan, const JudgedTest& test, cons
 }
 
 Plot programme_plot(const TestPlan& plan) {
-  Plot plot{.title = "Programme", .x_label = "time [h]", .y_label = "share of the most [%]", .series = {}, .bands = {}, .marks = {}};
+  Plot plot{.title = "Programme",
+            .x_label = "time [h]",
+            .y_label = "share of the most [%]",
+            .series = {},
+            .bands = {},
+            .marks = {}};
   const auto add_series = [&](const std::string& label, const auto& of) {
     Series series{.label = label, .style = Series::Style::kSteps};
     double most = 0.0, time_s = 0.0;
@@ -153,7 +171,8 @@ Plot programme_plot(const TestPlan& plan) {
     plot.series.push_back(std::move(series));
   };
   add_series("spindle", [](const Drive& d) { return d.speed_rpm; });
-  for (std::size_t a = 0; a < 3; ++a) add_series(fmt::format("axis {}", "xyz"[a]), [a](const Drive& d) { return d.feed_m_s[a]; });
+  for (std::size_t a = 0; a < 3; ++a)
+    add_series(fmt::format("axis {}", "xyz"[a]), [a](const Drive& d) { return d.feed_m_s[a]; });
   add_series("cutting power", [](const Drive& d) { return d.cutting_power_W; });
   return plot;
 }
@@ -175,7 +194,9 @@ Table channels_table(const TestPlan& plan) {
               .columns = {{.key = "channel", .title = "channel"},
                           {.key = "change", .title = "it is"},
                           {.key = "share_named", .title = "faults named", .digits = output::percent(1)},
-                          {.key = "difference", .title = "difference", .digits = {.n = 1, .kind = output::Digits::Kind::kPercent, .has_sign = true}}}};
+                          {.key = "difference",
+                           .title = "difference",
+                           .digits = {.n = 1, .kind = output::Digits::Kind::kPercent, .has_sign = true}}}};
   const double as_is = plan.planned.prospect.share_named;
   for (const auto& c : plan.without) table.rows.push_back({c.name, "left out", c.share_named, c.share_named - as_is});
   for (const auto& c : plan.with) table.rows.push_back({c.name, "added", c.share_named, c.share_named - as_is});
@@ -189,7 +210,9 @@ std::string law_words(const diagnosis::DoubtedLaw& law) {
 Table pairs_table(const TestPlan& plan) {
   Table table{.key = "pairs",
               .title = "Pairs that the planned test tells least",
-              .caption = "d': of a fault of one standard deviation of its prior from the other effect at any size, in standard deviations of what is not known.",
+              .caption =
+                  "d': of a fault of one standard deviation of its prior from the other effect at any size, in standard "
+                  "deviations of what is not known.",
               .columns = {{.key = "fault", .title = "fault"},
                           {.key = "other", .title = "may be taken for"},
                           {.key = "d_usual", .title = "d', usual", .digits = output::decimals(1)},
@@ -207,12 +230,14 @@ Table pairs_table(const TestPlan& plan) {
     Eigen::Index nearest = 0;
     if (p.taken.row(a).maxCoeff(&nearest) > 0.0) pairs.push_back({a, nearest});
   }
-  std::stable_sort(pairs.begin(), pairs.end(), [&](const Pair& u, const Pair& v) { return p.taken(u.a, u.b) > p.taken(v.a, v.b); });
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [&](const Pair& u, const Pair& v) { return p.taken(u.a, u.b) > p.taken(v.a, v.b); });
   pairs.resize(std::min(pairs.size(), kMostPairs));
   for (const Pair& pair : pairs) {
     const auto& u = plan.usual.prospect;
-    table.rows.push_back({law_words(plan.question.laws[static_cast<std::size_t>(pair.a)]), law_words(plan.question.laws[static_cast<std::size_t>(pair.b)]),
-                          u.d(pair.a, pair.b), p.d(pair.a, pair.b), u.taken(pair.a, pair.b), p.taken(pair.a, pair.b)});
+    table.rows.push_back({law_words(plan.question.laws[static_cast<std::size_t>(pair.a)]),
+                          law_words(plan.question.laws[static_cast<std::size_t>(pair.b)]), u.d(pair.a, pair.b),
+                          p.d(pair.a, pair.b), u.taken(pair.a, pair.b), p.taken(pair.a, pair.b)});
   }
   return table;
 }
@@ -230,7 +255,8 @@ Table numbers_table(const TestPlan& plan) {
   for (std::size_t i = 0; i < plan.numbers.size(); ++i) {
     const diagnosis::Knob& k = plan.numbers[i];
     const auto at = static_cast<Eigen::Index>(i);
-    table.rows.push_back({fmt::format("{} {} {}", k.effect, k.where, k.name), k.prior_sd, plan.usual.prospect.number_sigma[at], plan.planned.prospect.number_sigma[at]});
+    table.rows.push_back({fmt::format("{} {} {}", k.effect, k.where, k.name), k.prior_sd,
+                          plan.usual.prospect.number_sigma[at], plan.planned.prospect.number_sigma[at]});
   }
   return table;
 }
@@ -248,8 +274,9 @@ Table programme_table(const TestPlan& plan) {
                           {.key = "cutting_power_W"}}};
   double time_s = 0.0;
   for (const auto& s : plan.planned.cyclogram.sections) {
-    table.rows.push_back({time_s / 60.0, s.duration_s / 60.0, drive_words(s.drive), s.drive.speed_rpm, 60e3 * s.drive.feed_m_s[0], 60e3 * s.drive.feed_m_s[1],
-                          60e3 * s.drive.feed_m_s[2], s.drive.cutting_power_W});
+    table.rows.push_back({time_s / 60.0, s.duration_s / 60.0, drive_words(s.drive), s.drive.speed_rpm,
+                          60e3 * s.drive.feed_m_s[0], 60e3 * s.drive.feed_m_s[1], 60e3 * s.drive.feed_m_s[2],
+                          s.drive.cutting_power_W});
     time_s += s.duration_s;
   }
   return table;
@@ -257,31 +284,58 @@ Table programme_table(const TestPlan& plan) {
 
 }  // namespace
 
-output::Document document_of(const TestPlan& plan, const scenarios::Scenario& scenario, const std::string& rows, const output::Provenance& made_by) {
-  output::Document document{.made_by = made_by,
-                            .title = fmt::format("{}: test programme of {:.4g} h", scenario.name, plan.duration_s / 3600.0),
-                            .subtitle = fmt::format("read every {:.4g} s: {}", plan.interval_s, fmt::join(plan.channels, ", "))};
+output::Document document_of(const TestPlan& plan, const scenarios::Scenario& scenario, const std::string& rows,
+                             const output::Provenance& made_by) {
+  output::Document document{
+      .made_by = made_by,
+      .title = fmt::format("{}: test programme of {:.4g} h", scenario.name, plan.duration_s / 3600.0),
+      .subtitle = fmt::format("read every {:.4g} s: {}", plan.interval_s, fmt::join(plan.channels, ", "))};
   output::Section& body = document.body;
   add(body, verdict_of(plan));
   add(body, tests_table(plan));
   add(body, programme_table(plan));
   add(body, programme_plot(plan));
-  for (const auto& [unit, label, title] : {std::tuple("degC", "temperature [°C]", "Temperatures that the machine as written would have"), std::tuple("um", "drift [µm]", "Drift that it would have")}) {
+  for (const auto& [unit, label, title] :
+       {std::tuple("degC", "temperature [°C]", "Temperatures that the machine as written would have"),
+        std::tuple("um", "drift [µm]", "Drift that it would have")}) {
     Plot plot = readings_plot(plan.planned_record, unit, title, label);
     if (!plot.series.empty()) add(body, std::move(plot));
   }
-  add(body, taken_picture(plan, plan.usual, "Usual test: share of a row's faults, of those large enough to be seen, that a column's effect may stand in for"));
+  add(body,
+      taken_picture(
+          plan, plan.usual,
+          "Usual test: share of a row's faults, of those large enough to be seen, that a column's effect may stand in for"));
   add(body, taken_picture(plan, plan.planned, "Planned test: the same"));
   add(body, kinds_table(plan));
   add(body, channels_table(plan));
   add(body, pairs_table(plan));
   add(body, numbers_table(plan));
-  add(body, Value{.key = "hours", .words = "length", .datum = plan.duration_s / 3600.0, .unit = "h", .digits = output::significant(4)});
-  add(body, Value{.key = "interval_s", .words = "rows every", .datum = plan.interval_s, .unit = "s", .digits = output::significant(4)});
-  add(body, Value{.key = "noise_K", .words = "noise of a thermometer", .datum = plan.noise.temperature_K, .unit = "K", .digits = output::significant(3)});
-  add(body, Value{.key = "noise_um", .words = "noise of a displacement", .datum = plan.noise.displacement_um, .unit = "um", .digits = output::significant(3)});
+  add(body, Value{.key = "hours",
+                  .words = "length",
+                  .datum = plan.duration_s / 3600.0,
+                  .unit = "h",
+                  .digits = output::significant(4)});
+  add(body, Value{.key = "interval_s",
+                  .words = "rows every",
+                  .datum = plan.interval_s,
+                  .unit = "s",
+                  .digits = output::significant(4)});
+  add(body, Value{.key = "noise_K",
+                  .words = "noise of a thermometer",
+                  .datum = plan.noise.temperature_K,
+                  .unit = "K",
+                  .digits = output::significant(3)});
+  add(body, Value{.key = "noise_um",
+                  .words = "noise of a displacement",
+                  .datum = plan.noise.displacement_um,
+                  .unit = "um",
+                  .digits = output::significant(3)});
   add(body, Value{.key = "programmes_tried", .words = "programmes tried", .datum = plan.n_tried});
-  add(body, Value{.key = "share_named_by_search", .words = "faults named, as the search's linear machine has it", .datum = plan.search_share, .digits = output::percent(1), .detail = true});
+  add(body, Value{.key = "share_named_by_search",
+                  .words = "faults named, as the search's linear machine has it",
+                  .datum = plan.search_share,
+                  .digits = output::percent(1),
+                  .detail = true});
   add(body, output::Preformatted{.title = "For a scenario's cyclograms", .text = rows});
   return document;
 }

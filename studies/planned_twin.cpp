@@ -23,7 +23,8 @@ void list_channels(const scenarios::MachineModel& model, PlannedTwin& p) {
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
     const bool is_further = effects::is_mean_output(outputs.name[o]);
     if (outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) continue;  // on the hall, which is recorded
-    if (is_further && std::find(measured_parts.begin(), measured_parts.end(), outputs.name[o]) != measured_parts.end()) continue;
+    if (is_further && std::find(measured_parts.begin(), measured_parts.end(), outputs.name[o]) != measured_parts.end())
+      continue;
     (is_further ? p.further : p.channels).push_back({outputs.name[o], static_cast<int>(o), outputs.unit[o], {}});
   }
 }
@@ -31,19 +32,22 @@ void list_channels(const scenarios::MachineModel& model, PlannedTwin& p) {
 diagnosis::NoiseModel noise_of(const std::string& unit, const InstrumentNoise& noise, const diagnosis::Focus& focus) {
   const diagnosis::NoiseFloor floor = floor_of(focus.machine.system);
   if (unit == "K") return {std::hypot(noise.temperature_K, std::max(floor.white_K, focus.error_K)), floor.slow_K, 1200.0};
-  if (unit == "m") return {std::hypot(1e-6 * noise.displacement_um, std::max(floor.white_m, focus.error_m)), floor.slow_m, 1200.0};
+  if (unit == "m")
+    return {std::hypot(1e-6 * noise.displacement_um, std::max(floor.white_m, focus.error_m)), floor.slow_m, 1200.0};
   return {std::hypot(1e-6 * noise.tilt_urad, floor.white_rad), floor.slow_rad, 1200.0};
 }
 
 }  // namespace
 
-PlannedTwin open_planned_twin(const scenarios::Scenario& scenario, const std::string& verb, const std::vector<Cyclogram>& like,
-                              double interval_s, const InstrumentNoise& noise, const Listener& listener) {
+PlannedTwin open_planned_twin(const scenarios::Scenario& scenario, const std::string& verb,
+                              const std::vector<Cyclogram>& like, double interval_s, const InstrumentNoise& noise,
+                              const Listener& listener) {
   const scenarios::MachineModel& model = scenarios::require_machine(scenario, verb);
   if (const auto columns = scenarios::wanted_columns(model, like.front().name); !columns.empty())
-    throw InputError(model.where, fmt::format("`{}` plans speeds, feeds and cutting power; this machine is driven by the recorded {}, "
-                                              "which no programme can order",
-                                              verb, fmt::join(columns, ", ")));
+    throw InputError(model.where,
+                     fmt::format("`{}` plans speeds, feeds and cutting power; this machine is driven by the recorded {}, "
+                                 "which no programme can order",
+                                 verb, fmt::join(columns, ", ")));
   PlannedTwin p;
   listener.begin("meshing");
   p.mesh = scenarios::place(model).mesh;
@@ -62,7 +66,10 @@ PlannedTwin open_planned_twin(const scenarios::Scenario& scenario, const std::st
   p.twin.emplace(p.parts->augmented, p.focus->machine, tolerances);
   list_channels(model, p);
   if (p.channels.empty())
-    throw InputError(model.where, fmt::format("`{}` needs a thermometer or a displacement that would be read; add one to `sensors` or `displacements`", verb));
+    throw InputError(
+        model.where,
+        fmt::format("`{}` needs a thermometer or a displacement that would be read; add one to `sensors` or `displacements`",
+                    verb));
   for (const auto* list : {&p.channels, &p.further}) {
     for (const diagnosis::MeasuredChannel& c : *list) p.noise[c.name] = noise_of(c.unit, noise, *p.focus);
   }

@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kRowsPerSlot = 3;
 constexpr std::size_t kBatch = 250, kBest = 20;
-constexpr int kAsked = 4;             // programmes asked for, for each one that shall be tried: some come twice
-constexpr double kRandom = 0.5;       // share of all that is tried
+constexpr int kAsked = 4;                // programmes asked for, for each one that shall be tried: some come twice
+constexpr double kRandom = 0.5;          // share of all that is tried
 constexpr std::size_t kMostOfAKind = 8;  // laws that the search looks at
 constexpr int kMostProgrammes = 10000, kFewestProgrammes = 300;
 constexpr double kWork = 1.5e11;         // multiplications, some ten seconds of two cores
@@ -31,7 +31,8 @@ struct Tried {
 /// All that were tried, the best first.
 class Search {
  public:
-  Search(const diagnosis::LevelMachine& machine, const diagnosis::Question& question) : machine_(machine), question_(question) {}
+  Search(const diagnosis::LevelMachine& machine, const diagnosis::Question& question)
+      : machine_(machine), question_(question) {}
 
   [[nodiscard]] double share(const TestProgramme& programme) const {
     std::vector<int> steps;
@@ -89,7 +90,8 @@ Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& q
         continue;
       }
       TestProgramme changed = search.best()[random() % search.best().size()].programme;
-      for (std::size_t changes = 1 + random() % 3; changes > 0; --changes) changed = changed_test(std::move(changed), levels, random);
+      for (std::size_t changes = 1 + random() % 3; changes > 0; --changes)
+        changed = changed_test(std::move(changed), levels, random);
       programmes.push_back(std::move(changed));
     }
     asked += static_cast<int>(n);
@@ -104,7 +106,8 @@ Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& q
 int programmes_of(const PlannedTwin& p, const diagnosis::Doubts& doubts) {
   const double size = p.twin->machine().system.size(), n_doubts = static_cast<double>(doubts.question.n());
   const double n_rows = kTestSlots * kRowsPerSlot, n_readings = n_rows * static_cast<double>(p.channels.size());
-  const double each = n_doubts * n_rows * size * (size + static_cast<double>(p.twin->outputs().name.size())) + 0.5 * n_doubts * n_doubts * n_readings;
+  const double each = n_doubts * n_rows * size * (size + static_cast<double>(p.twin->outputs().name.size())) +
+                      0.5 * n_doubts * n_doubts * n_readings;
   return std::clamp(static_cast<int>(kWork / each), kFewestProgrammes, kMostProgrammes);
 }
 
@@ -118,7 +121,8 @@ Record record_of(const PlannedTwin& p, const diagnosis::MeasuredRun& run) {
     const bool is_temperature = c.unit == "K";
     Channel channel{c.name, is_temperature ? "degC" : c.unit == "m" ? "um" : "urad", {}};
     for (Eigen::Index i = 0; i < readings.cols(); ++i)
-      channel.values.push_back(is_temperature ? readings(c.output, i) + p.twin->reference_K() - kZeroCelsius_K : 1e6 * readings(c.output, i));
+      channel.values.push_back(is_temperature ? readings(c.output, i) + p.twin->reference_K() - kZeroCelsius_K
+                                              : 1e6 * readings(c.output, i));
     record.channels.push_back(std::move(channel));
   }
   return record;
@@ -140,8 +144,11 @@ TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& o
   const diagnosis::MeasuredRun usual = run_of(like.front(), p.channels);
   const diagnosis::Doubts doubts = diagnosis::doubts_before(*p.twin, usual);
 
-  TestPlan plan{.duration_s = options.duration_s, .interval_s = options.interval_s, .noise = options.noise,
-                .numbers = doubts.numbers, .question = doubts.question};
+  TestPlan plan{.duration_s = options.duration_s,
+                .interval_s = options.interval_s,
+                .noise = options.noise,
+                .numbers = doubts.numbers,
+                .question = doubts.question};
   for (const diagnosis::MeasuredChannel& c : p.channels) plan.channels.push_back(c.name);
   const diagnosis::Doubts searched = diagnosis::thinned(*p.twin, doubts, usual, kMostOfAKind);
   const int n_programmes = options.n_programmes > 0 ? options.n_programmes : programmes_of(p, searched);
@@ -158,7 +165,8 @@ TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& o
   std::vector<diagnosis::MeasuredChannel> all = p.channels;
   all.insert(all.end(), p.further.begin(), p.further.end());
   const auto n_own = static_cast<std::ptrdiff_t>(p.channels.size());
-  const auto judge = [&](const std::string& name, const TestProgramme& programme, std::vector<Eigen::MatrixXd>& of_channels) {
+  const auto judge = [&](const std::string& name, const TestProgramme& programme,
+                         std::vector<Eigen::MatrixXd>& of_channels) {
     of_channels = diagnosis::information_by_channel(*p.twin, doubts, run_of(cyclogram(programme), all), p.noise);
     const Eigen::MatrixXd total = std::accumulate(of_channels.begin() + 1, of_channels.begin() + n_own, of_channels.front());
     return JudgedTest{name, cyclogram(programme), diagnosis::prospect(doubts.question, total)};
@@ -177,10 +185,14 @@ TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& o
   for (std::size_t c = 0; c < of_channels.size(); ++c) {
     const bool is_own = c < p.channels.size();
     const Eigen::MatrixXd with = is_own ? Eigen::MatrixXd(total - of_channels[c]) : Eigen::MatrixXd(total + of_channels[c]);
-    (is_own ? plan.without : plan.with).push_back({is_own ? all[c].name : all[c].name.substr(std::string("mean of ").size()), diagnosis::share_named(doubts.question, with)});
+    (is_own ? plan.without : plan.with)
+        .push_back({is_own ? all[c].name : all[c].name.substr(std::string("mean of ").size()),
+                    diagnosis::share_named(doubts.question, with)});
   }
-  std::stable_sort(plan.without.begin(), plan.without.end(), [](const auto& a, const auto& b) { return a.share_named < b.share_named; });
-  std::stable_sort(plan.with.begin(), plan.with.end(), [](const auto& a, const auto& b) { return a.share_named > b.share_named; });
+  std::stable_sort(plan.without.begin(), plan.without.end(),
+                   [](const auto& a, const auto& b) { return a.share_named < b.share_named; });
+  std::stable_sort(plan.with.begin(), plan.with.end(),
+                   [](const auto& a, const auto& b) { return a.share_named > b.share_named; });
   plan.usual_record = record_of(p, run_of(plan.usual.cyclogram, p.channels));
   plan.planned_record = record_of(p, run_of(plan.planned.cyclogram, p.channels));
   return plan;

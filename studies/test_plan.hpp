@@ -9,10 +9,10 @@ namespace driftwright::studies {
 
 struct TestPlanOptions {
   double duration_s = 8.0 * 3600.0;
-  double interval_s = 60.0;        ///< of rows
-  double most_speed_rpm = 0.0;     ///< 0: the fastest of the scenario
+  double interval_s = 60.0;     ///< of rows
+  double most_speed_rpm = 0.0;  ///< 0: the fastest of the scenario
   InstrumentNoise noise = {};
-  int n_programmes = 0;            ///< tried; 0: 10000, of a large machine as many as some ten seconds allow
+  int n_programmes = 0;  ///< tried; 0: 10000, of a large machine as many as some ten seconds allow
   unsigned seed = 1;
 };
 
@@ -37,7 +37,7 @@ struct TestPlan {
   JudgedTest usual = {}, stepped = {}, planned = {};
   double search_share = 0.0;  ///< expected of the planned one by the machine that the search ran on
   int n_tried = 0;
-  double search_s = 0.0;                     ///< what trying them took
+  double search_s = 0.0;                              ///< what trying them took
   std::vector<ChannelWorth> without = {}, with = {};  ///< each channel; each part without a thermometer, best first
   std::vector<std::string> channels = {};
   Record usual_record = {}, planned_record = {};  ///< of the machine as written, without noise
@@ -46,6 +46,7 @@ struct TestPlan {
 /// Tries programmes on a linear machine (diagnosis/level_machine.hpp) by up to eight laws of each kind of effect: half of them random, the others one change off the best so far; takes away sections that
 /// are worth less than 1 % of the best; judges the best by the signatures that `diagnose` itself takes. Where the usual or the stepped test is as good, it is that.
 /// @throws InputError  as open_planned_twin(), test_levels()
-[[nodiscard]] TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options, const Listener& listener);
+[[nodiscard]] TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options,
+                                 const Listener& listener);
 
 }  // namespace driftwright::studies

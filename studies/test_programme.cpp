@@ -37,13 +37,16 @@ TestLevels test_levels(const scenarios::Scenario& scenario, double most_speed_rp
     for (const auto& section : c.sections) {
       top.speed_rpm = std::max(top.speed_rpm, section.drive.speed_rpm);
       top.cutting_power_W = std::max(top.cutting_power_W, section.drive.cutting_power_W);
-      for (std::size_t a = 0; a < top.feed_m_s.size(); ++a) top.feed_m_s[a] = std::max(top.feed_m_s[a], section.drive.feed_m_s[a]);
+      for (std::size_t a = 0; a < top.feed_m_s.size(); ++a)
+        top.feed_m_s[a] = std::max(top.feed_m_s[a], section.drive.feed_m_s[a]);
     }
   }
   if (most_speed_rpm > 0.0) top.speed_rpm = most_speed_rpm;
   const bool feeds = std::any_of(top.feed_m_s.begin(), top.feed_m_s.end(), [](double f) { return f > 0.0; });
   if (top.speed_rpm == 0.0 && top.cutting_power_W == 0.0 && !feeds)
-    throw InputError("no cyclogram of the scenario drives anything; `plan-test` plans with speeds, feeds and powers that some cyclogram has");
+    throw InputError(
+        "no cyclogram of the scenario drives anything; `plan-test` plans with speeds, feeds and powers that some cyclogram "
+        "has");
   TestLevels levels;
   levels.drives.emplace_back();
   const auto add = [&](const Drive& d) {
@@ -71,7 +74,8 @@ TestLevels test_levels(const scenarios::Scenario& scenario, double most_speed_rp
   return levels;
 }
 
-Cyclogram cyclogram_of(const TestProgramme& programme, const TestLevels& levels, double duration_s, const std::string& name) {
+Cyclogram cyclogram_of(const TestProgramme& programme, const TestLevels& levels, double duration_s,
+                       const std::string& name) {
   Cyclogram c{.name = name, .sections = {}};
   const std::vector<int> edges = edges_of(programme);
   const double slot_s = duration_s / static_cast<double>(programme.size());
@@ -91,7 +95,8 @@ TestProgramme usual_test(const TestLevels& levels) {
 TestProgramme stepped_test(const TestLevels& levels) {
   TestProgramme programme(kTestSlots, 0);
   const auto n = static_cast<int>(levels.steps.size());
-  for (int i = 0; i < n; ++i) fill(programme, i * kTestSlots / (n + 1), (i + 1) * kTestSlots / (n + 1), levels.steps[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < n; ++i)
+    fill(programme, i * kTestSlots / (n + 1), (i + 1) * kTestSlots / (n + 1), levels.steps[static_cast<std::size_t>(i)]);
   return programme;
 }
 
@@ -100,7 +105,8 @@ TestProgramme random_test(const TestLevels& levels, std::mt19937_64& random) {
   std::vector<int> edges = {0, kTestSlots};
   for (int i = pick(random, kMostSections); i > 0; --i) edges.push_back(1 + pick(random, kTestSlots - 1));
   std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i + 1 < edges.size(); ++i) fill(programme, edges[i], edges[i + 1], pick(random, levels.drives.size()));
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i)
+    fill(programme, edges[i], edges[i + 1], pick(random, levels.drives.size()));
   return programme;
 }
 
@@ -110,11 +116,14 @@ TestProgramme changed_test(TestProgramme programme, const TestLevels& levels, st
   const auto section = static_cast<std::size_t>(pick(random, n));
   const int first = edges[section], end = edges[section + 1];
   switch (pick(random, 5)) {
-    case 0: fill(programme, first, end, pick(random, levels.drives.size())); break;
+    case 0:
+      fill(programme, first, end, pick(random, levels.drives.size()));
+      break;
     case 1:  // where two meet
       if (section > 0) {
         const int low = edges[section - 1] + 1, to = low + pick(random, static_cast<std::size_t>(end - low));
-        const int before = programme[static_cast<std::size_t>(first - 1)], after = programme[static_cast<std::size_t>(first)];
+        const int before = programme[static_cast<std::size_t>(first - 1)],
+                  after = programme[static_cast<std::size_t>(first)];
         fill(programme, edges[section - 1], to, before);
         fill(programme, to, end, after);
       }

@@ -13,8 +13,8 @@ namespace driftwright::studies {
 /// Drives that programmes are made of; the first is rest.
 struct TestLevels {
   std::vector<Drive> drives;
-  int full = 0;               ///< what the usual test heats by: everything at its most
-  std::vector<int> steps;     ///< quarters of it, the last one full
+  int full = 0;            ///< what the usual test heats by: everything at its most
+  std::vector<int> steps;  ///< quarters of it, the last one full
 };
 /// A level of each slot.
 using TestProgramme = std::vector<int>;
@@ -27,7 +27,8 @@ inline constexpr int kTestSlots = 32;
 /// @throws InputError  where no cyclogram drives anything
 [[nodiscard]] TestLevels test_levels(const scenarios::Scenario& scenario, double most_speed_rpm);
 
-[[nodiscard]] Cyclogram cyclogram_of(const TestProgramme& programme, const TestLevels& levels, double duration_s, const std::string& name);
+[[nodiscard]] Cyclogram cyclogram_of(const TestProgramme& programme, const TestLevels& levels, double duration_s,
+                                     const std::string& name);
 
 /// Half the time at full, half at rest.
 [[nodiscard]] TestProgramme usual_test(const TestLevels& levels);

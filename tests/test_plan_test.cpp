@@ -64,15 +64,18 @@ struct Planned {
   explicit Planned(const std::string& text, double duration_s = 8.0 * 3600.0)
       : scenario(scenario_of(text)),
         levels(test_levels(scenario, 0.0)),
-        p(open_planned_twin(scenario, "plan-test", {cyclogram_of(usual_test(levels), levels, duration_s, "planned")}, 60.0, {}, {})),
-        usual(diagnosis::planned_run(cyclogram_of(usual_test(levels), levels, duration_s, "planned"), 60.0, p.hall, true, p.channels)),
+        p(open_planned_twin(scenario, "plan-test", {cyclogram_of(usual_test(levels), levels, duration_s, "planned")}, 60.0,
+                            {}, {})),
+        usual(diagnosis::planned_run(cyclogram_of(usual_test(levels), levels, duration_s, "planned"), 60.0, p.hall, true,
+                                     p.channels)),
         doubts(diagnosis::doubts_before(*p.twin, usual)) {}
 };
 
 // One number of 10 % and two faults in three readings: J = (1, 0, 0), a = (1, 2, 0), b = (0, 1, 1).
 TEST(Prospect, OfTwoFaultsInThreeReadingsIsTheClosedForm) {
   Question q{.number_sd = Eigen::VectorXd::Constant(1, 0.1),
-             .laws = {{.effect = "a", .size_sd = 3.0, .price_nats = 0.5, .weight = 0.5}, {.effect = "b", .size_sd = 4.0, .price_nats = 1.0, .weight = 0.5}},
+             .laws = {{.effect = "a", .size_sd = 3.0, .price_nats = 0.5, .weight = 0.5},
+                      {.effect = "b", .size_sd = 4.0, .price_nats = 1.0, .weight = 0.5}},
              .bar_nats = 4.0,
              .lead_nats = 3.0};
   Eigen::MatrixXd columns(3, 3);
@@ -85,7 +88,8 @@ TEST(Prospect, OfTwoFaultsInThreeReadingsIsTheClosedForm) {
   EXPECT_NEAR(p.nats[0], 0.5 * a * a / (1.0 + a) - 0.5 * std::log(1.0 + a), 1e-12);
   EXPECT_NEAR(p.number_sigma[0], std::sqrt(1.0 / (1.0 + 100.0)) / 0.1, 1e-12);
   const double seen = 2.0 * (4.0 + 0.5 + 0.5 * std::log(1.0 + a)) / (a * a / (1.0 + a));
-  const double told = 2.0 * (3.0 + 0.5 - 1.0 + 0.5 * std::log((1.0 + a) / (1.0 + b))) / (a * a / (1.0 + a) - ab * ab / (1.0 + b));
+  const double told =
+      2.0 * (3.0 + 0.5 - 1.0 + 0.5 * std::log((1.0 + a) / (1.0 + b))) / (a * a / (1.0 + a) - ab * ab / (1.0 + b));
   const auto share = [](double square) { return std::log(2.0 / std::sqrt(square)) / std::log(200.0); };
   EXPECT_NEAR(p.seen[0], share(seen), 1e-12);
   EXPECT_NEAR(p.named[0], share(std::max(seen, told)), 1e-12);
@@ -112,11 +116,14 @@ TEST(Prospect, HasTheDistanceOfTheDiscriminatingExperiment) {
 TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
   Planned planned(kOneBody);
   planned.p.noise.at("t_body") = {0.05, 0.0, 0.0};
-  const diagnosis::MeasuredRun step = diagnosis::planned_run({"planned", {{8.0 * 3600.0, Drive{.speed_rpm = 1000.0}}}}, 60.0, planned.p.hall, true, planned.p.channels);
-  const Eigen::MatrixXd information = diagnosis::information_by_channel(*planned.p.twin, planned.doubts, step, planned.p.noise).front();
+  const diagnosis::MeasuredRun step = diagnosis::planned_run({"planned", {{8.0 * 3600.0, Drive{.speed_rpm = 1000.0}}}}, 60.0,
+                                                             planned.p.hall, true, planned.p.channels);
+  const Eigen::MatrixXd information =
+      diagnosis::information_by_channel(*planned.p.twin, planned.doubts, step, planned.p.noise).front();
   double pp = 0.0, gg = 0.0, pg = 0.0;
   for (double t_s : step.time_s) {
-    const double x = t_s / 4000.0, by_power = 20.0 * (1.0 - std::exp(-x)), by_conductance = -20.0 * (1.0 - std::exp(-x) * (1.0 + x));
+    const double x = t_s / 4000.0, by_power = 20.0 * (1.0 - std::exp(-x)),
+                 by_conductance = -20.0 * (1.0 - std::exp(-x) * (1.0 + x));
     pp += by_power * by_power / (0.05 * 0.05);
     gg += by_conductance * by_conductance / (0.05 * 0.05);
     pg += by_power * by_conductance / (0.05 * 0.05);
@@ -142,7 +149,8 @@ TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
 
 // C T' = P - G (T - h), h rising evenly over the step: T is the sum of e^-x T0, (P/G + h0) (1 - e^-x) and rise (1 - (1 - e^-x) / x).
 TEST(LinearStep, OfOneBodyInAHallThatRisesIsTheClosedForm) {
-  const diagnosis::LinearSystem body{Eigen::MatrixXd::Constant(1, 1, 5.0), Eigen::VectorXd::Constant(1, 100.0), Eigen::VectorXd::Constant(1, 5.0)};
+  const diagnosis::LinearSystem body{Eigen::MatrixXd::Constant(1, 1, 5.0), Eigen::VectorXd::Constant(1, 100.0),
+                                     Eigen::VectorXd::Constant(1, 5.0)};
   const diagnosis::LinearStep step = linear_step(body, Eigen::MatrixXd::Constant(1, 1, 20e3), 3000.0);
   const double x = 3000.0 * 5.0 / 20e3, gone = 1.0 - std::exp(-x);
   EXPECT_NEAR(step.phi(0, 0), std::exp(-x), 1e-12);
@@ -160,7 +168,9 @@ TEST(LinearStep, TakesALawOfTemperatureToFirstOrder) {
   solver::Probe probe;
   probe.weights = Eigen::VectorXd::Ones(1);
   system.probes.push_back(probe);
-  solver::BoundLaw law(effects::Law([](const effects::Inputs& u) { return 100.0 * (1.0 - 0.02 * (u.probe_K.front() - 293.15)); }, {effects::node("body")}));
+  solver::BoundLaw law(
+      effects::Law([](const effects::Inputs& u) { return 100.0 * (1.0 - 0.02 * (u.probe_K.front() - 293.15)); },
+                   {effects::node("body")}));
   law.probes = {0};
   solver::HeatSource friction;
   friction.load = Eigen::VectorXd::Ones(1);
@@ -177,9 +187,11 @@ TEST(LevelMachine, HasTheInformationOfTheFittersOwnSlopes) {
   const double row_s = 300.0;
   std::mt19937_64 random(3);
   const TestProgramme programme = random_test(planned.levels, random);
-  const diagnosis::MeasuredRun run = diagnosis::planned_run(cyclogram_of(programme, planned.levels, 8.0 * 3600.0, "planned"), row_s, planned.p.hall, true, planned.p.channels);
+  const diagnosis::MeasuredRun run = diagnosis::planned_run(cyclogram_of(programme, planned.levels, 8.0 * 3600.0, "planned"),
+                                                            row_s, planned.p.hall, true, planned.p.channels);
   planned.doubts = diagnosis::thinned(*planned.p.twin, planned.doubts, planned.usual, 100);
-  const diagnosis::LevelMachine machine(*planned.p.twin, planned.doubts, planned.levels.drives, planned.usual, row_s, row_s, planned.p.noise);
+  const diagnosis::LevelMachine machine(*planned.p.twin, planned.doubts, planned.levels.drives, planned.usual, row_s, row_s,
+                                        planned.p.noise);
   std::vector<int> steps;
   for (int level : programme) steps.insert(steps.end(), 3, level);
   const Eigen::MatrixXd fast = machine.information(steps);
@@ -193,9 +205,13 @@ TEST(LevelMachine, HasTheInformationOfTheFittersOwnSlopes) {
     if (slow(i, i) < 1e-6 && fast(i, i) < 1e-6) continue;
     // A clock shifts the programme itself, and lags are read on a finer grid there.
     const std::string words = law < 0 ? "" : planned.doubts.question.laws[static_cast<std::size_t>(law)].law;
-    if (effect == "clock_offset" || effect.find("lag") != std::string::npos || words.find("lag") != std::string::npos) continue;
+    if (effect == "clock_offset" || effect.find("lag") != std::string::npos || words.find("lag") != std::string::npos)
+      continue;
     // The fitter's numbers are slopes of first order, these are differences over half of what is known.
-    EXPECT_NEAR(fast(i, i) / slow(i, i), 1.0, 0.1) << (law < 0 ? planned.doubts.numbers[static_cast<std::size_t>(i)].name : effect + ", " + planned.doubts.question.laws[static_cast<std::size_t>(law)].where + ", " + planned.doubts.question.laws[static_cast<std::size_t>(law)].law);
+    EXPECT_NEAR(fast(i, i) / slow(i, i), 1.0, 0.1)
+        << (law < 0 ? planned.doubts.numbers[static_cast<std::size_t>(i)].name
+                    : effect + ", " + planned.doubts.question.laws[static_cast<std::size_t>(law)].where + ", " +
+                          planned.doubts.question.laws[static_cast<std::size_t>(law)].law);
     ++n_compared;
   }
   EXPECT_GT(n_compared, 40);
@@ -247,10 +263,12 @@ TEST(TestPlan, IsTheSameEachTimeAndNoWorseThanTheUsualAndTheSteppedTest) {
 TEST(TestPlan, IsRefusedWhereNothingDrivesOrNothingIsRead) {
   std::string text = kOneBody;
   text.replace(text.find("1000 rpm]]"), 10, "0 rpm]]");
-  EXPECT_THAT([&] { (void)plan_test(scenario_of(text), {}, {}); }, ThrowsMessage<InputError>(HasSubstr("no cyclogram of the scenario drives anything")));
+  EXPECT_THAT([&] { (void)plan_test(scenario_of(text), {}, {}); },
+              ThrowsMessage<InputError>(HasSubstr("no cyclogram of the scenario drives anything")));
   text = kOneBody;
   text.replace(text.find("node: body}]\n"), 13, "node: hall}]\n");
-  EXPECT_THAT([&] { (void)plan_test(scenario_of(text), {}, {}); }, ThrowsMessage<InputError>(HasSubstr("needs a thermometer or a displacement")));
+  EXPECT_THAT([&] { (void)plan_test(scenario_of(text), {}, {}); },
+              ThrowsMessage<InputError>(HasSubstr("needs a thermometer or a displacement")));
 }
 
 }  // namespace
