@@ -8,8 +8,8 @@
 
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/bind_laws.hpp"
+#include "solver/exponential_run.hpp"
 #include "solver/reduced_model.hpp"
-#include "solver/reduced_transient.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -320,23 +320,7 @@ Eigen::MatrixXd Twin::all_states(const TwinState& state, const MeasuredRun& run,
     (void)workspace.propagator().run(felt, hall, run.grid_s, from, false, &states);
     return states;
   }
-  const solver::ReducedSystem* small = &system;
-  solver::ReducedSystem unit;
-  const auto& capacity = workspace.factors_.heat_capacity;
-  const bool has_other_mass = std::any_of(capacity.begin(), capacity.end(), [](double f) { return f != 1.0; });
-  if (has_other_mass) {
-    unit = solver::with_unit_mass(system, from);
-    small = &unit;
-  }
-  states.resize(system.size(), static_cast<Eigen::Index>(run.grid_s.size()));
-  Eigen::Index k = 0;
-  (void)solver::simulate(*small, felt, hall, run.grid_s, tolerances_, from,
-                         [&](double, const Eigen::VectorXd& z) { states.col(k++) = z; });
-  if (has_other_mass) {  // back from w = C'z
-    const Eigen::LLT<Eigen::MatrixXd> factor(system.mass);
-    factor.matrixU().solveInPlace(states);
-  }
-  return states;
+  return solver::states_of_run(system, felt, hall, run.grid_s, tolerances_, from);
 }
 
 Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,

@@ -103,7 +103,7 @@ def by_strategies(case, program, folder):
         strategies = json.load(file)["validation"]["strategies"]
     left = {}
     with open(os.path.join(folder, "validate", "strategies.csv"), encoding="utf-8") as file:
-        for row in csv.DictReader(file):
+        for row in csv.DictReader(line for line in file if not line.startswith("#")):
             if row["failed_sensor"]:
                 continue
             bare = row["rms_without_fail_safe_um"]

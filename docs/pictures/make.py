@@ -1,18 +1,33 @@
 #!/usr/bin/env python3
-"""Makes the pictures of this folder anew, from reports and pages of the program: make.py PROGRAM   (in the folder of the project; pages need chromium)"""
-import pathlib, subprocess, sys, tempfile
+"""Makes the pictures of this folder anew, from figures and pages of the program: make.py PROGRAM   (in the folder of the project; pages need chromium)"""
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-PICTURES = {"fp3_spindle": ["run", "scenarios/fp3_spindle.yaml"]}
-
-for name, words in PICTURES.items():
-    with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([sys.argv[1], *words, "-o", f"{folder}/out", "--quiet"], check=True, cwd=HERE.parent.parent)
-        page = pathlib.Path(folder, "out/report.html").read_text()
-        begin = page.index("<svg viewBox")
-        (HERE / f"{name}.svg").write_text(page[begin:page.index("</svg>", begin) + 6] + "\n")
+PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+PICTURES = {  # name: what the program is asked, and which of its figures
+    "fp3_spindle": (["run", "scenarios/fp3_spindle.yaml"], "*_stored_*"),
+    "cnc_mill_13": (["run", "scenarios/cnc_mill_13.yaml"], "*_stored_*"),
+    "cnc_mill_13_drift": (["run", "scenarios/cnc_mill_13.yaml"], "drift_z_*"),
+    "c_frame": (["simulate", "scenarios/c_frame.yaml", "--cyclogram", "warm_up"], "*_stored_*"),
+    "gantry_table": (["run", "scenarios/gantry_table.yaml"], "*_stored_*"),
+    "gantry_table_error": (["run", "scenarios/gantry_table.yaml"], "largest_position_error*"),
+    "first_machine": (["predict", "scenarios/first_machine.yaml", "--cyclogram", "shift"], "displacements.svg"),
+    "lumped_spindle": (["simulate", "scenarios/lumped_spindle.yaml"], "temperatures.svg"),
+    "lumped_sweep": (["sweep", "scenarios/lumped_sweep.yaml"], "*nose_z_peak_um_over_preload.svg"),
+}
 
 with tempfile.TemporaryDirectory() as folder:
-    subprocess.run([sys.argv[1], "view", "scenarios/fp3_spindle.yaml", "-o", f"{folder}/twin.html"], check=True, cwd=HERE.parent.parent, stdout=subprocess.DEVNULL)
+    results = {}  # by what was asked, so that nothing is computed twice
+    for name, (words, pattern) in PICTURES.items():
+        if tuple(words) not in results:
+            out = results[tuple(words)] = pathlib.Path(folder, name)
+            subprocess.run([PROGRAM, *words, "-o", out, "--quiet"], check=True, cwd=HERE.parent.parent)
+        (figure,) = sorted((results[tuple(words)] / "figures").glob(pattern))
+        shutil.copy(figure, HERE / f"{name}.svg")
+    subprocess.run([PROGRAM, "view", "scenarios/fp3_spindle.yaml", "-o", f"{folder}/twin.html"], check=True, cwd=HERE.parent.parent, stdout=subprocess.DEVNULL)
     subprocess.run(["chromium", "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
-                    f"--user-data-dir={folder}/profile", "--window-size=1200,1300", f"--screenshot={HERE}/view.png", f"file://{folder}/twin.html"], check=True)
+                    f"--user-data-dir={folder}/profile", "--window-size=1200,1300", f"--screenshot={HERE}/view.png", f"file://{folder}/twin.html"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

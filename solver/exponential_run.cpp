@@ -1,0 +1,184 @@
+#include "solver/exponential_run.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "solver/live_rate.hpp"
+#include "solver/reduced_model.hpp"
+#include "solver/reduced_transient.hpp"
+
+namespace driftwright::solver {
+namespace {
+
+constexpr double kShareOfTolerance = 0.05;  // of the absolute tolerance: error of a step
+constexpr double kShareIterated = 1e-3;     // of a step's error: to which its end is iterated
+constexpr int kMostIterations = 8;
+constexpr int kStepsOfOneTangent = 50;
+constexpr double kShortestStep_s = 1e-3;
+constexpr double kFarthest_K = 3000.0;  // from the reference: no machine
+constexpr double kSame = 1e-9;          // of a step: times that are one
+
+/// One run on its way.
+class ExponentialRun {
+ public:
+  ExponentialRun(const ReducedSystem& system, const TimeSeries& hall, const TransientOptions& options, const Eigen::VectorXd& start)
+      : rates_(system, hall), state_(start), most_s_(options.max_step_s), next_(start.size()), n0_(start.size()), n1_(start.size()), rest_(start.size()) {
+    double per_unit = 1.0 / system.ones.norm();
+    for (const Probe& p : system.probes) per_unit = std::max(per_unit, p.weights.norm());
+    for (std::size_t o = 0; o < system.outputs.unit.size(); ++o) {
+      if (system.outputs.unit[o] == "K") per_unit = std::max(per_unit, system.outputs.state.col(static_cast<Eigen::Index>(o)).norm());
+    }
+    allowed_ = kShareOfTolerance * options.absolute_tolerance_K / per_unit;
+    farthest_ = kFarthest_K / per_unit;
+  }
+
+  [[nodiscard]] const Eigen::VectorXd& state() const { return state_; }
+  void enter(const LinearStretch& stretch) {
+    if (rates_.enter(stretch) || stretch.drive_changed) has_tangent_ = false;
+  }
+  /// @return false where no step gets there
+  [[nodiscard]] bool go(double from_s, double until_s) {
+    double t_s = from_s, limit_s = std::min(until_s - from_s, most_s_);
+    while (until_s - t_s > kSame * (until_s - from_s)) {
+      const double h_s = until_s - t_s <= (1.0 + kSame) * limit_s ? until_s - t_s : limit_s;
+      if (step(t_s, h_s)) {
+        t_s += h_s;
+        limit_s = std::min(2.0 * limit_s, most_s_);
+      } else {
+        has_tangent_ = false;
+        limit_s = 0.5 * h_s;
+        if (!(limit_s > kShortestStep_s)) return false;
+      }
+    }
+    return state_.lpNorm<Eigen::Infinity>() <= farthest_;
+  }
+
+ private:
+  /// N = F - J z.
+  void rest(double t_s, const Eigen::VectorXd& z, Eigen::VectorXd& n) {
+    rates_.rate(t_s, z, n);
+    n.noalias() -= tangent_ * z;
+  }
+  void prepare(double t_s, double h_s) {
+    if (!has_tangent_ || n_steps_ == kStepsOfOneTangent) {
+      tangent_ = rates_.tangent(t_s, state_);
+      has_tangent_ = true;
+      n_steps_ = 0;
+      known_s_ = -1.0;
+    }
+    ++n_steps_;
+    if (std::abs(h_s - known_s_) <= kSame * h_s) return;
+    const Exponentials e = exponentials(h_s * tangent_);
+    decay_ = e.exp;
+    second_ = h_s * e.phi2;
+    first_ = h_s * e.phi1 - second_;
+    known_s_ = h_s;
+  }
+  bool step(double t_s, double h_s) {
+    prepare(t_s, h_s);
+    rest(t_s, state_, n0_);
+    next_.noalias() = decay_ * state_;
+    next_.noalias() += first_ * n0_;
+    n1_ = n0_;
+    Eigen::VectorXd end = next_ + second_ * n1_;
+    bool is_there = false;
+    for (int j = 0; j < kMostIterations && !is_there; ++j) {
+      rest(t_s + h_s, end, n1_);
+      rest_ = next_;
+      rest_.noalias() += second_ * n1_;
+      is_there = (rest_ - end).lpNorm<Eigen::Infinity>() <= kShareIterated * allowed_;
+      end.swap(rest_);
+    }
+    if (!is_there) return false;
+    // the middle, by the cubic through both ends and their slopes
+    const Eigen::VectorXd middle = 0.5 * (state_ + end) + h_s / 8.0 * (n0_ - n1_ + tangent_ * (state_ - end));
+    rest(t_s + 0.5 * h_s, middle, rest_);
+    const double error = 2.0 / 3.0 * h_s * (rest_ - 0.5 * (n0_ + n1_)).lpNorm<Eigen::Infinity>();
+    if (!(error <= allowed_)) return false;
+    state_.swap(end);
+    return true;
+  }
+
+  LiveRate rates_;
+  Eigen::VectorXd state_;
+  double most_s_, allowed_ = 0.0, farthest_ = 0.0;
+  bool has_tangent_ = false;
+  int n_steps_ = 0;
+  double known_s_ = -1.0;  ///< the step that the matrices are for
+  Eigen::MatrixXd tangent_, decay_, first_, second_;
+  Eigen::VectorXd next_, n0_, n1_, rest_;
+};
+
+}  // namespace
+
+Exponentials exponentials(const Eigen::MatrixXd& x) {
+  constexpr int kTerms = 14;  // of ‖X‖ <= 1/2: what is left out is 0.5^15 / 17! of 1
+  const double norm = x.cwiseAbs().rowwise().sum().maxCoeff();
+  const int n_doublings = norm > 0.5 ? static_cast<int>(std::ceil(std::log2(2.0 * norm))) : 0;
+  const Eigen::MatrixXd small = std::ldexp(1.0, -n_doublings) * x;
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(x.rows(), x.cols());
+  Exponentials e;
+  e.phi2 = one;  // 2 φ2 = 1 + X/3 (1 + X/4 (1 + ...
+  for (int k = kTerms; k > 0; --k) e.phi2 = (one + small * e.phi2 / (k + 2.0)).eval();
+  e.phi2 *= 0.5;
+  e.phi1 = one + small * e.phi2;
+  e.exp = one + small * e.phi1;
+  for (int i = 0; i < n_doublings; ++i) {
+    e.phi2 = (0.25 * (e.phi1 * e.phi1 + 2.0 * e.phi2)).eval();
+    e.phi1 = (0.5 * (e.exp + one) * e.phi1).eval();
+    e.exp = (e.exp * e.exp).eval();
+  }
+  return e;
+}
+
+std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+                                                  const std::vector<double>& output_s, const TransientOptions& options,
+                                                  const Eigen::VectorXd& start) {
+  if (!system.thermostats.empty() || system.size() > kMostOfExponentialRun || options.from_s != 0.0) return std::nullopt;
+  std::vector<double> knots_s = hall.time_s;
+  knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
+  Eigen::MatrixXd states(system.size(), static_cast<Eigen::Index>(output_s.size()));
+  try {
+    ExponentialRun run(system, hall, options, start);
+    std::size_t next = 0;
+    for (const LinearStretch& stretch : linear_stretches(cyclogram, knots_s)) {
+      run.enter(stretch);
+      double t_s = stretch.start_s;
+      for (; next < output_s.size() && output_s[next] <= stretch.end_s; ++next) {
+        if (output_s[next] > t_s && !run.go(t_s, output_s[next])) return std::nullopt;
+        t_s = std::max(t_s, output_s[next]);
+        states.col(static_cast<Eigen::Index>(next)) = run.state();
+      }
+      if (next == output_s.size()) break;
+      if (stretch.end_s > t_s && !run.go(t_s, stretch.end_s)) return std::nullopt;
+    }
+    if (next < output_s.size()) return std::nullopt;
+  } catch (const RangeError&) {
+    return std::nullopt;
+  }
+  return states;
+}
+
+Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+                              const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start) {
+  if (!system.is_linear()) {
+    if (auto states = exponential_states(system, cyclogram, hall, output_s, options, start)) return *std::move(states);
+  }
+  Eigen::MatrixXd states(system.size(), static_cast<Eigen::Index>(output_s.size()));
+  Eigen::Index k = 0;
+  const auto take = [&](double, const Eigen::VectorXd& z) { states.col(k++) = z; };
+  if (system.is_linear() || system.mass.isIdentity(1e-8)) {
+    (void)simulate(system, cyclogram, hall, output_s, options, start, take);
+    return states;
+  }
+  Eigen::VectorXd from = start;
+  const ReducedSystem unit = with_unit_mass(system, from);
+  (void)simulate(unit, cyclogram, hall, output_s, options, from, take);
+  const Eigen::LLT<Eigen::MatrixXd> factor(system.mass);  // back from w = C'z
+  factor.matrixU().solveInPlace(states);
+  return states;
+}
+
+}  // namespace driftwright::solver

@@ -1,0 +1,37 @@
+#pragma once
+// Runs of small machines whose laws look at temperatures, by exponentials of their tangent.
+//
+//     z' = F(t, z) = J z + N(t, z)
+//     z(t + h) = e^{hJ} z + h (φ1 - φ2) N(t) + h φ2 N(t + h),   φ1 = ∫ e^{(1-s)hJ} ds,   φ2 = ∫ e^{(1-s)hJ} s ds,   s from 0 to 1
+//
+// exact where laws do not look at temperatures, and else for an N that is a line over the step; how far it is off that line in the middle says the
+// step's error, and a step with too large a one is halved. N at the step's end is iterated, which takes two or three looks at the laws, where implicit
+// stages take a dozen. Source: Hochbruck & Ostermann, Acta Numerica 19 (2010) 209-286.
+
+#include <optional>
+
+#include "solver/transient.hpp"
+
+namespace driftwright::solver {
+
+inline constexpr int kMostOfExponentialRun = 40;  ///< unknowns: products of full matrices
+
+/// States at times on a cyclogram, size x n_times; M is any.
+/// @returns nothing for a system that is not made for it: one with thermostats, which switch within steps, with more unknowns, one whose laws are not defined at
+///          a state that was tried or whose temperatures no machine has: integrate() then says what is wrong, or goes on
+[[nodiscard]] std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram,
+                                                                const TimeSeries& hall, const std::vector<double>& output_s,
+                                                                const TransientOptions& options, const Eigen::VectorXd& start);
+
+/// The same of any reduced system by exponentials, where they serve, or by integrate(). @throws SolveError
+[[nodiscard]] Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+                                            const std::vector<double>& output_s, const TransientOptions& options,
+                                            const Eigen::VectorXd& start);
+
+/// e^X, φ1(X) and φ2(X) by scaling: a series, then φ2(2X) = (φ1² + 2 φ2)/4, φ1(2X) = (e^X + 1) φ1 / 2.
+struct Exponentials {
+  Eigen::MatrixXd exp, phi1, phi2;
+};
+[[nodiscard]] Exponentials exponentials(const Eigen::MatrixXd& x);
+
+}  // namespace driftwright::solver

@@ -1,0 +1,51 @@
+#pragma once
+// dz/dt of a reduced system whose laws look at temperatures, at any state and time:
+//
+//     M dz/dt = f + θ_hall h - K z + Σ_s P_s(z) b_s - Σ_e c_e(z) (G_e z - θ_hall g_e - o_e)
+//
+// with sums over the laws that look at the state; those that follow drive and time alone are within f, h and K.
+
+#include "base/cyclogram.hpp"
+#include "solver/thermal_system.hpp"
+
+namespace driftwright::solver {
+
+class LiveRate {
+ public:
+  /// @param system  without thermostats; borrowed, as is the hall
+  LiveRate(const ReducedSystem& system, const TimeSeries& hall);
+
+  /// Takes over drive and time of a stretch. @return true when a power or a coefficient that does not look at the state is another one
+  bool enter(const LinearStretch& stretch);
+  /// dz/dt in the stretch entered last.
+  void rate(double t_s, const Eigen::VectorXd& z, Eigen::VectorXd& dz_dt);
+  /// Its derivative by z.
+  [[nodiscard]] Eigen::MatrixXd tangent(double t_s, const Eigen::VectorXd& z);
+
+ private:
+  struct Source {
+    const BoundLaw* law;
+    Eigen::VectorXd load;
+  };
+  struct Exchange {
+    const BoundLaw* law;
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd to_hall, offset;
+  };
+  [[nodiscard]] double value(const BoundLaw& law);
+  void look(double t_s, const Eigen::VectorXd& z);
+
+  const ReducedSystem& system_;
+  const TimeSeries& hall_;
+  Eigen::MatrixXd per_mass_;  ///< M⁻¹; empty where M = 1
+  std::vector<Source> sources_;
+  std::vector<Exchange> exchanges_;
+  effects::Inputs inputs_;
+  std::vector<double> probe_K_;
+  std::vector<double> followed_;  ///< values of the laws that do not look at the state
+  bool has_entered_ = false;
+  Eigen::MatrixXd conduction_;
+  Eigen::VectorXd load_, to_hall_;
+};
+
+}  // namespace driftwright::solver

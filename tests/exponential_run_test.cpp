@@ -1,0 +1,148 @@
+#include "solver/exponential_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "base/errors.hpp"
+#include "solver/reduced_model.hpp"
+#include "solver/reduced_transient.hpp"
+
+namespace driftwright::solver {
+namespace {
+
+const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
+
+/// A spindle in a bearing in a housing in the hall: friction that falls as the bearing warms, a film that grows with the housing's temperature, a link.
+struct Machine {
+  double friction_W = 300.0, decay_1_K = 0.012, film_W_K = 12.0, link_W_K = 20.0, heat_W = 0.0, from_s = 0.0, until_s = 0.0;
+  Eigen::Vector3d capacity_J_K = {20800.0, 1650.0, 60000.0};
+  TimeSeries hall = {{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}};
+  Eigen::Vector3d start_K = {1.0, 2.0, 0.5};
+
+  [[nodiscard]] ReducedSystem system() const {
+    ReducedSystem s;
+    s.mass = capacity_J_K.asDiagonal();
+    s.conduction = Eigen::Matrix3d::Zero();
+    const auto link = [&](int i, int j, double w) {
+      s.conduction(i, i) += w;
+      s.conduction(j, j) += w;
+      s.conduction(i, j) -= w;
+      s.conduction(j, i) -= w;
+    };
+    link(0, 1, link_W_K);
+    link(1, 2, 26.5);
+    for (int i = 0; i < 3; ++i) {
+      Probe p;
+      p.weights = Eigen::VectorXd::Unit(3, i);
+      s.probes.push_back(p);
+    }
+    HeatSource friction;
+    friction.load = Eigen::VectorXd::Unit(3, 1);
+    friction.power_W.law = [*this](const effects::Inputs& u) {
+      return friction_W * std::pow(u.drive.speed_rpm / 3000.0, 1.3) * std::exp(-decay_1_K * (u.probe_K[0] - 293.15));
+    };
+    friction.power_W.probes = {1};
+    HeatSource window;
+    window.load = Eigen::VectorXd::Unit(3, 2);
+    window.power_W.law = [*this](const effects::Inputs& u) { return u.time_s > from_s && u.time_s < until_s ? heat_W : 0.0; };
+    s.sources = {friction, window};
+    if (until_s > from_s) s.change_times_s = {from_s, until_s};
+    Exchange<Eigen::MatrixXd> film;
+    film.matrix = Eigen::Vector3d(0.0, 0.0, 1.0).asDiagonal();
+    film.to_hall = film.flow = Eigen::VectorXd::Unit(3, 2);
+    film.hall_sum = 1.0;
+    film.coefficient.law = [*this](const effects::Inputs& u) {
+      return film_W_K * std::pow(std::max(1e-3, std::abs(u.probe_K[0] - 293.15 - u.hall_K)), 0.25);
+    };
+    film.coefficient.probes = {2};
+    s.exchanges = {film};
+    s.outputs.name = {"t"};
+    s.outputs.unit = {"K"};
+    s.outputs.state = Eigen::VectorXd::Unit(3, 1);
+    s.outputs.hall = Eigen::VectorXd::Zero(1);
+    s.ones = Eigen::VectorXd::Ones(3);
+    return s;
+  }
+};
+
+std::vector<double> times_s(double every_s) {
+  std::vector<double> t;
+  for (double now_s = 0.0; now_s <= kCycle.duration_s(); now_s += every_s) t.push_back(now_s);
+  return t;
+}
+
+/// By integrate(), and how far the exponentials are off it.
+Eigen::MatrixXd integrated(const Machine& m, double every_s) {
+  Eigen::VectorXd start = m.start_K;
+  const ReducedSystem unit = with_unit_mass(m.system(), start);
+  Eigen::MatrixXd states(3, static_cast<Eigen::Index>(times_s(every_s).size()));
+  Eigen::Index k = 0;
+  (void)simulate(unit, kCycle, m.hall, times_s(every_s),
+                 {.relative_tolerance = 1e-10, .absolute_tolerance_K = 1e-9, .max_step_s = 30.0}, start,
+                 [&](double, const Eigen::VectorXd& w) { states.col(k++) = w.cwiseQuotient(m.capacity_J_K.cwiseSqrt()); });
+  return states;
+}
+double miss_K(const Machine& m, double every_s = 150.0, double tolerance_K = 1e-4) {
+  const auto states = exponential_states(m.system(), kCycle, m.hall, times_s(every_s), {.absolute_tolerance_K = tolerance_K}, m.start_K);
+  return states ? (*states - integrated(m, every_s)).cwiseAbs().maxCoeff() : INFINITY;
+}
+
+TEST(ExponentialRun, MeetsTheIntegratorWithinItsTolerance) {
+  for (const auto& change : std::vector<std::function<void(Machine&)>>{
+           [](Machine&) {}, [](Machine& m) { m.decay_1_K = 0.05; }, [](Machine& m) { m.film_W_K = 60.0; },
+           [](Machine& m) { m.capacity_J_K[1] = 200.0; },  // a time constant of 4 s beside rows of 150 s
+           [](Machine& m) { m.hall.value = {1.0, 0.5, 2.5, -1.0}; },
+           [](Machine& m) { m.heat_W = 200.0, m.from_s = 1234.5, m.until_s = 2101.7; }}) {
+    Machine m;
+    change(m);
+    EXPECT_GT(integrated(m, 150.0).row(1).maxCoeff(), 5.0);
+    EXPECT_LT(miss_K(m), 1e-4);
+    EXPECT_LT(miss_K(m, 450.0), 1e-4);
+    EXPECT_LT(miss_K(m, 150.0, 1e-6), 5e-6);
+  }
+}
+
+TEST(ExponentialRun, IsExactWhereNothingLooksAtTemperatures) {
+  Machine m;
+  m.decay_1_K = 0.0;
+  m.film_W_K = 0.0;
+  EXPECT_LT(miss_K(m, 450.0, 1e-4), 1e-7);
+}
+
+TEST(ExponentialRun, LeavesThermostatsLawsThatRefuseAndMachinesThatRunAwayToTheIntegrator) {
+  const Machine m;
+  const auto has_states = [&](const ReducedSystem& s) {
+    return exponential_states(s, kCycle, m.hall, times_s(150.0), {}, m.start_K).has_value();
+  };
+  EXPECT_TRUE(has_states(m.system()));
+  ReducedSystem switched = m.system();
+  switched.thermostats.push_back({"chiller", 0, 300.0, 299.0});
+  EXPECT_FALSE(has_states(switched));
+  ReducedSystem refusing = m.system();
+  refusing.sources[0].power_W.law = [](const effects::Inputs&) -> double { throw RangeError("no such temperature"); };
+  EXPECT_FALSE(has_states(refusing));
+  ReducedSystem away = m.system();
+  away.sources[0].power_W.law = [](const effects::Inputs& u) { return 100.0 * std::exp(0.1 * (u.probe_K[0] - 293.15)); };
+  EXPECT_FALSE(has_states(away));
+}
+
+TEST(ExponentialRun, HasTheExponentialsOfAMatrix) {  // of a 2 x 2 block with known ones, and of large and zero arguments
+  Eigen::Matrix2d x;
+  x << -3.0, 1.0, 0.0, -3.0;
+  const Exponentials e = exponentials(x);
+  const double d = std::exp(-3.0), p1 = (d - 1.0) / -3.0, p2 = (p1 - 1.0) / -3.0;
+  EXPECT_NEAR(e.exp(0, 0), d, 1e-14);
+  EXPECT_NEAR(e.exp(0, 1), d, 1e-14);
+  EXPECT_NEAR(e.phi1(0, 0), p1, 1e-14);
+  EXPECT_NEAR(e.phi1(0, 1), (d * -3.0 - (d - 1.0)) / 9.0, 1e-14);
+  EXPECT_NEAR(e.phi2(1, 1), p2, 1e-14);
+  const Exponentials far = exponentials(Eigen::MatrixXd::Constant(1, 1, -500.0));
+  EXPECT_NEAR(far.phi1(0, 0), 1.0 / 500.0, 1e-13);
+  EXPECT_NEAR(far.phi2(0, 0), (1.0 - 1.0 / 500.0) / 500.0, 1e-13);
+  EXPECT_EQ(exponentials(Eigen::MatrixXd::Zero(1, 1)).phi2(0, 0), 0.5);
+}
+
+}  // namespace
+}  // namespace driftwright::solver
