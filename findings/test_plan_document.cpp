@@ -21,7 +21,8 @@ using output::Verdict;
 using studies::JudgedTest;
 using studies::TestPlan;
 
-constexpr double kOften = 0.25;  // of the faults of a kind: from there on a map is orange
+constexpr double kOften = 0.25;         // of the faults of a kind: from there on a map is orange
+constexpr double kWorthShowing = 0.02;  // likewise
 constexpr std::size_t kMostPairs = 25;
 
 /// Laws of the question by kind, kinds in their order.
@@ -127,25 +128,52 @@ Table kinds_table(const TestPlan& plan) {
   return table;
 }
 
-/// Of the faults of each kind that are seen, the share that the other kind may stand in for. Kinds are numbered: their names are longer than a cell.
-output::Picture taken_picture(const TestPlan& plan, const JudgedTest& test, const std::string& title) {
+/// Of the faults of each kind that are seen, the share that the other kind may stand in for: kinds x kinds, 0 to 1.
+Eigen::MatrixXd taken_kinds(const TestPlan& plan, const JudgedTest& test) {
   const auto kinds = laws_by_kind(plan.question);
-  output::HeatMap map{.columns = {}, .rows = {}, .values = {}, .limit = 100.0 * kOften, .unit = "%"};
-  for (std::size_t k = 0; k < kinds.size(); ++k) map.columns.push_back({"", std::to_string(k + 1)});
-  for (const auto& [effect, laws] : kinds) {
-    map.rows.push_back(fmt::format("{} {}", effect, map.rows.size() + 1));
-    std::vector<double> row;
-    for (const auto& [other, others] : kinds) {
-      row.push_back(other == effect ? std::nan("") : 100.0 * mean(plan, laws, [&, &others = others](Eigen::Index a) {
-                                                       double most = 0.0;
-                                                       for (Eigen::Index b : others)
-                                                         most = std::max(most, test.prospect.taken(a, b));
-                                                       return most;
-                                                     }));
+  const auto n = static_cast<Eigen::Index>(kinds.size());
+  Eigen::MatrixXd taken = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    for (Eigen::Index other = 0; other < n; ++other) {
+      const auto& others = kinds[static_cast<std::size_t>(other)].second;
+      taken(k, other) = mean(plan, kinds[static_cast<std::size_t>(k)].second, [&](Eigen::Index a) {
+        double most = 0.0;
+        for (Eigen::Index b : others) most = std::max(most, test.prospect.taken(a, b));
+        return most;
+      });
     }
-    map.values.push_back(std::move(row));
   }
-  return {.title = title, .svg = output::draw_heat_map(map)};
+  return taken;
+}
+
+/// Two maps of the kinds that are mistaken for each other behind one of the tests. Kinds are numbered: their names are longer than a cell.
+void add_maps(output::Section& body, const TestPlan& plan) {
+  const auto kinds = laws_by_kind(plan.question);
+  const Eigen::MatrixXd usual = taken_kinds(plan, plan.usual), planned = taken_kinds(plan, plan.planned);
+  const Eigen::MatrixXd most = usual.cwiseMax(planned);
+  std::vector<Eigen::Index> shown;
+  for (Eigen::Index k = 0; k < most.rows(); ++k) {
+    if (std::max(most.row(k).maxCoeff(), most.col(k).maxCoeff()) >= kWorthShowing) shown.push_back(k);
+  }
+  if (shown.empty()) return;
+  const auto map_of = [&](const Eigen::MatrixXd& taken, const std::string& title) {
+    output::HeatMap map{.columns = {}, .rows = {}, .values = {}, .limit = 100.0 * kOften, .unit = "%"};
+    for (Eigen::Index k : shown) {
+      std::string name = kinds[static_cast<std::size_t>(k)].first;
+      std::replace(name.begin(), name.end(), '_', ' ');
+      map.rows.push_back(fmt::format("{} {}", name, map.rows.size() + 1));
+      map.columns.push_back({"", std::to_string(map.rows.size())});
+      std::vector<double> row;
+      for (Eigen::Index other : shown) row.push_back(other == k ? std::nan("") : 100.0 * taken(k, other));
+      map.values.push_back(std::move(row));
+    }
+    return output::Picture{.title = title, .svg = output::draw_heat_map(map)};
+  };
+  add(body,
+      map_of(
+          usual,
+          "Usual test: share of a row's faults, of those large enough to be seen, that a column's effect may stand in for"));
+  add(body, map_of(planned, "Planned test: the same"));
 }
 
 Plot programme_plot(const TestPlan& plan) {
@@ -301,11 +329,7 @@ output::Document document_of(const TestPlan& plan, const scenarios::Scenario& sc
     Plot plot = readings_plot(plan.planned_record, unit, title, label);
     if (!plot.series.empty()) add(body, std::move(plot));
   }
-  add(body,
-      taken_picture(
-          plan, plan.usual,
-          "Usual test: share of a row's faults, of those large enough to be seen, that a column's effect may stand in for"));
-  add(body, taken_picture(plan, plan.planned, "Planned test: the same"));
+  add_maps(body, plan);
   add(body, kinds_table(plan));
   add(body, channels_table(plan));
   add(body, pairs_table(plan));
