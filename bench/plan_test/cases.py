@@ -137,6 +137,15 @@ def write(folder, c, index, kind, program, programmes):
     (folder / "truth.json").write_text(json.dumps(truth, indent=1) + "\n")
 
 
+def write_stepped(folder, c):
+    """The stepped test of as many hours, as ISO 230-3 varies speeds: a quarter, half, three quarters, all, rest, of everything at once."""
+    top = {k: float(x.max()) for k, x in drives(c["job"]).items()}
+    sections = [(12 * HOURS, {k: share * x for k, x in top.items()}) for share in (0.25, 0.5, 0.75, 1.0, 0.0)]
+    (folder / "stepped").mkdir(exist_ok=True)
+    (folder / "stepped/scenario.yaml").write_text(scenario(c["machine"], DT))
+    (folder / "stepped/measured_1.csv").write_text(measured(c, record_of("measured_1", sections, c["job"].hall, c["job"])))
+
+
 def bare_csv(record):
     """What drives the machine and the hall, without readings."""
     head, columns = ["time_s", "speed_rpm"], [record.time_s, record.speed]
@@ -158,9 +167,13 @@ def main():
     p.add_argument("--cases", type=int, default=75)
     p.add_argument("--programmes", type=int, default=2000)
     p.add_argument("--only", type=int, nargs="*")
+    p.add_argument("--stepped", action="store_true", help="only adds stepped/ to cases that are there")
     a = p.parse_args()
     for index in (a.only if a.only is not None else range(a.cases)):
         folder = pathlib.Path(a.folder) / f"case_{index:03d}"
+        if a.stepped:
+            write_stepped(folder, case(index, KINDS[index % len(KINDS)]))
+            continue
         if (folder / "truth.json").exists():
             continue
         folder.mkdir(parents=True, exist_ok=True)

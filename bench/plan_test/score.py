@@ -15,6 +15,8 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "foreign"))
 from score import kind_right, place_right, wilson
 
+ONE_DRIVE = ("incubator", "heater_plate", "rotary_table")
+
 
 def outcome(folder, effect):
     path = folder / "diagnosis/diagnosis.json"
@@ -25,19 +27,20 @@ def outcome(folder, effect):
     return dict(named=bool(right), placed=any(place_right(c, effect, 1) for c in right), wrong=any(not kind_right(c, effect) for c in causes))
 
 
-def compared(title, cases):
+def compared(title, cases, before="usual"):
+    cases = [c for c in cases if c[before]]
     n = len(cases)
     if n == 0:
         return
     print(f"{title}: {n} cases")
     for figure in ("named", "placed", "wrong"):
-        usual, planned = (sum(c[t][figure] for c in cases) for t in ("usual", "planned"))
-        more, fewer = (sum(c[a][figure] and not c[b][figure] for c in cases) for a, b in (("planned", "usual"), ("usual", "planned")))
+        usual, planned = (sum(c[t][figure] for c in cases) for t in (before, "planned"))
+        more, fewer = (sum(c[a][figure] and not c[b][figure] for c in cases) for a, b in (("planned", before), (before, "planned")))
         d, se = (more - fewer) / n, math.sqrt(more + fewer - (more - fewer) ** 2 / n) / n
         p = min(1.0, 2 * sum(math.comb(more + fewer, k) for k in range(min(more, fewer) + 1)) / 2 ** (more + fewer))
         words = dict(named="named, kind right", placed="... and its place", wrong="a wrong name")[figure]
-        print(f"  {words:18s} usual {wilson(usual, n)}   planned {wilson(planned, n)}\n"
-              f"  {'':18s} difference {100 * d:+.1f} points [{100 * (d - 1.96 * se):+.1f}, {100 * (d + 1.96 * se):+.1f}], {more} only planned, {fewer} only usual, p = {p:.2g}")
+        print(f"  {words:18s} {before} {wilson(usual, n)}   planned {wilson(planned, n)}\n"
+              f"  {'':18s} difference {100 * d:+.1f} points [{100 * (d - 1.96 * se):+.1f}, {100 * (d + 1.96 * se):+.1f}], {more} only planned, {fewer} only {before}, p = {p:.2g}")
 
 
 def main():
@@ -51,7 +54,7 @@ def main():
             continue
         truth = json.loads((folder / "truth.json").read_text())
         effect = truth["effects"][0]
-        c = dict(truth=truth, **{t: outcome(folder / t, effect) for t in ("usual", "planned")})
+        c = dict(truth=truth, **{t: outcome(folder / t, effect) for t in ("usual", "stepped", "planned")})
         if c["usual"] is None or c["planned"] is None:
             unfinished += 1
             continue
@@ -62,6 +65,9 @@ def main():
     compared("All", cases)
     for sized_by in ("usual", "job"):
         compared(f"Sized by the {sized_by}", [c for c in cases if c["truth"]["sized_by"] == sized_by])
+    compared("All, against the stepped test", cases, "stepped")    # this and what follows was added once the trial had been run
+    for several in (False, True):
+        compared("Machines of several drives" if several else "Machines of one drive", [c for c in cases if (c["truth"]["family"] not in ONE_DRIVE) == several])
     for kind in sorted({c["truth"]["kind"] for c in cases}):
         of = [c for c in cases if c["truth"]["kind"] == kind]
         print(f"  {kind:18s} {len(of)}: usual {sum(c['usual']['named'] for c in of)}, planned {sum(c['planned']['named'] for c in of)}")
