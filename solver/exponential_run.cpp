@@ -19,23 +19,40 @@ constexpr int kStepsOfOneTangent = 50;
 constexpr double kShortestStep_s = 1e-3;
 constexpr double kFarthest_K = 3000.0;  // from the reference: no machine
 constexpr double kSame = 1e-9;          // of a step: times that are one
+constexpr int kBisections = 40;
 
 /// One run on its way.
 class ExponentialRun {
  public:
-  ExponentialRun(const ReducedSystem& system, const TimeSeries& hall, const TransientOptions& options, const Eigen::VectorXd& start)
-      : rates_(system, hall), state_(start), most_s_(options.max_step_s), next_(start.size()), n0_(start.size()), n1_(start.size()), rest_(start.size()) {
+  ExponentialRun(const ReducedSystem& system, const TimeSeries& hall, const TransientOptions& options,
+                 const Eigen::VectorXd& start)
+      : system_(system),
+        hall_(hall),
+        rates_(system, hall),
+        state_(start),
+        most_s_(options.max_step_s),
+        most_switches_(options.most_switches),
+        next_(start.size()),
+        n0_(start.size()),
+        n1_(start.size()),
+        rest_(start.size()) {
+    for (std::size_t i = 0; i < system.thermostats.size(); ++i) {
+      if (beyond_K(i, hall.at(0.0), start) > 0.0) rates_.toggle(i);
+    }
     double per_unit = 1.0 / system.ones.norm();
     for (const Probe& p : system.probes) per_unit = std::max(per_unit, p.weights.norm());
     for (std::size_t o = 0; o < system.outputs.unit.size(); ++o) {
-      if (system.outputs.unit[o] == "K") per_unit = std::max(per_unit, system.outputs.state.col(static_cast<Eigen::Index>(o)).norm());
+      if (system.outputs.unit[o] == "K")
+        per_unit = std::max(per_unit, system.outputs.state.col(static_cast<Eigen::Index>(o)).norm());
     }
     allowed_ = kShareOfTolerance * options.absolute_tolerance_K / per_unit;
     farthest_ = kFarthest_K / per_unit;
   }
 
   [[nodiscard]] const Eigen::VectorXd& state() const { return state_; }
+  /// @param stretch  outlives the steps in it
   void enter(const LinearStretch& stretch) {
+    stretch_ = &stretch;
     if (rates_.enter(stretch) || stretch.drive_changed) has_tangent_ = false;
   }
   /// @return false where no step gets there
@@ -43,9 +60,10 @@ class ExponentialRun {
     double t_s = from_s, limit_s = std::min(until_s - from_s, most_s_);
     while (until_s - t_s > kSame * (until_s - from_s)) {
       const double h_s = until_s - t_s <= (1.0 + kSame) * limit_s ? until_s - t_s : limit_s;
-      if (step(t_s, h_s)) {
-        t_s += h_s;
+      if (const double gone_s = step(t_s, h_s); gone_s > 0.0) {
+        t_s += gone_s;
         limit_s = std::min(2.0 * limit_s, most_s_);
+        if (n_switches_ > most_switches_) return false;
       } else {
         has_tangent_ = false;
         limit_s = 0.5 * h_s;
@@ -76,13 +94,66 @@ class ExponentialRun {
     first_ = h_s * e.phi1 - second_;
     known_s_ = h_s;
   }
-  bool step(double t_s, double h_s) {
+  /// How far a thermostat's probe is past where it switches, when it would be on: > 0 switches it on, < 0 off.
+  [[nodiscard]] double beyond_K(std::size_t i, double hall_K, const Eigen::VectorXd& z) const {
+    const Thermostat& t = system_.thermostats[i];
+    const double probe_K = system_.reference_K + system_.probes[static_cast<std::size_t>(t.probe)].theta_K(z, hall_K);
+    return probe_K - (rates_.is_on(i) ? t.off_below_K : t.on_above_K);
+  }
+  /// Share of a step from the state to `end` at which the first thermostat switches, on the cubic through both; 1 and none where none does.
+  [[nodiscard]] double first_switch(double t_s, double h_s, const Eigen::VectorXd& end,
+                                    std::vector<std::size_t>& which) const {
+    which.clear();
+    double first = 1.0;
+    for (std::size_t i = 0; i < system_.thermostats.size(); ++i) {
+      const bool is_on = rates_.is_on(i);
+      const auto has_switched = [&](double beyond_K) { return is_on ? beyond_K < 0.0 : beyond_K > 0.0; };
+      if (!has_switched(beyond_K(i, hall_.at(t_s + h_s), end))) continue;
+      double before = 0.0, after = 1.0;
+      for (int k = 0; k < kBisections; ++k) {
+        const double s = 0.5 * (before + after);
+        (has_switched(beyond_K(i, hall_.at(t_s + s * h_s), between(s, h_s, end))) ? after : before) = s;
+      }
+      if (after < first * (1.0 - kSame)) {
+        first = after;
+        which.clear();
+      }
+      if (after <= first * (1.0 + kSame)) which.push_back(i);
+    }
+    return first;
+  }
+  /// The cubic through the state, `end` and their slopes, as the last step has them.
+  [[nodiscard]] Eigen::VectorXd between(double s, double h_s, const Eigen::VectorXd& end) const {
+    return state_ + s * s * (3.0 - 2.0 * s) * (end - state_) + s * (1.0 - s) * (1.0 - s) * h_s * (n0_ + tangent_ * state_) -
+           s * s * (1.0 - s) * h_s * (n1_ + tangent_ * end);
+  }
+  /// @return how far it went: h, less where a thermostat switched, 0 where no step of that length does
+  double step(double t_s, double h_s) {
+    Eigen::VectorXd end(state_.size());
+    if (!tried(t_s, h_s, end)) return 0.0;
+    std::vector<std::size_t> switched;
+    if (const double share = first_switch(t_s, h_s, end, switched); share < 1.0) {
+      h_s *= share;
+      if (!tried(t_s, h_s, end)) return 0.0;
+    }
+    state_.swap(end);
+    for (std::size_t i : switched) rates_.toggle(i);
+    if (!switched.empty()) {
+      n_switches_ += static_cast<int>(switched.size());
+      (void)rates_.enter(*stretch_);
+      has_tangent_ = false;
+    }
+    return h_s;
+  }
+  /// @param end  the state at its end; @return false where the step is too long
+  bool tried(double t_s, double h_s, Eigen::VectorXd& end) {
     prepare(t_s, h_s);
     rest(t_s, state_, n0_);
     next_.noalias() = decay_ * state_;
     next_.noalias() += first_ * n0_;
     n1_ = n0_;
-    Eigen::VectorXd end = next_ + second_ * n1_;
+    end = next_;
+    end.noalias() += second_ * n1_;
     bool is_there = false;
     for (int j = 0; j < kMostIterations && !is_there; ++j) {
       rest(t_s + h_s, end, n1_);
@@ -93,17 +164,17 @@ class ExponentialRun {
     }
     if (!is_there) return false;
     // the middle, by the cubic through both ends and their slopes
-    const Eigen::VectorXd middle = 0.5 * (state_ + end) + h_s / 8.0 * (n0_ - n1_ + tangent_ * (state_ - end));
-    rest(t_s + 0.5 * h_s, middle, rest_);
-    const double error = 2.0 / 3.0 * h_s * (rest_ - 0.5 * (n0_ + n1_)).lpNorm<Eigen::Infinity>();
-    if (!(error <= allowed_)) return false;
-    state_.swap(end);
-    return true;
+    rest(t_s + 0.5 * h_s, between(0.5, h_s, end), rest_);
+    return 2.0 / 3.0 * h_s * (rest_ - 0.5 * (n0_ + n1_)).lpNorm<Eigen::Infinity>() <= allowed_;
   }
 
+  const ReducedSystem& system_;
+  const TimeSeries& hall_;
+  const LinearStretch* stretch_ = nullptr;
   LiveRate rates_;
   Eigen::VectorXd state_;
   double most_s_, allowed_ = 0.0, farthest_ = 0.0;
+  int most_switches_, n_switches_ = 0;
   bool has_tangent_ = false;
   int n_steps_ = 0;
   double known_s_ = -1.0;  ///< the step that the matrices are for
@@ -133,17 +204,18 @@ Exponentials exponentials(const Eigen::MatrixXd& x) {
   return e;
 }
 
-std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
-                                                  const std::vector<double>& output_s, const TransientOptions& options,
-                                                  const Eigen::VectorXd& start) {
-  if (!system.thermostats.empty() || system.size() > kMostOfExponentialRun || options.from_s != 0.0) return std::nullopt;
+std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram,
+                                                  const TimeSeries& hall, const std::vector<double>& output_s,
+                                                  const TransientOptions& options, const Eigen::VectorXd& start) {
+  if (system.size() > kMostOfExponentialRun || options.from_s != 0.0) return std::nullopt;
   std::vector<double> knots_s = hall.time_s;
   knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
   Eigen::MatrixXd states(system.size(), static_cast<Eigen::Index>(output_s.size()));
   try {
     ExponentialRun run(system, hall, options, start);
     std::size_t next = 0;
-    for (const LinearStretch& stretch : linear_stretches(cyclogram, knots_s)) {
+    const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, knots_s);
+    for (const LinearStretch& stretch : stretches) {
       run.enter(stretch);
       double t_s = stretch.start_s;
       for (; next < output_s.size() && output_s[next] <= stretch.end_s; ++next) {
@@ -162,7 +234,8 @@ std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, c
 }
 
 Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
-                              const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start) {
+                              const std::vector<double>& output_s, const TransientOptions& options,
+                              const Eigen::VectorXd& start) {
   if (!system.is_linear()) {
     if (auto states = exponential_states(system, cyclogram, hall, output_s, options, start)) return *std::move(states);
   }

@@ -17,11 +17,12 @@ namespace driftwright::solver {
 inline constexpr int kMostOfExponentialRun = 40;  ///< unknowns: products of full matrices
 
 /// States at times on a cyclogram, size x n_times; M is any.
-/// @returns nothing for a system that is not made for it: one with thermostats, which switch within steps, with more unknowns, one whose laws are not defined at
-///          a state that was tried or whose temperatures no machine has: integrate() then says what is wrong, or goes on
+/// @returns nothing for a system with more unknowns, one whose laws are not defined at a state that was tried, whose temperatures no machine has, or
+///          whose thermostats switch without end: integrate() then says what is wrong, or goes on
 [[nodiscard]] std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram,
                                                                 const TimeSeries& hall, const std::vector<double>& output_s,
-                                                                const TransientOptions& options, const Eigen::VectorXd& start);
+                                                                const TransientOptions& options,
+                                                                const Eigen::VectorXd& start);
 
 /// The same of any reduced system by exponentials, where they serve, or by integrate(). @throws SolveError
 [[nodiscard]] Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,

@@ -5,7 +5,7 @@
 namespace driftwright::solver {
 
 LiveRate::LiveRate(const ReducedSystem& system, const TimeSeries& hall)
-    : system_(system), hall_(hall), probe_K_(system.probes.size()) {
+    : system_(system), hall_(hall), is_on_(system.thermostats.size(), 0), probe_K_(system.probes.size()) {
   if (!system.mass.isIdentity(1e-12))
     per_mass_ = system.mass.llt().solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
   const auto over_mass = [&](const auto& x) { return per_mass_.size() > 0 ? (per_mass_ * x).eval() : x; };
@@ -28,10 +28,10 @@ bool LiveRate::enter(const LinearStretch& stretch) {
   std::vector<double> followed;
   followed.reserve(followed_.size());
   for (const HeatSource& s : system_.sources) {
-    if (!s.power_W.looks_at_state()) followed.push_back(s.power_W(inputs_));
+    if (!s.power_W.looks_at_state()) followed.push_back(is_off(s.power_W) ? 0.0 : s.power_W(inputs_));
   }
   for (const auto& e : system_.exchanges) {
-    if (!e.coefficient.looks_at_state()) followed.push_back(e.coefficient(inputs_));
+    if (!e.coefficient.looks_at_state()) followed.push_back(is_off(e.coefficient) ? 0.0 : e.coefficient(inputs_));
   }
   if (has_entered_ && followed == followed_) return false;
   has_entered_ = true;
@@ -59,6 +59,7 @@ bool LiveRate::enter(const LinearStretch& stretch) {
 }
 
 double LiveRate::value(const BoundLaw& law) {
+  if (is_off(law)) return 0.0;
   inputs_.probe_K.clear();
   for (int p : law.probes) inputs_.probe_K.push_back(probe_K_[static_cast<std::size_t>(p)]);
   return law.law(inputs_);
@@ -95,7 +96,8 @@ Eigen::MatrixXd LiveRate::tangent(double t_s, const Eigen::VectorXd& z) {
       probe_K = here_K - kHalfStep_K;
       const double below = value(law);
       probe_K = here_K;
-      slope += (above - below) / (2.0 * kHalfStep_K) * what * system_.probes[static_cast<std::size_t>(p)].weights.transpose();
+      slope +=
+          (above - below) / (2.0 * kHalfStep_K) * what * system_.probes[static_cast<std::size_t>(p)].weights.transpose();
     }
   };
   for (const Source& s : sources_) along_probes(*s.law, s.load);

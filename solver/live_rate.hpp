@@ -12,8 +12,12 @@ namespace driftwright::solver {
 
 class LiveRate {
  public:
-  /// @param system  without thermostats; borrowed, as is the hall
+  /// @param system  borrowed, as is the hall; its thermostats are off
   LiveRate(const ReducedSystem& system, const TimeSeries& hall);
+
+  [[nodiscard]] bool is_on(std::size_t thermostat) const { return is_on_[thermostat] != 0; }
+  /// Call enter() afterwards.
+  void toggle(std::size_t thermostat) { is_on_[thermostat] ^= 1; }
 
   /// Takes over drive and time of a stretch. @return true when a power or a coefficient that does not look at the state is another one
   bool enter(const LinearStretch& stretch);
@@ -32,17 +36,21 @@ class LiveRate {
     Eigen::MatrixXd matrix;
     Eigen::VectorXd to_hall, offset;
   };
+  [[nodiscard]] bool is_off(const BoundLaw& law) const {
+    return law.thermostat >= 0 && is_on_[static_cast<std::size_t>(law.thermostat)] == 0;
+  }
   [[nodiscard]] double value(const BoundLaw& law);
   void look(double t_s, const Eigen::VectorXd& z);
 
   const ReducedSystem& system_;
   const TimeSeries& hall_;
   Eigen::MatrixXd per_mass_;  ///< M⁻¹; empty where M = 1
+  std::vector<char> is_on_;
   std::vector<Source> sources_;
   std::vector<Exchange> exchanges_;
   effects::Inputs inputs_;
   std::vector<double> probe_K_;
-  std::vector<double> followed_;  ///< values of the laws that do not look at the state
+  std::vector<double> followed_;  ///< values of the laws that do not look at the state, 0 where a thermostat has them off
   bool has_entered_ = false;
   Eigen::MatrixXd conduction_;
   Eigen::VectorXd load_, to_hall_;
