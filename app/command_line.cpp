@@ -334,6 +334,7 @@ int app::command_line(int argc, const char* const* argv) {
   app::PredictOptions predict;
   app::WarmUpVerbOptions warmup;
   app::PlaceOptions place;
+  app::PlanTestOptions plan_test;
   app::ScheduleVerbOptions schedule;
   app::InjectOptions inject;
   app::RecordOptions select, validate;
@@ -407,6 +408,16 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--noise", place.noise, "of a reading, 1 sigma, such as '0.1 K' [that of `validation`, else 0.1 K]");
   verb->add_option("--points", place.points, "of a mesh that are tried, 50 to 3000 [400]");
   verb->callback([&] { app::place(place); });
+  verb = add_verb(cli, "plan-test", "before anything is measured: the test behind which most faults would be named (docs/test_planning.md)",
+                  "plan-test scenarios/first_machine.yaml --time '8 h' -o results/plan_test", plan_test);
+  verb->add_option("--time", plan_test.time, "length of the test, such as '4 h' [8 h]");
+  verb->add_option("--speed-limit", plan_test.speed_limit, "of the test, such as '3000 rpm' [the fastest of the scenario]");
+  verb->add_option("--interval", plan_test.interval, "of the rows that are read, such as '30 s' [the scenario's output_interval]");
+  verb->add_option("--noise-temperature", plan_test.noise_K, "standard deviation of a thermometer's reading ['0.05 K']");
+  verb->add_option("--noise-displacement", plan_test.noise_um, "standard deviation of a displacement's reading ['0.5 um']");
+  verb->add_option("--programmes", plan_test.n_programmes, "how many are tried [10000, fewer for large machines]")->check(CLI::Range(10, 10000000));
+  verb->add_option("--seed", plan_test.seed, "of the search [1]");
+  verb->callback([&] { app::plan_test(plan_test); });
   verb = add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
                   "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/part", schedule);
   verb->add_option("--program", schedule.program, "NC program for LinuxCNC, Siemens or Heidenhain (docs/schedule.md)")

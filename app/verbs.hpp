@@ -78,6 +78,18 @@ struct PlaceOptions : CommonOptions {
 /// Where thermometers tell most of the drift.
 void place(const PlaceOptions& options);
 
+struct PlanTestOptions : CommonOptions {
+  std::string time;         ///< such as "8 h"; empty: that
+  std::string speed_limit;  ///< such as "3000 rpm"; empty: the fastest of the scenario
+  std::string interval;     ///< of rows, such as "30 s"; empty: the scenario's
+  std::string noise_K;      ///< of a thermometer's reading, such as "0.05 K"; empty: that
+  std::string noise_um;     ///< of a displacement's, such as "0.5 um"; empty: that
+  int n_programmes = 0;     ///< 0: 10000, fewer for large machines
+  unsigned seed = 1;
+};
+/// The test programme behind which most effects would be named, before anything is measured.
+void plan_test(const PlanTestOptions& options);
+
 struct ScheduleVerbOptions : CommonOptions {
   std::string program;  ///< NC program
   std::string policy;   ///< empty: the scenario's

@@ -55,6 +55,10 @@ class Comparison {
   [[nodiscard]] Eigen::VectorXd condensed(std::size_t run, const Eigen::Ref<const Eigen::VectorXd>& whitened) const;
   /// Where a run's are, and how many. @return first, n
   [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> condensed_rows(std::size_t run) const;
+  /// The same of one block.
+  [[nodiscard]] std::pair<Eigen::Index, Eigen::Index> condensed_block(std::size_t block) const {
+    return {condensed_[block].first, condensed_[block].n};
+  }
 
  private:
   /// Where the readings of a block are once neighbours are taken together.

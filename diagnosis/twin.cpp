@@ -294,7 +294,7 @@ Twin::Bound Twin::bound(const TwinState& state, const MeasuredRun& run, Workspac
   Driven d = drive(state, run, workspace);
   Eigen::MatrixXd weights = outputs_.state;
   solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));
-  return {workspace.system_, std::move(d.cyclogram), std::move(d.hall), std::move(weights)};
+  return {workspace.system_, std::move(d.cyclogram), std::move(d.hall), std::move(weights), std::move(d.start)};
 }
 
 std::optional<solver::Course> Twin::course(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {

@@ -76,6 +76,7 @@ class Twin {
     Cyclogram cyclogram;                  ///< the true ones
     TimeSeries hall;
     Eigen::MatrixXd outputs;  ///< what outputs() have of the reduced state, size x n_outputs, by this state's expansion
+    Eigen::VectorXd start;    ///< reduced state at the run's beginning, places that this state adds behind it
   };
   [[nodiscard]] Bound bound(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
 

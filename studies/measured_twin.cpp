@@ -33,6 +33,15 @@ bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun
 
 }  // namespace
 
+diagnosis::NoiseFloor floor_of(const solver::ReducedSystem& system) {
+  diagnosis::NoiseFloor floor;
+  if (!system.is_linear()) {  // integrated in steps, and thermostats that switch a little early or late
+    floor.slow_K = 0.02;
+    floor.slow_m = 5e-8;
+  }
+  return floor;
+}
+
 MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,
                                 const std::vector<std::string>& measured, const Listener& listener) {
   std::vector<ReadRecord> records;
@@ -103,12 +112,9 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
     m.how.mesh_error_share = 1.0 / std::abs(size * size - 1.0);
     break;
   }
+  m.how.floor = floor_of(m.twin->machine().system);
   m.how.floor.white_K = std::max(m.how.floor.white_K, m.focus->error_K);
   m.how.floor.white_m = std::max(m.how.floor.white_m, m.focus->error_m);
-  if (!m.twin->machine().system.is_linear()) {  // integrated in steps, and thermostats that switch a little early or late
-    m.how.floor.slow_K = 0.02;
-    m.how.floor.slow_m = 5e-8;
-  }
   return m;
 }
 

@@ -27,6 +27,9 @@ struct MeasuredTwin {
   diagnosis::DiagnosisOptions how;  ///< with the errors of the mesh and of the reduced model
 };
 
+/// What no reading of such a machine is better than: one that is integrated in steps, or switches, is known less well.
+[[nodiscard]] diagnosis::NoiseFloor floor_of(const solver::ReducedSystem& system);
+
 /// Meshes and reduces; a machine whose mesh has a size on a second mesh, too.
 /// @throws InputError  for what cannot be read or compared
 [[nodiscard]] MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::string& verb,

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from result_schema import errors
 
-PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md", "docs/record.md", "docs/view.md", "docs/warmup.md"]
+PAGES = ["README.md", "docs/commands.md", "docs/scenario.md", "docs/diagnosis.md", "docs/prediction.md", "docs/validation.md", "docs/schedule.md", "docs/sweep.md", "docs/fmu.md", "docs/record.md", "docs/view.md", "docs/warmup.md", "docs/test_planning.md"]
 COMMAND = re.compile(r"^    (?:[a-z]+ .*\| )?(?:\./)?driftwright [a-z]")
 
 
@@ -48,7 +48,7 @@ def not_printed(shown, printed):
 
 def examples(program):
     """(verb, command) that --help shows."""
-    verbs = re.findall(r"^  ([a-z]+) ", subprocess.run([program, "--help"], capture_output=True, text=True).stdout.split("Subcommands:")[1].split("Exit codes:")[0], re.M)
+    verbs = re.findall(r"^  ([a-z-]+) ", subprocess.run([program, "--help"], capture_output=True, text=True).stdout.split("Subcommands:")[1].split("Exit codes:")[0], re.M)
     for verb in verbs:
         text = subprocess.run([program, verb, "--help"], capture_output=True, text=True).stdout.split("Example:")
         if len(text) != 2:

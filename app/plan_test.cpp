@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include "app/results.hpp"
+#include "base/errors.hpp"
+#include "base/option_quantity.hpp"
+#include "findings/test_plan_document.hpp"
+#include "scenarios/reader/read_cyclogram.hpp"
+#include "studies/test_plan.hpp"
+#include "studies/warm_up_program.hpp"
+
+namespace driftwright::app {
+namespace {
+
+/// @param least, most  in `unit`
+double quantity(const std::string& option, const std::string& text, const char* unit, double least, double most) {
+  const double value = option_quantity(option, text, unit);
+  if (value >= least && value <= most) return value;
+  throw InputError(fmt::format("{} '{}': {:g} {} to {:g} {} is allowed", option, text, least, unit, most, unit));
+}
+
+bool is_of_spindle_alone(const Cyclogram& c) {
+  return std::all_of(c.sections.begin(), c.sections.end(),
+                     [](const auto& s) { return s.drive == Drive{.speed_rpm = s.drive.speed_rpm}; });
+}
+
+}  // namespace
+
+void plan_test(const PlanTestOptions& options) {
+  const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  (void)scenarios::require_machine(scenario, "plan-test");
+  studies::TestPlanOptions how{
+      .interval_s = scenario.solver.output_interval_s, .n_programmes = options.n_programmes, .seed = options.seed};
+  if (!options.time.empty()) how.duration_s = quantity("--time", options.time, "s", 1800.0, 7.0 * 86400.0);
+  how.interval_s = std::min(how.interval_s, how.duration_s / 96.0);
+  if (!options.interval.empty()) how.interval_s = quantity("--interval", options.interval, "s", 0.1, how.duration_s / 96.0);
+  if (!options.speed_limit.empty()) how.most_speed_rpm = quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
+  if (!options.noise_K.empty()) how.noise.temperature_K = quantity("--noise-temperature", options.noise_K, "K", 1e-4, 10.0);
+  if (!options.noise_um.empty())
+    how.noise.displacement_um = quantity("--noise-displacement", options.noise_um, "um", 1e-3, 1e3);
+  output::ResultsFolder folder = open_results(options, scenario.name);
+  Progress progress(options.quiet);
+  const studies::TestPlan plan = studies::plan_test(scenario, how, progress.listener());
+  const std::string what = fmt::format("test programme of {}", scenario.name);
+  const std::string rows = fmt::format("cyclograms:\n  planned: {}\n", scenarios::rows_yaml(plan.planned.cyclogram));
+  folder.write_text("plan_test.yaml", fmt::format("# {}\n{}", what, rows));
+  if (is_of_spindle_alone(plan.planned.cyclogram))
+    folder.write_text("plan_test.ngc", studies::warm_up_program(plan.planned.cyclogram.sections, what));
+  folder.write_text(
+      "record.csv",
+      record_csv(plan.planned_record,
+                 provenance_lines(folder.made_by(),
+                                  fmt::format("what {} would read as it is written, in its {}", scenario.name, what))));
+  finish(findings::document_of(plan, scenario, rows, folder.made_by()), folder, progress, options);
+}
+
+}  // namespace driftwright::app

@@ -1,0 +1,128 @@
+#include "diagnosis/level_machine.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+#include "diagnosis/no_solution.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+/// What the machine feels of a level; the level itself where what it feels is no level.
+Drive felt(const effects::DriveChange& change, const Drive& level, double duration_s, const std::string& run) {
+  const Cyclogram is = effects::true_cyclogram(change, {.name = run, .sections = {{duration_s, level}}});
+  return is.sections.size() == 1 ? is.sections.front().drive : level;
+}
+
+}  // namespace
+
+LevelMachine::LevelMachine(const Twin& twin, const Doubts& doubts, const std::vector<Drive>& levels, const MeasuredRun& like,
+                           double row_s, double interval_s, const std::map<std::string, NoiseModel>& noise)
+    : twin_(twin),
+      run_(planned_run(like.cyclogram, row_s, like.hall, like.has_ambient, like.channels)),
+      levels_(levels),
+      row_s_(row_s),
+      n_steps_(run_.time_s.size() - 1) {
+  run_.grid_s = run_.time_s;
+  for (std::size_t i = 0; i < run_.grid_s.size(); ++i) run_.row_in_grid[i] = static_cast<Eigen::Index>(i);
+  run_.row_in_grid.resize(run_.grid_s.size());
+  for (const MeasuredChannel& c : run_.channels) {
+    outputs_.push_back(c.output);
+    NoiseModel of_row = noise.at(c.name);
+    of_row.white *= std::sqrt(std::min(1.0, interval_s / row_s));
+    whiteners_.emplace_back(of_row, run_.time_s, std::vector<char>(run_.time_s.size(), 1));
+  }
+  turned_.push_back({.state = twin.as_written()});
+  for (const Knob& k : doubts.numbers) turned_.push_back({.state = with_number(twin, k), .by = k.step});
+  for (const Doubts::Shape& s : doubts.shapes) turned_.push_back({.state = with_law(twin, doubts, s), .by = s.x[0]});
+  courses_.resize(turned_.size());
+  for_each_index(
+      turned_.size(), [&] { return Twin::Workspace(twin); },
+      [&](std::size_t i, Twin::Workspace& workspace) {
+        Turned& t = turned_[i];
+        t.reads = !effects::reading_chain(t.state, run_.name).empty();
+        t.course = i;
+        const bool of_instruments = i > doubts.numbers.size() &&
+                                    doubts.variant(doubts.shapes[i - 1 - doubts.numbers.size()]).knobs.front().reading_only;
+        if (of_instruments || !has_solution([&] { courses_[i] = course_of(t.state, levels_, workspace); })) t.course = 0;
+      });
+}
+
+LevelMachine::Course LevelMachine::course_of(const TwinState& state, const std::vector<Drive>& levels,
+                                             Twin::Workspace& workspace) const {
+  const Twin::Bound bound = twin_.bound(state, run_, workspace);
+  const solver::ReducedSystem& system = bound.system;
+  Course course;
+  course.start = bound.start;
+  course.hall_K.resize(static_cast<Eigen::Index>(n_steps_) + 1);
+  for (std::size_t i = 0; i <= n_steps_; ++i) course.hall_K[static_cast<Eigen::Index>(i)] = bound.hall.at(run_.time_s[i]);
+  course.observe = Eigen::MatrixXd::Zero(twin_.outputs().state.cols(), system.size());
+  course.observe.leftCols(bound.outputs.rows()) = bound.outputs.transpose();
+  const effects::DriveChange change = effects::drive_change(state, run_.name);
+  for (const Drive& level : levels) {
+    effects::Inputs at{.drive = felt(change, level, run_.cyclogram.duration_s(), run_.name),
+                       .hall_K = course.hall_K.mean(),
+                       .time_s = 0.5 * run_.cyclogram.duration_s()};
+    at.run = run_.name;
+    course.steps.push_back(linear_step(linear_system(system, at, course.start), system.mass, row_s_));
+  }
+  return course;
+}
+
+Eigen::MatrixXd LevelMachine::response(const Course& course, const std::vector<int>& level_of_step) const {
+  Eigen::MatrixXd states(course.start.size(), static_cast<Eigen::Index>(n_steps_) + 1);
+  states.col(0) = course.start;
+  for (std::size_t i = 0; i < n_steps_; ++i) {
+    const LinearStep& step = course.steps[static_cast<std::size_t>(level_of_step[i])];
+    const auto k = static_cast<Eigen::Index>(i);
+    const double hall_K = course.hall_K[k];
+    states.col(k + 1) = step.constant + hall_K * step.of_hall + (course.hall_K[k + 1] - hall_K) * step.of_rise;
+    states.col(k + 1).noalias() += step.phi * states.col(k);
+  }
+  Eigen::MatrixXd outputs(course.observe.rows(), states.cols());
+  outputs.noalias() = course.observe * states;
+  if ((twin_.outputs().hall.array() != 0.0).any()) outputs.noalias() += twin_.outputs().hall * course.hall_K.transpose();
+  return outputs;
+}
+
+Eigen::MatrixXd LevelMachine::information(const std::vector<int>& level_of_step) const {
+  MeasuredRun run;  // what instruments look at
+  run.name = run_.name;
+  run.hall = run_.hall;
+  run.time_s = run_.time_s;
+  run.grid_s = run_.grid_s;
+  run.row_in_grid = run_.row_in_grid;
+  run.cyclogram.name = run_.name;
+  for (int level : level_of_step) {
+    const Drive& drive = levels_[static_cast<std::size_t>(level)];
+    auto& sections = run.cyclogram.sections;
+    if (!sections.empty() && sections.back().drive == drive)
+      sections.back().duration_s += row_s_;
+    else
+      sections.push_back({row_s_, drive});
+  }
+  const Eigen::MatrixXd machine = response(courses_[0], level_of_step);
+  const Eigen::MatrixXd as_written = turned_[0].reads ? twin_.read(turned_[0].state, run, machine) : machine;
+  const auto n_rows = static_cast<Eigen::Index>(n_steps_) + 1;
+  const auto n_channels = static_cast<Eigen::Index>(outputs_.size());
+  Eigen::MatrixXd columns(n_rows * n_channels, static_cast<Eigen::Index>(turned_.size()) - 1);
+  Eigen::VectorXd difference(n_rows);
+  for (std::size_t i = 1; i < turned_.size(); ++i) {
+    const Turned& t = turned_[i];
+    Eigen::MatrixXd readings = t.course == 0 ? machine : response(courses_[i], level_of_step);
+    if (t.reads) readings = twin_.read(t.state, run, std::move(readings));
+    const auto column = static_cast<Eigen::Index>(i) - 1;
+    for (Eigen::Index c = 0; c < n_channels; ++c) {
+      const int output = outputs_[static_cast<std::size_t>(c)];
+      difference = (readings.row(output) - as_written.row(output)).transpose() / t.by;
+      whiteners_[static_cast<std::size_t>(c)].apply(difference, columns.col(column).segment(c * n_rows, n_rows));
+    }
+  }
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  information.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  information.triangularView<Eigen::StrictlyUpper>() = information.transpose();
+  return information;
+}
+
+}  // namespace driftwright::diagnosis

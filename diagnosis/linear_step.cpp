@@ -1,0 +1,118 @@
+#include "diagnosis/linear_step.hpp"
+
+#include <Eigen/LU>
+#include <unsupported/Eigen/MatrixFunctions>
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr double kDifference_K = 0.5;
+constexpr double kNoWayOut_1_s = 1e-14;  // what keeps a node that nothing reaches from having no steady state
+constexpr int kLooks = 8;                // at laws of temperature, for the balance
+
+/// What a law says of a state: its value there, and its slopes by each of its probes.
+struct Said {
+  double value = 0.0;
+  std::vector<double> by_probe;
+};
+
+Said said_by(const solver::BoundLaw& law, const solver::ReducedSystem& system, effects::Inputs at,
+             const Eigen::VectorXd& state) {
+  if (!law.looks_at_state()) return {law(at), {}};
+  at.probe_K.clear();
+  for (int p : law.probes)
+    at.probe_K.push_back(system.probes[static_cast<std::size_t>(p)].theta_K(state, at.hall_K) + system.reference_K);
+  Said said{law.law(at), {}};
+  for (double& probe_K : at.probe_K) {
+    probe_K += kDifference_K;
+    const double above = law.law(at);
+    probe_K -= 2.0 * kDifference_K;
+    said.by_probe.push_back((above - law.law(at)) / (2.0 * kDifference_K));
+    probe_K += kDifference_K;
+  }
+  return said;
+}
+
+/// @param on  which thermostats switch at this drive
+LinearSystem about(const solver::ReducedSystem& system, const effects::Inputs& at, const Eigen::VectorXd& state,
+                   const std::vector<char>& on) {
+  LinearSystem linear{system.conduction, Eigen::VectorXd::Zero(system.size()), Eigen::VectorXd::Zero(system.size())};
+  /// A load that follows the law's probes.
+  const auto add_slopes = [&](const solver::BoundLaw& law, const Said& said, const Eigen::VectorXd& load) {
+    for (std::size_t j = 0; j < said.by_probe.size(); ++j) {
+      const solver::Probe& probe = system.probes[static_cast<std::size_t>(law.probes[j])];
+      linear.stiffness.noalias() -= said.by_probe[j] * load * probe.weights.transpose();
+      linear.constant -= said.by_probe[j] * probe.theta_K(state, at.hall_K) * load;
+      linear.constant += said.by_probe[j] * probe.offset_K * load;
+      linear.of_hall += said.by_probe[j] * probe.hall_share * load;
+    }
+  };
+  for (const solver::HeatSource& s : system.sources) {
+    const int t = s.power_W.thermostat;
+    if (t >= 0 && !on[static_cast<std::size_t>(t)]) continue;
+    const Said said = said_by(s.power_W, system, at, state);
+    if (t < 0) {
+      linear.constant += said.value * s.load;
+      add_slopes(s.power_W, said, s.load);
+      continue;
+    }
+    const solver::Thermostat& thermostat =
+        system.thermostats[static_cast<std::size_t>(t)];  // in proportion between its limits
+    const solver::Probe& probe = system.probes[static_cast<std::size_t>(thermostat.probe)];
+    const double per_K = said.value / (thermostat.on_above_K - thermostat.off_below_K);
+    linear.stiffness.noalias() -= per_K * s.load * probe.weights.transpose();
+    linear.of_hall += per_K * probe.hall_share * s.load;
+    linear.constant += per_K * (probe.offset_K + system.reference_K - thermostat.off_below_K) * s.load;
+  }
+  for (const auto& e : system.exchanges) {
+    const int t = e.coefficient.thermostat;
+    if (t >= 0 && !on[static_cast<std::size_t>(t)]) continue;
+    Said said = said_by(e.coefficient, system, at, state);
+    if (t >= 0) said.value *= 0.5;
+    linear.stiffness += said.value * e.matrix;
+    if (e.reaches_hall()) linear.of_hall += said.value * e.to_hall;
+    if (e.offset.size() > 0) linear.constant += said.value * e.offset;
+    if (said.by_probe.empty()) continue;
+    Eigen::VectorXd out = e.matrix * state;
+    if (e.reaches_hall()) out -= at.hall_K * e.to_hall;
+    if (e.offset.size() > 0) out -= e.offset;
+    add_slopes(e.coefficient, said, -out);
+  }
+  return linear;
+}
+
+Eigen::VectorXd balance_of(const LinearSystem& linear, const Eigen::MatrixXd& mass, double hall_K) {
+  return (linear.stiffness + kNoWayOut_1_s * mass).partialPivLu().solve(linear.constant + hall_K * linear.of_hall);
+}
+
+}  // namespace
+
+LinearSystem linear_system(const solver::ReducedSystem& system, const effects::Inputs& at, const Eigen::VectorXd& start) {
+  std::vector<char> on(system.thermostats.size(), 0);
+  if (system.thermostats.empty() && !system.looks_at_state()) return about(system, at, start, on);
+  Eigen::VectorXd halfway = start;
+  for (int look = 0; look < kLooks; ++look)
+    halfway = 0.5 * (halfway + 0.5 * (start + balance_of(about(system, at, halfway, on), system.mass, at.hall_K)));
+  for (std::size_t t = 0; t < on.size(); ++t) {
+    const solver::Thermostat& thermostat = system.thermostats[t];
+    const double probe_K =
+        system.probes[static_cast<std::size_t>(thermostat.probe)].theta_K(halfway, at.hall_K) + system.reference_K;
+    on[t] = probe_K > 0.5 * (thermostat.on_above_K + thermostat.off_below_K) ? 1 : 0;
+  }
+  for (int look = 0; look < kLooks && !on.empty(); ++look)
+    halfway = 0.5 * (halfway + 0.5 * (start + balance_of(about(system, at, halfway, on), system.mass, at.hall_K)));
+  return about(system, at, halfway, on);
+}
+
+LinearStep linear_step(const LinearSystem& system, const Eigen::MatrixXd& mass, double step_s) {
+  const Eigen::Index n = mass.rows();
+  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(n + 3, n + 3);  // of state, one, hall, and its rise over the step
+  Eigen::MatrixXd right(n, n + 2);
+  right << -system.stiffness, system.constant, system.of_hall;
+  block.topLeftCorner(n, n + 2) = step_s * mass.llt().solve(right);
+  block(n + 1, n + 2) = 1.0;
+  const Eigen::MatrixXd after = block.exp();
+  return {after.topLeftCorner(n, n), after.col(n).head(n), after.col(n + 1).head(n), after.col(n + 2).head(n)};
+}
+
+}  // namespace driftwright::diagnosis
