@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 namespace driftwright::output {
@@ -12,7 +13,8 @@ nlohmann::ordered_json rounded(nlohmann::ordered_json value) {
   if (value.is_number_float()) {
     const double number = value.get<double>();
     if (!std::isfinite(number)) return nullptr;
-    return std::stod(fmt::format("{:.5e}", number));  // dump() then writes the shortest text that reads back as this
+    // dump() then writes the shortest text that reads back as this; strtod, as stod refuses the smallest of numbers
+    return std::strtod(fmt::format("{:.5e}", number).c_str(), nullptr);
   }
   if (value.is_structured()) {
     for (auto& element : value) element = rounded(std::move(element));

@@ -14,7 +14,7 @@ using scenarios::SweepPlan;
 using scenarios::Variation;
 
 double number_of(const std::string& cell) {
-  return cell.empty() ? std::nan("") : std::stod(cell);
+  return cell.empty() ? std::nan("") : std::strtod(cell.c_str(), nullptr);
 }
 
 double position_of(const Variation& v, const std::string& label) {

@@ -30,7 +30,7 @@ std::string number_label(double number) {
 
 SweepValue Variation::value_of(double number) const {
   const std::string text = number_label(number);
-  return {scalar_at(*written_at, unit.empty() ? text : text + " " + unit), text, std::stod(text)};
+  return {scalar_at(*written_at, unit.empty() ? text : text + " " + unit), text, std::strtod(text.c_str(), nullptr)};
 }
 
 double Spread::at(double u) const {
