@@ -396,7 +396,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--region", place.regions, "that may carry them; may be repeated [all but those that turn, flow or hang by their names]")
       ->allow_extra_args(false);
   verb->add_option("--exclude", place.excluded, "region that may not carry them; may be repeated")->allow_extra_args(false);
-  verb->add_option("--mounted", place.mounted, "sensor of the scenario that is there already; may be repeated")->allow_extra_args(false);
+  verb->add_option("--mounted", place.mounted, "sensor of the scenario that is there already and does not fail; may be repeated")->allow_extra_args(false);
   verb->add_option("--channel", place.channels, "displacement that counts; may be repeated [the study's target, else all]")
       ->allow_extra_args(false);
   verb->add_option("--for", place.placed_for, "both, observer or regression [both]")->check(CLI::IsMember({"both", "observer", "regression"}));

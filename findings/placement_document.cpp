@@ -260,7 +260,7 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
   add(body, Value{.key = "regions", .words = "may sit on", .datum = p.regions});
   if (!p.left_out.empty()) add(body, Value{.key = "left_out", .words = "left out by their names (--region brings them in)", .datum = p.left_out});
   if (!p.options.mounted.empty()) add(body, Value{.key = "mounted", .words = "mounted already", .datum = p.options.mounted});
-  add(body, Value{.key = "candidates", .words = "places tried", .datum = p.spots.size()});
+  add(body, Value{.key = "candidates", .words = "places looked at, sensors of the scenario among them", .datum = p.spots.size()});
   add(body, Value{.key = "chosen_on", .words = "chosen on", .datum = p.chosen_on});
   add(body, Value{.key = "judged_on", .words = "judged on", .datum = p.judged_on});
   if (!p.made.empty()) add(body, Value{.key = "made", .words = "of these made of the scenario's drives", .datum = p.made});

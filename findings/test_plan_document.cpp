@@ -71,11 +71,11 @@ Verdict verdict_of(const TestPlan& plan) {
   return {.kind = Verdict::Kind::kGood,
           .title = is_usual
                        ? "No better test was found than the usual one"
-                       : fmt::format("Behind this test {:.0f} % of faults would be named, behind the usual one {:.0f} %",
+                       : fmt::format("Of the faults supposed, this test tells {:.0f} % from all others, the usual one {:.0f} %",
                                      planned, usual),
           .text = fmt::format("In {:.4g} h: {}. Faults are drawn evenly over the kinds of effects, and from a hundredth to "
                               "twice what the catalogue expects; the others are too small, or "
-                              "another kind of effect does the same.",
+                              "another kind of effect does the same. This compares tests; it is no forecast.",
                               plan.duration_s / 3600.0, fmt::join(sections, ", "))};
 }
 

@@ -39,6 +39,10 @@ diagnosis::NoiseFloor floor_of(const solver::ReducedSystem& system) {
     floor.slow_K = 0.02;
     floor.slow_m = 5e-8;
   }
+  if (!system.thermostats.empty()) {  // a tenth of a second of a chiller, wherever the record comes from
+    floor.white_K = std::max(floor.white_K, 0.01);
+    floor.white_m = std::max(floor.white_m, 1e-8);
+  }
   return floor;
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -19,7 +20,8 @@ bool is_in(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool is_no_place(const std::string& name) {
+bool is_no_place(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return std::any_of(std::begin(kNoPlace), std::end(kNoPlace), [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
@@ -44,7 +46,7 @@ std::vector<std::string> allowed(const std::vector<std::string>& known, const Sp
     }
   }
   if (names.empty())
-    throw InputError(fmt::format("no {} is left to carry a thermometer; there are {}. Those that turn, flow or hang by their names want --region",
+    throw InputError(fmt::format("no {} is left to carry a thermometer; there are {}. Those that turn, flow or hang by their names want --region; --exclude takes away what --region gives",
                                  what, fmt::join(known, ", ")));
   return names;
 }

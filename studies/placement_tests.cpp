@@ -1,6 +1,7 @@
 #include "studies/placement_tests.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -15,8 +16,13 @@ constexpr int kOnAndOff = 4;     // times
 
 std::string words(const Drive& drive) {
   if (drive == Drive{}) return "rest";
-  if (drive.speed_rpm > 0.0) return fmt::format("{:.0f} rpm", drive.speed_rpm);
-  return drive.cutting_power_W > 0.0 ? fmt::format("{:.0f} W of cutting", drive.cutting_power_W) : "feeds";
+  std::vector<std::string> parts;
+  if (drive.speed_rpm > 0.0) parts.push_back(fmt::format("{:.0f} rpm", drive.speed_rpm));
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (drive.feed_m_s[a] > 0.0) parts.push_back(fmt::format("{} {:.4g} m/min", "xyz"[a], 60.0 * drive.feed_m_s[a]));
+  }
+  if (drive.cutting_power_W > 0.0) parts.push_back(fmt::format("{:.0f} W of cutting", drive.cutting_power_W));
+  return fmt::format("{}", fmt::join(parts, " with "));
 }
 
 }  // namespace
