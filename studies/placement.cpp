@@ -217,7 +217,7 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
   const PlacementModel model = placement_model(scenario, cyclograms, how.where, how.mounted, how.channels, listener);
   if (how.n == 0) how.n = std::min({scenario.study ? scenario.study->sensors_to_choose : kUsual, kMostUnasked, model.n_free()});
   if (how.n > model.n_free())
-    throw InputError(fmt::format("{} thermometers are to be placed, and places for them are {}", how.n, model.n_free()));
+    throw InputError(fmt::format("{} thermometers are to be placed, and there are {} places for them", how.n, model.n_free()));
   how.n_most = std::min(std::max(how.n, how.n_most), model.n_free());
   const std::vector<int> mounted = model.mounted();
   const std::vector<PlacementRun> chosen_on = runs_in_all_halls(scenario, families.chosen_on, families.halls, kRows);
