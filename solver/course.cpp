@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/stretches.hpp"
+
 namespace driftwright::solver {
 namespace {
 
@@ -40,12 +42,6 @@ Loads loads_of(const ReducedSystem& system, const LinearStretch& stretch, const 
     if (exchange.offset.size() > 0) l.constant += c * exchange.offset;
   }
   return l;
-}
-
-std::vector<LinearStretch> stretches_of(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall) {
-  std::vector<double> knots_s = hall.time_s;
-  knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
-  return linear_stretches(cyclogram, knots_s);
 }
 
 }  // namespace

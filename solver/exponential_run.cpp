@@ -8,6 +8,7 @@
 #include "solver/live_rate.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"
+#include "solver/stretches.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -208,13 +209,11 @@ std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, c
                                                   const TimeSeries& hall, const std::vector<double>& output_s,
                                                   const TransientOptions& options, const Eigen::VectorXd& start) {
   if (system.size() > kMostOfExponentialRun || options.from_s != 0.0) return std::nullopt;
-  std::vector<double> knots_s = hall.time_s;
-  knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
   Eigen::MatrixXd states(system.size(), static_cast<Eigen::Index>(output_s.size()));
   try {
     ExponentialRun run(system, hall, options, start);
     std::size_t next = 0;
-    const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, knots_s);
+    const std::vector<LinearStretch> stretches = stretches_of(system, cyclogram, hall);
     for (const LinearStretch& stretch : stretches) {
       run.enter(stretch);
       double t_s = stretch.start_s;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "solver/stage_ode.hpp"
+#include "solver/stretches.hpp"
 
 namespace driftwright::solver {
 namespace {
@@ -85,13 +86,11 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
     initial_J = system_.ones.dot(start);
   }
 
-  std::vector<double> knots_s = hall.time_s;
-  knots_s.insert(knots_s.end(), system_.change_times_s.begin(), system_.change_times_s.end());
   Eigen::VectorXd state = start, coefficient(n_exchanges), power_W(n_sources);
   Eigen::MatrixXd block, integrals;  // z and ∫ z at the outputs of a stretch, in its eigenvectors
   Eigen::ArrayXd e(n), decay(n);
   std::size_t next = 0;
-  for (const LinearStretch& stretch : behind(from_s, linear_stretches(cyclogram, knots_s))) {
+  for (const LinearStretch& stretch : behind(from_s, stretches_of(system_, cyclogram, hall))) {
     const double length_s = stretch.end_s - stretch.start_s, hall_K = hall.at(stretch.start_s),
                  hall_slope = (hall.at(stretch.end_s) - hall_K) / length_s;
     effects::Inputs at{.drive = stretch.drive, .hall_K = hall_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};

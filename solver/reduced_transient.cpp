@@ -3,6 +3,7 @@
 #include "solver/integrate.hpp"
 #include "solver/propagator.hpp"
 #include "solver/reduced_ode.hpp"
+#include "solver/stretches.hpp"
 
 namespace driftwright::solver {
 
@@ -10,10 +11,8 @@ Trajectory simulate(const ReducedSystem& system, const Cyclogram& cyclogram, con
                     const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
                     const OutputCallback& callback) {
   if (!system.is_linear()) {
-    std::vector<double> knots_s = hall.time_s;
-    knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
     ReducedOde ode(system, hall);
-    return integrate(ode, behind(options.from_s, linear_stretches(cyclogram, knots_s)), hall, output_s, options, start,
+    return integrate(ode, behind(options.from_s, stretches_of(system, cyclogram, hall)), hall, output_s, options, start,
                      callback);
   }
   Eigen::MatrixXd states;

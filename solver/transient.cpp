@@ -4,14 +4,14 @@
 
 #include "solver/heat_ode.hpp"
 #include "solver/integrate.hpp"
+#include "solver/stretches.hpp"
 
 namespace driftwright::solver {
 namespace {
 
 /// Times at which the drive stays but something else bends or jumps.
 std::vector<double> knots_s(const FullSystem& system, const TimeSeries& hall) {
-  std::vector<double> knots = hall.time_s;
-  knots.insert(knots.end(), system.change_times_s.begin(), system.change_times_s.end());
+  std::vector<double> knots = knots_of(system, hall);
   for (const FixedUnknowns& f : system.fixed) knots.insert(knots.end(), f.theta.time_s.begin(), f.theta.time_s.end());
   return knots;
 }

@@ -114,7 +114,7 @@ TEST(ExponentialRun, MeetsTheIntegratorWithinItsTolerance) {
     const Eigen::MatrixXd expected = integrated(m, 150.0);
     EXPECT_GT(expected.row(1).maxCoeff(), 5.0);
     EXPECT_LT(miss_K(m, expected, 150.0, 1e-4), 1e-4);
-    EXPECT_LT(miss_K(m, expected, 150.0, 1e-6), 5e-6);
+    EXPECT_LT(miss_K(m, expected, 150.0, 1e-6), 5e-6);  // errors of steps add up over a time constant; 2.5e-6 seen
   }
 }
 
