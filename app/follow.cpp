@@ -1,15 +1,17 @@
 #include "app/follow.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <fstream>
+#include <cstring>
 #include <map>
 #include <optional>
 #include <thread>
@@ -114,7 +116,7 @@ class Following {
 
  private:
   void follow_input() {
-    follow::LineSource source(STDIN_FILENO);
+    follow::LineSource source(STDIN_FILENO, "standard input");
     std::string line;
     Clock::time_point last = Clock::now();  // a line, or one written without
     while (is_read_ && !EndRequest::is_made()) {
@@ -284,14 +286,20 @@ class Following {
   }
 
   void replay() {
-    std::ifstream file(options_.replay, std::ios::binary);
-    if (!file) throw InputError(fmt::format("--replay {}: cannot be read", options_.replay));
+    const std::string name = fmt::format("--replay {}", options_.replay);
+    struct Open {
+      int file;
+      ~Open() { (void)::close(file); }
+    } open{::open(options_.replay.c_str(), O_RDONLY | O_CLOEXEC)};
+    if (open.file < 0) throw InputError(fmt::format("{}: {}", name, std::strerror(errno)));
+    follow::LineSource source(open.file, name);
     std::string line;
-    while (is_read_ && !EndRequest::is_made() && std::getline(file, line)) {
-      take(line);
+    while (is_read_ && !EndRequest::is_made()) {
+      const follow::LineSource::Got got = source.next(line, kLongestPoll_s);
+      if (got == follow::LineSource::Got::kEnd) break;
+      if (got == follow::LineSource::Got::kLine) take(line);
       if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
     }
-    if (file.bad()) throw InputError(fmt::format("--replay {}: cannot be read to its end", options_.replay));
   }
 
   /// Waits until a row of a replay is due.

@@ -229,6 +229,12 @@ std::string ConfigMap::text(const std::string& key, const std::string& fallback)
   return has(key) ? text(key) : fallback;
 }
 
+namespace {
+
+constexpr std::size_t kLongestName = 200;  // file systems take 255 bytes, endings included
+
+}  // namespace
+
 bool is_name(const std::string& text) {
   constexpr const char* kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
   return !text.empty() && text.find_first_not_of(kAllowed) == std::string::npos;
@@ -242,6 +248,8 @@ std::string ConfigMap::name(const std::string& key) const {
     fail(key, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed{}", value,
                           is_name(near) ? fmt::format(". Did you mean '{}'?", near) : ""));
   }
+  if (value.size() > kLongestName)
+    fail(key, fmt::format("a name of {} characters; at most {} become a channel, a file or a folder", value.size(), kLongestName));
   return value;
 }
 

@@ -1,0 +1,89 @@
+// What the program says where its surroundings fail it: exit code 2 and words, never a bug of ours.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <optional>
+#include <string>
+
+#include "tests/command_line.hpp"
+
+namespace driftwright {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A variable of the environment for as long as this lives.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    (void)setenv(name, value, 1);
+  }
+  ~Environment() { (void)(before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_)); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+std::string export_of(const std::string& file) {
+  return "export scenarios/first_machine.yaml --fmu -o " + (temporary_folder() / file).string();
+}
+
+TEST(Environment, HelpAndVersionOnAFullDiskEndWithTwo) {
+  for (const char* asked : {"--version", "--help", "simulate --help", "--completion bash", "--man", "list effects"}) {
+    const CommandOutcome outcome =
+        run_program(std::string(asked) + " 2>&1 >/dev/full #");  // run_program() would send standard error there, too
+    EXPECT_EQ(outcome.exit_code, 2) << asked;
+    EXPECT_THAT(outcome.output, AllOf(HasSubstr("error: "), Not(HasSubstr("internal")))) << asked;
+  }
+}
+
+TEST(Environment, AFolderOfTemporaryFilesThatTakesNoneIsNamed) {
+  const Environment nowhere("TMPDIR", "/proc");
+  const CommandOutcome outcome = run_program(export_of("nowhere.fmu"));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("/proc"), HasSubstr("TMPDIR"), Not(HasSubstr("internal"))));
+  EXPECT_FALSE(std::filesystem::exists(temporary_folder() / "nowhere.fmu"));
+}
+
+TEST(Environment, ACompilerThatFailsIsNamed) {
+  const Environment failing("CC", "false");
+  const CommandOutcome outcome = run_program(export_of("failing.fmu"));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("the C compiler 'false' has not made"), Not(HasSubstr("internal"))));
+  EXPECT_FALSE(std::filesystem::exists(temporary_folder() / "failing.fmu"));
+}
+
+TEST(Environment, AFileThatIsLongerThanFilesMayBeIsNoSignal) {
+  const auto out = temporary_folder() / "limited";
+  const CommandOutcome outcome = run_program("--version >/dev/null; ulimit -f 8; " + std::string(DRIFTWRIGHT_PROGRAM) +
+                                             " simulate scenarios/first_machine.yaml --quiet -o " + out.string());
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("error: "), Not(HasSubstr("internal"))));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(Environment, ANameThatNoFileMayHaveIsRefusedWhereItStands) {
+  std::string scenario = read_text("scenarios/first_machine.yaml");
+  const std::string name = "first_machine", line = "name: " + name;
+  ASSERT_NE(scenario.find(line), std::string::npos);
+  const auto check = [&](std::size_t n) {
+    std::string text = scenario;
+    text.replace(text.find(line) + 6, name.size(), std::string(n, 'n'));
+    return run_program("check " + write_file("long_name.yaml", text));
+  };
+  EXPECT_EQ(check(200).exit_code, 0);
+  const CommandOutcome outcome = check(201);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("long_name.yaml:2:"), HasSubstr("201 characters; at most 200")));
+}
+
+}  // namespace
+}  // namespace driftwright
