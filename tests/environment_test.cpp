@@ -71,18 +71,33 @@ TEST(Environment, AFileThatIsLongerThanFilesMayBeIsNoSignal) {
 }
 
 TEST(Environment, ANameThatNoFileMayHaveIsRefusedWhereItStands) {
-  std::string scenario = read_text("scenarios/first_machine.yaml");
-  const std::string name = "first_machine", line = "name: " + name;
-  ASSERT_NE(scenario.find(line), std::string::npos);
-  const auto check = [&](std::size_t n) {
-    std::string text = scenario;
-    text.replace(text.find(line) + 6, name.size(), std::string(n, 'n'));
-    return run_program("check " + write_file("long_name.yaml", text));
-  };
-  EXPECT_EQ(check(200).exit_code, 0);
-  const CommandOutcome outcome = check(201);
+  const std::string scenario = read_text("scenarios/first_machine.yaml");
+  for (const char* name : {"first_machine\n", "shift:"}) {  // of the scenario, of a cyclogram
+    const std::size_t at = scenario.find(name);
+    ASSERT_NE(at, std::string::npos);
+    const auto check = [&](std::size_t n) {
+      std::string text = scenario;
+      text.replace(at, std::string(name).size() - 1, std::string(n, 'n'));
+      return run_program("check " + write_file("long_name.yaml", text));
+    };
+    EXPECT_EQ(check(200).exit_code, 0) << name;
+    const CommandOutcome outcome = check(201);
+    EXPECT_EQ(outcome.exit_code, 2) << name;
+    EXPECT_THAT(outcome.output, AllOf(HasSubstr("long_name.yaml:"), HasSubstr("is no name"), HasSubstr("200 at most"))) << name;
+  }
+}
+
+TEST(Environment, ResultsOfANameThatNoFileMayHaveAreRefusedBeforeTheRun) {
+  const std::string out = (temporary_folder() / std::string(300, 'x')).string();
+  const CommandOutcome outcome = run_program("simulate scenarios/fp3_spindle.yaml -o " + out);  // two seconds and more where it runs
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.output, AllOf(HasSubstr("long_name.yaml:2:"), HasSubstr("201 characters; at most 200")));
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("File name too long"), Not(HasSubstr("reduc")), Not(HasSubstr("internal"))));
+  for (const std::string& verb : {"view scenarios/first_machine.yaml -o " + out + ".html", "export scenarios/first_machine.yaml --fmu -o " + out,
+                                 "follow scenarios/first_machine.yaml --state " + out, "init " + out}) {
+    const CommandOutcome refused = run_program(verb + " </dev/null");
+    EXPECT_EQ(refused.exit_code, 2) << verb;
+    EXPECT_THAT(refused.output, Not(HasSubstr("internal"))) << verb;
+  }
 }
 
 }  // namespace
