@@ -29,7 +29,7 @@ cyclograms:
   climb: [[40 min, 1500 rpm], [40 min, 3000 rpm], [40 min, 6000 rpm], [60 min, 0 rpm]]
   other: [[30 min, 5000 rpm], [20 min, 0 rpm], [60 min, 2000 rpm]]
 study: {target: nose_z, train: [shift, climb], judge: other, sensors_to_choose: 1, tolerance: 5 um}
-schedule: {tolerance: 10 um, rapid: 15 m/min, axes: {z: {displacement: nose_z, sign: -1}}}
+schedule: {tolerance: 10 um, rapid: 15 m/min, tool_change: 8 s, axes: {z: {displacement: nose_z, sign: -1}}}
 """)
     return path
 

@@ -1,5 +1,6 @@
 // What the program says where its surroundings fail it: exit code 2 and words, never a bug of ours.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@ namespace driftwright {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -68,6 +70,27 @@ TEST(Environment, AFileThatIsLongerThanFilesMayBeIsNoSignal) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("error: "), Not(HasSubstr("internal"))));
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(Environment, TooLittleMemoryForTheLibrariesEndsInTime) {
+  std::string scenario = read_text("scenarios/first_machine.yaml");
+  scenario.resize(scenario.find("cyclograms:"));
+  scenario +=
+      "cyclograms: {shift: [[60 min, 6000 rpm]], climb: [[40 min, 1500 rpm], [40 min, 3000 rpm]], other: [[60 min, 2000 rpm]]}\n"
+      "study: {target: nose_z, train: [shift, climb], judge: other, sensors_to_choose: 1, tolerance: 5 um}\n";
+  const std::string run = std::string(DRIFTWRIGHT_PROGRAM) + " run " + write_file("tight.yaml", scenario) + " --quiet -o " +
+                          (temporary_folder() / "tight").string();
+  ASSERT_EQ(run_program("--version >/dev/null; " + run).exit_code, 0);
+  int n_refused = 0;
+  for (const int limit_MB : {300, 350, 400, 450}) {  // OpenBLAS alone wants 128
+    const CommandOutcome outcome =
+        run_program(fmt::format("--version >/dev/null; ulimit -v {}; timeout -s KILL 60 {}", limit_MB * 1024, run));
+    EXPECT_THAT(outcome.exit_code, AnyOf(0, 2)) << limit_MB << " MB: " << outcome.output;
+    if (outcome.exit_code != 2) continue;
+    EXPECT_THAT(outcome.output, HasSubstr("not enough memory")) << limit_MB << " MB";
+    ++n_refused;
+  }
+  EXPECT_GT(n_refused, 0);
 }
 
 TEST(Environment, ANameThatNoFileMayHaveIsRefusedWhereItStands) {
