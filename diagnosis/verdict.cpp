@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSureCause = 20.0;  // nats: no smaller rest hides it
 constexpr int kSomeSearches = 2;
+constexpr const char* kFaint = "its evidence does not pay for all that it might have been, though chance seldom offers as much";
 constexpr double kRestOfCause = 0.35;  // of what the causes explain: more left, and they are not what is wrong
 
 std::string words(const Cause& c) {
@@ -121,10 +122,12 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     cause.why_not_written = d.written.why_not[c];
     cause.is_written = cause.why_not_written.empty();
     cause.kept_out_nats = held.claim_nats[c];
-    cause.chance = d.search.chance.share_above(cause.log_evidence_gain);
+    const Finding& finding = d.search.findings[c];
+    cause.chance = finding.faint_chance.value_or(d.search.chance.share_above(cause.log_evidence_gain));
     cause.n_searched = held.n_searched;
     if (held.n_searched > 0) cause.n_again = held.n_again[c];
-    if (!d.search.findings[c].is_named) continue;
+    if (finding.faint_chance) cause.doubt = kFaint;
+    if (!finding.is_named) continue;
     cause.doubt = held.doubt[c];
     if (cause.doubt.empty() && is_found_once(d, c, held))
       cause.doubt = "it stands beside a stronger cause, and no search without a part of the rows found it";
