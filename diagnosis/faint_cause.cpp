@@ -9,7 +9,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNear = 6.0;          // nats behind the rarest: what the full model may make up for
+constexpr double kNear = 6.0;  // nats behind the rarest: what the full model may make up for
 constexpr std::size_t kMostFits = 12;
 constexpr double kBorneOut = 0.5;      // of what linear theory promised, that the full model must keep
 constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a name
@@ -62,15 +62,6 @@ bool is_borne_out(const NothingFound& s, Faint& f) {
 std::optional<FaintCause> faint_cause(const NothingFound& s, double wrongly_suspected) {
   std::vector<Faint> list = rarest_of(s);
   const double bar = s.chances.rarest.gain_at(wrongly_suspected);
-  if (std::getenv("DW_FAINT")) {
-    for (const auto& [n, m] : s.fitter.noise()) std::fprintf(stderr, "NOISE %s white %g slow %g tau %g\n", n.c_str(), m.white, m.correlated, m.time_s);
-    std::fprintf(stderr, "FAINT bar %.2f median %.2f spread %.2f\n", bar, s.chances.rarest.gain_at(0.5), s.chances.rarest.spread);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const auto& f = list[i];
-      const Candidate& c = s.candidates[f.score.candidate];
-      std::fprintf(stderr, "FAINT %2zu %-18s %-22s rarity %.2f fall %.2f gain %.2f usual %.2f laws %zu grid %zu\n", i, c.effect.c_str(), c.where.c_str(), f.rarity, f.score.fall, f.score.gain, s.chances.usual[f.score.candidate], c.variants.size(), c.variants[f.score.variant].grid.size());
-    }
-  }
   if (list.empty() || !(list.front().rarity > bar)) return std::nullopt;
   const double rarest = list.front().rarity;
   std::erase_if(list, [&](const Faint& f) { return f.rarity < rarest - kNear; });
@@ -86,7 +77,8 @@ std::optional<FaintCause> faint_cause(const NothingFound& s, double wrongly_susp
   std::stable_sort(list.begin(), list.end(), [](const Faint& a, const Faint& b) { return a.rarity > b.rarity; });
   if (list.empty() || !(list.front().rarity > bar)) return std::nullopt;
   std::vector<Rival> rivals;
-  for (const Faint& f : list) rivals.push_back({s.candidates[f.score.candidate].effect, s.candidates[f.score.candidate].where, f.rarity});
+  for (const Faint& f : list)
+    rivals.push_back({s.candidates[f.score.candidate].effect, s.candidates[f.score.candidate].where, f.rarity});
   const std::vector<double> shares = shares_of(rivals);
   const double price = std::log(static_cast<double>(s.candidates.size()));
   const auto evidence = [&](const Faint& f) {
@@ -99,8 +91,7 @@ std::optional<FaintCause> faint_cause(const NothingFound& s, double wrongly_susp
   cause.finding.share = shares.front();
   cause.finding.faint_chance = s.chances.rarest.share_above(list.front().rarity);
   for (std::size_t r : open_rivals(rivals)) {
-    cause.finding.alternatives.push_back(
-        {claim_of(s.candidates, list[r].score), list[r].fit, evidence(list[r]), shares[r]});
+    cause.finding.alternatives.push_back({claim_of(s.candidates, list[r].score), list[r].fit, evidence(list[r]), shares[r]});
   }
   cause.fit = std::move(list.front().fit);
   return cause;

@@ -22,7 +22,7 @@ constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a 
 constexpr int kMostTurns = 6;
 constexpr double kSettled = 0.05;  // of Φ
 constexpr int kMostTurnsOfRival = 3;
-constexpr double kNear = 12.0;  // nats: what fits on may make up for
+constexpr double kNear = 12.0;             // nats: what fits on may make up for
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed

@@ -37,7 +37,8 @@ bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun
 diagnosis::NoiseFloor floor_of(const solver::ReducedSystem& system) {
   diagnosis::NoiseFloor floor;
   const bool is_stepped = !system.is_linear() && system.size() > solver::kMostOfExponentialRun;
-  if (is_stepped || !system.thermostats.empty()) {  // integrated in steps, and thermostats that switch a little early or late
+  if (is_stepped ||
+      !system.thermostats.empty()) {  // integrated in steps, and thermostats that switch a little early or late
     floor.slow_K = 0.02;
     floor.slow_m = 5e-8;
   }
