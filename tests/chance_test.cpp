@@ -89,31 +89,32 @@ TEST(Chance, OfOneCandidateFallsByAnEfoldANat) {
   EXPECT_LT(rarity(kOneInHundredThousand, kOneInFive), std::log(1e5));
 }
 
-// A shift of 0.25 um where its prior fears 15 um, at a time that nobody knows, pays some 14 nats for what it might have been and is worth 12 in these readings.
+// A shift of 0.2 um where its prior fears 15 um, at a time that nobody knows, pays some 14 nats for what it might have been, and these readings are worth 8 to 15.
 TEST(Chance, SeldomOffersWhatAFaintCauseHas) {
   const std::string scenario = write_file("nominal_for_shift.yaml", machine(nullptr));
-  int n_suspected = 0, n_rightly = 0;
-  for (int i = 0; i < 8; ++i) {
+  int n_faint = 0, n_rightly = 0;
+  for (int i = 0; i < 16; ++i) {
     Random random(23, static_cast<std::uint64_t>(i));
     const std::string truth = write_file(
         "shifted.yaml",
-        machine(&random, "  - {type: mount_shift, displacement: nose, shift: 0.25 um, time: 130 min, in: tuesday}\n"));
+        machine(&random, "  - {type: mount_shift, displacement: nose, shift: 0.2 um, time: 130 min, in: tuesday}\n"));
     const studies::MeasuredTwin m = studies::open_measured_twin(scenarios::read_scenario(scenario), "diagnose",
                                                                 records_of(truth, random, fmt::format("s{}", i)), {});
     const Diagnosis d = diagnose(*m.twin, nullptr, m.runs, m.how);
     if (d.causes.empty()) continue;
-    ++n_suspected;
     const Cause& c = d.causes.front();
-    n_rightly += c.effect == "mount_shift" && c.where == "nose";
+    if (c.log_evidence_gain > d.search.bars.suspected.front()) continue;  // worth its prior's price
+    ++n_faint;
+    n_rightly += c.effect == "mount_shift";
+    EXPECT_EQ(c.where, "nose") << c.effect;
     EXPECT_EQ(c.standing, Standing::kSuspected) << c.effect;
-    if (c.log_evidence_gain > d.search.bars.suspected.front()) continue;
     EXPECT_FALSE(c.is_written);
     EXPECT_LT(c.chance, 0.005);
     EXPECT_EQ(d.verdict, Verdict::kSuspected);
   }
-  RecordProperty("suspected", n_suspected);
-  EXPECT_GE(n_rightly, 4);
-  EXPECT_EQ(n_rightly, n_suspected);
+  RecordProperty("faint", n_faint);
+  EXPECT_GE(n_faint, 4);
+  EXPECT_GE(n_rightly, n_faint - 1);
 }
 
 TEST(Chance, IsMetByMachinesWithoutFault) {
