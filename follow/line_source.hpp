@@ -4,17 +4,17 @@
 #include <string>
 #include <utility>
 
+#include "follow/row_source.hpp"
+
 namespace driftwright::follow {
 
-class LineSource {
+class LineSource final : public RowSource {
  public:
-  enum class Got { kLine, kNothingYet, kEnd };
   /// @param name  of the file, for messages
   LineSource(int file, std::string name) : file_(file), name_(std::move(name)) {}
 
-  /// The next line, without its line break. @param wait_s  at most so long, less where a signal comes
   /// @throws InputError  when the file cannot be read
-  [[nodiscard]] Got next(std::string& line, double wait_s);
+  [[nodiscard]] Got next(std::string& line, double wait_s) override;
 
  private:
   int file_;

@@ -10,6 +10,7 @@
 #include "diagnosis/unit_check.hpp"
 #include "diagnosis/warm_start.hpp"
 #include "machine/simulated_run.hpp"
+#include "solver/exponential_run.hpp"
 #include "studies/other_mesh.hpp"
 
 namespace driftwright::studies {
@@ -35,7 +36,9 @@ bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun
 
 diagnosis::NoiseFloor floor_of(const solver::ReducedSystem& system) {
   diagnosis::NoiseFloor floor;
-  if (!system.is_linear()) {  // integrated in steps, and thermostats that switch a little early or late
+  const bool is_stepped = !system.is_linear() && system.size() > solver::kMostOfExponentialRun;
+  if (is_stepped ||
+      !system.thermostats.empty()) {  // integrated in steps, and thermostats that switch a little early or late
     floor.slow_K = 0.02;
     floor.slow_m = 5e-8;
   }

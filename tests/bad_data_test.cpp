@@ -127,6 +127,18 @@ TEST(ForeignUnits, AnIndicatorThatTouchesNothingIsNoOtherUnit) {  // a thousandt
   EXPECT_EQ(b.told(), "");
 }
 
+TEST(ForeignUnits, ADisplacementTurnedInSignIsNamed) {
+  Bench b;
+  b.channel(2).value *= -1.1;  // and the scenario is off, too
+  leave_out_foreign_units(b.runs, *b.twin);
+  EXPECT_THAT(b.told(), HasSubstr("nose_um looks turned in sign"));
+  EXPECT_EQ(b.runs[0].find("nose"), nullptr);
+  Bench half;  // half as much the other way is no sign: something is wrong with the model
+  half.channel(2).value *= -0.5;
+  leave_out_foreign_units(half.runs, *half.twin);
+  EXPECT_EQ(half.told(), "");
+}
+
 TEST(ForeignUnits, ATemperatureThatMayWellBeIsLeft) {
   EXPECT_EQ(foreign_temperature({13.0, 14.0, 15.0}, -10.0, -10.0),
             std::nullopt);  // 14 degF are -10 degC, and 24 K is no proof
