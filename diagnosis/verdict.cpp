@@ -15,6 +15,7 @@ constexpr double kWorthSaying = 1.5;  // sigmas of its prior
 constexpr std::size_t kMostSaid = 3;
 constexpr const char* kFaint =
     "its evidence does not pay for all that it might have been, though chance seldom offers as much";
+constexpr double kOpen = 100.0;
 constexpr double kRestOfCause = 0.35;  // of what the causes explain: more left, and they are not what is wrong
 
 std::string words(const Cause& c) {
@@ -137,6 +138,13 @@ std::string reason_of(const Diagnosis& d) {
   }
 }
 
+/// Whether nothing but its sign is known of how large a cause is.
+bool is_size_open(const Cause& cause) {
+  if (cause.parameters.empty()) return false;
+  const Estimate& size = cause.parameters.front();
+  return size.low > 0.0 && size.high > kOpen * size.low;
+}
+
 void give_standing(Diagnosis& d, const HeldOut& held) {
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     Cause& cause = d.causes[c];
@@ -152,6 +160,8 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     cause.doubt = held.doubt[c];
     if (cause.doubt.empty() && is_found_once(d, c, held))
       cause.doubt = "it stands beside a stronger cause, and no search without a part of the rows found it";
+    if (cause.doubt.empty() && is_size_open(cause))
+      cause.doubt = "its size is open: the ends of its 95 % interval are more than a factor of 100 apart";
     if (!cause.doubt.empty()) continue;
     cause.standing = cause.odds.kind >= kSure ? Standing::kNamed : Standing::kAmbiguous;
   }

@@ -7,6 +7,7 @@
 #include "base/errors.hpp"
 #include "base/mapped_record.hpp"
 #include "diagnosis/scatter.hpp"
+#include "diagnosis/time_check.hpp"
 #include "diagnosis/unit_check.hpp"
 #include "diagnosis/warm_start.hpp"
 #include "machine/simulated_run.hpp"
@@ -91,6 +92,7 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const diagnosis::Twin whole(m.fine->augmented, m.fine->machine, tolerances);
   diagnosis::leave_out_foreign_units(m.runs, whole);
+  diagnosis::require_plausible_times(m.runs, whole);
   diagnosis::find_warm_starts(m.runs, whole);
   listener.begin("looking what states the measured runs come to");
   m.focus = std::make_unique<diagnosis::Focus>(
