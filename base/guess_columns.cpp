@@ -196,12 +196,14 @@ bool fits(const std::string& format, const std::string& zone, const std::vector<
 
 /// The formats that fit, of those that loggers write.
 std::vector<std::string> formats_of(const std::vector<std::string>& stamps, const std::string& zone, bool may_go_back) {
+  const bool with_offset = !stamps.empty() && stamps.front().find(':') != std::string::npos && offset_at_end(stamps.front()).has_value();
   std::vector<std::string> found;
   for (const char* format :
        {"", "%d.%m.%y %H:%M:%S", "%d.%m.%Y %H:%M:%S", "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S", "%Y/%m/%d %H:%M:%S",
         "%m/%d/%Y %I:%M:%S %p", "%d-%m-%Y %H:%M:%S", "%d-%b-%Y %H:%M:%S", "%Y%m%d %H:%M:%S", "%d.%m.%Y %H:%M",
         "%d/%m/%Y %H:%M", "%m/%d/%Y %H:%M", "%Y-%m-%d %H:%M", "%Y/%m/%d %H:%M", "%H:%M:%S"}) {
-    if (fits(format, zone, stamps, may_go_back)) found.emplace_back(format);
+    const std::string whole = *format != '\0' && with_offset ? fmt::format("{}%z", format) : format;
+    if (fits(whole, zone, stamps, may_go_back)) found.push_back(whole);
   }
   return found;
 }
@@ -253,6 +255,16 @@ bool guess_stamps(const Sheet& sheet, const GuessHints& hints, bool is_tag_log, 
   return false;
 }
 
+/// A cell that may be meant as a time, in words; "" where there is none.
+std::string stamp_like_cell(const Sheet& sheet) {
+  for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+    for (const std::string& cell : column(sheet, c)) {
+      if (!number_of(cell, sheet.decimal) && is_stamp_like(cell)) return fmt::format("'{}' holds '{}', which is no stamp that is known", sheet.names[c], cell);
+    }
+  }
+  return "";
+}
+
 bool guess_numbers(const Sheet& sheet, GuessedColumns& guessed, std::set<std::size_t>& used) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     const HeaderWords words = words_of_header(sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "");
@@ -299,8 +311,22 @@ void guess_missing(const std::vector<std::string>& cells, char decimal, std::set
   }
 }
 
+/// Whether readings in kelvin are absolute temperatures: no machine has differences of 150 K.
+bool are_absolute_K(const std::vector<std::string>& cells, char decimal) {
+  constexpr double kLargestDifference_K = 150.0;
+  bool any = false;
+  for (const std::string& cell : cells) {
+    const auto number = number_of(cell, decimal);
+    if (!number || std::abs(*number) > kOverload) continue;
+    if (*number <= kLargestDifference_K) return false;
+    any = true;
+  }
+  return any;
+}
+
 /// A channel by what its header says. @return false where records have no room for its unit
-bool add_channel(const std::string& header, const std::string& unit_line, ColumnPlace place, GuessedColumns& guessed) {
+bool add_channel(const std::string& header, const std::string& unit_line, ColumnPlace place, const std::vector<std::string>& cells,
+                 GuessedColumns& guessed) {
   const HeaderWords words = words_of_header(header, unit_line);
   MappedChannel channel;
   channel.column = std::move(place);
@@ -310,6 +336,13 @@ bool add_channel(const std::string& header, const std::string& unit_line, Column
   } catch (const RangeError&) {
     guessed.guesses.push_back(fmt::format("'{}' is left out: records have no channel for {}", header, channel.written_unit));
     return false;
+  }
+  if (channel.unit == "K" && are_absolute_K(cells, guessed.map.decimal)) {
+    channel.unit = channel.written_unit = "degC";
+    channel.offset = -kZeroCelsius_K;
+    guessed.guesses.push_back(fmt::format("'{}' is taken to be an absolute temperature in kelvin: 273.15 K are taken off", header));
+  } else if (channel.unit == "K") {
+    guessed.guesses.push_back(fmt::format("'{}' is taken to be a difference of temperatures; an absolute one wants `unit: degC, offset: -273.15 K`", header));
   }
   if (words.unit.empty())
     guessed.guesses.push_back(fmt::format("'{}' does not say its unit; it is taken to be {}", header,
@@ -346,7 +379,7 @@ void guess_tags(const Sheet& sheet, std::pair<std::size_t, std::size_t> at, cons
   for (const std::string& tag : order) {
     if (tag.empty() || tag.starts_with('$') || share_of_numbers(values[tag], sheet.decimal) < 0.5)
       continue;  // "$RT_OFF$": events
-    if (add_channel(tag, "", {.name = tag, .position = 0, .where = {}}, guessed))
+    if (add_channel(tag, "", {.name = tag, .position = 0, .where = {}}, values[tag], guessed))
       guess_missing(values[tag], sheet.decimal, missing);
   }
 }
@@ -370,10 +403,11 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
   if (!hints.interval.empty()) {
     guessed.map.time.interval_s = parse_quantity(hints.interval, "s");
   } else if (!guess_stamps(sheet, hints, tags.has_value(), guessed, used) && !guess_numbers(sheet, guessed, used)) {
+    const std::string stamp = stamp_like_cell(sheet);
     throw InputError(fmt::format(
-        "{}: no column tells the time in a way that is known; there are '{}' in line {}. --interval '10 s' counts rows, "
+        "{}: no column tells the time in a way that is known; there are '{}' in line {}{}. --interval '10 s' counts rows, "
         "--zone Europe/Berlin tells clocks that are set, and `columns` says any other format (docs/record.md)",
-        path, fmt::join(sheet.names, "', '"), header_line));
+        path, fmt::join(sheet.names, "', '"), header_line, stamp.empty() ? "" : fmt::format("; {}", stamp)));
   }
   std::set<std::string> missing;
   if (tags) {
@@ -383,7 +417,7 @@ GuessedColumns guess_columns(const std::string& path, const GuessHints& hints) {
       const std::vector<std::string> cells = column(sheet, c);
       const bool is_counter = is_counter_name(sheet.names[c]);
       if (used.contains(c) || is_counter || share_of_numbers(cells, sheet.decimal) < 0.5) continue;
-      if (add_channel(sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "", place(sheet, c), guessed))
+      if (add_channel(sheet.names[c], c < sheet.units.size() ? sheet.units[c] : "", place(sheet, c), cells, guessed))
         guess_missing(cells, sheet.decimal, missing);
     }
   }
