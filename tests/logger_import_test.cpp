@@ -143,7 +143,7 @@ TEST(LoggerImport, ReadsStampsWithOffsets) {
     const Record record = studies::import_logger(write_file("log.csv", text), "", {}).read.record;
     EXPECT_THAT(record.time_s, Pointwise(DoubleNear(1e-9), std::vector<double>{0, 10, 20})) << offset;
   }
-  EXPECT_THAT([] { (void)studies::import_logger(write_file("log.csv", "Zeit;T\n02.11.2026 7h30;20,1\n02.11.2026 7h31;20,2\n02.11.2026 7h32;20,4\n"), "", {}); },
+  EXPECT_THAT([] { (void)studies::import_logger(write_file("log.csv", "Zeit;T (°C)\n02.11.2026 7h30;20,1\n02.11.2026 7h31;20,2\n02.11.2026 7h32;20,4\n"), "", {}); },
               ThrowsMessage<InputError>(HasSubstr("'Zeit' holds '02.11.2026 7h30'")));
 }
 
