@@ -133,13 +133,22 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   CLI::Option* from =
       verb->add_option("--from", options.from, "topic whose messages are rows, such as {\"time_s\": 60, \"t01_degC\": 21.5}")
           ->needs(mqtt);
-  verb->add_option("--mtconnect", options.mtconnect,
-                   "address of an MTConnect agent in place of standard input, such as http://10.0.0.7:5000")
-      ->excludes(replay)
-      ->excludes(mqtt);
+  verb->add_option(
+          "--sparkplug", options.sparkplug,
+          "edge node of Sparkplug B at the broker, GROUP/NODE or GROUP/NODE/DEVICE; --topic then says metrics by name")
+      ->needs(mqtt)
+      ->excludes(from);
+  CLI::Option* agent =
+      verb->add_option("--mtconnect", options.mtconnect,
+                       "address of an MTConnect agent in place of standard input, such as http://10.0.0.7:5000")
+          ->excludes(replay)
+          ->excludes(mqtt);
+  verb->add_flag("--sample", options.sample,
+                 "of the agent all observations (/sample), at their own times, not what it tells now")
+      ->needs(agent);
   verb->add_option("--topic", options.topics,
-                   "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers, or the id or name of "
-                   "the agent's data item; may be repeated")
+                   "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers, the id or name of "
+                   "the agent's data item, or the metric of the node; may be repeated")
       ->excludes(from)
       ->allow_extra_args(false);
   verb->add_option("--every", options.every, "time from row to row that is made of --topic")->capture_default_str();
@@ -147,6 +156,15 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   verb->add_option("--state", options.state,
                    "file that keeps what is known, every second, and that a new start goes on from");
   verb->add_option("--record", options.record, "record CSV of the rows that were taken");
+  CLI::Option* serve =
+      verb->add_option("--serve", options.serve,
+                       "port of a page for browsers: machine, drift, correction, trust, alarms; 0: any that is free");
+  verb->add_option("--bind", options.bind, "address that the page is served at; beyond loopback it wants --token")
+      ->needs(serve)
+      ->capture_default_str();
+  verb->add_option("--token", options.token,
+                   "word that each request for the page has to bring, or @FILE, whose first line it is")
+      ->needs(serve);
   verb->add_option("--slew", options.slew,
                    "how fast a correction may change, such as '0.5 um/s' [as the model was fitted, else 1 um/s]");
   verb->add_option("--hold", options.hold,
@@ -279,7 +297,8 @@ std::string wrong_words(const CLI::App& cli, const CLI::ParseError& e) {
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
   }
   const std::string command = verbs.empty() ? "driftwright" : "driftwright " + verb.get_name();
-  const std::string help = fmt::format("`{} --help` shows what it takes{}", command, verbs.empty() ? "" : ", with an example");
+  const std::string help =
+      fmt::format("`{} --help` shows what it takes{}", command, verbs.empty() ? "" : ", with an example");
   for (const std::string& word : verb.remaining()) {
     if (word.rfind("--", 0) != 0) continue;
     const std::string option = word.substr(0, word.find('='));
@@ -393,29 +412,37 @@ int app::command_line(int argc, const char* const* argv) {
   verb = add_verb(cli, "place", "where to mount thermometers, how many and which test they need (docs/placement.md)",
                   "place scenarios/fp3_spindle.yaml --count 4 --exclude table -o results/place", place);
   verb->add_option("--count", place.count, "thermometers to place, 1 to 12 [the study's, else 4]");
-  verb->add_option("--region", place.regions, "that may carry them; may be repeated [all but those that turn, flow or hang by their names]")
+  verb->add_option("--region", place.regions,
+                   "that may carry them; may be repeated [all but those that turn, flow or hang by their names]")
       ->allow_extra_args(false);
   verb->add_option("--exclude", place.excluded, "region that may not carry them; may be repeated")->allow_extra_args(false);
-  verb->add_option("--mounted", place.mounted, "sensor of the scenario that is there already and does not fail; may be repeated")->allow_extra_args(false);
+  verb->add_option("--mounted", place.mounted,
+                   "sensor of the scenario that is there already and does not fail; may be repeated")
+      ->allow_extra_args(false);
   verb->add_option("--channel", place.channels, "displacement that counts; may be repeated [the study's target, else all]")
       ->allow_extra_args(false);
-  verb->add_option("--for", place.placed_for, "both, observer or regression [both]")->check(CLI::IsMember({"both", "observer", "regression"}));
+  verb->add_option("--for", place.placed_for, "both, observer or regression [both]")
+      ->check(CLI::IsMember({"both", "observer", "regression"}));
   verb->add_flag("--none-fails", place.none_fails, "count only the case in which all thermometers work");
-  verb->add_option("--train", place.train, "cyclogram to choose on; may be repeated [those that `validation` trains on, else all]")
+  verb->add_option("--train", place.train,
+                   "cyclogram to choose on; may be repeated [those that `validation` trains on, else all]")
       ->allow_extra_args(false);
   verb->add_option("--test", place.test, "cyclogram to judge by; may be repeated [those of `validation`, else made ones]")
       ->allow_extra_args(false);
   verb->add_option("--noise", place.noise, "of a reading, 1 sigma, such as '0.1 K' [that of `validation`, else 0.1 K]");
   verb->add_option("--points", place.points, "of a mesh that are tried, 50 to 3000 [400]");
   verb->callback([&] { app::place(place); });
-  verb = add_verb(cli, "plan-test", "before anything is measured: the test behind which most faults would be named (docs/test_planning.md)",
+  verb = add_verb(cli, "plan-test",
+                  "before anything is measured: the test behind which most faults would be named (docs/test_planning.md)",
                   "plan-test scenarios/first_machine.yaml --time '8 h' -o results/plan_test", plan_test);
   verb->add_option("--time", plan_test.time, "length of the test, such as '4 h' [8 h]");
   verb->add_option("--speed-limit", plan_test.speed_limit, "of the test, such as '3000 rpm' [the fastest of the scenario]");
-  verb->add_option("--interval", plan_test.interval, "of the rows that are read, such as '30 s' [the scenario's output_interval]");
+  verb->add_option("--interval", plan_test.interval,
+                   "of the rows that are read, such as '30 s' [the scenario's output_interval]");
   verb->add_option("--noise-temperature", plan_test.noise_K, "standard deviation of a thermometer's reading ['0.05 K']");
   verb->add_option("--noise-displacement", plan_test.noise_um, "standard deviation of a displacement's reading ['0.5 um']");
-  verb->add_option("--programmes", plan_test.n_programmes, "how many are tried [10000, fewer for large machines]")->check(CLI::Range(10, 10000000));
+  verb->add_option("--programmes", plan_test.n_programmes, "how many are tried [10000, fewer for large machines]")
+      ->check(CLI::Range(10, 10000000));
   verb->add_option("--seed", plan_test.seed, "of the search [1]");
   verb->callback([&] { app::plan_test(plan_test); });
   verb = add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
@@ -515,7 +542,8 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("what", schema.what, "scenario; sweep: its study; diagnosis or calibration: their JSON")
       ->check(CLI::IsMember({"scenario", "sweep", "diagnosis", "calibration"}))
       ->capture_default_str();
-  verb->add_flag("--markdown", schema.markdown, "as tables, which docs/scenario.md, docs/sweep.md and docs/diagnosis.md hold");
+  verb->add_flag("--markdown", schema.markdown,
+                 "as tables, which docs/scenario.md, docs/sweep.md and docs/diagnosis.md hold");
   verb->footer("Example:\n  driftwright schema scenario > scenario.schema.json");
   verb->callback([&] { app::schema(schema); });
 

@@ -10,23 +10,25 @@
 #include <csignal>
 #include <cstdio>
 #include <fstream>
-#include <map>
+#include <limits>
 #include <optional>
 #include <thread>
 
 #include "app/end_request.hpp"
+#include "app/followed_page.hpp"
 #include "app/progress.hpp"
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
 #include "base/option_quantity.hpp"
 #include "base/version.hpp"
+#include "follow/agent_rows.hpp"
+#include "follow/broker_rows.hpp"
 #include "follow/followed_machine.hpp"
 #include "follow/line_source.hpp"
-#include "follow/mqtt_link.hpp"
-#include "follow/mtconnect_agent.hpp"
 #include "follow/record_file.hpp"
 #include "follow/row_text.hpp"
+#include "follow/sparkplug_rows.hpp"
 #include "follow/state_file.hpp"
 #include "follow/watch_json.hpp"
 #include "follow/watch_trial.hpp"
@@ -40,7 +42,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kSaveEvery_s = 1.0;
 constexpr double kLongestPoll_s = 0.25;  // so soon an end that is asked for is noticed
 constexpr double kStale_s = 60.0;        // after so long without a message a channel is missing, at least
-constexpr double kLongestAnswer_s = 2.0;  // of an agent
 constexpr double kFirstSilence_s = 5.0;  // without a line, at least, before one is written without
 
 std::optional<double> quantity(const char* option, const std::string& text, const std::string& unit) {
@@ -58,6 +59,7 @@ std::vector<follow::Session::Model> models_of(const FollowVerbOptions& options, 
   follow::FollowOptions how{.most_rate_um_s = quantity("--slew", options.slew, "um/s"),
                             .hold_s = quantity("--hold", options.hold, "s"),
                             .fade_s = quantity("--fade", options.fade, "s"),
+                            .for_picture = options.serve.has_value(),
                             .watch = options.watch};
   std::vector<follow::Session::Model> models;
   for (const std::string& path : options.models) {
@@ -94,187 +96,82 @@ class Following {
         session_(models_of(options, progress_.listener())) {
     progress_.end();
     (void)session_.wanted();
+    if (!options.serve) return;
+    page_ = std::make_unique<follow::PageServer>(page_address(options), followed_page(options, session_));
+    fmt::print(stderr, "follow: the page is at {}{}\n", page_->url(), options.token.empty() ? "" : "?token=...");
   }
 
   void run() {
     std::signal(SIGPIPE, SIG_IGN);  // a write tells
     const EndRequest end_request;
-    if (!options_.mqtt.empty()) {
-      follow_broker();
-    } else if (!options_.mtconnect.empty()) {
-      follow_agent();
-    } else if (options_.replay.empty()) {
-      follow_input();
-    } else {
+    if (options_.replay.empty())
+      follow_source();
+    else
       replay();
-    }
     if (session_.has_channels()) save();
     tell();
   }
 
  private:
-  void follow_input() {
-    follow::LineSource source(STDIN_FILENO);
+  void follow_source() {
+    const std::unique_ptr<follow::RowSource> source = open_source();
     std::string line;
-    Clock::time_point last = Clock::now();  // a line, or one written without
+    Clock::time_point last = Clock::now();  // a row that was taken, or a line written without
     while (is_read_ && !EndRequest::is_made()) {
-      const auto got = source.next(line, kLongestPoll_s);
-      if (got == follow::LineSource::Got::kEnd) break;
-      if (got == follow::LineSource::Got::kLine) {
-        if (take(line)) {
-          last = Clock::now();
-          is_silent_ = false;
-        }
+      const auto got = source->next(line, kLongestPoll_s);
+      if (got == follow::RowSource::Got::kEnd) break;
+      if (got == follow::RowSource::Got::kLine && take(line)) {
+        last = Clock::now();
+        is_silent_ = false;
       }
       tell_silence(last);
       if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
     }
   }
 
-  /// A channel and where its numbers come from, as --topic says it.
-  struct Source {
-    std::string header, from;
-    std::string text = {};  ///< heard last
-    std::optional<Clock::time_point> at = {};
-  };
-  [[nodiscard]] std::vector<Source> sources() const {
-    std::vector<Source> list;
-    for (const std::string& given : options_.topics) {
-      const std::size_t equals = given.find('=');
-      if (equals == std::string::npos || equals == 0 || equals + 1 == given.size())
-        throw InputError(fmt::format("--topic '{}': CHANNEL=TOPIC is wanted, such as t01_degC=shop/mill/t01", given));
-      list.push_back({given.substr(0, equals), given.substr(equals + 1)});
-    }
-    return list;
-  }
-
-  /// Makes a row of what was heard last of each channel, by this computer's clock.
-  void take_row_of(const std::vector<Source>& heard, double stale_s) {
-    std::vector<std::string> cells;
-    for (const Source& h : heard) cells.push_back(h.at && seconds_since(*h.at) < stale_s ? cell_of(h.text) : "");
-    const double now_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-    take(fmt::format("{:.3f},{}", now_s, fmt::join(cells, ",")));
-  }
-
-  /// When a row is to be made next; of the time in which the computer was asleep none are made up.
-  static Clock::time_point next_due(Clock::time_point due, double every_s) {
-    due += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(every_s));
-    return std::max(due, Clock::now());
-  }
-
-  static std::string header_of(const std::vector<Source>& heard) {
-    std::vector<std::string> headers;
-    for (const Source& h : heard) headers.push_back(h.header);
-    return fmt::format("time_s,{}", fmt::join(headers, ","));
-  }
-
-  void follow_broker() {
-    constexpr const char* kWill = R"({"state":"off","why":"follow has ended without a word","axes":{}})";
-    std::vector<Source> heard = sources();
-    if (heard.empty() == options_.from.empty())
-      throw InputError("--mqtt wants --from TOPIC, whose messages are rows, or --topic CHANNEL=TOPIC for each channel");
-    const bool makes_rows = !heard.empty();
+  std::unique_ptr<follow::RowSource> open_source() {
     const double every_s = *quantity("--every", options_.every, "s"), stale_s = std::max(kStale_s, 5.0 * every_s);
+    std::vector<follow::ChannelOrigin> origins = follow::read_origins(options_.topics);
+    const bool makes_rows = !origins.empty();
+    if (!options_.mtconnect.empty()) {
+      if (!makes_rows) throw InputError("--mtconnect wants --topic CHANNEL=ITEM for each channel, a data item's id or name");
+      const auto say = [where = options_.mtconnect](const std::string& words) {
+        (void)std::fputs(fmt::format("{}: {}\n", where, words).c_str(), stderr);
+      };
+      if (options_.sample)
+        return std::make_unique<follow::SampleRows>(
+            options_.mtconnect, follow::HeardValues(std::move(origins), std::numeric_limits<double>::infinity()), every_s,
+            say);
+      return std::make_unique<follow::CurrentRows>(options_.mtconnect, follow::HeardValues(std::move(origins), stale_s),
+                                                   every_s, say);
+    }
+    if (options_.mqtt.empty()) return std::make_unique<follow::LineSource>(STDIN_FILENO);
+    std::optional<follow::SparkplugNode> node;
+    if (!options_.sparkplug.empty()) node.emplace(follow::read_sparkplug_address(options_.sparkplug));
+    if (node ? !makes_rows : makes_rows != options_.from.empty())
+      throw InputError(
+          "--mqtt wants --from TOPIC, whose messages are rows, or --topic CHANNEL=TOPIC for each channel, or --sparkplug "
+          "GROUP/NODE with --topic CHANNEL=METRIC for each channel");
     std::vector<std::string> topics;
-    for (const Source& h : heard) topics.push_back(h.from);
+    for (const follow::ChannelOrigin& o : origins) topics.push_back(o.from);
+    constexpr const char* kWill = R"({"state":"off","why":"follow has ended without a word","axes":{}})";
     link_ = std::make_unique<follow::MqttLink>(follow::read_mqtt_address(options_.mqtt),
-                                               makes_rows ? topics : std::vector{options_.from}, options_.to, kWill);
-    if (makes_rows) take(header_of(heard));
-    Clock::time_point last = Clock::now(), due = last;
-    follow::MqttLink::Message message;
-    while (is_read_ && !EndRequest::is_made()) {
-      const double until_due_s =
-          makes_rows ? std::max(0.0, std::chrono::duration<double>(due - Clock::now()).count()) : kLongestPoll_s;
-      if (link_->next(message, std::min(kLongestPoll_s, until_due_s))) {
-        for (Source& h : heard) {
-          if (h.from != message.topic) continue;
-          h.text = message.payload;
-          h.at = Clock::now();
-        }
-        if (!makes_rows && take_lines(message.payload)) {
-          last = Clock::now();
-          is_silent_ = false;
-        }
-      }
-      if (makes_rows && Clock::now() >= due) {
-        due = next_due(due, every_s);
-        take_row_of(heard, stale_s);
-      } else if (!makes_rows) {
-        tell_silence(last);
-      }
-      if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
-    }
-  }
-
-  /// Asks an agent for what it tells now, row by row. While it does not answer, what it said last holds until it is stale.
-  void follow_agent() {
-    std::vector<Source> heard = sources();
-    if (heard.empty()) throw InputError("--mtconnect wants --topic CHANNEL=ITEM for each channel, a data item's id or name");
-    const double every_s = *quantity("--every", options_.every, "s"), stale_s = std::max(kStale_s, 5.0 * every_s);
-    follow::MtconnectAgent agent(options_.mtconnect);
-    take(header_of(heard));
-    bool has_answered = false, is_away = false;
-    for (Clock::time_point due = Clock::now(); is_read_ && !EndRequest::is_made();) {
-      if (Clock::now() < due) {
-        std::this_thread::sleep_for(std::min<Clock::duration>(due - Clock::now(), std::chrono::milliseconds(100)));
-        continue;
-      }
-      due = next_due(due, every_s);
-      try {
-        const std::map<std::string, std::string> told = agent.current(std::min(every_s, kLongestAnswer_s));
-        if (!has_answered) require_items(heard, told);
-        for (Source& h : heard) {
-          const auto item = told.find(h.from);
-          h.at.reset();
-          if (item == told.end() || item->second.empty()) continue;  // UNAVAILABLE
-          h.text = item->second;
-          h.at = Clock::now();
-        }
-        if (is_away) fmt::print(stderr, "{} answers again\n", options_.mtconnect);
-        has_answered = true;
-        is_away = false;
-      } catch (const RangeError& e) {
-        if (!is_away) fmt::print(stderr, "warning: {}: {}; it is asked again every {:g} s\n", options_.mtconnect, e.what(), every_s);
-        is_away = true;
-      }
-      if (has_answered) take_row_of(heard, stale_s);
-      if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
-    }
-  }
-
-  void require_items(const std::vector<Source>& heard, const std::map<std::string, std::string>& told) const {
-    std::vector<std::string> known;
-    for (const auto& [item, value] : told) known.push_back(item);
-    for (const Source& h : heard) {
-      if (!told.contains(h.from))
-        throw InputError(fmt::format("--topic {}={}: the agent has no data item of this id or name; it has {}.{}", h.header, h.from,
-                                     fmt::join(known, ", "), did_you_mean(h.from, known)));
-    }
-  }
-
-  /// A message as a cell: a number, or something that is none.
-  static std::string cell_of(const std::string& text) {
-    try {
-      return fmt::format("{:.17g}", follow::stream_number(text, '.'));
-    } catch (const RangeError&) {
-      return "?";
-    }
-  }
-
-  /// @return whether a row was taken
-  bool take_lines(const std::string& text) {
-    bool is_taken = false;
-    std::size_t begin = 0;
-    while (begin < text.size()) {
-      const std::size_t end = std::min(text.find('\n', begin), text.size());
-      is_taken |= take(text.substr(begin, end - begin));
-      begin = end + 1;
-    }
-    return is_taken;
+                                               node         ? node->topics()
+                                               : makes_rows ? topics
+                                                            : std::vector{options_.from},
+                                               options_.to, kWill);
+    if (node)
+      return std::make_unique<follow::SparkplugRows>(
+          *link_, *std::move(node), follow::HeardValues(std::move(origins), stale_s), every_s,
+          [](const std::string& words) { (void)std::fputs(fmt::format("Sparkplug: {}\n", words).c_str(), stderr); });
+    if (makes_rows)
+      return std::make_unique<follow::TopicRows>(*link_, follow::HeardValues(std::move(origins), stale_s), every_s);
+    return std::make_unique<follow::MessageRows>(*link_);
   }
 
   /// Writes a line without a row where none was taken for long. @param last  row taken, or line written so
   void tell_silence(Clock::time_point& last) {
+    if (page_) page_->feed().hand_on();
     if (!session_.has_channels()) return;
     const double silent_s = seconds_since(last);
     if (silent_s < (is_silent_ ? 1.0 : std::max(kFirstSilence_s, 3.0 * session_.usual_step_s()))) return;
@@ -335,6 +232,7 @@ class Following {
 
   void begin() {
     session_.begin(text_.channels());
+    if (page_) page_->begin(text_.channels());
     const bool goes_on = !options_.state.empty() && follow::resume_from(options_.state, session_);
     if (goes_on) (void)std::fputs(fmt::format("follow: goes on from {}\n", options_.state).c_str(), stderr);
     if (!options_.record.empty())
@@ -343,6 +241,7 @@ class Following {
   }
 
   void write(const follow::FollowLine& said) {
+    if (page_) page_->feed().offer(page_row(session_, said));
     const std::string text = follow::line_text(said) + "\n";
     is_read_ = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
     if (!is_read_ && errno != EPIPE) throw InputError("standard output: not all could be written; is the disk full?");
@@ -385,6 +284,7 @@ class Following {
   bool is_silent_ = false;
   std::int64_t n_unheard_ = 0;
   std::unique_ptr<follow::MqttLink> link_;
+  std::unique_ptr<follow::PageServer> page_;
 };
 
 }  // namespace
@@ -427,6 +327,7 @@ void follow_stream(const FollowVerbOptions& options) {
   if (!options.calibrate_watch.empty()) return calibrate_watch(options);
   if (options.pace < 0.0) throw InputError("--pace: 0 (as fast as it goes) or more is wanted");
   if (options.pace > 0.0 && options.replay.empty()) throw InputError("--pace goes with --replay FILE");
+  if (options.serve) (void)page_address(options);  // before a machine is meshed
   Following(options).run();
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "app/results.hpp"
+#include "app/twin_network.hpp"
 #include "app/verbs.hpp"
 #include "base/file_bytes.hpp"
 #include "base/version.hpp"
@@ -63,21 +64,6 @@ output::TwinCorrection correction_of(const Scenario& scenario, const scenarios::
           .formulas = std::move(fitted.regressions),
           .resolution_K = study.sensor_resolution_K,
           .period_um = study.encoder_period_um};
-}
-
-output::TwinNetwork network_of(const effects::HeatBalance& balance, Eigen::MatrixXd temperature) {
-  output::TwinNetwork network{.temperature = std::move(temperature)};
-  for (const effects::LumpedNode& node : balance.nodes) network.node.push_back(node.name);
-  network.node.emplace_back(effects::kHallName);
-  const auto index_of = [&](const std::string& name) {
-    return static_cast<int>(std::find(network.node.begin(), network.node.end(), name) - network.node.begin());
-  };
-  for (const effects::Exchange& e : balance.exchanges) {
-    const std::pair<int, int> link{index_of(e.body.name), index_of(e.medium_K ? effects::kHallName : e.surrounding)};
-    if (!e.medium_K && std::find(network.link.begin(), network.link.end(), link) == network.link.end())
-      network.link.push_back(link);
-  }
-  return network;
 }
 
 void write_whole(const fs::path& target, const std::string& text) {

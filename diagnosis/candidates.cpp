@@ -97,6 +97,7 @@ void add_stop(std::vector<Candidate>& list, const Event::Window& seen,
     Variant stop = *of_run;
     stop.trial_x = stop.knobs[0].x((seen.end_s - seen.begin_s) / 60.0);
     stop.grid = {{stop.knobs[1].x(seen.begin_s)}};
+    stop.seen = true;
     const auto is_known = [&](const Variant& v) {  // seen in another body
       return v.in == stop.in && v.grid.size() == 1 && std::abs(v.grid[0][0] - stop.grid[0][0]) < kSameTime_s;
     };
@@ -116,6 +117,7 @@ std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidat
     Variant v{e.doubt.law, knobs_of(e.doubt), e.doubt.trial, e.doubt.grid};
     v.price_nats = e.price_nats;
     v.happens = true;
+    v.seen = true;
     v.in = e.doubt.added.front().in;
     Candidate& of = candidate(list, e.doubt.finding, e.doubt.where);
     of.variants.push_back(std::move(v));

@@ -12,6 +12,19 @@ namespace {
 
 constexpr Eigen::Index kDraws = 200;
 constexpr std::uint64_t kSeed = 1957;
+constexpr double kNone = -1e300;  // evidence of what no reading tells of
+constexpr double kNever = 1e300;
+constexpr double kUsual = 0.2;  // share of faultless machines: well inside what 200 draws tell
+
+/// By its mean and spread.
+Chance gumbel_of(const Eigen::RowVectorXd& best) {
+  const double mean = best.mean(), deviation = std::sqrt((best.array() - mean).square().sum() / double(kDraws - 1));
+  Chance chance;
+  chance.spread = std::max(0.3, deviation * std::sqrt(6.0) / std::numbers::pi);
+  chance.n_simulated = static_cast<int>(kDraws);
+  chance.mode = mean - std::numbers::egamma * chance.spread;
+  return chance;
+}
 
 }  // namespace
 
@@ -23,8 +36,14 @@ double Chance::gain_at(double share) const {
   return mode - spread * std::log(-std::log1p(-share));
 }
 
-Chance chance_of(const Fitter& fitter, const std::vector<Candidate>& candidates, const std::vector<Signature>& columns,
-                 const Fit& at) {
+double rarity(double gain, double usual) {
+  return std::max(0.0, gain - usual - std::log(kUsual));
+}
+
+Chances chances_of(const Fitter& fitter, const std::vector<Candidate>& candidates, const std::vector<Signature>& columns,
+                   const Fit& at) {
+  Chances chances{.best = {}, .usual = std::vector<double>(candidates.size(), kNever), .rarest = {}};
+  if (columns.empty()) return chances;
   const Eigen::Index n = fitter.comparison().n_condensed();
   const Eigen::MatrixXd slopes = fitter.comparison().condensed(fitter.nuisance_slopes());
   const Eigen::VectorXd sd = fitter.nuisance_sd();
@@ -44,10 +63,10 @@ Chance chance_of(const Fitter& fitter, const std::vector<Candidate>& candidates,
     const Variant& v = candidate.variants[s.variant];
     const double square = projection.square(s.column), prior_sd = v.knobs[0].prior_sd;
     const Eigen::RowVectorXd seen = s.column.transpose() * rest;
-    const double paid = price + v.price_nats + std::log(static_cast<double>(v.grid.size() * candidate.variants.size()));
+    const double paid = v.price_nats + std::log(static_cast<double>(v.grid.size() * candidate.variants.size()));
     auto row = gains.row(static_cast<Eigen::Index>(i));
     if (!(square > 1e-12)) {
-      row.setConstant(-1e300);
+      row.setConstant(kNone);
     } else if (v.all_or_nothing) {
       row = (seen.array() * v.trial_x - 0.5 * square * v.trial_x * v.trial_x - paid).matrix();
     } else {
@@ -55,14 +74,28 @@ Chance chance_of(const Fitter& fitter, const std::vector<Candidate>& candidates,
       row = (0.5 * seen.array().square() / (square + 1.0 / (prior_sd * prior_sd)) - occam - paid).matrix();
     }
   }
-  Chance chance;
-  if (columns.empty()) return chance;
-  const Eigen::RowVectorXd best = gains.colwise().maxCoeff();
-  const double mean = best.mean(), deviation = std::sqrt((best.array() - mean).square().sum() / double(kDraws - 1));
-  chance.spread = std::max(0.3, deviation * std::sqrt(6.0) / std::numbers::pi);
-  chance.n_simulated = static_cast<int>(kDraws);
-  chance.mode = mean - std::numbers::egamma * chance.spread;
-  return chance;
+  chances.best = gumbel_of((gains.colwise().maxCoeff().array() - price).matrix());
+  // each candidate by its best law
+  const auto n_candidates = static_cast<Eigen::Index>(candidates.size());
+  Eigen::MatrixXd each = Eigen::MatrixXd::Constant(n_candidates, kDraws, kNone);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const Signature& s = columns[i];
+    const Variant& v = candidates[s.candidate].variants[s.variant];
+    if (v.seen || v.all_or_nothing) continue;
+    auto row = each.row(static_cast<Eigen::Index>(s.candidate));
+    row = row.cwiseMax(gains.row(static_cast<Eigen::Index>(i)));
+  }
+  Eigen::RowVectorXd rarest = Eigen::RowVectorXd::Zero(kDraws);
+  for (Eigen::Index c = 0; c < n_candidates; ++c) {
+    std::vector<double> sorted(each.row(c).begin(), each.row(c).end());
+    std::sort(sorted.begin(), sorted.end());
+    const double usual = sorted[static_cast<std::size_t>((1.0 - kUsual) * static_cast<double>(kDraws))];
+    if (!(usual > kNone)) continue;
+    chances.usual[static_cast<std::size_t>(c)] = usual;
+    for (Eigen::Index d = 0; d < kDraws; ++d) rarest[d] = std::max(rarest[d], rarity(each(c, d), usual));
+  }
+  chances.rarest = gumbel_of(rarest);
+  return chances;
 }
 
 }  // namespace driftwright::diagnosis

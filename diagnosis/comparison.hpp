@@ -88,7 +88,7 @@ class Comparison {
 /// What no reading is better than, white and slowly coming and going (20 min): errors of the reduced model, of integrators, of any instrument.
 struct NoiseFloor {
   double white_K = 2e-3, white_m = 5e-9, white_rad = 5e-8;
-  double slow_K = 4e-3, slow_m = 1e-8, slow_rad = 1e-7;
+  double slow_K = 2e-3, slow_m = 5e-9, slow_rad = 5e-8;
 };
 
 /// Noise of each channel, from what measured runs and a prediction differ by; the least there is where a channel has no readings.

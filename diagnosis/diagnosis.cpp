@@ -273,8 +273,10 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   const std::vector<Candidate>& list = d.search.candidates;
   d.n_candidates = static_cast<int>(list.size());
   listener.begin("one cause without a name");
-  auto unnamed =
-      listener.wants_end() ? std::nullopt : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
+  const bool is_faint = !d.search.findings.empty() && d.search.findings.front().faint_chance.has_value();
+  auto unnamed = listener.wants_end() || is_faint
+                     ? std::nullopt
+                     : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
   if (unnamed && unnamed->log_evidence_gain > kUnnamed) {
     if (!d.unexplained) d.unexplained = explained_better(fitter, d.search, *unnamed, d.noise);
     d.unexplained->one_cause = std::move(unnamed);

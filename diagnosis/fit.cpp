@@ -202,14 +202,23 @@ Fitter::Courses Fitter::courses(const TwinState& state, Twin::Workspace& workspa
 Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
                          const Courses& about, std::size_t which, Twin::Workspace& workspace) const {
   const TwinState here = state(hypothesis, x);
-  for (double share : {1.0, -1.0, 0.1, -0.1}) {  // a machine that is about to run away has a solution on one side only
-    const double step = share * scatter_[which].step;
+  const auto beside = [&](double by) {
     Eigen::VectorXd turned = x;
-    turned[static_cast<Eigen::Index>(which)] += step;
-    Prediction difference;
-    if (!has_solution([&] { difference = predict_near(about, here, base, hypothesis, turned, workspace); })) continue;
-    for (std::size_t r = 0; r < runs_.size(); ++r) difference[r] = (difference[r] - base[r]) / step;
-    return difference;
+    turned[static_cast<Eigen::Index>(which)] += by;
+    Prediction p;
+    return has_solution([&] { p = predict_near(about, here, base, hypothesis, turned, workspace); }) ? p : Prediction{};
+  };
+  // From both sides: where capacities, conductances and heats change alike nothing does, and the bends of one-sided slopes, which do not cancel, would say that
+  // this is known to a hundredth of what it is.
+  for (double share : {1.0, 0.1}) {  // a machine that is about to run away has a solution on one side only
+    const double step = share * scatter_[which].step;
+    Prediction above = beside(step), below = beside(-step);
+    if (above.empty() && below.empty()) continue;
+    const double width = (above.empty() ? 0.0 : step) + (below.empty() ? 0.0 : step);
+    if (above.empty()) above = base;
+    if (below.empty()) below = base;
+    for (std::size_t r = 0; r < runs_.size(); ++r) above[r] = (above[r] - below[r]) / width;
+    return above;
   }
   throw SolveError(fmt::format("the machine has no solution beside {} of {}", scatter_[which].name, scatter_[which].where));
 }
@@ -323,21 +332,27 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
 
   Eigen::MatrixXd square(n, n);
   f.slopes.resize(f.residual.size(), n_k);
-  const auto differentiate = [&] {
+  const auto differentiate = [&](bool from_both_sides) {
     const Eigen::VectorXd base = comparison_->measured() - f.residual;
     const TwinState here = state(hypothesis, f.x);
     for (Eigen::Index k = 0; k < n_k; ++k) {
       f.slopes.col(k).setZero();
       if (!smooth[static_cast<std::size_t>(k)]) continue;
       const Knob& knob = *knobs[static_cast<std::size_t>(k)];
-      Eigen::VectorXd x = f.x;
-      double step = knob.step;
-      if (knob.value(x[n_n + k] + step) == knob.value(x[n_n + k])) step = -step;  // at its bound
-      x[n_n + k] += step;
-      Prediction kept = knob.reading_only ? responses : Prediction{};
-      const Prediction turned = knob.reading_only ? predict(hypothesis, x, workspace, &kept, true)
-                                                  : predict_beside(here, f.prediction, hypothesis, x, workspace);
-      f.slopes.col(k) = (comparison_->whitened(turned) - base) / step;
+      const auto beside = [&](double by) {
+        Eigen::VectorXd x = f.x;
+        x[n_n + k] += by;
+        Prediction kept = knob.reading_only ? responses : Prediction{};
+        const Prediction turned = knob.reading_only ? predict(hypothesis, x, workspace, &kept, true)
+                                                    : predict_beside(here, f.prediction, hypothesis, x, workspace);
+        return comparison_->whitened(turned);
+      };
+      const auto is_bound = [&](double by) { return knob.value(f.x[n_n + k] + by) == knob.value(f.x[n_n + k]); };
+      const double step = is_bound(knob.step) ? -knob.step : knob.step;
+      if (from_both_sides && !is_bound(-step) &&
+          has_solution([&] { f.slopes.col(k) = (beside(0.5 * step) - beside(-0.5 * step)) / step; }))
+        continue;
+      f.slopes.col(k) = (beside(step) - base) / step;
     }
     square.topLeftCorner(n_n, n_n) = *nuisance_squares;
     square.topRightCorner(n_n, n_k).noalias() = nuisance_slopes->transpose() * f.slopes;
@@ -351,7 +366,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   }
   const bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
   for (int iteration = 0; iteration < kMostIterations + n_retakes; ++iteration) {
-    differentiate();
+    differentiate(false);
     Eigen::MatrixXd hessian = square;
     hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
     Eigen::VectorXd gradient(n);
@@ -401,7 +416,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     }
     if (before - f.misfit < kConverged && !retake(0.5 * gradient.dot(step))) break;
   }
-  differentiate();
+  differentiate(true);
   Eigen::MatrixXd hessian = square;
   hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
   const Eigen::LLT<Eigen::MatrixXd> factor(hessian);

@@ -120,6 +120,10 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     if (result.findings[c].is_named && held.doubt[c].empty()) named |= one;
   }
   held.why_not_written = held.doubt;
+  for (std::size_t c = 0; c < n_claims; ++c) {
+    if (result.findings[c].faint_chance && held.doubt[c].empty())
+      held.doubt[c] = held.why_not_written[c] = "its evidence is too little for more than a suspicion";
+  }
   kept = 0;
   for (std::size_t c = 0; c < n_claims; ++c) kept |= held.doubt[c].empty() ? 1U << c : 0U;
   // What comes again and again at times that nobody knows ahead is true of these records, and of no use for those to come.

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kHallKnots_s = 600.0;      // at the most
 constexpr double kHallKnown_K = 0.003;      // what is left of a course matters to nobody
+constexpr double kMostNoise_K = 0.1;        // that a thermometer in the hall has
 constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
 constexpr int kMostColumns = 6;             // that nobody drives the machine by; each may drive it at each body
 constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
@@ -101,7 +102,8 @@ TimeSeries with_few_knots(const TimeSeries& s, double within) {
 }
 
 /// A recorded hall without its noise, and with all of its course: knots as far apart as what they miss is noise, at each reading where that is what it takes. A
-/// machine that starts as warm as the hall would else start wrong. One reading at least.
+/// machine that starts as warm as the hall would else start wrong. What changes from reading to reading by more than thermometers err by is air (wind, a door), and warms and cools
+/// what it meets. One reading at least.
 TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
   Readings r;
   for (std::size_t i = 0; i < value.size(); ++i) {
@@ -109,14 +111,16 @@ TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>
     r.time_s.push_back(time_s[i]);
     r.value.push_back(value[i]);
   }
-  const double enough_K = std::max(kHallKnown_K, 1.1 * white_noise(r)), length_s = r.time_s.back() - r.time_s.front();
+  const double noise_K = white_noise(r);
+  if (noise_K > kMostNoise_K) return {r.time_s, r.value};
+  const double enough_K = std::max(kHallKnown_K, 1.1 * noise_K), length_s = r.time_s.back() - r.time_s.front();
   const int n_readings = static_cast<int>(r.time_s.size());
   for (int n_pieces = std::max(1, static_cast<int>(length_s / kHallKnots_s)); 3 * n_pieces <= n_readings; n_pieces *= 2) {
     const TimeSeries series = on_knots(r, n_pieces);
     if (rms_beside(r, series) <= enough_K) return with_few_knots(series, 2.0 * kHallKnown_K);
   }
   return n_readings < 3 ? on_knots(r, 1)
-                        : with_few_knots({r.time_s, r.value}, std::max(2.0 * kHallKnown_K, 2.0 * white_noise(r)));
+                        : with_few_knots({r.time_s, r.value}, std::max(2.0 * kHallKnown_K, 2.0 * noise_K));
 }
 
 /// Most rows in a row at a value.

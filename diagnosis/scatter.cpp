@@ -7,10 +7,10 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kHall_K = 0.3;
-constexpr double kLargestStep = 0.1;  // of a logarithm, for differences: half of what it is known to, but never more
+constexpr double kLargestStep = 0.05;  // of a logarithm, for differences: a quarter of what it is known to, but never more
 
 double step_of(double known_to) {
-  return std::min(0.5 * known_to, kLargestStep);
+  return std::min(0.25 * known_to, kLargestStep);
 }
 
 /// How well heat capacity, conductivity or expansion of a body is known.

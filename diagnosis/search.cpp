@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "diagnosis/chance.hpp"
 #include "diagnosis/event_candidates.hpp"
+#include "diagnosis/faint_cause.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/rivals.hpp"
 
@@ -21,7 +22,7 @@ constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a 
 constexpr int kMostTurns = 6;
 constexpr double kSettled = 0.05;  // of Φ
 constexpr int kMostTurnsOfRival = 3;
-constexpr double kNear = 12.0;  // nats: what fits on may make up for
+constexpr double kNear = 12.0;             // nats: what fits on may make up for
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
@@ -276,7 +277,9 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   listener.begin(fmt::format("signatures of {} candidates", candidates.size()));
   std::vector<Signature> columns = signatures(fitter, candidates, laws_of(candidates), {}, weighed_at, listener);
   result.scores = scores(fitter, candidates, columns, {}, weighed_at);
-  result.chance = chance_of(fitter, candidates, columns, weighed_at);
+  Chances chances = chances_of(fitter, candidates, columns, weighed_at);
+  result.chance = chances.best;
+  result.rarest = chances.rarest;
   result.bars = bars_of(result.chance, options);
   const auto must_gain = [&](std::size_t claim) { return result.bars.suspected.at(claim); };  // counted from 0
   double best_value = best_fit.log_evidence;
@@ -394,9 +397,25 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     result.findings.push_back(std::move(finding));
     ++i;
   }
+  if (best.empty() && options.most_effects > 0 && !listener.wants_end()) {
+    if (is_bent) {
+      settle_well(fitter, {}, best_fit);
+      columns = signatures(fitter, candidates, laws_of(candidates), {}, best_fit, listener);
+      result.scores = scores(fitter, candidates, columns, {}, best_fit);
+      chances = chances_of(fitter, candidates, columns, best_fit);
+      result.rarest = chances.rarest;
+      result.without = best_fit;
+    }
+    const NothingFound nothing{fitter, candidates, result.scores, chances, best_fit};
+    if (std::optional<FaintCause> faint = faint_cause(nothing, options.wrongly_suspected_faint)) {
+      best = {faint->finding.claim};
+      best_fit = std::move(faint->fit);
+      result.findings = {std::move(faint->finding)};
+    }
+  }
   for (Finding& f : result.findings) {
     const bool wants_more = best.size() > 1 || f.claim.price_nats > kRareOrChosen;
-    f.is_named = f.log_evidence_gain >= (wants_more ? result.bars.named_beside : result.bars.named);
+    f.is_named = !f.faint_chance && f.log_evidence_gain >= (wants_more ? result.bars.named_beside : result.bars.named);
   }
   result.candidates = std::move(candidates);
   result.hypothesis = std::move(best);

@@ -1,6 +1,7 @@
 #pragma once
 // Which effects do the data want? Forward, with exchange and pruning, by evidence.
 
+#include <optional>
 #include <set>
 
 #include "diagnosis/rivals.hpp"
@@ -23,6 +24,7 @@ struct SearchOptions {
   int most_effects = 3;
   /// Share of faultless machines at which a cause may be suspected, and named.
   double wrongly_suspected = 0.01, wrongly_named = 1e-4;
+  double wrongly_suspected_faint = 0.005;  ///< the same for a cause whose evidence is too little
   /// Evidence [nats] that a second, third, ... claim must bring at least, beyond the logarithm of how many candidates there are: chance is judged for machines
   /// without fault, a fault that is not quite of a law of the catalogue leaves something, and few machines are wrong in three ways.
   std::vector<double> least_gain = {0.5, 3.0, 12.0};
@@ -53,6 +55,8 @@ struct Finding {
   std::vector<Alternative> alternatives = {};
   Odds odds = {};
   double share = 1.0;  ///< of the odds, its own
+  /// Share of faultless machines at which some candidate is as rare: of a cause that is suspected by that, its evidence being too little (faint_cause.hpp).
+  std::optional<double> faint_chance = {};
 };
 
 struct SearchResult {
@@ -62,6 +66,7 @@ struct SearchResult {
   Fit without;  ///< scatter alone
   std::vector<Finding> findings;
   Chance chance;              ///< what the best candidate would have with nothing wrong
+  Chance rarest;              ///< how rare the rarest would be (chance.hpp)
   Bars bars;                  ///< that were held to
   std::vector<Score> scores;  ///< of all candidates on top of scatter alone
 };

@@ -100,16 +100,16 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
     const double ss = projection.square(s), sr = s.dot(projection.rest), sd = v.knobs[0].prior_sd;
     if (!(ss > 1e-12)) continue;
     double x = v.all_or_nothing ? v.trial_x : sr / (ss + 1.0 / (sd * sd));
-    double gain = v.all_or_nothing ? sr * x - 0.5 * ss * x * x
-                                   : 0.5 * sr * sr / (ss + 1.0 / (sd * sd)) - 0.5 * std::log1p(sd * sd * ss);
+    double fall = v.all_or_nothing ? sr * x - 0.5 * ss * x * x : 0.5 * sr * sr / (ss + 1.0 / (sd * sd));
     const Knob& size = v.knobs[0];
     if (size.scale == Knob::Scale::kLinear && size.x(size.value(x)) != x) {  // out of range: at the bound
       x = size.x(size.value(x));
-      gain = sr * x - 0.5 * ss * x * x - 0.5 * std::log1p(sd * sd * ss);
+      fall = sr * x - 0.5 * ss * x * x;
     }
+    const double gain = fall - (v.all_or_nothing ? 0.0 : 0.5 * std::log1p(sd * sd * ss));
     if (size.scale == Knob::Scale::kLog) x = std::clamp(x, -2.0, 2.0);
     of_each[i] = {signature.candidate, signature.variant, gain - v.price_nats - std::log(static_cast<double>(v.grid.size())),
-                  signature.shape};
+                  fall, signature.shape};
     of_each[i].start[0] = x;
     if (const double grown = x / v.trial_x; size.scale == Knob::Scale::kLinear && grown > kLeastGrowth) {
       for (std::size_t k = 1; k < v.knobs.size(); ++k) {

@@ -27,6 +27,7 @@ struct Law {
 struct Score {
   std::size_t candidate = 0, variant = 0;
   double gain = -1e300;   ///< nats
+  double fall = 0.0;      ///< of Φ [nats]: how much better it fits, nothing paid
   Eigen::VectorXd start;  ///< x of the claim's knobs
 };
 

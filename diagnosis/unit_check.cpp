@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kWithin = 5.0;         // of a thousand
 constexpr double kFollows = 0.6;        // correlation of readings with the twin
+constexpr double kTurned = 0.3;         // of the readings: what minus the twin leaves of them
 constexpr double kLeastMoved_m = 1e-6;  // of the twin: where it stands still nothing can be said
 
 struct Pairs {
@@ -59,6 +60,12 @@ std::optional<std::string> displacement_finding(const MeasuredChannel& c, const 
   const double read_m = rms(read), model_m = rms(model);
   if (!(model_m > kLeastMoved_m && read_m > 0.0)) return std::nullopt;
   if (!(std::abs((read * model).mean()) > kFollows * read_m * model_m)) return std::nullopt;
+  if (rms(read + model) < kTurned * read_m) {
+    return fmt::format(
+        "{}_{} looks turned in sign: it runs against what the scenario says, and minus its readings would meet that to "
+        "{:.0f} %; it is left out until its sign, or the scenario's, is mended",
+        c.name, c.recorded_unit, 100.0 * rms(read + model) / read_m);
+  }
   for (const auto& [times, meant] : {std::pair{1e-3, "um"}, std::pair{1e3, "mm"}}) {
     const double ratio = times * read_m / model_m;
     if (ratio > kWithin || ratio < 1.0 / kWithin) continue;

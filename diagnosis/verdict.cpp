@@ -11,6 +11,11 @@ namespace {
 
 constexpr double kSureCause = 20.0;  // nats: no smaller rest hides it
 constexpr int kSomeSearches = 2;
+constexpr double kWorthSaying = 1.5;  // sigmas of its prior
+constexpr std::size_t kMostSaid = 3;
+constexpr const char* kFaint =
+    "its evidence does not pay for all that it might have been, though chance seldom offers as much";
+constexpr double kOpen = 100.0;
 constexpr double kRestOfCause = 0.35;  // of what the causes explain: more left, and they are not what is wrong
 
 std::string words(const Cause& c) {
@@ -33,6 +38,23 @@ std::string words(const Unnamed& u) {
                      u.log_evidence_gain,
                      u.instead_of.size() > 1 ? fmt::format("{} named ones", u.instead_of.size()) : "a named one", what,
                      u.where, course, u.follows == "nothing" ? "" : " " + u.follows);
+}
+
+/// The scenario's numbers that were fitted furthest from what it says, in sigmas; empty: none has gone far.
+std::string moved_words(const Diagnosis& d) {
+  std::vector<const Estimate*> far;
+  for (const Estimate& e : d.calibrated) {
+    if (std::abs(e.deviation) > kWorthSaying) far.push_back(&e);
+  }
+  std::sort(far.begin(), far.end(),
+            [](const Estimate* a, const Estimate* b) { return std::abs(a->deviation) > std::abs(b->deviation); });
+  if (far.size() > kMostSaid) far.resize(kMostSaid);
+  std::vector<std::string> list;
+  for (const Estimate* e : far) {
+    list.push_back(fmt::format("{} at {:.3g}{} ({:+.1f} sigmas)", e->name, e->value, e->unit == "1" ? "" : " " + e->unit,
+                               e->deviation));
+  }
+  return list.empty() ? "" : fmt::format(" Furthest from what the scenario says are fitted {}.", fmt::join(list, ", "));
 }
 
 /// "in the temperature t_head"
@@ -91,8 +113,9 @@ std::string reason_of(const Diagnosis& d) {
   switch (d.verdict) {
     case Verdict::kConsistent:
       return fmt::format(
-          "The scenario's numbers, within what is known of them, explain the measurement; none of {} candidates is wanted.",
-          d.n_candidates);
+          "The scenario's numbers, within what is known of them, explain the measurement; none of {} candidates is "
+          "wanted.{}",
+          d.n_candidates, moved_words(d));
     case Verdict::kUnexplained:
       if (d.causes.empty()) {
         return fmt::format(
@@ -115,19 +138,30 @@ std::string reason_of(const Diagnosis& d) {
   }
 }
 
+/// Whether nothing but its sign is known of how large a cause is.
+bool is_size_open(const Cause& cause) {
+  if (cause.parameters.empty()) return false;
+  const Estimate& size = cause.parameters.front();
+  return size.low > 0.0 && size.high > kOpen * size.low;
+}
+
 void give_standing(Diagnosis& d, const HeldOut& held) {
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     Cause& cause = d.causes[c];
     cause.why_not_written = d.written.why_not[c];
     cause.is_written = cause.why_not_written.empty();
     cause.kept_out_nats = held.claim_nats[c];
-    cause.chance = d.search.chance.share_above(cause.log_evidence_gain);
+    const Finding& finding = d.search.findings[c];
+    cause.chance = finding.faint_chance.value_or(d.search.chance.share_above(cause.log_evidence_gain));
     cause.n_searched = held.n_searched;
     if (held.n_searched > 0) cause.n_again = held.n_again[c];
-    if (!d.search.findings[c].is_named) continue;
+    if (finding.faint_chance) cause.doubt = kFaint;
+    if (!finding.is_named) continue;
     cause.doubt = held.doubt[c];
     if (cause.doubt.empty() && is_found_once(d, c, held))
       cause.doubt = "it stands beside a stronger cause, and no search without a part of the rows found it";
+    if (cause.doubt.empty() && is_size_open(cause))
+      cause.doubt = "its size is open: the ends of its 95 % interval are more than a factor of 100 apart";
     if (!cause.doubt.empty()) continue;
     cause.standing = cause.odds.kind >= kSure ? Standing::kNamed : Standing::kAmbiguous;
   }

@@ -92,12 +92,13 @@ Section cause_section(const diagnosis::Diagnosis& d, std::size_t i) {
                          : c.n_again == c.n_searched ? "each time"
                                                      : fmt::format("{} of them", c.n_again))});
   Table table{
-      .title = c.alternatives.empty()
-                   ? "All other claims that were fitted in its place hold less than a tenth of the odds together"
-               : c.odds.kind < diagnosis::kSure
-                   ? fmt::format("The data cannot tell it from the others; its kind has {:.0f} % of the odds",
-                                 100.0 * c.odds.kind)
-                   : fmt::format("What it is has {:.0f} % of the odds; where, the data do not tell", 100.0 * c.odds.kind),
+      .title =
+          c.alternatives.empty()
+              ? "Nine tenths of the odds are with this effect at this place; those in the row are of this law of it alone"
+          : c.odds.kind < diagnosis::kSure
+              ? fmt::format("The data cannot tell it from the others; its kind has {:.0f} % of the odds",
+                            100.0 * c.odds.kind)
+              : fmt::format("What it is has {:.0f} % of the odds; where, the data do not tell", 100.0 * c.odds.kind),
       .columns = {{.title = "effect"},
                   {.title = "where"},
                   {.title = "law"},

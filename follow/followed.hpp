@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "follow/stream_row.hpp"
+#include "machine/model.hpp"
 
 namespace driftwright::follow {
 
@@ -25,6 +26,12 @@ struct AxisCorrection {
   std::string alarm = {};                  ///< since when, and what it shows in; "": none
 };
 
+/// What a picture of a machine is coloured by.
+struct MachineState {
+  Eigen::VectorXd state;   ///< of its model
+  double ambient_K = 0.0;  ///< over the reference
+};
+
 class Followed {
  public:
   virtual ~Followed() = default;
@@ -38,6 +45,10 @@ class Followed {
   virtual void wait(double step_s) = 0;
   [[nodiscard]] virtual bool has_begun() const = 0;
   [[nodiscard]] virtual std::vector<AxisCorrection> axes() const = 0;
+  /// The model of a machine that a page can draw, as long as this is there; null: none.
+  [[nodiscard]] virtual const scenarios::Model* model() const { return nullptr; }
+  /// Of that model; none before the first row.
+  [[nodiscard]] virtual std::optional<MachineState> machine_state() const { return {}; }
   /// All that it knows, and back.
   [[nodiscard]] virtual nlohmann::ordered_json state() const = 0;
   virtual void recall(const nlohmann::ordered_json& state) = 0;

@@ -40,6 +40,8 @@ class FollowedMachine final : public Followed {
     require_streamable(machine_);
     scenarios::Scenario asked = scenario;
     asked.solver.model = studies::predicting_model(scenario);
+    if (options.for_picture && asked.solver.fields_format == FieldsFormat::kNone)
+      asked.solver.fields_format = FieldsFormat::kVtu;
     model_.emplace(scenarios::open_model(asked, {}, listener, false));
     const auto has_thermostats = [](const auto& system) { return !system.thermostats.empty(); };
     if (model_->reduced() ? has_thermostats(model_->reduced()->system) : has_thermostats(model_->full()->system))
@@ -90,6 +92,12 @@ class FollowedMachine final : public Followed {
     for (OutputStage& stage : stages_) stage.wait(step_s);
   }
   [[nodiscard]] bool has_begun() const override { return run_ && run_->n_rows() > 0; }
+
+  [[nodiscard]] const scenarios::Model* model() const override { return &*model_; }
+  [[nodiscard]] std::optional<MachineState> machine_state() const override {
+    if (!has_begun()) return std::nullopt;
+    return MachineState{state_, run_->hall_K()};
+  }
 
   [[nodiscard]] std::vector<AxisCorrection> axes() const override {
     std::vector<AxisCorrection> axes = axes_;

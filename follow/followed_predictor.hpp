@@ -11,6 +11,7 @@ struct FollowOptions {
   std::optional<double> most_rate_um_s = {};  ///< slew limit; none: the model's own, or 1 um/s
   std::optional<double> hold_s = {};          ///< none: the model's own, or 300 s
   std::optional<double> fade_s = {};          ///< none: the model's own, or 600 s
+  bool for_picture = false;                   ///< the machine's displacements everywhere are asked for
   std::string watch = {};                     ///< file of a watch's limits; empty: nothing is watched
 };
 

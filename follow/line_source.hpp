@@ -1,18 +1,16 @@
 #pragma once
 // Lines from a file descriptor as they come, with a limit to the wait.
 
-#include <string>
+#include "follow/row_source.hpp"
 
 namespace driftwright::follow {
 
-class LineSource {
+class LineSource final : public RowSource {
  public:
-  enum class Got { kLine, kNothingYet, kEnd };
   explicit LineSource(int file) : file_(file) {}
 
-  /// The next line, without its line break. @param wait_s  at most so long, less where a signal comes
   /// @throws InputError  when the file cannot be read
-  [[nodiscard]] Got next(std::string& line, double wait_s);
+  [[nodiscard]] Got next(std::string& line, double wait_s) override;
 
  private:
   int file_;

@@ -52,6 +52,7 @@ MqttLink::MqttLink(const MqttAddress& address, std::vector<std::string> topics, 
            "the last will");
   }
   mosquitto_connect_callback_set(client_.get(), &MqttLink::connected);
+  mosquitto_disconnect_callback_set(client_.get(), &MqttLink::disconnected);
   mosquitto_message_callback_set(client_.get(), &MqttLink::heard);
   mosquitto_reconnect_delay_set(client_.get(), kFirstDelay_s, kLongestDelay_s, true);
   const int begun = mosquitto_connect_async(client_.get(), address.host.c_str(), address.port, kKeepAlive_s);
@@ -67,8 +68,14 @@ MqttLink::~MqttLink() {
 
 void MqttLink::connected(mosquitto* m, void* self, int code) {
   if (code != 0) return;
+  ++static_cast<MqttLink*>(self)->n_links_;
+  static_cast<MqttLink*>(self)->is_linked_ = true;
   for (const std::string& topic : static_cast<MqttLink*>(self)->topics_)
     (void)mosquitto_subscribe(m, nullptr, topic.c_str(), 1);
+}
+
+void MqttLink::disconnected(mosquitto*, void* self, int) {
+  static_cast<MqttLink*>(self)->is_linked_ = false;
 }
 
 void MqttLink::heard(mosquitto*, void* self, const mosquitto_message* message) {

@@ -1,6 +1,7 @@
 #pragma once
 // Messages of an MQTT broker as they come, and ours to it. A broker that goes away is waited for: the link comes back by itself.
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -40,6 +41,9 @@ class MqttLink {
   [[nodiscard]] bool next(Message& message, double wait_s);
   /// Hands a message on, at most once. @return false: there is no link by now, and it is lost
   bool publish(const std::string& topic, const std::string& payload);
+  /// How many times the broker was reached.
+  [[nodiscard]] int n_links() const { return n_links_; }
+  [[nodiscard]] bool is_linked() const { return is_linked_; }
   /// Messages that came faster than they were taken, of which the oldest are lost.
   [[nodiscard]] std::int64_t n_lost();
 
@@ -48,6 +52,7 @@ class MqttLink {
     void operator()(mosquitto* m) const;
   };
   static void connected(mosquitto* m, void* self, int code);
+  static void disconnected(mosquitto* m, void* self, int code);
   static void heard(mosquitto* m, void* self, const mosquitto_message* message);
 
   std::vector<std::string> topics_;
@@ -55,6 +60,8 @@ class MqttLink {
   std::condition_variable came_;
   std::deque<Message> waiting_;
   std::int64_t n_lost_ = 0;
+  std::atomic<int> n_links_ = 0;
+  std::atomic<bool> is_linked_ = false;
   std::unique_ptr<mosquitto, Free> client_;
 };
 

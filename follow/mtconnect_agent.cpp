@@ -5,9 +5,11 @@
 #include <libxml/parser.h>
 
 #include <algorithm>
+#include <charconv>
 #include <new>
 
 #include "base/errors.hpp"
+#include "base/time_stamps.hpp"
 
 namespace driftwright::follow {
 namespace {
@@ -40,18 +42,39 @@ std::string name_of(const xmlNode* element) {
   return reinterpret_cast<const char*>(element->name);
 }
 
+std::uint64_t count_of(xmlNode* element, const char* name) {
+  const std::string text = attribute(element, name);
+  std::uint64_t value = 0;
+  (void)std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+double time_of(xmlNode* element, const char* name) {
+  const std::chrono::nanoseconds since_1970 = TimeStamps("", "").read(attribute(element, name));
+  return std::chrono::duration<double>(since_1970).count();
+}
+
 /// Elements below one another, in their order.
-void gather(xmlNode* first, std::map<std::string, std::string>& found, std::string& error) {
+void gather(xmlNode* first, MtconnectStreams& found, std::string& error) {
   for (xmlNode* node = first; node; node = node->next) {
     if (node->type != XML_ELEMENT_NODE) continue;
     if (const std::string id = attribute(node, "dataItemId"); !id.empty()) {
-      std::string value = content(node);
-      if (value == kUnavailable) value.clear();
-      if (const std::string name = attribute(node, "name"); !name.empty()) found[name] = value;
-      found[id] = std::move(value);
+      Observation o{id, attribute(node, "name"), content(node), count_of(node, "sequence"), time_of(node, "timestamp")};
+      if (o.value == kUnavailable) o.value.clear();
+      found.observations.push_back(std::move(o));
       continue;
     }
-    if (name_of(node) == "Error" && error.empty()) error = content(node);
+    if (name_of(node) == "Header") {
+      found.instance = attribute(node, "instanceId");
+      if (!attribute(node, "nextSequence").empty()) found.created_s = time_of(node, "creationTime");
+      found.next = count_of(node, "nextSequence");
+      found.last = count_of(node, "lastSequence");
+    }
+    if (name_of(node) == "Error") {
+      found.is_out_of_range = found.is_out_of_range || attribute(node, "errorCode") == "OUT_OF_RANGE";
+      if (error.empty()) error = content(node);
+    }
+    if (name_of(node) == "OutOfRange") found.is_out_of_range = true;  // as version 2.0 and later write it
     gather(node->children, found, error);
   }
 }
@@ -65,15 +88,16 @@ std::size_t append(char* data, std::size_t size, std::size_t n, void* to) {
 
 }  // namespace
 
-std::map<std::string, std::string> read_mtconnect_streams(const std::string& xml) {
+MtconnectStreams read_mtconnect_streams(const std::string& xml) {
   constexpr int kQuietly = XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_NONET;
   const std::unique_ptr<xmlDoc, FreeDocument> document(
       xmlReadMemory(xml.data(), static_cast<int>(std::min(xml.size(), kMostBytes)), "current.xml", nullptr, kQuietly));
   xmlNode* root = document ? xmlDocGetRootElement(document.get()) : nullptr;
   if (!root) throw RangeError("its answer is no XML");
-  std::map<std::string, std::string> found;
+  MtconnectStreams found;
   std::string error;
   gather(root->children, found, error);
+  if (name_of(root) == "MTConnectError" && found.is_out_of_range) return found;
   if (name_of(root) == "MTConnectError") throw RangeError("it answers: " + error);
   if (name_of(root) != "MTConnectStreams")
     throw RangeError(fmt::format("its answer is '{}', where MTConnectStreams is required", name_of(root)));
@@ -93,19 +117,28 @@ struct MtconnectAgent::Connection {
 
 MtconnectAgent::MtconnectAgent(const std::string& url) : url_(url) {
   if (!url.starts_with("http://") && !url.starts_with("https://"))
-    throw InputError(fmt::format("--mtconnect '{}': the address of an agent is required, such as http://10.0.0.7:5000", url));
+    throw InputError(
+        fmt::format("--mtconnect '{}': the address of an agent is required, such as http://10.0.0.7:5000", url));
   while (url_.ends_with('/')) url_.pop_back();
-  url_ += "/current";
   connection_ = std::make_unique<Connection>();
 }
 
 MtconnectAgent::~MtconnectAgent() = default;
 
-std::map<std::string, std::string> MtconnectAgent::current(double most_s) {
+MtconnectStreams MtconnectAgent::current(double most_s) {
+  return ask("/current", most_s);
+}
+
+MtconnectStreams MtconnectAgent::sample(std::uint64_t from, double most_s) {
+  return ask(fmt::format("/sample?from={}&count=1000", from), most_s);
+}
+
+MtconnectStreams MtconnectAgent::ask(const std::string& request, double most_s) {
+  const std::string address = url_ + request;
   CURL* curl = connection_->curl;
   std::string answer;
   connection_->error[0] = '\0';
-  curl_easy_setopt(curl, CURLOPT_URL, url_.c_str());
+  curl_easy_setopt(curl, CURLOPT_URL, address.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
   curl_easy_setopt(curl, CURLOPT_FAILONERROR, 0L);  // an agent says what is wrong in the answer

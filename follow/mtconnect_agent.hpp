@@ -1,16 +1,33 @@
 #pragma once
-// What an MTConnect agent tells now: the last observation of each data item, by HTTP (MTConnect Standard, part 1, "Current Request").
+// What an MTConnect agent tells, by HTTP: the last observation of each data item, or all from one of them on (MTConnect Standard, part 1, "Current
+// Request", "Sample Request").
 
-#include <map>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace driftwright::follow {
 
-/// The observations of a document of MTConnectStreams, by the `dataItemId` and, where there is one, the `name` of their data items.
-/// What the agent calls UNAVAILABLE is "".
+struct Observation {
+  std::string id, name;        ///< of its data item; "" where it has no name
+  std::string value;           ///< what the agent calls UNAVAILABLE is ""
+  std::uint64_t sequence = 0;  ///< number in the agent's buffer
+  double time_s = 0.0;         ///< since 1970
+};
+
+/// A document of MTConnectStreams.
+struct MtconnectStreams {
+  std::string instance;              ///< changes where the agent is started anew
+  double created_s = 0.0;            ///< since 1970, by the agent's clock
+  std::uint64_t next = 0, last = 0;  ///< number that the next question goes on from; that of the last observation
+  bool is_out_of_range =
+      false;  ///< there is no observation of the number that was asked for; nothing else is told but `instance`
+  std::vector<Observation> observations;
+};
+
 /// @throws RangeError  for a document that is none, with what the agent says where it answers with an error
-[[nodiscard]] std::map<std::string, std::string> read_mtconnect_streams(const std::string& xml);
+[[nodiscard]] MtconnectStreams read_mtconnect_streams(const std::string& xml);
 
 class MtconnectAgent {
  public:
@@ -22,9 +39,12 @@ class MtconnectAgent {
   MtconnectAgent& operator=(const MtconnectAgent&) = delete;
 
   /// What it tells now. @throws RangeError  where it does not answer within `most_s`, or not with MTConnectStreams
-  [[nodiscard]] std::map<std::string, std::string> current(double most_s);
+  [[nodiscard]] MtconnectStreams current(double most_s);
+  /// Observations from a number on, up to a thousand. @throws RangeError  as current()
+  [[nodiscard]] MtconnectStreams sample(std::uint64_t from, double most_s);
 
  private:
+  [[nodiscard]] MtconnectStreams ask(const std::string& request, double most_s);
   struct Connection;
   std::unique_ptr<Connection> connection_;
   std::string url_;

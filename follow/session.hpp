@@ -39,6 +39,9 @@ class Session {
   /// No line came for so long, since the last one or the last wait.
   [[nodiscard]] FollowLine wait(double step_s);
 
+  [[nodiscard]] const std::vector<Model>& models() const { return models_; }
+  /// Of the run: of the row taken last, and how long there has been none.
+  [[nodiscard]] double now_s() const { return guard_.state().run_s + waited_s_; }
   [[nodiscard]] double usual_step_s() const { return guard_.usual_step_s(); }
   [[nodiscard]] const FaultCounts& faults() const { return guard_.state().counts; }
   /// The values of the row taken last, as the models got them, and its time in the run: what a record holds.

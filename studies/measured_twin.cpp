@@ -7,9 +7,11 @@
 #include "base/errors.hpp"
 #include "base/mapped_record.hpp"
 #include "diagnosis/scatter.hpp"
+#include "diagnosis/time_check.hpp"
 #include "diagnosis/unit_check.hpp"
 #include "diagnosis/warm_start.hpp"
 #include "machine/simulated_run.hpp"
+#include "solver/exponential_run.hpp"
 #include "studies/other_mesh.hpp"
 
 namespace driftwright::studies {
@@ -35,7 +37,9 @@ bool same_readings(const diagnosis::MeasuredRun& a, const diagnosis::MeasuredRun
 
 diagnosis::NoiseFloor floor_of(const solver::ReducedSystem& system) {
   diagnosis::NoiseFloor floor;
-  if (!system.is_linear()) {  // integrated in steps, and thermostats that switch a little early or late
+  const bool is_stepped = !system.is_linear() && system.size() > solver::kMostOfExponentialRun;
+  if (is_stepped ||
+      !system.thermostats.empty()) {  // integrated in steps, and thermostats that switch a little early or late
     floor.slow_K = 0.02;
     floor.slow_m = 5e-8;
   }
@@ -88,6 +92,7 @@ MeasuredTwin open_measured_twin(const scenarios::Scenario& scenario, const std::
   tolerances.absolute_tolerance_K = std::max(tolerances.absolute_tolerance_K, 2e-3);
   const diagnosis::Twin whole(m.fine->augmented, m.fine->machine, tolerances);
   diagnosis::leave_out_foreign_units(m.runs, whole);
+  diagnosis::require_plausible_times(m.runs, whole);
   diagnosis::find_warm_starts(m.runs, whole);
   listener.begin("looking what states the measured runs come to");
   m.focus = std::make_unique<diagnosis::Focus>(

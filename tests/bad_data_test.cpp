@@ -6,6 +6,7 @@
 #include "base/foreign_temperature.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "diagnosis/missing_data.hpp"
+#include "diagnosis/time_check.hpp"
 #include "diagnosis/unit_check.hpp"
 #include "diagnosis/warm_start.hpp"
 #include "machine/machine.hpp"
@@ -127,6 +128,18 @@ TEST(ForeignUnits, AnIndicatorThatTouchesNothingIsNoOtherUnit) {  // a thousandt
   EXPECT_EQ(b.told(), "");
 }
 
+TEST(ForeignUnits, ADisplacementTurnedInSignIsNamed) {
+  Bench b;
+  b.channel(2).value *= -1.1;  // and the scenario is off, too
+  leave_out_foreign_units(b.runs, *b.twin);
+  EXPECT_THAT(b.told(), HasSubstr("nose_um looks turned in sign"));
+  EXPECT_EQ(b.runs[0].find("nose"), nullptr);
+  Bench half;  // half as much the other way is no sign: something is wrong with the model
+  half.channel(2).value *= -0.5;
+  leave_out_foreign_units(half.runs, *half.twin);
+  EXPECT_EQ(half.told(), "");
+}
+
 TEST(ForeignUnits, ATemperatureThatMayWellBeIsLeft) {
   EXPECT_EQ(foreign_temperature({13.0, 14.0, 15.0}, -10.0, -10.0),
             std::nullopt);  // 14 degF are -10 degC, and 24 K is no proof
@@ -143,6 +156,39 @@ TEST(ForeignUnits, NothingLeftToCompareIsRefusedWithTheReason) {
     FAIL();
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), AllOf(HasSubstr("no channel to compare"), HasSubstr("t_shaft_degC looks like kelvin")));
+  }
+}
+
+TEST(ForeignTimes, SecondsUnderMinutesAndMinutesUnderSecondsAreTold) {
+  for (const auto& [factor, words] : {std::pair{60.0, "60 times too long"}, {1.0 / 60.0, "60 times too short"}}) {
+    Bench b;
+    for (MeasuredChannel& c : b.runs[0].channels) c.value *= 1.3;  // and the scenario is off, too
+    require_plausible_times(b.runs, *b.twin);
+    for (double& t : b.runs[0].time_s) t *= factor;
+    for (auto& s : b.runs[0].cyclogram.sections) s.duration_s *= factor;
+    set_grid(b.runs[0]);
+    EXPECT_THAT([&] { require_plausible_times(b.runs, *b.twin); },
+                ::testing::ThrowsMessage<InputError>(AllOf(HasSubstr("the times look"), HasSubstr(words))));
+  }
+}
+
+TEST(ForeignTimes, AModelThatIsFarOffHasItsTimes) {
+  for (const double factor : {-1.0, 0.0, 0.1, 0.4, 3.0, 10.0}) {
+    for (const double slower : {0.25, 1.0, 4.0}) {  // every capacity of the scenario is wrong by that
+      Bench b;
+      MeasuredRun& run = b.runs[0];
+      const std::vector<double> times_s = run.time_s;
+      const Cyclogram recorded = run.cyclogram;
+      for (double& t : run.time_s) t /= slower;
+      for (auto& s : run.cyclogram.sections) s.duration_s /= slower;
+      set_grid(run);
+      b.measure({0.0, 0.0});
+      run.time_s = times_s;
+      run.cyclogram = recorded;
+      set_grid(run);
+      for (MeasuredChannel& c : run.channels) c.value *= factor;
+      EXPECT_NO_THROW(require_plausible_times(b.runs, *b.twin)) << factor << " " << slower;
+    }
   }
 }
 

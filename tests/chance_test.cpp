@@ -20,7 +20,8 @@ namespace {
 constexpr double kNoise_K = 0.05, kNoise_um = 0.3;
 
 /// A machine of two bodies, each number times exp(0.1 z), and a hall that is off by 0.3 z K from what is recorded.
-std::string machine(Random* random) {
+/// @param more  further lines of the list of effects
+std::string machine(Random* random, const std::string& more = "") {
   const auto known = [&](double value) { return value * (random ? std::exp(0.1 * random->normal()) : 1.0); };
   std::string text = fmt::format(R"(name: two_bodies
 reference_temperature: 20 degC
@@ -36,7 +37,8 @@ effects:
   for (const char* record : {"monday", "tuesday"}) {
     if (random) text += fmt::format("  - {{type: ambient, offset: {} K, in: {}}}\n", 0.3 * random->normal(), record);
   }
-  return text + fmt::format(R"(hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+  return text + more +
+         fmt::format(R"(hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
 sensors:
   - {{name: t_head, node: head}}
   - {{name: t_column, node: column}}
@@ -47,7 +49,7 @@ cyclograms:
   tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm]]
 solver: {{output_interval: 2 min}}
 )",
-                            known(3.0));
+                     known(3.0));
 }
 
 std::vector<std::string> records_of(const std::string& scenario, Random& random, const std::string& name) {
@@ -76,6 +78,43 @@ TEST(Chance, IsThatOfGumbel) {
   EXPECT_NEAR(c.share_above(c.gain_at(0.01)), 0.01, 1e-12);
   EXPECT_NEAR(c.share_above(-3.0), 1.0 - std::exp(-1.0), 1e-12);  // at its mode
   EXPECT_NEAR(c.gain_at(1e-4), -3.0 + 0.8 * std::log(1e4), 1e-4);
+}
+
+TEST(Chance, OfOneCandidateFallsByAnEfoldANat) {
+  // twice a gain of one free size is chi-squared with one degree of freedom: one machine in five has 0.82 nats, one in a thousand 5.41, one in 10^5 9.76
+  constexpr double kOneInFive = 0.82, kOneInThousand = 5.41, kOneInHundredThousand = 9.76;
+  EXPECT_NEAR(rarity(kOneInFive, kOneInFive), std::log(5.0), 1e-12);
+  EXPECT_NEAR(rarity(kOneInThousand, kOneInFive), std::log(1e3), 0.75);  // never more than there is
+  EXPECT_LT(rarity(kOneInThousand, kOneInFive), std::log(1e3));
+  EXPECT_LT(rarity(kOneInHundredThousand, kOneInFive), std::log(1e5));
+}
+
+// A shift of 0.2 um where its prior fears 15 um, at a time that nobody knows, pays some 14 nats for what it might have been, and these readings are worth 8 to 15.
+TEST(Chance, SeldomOffersWhatAFaintCauseHas) {
+  const std::string scenario = write_file("nominal_for_shift.yaml", machine(nullptr));
+  int n_faint = 0, n_rightly = 0;
+  for (int i = 0; i < 16; ++i) {
+    Random random(23, static_cast<std::uint64_t>(i));
+    const std::string truth = write_file(
+        "shifted.yaml",
+        machine(&random, "  - {type: mount_shift, displacement: nose, shift: 0.2 um, time: 130 min, in: tuesday}\n"));
+    const studies::MeasuredTwin m = studies::open_measured_twin(scenarios::read_scenario(scenario), "diagnose",
+                                                                records_of(truth, random, fmt::format("s{}", i)), {});
+    const Diagnosis d = diagnose(*m.twin, nullptr, m.runs, m.how);
+    if (d.causes.empty()) continue;
+    const Cause& c = d.causes.front();
+    if (c.log_evidence_gain > d.search.bars.suspected.front()) continue;  // worth its prior's price
+    ++n_faint;
+    n_rightly += c.effect == "mount_shift";
+    EXPECT_EQ(c.where, "nose") << c.effect;
+    EXPECT_EQ(c.standing, Standing::kSuspected) << c.effect;
+    EXPECT_FALSE(c.is_written);
+    EXPECT_LT(c.chance, 0.005);
+    EXPECT_EQ(d.verdict, Verdict::kSuspected);
+  }
+  RecordProperty("faint", n_faint);
+  EXPECT_GE(n_faint, 4);
+  EXPECT_GE(n_rightly, n_faint - 1);
 }
 
 TEST(Chance, IsMetByMachinesWithoutFault) {

@@ -102,6 +102,40 @@ TEST_F(MeasuredRunTest, TakesAThermometerInTheHallForTheHall) {
   EXPECT_EQ(run.find("hall"), nullptr);  // it is an input now
 }
 
+/// The largest difference of a body's temperatures in a recorded hall and in the hall as it is read, by its exact answer to straight pieces.
+double missed_K(const MeasuredRun& run, const std::vector<double>& hall_K, double time_constant_s) {
+  double recorded_K = hall_K[0], read_K = run.hall.at(0.0), most = 0.0;
+  const double step_s = run.time_s[1] - run.time_s[0], kept = std::exp(-step_s / time_constant_s);
+  const auto next = [&](double body, double from, double to) {
+    const double lag = (to - from) / step_s * time_constant_s;
+    return to - lag + kept * (body - from + lag);
+  };
+  for (std::size_t i = 1; i < hall_K.size(); ++i) {
+    recorded_K = next(recorded_K, hall_K[i - 1], hall_K[i]);
+    read_K = next(read_K, run.hall.at(run.time_s[i - 1]), run.hall.at(run.time_s[i]));
+    most = std::max(most, std::abs(recorded_K - read_K));
+  }
+  return most;
+}
+
+// A thermometer in the open air shows gusts, and a body of five hours feels them: 0.4 K from one reading to the next are 0.03 K of its own.
+TEST_F(MeasuredRunTest, KeepsAHallThatChangesByMoreThanThermometersErr) {
+  for (const double wandering_K : {0.03, 0.4}) {
+    Random random(11);
+    std::string text = "time_s,speed_rpm,ambient_degC,t_front_degC\n";
+    std::vector<double> hall_K;
+    for (int i = 0; i < 500; ++i) {
+      hall_K.push_back(4.0 * std::sin(i / 60.0) + wandering_K * random.normal());
+      text += fmt::format("{},500,{:.6f},{}\n", 300 * i, 20.0 + hall_K.back(), 20.0 + 0.01 * i);
+    }
+    const MeasuredRun run = read(text);
+    EXPECT_LT(missed_K(run, hall_K, 5.0 * 3600.0), 0.012) << wandering_K;
+    if (wandering_K < 0.1) {
+      EXPECT_LT(run.hall.time_s.size(), 300u);  // noise, which nobody feels
+    }
+  }
+}
+
 TEST_F(MeasuredRunTest, LeavesOutAStuckSensorByNameAndCountsGaps) {
   std::string text = "time_s,speed_rpm,t_front_degC,nose_z_um\n";
   for (int i = 0; i < 40; ++i)

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include "diagnosis/fit.hpp"
 #include "diagnosis/scatter.hpp"
 #include "studies/measured_twin.hpp"
@@ -73,12 +76,35 @@ TEST(ScatterSlopes, AreThoseOfRunsForEveryNumber) {
         return fitter.comparison().whitened(fitter.predict({}, turned, workspace));
       };
       const Eigen::VectorXd expected = (readings(kSmall) - readings(-kSmall)) / (2.0 * kSmall);
-      // the number's own step is no smaller: half of it is what a factor exp(step) is beside 1 + step
-      EXPECT_LT((fitter.nuisance_slopes().col(i) - expected).norm(), (0.6 * knob.step + 1e-4) * expected.norm())
+      // from both sides: a sixth of the square of the step is what sinh(step) is beside it, and as much again for the bend of the answer
+      EXPECT_LT((fitter.nuisance_slopes().col(i) - expected).norm(), (knob.step * knob.step + 1e-4) * expected.norm())
           << knob.name << " of " << knob.where << " at " << sigmas << " sigmas";
       EXPECT_GT(expected.norm(), 0.1) << knob.name << " of " << knob.where;
     }
   }
+}
+
+// Twice every capacity, conductance and heat is the same machine: no temperature tells of it, so that slopes add up to nothing along that direction. What is known of it
+// is what was known before.
+TEST(ScatterSlopes, SeeNothingOfTheScaleOfAllHeatsAndConductances) {
+  std::string text = kScenario;
+  const std::string heat = "type: heat_source, node: spindle, power: 120 W, at_speed: 3000 rpm, exponent: 1.3";
+  text.replace(text.find(heat), heat.size(),
+               "type: friction_law, node: spindle, power: 120 W, at_speed: 3000 rpm, exponent: 1.3, decay: 0.015 1/K, at_temperature: 20 degC");
+  const studies::MeasuredTwin m = studies::open_measured_twin(scenarios::read_scenario(write_file("scaled.yaml", text)),
+                                                              "diagnose", {record("first", 3000), record("second", 1000)}, {});
+  const std::vector<Knob> knobs = scatter(*m.twin);
+  Fitter fitter(*m.twin, m.runs, knobs, {});
+  fitter.set_noise({{"t_spindle", {0.1, 0.0, 0.0}}, {"t_column", {0.1, 0.0, 0.0}}, {"tip_z", {0.5e-6, 0.0, 0.0}}});
+  Eigen::VectorXd scale = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(knobs.size()));
+  double largest = 0.0;
+  for (std::size_t i = 0; i < knobs.size(); ++i) {
+    if (knobs[i].name != "power" && knobs[i].name != "conductance" && knobs[i].effect != "heat_capacity") continue;
+    scale[static_cast<Eigen::Index>(i)] = 1.0;
+    largest = std::max(largest, fitter.nuisance_slopes().col(static_cast<Eigen::Index>(i)).norm());
+  }
+  EXPECT_EQ(scale.sum(), 7.0);
+  EXPECT_LT((fitter.nuisance_slopes() * scale).norm(), 5e-4 * largest);
 }
 
 }  // namespace

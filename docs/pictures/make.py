@@ -31,3 +31,19 @@ with tempfile.TemporaryDirectory() as folder:
     subprocess.run([PROGRAM, "view", "scenarios/fp3_spindle.yaml", "-o", f"{folder}/twin.html"], check=True, cwd=HERE.parent.parent, stdout=subprocess.DEVNULL)
     subprocess.run(["chromium", "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
                     f"--user-data-dir={folder}/profile", "--window-size=1200,1300", f"--screenshot={HERE}/view.png", f"file://{folder}/twin.html"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    # The page beside a followed machine, behind the rows of an afternoon.
+    sys.path.insert(0, str(HERE.parent.parent / "tests"))
+    from browser import Browser
+    subprocess.run([PROGRAM, "predict", "scenarios/fp3_spindle.yaml", "--cyclogram", "chaotic", "-o", f"{folder}/chaotic", "--quiet"], check=True, cwd=HERE.parent.parent)
+    follow = subprocess.Popen([PROGRAM, "follow", "scenarios/fp3_spindle.yaml", "--serve", "0"], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                              text=True, cwd=HERE.parent.parent)
+    address = follow.stderr.readline().split("the page is at ")[1].strip()
+    follow.stdin.write(pathlib.Path(folder, "chaotic/record.csv").read_text())
+    follow.stdin.flush()
+    browser = Browser()
+    page = browser.open(address, height=1330)
+    page.wait("live.fields && live.fields.state && live.points.length > 50")
+    page.screenshot(HERE / "follow.png")
+    browser.close()
+    follow.kill()

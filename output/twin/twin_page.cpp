@@ -8,31 +8,11 @@
 
 #include "base/quantity.hpp"
 #include "effects/reading_chain.hpp"
-#include "output/base64.hpp"
-#include "output/markup.hpp"
-#include "output/surface_view.hpp"
-#include "output/twin/page_files.hpp"
 
 namespace driftwright::output {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr int kColours = 256;
-constexpr double kDarkest = 0.22;  // of the palette: darker ones would hide how a cold body is shaped
-
-template <class Number>
-std::string bytes_of(const Number* data, std::size_t n) {
-  return base64({reinterpret_cast<const char*>(data), n * sizeof(Number)});  // NOLINT: little-endian, as pages read it
-}
-template <class Number>
-std::string text_of(const std::vector<Number>& v) {
-  return bytes_of(v.data(), v.size());
-}
-template <class Derived>
-std::string text_of(const Eigen::PlainObjectBase<Derived>& m) {
-  return bytes_of(m.data(), static_cast<std::size_t>(m.size()));
-}
 
 /// Vectors one after the other, each n numbers; empty ones as zeros.
 class Rows {
@@ -159,37 +139,6 @@ DriveWords words_of(DriveVariable variable) {
   return {"", ""};
 }
 
-Json json_of(const Quantised& q) {
-  return {{"scale", text_of(q.scale)}, {"value", text_of(q.value)}};
-}
-
-Json json_of(const TwinSurface& surface) {
-  return {{"n_nodes", surface.node.size()},
-          {"coords", text_of(surface.coords_m)},
-          {"triangles", text_of(surface.triangle)},
-          {"edges", text_of(surface.edge)},
-          {"temperature", json_of(surface.temperature)},
-          {"displacement", json_of(surface.displacement_m)}};
-}
-
-Json json_of(const TwinNetwork& network) {
-  const Eigen::MatrixXd by_rows = network.temperature.transpose();
-  return {{"names", network.node}, {"links", network.link}, {"temperature", text_of(by_rows)}};
-}
-
-Json marks_json(const TwinPage& page) {
-  Json list = Json::array();
-  for (const PictureMark& mark : page.marks) {
-    Eigen::Index nearest = 0;
-    (page.surface->coords_m.colwise() - mark.at_m.cast<float>()).colwise().squaredNorm().minCoeff(&nearest);
-    list.push_back({{"name", mark.name},
-                    {"at_m", {mark.at_m.x(), mark.at_m.y(), mark.at_m.z()}},
-                    {"is_indicator", mark.is_indicator},
-                    {"node", nearest}});
-  }
-  return list;
-}
-
 int index_of(const std::vector<std::string>& names, const std::string& name) {
   const auto at = std::find(names.begin(), names.end(), name);
   return at == names.end() ? -1 : static_cast<int>(at - names.begin());
@@ -220,15 +169,6 @@ Json check_json(const TwinPage& page, const std::vector<std::string>& names) {
   return {{"cyclogram", page.first}, {"by", page.check_by}, {"values", text_of(values)}};
 }
 
-std::string palette() {
-  std::string bytes;
-  for (int i = 0; i < kColours; ++i) {
-    for (float part : inferno(kDarkest + (1.0 - kDarkest) * i / (kColours - 1)))
-      bytes += static_cast<char>(static_cast<unsigned char>(std::lround(255.0F * part)));
-  }
-  return base64(bytes);
-}
-
 Json cyclograms_json(const TwinPage& page) {
   Json list = Json::array();
   for (const Cyclogram& c : page.cyclograms) {
@@ -243,7 +183,7 @@ Json cyclograms_json(const TwinPage& page) {
   return list;
 }
 
-std::string data_of(const TwinPage& page, const Provenance& made_by) {
+Json data_of(const TwinPage& page, const Provenance& made_by) {
   std::vector<std::string> names;
   for (Eigen::Index o : told_outputs(page.model.system.outputs))
     names.push_back(page.model.system.outputs.name[static_cast<std::size_t>(o)]);
@@ -264,52 +204,22 @@ std::string data_of(const TwinPage& page, const Provenance& made_by) {
                {"target", page.target.empty() ? -1 : index_of(names, page.target)},
                {"tolerance_um", page.tolerance_um},
                {"notes", page.model.notes},
-               {"palette", palette()}};
+               {"palette", palette_text()}};
   if (page.surface) {
-    data["surface"] = json_of(*page.surface);
-    data["marks"] = marks_json(page);
+    data["surface"] = surface_json(*page.surface);
+    data["marks"] = marks_json(page.marks, *page.surface);
   } else {
-    data["network"] = json_of(page.network);
+    data["network"] = network_json(page.network);
   }
-  // Nothing in it may end the element that it stands in.
-  std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace), safe;
-  safe.reserve(text.size());
-  for (char ch : text) {
-    if (ch == '<')
-      safe += "\\u003c";
-    else
-      safe += ch;
-  }
-  return safe;
-}
-
-const std::string& file(const std::string& name) {
-  for (const PageFile& f : twin_page_files()) {
-    if (f.name == name) return f.text;
-  }
-  throw std::logic_error("twin_html: there is no " + name);
+  return data;
 }
 
 }  // namespace
 
 std::string twin_html(const TwinPage& page, const Provenance& made_by) {
-  std::string script;
-  for (const char* name : {"eigen.js", "law.js", "model.js", "run.js", "correction.js", "twin.js", "fields.js", "scene.js",
-                           "network.js", "charts.js", "plan.js", "page.js", "report.js"})
-    script += file(name) + "\n";
-  const std::string& frame = file("page.html");
-  const std::vector<std::pair<std::string, std::string>> parts = {{"@TITLE@", escaped(page.name)},
-                                                                  {"@STYLE@", file("page.css")},
-                                                                  {"@DATA@", data_of(page, made_by)},
-                                                                  {"@SCRIPT@", script}};
-  std::string text;
-  std::size_t from = 0;
-  for (const auto& [mark, part] : parts) {  // in their order: what was put in is not looked at again
-    const std::size_t at = frame.find(mark, from);
-    text += frame.substr(from, at - from) + part;
-    from = at + mark.size();
-  }
-  return text + frame.substr(from);
+  return page_text("page.html", page.name, {"page.css"}, data_of(page, made_by),
+                   {"eigen.js", "law.js", "model.js", "run.js", "correction.js", "twin.js", "fields.js", "scene.js",
+                    "network.js", "charts.js", "plan.js", "picture.js", "page.js", "report.js"});
 }
 
 }  // namespace driftwright::output

@@ -7,19 +7,11 @@
 
 #include "base/record.hpp"
 #include "compensation/predictors/regression.hpp"
-#include "output/machine_picture.hpp"
 #include "output/provenance.hpp"
+#include "output/twin/page_parts.hpp"
 #include "output/twin/twin_model.hpp"
-#include "output/twin/twin_surface.hpp"
 
 namespace driftwright::output {
-
-/// Lumped nodes and who exchanges heat with whom; the hall is the last node.
-struct TwinNetwork {
-  std::vector<std::string> node = {};
-  std::vector<std::pair<int, int>> link = {};
-  Eigen::MatrixXd temperature = {};  ///< of all nodes but the hall in each state, over the reference [K]
-};
 
 /// What corrects the drift in the page.
 struct TwinCorrection {

@@ -15,44 +15,52 @@ function ticks(low, high, most) {
 }
 
 class Chart {
-  constructor(canvas, unit) {
-    Object.assign(this, {canvas, unit, end_s: 1, low: 0, high: 1});
+  // @param along  unit of time, and how many seconds it has
+  constructor(canvas, unit, along = {unit: "min", unit_s: 60}) {
+    Object.assign(this, {canvas, unit, along, begin_s: 0, end_s: 1, low: 0, high: 1});
     this.mark = canvas.parentElement.querySelector("i");
   }
 
-  x(time_s) { return MARGIN.left + (this.canvas.clientWidth - MARGIN.left - MARGIN.right) * time_s / this.end_s; }
+  x(time_s) {
+    return MARGIN.left + (this.canvas.clientWidth - MARGIN.left - MARGIN.right) * (time_s - this.begin_s) / (this.end_s - this.begin_s);
+  }
   y(value) {
     return this.canvas.clientHeight - MARGIN.bottom -
         (this.canvas.clientHeight - MARGIN.top - MARGIN.bottom) * (value - this.low) / (this.high - this.low);
   }
-  timeAt(x) { return (x - MARGIN.left) / (this.canvas.clientWidth - MARGIN.left - MARGIN.right) * this.end_s; }
+  timeAt(x) {
+    return this.begin_s + (x - MARGIN.left) / (this.canvas.clientWidth - MARGIN.left - MARGIN.right) * (this.end_s - this.begin_s);
+  }
   valueAt(y) {
     return this.low + (this.canvas.clientHeight - MARGIN.bottom - y) / (this.canvas.clientHeight - MARGIN.top - MARGIN.bottom) *
         (this.high - this.low);
   }
   markAt(time_s) { this.mark.style.transform = `translateX(${this.x(time_s)}px)`; }
 
-  // @param curves  [{time_s, values, colour, isStepped}]
+  // @param curves  [{time_s, values, colour, isStepped, width}]
   // @param range   [low, high], or null: what the curves take
-  draw(curves, end_s, range = null, band = null) {
+  // A value that is NaN is a gap.
+  draw(curves, end_s, range = null, band = null, begin_s = 0) {
     const {canvas} = this, dense = window.devicePixelRatio || 1, pen = canvas.getContext("2d");
     canvas.width = Math.round(canvas.clientWidth * dense);
     canvas.height = Math.round(canvas.clientHeight * dense);
     pen.scale(dense, dense);
-    this.end_s = end_s;
+    Object.assign(this, {begin_s, end_s});
     [this.low, this.high] = range ?? this.reach(curves, band);
     this.drawAxes(pen);
     if (band) {
       pen.fillStyle = styleOf("--band");
       pen.globalAlpha = 0.12;
-      pen.fillRect(this.x(0), this.y(band), this.x(end_s) - this.x(0), this.y(-band) - this.y(band));
+      pen.fillRect(this.x(begin_s), this.y(band), this.x(end_s) - this.x(begin_s), this.y(-band) - this.y(band));
       pen.globalAlpha = 1;
     }
-    pen.lineWidth = 2;
     for (const curve of curves) {
+      pen.lineWidth = curve.width ?? 2;
       pen.strokeStyle = curve.colour;
       pen.beginPath();
       for (let i = 0; i < curve.values.length; ++i) {
+        if (Number.isNaN(curve.values[i])) continue;
+        if (i > 0 && Number.isNaN(curve.values[i - 1])) pen.moveTo(this.x(curve.time_s[i]), this.y(curve.values[i]));
         if (curve.isStepped && i > 0) pen.lineTo(this.x(curve.time_s[i]), this.y(curve.values[i - 1]));
         pen.lineTo(this.x(curve.time_s[i]), this.y(curve.values[i]));
       }
@@ -93,9 +101,9 @@ class Chart {
     pen.fillText(this.unit, 0, 0);
     pen.restore();
     pen.textAlign = "center";
-    const along = ticks(0, this.end_s / 60, Math.max(3, this.canvas.clientWidth / 90));
-    for (const m of along.list) pen.fillText(m.toFixed(along.decimals), this.x(60 * m), bottom + 16);
+    const {unit, unit_s} = this.along, along = ticks(this.begin_s / unit_s, this.end_s / unit_s, Math.max(3, this.canvas.clientWidth / 90));
+    for (const t of along.list) pen.fillText(t.toFixed(along.decimals), this.x(unit_s * t), bottom + 16);
     pen.textAlign = "right";
-    pen.fillText("min", MARGIN.left - 8, bottom + 16);
+    pen.fillText(unit, MARGIN.left - 8, bottom + 16);
   }
 }

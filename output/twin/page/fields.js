@@ -7,6 +7,17 @@ const decodeBytes = text => {
 };
 const doubles = text => new Float64Array(decodeBytes(text));
 
+// y = A x, A by rows.
+function product(rows, columns, a, x, y) {
+  for (let i = 0; i < rows; ++i) {
+    let sum = 0;
+    const row = i * columns;
+    for (let j = 0; j < columns; ++j) sum += a[row + j] * x[j];
+    y[i] = sum;
+  }
+  return y;
+}
+
 class SurfaceFields {
   // @param surface  {n_nodes, temperature, displacement}: each {scale, value} of all states
   constructor(surface) {

@@ -23,16 +23,6 @@ function addTransposed(rows, columns, a, x, y) {
     if (xi !== 0) for (let j = 0; j < columns; ++j) y[j] += a[row + j] * xi;
   }
 }
-function product(rows, columns, a, x, y) {
-  for (let i = 0; i < rows; ++i) {
-    let sum = 0;
-    const row = i * columns;
-    for (let j = 0; j < columns; ++j) sum += a[row + j] * x[j];
-    y[i] = sum;
-  }
-  return y;
-}
-
 // The hall over the reference temperature [K], linear between knots and constant outside.
 function hallAt(hall, time_s) {
   const t = hall.time_s, v = hall.value_K;

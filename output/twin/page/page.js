@@ -1,7 +1,6 @@
 // The page: what a person sees and turns, and the frame that keeps it up to date.
 
 const FRAME = {run_ms: 1.5, fields_ms: 1.5};  // of script, in each frame
-const byId = id => document.getElementById(id);
 const isLength = o => o.unit !== "degC";
 const UNIT = {degC: "°C", um: "µm", urad: "µrad"};
 
@@ -26,12 +25,8 @@ class Page {
   }
 
   buildBody() {
-    const {data} = this, pen = byId("bar-colours").getContext("2d"), pixels = pen.createImageData(256, 1);
-    for (let i = 0; i < 256; ++i) {
-      const k = 3 * Math.round(i / 255 * (this.palette.length / 3 - 1));
-      pixels.data.set([...this.palette.slice(k, k + 3), 255], 4 * i);
-    }
-    pen.putImageData(pixels, 0, 0);
+    const {data} = this;
+    paintBar(this.palette);
     for (const element of document.querySelectorAll(".on-mesh")) element.hidden = !data.surface;
     byId("machine").hidden = !data.surface;
     if (data.surface) this.buildScene();
@@ -41,22 +36,10 @@ class Page {
   buildScene() {
     const {surface, marks} = this.data;
     this.fields = new SurfaceFields(surface);
-    try {
-      this.scene = new Scene(byId("machine"), {
-        coords: new Float32Array(decodeBytes(surface.coords)), triangles: new Uint32Array(decodeBytes(surface.triangles)),
-        edges: new Uint32Array(decodeBytes(surface.edges))}, this.palette);
-    } catch (error) {  // curves and numbers go on without the picture
-      byId("marks").textContent = `The machine is not drawn: ${error.message}.`;
-      return;
-    }
+    this.scene = sceneOf(surface, this.palette);
+    if (!this.scene) return;
     handle(this.scene, () => this.dirty.picture = true);
-    this.marks = marks.map(mark => {
-      const label = document.createElement("span"), dot = document.createElement("b");
-      label.textContent = mark.name;
-      if (mark.is_indicator) dot.className = "indicator";
-      byId("marks").append(dot, label);
-      return {...mark, label, dot};
-    });
+    this.marks = labelsOf(marks);
     byId("show-marks").addEventListener("change", event => byId("marks").hidden = !event.target.checked);
     byId("home").addEventListener("click", () => {
       this.scene.look();
@@ -242,37 +225,11 @@ class Page {
     }
     scene.range = this.range_K;
     scene.draw();
-    if (!byId("marks").hidden) this.drawMarks();
-  }
-
-  // Each at its point, its name beside it and below the names that it would cover.
-  drawMarks() {
-    const {scene, fields} = this, [width, height] = [64, 17];
-    const placed = this.marks.map(mark => {
-      const moved = mark.at_m.map((x, k) => x + scene.magnified * fields.displaced_m[3 * mark.node + k]);
-      return {mark, at: scene.project(moved)};
-    }).sort((a, b) => a.at[1] - b.at[1]);
-    const names = [];
-    for (const {mark, at: [x, y]} of placed) {
-      const name = [x + 7, y - 8];
-      for (const [nx, ny] of names) if (Math.abs(nx - name[0]) < width && Math.abs(ny - name[1]) < height) name[1] = ny + height;
-      names.push(name);
-      mark.dot.style.transform = `translate(${x}px, ${y}px)`;
-      mark.label.style.transform = `translate(${name[0]}px, ${name[1]}px)`;
-    }
+    if (!byId("marks").hidden) placeMarks(this.marks, scene, fields);
   }
 
   // The colours span what has been seen of the run so far.
-  reach(values_K) {
-    let [low, high] = this.range_K;
-    for (const v of values_K) {
-      if (v < low) low = v;
-      if (v > high) high = v;
-    }
-    this.range_K = [low, Math.max(high, low + 0.5)];
-    byId("bar-low").textContent = `${(this.range_K[0] + this.data.reference_degC).toFixed(1)} °C`;
-    byId("bar-high").textContent = `${(this.range_K[1] + this.data.reference_degC).toFixed(1)} °C`;
-  }
+  reach(values_K) { this.range_K = reached(this.range_K, values_K, this.data.reference_degC); }
 
   drawCharts() {
     const {twin, charts, data} = this, {run} = twin, time_s = run.time_s.subarray(0, run.n_done);

@@ -1,0 +1,59 @@
+#pragma once
+// An edge node of Sparkplug B: what its birth and data messages say of its metrics, by name (Eclipse Sparkplug Specification 3.0.0).
+//
+// A birth (NBIRTH, DBIRTH) names all metrics, with an alias each where it likes; data (NDATA, DDATA) may name the alias alone. Messages of a node are
+// numbered 0 to 255 from its NBIRTH on. Where one is missing, or data come before the birth, the node is asked for its birth anew
+// ("Node Control/Rebirth"). Births are not kept by the broker, so that is how whoever comes later begins.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace driftwright::follow {
+
+struct SparkplugAddress {
+  std::string group, node;
+  std::string device;  ///< "": metrics of the node itself
+};
+/// "shop/mill", "shop/mill/spindle". @throws InputError
+[[nodiscard]] SparkplugAddress read_sparkplug_address(const std::string& text);
+
+class SparkplugNode {
+ public:
+  explicit SparkplugNode(SparkplugAddress address) : address_(std::move(address)) {}
+
+  /// That are listened to: of the node and of all its devices, whose messages are numbered together.
+  [[nodiscard]] std::vector<std::string> topics() const;
+  /// What asks for a birth: topic and payload.
+  [[nodiscard]] std::string rebirth_topic() const;
+  [[nodiscard]] static std::string rebirth_payload();
+
+  /// Takes a message. @return why it is of no use; "" where it is
+  std::string take(const std::string& topic, const std::string& payload);
+  /// The link was lost: nobody knows whether messages were, and a birth is wanted.
+  void lose_sight() { wants_birth_ = true; }
+  [[nodiscard]] bool wants_birth() const { return wants_birth_; }
+  [[nodiscard]] bool is_alive() const { return is_alive_; }
+
+  /// The metrics of a birth in force: numbers as text; none where null, or of a type that is no number.
+  [[nodiscard]] const std::map<std::string, std::optional<std::string>>& metrics() const { return metrics_; }
+
+ private:
+  struct Known {
+    std::string name;
+    std::uint32_t datatype = 0;
+  };
+  using Aliases = std::map<std::uint64_t, Known>;
+
+  SparkplugAddress address_;
+  std::map<std::string, std::optional<std::string>> metrics_;
+  std::map<std::string, std::uint32_t> datatype_;  // by name
+  Aliases aliases_;
+  std::optional<std::uint64_t> birth_number_;  // "bdSeq" of the NBIRTH
+  std::uint64_t next_seq_ = 0;
+  bool is_alive_ = false, wants_birth_ = true;
+};
+
+}  // namespace driftwright::follow
