@@ -549,13 +549,15 @@ int app::command_line(int argc, const char* const* argv) {
 
   try {
     reject_unknown_verb(cli, argc > 1 ? argv[1] : "");
-    cli.parse(argc, argv);
+    try {
+      cli.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+      if (e.get_exit_code() != 0) throw InputError(wrong_words(cli, e));
+      (void)cli.exit(e);  // prints what was asked for: help, version
+    }
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       throw InputError("what the program says cannot be written to standard output; is it full?");
     return kDone;
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return cli.exit(e) == 0 ? kDone : kWrongInput;  // what was asked for: help, version
-    return app::exit_code_of(std::make_exception_ptr(InputError(wrong_words(cli, e))));
   } catch (...) {
     return app::exit_code_of(std::current_exception());
   }

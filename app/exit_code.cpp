@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -58,6 +59,7 @@ ExitCode exit_code_of(const std::exception_ptr& failure) {
 }
 
 void end_with_words() {
+  std::signal(SIGXFSZ, SIG_IGN);  // what is longer than files may be then fails to be written, which is told
   std::set_terminate([] {
     const std::exception_ptr failure = std::current_exception();
     const ExitCode code = failure ? exit_code_of(failure) : kOurBug;

@@ -1,15 +1,17 @@
 #include "app/follow.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <fstream>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <thread>
@@ -145,7 +147,7 @@ class Following {
       return std::make_unique<follow::CurrentRows>(options_.mtconnect, follow::HeardValues(std::move(origins), stale_s),
                                                    every_s, say);
     }
-    if (options_.mqtt.empty()) return std::make_unique<follow::LineSource>(STDIN_FILENO);
+    if (options_.mqtt.empty()) return std::make_unique<follow::LineSource>(STDIN_FILENO, "standard input");
     std::optional<follow::SparkplugNode> node;
     if (!options_.sparkplug.empty()) node.emplace(follow::read_sparkplug_address(options_.sparkplug));
     if (node ? !makes_rows : makes_rows != options_.from.empty())
@@ -181,14 +183,20 @@ class Following {
   }
 
   void replay() {
-    std::ifstream file(options_.replay, std::ios::binary);
-    if (!file) throw InputError(fmt::format("--replay {}: cannot be read", options_.replay));
+    const std::string name = fmt::format("--replay {}", options_.replay);
+    struct Open {
+      int file;
+      ~Open() { (void)::close(file); }
+    } open{::open(options_.replay.c_str(), O_RDONLY | O_CLOEXEC)};
+    if (open.file < 0) throw InputError(fmt::format("{}: {}", name, std::strerror(errno)));
+    follow::LineSource source(open.file, name);
     std::string line;
-    while (is_read_ && !EndRequest::is_made() && std::getline(file, line)) {
-      take(line);
+    while (is_read_ && !EndRequest::is_made()) {
+      const follow::LineSource::Got got = source.next(line, kLongestPoll_s);
+      if (got == follow::LineSource::Got::kEnd) break;
+      if (got == follow::LineSource::Got::kLine) take(line);
       if (session_.has_channels() && seconds_since(saved_) > kSaveEvery_s) save();
     }
-    if (file.bad()) throw InputError(fmt::format("--replay {}: cannot be read to its end", options_.replay));
   }
 
   /// Waits until a row of a replay is due.

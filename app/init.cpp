@@ -64,7 +64,7 @@ void init(const InitOptions& options) {
   if (!target.has_filename()) target = target.parent_path();  // "name/"
   const std::string name = target.filename().string();
   if (!is_name(name))
-    throw InputError(fmt::format("'{}' names no scenario; letters, digits, '_' and '-' are allowed", name));
+    throw InputError(fmt::format("'{}' names no scenario; letters, digits, '_' and '-' are allowed, 200 at most", name));
   const bool is_lumped = options.from == "lumped";
   if (is_lumped && !options.units.empty()) throw InputError("--units goes with a mesh file");
   NewFolder folder(target);

@@ -229,9 +229,15 @@ std::string ConfigMap::text(const std::string& key, const std::string& fallback)
   return has(key) ? text(key) : fallback;
 }
 
+namespace {
+
+constexpr std::size_t kLongestName = 200;  // file systems take 255 bytes, endings included
+
+}  // namespace
+
 bool is_name(const std::string& text) {
   constexpr const char* kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
-  return !text.empty() && text.find_first_not_of(kAllowed) == std::string::npos;
+  return !text.empty() && text.size() <= kLongestName && text.find_first_not_of(kAllowed) == std::string::npos;
 }
 
 std::string ConfigMap::name(const std::string& key) const {
@@ -239,7 +245,7 @@ std::string ConfigMap::name(const std::string& key) const {
   if (!is_name(value)) {
     std::string near = value;  // "my machine" was meant to be my_machine
     std::replace(near.begin(), near.end(), ' ', '_');
-    fail(key, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed{}", value,
+    fail(key, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed, 200 at most{}", value,
                           is_name(near) ? fmt::format(". Did you mean '{}'?", near) : ""));
   }
   return value;

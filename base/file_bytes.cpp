@@ -9,12 +9,28 @@
 #include "base/errors.hpp"
 
 namespace driftwright {
+namespace {
+
+constexpr std::streamsize kMostOfDevice = 1 << 20;  // more than anybody types at a terminal
+
+/// Of a device, which may have no end, such as /dev/zero.
+std::string read_device(std::istream& device, const std::filesystem::path& path) {
+  std::string bytes(static_cast<std::size_t>(kMostOfDevice), '\0');
+  device.read(bytes.data(), kMostOfDevice);
+  if (device.gcount() == kMostOfDevice) throw InputError(fmt::format("{}: is a device that gives bytes without end; a file is wanted", path.string()));
+  bytes.resize(static_cast<std::size_t>(device.gcount()));
+  return bytes;
+}
+
+}  // namespace
 
 std::string read_bytes(const std::filesystem::path& path) {
   std::error_code unknown;
   if (std::filesystem::is_directory(path, unknown))
     throw InputError(fmt::format("{}: is a folder; a file is wanted", path.string()));
   std::ifstream file(path, std::ios::binary);
+  if (file && (std::filesystem::is_character_file(path, unknown) || std::filesystem::is_block_file(path, unknown)))
+    return read_device(file, path);
   std::ostringstream bytes;
   if (file && file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();
   file.clear(file.rdstate() & ~(std::ios::eofbit));  // an empty file is one

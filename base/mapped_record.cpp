@@ -9,6 +9,7 @@
 
 #include "base/delimited_text.hpp"
 #include "base/logger_header.hpp"
+#include "base/record_span.hpp"
 #include "base/row_clock.hpp"
 #include "base/tag_log.hpp"
 
@@ -161,7 +162,9 @@ ReadRecord read_mapped(const std::string& path, const ColumnMap& map) {
 
 ReadRecord read_record(const std::string& path, const std::optional<ColumnMap>& columns) {
   if (!columns) return {read_record_csv(path), {}};
-  return read_mapped(path, *columns);
+  ReadRecord read = read_mapped(path, *columns);
+  require_possible_span(path, read.record.time_s.front(), read.record.time_s.back());
+  return read;
 }
 
 }  // namespace driftwright

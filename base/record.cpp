@@ -10,6 +10,7 @@
 
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
+#include "base/record_span.hpp"
 
 namespace driftwright {
 namespace {
@@ -143,6 +144,7 @@ Record read_record_csv(const std::string& path) {
   if (record.n_samples() < 2) {
     throw InputError(fmt::format("{}: {} rows of data; a record needs at least two", path, record.n_samples()));
   }
+  require_possible_span(path, record.time_s.front(), record.time_s.back());
   return record;
 }
 

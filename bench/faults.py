@@ -3,74 +3,205 @@
 
     bench/faults.py [PROGRAM] [--kills N] [--verbs simulate,diagnose,...]
 
-Faults: address space of 300 to 1500 MB, a disk that is full after 0 to 400 kB, standard output that is full, TMPDIR that is missing or read-only, no
-gnuplot, a current folder that is gone, an -o of 300 characters, SIGKILL after a random part of the usual time, and a second run after it.
+Faults: address space of 300 to 1500 MB, files of 20 kB at most (RLIMIT_FSIZE), a disk that is full after 400 kB, standard output that is full, TMPDIR
+that is missing or takes no file, an empty PATH (no gnuplot, no C compiler), a current folder that is gone, an -o of 300 characters, Ctrl-C and SIGKILL after
+random parts of the usual time, and a second run after each.
 
-A verb passes where it ends with 0, 2 or 3 and words, in time, where the folder of results then is whole or not there, and where the run after a
-kill gives the same bytes as the undisturbed one. Full disks want root (a small tmpfs is mounted); without, they are left out.
+A verb passes where it ends with 0, 2 or 3 (130 behind Ctrl-C) and words, in time, where its results then are whole or not there, and where 0 and the run
+after a kill give the same bytes as the undisturbed one; exit code 1 where one does not. Full disks want root (a small tmpfs is mounted); without, they
+are left out.
 """
-import argparse, os, random, re, resource, shutil, signal, subprocess, sys, tempfile, time
+import argparse, os, random, resource, shutil, signal, subprocess, sys, tempfile, time
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
 LONGEST_S = 300
 
 
-def verbs(data):
-    lumped, fp3 = TOP / "scenarios/lumped_spindle.yaml", TOP / "scenarios/fp3_spindle.yaml"
-    records = [arg for f in data.values() for arg in ("--measured", f)]
+def small_scenario(work):
+    """The smallest shipped machine with what `run`, `validate` and `schedule` want of a scenario."""
+    text = (TOP / "scenarios/first_machine.yaml").read_text()
+    assert "\ncyclograms:" in text
+    path = work / "small.yaml"
+    path.write_text(text[:text.index("\ncyclograms:")] + """
+cyclograms:
+  shift: [[120 min, 6000 rpm], [30 min, 0 rpm], [90 min, 3000 rpm]]
+  climb: [[40 min, 1500 rpm], [40 min, 3000 rpm], [40 min, 6000 rpm], [60 min, 0 rpm]]
+  other: [[30 min, 5000 rpm], [20 min, 0 rpm], [60 min, 2000 rpm]]
+study: {target: nose_z, train: [shift, climb], judge: other, sensors_to_choose: 1, tolerance: 5 um}
+schedule: {tolerance: 10 um, rapid: 15 m/min, tool_change: 8 s, axes: {z: {displacement: nose_z, sign: -1}}}
+""")
+    return path
+
+
+def verbs(small, record, others):
+    """Words behind the program: OUT is a folder or file of results; without it, what counts is on standard output."""
+    first, shift, climb, other = TOP / "scenarios/first_machine.yaml", record, *others
     return {
         "list": ["list", "effects"],
-        "check": ["check", lumped],
+        "schema": ["schema", "scenario"],
+        "help": ["help", "diagnose"],
+        "check": ["check", TOP / "scenarios/lumped_spindle.yaml"],
+        "init": ["init", "OUT"],
+        "import": ["import", TOP / "scenarios/records/logger_file.csv", "-o", "OUT"],
+        "compare": ["compare", shift, climb, "-o", "OUT"],
         "mesh": ["mesh", TOP / "scenarios/c_frame.yaml", "-o", "OUT"],
-        "simulate": ["simulate", lumped, "-o", "OUT"],
-        "predict": ["predict", lumped, "--cyclogram", "warm_up", "-o", "OUT"],
-        "select": ["select", "STUDY", "--train", data["a"], "--train", data["b"], "-o", "OUT"],
-        "validate": ["validate", "STUDY", "--train", data["a"], "--train", data["b"], "--test", data["c"], "-o", "OUT"],
-        "compensate": ["compensate", "STUDY", "--model", "MODEL", "--through", "none", "--measured", data["c"], "-o", "OUT"],
-        "calibrate": ["calibrate", lumped, *records, "-o", "OUT"],
-        "diagnose": ["diagnose", lumped, "--measured", data["a"], "-o", "OUT"],
+        "simulate": ["simulate", small, "-o", "OUT"],
+        "predict": ["predict", small, "--cyclogram", "other", "-o", "OUT"],
+        "warmup": ["warmup", small, "--then", "other", "--time-limit", "30 min", "--tolerance", "20 um", "-o", "OUT"],
+        "place": ["place", small, "-o", "OUT"],
+        "plan-test": ["plan-test", small, "--programmes", "50", "-o", "OUT"],
+        "select": ["select", "STUDY", "--train", shift, "--train", climb, "-o", "OUT"],
+        "validate": ["validate", "STUDY", "--train", shift, "--train", climb, "--test", other, "-o", "OUT"],
+        "compensate": ["compensate", "STUDY", "--model", "MODEL", "--through", "none", "--measured", other, "-o", "OUT"],
+        "calibrate": ["calibrate", first, "--measured", shift, "-o", "OUT"],
+        "diagnose": ["diagnose", first, "--measured", shift, "-o", "OUT"],
         "sweep": ["sweep", TOP / "scenarios/lumped_sweep.yaml", "-o", "OUT"],
-        "schedule": ["schedule", fp3, "--program", TOP / "scenarios/parts/fp3_part.ngc", "-o", "OUT"],
-        "run": ["run", fp3, "-o", "OUT"],
+        "schedule": ["schedule", small, "--program", TOP / "scenarios/parts/pocket.ngc", "-o", "OUT"],
+        "run": ["run", small, "-o", "OUT"],
+        "view": ["view", small, "-o", "OUT.html"],
+        "export": ["export", first, "--fmu", "-o", "OUT.fmu"],
+        "follow": ["follow", first, "--replay", shift],
         "inject": ["inject", "--correction", "CORRECTION", "--row-time", "1 ms", "--period", "4 um"],
     }
 
 
-def run(command, out, cwd, env=None, limit_mb=None, stdout=subprocess.PIPE, stdin=None, kill_after=None):
+class Trial:
+    """How a run ended: `code`, or "killed" or "hangs"; what it wrote to standard error and, where that is kept, to standard output."""
+
+    def __init__(self, code, err, time_s, said=None):
+        self.code, self.err, self.time_s, self.said = code, err, time_s, said
+
+
+def run(command, out, cwd, env=None, limit_mb=None, file_limit=None, stdout=None, stdin=None, kill_after=None, with_signal=signal.SIGKILL):
     def before():
         if limit_mb:
             resource.setrlimit(resource.RLIMIT_AS, (limit_mb << 20, limit_mb << 20))
+        if file_limit is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (file_limit, file_limit))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    words = [str(out) if str(w) == "OUT" else str(w) for w in command]
+    words = [str(w).replace("OUT", str(out)) if str(w).startswith("OUT") else str(w) for w in command]
     began = time.time()
-    process = subprocess.Popen(words, cwd=cwd, env=env, stdout=stdout, stderr=subprocess.PIPE, preexec_fn=before,
-                               stdin=open(stdin) if stdin else subprocess.DEVNULL)
-    try:
-        _, err = process.communicate(timeout=kill_after if kill_after else LONGEST_S)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        _, err = process.communicate()
-        return ("killed" if kill_after else "hangs"), err.decode(errors="replace"), time.time() - began
-    return process.returncode, err.decode(errors="replace"), time.time() - began
+    with tempfile.TemporaryFile() as said, open(stdin if stdin else os.devnull, "rb") as rows, tempfile.TemporaryFile() as err:
+        process = subprocess.Popen(words, cwd=cwd, env=env, stdout=stdout or said, stderr=err, preexec_fn=before, stdin=rows)
+        code = None
+        try:
+            code = process.wait(timeout=kill_after if kill_after else LONGEST_S)
+        except subprocess.TimeoutExpired:
+            process.send_signal(with_signal if kill_after else signal.SIGKILL)
+            try:
+                code = process.wait(timeout=LONGEST_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+                code = "hangs"
+            if not kill_after:
+                code = "hangs"
+            elif with_signal == signal.SIGKILL:
+                code = "killed"
+        said.seek(0)
+        err.seek(0)
+        return Trial(code, err.read().decode(errors="replace"), time.time() - began, said.read())
 
 
-def files(folder):
-    if not folder.exists():
-        return None
-    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+def results(out):
+    """Bytes of a folder or file of results by name; None where there is none."""
+    if out.is_file():
+        return {out.name: out.read_bytes()}
+    return {str(p.relative_to(out)): p.read_bytes() for p in sorted(out.rglob("*")) if p.is_file()} if out.exists() else None
 
 
-def same(a, b):
-    """Bytes, but for times of day and the folder's own name."""
-    return a is not None and b is not None and a.keys() == b.keys() and all(a[k] == b[k] for k in a)
-
-
-def judged(code, err):
+def judged(trial, also=()):
     """'2' where that is what it should be; '**1: ...**' where it is not."""
-    if code in (0, 2, 3) and (code == 0 or err.strip()):
-        return str(code)
-    return f"**{signal.Signals(-code).name if isinstance(code, int) and code < 0 else code}: {err.strip().splitlines()[-1][:80] if err.strip() else 'no words'}**"
+    if trial.code == -signal.SIGINT and 130 in also:  # as shells tell it, where there was nothing to put away yet
+        return "130"
+    if trial.code in also or trial.code in (0, 2, 3) and (trial.code == 0 or trial.err.strip()):
+        return str(trial.code)
+    is_signal = isinstance(trial.code, int) and trial.code < 0
+    last = trial.err.strip().splitlines()[-1][:80] if trial.err.strip() else "no words"
+    return f"**{signal.Signals(-trial.code).name if is_signal else trial.code}: {last}**"
+
+
+def remove(path):
+    shutil.rmtree(path, ignore_errors=True) if path.is_dir() else path.unlink(missing_ok=True)
+
+
+FAULTS = ["300 MB", "400 MB", "1500 MB", "files of 20 kB", "disk 400 kB", "stdout full", "no TMPDIR", "TMPDIR read-only", "PATH empty", "folder gone", "-o of 300",
+          "Ctrl-C", "kills, then again"]
+
+
+def row_of(verb, command, stdin, work, env, tiny, n_kills):
+    """The cells of a verb's row."""
+    writes = any(str(w).startswith("OUT") for w in command)
+    suffix = next((str(w)[3:] for w in command if str(w).startswith("OUT")), "")
+    folder = work / "out"
+    folder.mkdir(exist_ok=True)
+    stem = folder / verb
+    out = Path(str(stem) + suffix)
+    usual = run(command, stem, work, env, stdin=stdin)
+    remove(out)
+    usual = run(command, stem, work, env, stdin=stdin)  # reduced models are kept by now
+    right, said = results(out), usual.said
+    if usual.code != 0:
+        return [judged(usual) + " **undisturbed**"] * len(FAULTS)
+
+    def verdict(trial, where=out, also=(), is_said=True):
+        cell = judged(trial, also)
+        left = results(where) if writes else None
+        if writes and left is not None and left != right:
+            cell += " **other bytes**" if trial.code == 0 else " **half of it**"
+        if writes and trial.code == 0 and left is None:
+            cell += " **nothing written**"
+        if not writes and is_said and trial.code == 0 and trial.said != said:
+            cell += " **other bytes**"
+        return cell
+
+    def tried(**fault):
+        remove(out)
+        env_here = dict(env, **fault.pop("variables", {}))
+        is_said = "stdout" not in fault
+        return verdict(run(command, stem, fault.pop("cwd", work), env_here, stdin=stdin, **fault), is_said=is_said)
+
+    cells = [tried(limit_mb=mb) for mb in (300, 400, 1500)]
+    cells.append(tried(file_limit=20000) if writes else "-")
+    if tiny and writes:
+        for p in tiny.iterdir():
+            remove(p)
+        cells.append(verdict(run(command, tiny / verb, work, dict(env, TMPDIR=str(tiny)), stdin=stdin), Path(str(tiny / verb) + suffix)))
+        left = [p.name for p in tiny.iterdir() if p.name not in (verb + suffix, verb + ".parts")]
+        cells[-1] += f" **left: {left[0]}**" if left else ""
+    else:
+        cells.append("-")
+    with open("/dev/full", "wb") as full:
+        cells.append(tried(stdout=full))
+    cells.append(tried(variables={"TMPDIR": "/no/such/folder"}))
+    cells.append(tried(variables={"TMPDIR": "/proc"}))
+    cells.append(tried(variables={"PATH": "/nowhere"}))
+    gone = work / "gone"
+    gone.mkdir(exist_ok=True)
+    remove(out)
+    cells.append(verdict(run(["/bin/sh", "-c", 'rmdir "$PWD"; exec "$@"', "sh", *command], stem, gone, env, stdin=stdin)))
+    cells.append(verdict(run(command, work / ("x" * 300), work, env, stdin=stdin), work / "nowhere") if writes else "-")
+
+    def cut_short(how, also):
+        """After random parts of the usual time: the results are there whole or not, nothing stays beside them, and another run gives the same bytes."""
+        worst = ""
+        for _ in range(n_kills):
+            remove(out)
+            end = run(command, stem, work, env, stdin=stdin, kill_after=max(0.02, random.uniform(0.05, 1.0) * usual.time_s), with_signal=how)
+            cell = verdict(end, also=also, is_said=False)
+            worst = cell if "**" in cell else worst
+            if verb == "init":  # it never replaces a folder
+                remove(out)
+            again = run(command, stem, work, env, stdin=stdin)
+            if verdict(again) != "0":
+                worst = f"**then {again.code}: {verdict(again)}**"
+        beside = [p.name for p in folder.iterdir() if p != out and p.name.startswith(verb + ".")]
+        return (worst or ("same bytes" if how == signal.SIGKILL else "130")) + (f" **left: {beside[0]}**" if beside and how != signal.SIGKILL else "")
+
+    cells.append(cut_short(signal.SIGINT, (130,)))
+    cells.append(cut_short(signal.SIGKILL, ("killed",)))
+    return cells
 
 
 def main():
@@ -82,107 +213,39 @@ def main():
     args = args.parse_args()
     program = os.path.abspath(args.program)
     random.seed(args.seed)
+    is_kept = True
     work = Path(tempfile.mkdtemp(prefix="driftwright-faults-"))
-    base_env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"))
+    env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"))
     tiny = work / "tiny"
     tiny.mkdir()
     has_tiny = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "none", tiny], capture_output=True).returncode == 0
     try:
-        # Records of the lumped spindle, as `simulate` writes them, and a study on them.
-        subprocess.run([program, "simulate", str(TOP / "scenarios/lumped_spindle.yaml"), "-o", str(work / "simulated")], check=True,
-                       env=base_env, capture_output=True)
-        found = sorted((work / "simulated").rglob("*.csv"))
-        found = [f for f in found if "heat_flow" not in str(f)]
-        data = {k: str(found[i % len(found)]) for i, k in enumerate("abc")}
-        if len(found) < 3:  # one run thrice, each a little longer ago
-            text = found[0].read_text().splitlines()
-            head = [l for l in text if l.startswith("#") or l.startswith("time")]
-            rows = [l for l in text if not (l.startswith("#") or l.startswith("time"))]
-            noise = random.Random(7)
-            for k in "abc":
-                path = work / f"{k}.csv"
-                lines = []
-                for row in rows:
-                    cells = row.split(",")
-                    lines.append(",".join([cells[0]] + [c if not c or i < 1 else f"{float(c) + (noise.gauss(0, 0.05) if float(c) != 0 and 'speed' not in head[-1].split(',')[i + 1] else 0):.6g}"
-                                                        for i, c in enumerate(cells[1:])]))
-                path.write_text("\n".join(head + lines) + "\n")
-                data[k] = str(path)
+        small = small_scenario(work)
+        subprocess.run([program, "simulate", small, "-o", work / "simulated"], check=True, env=env, capture_output=True)
+        records = [work / "simulated/records" / f"{name}.csv" for name in ("shift", "climb", "other")]
         study = work / "study.yaml"
-        study.write_text("name: study\nstudy: {target: nose_z, sensors_to_choose: 2, tolerance: 5 um}\n")
+        study.write_text("name: study\nstudy: {target: nose_z, sensors_to_choose: 1, tolerance: 5 um}\n")
         correction = work / "correction.csv"
         correction.write_text("time_s,drift_um\n0,0\n1,4\n")
         rows_in = work / "rows.txt"
-        rows_in.write_text("".join(f"{a} {b}\n" for _ in range(20000) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))))
-        commands = verbs(data)
-        model = work / "models"
-        subprocess.run([program, *[str(w) if w not in ("OUT", "STUDY") else str(model if w == "OUT" else study) for w in commands["validate"]]],
-                       env=base_env, capture_output=True)
-        models = sorted((model / "models").glob("*.json")) if (model / "models").exists() else []
-        names = {"STUDY": study, "CORRECTION": correction, "MODEL": models[-1] if models else "none.json"}
-        chosen = args.verbs.split(",") if args.verbs else list(commands)
-        faults = ["300 MB", "400 MB", "1500 MB", "disk 400 kB", "stdout full", "no TMPDIR", "no gnuplot", "cwd gone", "-o 300 long", f"{args.kills} kills, then again"]
-        print("| verb | " + " | ".join(faults) + " |")
-        print("|---" * (len(faults) + 1) + "|")
-        for verb in chosen:
+        rows_in.write_text("0 0\n1 0\n1 1\n0 1\n" * 20000)
+        commands = verbs(small, records[0], records[1:])
+        names = {"STUDY": study, "CORRECTION": correction}
+        of_models = [program] + [names.get(str(w), w) for w in commands["validate"]]
+        run(of_models, work / "models", work, env)
+        names["MODEL"] = next(iter(sorted((work / "models/models").glob("*.json"))), "none.json")
+        print("| verb | " + " | ".join(FAULTS).replace("kills", f"{args.kills} kills") + " |")
+        print("|---" * (len(FAULTS) + 1) + "|")
+        for verb in args.verbs.split(",") if args.verbs else commands:
             command = [program] + [names.get(str(w), w) for w in commands[verb]]
-            stdin = rows_in if verb == "inject" else None
-            writes = "OUT" in [str(w) for w in command]
-            out = work / "out" / verb
-            code, err, usual_s = run(command, out, work, base_env, stdin=stdin)
-            code, err, usual_s = run(command, out, work, base_env, stdin=stdin)
-            right = files(out)
-            row = []
-
-            def tried(result, where=out):
-                code, err, _ = result
-                cell = judged(code, err)
-                left = files(where) if writes else None
-                if writes and code != 0 and left is not None and not same(left, right):
-                    cell += " **half a folder**"
-                if writes and code == 0 and not same(left, right):
-                    cell += " **other bytes**"
-                return cell
-
-            for mb in (300, 400, 1500):
-                row.append(tried(run(command, out, work, base_env, limit_mb=mb, stdin=stdin)))
-            if has_tiny and writes:
-                for p in tiny.iterdir():
-                    shutil.rmtree(p)
-                row.append(tried(run(command, tiny / "out", work, dict(base_env, TMPDIR=str(tiny)), stdin=stdin), tiny / "out"))
-                left = [p.name for p in tiny.iterdir() if p.name not in ("out", "out.parts")]
-                if left:
-                    row[-1] += f" **left: {left[0]}**"
-            else:
-                row.append("-")
-            with open("/dev/full", "wb") as full:
-                row.append(tried(run(command, out, work, base_env, stdout=full, stdin=stdin)))
-            row.append(tried(run(command, out, work, dict(base_env, TMPDIR="/no/such/folder"), stdin=stdin)))
-            row.append(tried(run(command, out, work, dict(base_env, PATH="/nowhere"), stdin=stdin)))
-            gone = work / "gone"
-            gone.mkdir(exist_ok=True)
-            row.append(judged(*run(["/bin/sh", "-c", 'rmdir "$PWD"; exec "$@"', "sh", *command], out, gone, base_env, stdin=stdin)[:2]))
-            row.append(tried(run(command, work / ("x" * 300), work, base_env, stdin=stdin), work / "nowhere") if writes else "-")
-            if writes:
-                worst = "same bytes"
-                for _ in range(args.kills):
-                    shutil.rmtree(out, ignore_errors=True)
-                    result = run(command, out, work, base_env, stdin=stdin, kill_after=max(0.02, random.uniform(0.05, 1.0) * usual_s))
-                    left = files(out)
-                    if left is not None and not same(left, right):
-                        worst = "**half a folder**"
-                    code, err, _ = run(command, out, work, base_env, stdin=stdin)
-                    if code != 0 or not same(files(out), right):
-                        worst = f"**{code}, other bytes**"
-                beside = [p.name for p in out.parent.iterdir() if p.name != verb and p.name.startswith(verb)]
-                row.append(worst + (f" **left: {beside[0]}**" if beside else ""))
-            else:
-                row.append("-")
-            print(f"| {verb} | " + " | ".join(row) + " |", flush=True)
+            cells = row_of(verb, command, rows_in if verb == "inject" else None, work, env, tiny if has_tiny else None, args.kills)
+            is_kept = is_kept and not any("**" in cell for cell in cells)
+            print(f"| {verb} | " + " | ".join(cells) + " |", flush=True)
     finally:
         if has_tiny:
             subprocess.run(["umount", tiny])
         shutil.rmtree(work, ignore_errors=True)
+    sys.exit(0 if is_kept else 1)
 
 
 if __name__ == "__main__":

@@ -50,7 +50,7 @@ LineSource::Got LineSource::next(std::string& line, double wait_s) {
     std::array<char, 65536> bytes;
     const ssize_t n = n_ready < 0 ? -1 : ::read(file_, bytes.data(), bytes.size());
     if (n < 0 && errno == EINTR) return Got::kNothingYet;
-    if (n < 0) throw InputError(fmt::format("standard input: {}", std::strerror(errno)));
+    if (n < 0) throw InputError(fmt::format("{}: {}", name_, std::strerror(errno)));
     if (n == 0) at_end_ = true;
     rest_.append(bytes.data(), static_cast<std::size_t>(n));
   }

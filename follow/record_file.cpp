@@ -41,6 +41,8 @@ RecordFile::RecordFile(const std::string& path, const std::vector<Channel>& chan
   const bool is_there = std::filesystem::exists(path);
   if (is_there && !goes_on)
     throw InputError(fmt::format("--record {}: the file is there already; name another, or go on with it by --state", path));
+  if (is_there && !std::filesystem::is_regular_file(path))
+    throw InputError(fmt::format("--record {}: a folder, device or pipe of this name is there; a file is wanted", path));
   if (is_there && mend(path) != header_of(channels))
     throw InputError(fmt::format("--record {}: it has other columns than the stream", path));
   file_.reset(std::fopen(path.c_str(), "ab"));

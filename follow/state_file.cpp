@@ -52,6 +52,8 @@ void write_state(const std::filesystem::path& file, const Session& session) {
 
 bool resume_from(const std::filesystem::path& file, Session& session) {
   if (!std::filesystem::exists(file)) return false;
+  if (!std::filesystem::is_regular_file(file))  // which the rename of write_state() would do away with
+    throw InputError(fmt::format("--state {}: a folder, device or pipe of this name is there; a file is wanted", file.string()));
   try {
     Json j = Json::parse(read_bytes(file));
     const auto hash = output::value<std::string>(j, "hash");

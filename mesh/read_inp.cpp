@@ -255,7 +255,9 @@ class InpReader {
   }
 
   void add_facet(long n, const std::vector<std::string>& words) {
-    std::vector<int>& corners = facet_[n];
+    const auto [facet, is_new] = facet_.try_emplace(n);
+    if (!is_new) fail(element_line_, fmt::format("element {} stands there twice", n));
+    std::vector<int>& corners = facet->second;
     for (int i = 1; i <= facet_corners_; ++i) {
       const auto hit = node_.find(integer(words[static_cast<std::size_t>(i)]));
       if (hit == node_.end())

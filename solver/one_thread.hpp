@@ -5,6 +5,8 @@
 
 #include <mutex>
 
+#include "solver/blas_work_space.hpp"
+
 namespace driftwright::solver {
 
 /// While it lives, OpenMP's parallel regions begun from here have one thread, and other threads that want one wait. For CHOLMOD's
@@ -13,7 +15,11 @@ namespace driftwright::solver {
 /// and find matrices "not positive definite", or wrong numbers. Never two in one thread.
 class OneThread {
  public:
-  OneThread() : alone_(one_at_a_time()), levels_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
+  /// @throws std::bad_alloc  where there is no memory for OpenBLAS's work space
+  OneThread() : alone_(one_at_a_time()), levels_(omp_get_max_active_levels()) {
+    claim_blas_work_space();
+    omp_set_max_active_levels(0);
+  }
   ~OneThread() { omp_set_max_active_levels(levels_); }
   OneThread(const OneThread&) = delete;
   OneThread& operator=(const OneThread&) = delete;

@@ -193,6 +193,10 @@ TEST(FollowVerb, SaysWhatItCannotFollow) {
   refused("head.yaml --slew '0 um/s'", "true |", "more than 0");
   refused("head.yaml head.yaml", "true |", "corrected by another model");
   refused("nowhere.json", "true |", "no such file");
+  refused("head.yaml --replay /dev/zero", "true |", "a header or a JSON row comes first");
+  refused("head.yaml --replay .", "true |", "--replay .: Is a directory");
+  refused("head.yaml --state pipe", "mkfifo pipe; cat day.csv |", "a file is wanted");
+  refused("head.yaml --state /dev/zero", "cat day.csv |", "a file is wanted");
   std::string grows = kHead;
   grows.insert(grows.find("start: hall"),
                "  - {type: spindle_growth, displacement: nose_z, growth: 5 um, at_speed: 2000 rpm, lag: 5 min}\n");

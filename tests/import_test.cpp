@@ -409,6 +409,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"too_few_nodes", "12, 2, 9, 3, 6, 10, 7", "12, 2, 9, 3, 6, 10", {"element 12 has 5 nodes; 6 are wanted"}},
         Mistake{"node_twice", "9, 2, 0, 0", "8, 2, 0, 0", {"node 8 stands there twice"}},
         Mistake{"element_twice", "13, 20, 21, 22, 23", "12, 20, 21, 22, 23", {"element 12 stands there twice"}},
+        Mistake{"face_twice", "15, 1, 2, 7", "14, 1, 2, 7", {":31: element 14 stands there twice"}},
         Mistake{"pyramid", "TYPE=C3D8R", "TYPE=C3D5", {"type c3d5", "C3D20"}},
         Mistake{"unknown_set", "hex, S2", "hexx, S2", {"there is no element set 'hexx'"}},
         Mistake{"no_such_face", "12, S2", "12, S6", {"face 's6' of element 12; S1 to S5"}},

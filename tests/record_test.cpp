@@ -49,6 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Each, RecordCsvErrors,
                                            BadCsv{"time_s,a_K\n0,nan\n1,2\n", "bad.csv:2:3: 'nan' is not a finite number"},
                                            BadCsv{"time_s,a_K\n0,1\n0,2\n", "rows must increase in time"},
                                            BadCsv{"time_s,a_furlong\n0,1\n", "names no unit"},
+                                           BadCsv{"time_s,a_K\n0,1\n4e9,2\n", "127 years; 100 years are allowed"},
                                            BadCsv{"time_s,a_K,a_K\n0,1,1\n", "appears twice"},
                                            BadCsv{"t,a_K\n0,1\n", "time_s, time_min or time_h"},
                                            BadCsv{"time_s,a_K\n0,1,2\n", "3 cells where the header has 2"}));

@@ -11,7 +11,8 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
+
+#include "base/errors.hpp"
 
 namespace driftwright::output {
 
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 TemporaryFolder::TemporaryFolder(const std::string& purpose)
     : path_((fs::temp_directory_path() / ("driftwright-" + purpose + "-XXXXXX")).string()) {
   if (mkdtemp(path_.data()) == nullptr) {
-    throw std::runtime_error(fmt::format("cannot make a temporary folder '{}': {}", path_, std::strerror(errno)));
+    throw InputError(fmt::format("cannot make a temporary folder '{}': {}; TMPDIR says where it is made", path_, std::strerror(errno)));
   }
 }
 

@@ -11,7 +11,7 @@ namespace driftwright::output {
 class TemporaryFolder {
  public:
   /// @param purpose  goes into its name
-  /// @throws std::runtime_error  naming the system's reason
+  /// @throws InputError  naming the folder and the system's reason
   explicit TemporaryFolder(const std::string& purpose);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

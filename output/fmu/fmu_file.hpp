@@ -26,7 +26,7 @@ struct FmuOrder {
 };
 
 /// All files of the unit; compiles the binary with `cc`, or what CC names, as C99 with all warnings as errors.
-/// @throws InputError  without a compiler; @throws std::runtime_error  where it fails
+/// @throws InputError  without a compiler, or with what it says where it fails
 [[nodiscard]] std::vector<FmuEntry> fmu_entries(const FmuOrder& order, const Provenance& made_by);
 
 /// A zip of entries, whose bytes do not depend on the time. @throws std::runtime_error  naming the file

@@ -244,7 +244,7 @@ schema::Map cyclograms_schema() {
 }
 
 Cyclogram read_cyclogram(const ConfigMap& cyclograms, const std::string& name) {
-  if (!is_name(name)) cyclograms.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed", name));
+  if (!is_name(name)) cyclograms.fail(name, fmt::format("'{}' is no name; letters, digits, '_' and '-' are allowed, 200 at most", name));
   Cyclogram cyclogram{.name = name, .sections = {}};
   if (!cyclograms.is_map(name)) {
     cyclogram.sections = sections_of_rows(cyclograms, name, {{&columns()[0]}, {}, {false}}, cyclogram.columns);
