@@ -211,7 +211,7 @@ void add_export(CLI::App& cli, app::ExportOptions& options) {
 
 void add_import(CLI::App& cli, app::ImportOptions& options) {
   CLI::App* verb =
-      cli.add_subcommand("import", "a logger's file as a record CSV, with what was understood of it (docs/record.md)");
+      cli.add_subcommand("import", "a logger's file as a record CSV of the same name, with what was understood of it (docs/record.md)");
   verb->add_option("file", options.scenario,
                    "of a logger or a control: text with cells, in any of the forms of docs/record.md")
       ->required();
@@ -520,7 +520,8 @@ int app::command_line(int argc, const char* const* argv) {
   verb->callback([&] { app::diagnose(diagnose); });
   verb = add_verb(
       cli, "sweep", "many variants of one scenario, one table (docs/sweep.md)",
-      "sweep scenarios/lumped_sweep.yaml\n  driftwright sweep scenarios/lumped_sweep.yaml --shard 1/1 -o results/shards\n  "
+      "sweep scenarios/lumped_sweep.yaml\n  driftwright sweep scenarios/lumped_sweep.yaml --shard 1/2 -o results/shards\n  "
+      "driftwright sweep scenarios/lumped_sweep.yaml --shard 2/2 -o results/shards\n  "
       "driftwright sweep scenarios/lumped_sweep.yaml --merge -o results/shards",
       sweep, "study");
   verb->add_option("--shard", sweep.shard, "i/n: simulate the i-th of n parts alone, as a task of a job array does");

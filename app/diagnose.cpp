@@ -68,7 +68,7 @@ void diagnose(const DiagnoseOptions& options) {
   for (diagnosis::StatedChange& cause : stated_causes(d)) changes.push_back(std::move(cause));
   const diagnosis::ExtendedScenario extended =
       write_scenario("extended", m, changes, head_of(d, options), folder, &difference);
-  if (extended.not_written.empty()) simulate_written(m, folder.path("extended.yaml").string(), d);
+  if (extended.not_written.empty()) simulate_written(m, extended, d);
   write_missing_heat(m.mesh, findings::missing_heat(d, d.search.candidates), folder);
   finish(findings::diagnosis_document({m, d, extended, difference, "extended.yaml"}, folder.made_by()), folder, progress,
          options, "", "diagnosis.json");

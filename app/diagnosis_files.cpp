@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/config_text.hpp"
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
 #include "base/line_diff.hpp"
@@ -15,6 +16,14 @@
 namespace driftwright::app {
 
 using diagnosis::StatedChange;
+
+namespace {
+
+scenarios::Scenario scenario_of(const std::string& text, const std::filesystem::path& file) {
+  return scenarios::read_scenario(ConfigMap::of_tree(read_config_text(text, file.string())));
+}
+
+}  // namespace
 
 std::vector<StatedChange> stated_causes(const diagnosis::Diagnosis& d) {
   std::vector<StatedChange> changes;
@@ -60,26 +69,23 @@ diagnosis::ExtendedScenario write_scenario(const std::string& stem, const studie
                                            const std::vector<StatedChange>& changes, const std::vector<std::string>& head,
                                            output::ResultsFolder& folder, std::string* difference) {
   diagnosis::ExtendedScenario extended = diagnosis::extended_scenario(m.scenario, *m.twin, m.runs, changes, head);
-  folder.write_text(stem + ".yaml", extended.text);
+  const std::string file = stem + ".yaml";
   try {
-    (void)scenarios::read_scenario(folder.path(stem + ".yaml").string());
+    (void)scenario_of(extended.text, folder.target() / file);
   } catch (const InputError& e) {
-    const std::string failure = fmt::format("{}.yaml as a whole: it cannot be read back: {}", stem, e.what());
-    extended.not_written.push_back(failure);
-    std::string in_comment = "# NOT WRITTEN: " + failure;
-    for (std::size_t at = 0; (at = in_comment.find('\n', at)) != std::string::npos; at += 3)
-      in_comment.replace(at, 1, "\n# ");
-    extended.text = in_comment + "\n" + extended.text;
-    folder.write_text(stem + ".yaml", extended.text);
+    extended.not_written.push_back(fmt::format("{} as a whole: it could not be read back: {}", file, e.what()));
+    if (difference) difference->clear();
+    return extended;
   }
+  folder.write_text(file, extended.text);
   const std::string diff = unified_diff(read_bytes(m.scenario.path), extended.text, m.scenario.path, stem + ".yaml");
   folder.write_text(stem + ".diff", diff);
   if (difference) *difference = diff;
   return extended;
 }
 
-void simulate_written(const studies::MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d) {
-  const diagnosis::TwinState state = scenarios::read_scenario(path).machine->effects;
+void simulate_written(const studies::MeasuredTwin& m, const diagnosis::ExtendedScenario& extended, diagnosis::Diagnosis& d) {
+  const diagnosis::TwinState state = scenario_of(extended.text, m.scenario.path).machine->effects;
   const diagnosis::Twin& twin = *m.twin;
   diagnosis::Twin::Workspace workspace(twin);
   std::map<std::string, std::pair<double, double>> squares;  // and rows

@@ -13,18 +13,18 @@ namespace driftwright::app {
 /// The scenario's own numbers as fitted. @param causes_only  those alone that have gone so far that they are causes
 [[nodiscard]] std::vector<diagnosis::StatedChange> stated_scatter(const diagnosis::Diagnosis& d, bool causes_only);
 
-/// Writes <stem>.yaml and <stem>.diff and reads the scenario back; where that fails, `not_written` says so, too.
+/// Writes <stem>.yaml and <stem>.diff. A text that cannot be read back as a scenario is not written; `not_written` then says so.
 /// @param head  comment lines for the top of the scenario
-/// @param difference  unless null, the text of the .diff
+/// @param difference  unless null, the text of the .diff; empty where nothing is written
 [[nodiscard]] diagnosis::ExtendedScenario write_scenario(const std::string& stem, const studies::MeasuredTwin& m,
                                                          const std::vector<diagnosis::StatedChange>& changes,
                                                          const std::vector<std::string>& head, output::ResultsFolder& folder,
                                                          std::string* difference);
 
-/// Runs the file that was written over the whole of each record, by the twin, with the effects as the file has them: Diagnosis::extended and
+/// Runs the scenario that was written over the whole of each record, by the twin, with the effects as its text has them: Diagnosis::extended and
 /// ChannelGain::rmse_written.
 /// @throws InputError  as read_scenario()
-void simulate_written(const studies::MeasuredTwin& m, const std::string& path, diagnosis::Diagnosis& d);
+void simulate_written(const studies::MeasuredTwin& m, const diagnosis::ExtendedScenario& extended, diagnosis::Diagnosis& d);
 
 /// residual_source.vtu: missing_heat_evidence [nats] and missing_heat_W of each region. Nothing for a machine without mesh.
 /// @returns whether it was written

@@ -14,7 +14,8 @@ void import_file(const ImportOptions& options) {
   const std::string stem = clean_name(std::filesystem::path(options.scenario).stem().string());
   output::ResultsFolder folder = open_results(options, stem);
   Progress progress(options.quiet);
-  folder.write_text("record.csv", record_csv(import.read.record, provenance_lines(folder.made_by(), "import")));
+  // Named after the logger's file, so that several imports can be told apart where each record goes by its name.
+  folder.write_text(stem + ".csv", record_csv(import.read.record, provenance_lines(folder.made_by(), "import")));
   folder.write_text(
       "columns.yaml",
       fmt::format("# How {} was read; the same key in a scenario makes every verb read such files (docs/record.md).\n{}",

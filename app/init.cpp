@@ -70,6 +70,7 @@ void init(const InitOptions& options) {
   NewFolder folder(target);
   Progress progress(false);
   const std::string file = name + ".yaml";
+  std::vector<std::string> remarks;
   if (is_lumped) {
     output::write_file(folder.work() / file, studies::lumped_scenario_text(name));
   } else {
@@ -79,13 +80,15 @@ void init(const InitOptions& options) {
     std::error_code failed;
     fs::copy_file(source, folder.work() / source.filename(), failed);
     if (failed) throw InputError(fmt::format("'{}' cannot be copied: {}", options.from, failed.message()));
-    output::write_file(folder.work() / file,
-                       studies::scenario_text(studies::draft_of(geometry), geometry, name, source.filename().string()));
+    const studies::MachineDraft draft = studies::draft_of(geometry);
+    remarks = draft.remarks;
+    output::write_file(folder.work() / file, studies::scenario_text(draft, geometry, name, source.filename().string()));
   }
   progress.begin("checking");
   const std::string wrong = complaint(folder.work() / file);
   progress.end();
   folder.keep();
+  for (const std::string& remark : remarks) fmt::print(stderr, "note: {}\n", remark);
   if (!wrong.empty())
     throw InputError(fmt::format("{} is written, and wants your hand before it runs: {}", (target / file).string(), wrong));
   fmt::print("{} is written. What it says is a guess where a comment says so.\n  driftwright run {}\n",

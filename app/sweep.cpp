@@ -136,7 +136,7 @@ void sweep(const SweepOptions& options) {
     fmt::print(stderr, "note: rows of an earlier version of this study or its scenario are dropped\n");
   NumberedRows rows = rows_of(members, found_rows(parts, identity));
   simulate_missing(plan, members, *file, rows, progress);
-  if (part.of > 1) {
+  if (!options.shard.empty()) {
     file->finish(rows);
     if (!options.quiet && !options.json)
       fmt::print("{}: shard {} of {}, {} members in {}; when all shards are done: driftwright sweep {} --merge\n", plan.name,

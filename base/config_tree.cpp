@@ -5,6 +5,8 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -151,6 +153,13 @@ Where ConfigNode::where(const std::string& key) const {
 }
 
 ConfigNodePtr read_config_tree(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const char* geometry : {".step", ".stp", ".msh", ".inp", ".vtu"}) {
+    if (extension == geometry)
+      throw InputError(fmt::format(
+          "{}: this is a machine's geometry, and a scenario is wanted; `driftwright init NAME --from {}` makes one of it", path, path));
+  }
   return read_config_text(read_text_file(path), path);
 }
 
@@ -168,6 +177,13 @@ ConfigNodePtr read_config_text(const std::string& whole, const std::string& path
     std::istringstream in(text);
     YAML::Parser(in).HandleNextDocument(builder);
   } catch (const YAML::ParserException& e) {
+    for (int n = std::min(e.mark.line, static_cast<int>(source->lines.size()) - 1); n >= 0; --n) {
+      const std::string& at = source->lines[static_cast<std::size_t>(n)];
+      const std::size_t tab = at.find('\t');
+      if (tab < at.find_first_not_of(" \t"))
+        throw InputError(where_in(*source, n + 1, static_cast<int>(tab) + 1, ""),
+                         "a tab stands in front of this line; YAML is indented by blanks alone");
+    }
     throw InputError(where_in(*source, e.mark.line + 1, e.mark.column + 1, ""), "this is not valid YAML: " + e.msg);
   } catch (const YAML::Exception& e) {
     throw InputError(fmt::format("{}: this is not valid YAML: {}", path, e.msg));

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -46,19 +48,10 @@ bool fits(const std::string& text, const std::string& format, Time& time) {
   return !in.fail() && (in >> std::ws).eof();
 }
 
-/// A stamp of ISO 8601: date, T or a blank, time, and perhaps Z or an offset.
-std::optional<nanoseconds> iso_8601(std::string text, bool& has_offset) {
+/// A stamp of ISO 8601 without its offset: date, T or a blank, time.
+std::optional<nanoseconds> iso_8601(std::string text) {
   if (text.size() > 10 && text[10] == ' ') text[10] = 'T';
-  has_offset = true;
   date::sys_time<nanoseconds> time;
-  if (text.ends_with('Z')) {
-    text.back() = '+';
-    text += "00:00";
-  }
-  for (const char* format : {"%FT%T%Ez", "%FT%T%z", "%FT%H:%M%Ez"}) {
-    if (fits(text, format, time)) return time.time_since_epoch();
-  }
-  has_offset = false;
   for (const char* format : {"%FT%T", "%FT%H:%M", "%F"}) {
     if (fits(text, format, time)) return time.time_since_epoch();
   }
@@ -67,9 +60,30 @@ std::optional<nanoseconds> iso_8601(std::string text, bool& has_offset) {
 
 }  // namespace
 
+std::optional<StampOffset> offset_at_end(const std::string& stamp) {
+  static const std::regex number("(.*[0-9])[ \t]*([-+])([0-9]{2}):?([0-9]{2})?"), word("(.*[0-9])[ \t]*([A-Z]{1,4})");
+  static const std::map<std::string, int> hours = {{"Z", 0},    {"UTC", 0}, {"GMT", 0},  {"WET", 0}, {"WEST", 1}, {"CET", 1},
+                                                   {"CEST", 2}, {"MEZ", 1}, {"MESZ", 2}, {"EET", 2}, {"EEST", 3}};
+  std::smatch parts;
+  if (std::regex_match(stamp, parts, number)) {
+    const int minutes = 60 * std::stoi(parts[3]) + (parts[4].matched ? std::stoi(parts[4]) : 0);
+    return StampOffset{parts[1], std::chrono::minutes(parts[2] == "-" ? -minutes : minutes)};
+  }
+  if (!std::regex_match(stamp, parts, word)) return std::nullopt;
+  const auto known = hours.find(parts[2]);
+  if (known == hours.end()) return std::nullopt;
+  return StampOffset{parts[1], std::chrono::hours(known->second)};
+}
+
 TimeStamps::TimeStamps(std::string format, const std::string& zone) : format_(std::move(format)) {
-  has_date_ = format_.empty() || has_any(format_, "dejDFcxmsUW");
-  has_offset_ = has_any(format_, "z") || format_.find("%Ez") != std::string::npos;
+  is_iso_ = format_.empty();
+  has_date_ = is_iso_ || has_any(format_, "dejDFcxmsUW");
+  static const std::regex offset("[ \t]*%E?z$");
+  const std::string without = std::regex_replace(format_, offset, "");
+  has_offset_ = without != format_;
+  format_ = without;
+  if (has_any(format_, "z") || format_.find("%Ez") != std::string::npos)
+    throw RangeError("%z, the offset to UTC, stands at the end of a format or nowhere");
   if (zone.empty()) return;
   if (!has_date_) throw RangeError("a zone wants stamps with a date; this format has none");
   try {
@@ -80,11 +94,18 @@ TimeStamps::TimeStamps(std::string format, const std::string& zone) : format_(st
 }
 
 nanoseconds TimeStamps::read(const std::string& text) {
-  const std::string stamp = with_point(text);
-  bool has_offset = has_offset_;
-  nanoseconds time{};
-  if (format_.empty()) {
-    const auto iso = iso_8601(stamp, has_offset);
+  std::string stamp = with_point(text);
+  nanoseconds time{}, offset{};
+  std::optional<StampOffset> told = has_offset_ || is_iso_ ? offset_at_end(stamp) : std::nullopt;
+  if (is_iso_ && told && told->stamp.find(':') == std::string::npos) told.reset();  // 2024-03-01: a date
+  if (has_offset_ && !told)
+    throw RangeError(fmt::format("'{}' has no offset to UTC at its end, which %z wants: such as +01:00, +0100, +01, Z, UTC or CET", text));
+  if (told) {
+    stamp = told->stamp;
+    offset = told->offset;
+  }
+  if (is_iso_) {
+    const auto iso = iso_8601(stamp);
     if (!iso)
       throw RangeError(
           fmt::format("'{}' is no time stamp of ISO 8601 (2024-03-01T10:00:00); `format` says how others are written, "
@@ -94,16 +115,17 @@ nanoseconds TimeStamps::read(const std::string& text) {
   } else if (has_date_) {
     date::sys_time<nanoseconds> point;
     if (!fits(stamp, format_, point))
-      throw RangeError(fmt::format("'{}' is no time stamp of the format '{}'", text, format_));
+      throw RangeError(fmt::format("'{}' is no time stamp of the format '{}'", text, has_offset_ ? format_ + "%z" : format_));
     time = point.time_since_epoch();
   } else {
-    if (!fits(stamp, format_, time)) throw RangeError(fmt::format("'{}' is no time of the format '{}'", text, format_));
+    if (!fits(stamp, format_, time)) throw RangeError(fmt::format("'{}' is no time of the format '{}'", text, has_offset_ ? format_ + "%z" : format_));
     if (before_) {
       time += *before_ - *before_ % kDay;
       if (*before_ - time > kHalfDay) time += kDay;
     }
   }
-  if (zone_ && !has_offset) time = in_zone(time, text);
+  if (zone_ && !told) time = in_zone(time, text);
+  time -= offset;
   before_ = time;
   return time;
 }

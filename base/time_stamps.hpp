@@ -7,6 +7,14 @@
 
 namespace driftwright {
 
+/// An offset to UTC behind a time of day, with or without a blank before it: +01:00, +0100, +01, Z, UTC, GMT, and European clocks by their names (CET, CEST, MEZ,
+/// MESZ, WET, WEST, EET, EEST).
+struct StampOffset {
+  std::string stamp;  ///< without it
+  std::chrono::minutes offset;
+};
+[[nodiscard]] std::optional<StampOffset> offset_at_end(const std::string& stamp);
+
 /// Reads the stamps of a file one after another.
 ///
 /// Seconds may have a fraction behind a point, a comma or a colon ("08:07:12:237"). In a zone, an hour that comes twice a year is told by the order
@@ -14,7 +22,7 @@ namespace driftwright {
 /// than the one before is of the next day. Source: Hinnant, date and tz libraries (the C++20 calendar), with the IANA data base of the system.
 class TimeStamps {
  public:
-  /// @param format  as strftime() has it: %d.%m.%Y %H:%M:%S, with %z for an offset to UTC; empty: ISO 8601
+  /// @param format  as strftime() has it: %d.%m.%Y %H:%M:%S, at its end perhaps %z for an offset as offset_at_end() knows it; empty: ISO 8601
   /// @param zone    of the IANA data base; empty: all stamps are of one clock that is never set
   /// @throws RangeError  for a zone that is not known, and for a zone beside a format without a date
   TimeStamps(std::string format, const std::string& zone);
@@ -31,7 +39,8 @@ class TimeStamps {
 
   std::string format_;
   const void* zone_ = nullptr;  // date::time_zone, owned by the library for the life of the program
-  bool has_date_ = true, has_offset_ = false;
+  bool is_iso_ = true, has_date_ = true;
+  bool has_offset_ = false;  ///< the format had %z at its end, which is no more in format_
   std::optional<std::chrono::nanoseconds> before_;
 };
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "base/config_text.hpp"
+#include "base/errors.hpp"
+
 namespace driftwright {
 namespace {
 
@@ -23,6 +26,20 @@ bool contains(const ConfigNode& tree, const ConfigNode& node) {
 bool says_nothing(const std::string& line) {
   const std::size_t first = line.find_first_not_of(" \t\r");
   return first == std::string::npos || line[first] == '#' || line.starts_with("...") || line.starts_with("---");
+}
+
+/// Behind the quotes that open at `begin`, or npos where they do not close on this line.
+std::size_t behind_quotes(const std::string& line, std::size_t begin) {
+  const char quote = line[begin];
+  for (std::size_t i = begin + 1; i < line.size(); ++i) {
+    if (quote == '"' && line[i] == '\\') {
+      ++i;
+    } else if (line[i] == quote) {
+      if (quote == '"' || i + 1 >= line.size() || line[i + 1] != quote) return i + 1;
+      ++i;  // '' stands for one '
+    }
+  }
+  return std::string::npos;
 }
 
 }  // namespace
@@ -48,6 +65,24 @@ char YamlText::at(Spot spot) const {
   return spot.column >= 1 && column < line.size() ? line[column] : '\0';
 }
 
+std::optional<std::size_t> YamlText::length_at(Spot spot, const std::string& scalar) const {
+  if (at(spot) == '\0') return std::nullopt;
+  const std::string& line = lines_[static_cast<std::size_t>(spot.line) - 1];
+  const auto begin = static_cast<std::size_t>(spot.column) - 1;
+  if (line[begin] != '"' && line[begin] != '\'') {
+    if (scalar.empty() || line.compare(begin, scalar.size(), scalar) != 0) return std::nullopt;
+    return scalar.size();
+  }
+  const std::size_t end = behind_quotes(line, begin);
+  if (end == std::string::npos) return std::nullopt;
+  try {
+    if (read_config_text(line.substr(begin, end - begin), root_->source->path)->text != scalar) return std::nullopt;
+  } catch (const InputError&) {  // not what it seemed to be
+    return std::nullopt;
+  }
+  return end - begin;
+}
+
 bool YamlText::follows_comma(Spot bracket) const {
   for (int line = bracket.line; line >= 1; --line) {
     std::string before = lines_[static_cast<std::size_t>(line) - 1];
@@ -67,7 +102,13 @@ YamlText::Spot YamlText::closing(Spot open) const {
     for (; at(s) != '\0'; ++s.column) {
       const char c = at(s);
       if (quote != '\0') {
-        if (c == quote) quote = '\0';
+        if (quote == '"' && c == '\\') {
+          ++s.column;
+        } else if (c == quote && quote == '\'' && at({s.line, s.column + 1}) == quote) {
+          ++s.column;  // '' stands for one '
+        } else if (c == quote) {
+          quote = '\0';
+        }
       } else if ((c == '"' || c == '\'') && std::string(" [{,:").find(before) != std::string::npos) {
         quote = c;
       } else if (c == '#' && before == ' ') {
@@ -107,13 +148,10 @@ std::string YamlText::current(const ConfigNode& scalar) const {
 }
 
 bool YamlText::replace(const ConfigNode& scalar, const std::string& text) {
-  if (!scalar.is_scalar() || !stands_here(scalar) || scalar.line < 1 || scalar.line > static_cast<int>(lines_.size()))
-    return false;
-  const std::string& line = lines_[static_cast<std::size_t>(scalar.line) - 1];
-  const auto column = static_cast<std::size_t>(scalar.column) - 1;
-  if (scalar.text.empty() || column > line.size() || line.compare(column, scalar.text.size(), scalar.text) != 0)
-    return false;
-  replacements_[{scalar.line, scalar.column}] = {scalar.text.size(), text};
+  if (!scalar.is_scalar() || !stands_here(scalar)) return false;
+  const std::optional<std::size_t> length = length_at({scalar.line, scalar.column}, scalar.text);
+  if (!length) return false;
+  replacements_[{scalar.line, scalar.column}] = {*length, text};
   return true;
 }
 
@@ -130,11 +168,11 @@ bool YamlText::add_pair(const ConfigNode& map, const std::string& key, const std
   }
   // Before the first key, so that no value of several lines has to be stepped over.
   const ConfigNode::Key& first = map.keys.front();
+  const std::optional<std::size_t> length = length_at({first.line, first.column}, first.text);
+  if (!length) return false;
   Replacement& r = replacements_[{first.line, first.column}];
-  if (r.text.empty()) r = {first.text.size(), first.text};
-  if (lines_[static_cast<std::size_t>(first.line) - 1].compare(static_cast<std::size_t>(first.column) - 1, first.text.size(),
-                                                               first.text) != 0)
-    return false;
+  if (r.text.empty())
+    r = {*length, lines_[static_cast<std::size_t>(first.line) - 1].substr(static_cast<std::size_t>(first.column) - 1, *length)};
   r.text = key + ": " + value + "\n" + std::string(static_cast<std::size_t>(first.column) - 1, ' ') + r.text;
   return true;
 }

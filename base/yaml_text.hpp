@@ -2,6 +2,7 @@
 // Edits of a YAML file as text: whatever is not edited, comments above all, stays as it was.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,10 @@ class YamlText {
   /// What stands at a scalar now, edits included.
   [[nodiscard]] std::string current(const ConfigNode& scalar) const;
 
-  // Each of these returns false, and changes nothing, where the text cannot be edited safely: what stands there by an alias or in
-  // quotes, an entry that shares its line with another, a bracket that does not close.
+  // Each of these returns false, and changes nothing, where the text cannot be edited safely: what stands there by an alias or on
+  // several lines, an entry that shares its line with another, a bracket that does not close.
 
+  /// The scalar with its quotes, where it has any, by `text`, which brings its own.
   bool replace(const ConfigNode& scalar, const std::string& text);
   /// Adds `key: value` to a map.
   bool add_pair(const ConfigNode& map, const std::string& key, const std::string& value);
@@ -47,6 +49,8 @@ class YamlText {
   };
   [[nodiscard]] bool stands_here(const ConfigNode& node) const;
   [[nodiscard]] char at(Spot spot) const;
+  /// How many characters a scalar takes that begins at a spot, its quotes counted in; nothing where something else stands there.
+  [[nodiscard]] std::optional<std::size_t> length_at(Spot spot, const std::string& scalar) const;
   /// The bracket that closes the one at `open`, or line 0.
   [[nodiscard]] Spot closing(Spot open) const;
   /// Whether the last thing before a bracket that closes is a comma.

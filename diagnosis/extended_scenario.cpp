@@ -13,8 +13,10 @@
 #include "base/config_map.hpp"
 #include "base/config_text.hpp"
 #include "base/errors.hpp"
+#include "base/mapped_record.hpp"
 #include "base/quantity.hpp"
 #include "base/yaml_text.hpp"
+#include "scenarios/reader/absolute_paths.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 
 namespace driftwright::diagnosis {
@@ -60,22 +62,19 @@ bool is_same(const Effect& a, const Effect& b) {
          });
 }
 
-bool is_path_key(const std::string& key) {
-  return key == "csv" || key == "nc_program" || key == "mesh";
-}
-
 class Writer {
  public:
   Writer(const scenarios::Scenario& scenario, const Twin& twin, const std::vector<MeasuredRun>& runs)
       : runs_(runs),
         yaml_(scenario.path),
         folder_(std::filesystem::absolute(scenario.path).parent_path()),
+        columns_(scenario.columns),
         list_(twin.as_written()) {
     effects_ = yaml_.root().find("effects");
     const std::size_t n = effects_ && effects_->is_list() ? effects_->items.size() : 0;
     if (n != list_.size()) throw InputError(fmt::format("{}: has changed while it was diagnosed", scenario.path));
     for (const Cyclogram& c : scenario.cyclograms) cyclograms_.push_back(c.name);
-    give_absolute_paths(yaml_.root());
+    if (!scenarios::give_absolute_paths(yaml_, folder_).empty()) in_one_piece_ = true;
   }
 
   /// @returns what was done; nothing where nothing differs
@@ -188,15 +187,31 @@ class Writer {
     in_one_piece_ = true;
   }
 
+  /// By its file and, where a logger wrote that, the scenario's `columns`; of a record that a program holds there is no file.
+  [[nodiscard]] std::string cyclogram_of(const MeasuredRun& run) const {
+    const auto is_read = [&](const std::optional<ColumnMap>& columns) {
+      try {
+        (void)read_record(run.path, columns);
+        return true;
+      } catch (const InputError&) {
+        return false;
+      }
+    };
+    std::error_code none;
+    if (std::filesystem::is_regular_file(run.path, none)) {
+      const std::string csv = scenarios::absolute_path_text(std::filesystem::absolute(run.path).string(), "");
+      const ConfigNode* columns = yaml_.root().find("columns");
+      if (columns && is_read(columns_)) return fmt::format("{{csv: {}, columns: {}}}", csv, anew(*columns));
+      if (is_read(std::nullopt)) return fmt::format("{{csv: {}}}", csv);
+    }
+    return scenarios::rows_yaml(run.cyclogram);
+  }
+
   void add_cyclogram(const std::string& name) {
     if (std::find(cyclograms_.begin(), cyclograms_.end(), name) != cyclograms_.end()) return;
     const auto run = std::find_if(runs_.begin(), runs_.end(), [&](const MeasuredRun& r) { return r.name == name; });
     if (run == runs_.end()) throw std::logic_error("extended_scenario: a change in a run that is not there, " + name);
-    std::error_code none;  // of a record that a program holds there is no file
-    const std::string written =
-        std::filesystem::is_regular_file(run->path, none)
-            ? fmt::format("{{csv: \"{}\"}}", std::filesystem::absolute(run->path).lexically_normal().string())
-            : scenarios::rows_yaml(run->cyclogram);
+    const std::string written = cyclogram_of(*run);
     const ConfigNode* list = yaml_.root().find("cyclograms");
     if (!yaml_.append(*list, fmt::format("{}: {}", name, written), "diagnosis: the measured run")) in_one_piece_ = true;
     cyclograms_.push_back(name);
@@ -204,21 +219,6 @@ class Writer {
     done_.push_back(fmt::format("added the cyclogram {} from its record", name));
   }
 
-  /// Files are looked for beside the scenario, and this one will stand elsewhere.
-  [[nodiscard]] std::string absolute(const std::string& path) const {
-    return std::filesystem::path(path).is_absolute() ? path : (folder_ / path).lexically_normal().string();
-  }
-  void give_absolute_paths(const ConfigNode& node) {
-    for (std::size_t i = 0; i < node.items.size(); ++i) {
-      const ConfigNode& item = *node.items[i];
-      if (!node.is_map() || !item.is_scalar() || !is_path_key(node.keys[i].text)) {
-        give_absolute_paths(item);
-        continue;
-      }
-      const std::string path = absolute(item.text);
-      if (path != item.text && !yaml_.replace(item, fmt::format("\"{}\"", path))) in_one_piece_ = true;
-    }
-  }
   /// A node on one line, with absolute paths.
   [[nodiscard]] std::string anew(const ConfigNode& node) const {
     if (!node.is_map() && !node.is_list()) return written(node);
@@ -230,8 +230,8 @@ class Writer {
         continue;
       }
       const std::string& key = node.keys[i].text;
-      const bool is_path = item.is_scalar() && is_path_key(key);
-      parts.push_back(fmt::format("{}: {}", key, is_path ? fmt::format("\"{}\"", absolute(item.text)) : anew(item)));
+      const bool is_path = item.is_scalar() && scenarios::is_path_key(key);
+      parts.push_back(fmt::format("{}: {}", key, is_path ? scenarios::absolute_path_text(item.text, folder_) : anew(item)));
     }
     const std::string list = fmt::format("{}", fmt::join(parts, ", "));
     return node.is_map() ? fmt::format("{{{}}}", list) : fmt::format("[{}]", list);
@@ -240,6 +240,7 @@ class Writer {
   const std::vector<MeasuredRun>& runs_;
   YamlText yaml_;
   std::filesystem::path folder_;
+  std::optional<ColumnMap> columns_;
   TwinState list_;  ///< what the text says
   const ConfigNode* effects_ = nullptr;
   const StatedChange* change_ = nullptr;

@@ -20,7 +20,7 @@ struct StatedChange {
 struct ExtendedScenario {
   std::string text;
   std::vector<std::string> written;      ///< a sentence each
-  std::vector<std::string> not_written;  ///< name and reason; stands at the top of the text, too
+  std::vector<std::string> not_written;  ///< name and reason
 };
 
 /// A claim as a change of the twin's effects. @param x  of its knobs
@@ -28,7 +28,7 @@ struct ExtendedScenario {
 
 /// Makes all changes one after the other and edits the file of a scenario accordingly: numbers in place, further effects behind the others, as
 /// effects::yaml_of() writes them. Numbers carry eight digits. Files that it names are given by absolute paths. For a change that happened in one
-/// of several runs a cyclogram of the run's name, from its record, is added where there is none. Where the text of the file leaves no room for an
+/// of several runs a cyclogram of the run's name, from its record and by the scenario's `columns`, is added where there is none. Where the text of the file leaves no room for an
 /// edit (an alias, an entry that shares its line), the entry is replaced as a whole, and if that is impossible, the file is written anew
 /// without its comments.
 /// @param runs  that the changes were found in

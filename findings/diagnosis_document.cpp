@@ -446,7 +446,9 @@ Section written_section(const DiagnosisFindings& found, const std::string& key) 
   add(section,
       output::Notes{.key = "not_written", .sort = "NOT WRITTEN to " + found.file, .lines = found.extended.not_written});
   add(section, Value{.key = "written", .datum = found.extended.written});
-  add(section, output::Preformatted{.text = found.difference.empty() ? "No difference to the scenario." : found.difference});
+  add(section, output::Preformatted{.text = !found.extended.not_written.empty() ? "Nothing."
+                                             : found.difference.empty()         ? "No difference to the scenario."
+                                                                                : found.difference});
   return section;
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kRelativeTolerance = 1e-4;  // of the mesh's size, as surfaces are picked
 constexpr double kSameDirection = 1e-3;      // of unit normals
+constexpr double kLeastShare = 0.01;         // of the smaller of two planes: what they have in common less is an edge
 
 double size_m(const Mesh& mesh) {
   return (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).norm();
@@ -56,8 +57,9 @@ bool lies_on(const OuterFacet& facet, const Eigen::Vector3d& x_m, double toleran
   return true;
 }
 
-/// Area of those facets of `a` whose centres lie on `b`.
-double area_on_m2(const std::vector<OuterFacet>& facets, const OuterPlane& a, const OuterPlane& b, double tolerance_m) {
+/// Area of those facets of `a` whose centres lie on `b`, or within reach above it.
+double area_on_m2(const std::vector<OuterFacet>& facets, const OuterPlane& a, const OuterPlane& b, double tolerance_m,
+                  double reach_m) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
   for (int f : b.facets) {
     for (const Eigen::Vector3d& x : facets[static_cast<std::size_t>(f)].corner_m) {
@@ -69,13 +71,19 @@ double area_on_m2(const std::vector<OuterFacet>& facets, const OuterPlane& a, co
   for (int f : a.facets) {
     const OuterFacet& facet = facets[static_cast<std::size_t>(f)];
     const Eigen::Vector3d& x = facet.centre_m;
-    if (((x - low).array() < -tolerance_m).any() || ((x - high).array() > tolerance_m).any()) continue;
+    if (((x - low).array() < -reach_m).any() || ((x - high).array() > reach_m).any()) continue;
     const bool on_b = std::any_of(b.facets.begin(), b.facets.end(), [&](int other) {
       return lies_on(facets[static_cast<std::size_t>(other)], x, tolerance_m);
     });
     if (on_b) area_m2 += facet.area_m2;
   }
   return area_m2;
+}
+
+/// The area that two planes have in common, by the one that knows more of it.
+double common_area_m2(const std::vector<OuterFacet>& facets, const OuterPlane& a, const OuterPlane& b, double tolerance_m,
+                      double reach_m) {
+  return std::max(area_on_m2(facets, a, b, tolerance_m, reach_m), area_on_m2(facets, b, a, tolerance_m, reach_m));
 }
 
 }  // namespace
@@ -152,7 +160,6 @@ std::vector<OuterPlane> outer_planes(const Mesh& mesh, const std::vector<OuterFa
 std::vector<PlaneContact> plane_contacts(const Mesh& mesh, const std::vector<OuterFacet>& facets,
                                          const std::vector<OuterPlane>& planes) {
   const double tolerance_m = kRelativeTolerance * size_m(mesh);
-  constexpr double kLeastShare = 0.01;  // of the smaller plane: less is an edge
   std::vector<PlaneContact> contacts;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     for (std::size_t k = i + 1; k < planes.size(); ++k) {
@@ -160,12 +167,29 @@ std::vector<PlaneContact> plane_contacts(const Mesh& mesh, const std::vector<Out
       if (a.part == b.part || (a.normal + b.normal).norm() > kSameDirection ||
           std::abs(a.normal.dot(a.through_m - b.through_m)) > tolerance_m)
         continue;
-      const double area_m2 = std::max(area_on_m2(facets, a, b, tolerance_m), area_on_m2(facets, b, a, tolerance_m));
+      const double area_m2 = common_area_m2(facets, a, b, tolerance_m, tolerance_m);
       if (area_m2 > kLeastShare * std::min(a.area_m2, b.area_m2))
         contacts.push_back({static_cast<int>(i), static_cast<int>(k), area_m2});
     }
   }
   return contacts;
+}
+
+std::vector<PlaneGap> plane_gaps(const Mesh& mesh, const std::vector<OuterFacet>& facets,
+                                 const std::vector<OuterPlane>& planes, double widest_m) {
+  const double tolerance_m = kRelativeTolerance * size_m(mesh);
+  std::vector<PlaneGap> gaps;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    for (std::size_t k = i + 1; k < planes.size(); ++k) {
+      const OuterPlane &a = planes[i], &b = planes[k];
+      const double width_m = a.normal.dot(b.through_m - a.through_m);
+      if (a.part == b.part || (a.normal + b.normal).norm() > kSameDirection || width_m <= tolerance_m || width_m > widest_m)
+        continue;
+      if (common_area_m2(facets, a, b, tolerance_m, widest_m) > kLeastShare * std::min(a.area_m2, b.area_m2))
+        gaps.push_back({static_cast<int>(i), static_cast<int>(k), width_m});
+    }
+  }
+  return gaps;
 }
 
 }  // namespace driftwright::mesh

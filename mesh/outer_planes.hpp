@@ -38,4 +38,13 @@ struct PlaneContact {
 [[nodiscard]] std::vector<PlaneContact> plane_contacts(const Mesh& mesh, const std::vector<OuterFacet>& facets,
                                                        const std::vector<OuterPlane>& planes);
 
+/// Two planes of different parts that face each other, with nothing but air between them.
+struct PlaneGap {
+  int a, b;  ///< indices into the planes, a < b
+  double width_m;
+};
+/// @param widest_m  wider gaps are left out
+[[nodiscard]] std::vector<PlaneGap> plane_gaps(const Mesh& mesh, const std::vector<OuterFacet>& facets,
+                                               const std::vector<OuterPlane>& planes, double widest_m);
+
 }  // namespace driftwright::mesh

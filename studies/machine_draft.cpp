@@ -1,6 +1,7 @@
 #include "studies/machine_draft.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -176,14 +177,38 @@ void add_feet_of(Geometry& g, MachineDraft& draft, const std::function<bool(cons
   for (const std::string& surface : surfaces) draft.feet.push_back({surface, share / static_cast<double>(surfaces.size())});
 }
 
+/// What the bodies are, and between which of them the drawing leaves a gap where a joint was meant.
+void add_remarks_of_bodies(const Geometry& g, MachineDraft& draft, const std::map<int, int>& whole,
+                           const std::set<int>& bodies) {
+  constexpr double kWidestGap = 0.02;  // of the machine's largest extent
+  std::map<int, std::set<std::string>> regions_of;
+  for (const OuterPlane& plane : g.planes) regions_of[whole.at(plane.part)].insert(g.region(plane.region));
+  std::vector<std::string> names;
+  for (int body : bodies) names.push_back(fmt::format("{}", fmt::join(regions_of[body], " + ")));
+  draft.remarks.push_back(
+      fmt::format("the geometry falls into {} bodies that do not touch in a plane: {}. Each stands on springs of its own; "
+                  "give them joints",
+                  bodies.size(), fmt::join(names, "; ")));
+  const double extent_m = (g.mesh.coords.rowwise().maxCoeff() - g.mesh.coords.rowwise().minCoeff()).maxCoeff();
+  std::map<std::pair<std::string, std::string>, double> narrowest_m;
+  for (const mesh::PlaneGap& gap : mesh::plane_gaps(g.mesh, g.facets, g.planes, kWidestGap * extent_m)) {
+    const OuterPlane &a = g.plane(gap.a), &b = g.plane(gap.b);
+    if (whole.at(a.part) == whole.at(b.part)) continue;
+    const auto pair = std::minmax(g.region(a.region), g.region(b.region));
+    const auto [at, is_new] = narrowest_m.emplace(pair, gap.width_m);
+    if (!is_new) at->second = std::min(at->second, gap.width_m);
+  }
+  for (const auto& [pair, width_m] : narrowest_m)
+    draft.remarks.push_back(
+        fmt::format("'{}' and '{}' face each other across a gap of {:.3g} mm and are not joined; if they touch in the "
+                    "machine, close it in the drawing",
+                    pair.first, pair.second, 1e3 * width_m));
+}
+
 void add_feet(Geometry& g, MachineDraft& draft, const std::map<int, int>& whole) {
   std::set<int> bodies;
   for (const auto& [part, body] : whole) bodies.insert(body);
-  if (bodies.size() > 1)
-    draft.remarks.push_back(fmt::format(
-        "the geometry falls into {} bodies that do not touch in a plane: each stands on springs of its own; give "
-        "them joints",
-        bodies.size()));
+  if (bodies.size() > 1) add_remarks_of_bodies(g, draft, whole, bodies);
   for (int body : bodies)
     add_feet_of(
         g, draft, [&, body](const OuterPlane& plane) { return whole.at(plane.part) == body; }, 1.0);

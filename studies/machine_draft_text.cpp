@@ -36,6 +36,10 @@ std::string direction(const Eigen::Vector3d& n) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", clean(n[0]), clean(n[1]), clean(n[2]));
 }
 
+constexpr const char* kGuess =
+    "  # `known_to: guess` lets diagnose and calibrate move a number by a factor of 2; `known_to: 10 %` stands for one that\n"
+    "  # you know (docs/scenario.md).\n";
+
 /// Two digits: it is a guess.
 double rounded(double x) {
   const double step = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
@@ -134,16 +138,17 @@ std::string scenario_text(const MachineDraft& draft, const mesh::UnnamedGeometry
         quoted(draft.joints.front().name));
   }
   text += fmt::format(
-      "\neffects:\n  # Heat of the spindle: a guess, so that the whole machine would warm by about 2 K.\n"
-      "  - {{type: heat_source, region: {}, power: {:g} W, at_speed: 3000 rpm, exponent: 1.5}}\n",
-      quoted(draft.spindle), rounded(draft.heat_W));
+      "\neffects:\n{}  # Heat of the spindle: a guess, so that the whole machine would warm by about 2 K.\n"
+      "  - {{type: heat_source, region: {}, power: {:g} W, at_speed: 3000 rpm, exponent: 1.5, known_to: guess}}\n",
+      kGuess, quoted(draft.spindle), rounded(draft.heat_W));
   text += "  # Free convection and radiation of surfaces in still air: guesses of 5 to 12 W/(m^2 K).\n";
   for (const std::string& surface : draft.films)
-    text += fmt::format("  - {{type: convection, surface: {}, film: 10 W/(m^2 K)}}\n", quoted(surface));
+    text += fmt::format("  - {{type: convection, surface: {}, film: 10 W/(m^2 K), known_to: guess}}\n", quoted(surface));
   if (!draft.joints.empty())
     text += "  # Joints: guesses; bolted and scraped 2000 to 10000, a guideway 500 to 3000 W/(m^2 K).\n";
   for (const auto& joint : draft.joints)
-    text += fmt::format("  - {{type: contact, joint: {}, conductance: 2000 W/(m^2 K)}}\n", quoted(joint.name));
+    text += fmt::format("  - {{type: contact, joint: {}, conductance: 2000 W/(m^2 K), known_to: guess}}\n",
+                        quoted(joint.name));
   text += "\nsensors:                                 # one on each part: put them where your thermometers sit\n";
   for (const auto& sensor : draft.thermometers)
     text += fmt::format("  - {{name: {}, region: {}, at: {}}}\n", quoted(fmt::format("t_{}", plain_name(sensor.region))),
@@ -167,16 +172,17 @@ std::string scenario_text(const MachineDraft& draft, const mesh::UnnamedGeometry
 std::string lumped_scenario_text(const std::string& name) {
   const char* machine =
       "\nmachine: {generator: lumped}             # no mesh: nodes and links alone\n"
-      "\neffects:                                 # all numbers are guesses, of a spindle in its housing\n"
-      "  - {type: node, node: spindle, capacity: 5.6 kJ/K}          # 12 kg of steel\n"
-      "  - {type: node, node: housing, capacity: 19 kJ/K}           # 41 kg of cast iron\n"
-      "  - {type: heat_source, node: spindle, power: 150 W, at_speed: 3000 rpm, exponent: 1.5}\n"
-      "  - {type: link, node: spindle, to: housing, conductance: 12 W/K}\n"
-      "  - {type: link, node: housing, to: hall, conductance: 5 W/K}\n"
+      "\neffects:                                 # all numbers are guesses, of a spindle in its housing\n";
+  const char* rest =
+      "  - {type: node, node: spindle, capacity: 5.6 kJ/K, known_to: guess}          # 12 kg of steel\n"
+      "  - {type: node, node: housing, capacity: 19 kJ/K, known_to: guess}           # 41 kg of cast iron\n"
+      "  - {type: heat_source, node: spindle, power: 150 W, at_speed: 3000 rpm, exponent: 1.5, known_to: guess}\n"
+      "  - {type: link, node: spindle, to: housing, conductance: 12 W/K, known_to: guess}\n"
+      "  - {type: link, node: housing, to: hall, conductance: 5 W/K, known_to: guess}\n"
       "\nsensors:\n  - {name: t_spindle, node: spindle}\n  - {name: t_housing, node: housing}\n"
       "\ndisplacements:\n  - name: drift_z                        # 0.22 m of steel grow by 2.5 µm for each kelvin\n"
       "    sensitivities: [{node: spindle, sensitivity: 2.5 um/K}]\n";
-  return fmt::format("{}{}{}{}", head(name, "A machine of lumped nodes"), machine, runs_block(), study_block("drift_z", 2));
+  return fmt::format("{}{}{}{}{}{}", head(name, "A machine of lumped nodes"), machine, kGuess, rest, runs_block(), study_block("drift_z", 2));
 }
 
 }  // namespace driftwright::studies

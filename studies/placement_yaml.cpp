@@ -5,27 +5,11 @@
 
 #include <filesystem>
 
+#include "base/errors.hpp"
 #include "base/yaml_text.hpp"
+#include "scenarios/reader/absolute_paths.hpp"
 
 namespace driftwright::studies {
-namespace {
-
-void give_absolute_paths(YamlText& yaml, const ConfigNode& node, const std::filesystem::path& folder) {
-  for (std::size_t i = 0; i < node.items.size(); ++i) {
-    const ConfigNode& item = *node.items[i];
-    const bool is_path =
-        node.is_map() && item.is_scalar() && (node.keys[i].text == "csv" || node.keys[i].text == "nc_program" || node.keys[i].text == "mesh");
-    if (!is_path) {
-      give_absolute_paths(yaml, item, folder);
-      continue;
-    }
-    const std::filesystem::path path(item.text);
-    if (!path.is_absolute() && !yaml.replace(item, fmt::format("\"{}\"", (folder / path).lexically_normal().string())))
-      throw InputError(fmt::format("the path '{}' cannot be edited where it stands; give it as an absolute one", item.text));
-  }
-}
-
-}  // namespace
 
 std::string sensor_entry(const std::string& name, const Spot& spot) {
   if (spot.node < 0) return fmt::format("{{name: {}, node: {}}}", name, spot.region);
@@ -35,7 +19,9 @@ std::string sensor_entry(const std::string& name, const Spot& spot) {
 
 std::string with_sensors(const std::string& scenario_path, const std::vector<std::string>& entries, const std::vector<std::string>& head) {
   YamlText yaml(scenario_path);
-  give_absolute_paths(yaml, yaml.root(), std::filesystem::absolute(scenario_path).parent_path());
+  const auto left = scenarios::give_absolute_paths(yaml, std::filesystem::absolute(scenario_path).parent_path());
+  if (!left.empty())
+    throw InputError(left.front()->where(""), fmt::format("the path '{}' is an alias and cannot be edited; give it as an absolute one", left.front()->text));
   const ConfigNode* sensors = yaml.root().find("sensors");
   bool is_written = true;
   if (!sensors) {
@@ -43,7 +29,8 @@ std::string with_sensors(const std::string& scenario_path, const std::vector<std
   } else {
     for (const std::string& entry : entries) is_written = is_written && yaml.append(*sensors, entry, "placed");
   }
-  if (!is_written) throw InputError(fmt::format("{}: its key `sensors` cannot be edited where it stands; sensors.yaml holds what to paste", scenario_path));
+  if (!is_written)
+    throw InputError((sensors ? *sensors : yaml.root()).where("sensors"), "this list is an alias or shared with one, and no sensors can be added where it stands; write it out");
   return yaml.text(head);
 }
 

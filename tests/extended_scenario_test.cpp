@@ -373,6 +373,43 @@ TEST(ExtendedScenario, AddsTheMeasuredRunThatAChangeHappenedIn) {
   EXPECT_EQ(read.machine->effects.back().in, "tuesday");
 }
 
+TEST(ExtendedScenario, TheMeasuredRunOfALoggersFileComesWithTheColumnsThatItIsReadBy) {
+  std::string text = kSpindle;
+  text += "columns:\n  separator: \";\"\n  decimal: \",\"\n  time: {column: Zeit, format: \"%d.%m.%Y %H:%M:%S\"}\n"
+          "  channels:\n    speed: {column: \"Spindel [1/min]\", unit: rpm, magnitude: true}\n"
+          "    t_shaft: {column: \"T1 (°C)\", unit: degC}\n";
+  const auto b = bench(write_file("raw.yaml", text));
+  std::vector<MeasuredRun> runs = {b->runs[0], b->runs[0]};
+  runs[1].name = "montag";
+  runs[1].path = write_file("montag.csv",
+                            "Zeit;Spindel [1/min];T1 (°C)\n02.11.2026 07:30:00;-1000,5;20,1\n02.11.2026 07:31:00;0;20,2\n"
+                            "02.11.2026 07:32:00;0;20,3\n");
+  const Twin twin(b->augmented, b->machine, kTight);
+  const StatedChange stated{"the change", "because", added({"{type: ambient, offset: 1 K, in: montag}"})};
+  const ExtendedScenario e = extended_scenario(b->scenario, twin, runs, {stated}, {});
+  const scenarios::Scenario read = scenarios::read_scenario(write_file("with_montag.yaml", e.text));
+  EXPECT_EQ(read.cyclogram("montag").duration_s(), 120.0);
+  EXPECT_EQ(read.cyclogram("montag").sections.front().drive.speed_rpm, 1000.5);
+  runs[1].path = write_file("tuesday_plain.csv", "time_s,speed_rpm\n0,1000\n60,0\n120,0\n");  // as a program may have read it, without the map
+  const ExtendedScenario plain = extended_scenario(b->scenario, twin, runs, {stated}, {});
+  EXPECT_EQ(scenarios::read_scenario(write_file("with_plain.yaml", plain.text)).cyclogram("montag").duration_s(), 120.0);
+}
+
+TEST(ExtendedScenario, AFileInWhichMuchStandsInQuotesIsEditedInPlace) {
+  fixtures::ColumnAndHead what;
+  what.effects.back() = "{type: contact, joint: \"column/head\", conductance: '2000 W/(m^2 K)'}";
+  const auto folder = fresh_folder("quoted");
+  const std::string path = fixtures::write_column_and_head(folder, what);
+  std::string text = what.text() + "# at the end\n";
+  for (const std::string& file : {std::string("machine.inp")}) text.replace(text.find(file), file.size(), "\"" + file + "\"");
+  std::ofstream(path) << text;
+  const auto b = bench(path);
+  const ExtendedScenario e = extend(*b, [](TwinState& t) { t[2].set("conductance", 3000.0); });
+  EXPECT_THAT(e.text, AllOf(HasSubstr("mesh: \"" + (folder / "machine.inp").string() + "\""), HasSubstr("# at the end"),
+                            HasSubstr("joint: \"column/head\", conductance: 3000 W/(m^2 K)}"),
+                            ::testing::Not(HasSubstr("written anew"))));
+}
+
 /// The spindle with its last link in a writing that leaves no room for an edit.
 void expect_written_all_the_same(const std::string& name, const std::string& link, const std::string& anchor) {
   std::string text = kSpindle;

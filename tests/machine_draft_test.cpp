@@ -2,6 +2,7 @@
 
 #include "studies/machine_draft.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,6 +15,7 @@
 namespace driftwright {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -92,8 +94,20 @@ TEST(MachineDraft, FindsTheJointAndWhatItStandsOn) {
 TEST(MachineDraft, HoldsBodiesThatTouchNothing) {
   const studies::MachineDraft draft = studies::draft_of(boxes(true));
   EXPECT_EQ(draft.feet.size(), 2u);
-  ASSERT_EQ(draft.remarks.size(), 1u);
-  EXPECT_THAT(draft.remarks[0], HasSubstr("2 bodies that do not touch"));
+  ASSERT_EQ(draft.remarks.size(), 1u);  // 300 mm apart: no gap
+  EXPECT_THAT(draft.remarks[0], AllOf(HasSubstr("2 bodies that do not touch"), HasSubstr("plate + spindle; third")));
+}
+
+TEST(MachineDraft, TellsTheGapThatKeepsPartsApart) {
+  std::string text = std::string(kBoxes) + kElements;
+  for (int node : {11, 12, 13, 14}) {
+    const std::size_t line = text.find(fmt::format("\n{}, ", node)), end = text.find("20\n", line);
+    text.replace(end, 2, "21.5");  // mm: the block hangs over the plate
+  }
+  const studies::MachineDraft draft = studies::draft_of(mesh::read_unnamed_geometry(write_file("apart.inp", text), ""));
+  EXPECT_THAT(draft.joints, IsEmpty());
+  ASSERT_EQ(draft.remarks.size(), 2u);
+  EXPECT_THAT(draft.remarks[1], HasSubstr("'plate' and 'spindle' face each other across a gap of 1.5 mm"));
 }
 
 TEST(MachineDraft, MeshSizesFollowThickness) {

@@ -241,6 +241,18 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   }
 }
 
+TEST(PlacedSensors, AreWrittenIntoAFileWhosePathsStandInQuotes) {
+  const auto folder = fresh_folder("placed_quoted");
+  const std::string text = "machine: {mesh: \"a machine.step\"}\nsensors:\n  - {name: t, node: 'a # b'}   # the first\ncyclograms: {c: {csv: 'run.csv'}}\n";
+  EXPECT_EQ(with_sensors(write_file("placed_quoted/a.yaml", text), {"{name: p1, node: a}"}, {}),
+            fmt::format("machine: {{mesh: \"{0}/a machine.step\"}}\nsensors:\n  - {{name: t, node: 'a # b'}}   # the first\n  - {{name: p1, node: a}}   # placed\n"
+                        "cyclograms: {{c: {{csv: \"{0}/run.csv\"}}}}\n",
+                        folder.string()));
+  const std::string aliased = write_file("placed_quoted/b.yaml", "of: &x run.csv\nsensors: []\ncyclograms:\n  c: {csv: *x}\n");
+  EXPECT_THAT([&] { (void)with_sensors(aliased, {"{name: p1, node: a}"}, {}); },
+              testing::ThrowsMessage<InputError>(testing::AllOf(testing::HasSubstr("b.yaml:1:"), testing::HasSubstr("give it as an absolute one"))));
+}
+
 TEST(PlacementTests, OfEquallyGoodTheShortestIsEnough) {
   const std::vector<TriedTest> tests = {{"a", 3600.0, {1.0, 5.0}}, {"b", 7200.0, {1.05, 2.1}}, {"c", 7200.0, {1.3, 2.05}}, {"d", 14400.0, {0.97, 2.0}}};
   EXPECT_EQ(least_test(tests, &Residual::observer_um), 0);

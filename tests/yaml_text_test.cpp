@@ -36,9 +36,26 @@ TEST(YamlText, AnAnchoredValueThatStandsElsewhereTooIsLeftAlone) {
   EXPECT_FALSE(y.replace(*y.root().find("list")->items[0]->find("c"), "2"));
 }
 
-TEST(YamlText, AQuotedValueIsLeftAlone) {
-  YamlText y = yaml("a: \"5 W\"\n");
+TEST(YamlText, AQuotedValueIsReplacedWithItsQuotes) {
+  YamlText y = yaml("a: \"5 W\"   # five\nb: {csv: 'it''s, {x}.csv', \"key\": \"say \\\"}\\\" # so\"}\nc: ''\n");
+  const ConfigNode& b = *y.root().find("b");
+  EXPECT_TRUE(y.replace(*y.root().find("a"), "6 W"));
+  EXPECT_TRUE(y.replace(*b.find("csv"), "\"/there/it's.csv\""));
+  EXPECT_TRUE(y.replace(*b.find("key"), "no"));
+  EXPECT_TRUE(y.replace(*y.root().find("c"), "7"));
+  EXPECT_TRUE(y.add_pair(b, "new", "8"));
+  EXPECT_EQ(y.text({}), "a: 6 W   # five\nb: {csv: \"/there/it's.csv\", \"key\": no, new: 8}\nc: 7\n");
+}
+
+TEST(YamlText, QuotesOfSeveralLinesAreLeftAlone) {
+  YamlText y = yaml("a: \"5\n  W\"\n");
   EXPECT_FALSE(y.replace(*y.root().find("a"), "6 W"));
+}
+
+TEST(YamlText, APairIsAddedBeforeAQuotedKey) {
+  YamlText y = yaml("list:\n  - \"a key\": 1\n    b: 2\n");
+  EXPECT_TRUE(y.add_pair(*y.root().find("list")->items[0], "new", "8"));
+  EXPECT_EQ(y.text({}), "list:\n  - new: 8\n    \"a key\": 1\n    b: 2\n");
 }
 
 TEST(YamlText, APairIsAddedToEitherStyleOfMap) {

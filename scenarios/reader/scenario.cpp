@@ -474,7 +474,8 @@ const MachineModel& require_machine(const Scenario& scenario, const std::string&
 const Study& require_study(const Scenario& scenario, const std::string& verb) {
   if (scenario.study) return *scenario.study;
   throw InputError(
-      fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit", scenario.path, verb));
+      fmt::format("{}: `{}` needs the key `study`, which says the target and what to fit{}", scenario.path, verb,
+                  scenario.machine ? "; `simulate` and `predict` need none" : ""));
 }
 
 }  // namespace driftwright::scenarios
