@@ -175,7 +175,7 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
   if (u.one_cause) {
     using Quantity = diagnosis::Unnamed::Quantity;
     put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat   ? "heat"
-                              : u.one_cause->quantity == Quantity::kHall ? "hall temperature"
+                              : u.one_cause->quantity == Quantity::kAmbient ? "ambient temperature"
                                                                          : "reading");
     put("one_cause.where", u.one_cause->where);
     put("one_cause.follows", u.one_cause->follows);
@@ -417,7 +417,7 @@ Section numbers_section(const diagnosis::Diagnosis& d, bool detail) {
       .key = "calibrated",
       .caption =
           "The uncertain ones as fitted. Moved: from what the scenario says, in standard deviations of what is known of "
-          "it: the scenario's `known_to`, else 10 %, exponents 3 %, the hall 0.3 K. What is not in the file was fitted and "
+          "it: the scenario's `known_to`, else 10 %, exponents 3 %, the ambient 0.3 K. What is not in the file was fitted and "
           "left "
           "as the scenario has it.",
       .columns = {{.key = "name", .title = "number"},

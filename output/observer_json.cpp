@@ -80,7 +80,7 @@ Json observer_json(const Observer& observer, const std::vector<effects::Effect>&
   }
   return {{"sensors", s.sensors},
           {"drift", s.drift},
-          {"start_hall_K", s.start_hall_K},
+          {"start_hall_K", s.start_ambient_K},
           {"settings", settings_json(s.settings)},
           {"factors", {{"mean", matrix_json(s.factors.mean)}, {"covariance", matrix_json(s.factors.covariance)}}},
           {"effects", std::move(laws)},
@@ -92,7 +92,7 @@ Observer observer_of(const Json& j) {
   Observer::State s;
   s.sensors = value<std::vector<std::string>>(j, "sensors");
   s.drift = value<std::string>(j, "drift");
-  s.start_hall_K = finite(j, "start_hall_K");
+  s.start_ambient_K = finite(j, "start_hall_K");
   s.settings = settings_of(value<Json>(j, "settings"));
   const auto factors = value<Json>(j, "factors"), arrays = value<Json>(j, "arrays"), system = value<Json>(j, "system");
   s.factors.mean = matrix_of(value<Json>(factors, "mean")).reshaped();
