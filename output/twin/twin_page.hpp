@@ -14,11 +14,11 @@
 
 namespace driftwright::output {
 
-/// Lumped nodes and who exchanges heat with whom; the hall is the last node.
+/// Lumped nodes and who exchanges heat with whom; the ambient is the last node.
 struct TwinNetwork {
   std::vector<std::string> node = {};
   std::vector<std::pair<int, int>> link = {};
-  Eigen::MatrixXd temperature = {};  ///< of all nodes but the hall in each state, over the reference [K]
+  Eigen::MatrixXd temperature = {};  ///< of all nodes but the ambient in each state, over the reference [K]
 };
 
 /// What corrects the drift in the page.
