@@ -86,8 +86,9 @@ TEST(FormerWords, EveryShippedScenarioReadsAsBefore) {
   int n = 0;
   for (const char* folder : {"scenarios", "scenarios/measured", "tests/blind/machines"}) {
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      if (entry.path().extension() != ".yaml") continue;
       const std::string present = text_of(entry.path());
-      if (entry.path().extension() != ".yaml" || present.find("\nambient:") == std::string::npos) continue;
+      if (present.find("\nambient:") == std::string::npos) continue;  // a study
       SCOPED_TRACE(entry.path());
       const std::string former = in_former_words(present);
       ASSERT_NE(former, present);
