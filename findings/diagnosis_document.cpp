@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "effects/where_in_files.hpp"
 #include "findings/diagnosis_data.hpp"
 #include "findings/diagnosis_words.hpp"
 #include "findings/measured_iso230_3.hpp"
@@ -176,8 +177,8 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
     using Quantity = diagnosis::Unnamed::Quantity;
     put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat   ? "heat"
                               : u.one_cause->quantity == Quantity::kAmbient ? "ambient temperature"
-                                                                         : "reading");
-    put("one_cause.where", u.one_cause->where);
+                                                                            : "reading");
+    put("one_cause.where", effects::where_in_files(u.one_cause->where));
     put("one_cause.follows", u.one_cause->follows);
     put("one_cause.instead_of", std::vector<std::int64_t>(u.one_cause->instead_of.begin(), u.one_cause->instead_of.end()));
     put("one_cause.log_evidence_gain", u.one_cause->log_evidence_gain);

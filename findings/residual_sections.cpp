@@ -63,7 +63,8 @@ Curves curves_of(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d, 
 }
 
 Plot drive_plot(const MeasuredRun& run) {
-  Plot plot{.title = "Drive", .x_label = "time [min]", .y_label = "speed [rpm]", .series = {}, .bands = {}, .marks = {}};
+  Plot plot{
+      .title = "Spindle speed", .x_label = "time [min]", .y_label = "speed [rpm]", .series = {}, .bands = {}, .marks = {}};
   Series speed{.label = "speed", .x = {}, .y = {}, .style = Series::Style::kSteps};
   for (double t_s : run.time_s) {
     speed.x.push_back(t_s / 60.0);
@@ -75,9 +76,9 @@ Plot drive_plot(const MeasuredRun& run) {
 }
 
 Plot ambient_plot(const MeasuredRun& run, double reference_K) {
-  Plot plot{.title = run.has_ambient ? "Ambient as recorded, smoothed" : "Ambient of the scenario",
+  Plot plot{.title = run.has_ambient ? "Ambient temperature as recorded, smoothed" : "Ambient temperature of the scenario",
             .x_label = "time [min]",
-            .y_label = "ambient [°C]",
+            .y_label = "ambient temperature [°C]",
             .series = {{.label = "ambient", .x = {}, .y = {}}}};
   for (double t_s : run.time_s) {
     plot.series[0].x.push_back(t_s / 60.0);

@@ -14,6 +14,7 @@
 #include "follow/state_json.hpp"
 #include "follow/watch_json.hpp"
 #include "output/predictor_file.hpp"
+#include "scenarios/reader/former_words.hpp"
 
 namespace driftwright::follow {
 namespace {
@@ -44,7 +45,9 @@ void require_laws_of_streams(const std::string& path) {
   const Json laws = output::list(output::value<Json>(file, "observer"), "effects");
   if (laws.empty()) return;
   for (const Json& law : laws) yaml += "  - " + law.get<std::string>() + "\n";
-  for (const ConfigMap& entry : ConfigMap::of_tree(read_config_text(yaml, "the list `effects`")).maps("effects")) {
+  std::vector<scenarios::FormerWord> former;  // of an earlier release
+  const ConfigNodePtr tree = scenarios::in_present_words(read_config_text(yaml, "the list `effects`"), former);
+  for (const ConfigMap& entry : ConfigMap::of_tree(tree).maps("effects")) {
     if (const std::string why = why_not(effects::read_effect(entry)); !why.empty())
       throw InputError(fmt::format("{}: cannot be followed: {}", path, why));
   }

@@ -55,6 +55,10 @@ std::vector<std::string> node_names(const MachineModel& model) {
   std::vector<std::string> nodes = {effects::kAmbientName};
   for (const effects::Effect& e : model.effects) {
     for (const effects::LumpedNode& n : effects::heat_balance({e}).nodes) {
+      if (n.name == effects::kAmbientName)
+        throw InputError(
+            e.where,
+            fmt::format("'{}' is the air around every machine and no lumped node; give the node a name of its own", n.name));
       if (std::find(nodes.begin(), nodes.end(), n.name) != nodes.end()) {
         throw InputError(e.where, fmt::format("there is a lumped node '{}' already; each wants a name of its own", n.name));
       }
@@ -321,8 +325,8 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
       const mesh::MeshPoint at = place_point(mesh, *point);
       const auto s = mesh::shape_values(mesh.cells.shape[at.cell], at.xi);
       for (int i = 0; i < s.n; ++i) weights.emplace_back(mesh.cells.nodes(at.cell)[i], s.N[i]);
-    } else if (const std::string& node = std::get<std::string>(sensor.place); node != "ambient") {
-      std::vector<std::string> known = {"ambient"};
+    } else if (const std::string& node = std::get<std::string>(sensor.place); node != effects::kAmbientName) {
+      std::vector<std::string> known = {effects::kAmbientName};
       for (std::size_t i = 0; i < placed.balance.nodes.size(); ++i) {
         known.push_back(placed.balance.nodes[i].name);
         if (known.back() == node) weights.emplace_back(mesh.n_nodes() + static_cast<int>(i), 1.0);

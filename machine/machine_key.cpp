@@ -12,7 +12,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr int kFormat = 3;  // of the folders; a new one makes all others unknown
+constexpr int kFormat = 4;  // of the folders; a new one makes all others unknown
 
 std::string words(const effects::Body& body) {
   const char* kinds[] = {"region", "surface", "node", "joint"};

@@ -6,6 +6,7 @@
 
 #include "base/file_bytes.hpp"
 #include "base/npy_file.hpp"
+#include "scenarios/reader/former_words.hpp"
 #include "solver/bind_laws.hpp"
 
 namespace driftwright::scenarios {
@@ -40,7 +41,9 @@ Json body_json(const effects::Body& body) {
   return {{"kind", static_cast<int>(body.kind)}, {"name", body.name}};
 }
 effects::Body body_from(const Json& json) {
-  return {static_cast<effects::BodyKind>(json.at("kind").get<int>()), json.at("name")};
+  const auto kind = static_cast<effects::BodyKind>(json.at("kind").get<int>());
+  const std::string name = json.at("name");
+  return {kind, kind == effects::BodyKind::kNode ? name_in_present_words(name) : name};
 }
 
 constexpr const char* kReader =
@@ -178,8 +181,9 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   i = 0;
   for (const Json& e : json.value("exchanges", none)) {
     system.exchanges.push_back(
-        {.name = e.at("name"),
-         .place = {body_from(e.at("body")), e.at("surrounding"), static_cast<effects::Per>(e.at("per").get<int>())},
+        {.name = name_in_present_words(e.at("name")),
+         .place = {body_from(e.at("body")), name_in_present_words(e.at("surrounding")),
+                   static_cast<effects::Per>(e.at("per").get<int>())},
          .matrix = matrices.middleRows(r * i, r),
          .to_ambient = to_ambient.col(i),
          .ambient_sum = e.at("hall_sum"),

@@ -4,6 +4,7 @@
 #include "base/config_text.hpp"
 #include "machine/reduced_files.hpp"
 #include "output/json_value.hpp"
+#include "scenarios/reader/former_words.hpp"
 
 namespace driftwright::output {
 namespace {
@@ -61,8 +62,9 @@ std::vector<effects::Effect> effects_of(const Json& list) {
   }
   std::vector<effects::Effect> effects;
   if (list.empty()) return effects;
-  for (const ConfigMap& entry : ConfigMap::of_tree(read_config_text(yaml, "the list `effects`")).maps("effects"))
-    effects.push_back(effects::read_effect(entry));
+  std::vector<scenarios::FormerWord> former;  // of an earlier release
+  const ConfigNodePtr tree = scenarios::in_present_words(read_config_text(yaml, "the list `effects`"), former);
+  for (const ConfigMap& entry : ConfigMap::of_tree(tree).maps("effects")) effects.push_back(effects::read_effect(entry));
   return effects;
 }
 

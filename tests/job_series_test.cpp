@@ -11,7 +11,7 @@ namespace {
 using ::testing::ElementsAre;
 
 const Cyclogram kJob{.name = "job", .sections = {{100.0, {.speed_rpm = 2000.0}}, {50.0, {.speed_rpm = 500.0}}}};
-const TimeSeries kAmbient{{0.0, 1000.0}, {1.0, 3.0}};  // 2 mK/s
+const TimeSeries kWarming{{0.0, 1000.0}, {1.0, 3.0}};  // 2 mK/s
 
 RecordedRun morning(double ambient_at_end_K, bool has_ambient) {
   RecordedRun run;
@@ -23,12 +23,12 @@ RecordedRun morning(double ambient_at_end_K, bool has_ambient) {
 }
 
 TEST(JobSeries, OfOnePartFromTheScenariosStartIsTheJob) {
-  const JobSeries series = job_series(kJob, {}, kAmbient, 60.0);
+  const JobSeries series = job_series(kJob, {}, kWarming, 60.0);
   EXPECT_EQ(series.cyclogram.name, "job");
   EXPECT_EQ(series.cyclogram.sections, kJob.sections);
   EXPECT_THAT(series.time_s, ElementsAre(0, 60, 120, 150));
-  EXPECT_EQ(series.ambient.time_s, kAmbient.time_s);
-  EXPECT_EQ(series.ambient.value, kAmbient.value);
+  EXPECT_EQ(series.ambient.time_s, kWarming.time_s);
+  EXPECT_EQ(series.ambient.value, kWarming.value);
   ASSERT_EQ(series.parts.size(), 1U);
   EXPECT_EQ(series.parts[0].first, 0U);
   EXPECT_EQ(series.parts[0].last, 3U);
@@ -36,7 +36,7 @@ TEST(JobSeries, OfOnePartFromTheScenariosStartIsTheJob) {
 
 TEST(JobSeries, LinesUpRunPausePartsAndTheTimesBetween) {
   const JobSeries series =
-      job_series(kJob, {.start = morning(6.0, true), .pause_s = 30.0, .n_parts = 2, .between_s = 10.0}, kAmbient, 60.0);
+      job_series(kJob, {.start = morning(6.0, true), .pause_s = 30.0, .n_parts = 2, .between_s = 10.0}, kWarming, 60.0);
   EXPECT_DOUBLE_EQ(series.start_s(), 150.0);
   EXPECT_THAT(series.time_s, ElementsAre(0, 60, 120, 150, 210, 270, 300, 310, 370, 430, 460));
   ASSERT_EQ(series.parts.size(), 2U);
@@ -52,7 +52,7 @@ TEST(JobSeries, LinesUpRunPausePartsAndTheTimesBetween) {
 }
 
 TEST(JobSeries, PartsWithoutATimeBetweenShareARow) {
-  const JobSeries series = job_series(kJob, {.start = {}, .pause_s = 0.0, .n_parts = 3, .between_s = 0.0}, kAmbient, 60.0);
+  const JobSeries series = job_series(kJob, {.start = {}, .pause_s = 0.0, .n_parts = 3, .between_s = 0.0}, kWarming, 60.0);
   EXPECT_THAT(series.time_s, ElementsAre(0, 60, 120, 150, 210, 270, 300, 360, 420, 450));
   EXPECT_EQ(series.parts[1].first, series.parts[0].last);
   EXPECT_EQ(series.parts[2].first, series.parts[1].last);
@@ -60,7 +60,7 @@ TEST(JobSeries, PartsWithoutATimeBetweenShareARow) {
 
 // The ambient ends the run 6 K above the reference and warms by the scenario's 2 mK/s from there.
 TEST(JobSeries, TheAmbientGoesOnFromItsLastReadingAsTheScenariosDoes) {
-  const TimeSeries ambient = job_series(kJob, {.start = morning(6.0, true)}, kAmbient, 60.0).ambient;
+  const TimeSeries ambient = job_series(kJob, {.start = morning(6.0, true)}, kWarming, 60.0).ambient;
   EXPECT_DOUBLE_EQ(ambient.at(0.0), 5.0);
   EXPECT_DOUBLE_EQ(ambient.at(60.0), 5.5);
   EXPECT_DOUBLE_EQ(ambient.at(120.0), 6.0);
@@ -71,10 +71,10 @@ TEST(JobSeries, TheAmbientGoesOnFromItsLastReadingAsTheScenariosDoes) {
 
 TEST(JobSeries, ARunInTheScenariosAmbientOrWithoutOneGoesOnInIt) {
   for (double t_s : {0.0, 60.0, 120.0, 500.0, 1000.0}) {
-    EXPECT_NEAR(job_series(kJob, {.start = morning(6.0, false)}, kAmbient, 60.0).ambient.at(t_s), kAmbient.at(t_s), 1e-12);
+    EXPECT_NEAR(job_series(kJob, {.start = morning(6.0, false)}, kWarming, 60.0).ambient.at(t_s), kWarming.at(t_s), 1e-12);
     RecordedRun own = morning(6.0, true);
     own.ambient = {{0.0, 60.0, 120.0}, {1.0, 1.12, 1.24}};
-    EXPECT_NEAR(job_series(kJob, {.start = own}, kAmbient, 60.0).ambient.at(t_s), kAmbient.at(t_s), 1e-12);
+    EXPECT_NEAR(job_series(kJob, {.start = own}, kWarming, 60.0).ambient.at(t_s), kWarming.at(t_s), 1e-12);
   }
 }
 

@@ -238,7 +238,7 @@ INSTANTIATE_TEST_SUITE_P(
             {"'a' has 1, 'b' has 2"}},
         Bad{"units_differ",
             "design: grid\nvary: [{key: \"ambient[0][1]\", from: 20 degC, to: 30 N, steps: 3}]\n",
-            {":4:47: ", "wrong unit 'N'", "[vary[0].to]"}},
+            {":4:50: ", "wrong unit 'N'", "[vary[0].to]"}},
         Bad{"one_step",
             "design: grid\nvary: [{key: \"ambient[0][1]\", from: 20 degC, to: 30 degC, steps: 1}]\n",
             {"no whole number from 2"}},

@@ -133,7 +133,7 @@ std::vector<Cyclogram::Column> columns_of(const Record& record, const std::vecto
 }
 
 /// The recorded ambient, held where a reading is missing, over the reference.
-/// @throws InputError  for a unit that is none of an ambient, in the header or by the numbers
+/// @throws InputError  for a unit that is none of an ambient temperature, in the header or by the numbers
 TimeSeries ambient_of(const Record& record, const Channel& channel, const std::vector<double>& time_s, double reference_C,
                       const TimeSeries* expected) {
   if (channel.unit != "degC") {

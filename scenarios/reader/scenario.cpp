@@ -9,6 +9,7 @@
 
 #include "effects/effect_schema.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/former_words.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 #include "scenarios/reader/read_ambient.hpp"
@@ -42,7 +43,7 @@ void read_start(const ConfigMap& in, MachineModel& m) {
   const std::string text = in.text("start");
   if (text == "reference") {
     m.start = Start::kReference;
-  } else if (text == "ambient") {
+  } else if (text == effects::kAmbientName) {
     m.start = Start::kAmbient;
   } else if (text == "steady") {
     m.start = Start::kSteady;
@@ -392,7 +393,7 @@ const std::vector<schema::Map>& scenario_schemas() {
 }
 
 Scenario read_scenario(const std::string& path) {
-  return read_scenario(ConfigMap::read_file(path));
+  return read_scenario(ConfigMap::of_tree(read_scenario_tree(path)));
 }
 
 Scenario read_scenario(const ConfigMap& top) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/quantity.hpp"
+#include "effects/where_in_files.hpp"
 
 namespace driftwright::blind {
 namespace {
@@ -131,7 +132,7 @@ Json truth_json(const Subject& s, const Case& c) {
         t.hidden.record < 0 ? Json(nullptr) : Json(c.plan.records[static_cast<std::size_t>(t.hidden.record)].name);
     truth["effects"].push_back({{"effect", key.empty() ? Json(nullptr) : Json(key)},
                                 {"law", law_name(t.hidden.what)},
-                                {"where", t.hidden.where},
+                                {"where", effects::where_in_files(t.hidden.where)},
                                 {"parameters", parameters},
                                 {"record", record},
                                 {"d_prime", t.d_prime},

@@ -246,17 +246,17 @@ Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
       sized(contacts, ln_least, 2.0, sign);
       break;
     case Hide::kAmbientOffset:
-      sized({"ambient"}, 0.2, 6.0, sign);
+      sized({effects::kAmbientName}, 0.2, 6.0, sign);
       break;
     case Hide::kAmbientRamp:
-      sized({"ambient"}, 0.1, 3.0, sign);
+      sized({effects::kAmbientName}, 0.1, 3.0, sign);
       break;
     case Hide::kAmbientStep:
-      sized({"ambient"}, 0.3, 6.0, sign);
+      sized({effects::kAmbientName}, 0.3, 6.0, sign);
       at_a_time();
       break;
     case Hide::kStratification:
-      sized({"ambient"}, 0.2, 6.0, 1.0);
+      sized({effects::kAmbientName}, 0.2, 6.0, 1.0);
       break;
     case Hide::kRadiation:
       sized(open_films, 3.0, 0.8 * all_W, 1.0);
