@@ -175,7 +175,7 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
   if (u.fails_held_out) put("fails_held_out", true);
   if (u.one_cause) {
     using Quantity = diagnosis::Unnamed::Quantity;
-    put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat   ? "heat"
+    put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat      ? "heat"
                               : u.one_cause->quantity == Quantity::kAmbient ? "ambient temperature"
                                                                             : "reading");
     put("one_cause.where", effects::where_in_files(u.one_cause->where));
