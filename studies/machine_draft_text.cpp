@@ -139,7 +139,8 @@ std::string scenario_text(const MachineDraft& draft, const mesh::UnnamedGeometry
   }
   text += fmt::format(
       "\neffects:\n{}  # Heat of the spindle: a guess, so that the whole machine would warm by about 2 K.\n"
-      "  - {{type: heat_source, region: {}, power: {:g} W, at_speed: 3000 rpm, exponent: 1.5, known_to: guess}}\n",
+      "  - {{type: heat_source, region: {}, power: {:g} W, at_speed: 3000 rpm, exponent: 1.5, "
+      "known_to: {{power: guess, exponent: 30 %}}}}\n",
       kGuess, quoted(draft.spindle), rounded(draft.heat_W));
   text += "  # Free convection and radiation of surfaces in still air: guesses of 5 to 12 W/(m^2 K).\n";
   for (const std::string& surface : draft.films)
@@ -176,7 +177,8 @@ std::string lumped_scenario_text(const std::string& name) {
   const char* rest =
       "  - {type: node, node: spindle, capacity: 5.6 kJ/K, known_to: guess}          # 12 kg of steel\n"
       "  - {type: node, node: housing, capacity: 19 kJ/K, known_to: guess}           # 41 kg of cast iron\n"
-      "  - {type: heat_source, node: spindle, power: 150 W, at_speed: 3000 rpm, exponent: 1.5, known_to: guess}\n"
+      "  - {type: heat_source, node: spindle, power: 150 W, at_speed: 3000 rpm, exponent: 1.5, "
+      "known_to: {power: guess, exponent: 30 %}}\n"
       "  - {type: link, node: spindle, to: housing, conductance: 12 W/K, known_to: guess}\n"
       "  - {type: link, node: housing, to: hall, conductance: 5 W/K, known_to: guess}\n"
       "\nsensors:\n  - {name: t_spindle, node: spindle}\n  - {name: t_housing, node: housing}\n"
