@@ -67,15 +67,15 @@ void add_machine_reference(output::FmuOrder& order, const Record& record, const 
 /// What the observer says of a machine that is as its model.
 void add_observer_reference(output::FmuOrder& order, const compensation::Observer& observer,
                             const scenarios::Scenario& scenario, const Record& record, const Cyclogram& cyclogram) {
-  compensation::ObservedRun run{.cyclogram = cyclogram, .hall = {}, .readings = record};
+  compensation::ObservedRun run{.cyclogram = cyclogram, .ambient = {}, .readings = record};
   Columns in = drive_columns(order.model, cyclogram, record.time_s), out;
-  std::vector<double> hall_degC;
+  std::vector<double> ambient_degC;
   for (double t_s : record.time_s) {
-    run.hall.time_s.push_back(t_s);
-    run.hall.value.push_back(scenario.machine->hall.at(t_s));
-    hall_degC.push_back(run.hall.value.back() + scenario.machine->reference_K - kZeroCelsius_K);
+    run.ambient.time_s.push_back(t_s);
+    run.ambient.value.push_back(scenario.machine->ambient.at(t_s));
+    ambient_degC.push_back(run.ambient.value.back() + scenario.machine->reference_K - kZeroCelsius_K);
   }
-  in.add("hall_temperature", std::move(hall_degC));
+  in.add("ambient_temperature", std::move(ambient_degC));
   for (const std::string& sensor : observer.sensors()) in.add(sensor, record.at(sensor).values);
   const compensation::Observation seen = observer.observe(run);
   out.add("time", record.time_s);

@@ -1,7 +1,7 @@
 #pragma once
 // Finds a value in a tree by an address as a person writes it.
 //
-//     hall[0][1]                                     entries of lists by number, from zero, as error messages count
+//     ambient[0][1]                                     entries of lists by number, from zero, as error messages count
 //     machine.column.wall                            keys of maps
 //     effects[bearing_friction@spindle].load         entries of lists by the words that name them
 //

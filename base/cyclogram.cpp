@@ -143,8 +143,8 @@ std::vector<LinearStretch> behind(double time_s, std::vector<LinearStretch> stre
   return stretches;
 }
 
-std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const TimeSeries& hall) {
-  return linear_stretches(cyclogram, hall.time_s);
+std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const TimeSeries& ambient) {
+  return linear_stretches(cyclogram, ambient.time_s);
 }
 
 }  // namespace driftwright

@@ -200,9 +200,9 @@ bool add_channel(const std::string& header, const std::string& unit_line, Column
     channel.name = "speed";
     channel.magnitude = true;
     guessed.guesses.push_back(fmt::format("'{}' is taken to be the spindle speed, without its sign", header));
-  } else if (channel.unit == "degC" && is_hall_name(words.name) && !is_taken("ambient")) {
+  } else if (channel.unit == "degC" && is_ambient_name(words.name) && !is_taken("ambient")) {
     channel.name = "ambient";
-    guessed.guesses.push_back(fmt::format("'{}' is taken to be the air of the hall", header));
+    guessed.guesses.push_back(fmt::format("'{}' is taken to be the ambient air", header));
   }
   const std::string base = channel.name;
   for (int i = 2; is_taken(channel.name); ++i) channel.name = fmt::format("{}_{}", base, i);

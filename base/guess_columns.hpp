@@ -22,7 +22,7 @@ struct GuessHints {
 
 /// Finds separator, header, decimal sign, the columns of the time and their format, units in headers such as "T3 (°C)" or in a line below the header, words for
 /// missing readings, and logs with a tag in each row. Columns of numbers become channels; a spindle speed is called `speed`, the temperature of the
-/// hall `ambient`.
+/// ambient `ambient`.
 /// @throws InputError  where no rows, no time or no channel can be made out, saying what to write into `columns`
 [[nodiscard]] GuessedColumns guess_columns(const std::string& path, const GuessHints& hints);
 

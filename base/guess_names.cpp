@@ -99,7 +99,7 @@ bool is_value_name(const std::string& name) {
 bool is_speed_name(const std::string& name) {
   return has_word(name, {"speed", "drehzahl", "spindle", "spindel", "rpm"});
 }
-bool is_hall_name(const std::string& name) {
+bool is_ambient_name(const std::string& name) {
   return has_word(name, {"ambient", "hall", "room", "raum", "umgebung", "luft", "air"});
 }
 bool is_counter_name(const std::string& name) {

@@ -23,7 +23,7 @@ struct HeaderWords {
 [[nodiscard]] bool is_tag_name(const std::string& name);
 [[nodiscard]] bool is_value_name(const std::string& name);
 [[nodiscard]] bool is_speed_name(const std::string& name);
-[[nodiscard]] bool is_hall_name(const std::string& name);
+[[nodiscard]] bool is_ambient_name(const std::string& name);
 /// Row numbers, alarms and the like, which are no readings.
 [[nodiscard]] bool is_counter_name(const std::string& name);
 

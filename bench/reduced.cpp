@@ -70,16 +70,16 @@ int main(int argc, char** argv) {
   if (!reduced.system.is_linear()) {
     solver::Trajectory run;
     const double with_laws_s = least_s(20, [&] {
-      run = solver::simulate(reduced.system, cyclogram, model.hall, times_s, scenario.solver.transient, reduced.start);
+      run = solver::simulate(reduced.system, cyclogram, model.ambient, times_s, scenario.solver.transient, reduced.start);
     });
     fmt::print("  {} with laws of temperature, by SUNDIALS: {:.0f} us, {} steps\n", cyclogram.name, 1e6 * with_laws_s,
                run.n_steps);
     return 0;
   }
   const double fresh_s =
-      least_s(50, [&] { (void)solver::Propagator(reduced.system).run(cyclogram, model.hall, times_s, reduced.start); });
+      least_s(50, [&] { (void)solver::Propagator(reduced.system).run(cyclogram, model.ambient, times_s, reduced.start); });
   solver::Propagator known(reduced.system);
-  const double known_s = least_s(500, [&] { (void)known.run(cyclogram, model.hall, times_s, reduced.start); });
+  const double known_s = least_s(500, [&] { (void)known.run(cyclogram, model.ambient, times_s, reduced.start); });
   fmt::print("  {}: {:.0f} us with {} new decompositions, {:.1f} us when they are known\n", cyclogram.name, 1e6 * fresh_s,
              known.n_decompositions(), 1e6 * known_s);
 
@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
     solver::Propagator propagator(reduced.system);
 #pragma omp for schedule(dynamic, 16)
     for (int i = 0; i < kMany; ++i) {
-      const auto run = propagator.run(many[static_cast<std::size_t>(i)], model.hall,
+      const auto run = propagator.run(many[static_cast<std::size_t>(i)], model.ambient,
                                       scenarios::output_times_s(many[static_cast<std::size_t>(i)], 60.0), reduced.start);
       peak[static_cast<std::size_t>(i)] = run.outputs.row(run.outputs.rows() - 1).cwiseAbs().maxCoeff();
     }

@@ -29,7 +29,7 @@ std::vector<double> alarms(const TrialMachine& machine, const follow::WatchLimit
                            const compensation::ObservedRun& run, double* highest) {
   follow::Watch watch(machine.observer(), limits);
   std::vector<double> raised;
-  compensation::ObservedRun growing{.cyclogram = run.cyclogram, .hall = run.hall, .readings = run.readings};
+  compensation::ObservedRun growing{.cyclogram = run.cyclogram, .ambient = run.ambient, .readings = run.readings};
   growing.readings.time_s.clear();  // values beyond the last time are not looked at
   for (double t_s : run.readings.time_s) {
     growing.readings.time_s.push_back(t_s);

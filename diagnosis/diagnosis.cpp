@@ -247,7 +247,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   const std::vector<Candidate> standing = candidates(twin, runs, options.without);
 
   d.scatter = scatter(twin);
-  for (Knob& k : hall_scatter(runs)) d.scatter.push_back(std::move(k));
+  for (Knob& k : ambient_scatter(runs)) d.scatter.push_back(std::move(k));
   listener.begin(fmt::format("slopes of {} uncertain numbers", d.scatter.size()));
   const Fitter fresh(twin, runs, d.scatter, unknown_columns(twin, coarse, options.mesh_error_share, runs, twin.as_written()),
                      listener);

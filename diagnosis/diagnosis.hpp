@@ -77,7 +77,7 @@ struct ChannelGain {
          rmse_after =
              0.0;  ///< as written; scatter alone; what extended.yaml holds, fitted without them: on rows that were kept out
   double peak_before = 0.0, peak_after = 0.0;
-  /// Of regressions that know nothing of the machine, on the same kept-out rows (plain_regression.hpp): what drove it and the hall; thermometers too.
+  /// Of regressions that know nothing of the machine, on the same kept-out rows (plain_regression.hpp): what drove it and the ambient; thermometers too.
   double rmse_of_drive = 0.0, rmse_of_readings = 0.0;
   double rmse_written =
       0.0;  ///< of the file extended.yaml over the whole of all records, its own rows; NaN where nobody simulated it
@@ -130,7 +130,7 @@ struct Diagnosis {
   SearchResult search;  ///< its claims are the first causes, in their order; behind them numbers that have gone too far
   std::map<std::string, NoiseModel> noise;
   Written written;
-  std::vector<Knob> scatter;         ///< what is known roughly: the scenario's own numbers and each run's hall
+  std::vector<Knob> scatter;         ///< what is known roughly: the scenario's own numbers and each run's ambient
   std::vector<std::size_t> moved;    ///< which of these have gone so far that they are causes
   std::vector<Estimate> calibrated;  ///< of these, as fitted with the causes that are written
   Prediction as_written, scatter_alone;

@@ -37,7 +37,7 @@ std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>&
     auto same = std::find_if(seen.begin(), seen.end(), [&](const Seen& s) { return s.where == w.where && s.to == w.to; });
     if (same == seen.end()) {
       Happening h{.body = twin.body_of(w.where)};
-      if (!w.to.empty()) h.other = w.to == effects::kHallName ? effects::hall() : twin.body_of(w.to);
+      if (!w.to.empty()) h.other = w.to == effects::kAmbientName ? effects::ambient_node() : twin.body_of(w.to);
       seen.push_back({w.where, w.to, std::move(h)});
       same = seen.end() - 1;
     }
@@ -72,7 +72,7 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
     for (std::size_t r = 0; r < fitter.runs().size(); ++r) runs.push_back(seen_run(fitter, state, r, bodies, workspace));
   }
   std::vector<WindowPlace> places;
-  const auto body = [&](std::size_t b) { return b == bodies.size() ? effects::hall() : bodies[b]; };
+  const auto body = [&](std::size_t b) { return b == bodies.size() ? effects::ambient_node() : bodies[b]; };
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     places.push_back({b});
     for (std::size_t other = b + 1; other <= bodies.size(); ++other) {

@@ -178,11 +178,11 @@ bool is_silent(const Ahead& ahead, const Explanation& of, const Claim& claim) {
   return ahead.fitter->predict(of.hypothesis, of.x, workspace) == ahead.fitter->predict(others, x, workspace);
 }
 
-double mean_hall(const std::vector<MeasuredRun>& runs) {
+double mean_ambient(const std::vector<MeasuredRun>& runs) {
   double sum = 0.0;
   Eigen::Index n = 0;
   for (const MeasuredRun& run : runs) {
-    for (double t_s : run.time_s) sum += run.hall.at(t_s);
+    for (double t_s : run.time_s) sum += run.ambient.at(t_s);
     n += static_cast<Eigen::Index>(run.time_s.size());
   }
   return sum / static_cast<double>(n);
@@ -193,7 +193,7 @@ MeasuredRun run_of(const std::vector<MeasuredRun>& runs, const Cyclogram& cyclog
   MeasuredRun run;
   run.name = cyclogram.name;
   run.cyclogram = cyclogram;
-  run.hall = {{0.0}, {mean_hall(runs)}};
+  run.ambient = {{0.0}, {mean_ambient(runs)}};
   run.has_ambient = runs.front().has_ambient;
   for (double t_s = 0.0; t_s <= cyclogram.duration_s() + 1e-6; t_s += kRows_s) run.time_s.push_back(t_s);
   set_grid(run);
@@ -278,7 +278,7 @@ std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchR
     double most_d = -1.0;
     for (const MeasuredRun& run : runs) {
       MeasuredRun repeated = run_of(runs, run.cyclogram, channels);
-      repeated.hall = run.hall;
+      repeated.ambient = run.ambient;
       auto ahead = look_ahead(fitter, repeated, noise, open.explanations);
       if (!ahead) continue;
       const double d = ahead->least(open.pairs, measured);

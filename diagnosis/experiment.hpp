@@ -26,7 +26,7 @@ struct Experiment {
 /// The cyclogram with the largest least d' over all pairs that the findings leave open: a cause and its alternatives, one that is in doubt and nothing in its place.
 /// What happened in one record only does nothing
 /// in a new one; where all that is open did so, a record of that cyclogram with one more thermometer is what is left.
-/// Noise is the fitter's, a further thermometer's that of the median one. The hall stands at its mean.
+/// Noise is the fitter's, a further thermometer's that of the median one. The ambient stands at its mean.
 /// @param in_doubt  per finding, whether it may be none; empty: none is
 /// @return none where no finding has an alternative or is in doubt, or no cyclogram has a solution
 [[nodiscard]] std::optional<Experiment> propose_experiment(const Fitter& fitter, const SearchResult& result,

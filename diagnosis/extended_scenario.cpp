@@ -17,6 +17,7 @@
 #include "base/quantity.hpp"
 #include "base/yaml_text.hpp"
 #include "scenarios/reader/absolute_paths.hpp"
+#include "scenarios/reader/former_words.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 
 namespace driftwright::diagnosis {
@@ -120,7 +121,9 @@ class Writer {
   [[nodiscard]] bool says_what_it_should(const std::string& edited) const {
     TwinState read;
     try {
-      const ConfigMap root = ConfigMap::of_tree(read_config_text(edited, yaml_.root().source->path));
+      std::vector<scenarios::FormerWord> former;  // the user's own, which stay as they are
+      const ConfigMap root =
+          ConfigMap::of_tree(scenarios::in_present_words(read_config_text(edited, yaml_.root().source->path), former));
       for (const ConfigMap& one : root.maps("effects")) read.push_back(effects::read_effect(one));
     } catch (const InputError&) {  // no YAML any more, or an effect that is none
       return false;

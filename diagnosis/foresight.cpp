@@ -29,12 +29,12 @@ void weigh(Doubts& doubts) {
 
 }  // namespace
 
-MeasuredRun planned_run(const Cyclogram& cyclogram, double interval_s, const TimeSeries& hall, bool has_ambient,
+MeasuredRun planned_run(const Cyclogram& cyclogram, double interval_s, const TimeSeries& ambient, bool has_ambient,
                         std::vector<MeasuredChannel> channels) {
   MeasuredRun run;
   run.name = cyclogram.name;
   run.cyclogram = cyclogram;
-  run.hall = hall;
+  run.ambient = ambient;
   run.has_ambient = has_ambient;
   const auto n_intervals = static_cast<int>(std::floor(cyclogram.duration_s() / interval_s + 1e-9));
   for (int i = 0; i <= n_intervals; ++i) run.time_s.push_back(interval_s * i);
@@ -47,7 +47,7 @@ MeasuredRun planned_run(const Cyclogram& cyclogram, double interval_s, const Tim
 Doubts doubts_before(const Twin& twin, const MeasuredRun& run, const std::set<std::string>& without) {
   Doubts doubts;
   doubts.numbers = scatter(twin);
-  for (Knob& k : hall_scatter({run})) doubts.numbers.push_back(std::move(k));
+  for (Knob& k : ambient_scatter({run})) doubts.numbers.push_back(std::move(k));
   doubts.candidates = candidates(twin, {run}, without);
   for (Candidate& c : doubts.candidates) std::erase_if(c.variants, [](const Variant& v) { return !may_be_planned_for(v); });
   std::erase_if(doubts.candidates, [](const Candidate& c) { return c.variants.empty(); });

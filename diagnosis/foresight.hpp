@@ -7,15 +7,15 @@
 namespace driftwright::diagnosis {
 
 /// Readings to come: rows from 0 to the cyclogram's end.
-/// @param hall      recorded, minus the reference [K]
+/// @param ambient      recorded, minus the reference [K]
 /// @param channels  their values are not looked at
-[[nodiscard]] MeasuredRun planned_run(const Cyclogram& cyclogram, double interval_s, const TimeSeries& hall,
+[[nodiscard]] MeasuredRun planned_run(const Cyclogram& cyclogram, double interval_s, const TimeSeries& ambient,
                                       bool has_ambient, std::vector<MeasuredChannel> channels);
 
 /// What a record of a machine may be asked before there is any: its uncertain numbers, and every law of the catalogue that could be there throughout.
 /// Left out is what happens at some moment, which no programme knows ahead, and what is all or nothing.
 struct Doubts {
-  std::vector<Knob> numbers;  ///< of the scenario, and the hall's
+  std::vector<Knob> numbers;  ///< of the scenario, and the ambient's
   std::vector<Candidate> candidates;
   struct Shape {
     std::size_t candidate = 0, variant = 0;

@@ -106,7 +106,8 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   const double sd = (h.other ? kUnknownExchange : 1.0) * scene.unknown_heat_W();
   effects::DoubtedNumber size = effects::doubted(h.other ? "conductance" : "power", h.other ? "W/K" : "W", sd, 0.05 * sd);
   if (h.other || h.size > 0.0) size.low = 0.0;
-  const std::string where = h.other && !(*h.other == effects::hall()) ? h.body.name + "," + h.other->name : h.body.name;
+  const std::string where =
+      h.other && !(*h.other == effects::ambient_node()) ? h.body.name + "," + h.other->name : h.body.name;
   const double trial = std::clamp(h.size, -sd, sd);
   if (trial == 0.0 || trial < size.low) return std::nullopt;
   if (h.every_s == 0.0 && h.in.size() == 1 && h.in.front().second.size() == 1) {

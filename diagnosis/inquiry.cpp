@@ -10,9 +10,9 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSharper = 0.9;      // noise without what the causes explain, over that with it: it is estimated anew
-constexpr double kHallFault_K = 2.0;  // 1 sigma of a hall that was recorded wrongly
-constexpr double kTooFar = 3.5;       // sigmas of its prior: a number beyond is a cause
+constexpr double kSharper = 0.9;         // noise without what the causes explain, over that with it: it is estimated anew
+constexpr double kAmbientFault_K = 2.0;  // 1 sigma of an ambient that was recorded wrongly
+constexpr double kTooFar = 3.5;          // sigmas of its prior: a number beyond is a cause
 
 /// What the search leaves; the mesh's error is that of the machine with what was found.
 std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const Inquiry& of,
@@ -56,7 +56,7 @@ void widen_moved(Inquiry& of, Twin::Workspace& workspace) {
     const Knob& k = fitter.scatter()[i];
     if (!(std::abs(of.search.fit.x[static_cast<Eigen::Index>(i)]) > kTooFar * k.prior_sd)) continue;
     of.moved.push_back(i);
-    fitter.set_prior_sd(i, k.scale == Knob::Scale::kLog ? effects::kFactorSd : kHallFault_K);
+    fitter.set_prior_sd(i, k.scale == Knob::Scale::kLog ? effects::kFactorSd : kAmbientFault_K);
   }
   if (of.moved.empty()) return;
   fitter.settle(of.search.hypothesis, of.search.fit);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 constexpr double kNoSolution = -1e6;       // nats of a fold that no numbers fit
-// What a kept-out record has of its own, such as its hall, is in the misses and says nothing of a claim: they count where likelihood is not clear.
+// What a kept-out record has of its own, such as its ambient, is in the misses and says nothing of a claim: they count where likelihood is not clear.
 constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorse = 1.1;            // of the squares
 

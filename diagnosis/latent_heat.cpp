@@ -25,31 +25,26 @@ double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 
 std::pair<std::string, double> resembles(const MeasuredRun& run, const Eigen::VectorXd& series) {
   const auto n = static_cast<Eigen::Index>(run.time_s.size());
-  Eigen::VectorXd speed(n), time(n), hall(n), feed(n);
+  Eigen::VectorXd speed(n), time(n), ambient(n), feed(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double t_s = run.time_s[static_cast<std::size_t>(i)];
     const Drive d = run.cyclogram.drive(t_s);
     speed[i] = d.speed_rpm;
     feed[i] = d.feed_m_s[0] + d.feed_m_s[1] + d.feed_m_s[2];
     time[i] = t_s;
-    hall[i] = run.hall.at(t_s);
+    ambient[i] = run.ambient.at(t_s);
   }
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(n), hall_rate = Eigen::VectorXd::Zero(n),
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(n), ambient_rate = Eigen::VectorXd::Zero(n),
                   travelled = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 1; i < n; ++i) {
     change[i] = std::abs(speed[i] - speed[i - 1]);
-    hall_rate[i] = hall[i] - hall[i - 1];
+    ambient_rate[i] = ambient[i] - ambient[i - 1];
     travelled[i] = travelled[i - 1] + speed[i - 1] * (time[i] - time[i - 1]);
   }
   std::pair<std::string, double> best{"nothing recorded", 0.0};
-  std::vector<std::pair<std::string, Eigen::VectorXd>> quantities = {{"speed", speed},
-                                                                     {"the square of speed", speed.cwiseAbs2()},
-                                                                     {"changes of speed", change},
-                                                                     {"turns made", travelled},
-                                                                     {"feeds", feed},
-                                                                     {"hall temperature", hall},
-                                                                     {"its rate", hall_rate},
-                                                                     {"time", time}};
+  std::vector<std::pair<std::string, Eigen::VectorXd>> quantities = {
+      {"speed", speed}, {"the square of speed", speed.cwiseAbs2()}, {"changes of speed", change}, {"turns made", travelled},
+      {"feeds", feed},  {"ambient temperature", ambient},           {"its rate", ambient_rate},   {"time", time}};
   for (auto& [name, values] : beside_drive(run, 0.0)) quantities.emplace_back(name, std::move(values));
   for (const auto& [name, values] : quantities) {
     const double c = correlation(values, series);

@@ -17,7 +17,7 @@ struct LatentHeat {
 /// Regularised deconvolution: a heat of constant pieces of 20 min in each region in turn, its changes kept small.
 [[nodiscard]] std::optional<LatentHeat> latent_heat(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit);
 
-/// The drive or hall quantity that a series follows most, and how closely [-1, 1].
+/// The drive or ambient quantity that a series follows most, and how closely [-1, 1].
 [[nodiscard]] std::pair<std::string, double> resembles(const MeasuredRun& run, const Eigen::VectorXd& series);
 
 }  // namespace driftwright::diagnosis

@@ -20,7 +20,7 @@ Drive felt(const effects::DriveChange& change, const Drive& level, double durati
 LevelMachine::LevelMachine(const Twin& twin, const Doubts& doubts, const std::vector<Drive>& levels, const MeasuredRun& like,
                            double row_s, double interval_s, const std::map<std::string, NoiseModel>& noise)
     : twin_(twin),
-      run_(planned_run(like.cyclogram, row_s, like.hall, like.has_ambient, like.channels)),
+      run_(planned_run(like.cyclogram, row_s, like.ambient, like.has_ambient, like.channels)),
       levels_(levels),
       row_s_(row_s),
       n_steps_(run_.time_s.size() - 1) {
@@ -55,14 +55,15 @@ LevelMachine::Course LevelMachine::course_of(const TwinState& state, const std::
   const solver::ReducedSystem& system = bound.system;
   Course course;
   course.start = bound.start;
-  course.hall_K.resize(static_cast<Eigen::Index>(n_steps_) + 1);
-  for (std::size_t i = 0; i <= n_steps_; ++i) course.hall_K[static_cast<Eigen::Index>(i)] = bound.hall.at(run_.time_s[i]);
+  course.ambient_K.resize(static_cast<Eigen::Index>(n_steps_) + 1);
+  for (std::size_t i = 0; i <= n_steps_; ++i)
+    course.ambient_K[static_cast<Eigen::Index>(i)] = bound.ambient.at(run_.time_s[i]);
   course.observe = Eigen::MatrixXd::Zero(twin_.outputs().state.cols(), system.size());
   course.observe.leftCols(bound.outputs.rows()) = bound.outputs.transpose();
   const effects::DriveChange change = effects::drive_change(state, run_.name);
   for (const Drive& level : levels) {
     effects::Inputs at{.drive = felt(change, level, run_.cyclogram.duration_s(), run_.name),
-                       .hall_K = course.hall_K.mean(),
+                       .ambient_K = course.ambient_K.mean(),
                        .time_s = 0.5 * run_.cyclogram.duration_s()};
     at.run = run_.name;
     course.steps.push_back(linear_step(linear_system(system, at, course.start), system.mass, row_s_));
@@ -76,20 +77,21 @@ Eigen::MatrixXd LevelMachine::response(const Course& course, const std::vector<i
   for (std::size_t i = 0; i < n_steps_; ++i) {
     const LinearStep& step = course.steps[static_cast<std::size_t>(level_of_step[i])];
     const auto k = static_cast<Eigen::Index>(i);
-    const double hall_K = course.hall_K[k];
-    states.col(k + 1) = step.constant + hall_K * step.of_hall + (course.hall_K[k + 1] - hall_K) * step.of_rise;
+    const double ambient_K = course.ambient_K[k];
+    states.col(k + 1) = step.constant + ambient_K * step.of_ambient + (course.ambient_K[k + 1] - ambient_K) * step.of_rise;
     states.col(k + 1).noalias() += step.phi * states.col(k);
   }
   Eigen::MatrixXd outputs(course.observe.rows(), states.cols());
   outputs.noalias() = course.observe * states;
-  if ((twin_.outputs().hall.array() != 0.0).any()) outputs.noalias() += twin_.outputs().hall * course.hall_K.transpose();
+  if ((twin_.outputs().ambient.array() != 0.0).any())
+    outputs.noalias() += twin_.outputs().ambient * course.ambient_K.transpose();
   return outputs;
 }
 
 Eigen::MatrixXd LevelMachine::information(const std::vector<int>& level_of_step) const {
   MeasuredRun run;  // what instruments look at
   run.name = run_.name;
-  run.hall = run_.hall;
+  run.ambient = run_.ambient;
   run.time_s = run_.time_s;
   run.grid_s = run_.grid_s;
   run.row_in_grid = run_.row_in_grid;

@@ -1,7 +1,7 @@
 #pragma once
 // A machine, and the same machine with each doubt turned, under programmes of a few levels of drive: thousands of programmes in seconds.
 //
-// While a drive holds, M z' = -K z + f + h q with the hall h linear from row to row, so that from one row to the next
+// While a drive holds, M z' = -K z + f + h q with the ambient h linear from row to row, so that from one row to the next
 //
 //     z' = Φ z + b + h_k q_0 + (h_k+1 - h_k) q_1
 //
@@ -18,7 +18,7 @@ namespace driftwright::diagnosis {
 class LevelMachine {
  public:
   /// @param levels  what programmes are made of
-  /// @param like    a run as long as all programmes, with their channels and hall; its name is theirs
+  /// @param like    a run as long as all programmes, with their channels and ambient; its name is theirs
   /// @param row_s   a reading stands for so much time; the run is a whole number of these
   /// @param noise   of readings every `interval_s`, by channel
   LevelMachine(const Twin& twin, const Doubts& doubts, const std::vector<Drive>& levels, const MeasuredRun& like,
@@ -33,8 +33,8 @@ class LevelMachine {
   struct Course {
     std::vector<LinearStep> steps;  ///< by level
     Eigen::VectorXd start;
-    Eigen::VectorXd hall_K;   ///< at the rows
-    Eigen::MatrixXd observe;  ///< n_outputs x size
+    Eigen::VectorXd ambient_K;  ///< at the rows
+    Eigen::MatrixXd observe;    ///< n_outputs x size
   };
   struct Turned {
     TwinState state;

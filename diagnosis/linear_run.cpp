@@ -21,12 +21,13 @@ Eigen::VectorXd coefficients(const solver::ReducedSystem& system, effects::Input
     } else {
       effects::Inputs with_probes = u;
       for (int p : law.probes)
-        with_probes.probe_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(z, u.hall_K));
+        with_probes.probe_K.push_back(system.reference_K +
+                                      system.probes[static_cast<std::size_t>(p)].theta_K(z, u.ambient_K));
       c[i] = law.law(with_probes);
     }
     if (law.thermostat < 0) continue;
     const solver::Thermostat& t = system.thermostats[static_cast<std::size_t>(law.thermostat)];
-    const double at_K = system.reference_K + system.probes[static_cast<std::size_t>(t.probe)].theta_K(z, u.hall_K);
+    const double at_K = system.reference_K + system.probes[static_cast<std::size_t>(t.probe)].theta_K(z, u.ambient_K);
     if (at_K < 0.5 * (t.on_above_K + t.off_below_K)) c[i] = 0.0;
   }
   return c;
@@ -37,7 +38,7 @@ Eigen::VectorXd coefficients(const solver::ReducedSystem& system, effects::Input
 std::vector<effects::Body> bodies_of(const effects::DoubtScene& scene) {
   std::vector<effects::Body> bodies;
   for (const effects::Body& body : scene.bodies) {
-    if (!(body == effects::hall())) bodies.push_back(body);
+    if (!(body == effects::ambient_node())) bodies.push_back(body);
   }
   return bodies;
 }
@@ -67,7 +68,7 @@ LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& 
     }
   }
   l.temperature_K.resize(n_rows, n_bodies);
-  l.hall_K.resize(n_rows);
+  l.ambient_K.resize(n_rows);
   Eigen::VectorXd held;  // coefficients that the modes at hand were made with
   Eigen::MatrixXd vectors;
   const Eigen::MatrixXd warmer = kStart_K * twin.warmer_bodies();
@@ -77,14 +78,16 @@ LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& 
     const Eigen::VectorXd at = z.col(run.row_in_grid[static_cast<std::size_t>(row)]);
     l.course.time_s.push_back(t_s);
     l.temperature_K.row(i) = at.transpose() * mean;
-    l.hall_K[i] = bound.hall.at(t_s);
+    l.ambient_K[i] = bound.ambient.at(t_s);
     if (i + 1 == n_rows) break;
     const double next_s = run.time_s[static_cast<std::size_t>(rows[static_cast<std::size_t>(i + 1)])];
     const double middle_s = 0.5 * (t_s + next_s);
-    const Eigen::VectorXd now = coefficients(
-        system,
-        {.drive = bound.cyclogram.drive(middle_s), .hall_K = bound.hall.at(middle_s), .time_s = middle_s, .run = run.name},
-        at);
+    const Eigen::VectorXd now = coefficients(system,
+                                             {.drive = bound.cyclogram.drive(middle_s),
+                                              .ambient_K = bound.ambient.at(middle_s),
+                                              .time_s = middle_s,
+                                              .run = run.name},
+                                             at);
     const double tiny = 1e-9 * std::max(1e-300, now.cwiseAbs().maxCoeff());
     const bool is_same = held.size() > 0 && ((now - held).array().abs() <= kSameModes * held.array().abs() + tiny).all();
     if (!is_same) {

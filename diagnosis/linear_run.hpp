@@ -9,11 +9,11 @@ namespace driftwright::diagnosis {
 struct LinearRun {
   ModalCourse course;             ///< loads: 1 W in each body; its start: each body known to 0.3 K
   Eigen::MatrixXd temperature_K;  ///< predicted mean of each body over the reference, rows x bodies
-  Eigen::VectorXd hall_K;         ///< over the reference
+  Eigen::VectorXd ambient_K;      ///< over the reference
   Eigen::MatrixXd decay;          ///< of each mode from row to row, modes x rows - 1
 };
 
-/// The bodies that heat may be missing in: regions and nodes, not the hall.
+/// The bodies that heat may be missing in: regions and nodes, not the ambient.
 [[nodiscard]] std::vector<effects::Body> bodies_of(const effects::DoubtScene& scene);
 
 /// @param rows   of the run that are looked at, increasing

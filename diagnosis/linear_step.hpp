@@ -5,21 +5,21 @@
 
 namespace driftwright::diagnosis {
 
-/// M z' = -K z + constant + hall_K of_hall.
+/// M z' = -K z + constant + ambient_K of_ambient.
 struct LinearSystem {
   Eigen::MatrixXd stiffness;  ///< K, not symmetric where a law looks at temperatures
-  Eigen::VectorXd constant, of_hall;
+  Eigen::VectorXd constant, of_ambient;
 };
 
 /// About the state halfway from `start` to balance at this drive.
-/// @param at  its hall is the one to be about
+/// @param at  its ambient is the one to be about
 [[nodiscard]] LinearSystem linear_system(const solver::ReducedSystem& system, const effects::Inputs& at,
                                          const Eigen::VectorXd& start);
 
-/// From one row to the next, z' = phi z + constant + hall of_hall + rise of_rise, exactly while the hall rises evenly.
+/// From one row to the next, z' = phi z + constant + ambient of_ambient + rise of_rise, exactly while the ambient rises evenly.
 struct LinearStep {
   Eigen::MatrixXd phi;
-  Eigen::VectorXd constant, of_hall, of_rise;
+  Eigen::VectorXd constant, of_ambient, of_rise;
 };
 [[nodiscard]] LinearStep linear_step(const LinearSystem& system, const Eigen::MatrixXd& mass, double step_s);
 

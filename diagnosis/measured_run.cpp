@@ -17,9 +17,9 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHallKnots_s = 600.0;      // at the most
-constexpr double kHallKnown_K = 0.003;      // what is left of a course matters to nobody
-constexpr double kMostNoise_K = 0.1;        // that a thermometer in the hall has
+constexpr double kAmbientKnots_s = 600.0;      // at the most
+constexpr double kAmbientKnown_K = 0.003;      // what is left of a course matters to nobody
+constexpr double kMostNoise_K = 0.1;        // that an ambient thermometer has
 constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
 constexpr int kMostColumns = 6;             // that nobody drives the machine by; each may drive it at each body
 constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
@@ -101,8 +101,8 @@ TimeSeries with_few_knots(const TimeSeries& s, double within) {
   return few;
 }
 
-/// A recorded hall without its noise, and with all of its course: knots as far apart as what they miss is noise, at each reading where that is what it takes. A
-/// machine that starts as warm as the hall would else start wrong. What changes from reading to reading by more than thermometers err by is air (wind, a door), and warms and cools
+/// A recorded ambient without its noise, and with all of its course: knots as far apart as what they miss is noise, at each reading where that is what it takes. A
+/// machine that starts as warm as the ambient would else start wrong. What changes from reading to reading by more than thermometers err by is air (wind, a door), and warms and cools
 /// what it meets. One reading at least.
 TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>& value) {
   Readings r;
@@ -113,14 +113,14 @@ TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>
   }
   const double noise_K = white_noise(r);
   if (noise_K > kMostNoise_K) return {r.time_s, r.value};
-  const double enough_K = std::max(kHallKnown_K, 1.1 * noise_K), length_s = r.time_s.back() - r.time_s.front();
+  const double enough_K = std::max(kAmbientKnown_K, 1.1 * noise_K), length_s = r.time_s.back() - r.time_s.front();
   const int n_readings = static_cast<int>(r.time_s.size());
-  for (int n_pieces = std::max(1, static_cast<int>(length_s / kHallKnots_s)); 3 * n_pieces <= n_readings; n_pieces *= 2) {
+  for (int n_pieces = std::max(1, static_cast<int>(length_s / kAmbientKnots_s)); 3 * n_pieces <= n_readings; n_pieces *= 2) {
     const TimeSeries series = on_knots(r, n_pieces);
-    if (rms_beside(r, series) <= enough_K) return with_few_knots(series, 2.0 * kHallKnown_K);
+    if (rms_beside(r, series) <= enough_K) return with_few_knots(series, 2.0 * kAmbientKnown_K);
   }
   return n_readings < 3 ? on_knots(r, 1)
-                        : with_few_knots({r.time_s, r.value}, std::max(2.0 * kHallKnown_K, 2.0 * noise_K));
+                        : with_few_knots({r.time_s, r.value}, std::max(2.0 * kAmbientKnown_K, 2.0 * noise_K));
 }
 
 /// Most rows in a row at a value.
@@ -259,20 +259,20 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   run.path = path;
   for (const std::string& note : read.notes) run.findings.push_back({"", note, false});
   const Record record = without_spikes(without_holes(whole, run.findings), run.findings);
-  std::vector<std::string> on_hall;  // a thermometer in the hall does as well
+  std::vector<std::string> on_ambient;  // an ambient thermometer does as well
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
-    if (outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) on_hall.push_back(outputs.name[o]);
+    if (outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) on_ambient.push_back(outputs.name[o]);
   }
-  scenarios::RecordedRun recorded_run = scenarios::run_of(record, &model, on_hall, scenarios::Reading::kStrict);
+  scenarios::RecordedRun recorded_run = scenarios::run_of(record, &model, on_ambient, scenarios::Reading::kStrict);
   run.time_s = std::move(recorded_run.time_s);
   run.cyclogram = std::move(recorded_run.cyclogram);
   run.name = run.cyclogram.name;
-  run.hall = std::move(recorded_run.hall);
+  run.ambient = std::move(recorded_run.ambient);
   run.has_ambient = recorded_run.has_ambient();
   if (run.has_ambient) {
-    std::vector<double> hall_K;
-    for (double v : record.at(recorded_run.hall_channel).values) hall_K.push_back(v + kZeroCelsius_K - model.reference_K);
-    run.hall = smoothed(run.time_s, hall_K);
+    std::vector<double> ambient_K;
+    for (double v : record.at(recorded_run.ambient_channel).values) ambient_K.push_back(v + kZeroCelsius_K - model.reference_K);
+    run.ambient = smoothed(run.time_s, ambient_K);
   }
   std::move(recorded_run.findings.begin(), recorded_run.findings.end(), std::back_inserter(run.findings));
   scenarios::require_columns(model, run.cyclogram);
@@ -282,7 +282,7 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
     const Channel* recorded = record.find(outputs.name[o]);
     if (!recorded) continue;
-    if (run.has_ambient && outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) continue;
+    if (run.has_ambient && outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) continue;
     if (!same_kind(recorded->unit, outputs.unit[o])) {
       throw InputError(fmt::format("{}: channel {} is in {}, but the scenario's {} is a {}", path, recorded->name,
                                    recorded->unit, recorded->name,

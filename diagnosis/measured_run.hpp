@@ -31,8 +31,8 @@ struct MeasuredRun {
   std::vector<double> grid_s;
   std::vector<Eigen::Index> row_in_grid;
   Cyclogram cyclogram;       ///< recorded
-  TimeSeries hall;           ///< recorded, smoothed to knots; minus the reference [K]
-  bool has_ambient = false;  ///< else the hall is the scenario's
+  TimeSeries ambient;        ///< recorded, smoothed to knots; minus the reference [K]
+  bool has_ambient = false;  ///< else the ambient is the scenario's
   /// Of a run that begins warm (warm_start.hpp), else empty: how much warmer than the scenario's start each part of the machine is, and
   /// directions of what that is not known to.
   Eigen::VectorXd start_K;
@@ -46,11 +46,11 @@ struct MeasuredRun {
 /// Sets grid_s and row_in_grid of a run whose rows and cyclogram are known.
 void set_grid(MeasuredRun& run);
 
-/// Finds the channels of a record, whose source is its file or its name, among the model's outputs. Readings of sensors that the model says read the hall itself are left
+/// Finds the channels of a record, whose source is its file or its name, among the model's outputs. Readings of sensors that the model says read the ambient itself are left
 /// out where the record has an ambient temperature.
 /// Readings of a sensor that stood still are taken out (stuck_sensor.hpp).
 /// @throws InputError  for a record without speed, with fewer than three rows, with a channel that is called as an output but has a
-///                     unit of another kind, with a hall temperature in another unit than its header says, or with nothing to compare
+///                     unit of another kind, with an ambient temperature in another unit than its header says, or with nothing to compare
 [[nodiscard]] MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& model,
                                        const solver::Outputs& outputs);
 /// The same of a file. @param columns  how it is written, where it is no record CSV

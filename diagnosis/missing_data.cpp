@@ -27,7 +27,7 @@ double settling_time_s(const Twin& twin, const MeasuredRun& run) {
   rest.cyclogram = {.name = run.name, .sections = {{rest.time_s.back(), {}}}};
   rest.grid_s = rest.time_s;
   for (std::size_t i = 0; i < rest.time_s.size(); ++i) rest.row_in_grid.push_back(static_cast<Eigen::Index>(i));
-  rest.hall = {{0.0}, {run.hall.value.front()}};
+  rest.ambient = {{0.0}, {run.ambient.value.front()}};
   Twin::Workspace workspace(twin);
   const Eigen::MatrixXd cold = twin.respond(twin.as_written(), rest, workspace);
   rest.start_K = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(twin.machine().system.parts.size()));
@@ -46,7 +46,7 @@ double settling_time_s(const Twin& twin, const MeasuredRun& run) {
 std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& runs, int n_readings, int n_wanted) {
   std::set<std::string> recorded;
   std::set<double> speeds_rpm;
-  std::vector<std::string> without_hall;
+  std::vector<std::string> without_ambient;
   double row_min = 0.0;
   bool has_temperature = false;
   for (const MeasuredRun& run : runs) {
@@ -55,7 +55,7 @@ std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& ru
       has_temperature = has_temperature || c.unit == "K";
     }
     for (const auto& s : run.cyclogram.sections) speeds_rpm.insert(s.drive.speed_rpm);
-    if (!run.has_ambient) without_hall.push_back(run.name);
+    if (!run.has_ambient) without_ambient.push_back(run.name);
     row_min = std::max(row_min, run.time_s.back() / 60.0 / static_cast<double>(run.time_s.size() - 1));
   }
   std::string text =
@@ -65,8 +65,8 @@ std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& ru
   const std::size_t n_own = model.sensors.size() + model.displacements.size();
   std::vector<std::string> absent;
   for (std::size_t o = 0; o < std::min(n_own, twin.outputs().name.size()); ++o) {
-    const bool is_hall = twin.outputs().hall[static_cast<Eigen::Index>(o)] == 1.0;
-    if (!is_hall && !recorded.contains(twin.outputs().name[o])) absent.push_back(twin.outputs().name[o]);
+    const bool is_ambient = twin.outputs().ambient[static_cast<Eigen::Index>(o)] == 1.0;
+    if (!is_ambient && !recorded.contains(twin.outputs().name[o])) absent.push_back(twin.outputs().name[o]);
   }
   if (!absent.empty())
     text += fmt::format(" Of the scenario's channels the records do not hold {}.", fmt::join(absent, ", "));
@@ -79,8 +79,8 @@ std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& ru
         "(under `sensors` in the scenario, a column NAME_degC in the record).",
         fmt::join(bodies, ", "));
   }
-  if (!without_hall.empty())
-    text += fmt::format(" No hall temperature (ambient_degC) in {}.", fmt::join(without_hall, ", "));
+  if (!without_ambient.empty())
+    text += fmt::format(" No ambient temperature (ambient_degC) in {}.", fmt::join(without_ambient, ", "));
   const bool is_heated = !twin.balance(twin.as_written()).heats.empty();
   if (is_heated && speeds_rpm.size() < 2) {
     text += fmt::format(

@@ -12,7 +12,7 @@ namespace driftwright::diagnosis {
 [[nodiscard]] std::string what_is_missing(const Twin& twin, const std::vector<MeasuredRun>& runs, int n_readings,
                                           int n_wanted);
 
-/// Time after which a machine that starts 1 K too warm at standstill is within 1/e of its hall everywhere [s]; at most 400 h.
+/// Time after which a machine that starts 1 K too warm at standstill is within 1/e of its ambient everywhere [s]; at most 400 h.
 [[nodiscard]] double settling_time_s(const Twin& twin, const MeasuredRun& run);
 
 }  // namespace driftwright::diagnosis

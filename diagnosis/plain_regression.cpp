@@ -11,7 +11,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kDriveLags_s[] = {0.0, 300.0, 1200.0, 4800.0};
-constexpr double kHallLags_s[] = {0.0, 3600.0, 14400.0};
+constexpr double kAmbientLags_s[] = {0.0, 3600.0, 14400.0};
 constexpr double kColumnLags_s[] = {0.0, 600.0, 3600.0};
 constexpr double kPenalties[] = {1e-6, 1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 1.0};
 constexpr Eigen::Index kParts = 8;     // of a single run
@@ -50,17 +50,17 @@ Eigen::VectorXd held(const Eigen::VectorXd& reading) {
 /// What a run has beside its readings, n_times x n_columns.
 Eigen::MatrixXd drive_columns(const MeasuredRun& run) {
   const auto n = static_cast<Eigen::Index>(run.time_s.size());
-  Eigen::VectorXd speed(n), hall(n);
+  Eigen::VectorXd speed(n), ambient(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double t_s = run.time_s[static_cast<std::size_t>(i)];
     speed[i] = 1e-3 * run.cyclogram.speed_rpm(t_s);
-    hall[i] = run.hall.at(t_s);
+    ambient[i] = run.ambient.at(t_s);
   }
   std::vector<Eigen::VectorXd> columns;
   for (const Eigen::VectorXd& drive :
        {speed, Eigen::VectorXd(speed.array().square()), Eigen::VectorXd((speed.array() > 0.0).cast<double>())})
     for (double lag_s : kDriveLags_s) columns.push_back(held_behind(drive, run.time_s, lag_s));
-  for (double lag_s : kHallLags_s) columns.push_back(sampled_behind(hall, run.time_s, lag_s));
+  for (double lag_s : kAmbientLags_s) columns.push_back(sampled_behind(ambient, run.time_s, lag_s));
   for (const auto& [name, recorded] : beside_drive(run, 0.0)) {
     for (double lag_s : kColumnLags_s) columns.push_back(held_behind(held(recorded), run.time_s, lag_s));
   }

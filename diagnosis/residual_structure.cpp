@@ -48,7 +48,7 @@ struct Quantity {
 
 std::vector<Quantity> recorded(const MeasuredRun& run, double earlier_s) {
   const auto n = static_cast<Eigen::Index>(run.time_s.size());
-  Eigen::VectorXd speed(n), square(n), change(n), hall(n), rate(n);
+  Eigen::VectorXd speed(n), square(n), change(n), ambient(n), rate(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double t_s = run.time_s[static_cast<std::size_t>(i)] - earlier_s;
     const double step_s =
@@ -56,12 +56,12 @@ std::vector<Quantity> recorded(const MeasuredRun& run, double earlier_s) {
     const bool known = t_s >= 0.0, before_known = known && t_s - step_s >= 0.0 && step_s > 0.0;
     speed[i] = known ? run.cyclogram.drive(t_s).speed_rpm : nan();
     square[i] = speed[i] * speed[i];
-    hall[i] = known ? run.hall.at(t_s) : nan();
+    ambient[i] = known ? run.ambient.at(t_s) : nan();
     change[i] = before_known ? std::abs(speed[i] - run.cyclogram.drive(t_s - step_s).speed_rpm) : nan();
-    rate[i] = before_known ? (hall[i] - run.hall.at(t_s - step_s)) / step_s : nan();
+    rate[i] = before_known ? (ambient[i] - run.ambient.at(t_s - step_s)) / step_s : nan();
   }
   std::vector<Quantity> list = {
-      {"speed", speed}, {"speed^2", square}, {"|change of speed|", change}, {"hall", hall}, {"hall rate", rate}};
+      {"speed", speed}, {"speed^2", square}, {"|change of speed|", change}, {"ambient", ambient}, {"ambient rate", rate}};
   for (auto& [name, value] : beside_drive(run, earlier_s)) list.push_back({name, std::move(value)});
   return list;
 }
@@ -121,7 +121,7 @@ ResidualStructure residual_structure(const MeasuredRun& run, const Eigen::Vector
 
   for (const Quantity& q : recorded(run, 0.0)) {
     if (q.value.hasNaN()) continue;  // changes and rates: what follows them is no step response
-    // the machine has not turned before, but it has stood in its hall and its sun
+    // the machine has not turned before, but it has stood in its ambient and its sun
     const bool from_zero = q.name == "speed" || q.name == "speed^2";
     for (int k = 0;; ++k) {
       const double lag_s = kShortest_s * std::pow(10.0, static_cast<double>(k) / kPerDecade);

@@ -20,7 +20,7 @@ struct ResidualStructure {
     std::string quantity;
     std::array<double, kLags_s.size()> correlation{};
   };
-  std::vector<Likeness> likenesses;  ///< speed, speed^2, |change of speed|, hall, hall rate, then beside_drive()
+  std::vector<Likeness> likenesses;  ///< speed, speed^2, |change of speed|, ambient, ambient rate, then beside_drive()
   /// The residual as something recorded behind a first-order lag: a + b q', time_s dq'/dt = q - q'.
   struct Lag {
     std::string quantity;
@@ -30,7 +30,7 @@ struct ResidualStructure {
   std::optional<Lag> lag;  ///< the best, where it explains 30 % or more
 };
 
-/// What a run has recorded beside speed, feeds and hall: the cutting power where it changes, its columns. Name with unit, and values at its times
+/// What a run has recorded beside speed, feeds and ambient: the cutting power where it changes, its columns. Name with unit, and values at its times
 /// minus `earlier_s`, NaN before its start.
 [[nodiscard]] std::vector<std::pair<std::string, Eigen::VectorXd>> beside_drive(const MeasuredRun& run, double earlier_s);
 

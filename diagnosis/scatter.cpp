@@ -6,7 +6,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHall_K = 0.3;
+constexpr double kAmbient_K = 0.3;
 constexpr double kLargestStep = 0.05;  // of a logarithm, for differences: a quarter of what it is known to, but never more
 
 double step_of(double known_to) {
@@ -28,20 +28,20 @@ double known_of_body(const Twin& twin, const std::string& property, const std::s
 
 }  // namespace
 
-std::vector<Knob> hall_scatter(const std::vector<MeasuredRun>& runs) {
+std::vector<Knob> ambient_scatter(const std::vector<MeasuredRun>& runs) {
   std::vector<Knob> knobs;
   for (const MeasuredRun& run : runs) {
-    knobs.push_back(
-        {.effect = "ambient",
-         .where = effects::kHallName,
-         .name = "offset in " + run.name,
-         .unit = "K",
-         .prior_sd = kHall_K,
-         .step = 0.5 * kHall_K,
-         .set = [name = run.name](TwinState& s, double value) {
-           s.push_back(effects::make_effect("ambient", effects::Place::kHall, effects::kHallName, {{"offset", value}}));
-           s.back().in = name;
-         }});
+    knobs.push_back({.effect = "ambient",
+                     .where = effects::kAmbientName,
+                     .name = "offset in " + run.name,
+                     .unit = "K",
+                     .prior_sd = kAmbient_K,
+                     .step = 0.5 * kAmbient_K,
+                     .set = [name = run.name](TwinState& s, double value) {
+                       s.push_back(effects::make_effect("ambient", effects::Place::kAmbient, effects::kAmbientName,
+                                                        {{"offset", value}}));
+                       s.back().in = name;
+                     }});
   }
   return knobs;
 }

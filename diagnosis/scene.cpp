@@ -126,7 +126,7 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
   s.columns = columns_of(runs, s.own);
   for (const scenarios::Sensor& sensor : twin.augmented().model.sensors) {
     if (const auto* on_node = std::get_if<std::string>(&sensor.place))
-      s.sensor_bodies[sensor.name] = *on_node == effects::kHallName ? effects::hall() : effects::node(*on_node);
+      s.sensor_bodies[sensor.name] = *on_node == effects::kAmbientName ? effects::ambient_node() : effects::node(*on_node);
   }
   const auto& system = twin.machine().system;
   for (const auto& part : system.parts) {

@@ -69,7 +69,7 @@ std::set<std::string> bodies_in(const std::string& where) {
   std::set<std::string> names;
   std::istringstream list(where);
   for (std::string name; std::getline(list, name, ',');) {
-    if (name != effects::kHallName) names.insert(name);
+    if (name != effects::kAmbientName) names.insert(name);
   }
   return names;
 }

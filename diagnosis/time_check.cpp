@@ -16,7 +16,7 @@ constexpr double kTimesBetter = 3.0;  // than with the times as recorded
 
 MeasuredRun with_times(MeasuredRun run, double factor) {
   for (double& t : run.time_s) t *= factor;
-  for (double& t : run.hall.time_s) t *= factor;
+  for (double& t : run.ambient.time_s) t *= factor;
   for (Cyclogram::Section& s : run.cyclogram.sections) s.duration_s *= factor;
   for (Cyclogram::Column& c : run.cyclogram.columns) {
     for (double& t : c.rows.time_s) t *= factor;

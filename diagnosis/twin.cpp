@@ -44,7 +44,7 @@ std::vector<effects::Effect> places(const mesh::Mesh& mesh, const effects::HeatB
     if (!has_exchange(medium)) list.push_back(medium);
     if (b.kind != effects::BodyKind::kNode) continue;
     effects::Effect link = make_effect("link", b);
-    link.references["to"] = effects::hall();
+    link.references["to"] = effects::ambient_node();
     if (!has_exchange(link)) list.push_back(link);
   }
   for (const std::string& s : mesh.surfaces) {
@@ -54,7 +54,7 @@ std::vector<effects::Effect> places(const mesh::Mesh& mesh, const effects::HeatB
       list.push_back(make_effect("convection", Place::kSurface, s, {{"film", kExpectedFilm_W_m2K}}));
   }
   if (own.stratifications.empty() && mesh.n_nodes() > 0)
-    list.push_back(make_effect("stratification", Place::kHall, effects::kHallName, {{"gradient", 1.0}}));
+    list.push_back(make_effect("stratification", Place::kAmbient, effects::kAmbientName, {{"gradient", 1.0}}));
   return list;
 }
 
@@ -97,13 +97,13 @@ AugmentedModel augment(const scenarios::Scenario& scenario, const mesh::Mesh& me
   const double expected_W = power_W > 0.0 ? std::min(kExpectedHeat_W, 0.25 * power_W) : kExpectedHeat_W;
   for (effects::Effect& e : places(mesh, own, expected_W)) list.push_back(std::move(e));
 
-  // What the basis is asked for: the measured cyclograms, halls as warm as recorded, everything wrong by a factor.
+  // What the basis is asked for: the measured cyclograms, ambients as warm as recorded, everything wrong by a factor.
   scenarios::Scenario asked = scenario;
   asked.machine = a.model;
   for (const MeasuredRun& r : runs) {
-    for (double v : r.hall.value) asked.machine->hall.value.push_back(v);
-    for (std::size_t i = 0; i < r.hall.value.size(); ++i)
-      asked.machine->hall.time_s.push_back(asked.machine->hall.time_s.back() + 1.0);
+    for (double v : r.ambient.value) asked.machine->ambient.value.push_back(v);
+    for (std::size_t i = 0; i < r.ambient.value.size(); ++i)
+      asked.machine->ambient.time_s.push_back(asked.machine->ambient.time_s.back() + 1.0);
   }
   a.plan = scenarios::reduction_plan(asked, cyclograms);
   a.plan.tolerance_K = std::max(a.plan.tolerance_K, kTolerance_K);
@@ -140,8 +140,8 @@ Twin::Twin(const AugmentedModel& augmented, const scenarios::ReducedMachine& mac
     outputs_.unit.emplace_back("K");
     outputs_.state.conservativeResize(Eigen::NoChange, outputs_.state.cols() + 1);
     outputs_.state.rightCols<1>() = heat / capacity_J_K;
-    outputs_.hall.conservativeResize(outputs_.hall.size() + 1);
-    outputs_.hall.tail<1>().setZero();
+    outputs_.ambient.conservativeResize(outputs_.ambient.size() + 1);
+    outputs_.ambient.tail<1>().setZero();
   }
 }
 
@@ -231,8 +231,9 @@ void Twin::set_air(const effects::HeatBalance& balance, solver::ReducedSystem& s
     if (of.offset.size() == 0 || of.medium.size() > 0) continue;
     Eigen::VectorXd& offset = system.exchanges[e].offset;
     offset.setZero();
-    offset.head(of.offset.size()) = share * (of.offset + assembled.level_K * of.to_hall) - now.level_K * of.to_hall;
-    system.exchanges[e].offset_sum = share * (of.offset_sum + assembled.level_K * of.hall_sum) - now.level_K * of.hall_sum;
+    offset.head(of.offset.size()) = share * (of.offset + assembled.level_K * of.to_ambient) - now.level_K * of.to_ambient;
+    system.exchanges[e].offset_sum =
+        share * (of.offset_sum + assembled.level_K * of.ambient_sum) - now.level_K * of.ambient_sum;
   }
   for (std::size_t p = 0; p < machine_.system.probes.size(); ++p) {
     const solver::Probe& of = machine_.system.probes[p];
@@ -252,19 +253,19 @@ void Twin::set_laws(effects::HeatBalance balance, Workspace& workspace) const {
   workspace.propagator_.reset();
 }
 
-Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& hall, const Workspace& workspace) const {
+Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& ambient, const Workspace& workspace) const {
   const solver::ReducedSystem& system = workspace.system_;
   Eigen::VectorXd start = machine_.start;
-  const double hall_at_start_K = hall.at(0.0);
+  const double ambient_at_start_K = ambient.at(0.0);
   const bool is_steady = augmented_.model.start == scenarios::Start::kSteady && system.is_linear();
-  if (augmented_.model.start == scenarios::Start::kHall) start = hall_at_start_K * machine_.system.ones;
-  if (augmented_.model.start == scenarios::Start::kSteady && !is_steady)  // as written, moved with the hall
-    start += (hall_at_start_K - scenarios::felt_hall_at_start_K(augmented_.model)) * machine_.system.ones;
+  if (augmented_.model.start == scenarios::Start::kAmbient) start = ambient_at_start_K * machine_.system.ones;
+  if (augmented_.model.start == scenarios::Start::kSteady && !is_steady)  // as written, moved with the ambient
+    start += (ambient_at_start_K - scenarios::felt_ambient_at_start_K(augmented_.model)) * machine_.system.ones;
   Eigen::VectorXd warmer = Eigen::VectorXd::Zero(start.size());
   if (run.start_K.size() > 0) warmer = warmer_bodies() * run.start_K;
   if (!is_steady) return solver::with_places(start + warmer, machine_.system, workspace.added_);
   const effects::Inputs standstill{.drive = {},
-                                   .hall_K = hall_at_start_K};  // before the run: what happened in it acts not yet
+                                   .ambient_K = ambient_at_start_K};  // before the run: what happened in it acts not yet
   Eigen::MatrixXd k = system.conduction;
   for (const auto& e : system.exchanges) k += e.coefficient(standstill) * e.matrix;
   const auto n_added = static_cast<Eigen::Index>(workspace.added_.nodes.size());
@@ -283,10 +284,10 @@ Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspa
   set_laws(std::move(now), workspace);
   const effects::DriveChange change = effects::drive_change(state, run.name);
   Driven d{.cyclogram = effects::true_cyclogram(change, run.cyclogram),
-           .hall = effects::true_hall(change, run.hall, run.cyclogram),
+           .ambient = effects::true_ambient(change, run.ambient, run.cyclogram),
            .start = {}};
   d.cyclogram.name = run.name;
-  d.start = start(run, d.hall, workspace);
+  d.start = start(run, d.ambient, workspace);
   return d;
 }
 
@@ -294,13 +295,13 @@ Twin::Bound Twin::bound(const TwinState& state, const MeasuredRun& run, Workspac
   Driven d = drive(state, run, workspace);
   Eigen::MatrixXd weights = outputs_.state;
   solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));
-  return {workspace.system_, std::move(d.cyclogram), std::move(d.hall), std::move(weights), std::move(d.start)};
+  return {workspace.system_, std::move(d.cyclogram), std::move(d.ambient), std::move(weights), std::move(d.start)};
 }
 
 std::optional<solver::Course> Twin::course(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
   const Driven d = drive(state, run, workspace);
   if (!workspace.system_.is_linear()) return std::nullopt;
-  return workspace.propagator().course(d.cyclogram, d.hall, run.grid_s, d.start);
+  return workspace.propagator().course(d.cyclogram, d.ambient, run.grid_s, d.start);
 }
 
 Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
@@ -310,17 +311,17 @@ Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Wor
 
 Eigen::MatrixXd Twin::all_states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                                  const solver::Course* near) const {
-  auto [felt, hall, from] = drive(state, run, workspace);
+  auto [felt, ambient, from] = drive(state, run, workspace);
   solver::ReducedSystem& system = workspace.system_;
   if (near && near->states().rows() == system.size()) {
-    if (auto close = near->states_of(system, felt, hall, from)) return *std::move(close);
+    if (auto close = near->states_of(system, felt, ambient, from)) return *std::move(close);
   }
   Eigen::MatrixXd states;
   if (system.is_linear()) {
-    (void)workspace.propagator().run(felt, hall, run.grid_s, from, false, &states);
+    (void)workspace.propagator().run(felt, ambient, run.grid_s, from, false, &states);
     return states;
   }
-  return solver::states_of_run(system, felt, hall, run.grid_s, tolerances_, from);
+  return solver::states_of_run(system, felt, ambient, run.grid_s, tolerances_, from);
 }
 
 Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
@@ -329,10 +330,10 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
   Eigen::MatrixXd weights = outputs_.state;
   solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));
   Eigen::MatrixXd outputs = weights.transpose() * z;
-  if ((outputs_.hall.array() == 0.0).all()) return outputs;
-  const TimeSeries hall = effects::true_hall(effects::drive_change(state, run.name), run.hall, run.cyclogram);
+  if ((outputs_.ambient.array() == 0.0).all()) return outputs;
+  const TimeSeries ambient = effects::true_ambient(effects::drive_change(state, run.name), run.ambient, run.cyclogram);
   for (std::size_t k = 0; k < run.grid_s.size(); ++k) {
-    outputs.col(static_cast<Eigen::Index>(k)) += hall.at(run.grid_s[k]) * outputs_.hall;
+    outputs.col(static_cast<Eigen::Index>(k)) += ambient.at(run.grid_s[k]) * outputs_.ambient;
   }
   return outputs;
 }
@@ -342,8 +343,8 @@ Eigen::MatrixXd Twin::read(const TwinState& state, const MeasuredRun& run, Eigen
   if (!chain.empty()) {
     const effects::DriveChange change = effects::drive_change(state, run.name);
     const Cyclogram felt = effects::true_cyclogram(change, run.cyclogram);
-    const TimeSeries hall = effects::true_hall(change, run.hall, run.cyclogram);
-    outputs = chain.apply(outputs_.name, outputs_.unit, run.grid_s, felt, hall, std::move(outputs));
+    const TimeSeries ambient = effects::true_ambient(change, run.ambient, run.cyclogram);
+    outputs = chain.apply(outputs_.name, outputs_.unit, run.grid_s, felt, ambient, std::move(outputs));
   }
   Eigen::MatrixXd rows(outputs.rows(), static_cast<Eigen::Index>(run.row_in_grid.size()));
   for (Eigen::Index i = 0; i < rows.cols(); ++i) rows.col(i) = outputs.col(run.row_in_grid[static_cast<std::size_t>(i)]);

@@ -13,13 +13,13 @@
 namespace driftwright::diagnosis {
 
 /// The scenario's machine with the places that a diagnosis may add something at: heat in each region, node and surface, films where there are
-/// none, a medium along each body, a way from each node to the hall, stratified air. Its reduced model holds for laws at all of them. Bodies and
+/// none, a medium along each body, a way from each node to the ambient, stratified air. Its reduced model holds for laws at all of them. Bodies and
 /// paths between them that a state has beside these are added to the reduced system as they come (solver/added_places.hpp).
 struct AugmentedModel {
   scenarios::MachineModel model;
   scenarios::ReductionPlan plan;
   std::size_t n_own_effects = 0;  ///< the scenario's, first in the list
-  /// Air of the hall as the reduced machine was assembled with it: level_K less than its gradient times the height over z = 0.
+  /// Air of the ambient as the reduced machine was assembled with it: level_K less than its gradient times the height over z = 0.
   struct Air {
     double gradient_K_m = 0.0, level_K = 0.0;
   } air = {};
@@ -74,7 +74,7 @@ class Twin {
   struct Bound {
     const solver::ReducedSystem& system;  ///< the workspace's, until that is used again
     Cyclogram cyclogram;                  ///< the true ones
-    TimeSeries hall;
+    TimeSeries ambient;
     Eigen::MatrixXd outputs;  ///< what outputs() have of the reduced state, size x n_outputs, by this state's expansion
     Eigen::VectorXd start;    ///< reduced state at the run's beginning, places that this state adds behind it
   };
@@ -103,11 +103,11 @@ class Twin {
   /// What drives a state in a run: its system in the workspace, what it is told, where it starts.
   struct Driven {
     Cyclogram cyclogram;
-    TimeSeries hall;
+    TimeSeries ambient;
     Eigen::VectorXd start;
   };
   [[nodiscard]] Driven drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
-  [[nodiscard]] Eigen::VectorXd start(const MeasuredRun& run, const TimeSeries& hall, const Workspace& workspace) const;
+  [[nodiscard]] Eigen::VectorXd start(const MeasuredRun& run, const TimeSeries& ambient, const Workspace& workspace) const;
   [[nodiscard]] Eigen::MatrixXd all_states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                                            const solver::Course* near) const;
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPiece_s = 2400.0;
 constexpr int kMostPieces = 12;  // a run
-constexpr double kHall_K = 2.0, kReading_K = 1.0, kDisplacement_m = 15e-6;
+constexpr double kAmbient_K = 2.0, kReading_K = 1.0, kDisplacement_m = 15e-6;
 constexpr std::array<double, 3> kSizes = {0.1, 0.3, 1.0};           // of what a quantity may be
 constexpr std::array<double, 2> kCorrelated_s = {3600.0, 10800.0};  // of a course over time
 constexpr double kLaws = 5.0 * kSizes.size();
@@ -50,7 +50,7 @@ std::vector<Place> places_of(const effects::DoubtScene& s, const Twin& twin) {
   std::vector<Place> places;
   for (const effects::Body& body : s.bodies)
     places.push_back({Unnamed::Quantity::kHeat, body.name, body, -1, s.unknown_heat_W()});
-  places.push_back({Unnamed::Quantity::kHall, "hall", {}, -1, kHall_K});
+  places.push_back({Unnamed::Quantity::kAmbient, "ambient", {}, -1, kAmbient_K});
   const auto& names = twin.outputs().name;
   const auto output = [&](const std::string& name) {
     return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -105,7 +105,7 @@ class Columns {
     return course([&](double t_s) { return std::pow(cyclogram.speed_rpm(t_s) / top_rpm_, exponent); });
   }
 
-  /// Heat and hall go through the machine: a fifth of their size at a time, laws stay where they are.
+  /// Heat and ambient go through the machine: a fifth of their size at a time, laws stay where they are.
   [[nodiscard]] std::vector<Column> of_machine(const Place& place, Twin::Workspace& workspace) const {
     constexpr double kTrial = 0.2;
     const bool is_heat = place.quantity == Unnamed::Quantity::kHeat;
@@ -116,7 +116,7 @@ class Columns {
         s.push_back(effects::make_effect("heat_source", place.body, {{"power", kTrial * place.sd}}));
         s.back().from_s = from_s;
       } else {
-        s.push_back(effects::make_effect("ambient", effects::Place::kHall, effects::kHallName,
+        s.push_back(effects::make_effect("ambient", effects::Place::kAmbient, effects::kAmbientName,
                                          {{"offset", kTrial * place.sd}, {"from", from_s / 60.0}}));
       }
       s.back().in = in;
@@ -125,7 +125,7 @@ class Columns {
     std::vector<Column> columns;
     columns.push_back({step(0.0, std::nullopt), course([](double) { return 1.0; })});
     for (const double exponent : {1.0, 2.0}) {
-      Eigen::VectorXd signature = Eigen::VectorXd::Zero(fitter_.comparison().n());  // a hall does not know the spindle
+      Eigen::VectorXd signature = Eigen::VectorXd::Zero(fitter_.comparison().n());  // an ambient does not know the spindle
       if (is_heat) {
         TwinState s = best_;
         s.push_back(effects::make_effect("heat_source", place.body,

@@ -2,7 +2,7 @@
 // Is it one cause that nobody has a name for, rather than those the search has named?
 //
 // Several named effects can add up to something that looks like one effect of another kind. Against them stands one unknown quantity q at one
-// place: heat in a body, the hall, or the reading of a channel. Its course is one of
+// place: heat in a body, the ambient, or the reading of a channel. Its course is one of
 //
 //     constant;   a function of speed, a n/N + b (n/N)²;   in proportion to the turns made;
 //     a smooth function of time: a Gaussian process of variance sd² (1/2 + exp(-Δt²/2l²)), pieces constant, the 1/2 common to all runs
@@ -15,8 +15,8 @@
 namespace driftwright::diagnosis {
 
 struct Unnamed {
-  enum class Quantity { kHeat, kHall, kReading } quantity = Quantity::kHeat;
-  std::string where;                    ///< body, "hall" or channel
+  enum class Quantity { kHeat, kAmbient, kReading } quantity = Quantity::kHeat;
+  std::string where;                    ///< body, "ambient" or channel
   std::string follows;                  ///< "nothing", "speed", "the turns made", "time"
   std::vector<std::size_t> instead_of;  ///< claims of the hypothesis
   double log_evidence_gain = 0.0;       ///< over those claims [nats], prices paid by both

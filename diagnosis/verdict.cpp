@@ -30,9 +30,9 @@ std::string words(const Cause& c) {
 
 /// One cause without a name, in words.
 std::string words(const Unnamed& u) {
-  const char* what = u.quantity == Unnamed::Quantity::kHeat   ? "heat in"
-                     : u.quantity == Unnamed::Quantity::kHall ? "another temperature of the"
-                                                              : "an error of the reading";
+  const char* what = u.quantity == Unnamed::Quantity::kHeat      ? "heat in"
+                     : u.quantity == Unnamed::Quantity::kAmbient ? "another temperature of the"
+                                                                 : "an error of the reading";
   const char* course = u.follows == "nothing" ? "constant" : "following";
   return fmt::format("One cause that the catalogue has no name for explains it better ({:.0f} nats) than {}: {} {}, {}{}",
                      u.log_evidence_gain,

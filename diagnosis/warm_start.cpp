@@ -73,7 +73,7 @@ void find_warm_starts(std::vector<MeasuredRun>& runs, const Twin& twin) {
     run.findings.push_back(
         {first.farthest->name,
          fmt::format(
-             "the machine is not at the hall's temperature as the record begins: {} of {} thermometers read more than "
+             "the machine is not at the ambient temperature as the record begins: {} of {} thermometers read more than "
              "{:g} K beside the scenario's start, {} by {:+.1f} K; the run starts from its first readings, and bodies "
              "without a thermometer are fitted. Let a record begin with the machine at rest for a night",
              first.n_warm, first.outputs.size(), kWarm_K, first.farthest->name, first.farthest_K),

@@ -1,5 +1,5 @@
 #pragma once
-// Records that begin with a machine still warm from before, while the scenario starts it at the hall's temperature.
+// Records that begin with a machine still warm from before, while the scenario starts it at the ambient temperature.
 
 #include "diagnosis/comparison.hpp"
 #include "diagnosis/twin.hpp"

@@ -109,22 +109,23 @@ HeatCourse heat_of(const Asked& a, std::size_t b) {
   return h;
 }
 
-/// The same as a conductance to another body or the hall; nothing where there is no difference of temperatures.
+/// The same as a conductance to another body or the ambient; nothing where there is no difference of temperatures.
 std::optional<Waveform> conductance_of(const Asked& a, const HeatCourse& heat, std::size_t other) {
-  const bool is_hall = other == a.bodies.size();
+  const bool is_ambient = other == a.bodies.size();
   const auto b = static_cast<Eigen::Index>(heat.body);
   const Eigen::Index n = heat.warm_K.rows() - 1;
   Eigen::VectorXd difference_K(n);  // mean from row to row
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto at = [&](Eigen::Index row) {
-      return (is_hall ? a.linear.hall_K[row] : heat.warm_K(row, static_cast<Eigen::Index>(other))) - heat.warm_K(row, b);
+      return (is_ambient ? a.linear.ambient_K[row] : heat.warm_K(row, static_cast<Eigen::Index>(other))) -
+             heat.warm_K(row, b);
     };
     difference_K[i] = mean_difference(at(i), at(i + 1));
   }
   const double rms_K = std::sqrt(difference_K.squaredNorm() / static_cast<double>(n));
   if (!(rms_K > kAlike_K)) return std::nullopt;
   Waveform w{.of = Waveform::Of::kHeat, .run = a.run.name, .where = heat.wave.where, .time_s = heat.wave.time_s};
-  w.to = is_hall ? effects::kHallName : a.bodies[other].name;
+  w.to = is_ambient ? effects::kAmbientName : a.bodies[other].name;
   take(smooth_heat(a.linear.course, a.residual, b, difference_K, a.typical_W / rms_K), a, w);
   w.conductance_W_K = w.value;
   for (Eigen::Index i = 0; i <= n; ++i) w.value[static_cast<std::size_t>(i)] *= difference_K[std::min(i, n - 1)];
@@ -199,7 +200,7 @@ std::vector<NamedCourse> recorded_courses(const MeasuredRun& run) {
   for (std::size_t a = 0; a < 3; ++a)
     add(std::string("feed ") + "xyz"[a], "m/s", [a](double, const Drive& d) { return d.feed_m_s[a]; });
   add("cutting power", "W", [](double, const Drive& d) { return d.cutting_power_W; });
-  add("hall temperature", "K", [&](double t_s, const Drive&) { return run.hall.at(t_s); });
+  add("ambient temperature", "K", [&](double t_s, const Drive&) { return run.ambient.at(t_s); });
   for (const MeasuredChannel& c : run.channels) {
     double last = 0.0;  // holes are filled by the reading before
     Eigen::Index i = 0;
@@ -259,7 +260,7 @@ std::vector<Waveform> waveforms(const Twin& twin, const std::vector<MeasuredRun>
     if (listener.wants_end()) return {};
     for (std::size_t i = 0; i < of_body.size(); ++i) {
       std::vector<Waveform> descriptions = {std::move(of_body[i].wave)};
-      for (std::size_t other = bodies.size() + 1; i < n_best && other-- > 0;) {  // the hall first
+      for (std::size_t other = bodies.size() + 1; i < n_best && other-- > 0;) {  // the ambient first
         if (std::optional<Waveform>& exchange = exchanges[other * n_best + i]) descriptions.push_back(*std::move(exchange));
       }
       heats.push_back(best_of(std::move(descriptions)));

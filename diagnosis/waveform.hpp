@@ -17,7 +17,7 @@ struct Waveform {
   std::vector<double>
       value = {},
       sd = {};  ///< heat [W] from each row to the next, the last one repeated; or growth [m, rad], sd its noise
-  /// Other end of a conductance, a body or the hall, where that describes the readings better than a heat by itself; else empty, and so is the
+  /// Other end of a conductance, a body or the ambient, where that describes the readings better than a heat by itself; else empty, and so is the
   /// conductance.
   std::string to = {};
   std::vector<double> conductance_W_K = {};  ///< per row

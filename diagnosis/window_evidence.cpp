@@ -21,7 +21,7 @@ Eigen::VectorXd carrier_of(const SeenRun& run, const WindowPlace& place, std::si
   const Eigen::MatrixXd& warm_K = run.linear.temperature_K;
   const auto at = [&](Eigen::Index row) {
     const double other_K =
-        *place.other == n_bodies ? run.linear.hall_K[row] : warm_K(row, static_cast<Eigen::Index>(*place.other));
+        *place.other == n_bodies ? run.linear.ambient_K[row] : warm_K(row, static_cast<Eigen::Index>(*place.other));
     return other_K - warm_K(row, static_cast<Eigen::Index>(place.body));
   };
   for (Eigen::Index k = 0; k < n; ++k) carrier[k] = mean_difference(at(k), at(k + 1));

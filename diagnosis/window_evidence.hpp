@@ -11,7 +11,7 @@ namespace driftwright::diagnosis {
 /// Where something may act for a while: heat in a body, or an exchange of two. Bodies are numbered as those that the runs were seen with.
 struct WindowPlace {
   std::size_t body = 0;
-  std::optional<std::size_t> other = {};  ///< n_bodies: the hall
+  std::optional<std::size_t> other = {};  ///< n_bodies: the ambient
 };
 
 /// A run as linear theory sees it.

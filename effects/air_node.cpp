@@ -14,10 +14,10 @@ void contribute(const Effect& e, HeatBalance& balance) {
 EffectKind air_node() {
   return {.key = "air_node",
           .title = "air near the machine that the machine warms",
-          .law = "C dT/dt = sum of films that name it as surrounding - exchange (T - T_hall)",
+          .law = "C dT/dt = sum of films that name it as surrounding - exchange (T - T_ambient)",
           .places = {Place::kNode},
           .parameters = {{"capacity", "J/K", 1e-3, 1e9, {}, "heat capacity of the pocket of air, 1.2 kJ/K for 1 m^3"},
-                         {"exchange", "W/K", 1e-6, 1e6, {}, "conductance to the hall", 0.1, "contact"}},
+                         {"exchange", "W/K", 1e-6, 1e6, {}, "conductance to the ambient", 0.1, "contact"}},
           .contribute = contribute,
           .exchange_finding = "contact"};
 }

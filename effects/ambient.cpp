@@ -5,15 +5,15 @@
 namespace driftwright::effects {
 namespace {
 
-constexpr double kStep_s = 1e-3;  // that a jump of the hall takes
-// Nats: a hall that was recorded is wrong by an offset, which the scatter of 0.3 K has; a step or a slow change its thermometer would
+constexpr double kStep_s = 1e-3;  // that a jump of the ambient takes
+// Nats: an ambient that was recorded is wrong by an offset, which the scatter of 0.3 K has; a step or a slow change its thermometer would
 // have seen, unless it hangs where the machine does not stand.
 constexpr double kSeenByItsThermometer = 2.0;
 
 /// Adds offset + ramp (t - from) from a time on.
-TimeSeries with_error(const TimeSeries& hall, double offset_K, double ramp_K_s, double from_s, double end_s) {
-  std::vector<double> knots = hall.time_s;
-  knots.push_back(end_s);  // where a ramp ends and the hall's own knots may have ended before
+TimeSeries with_error(const TimeSeries& ambient, double offset_K, double ramp_K_s, double from_s, double end_s) {
+  std::vector<double> knots = ambient.time_s;
+  knots.push_back(end_s);  // where a ramp ends and the ambient's own knots may have ended before
   const bool steps = from_s > 0.0;
   const double reached_s = steps ? from_s + kStep_s : 0.0;
   if (steps) knots.push_back(from_s);
@@ -25,19 +25,20 @@ TimeSeries with_error(const TimeSeries& hall, double offset_K, double ramp_K_s, 
     double error_K = 0.0;
     if (t_s >= reached_s) {
       error_K = offset_K + ramp_K_s * (t_s - from_s);
-    } else if (t_s > from_s) {  // a knot of the hall within the step
+    } else if (t_s > from_s) {  // a knot of the ambient within the step
       error_K = (offset_K + ramp_K_s * kStep_s) * (t_s - from_s) / kStep_s;
     }
     changed.time_s.push_back(t_s);
-    changed.value.push_back(hall.at(t_s) + error_K);
+    changed.value.push_back(ambient.at(t_s) + error_K);
   }
   return changed;
 }
 
 void change_drive(const Effect& e, DriveChange& change) {
-  change.hall.push_back(
-      [offset_K = e["offset"], ramp_K_s = e["ramp"] / 3600.0, from_s = e["from"] * 60.0](
-          const TimeSeries& hall, double duration_s) { return with_error(hall, offset_K, ramp_K_s, from_s, duration_s); });
+  change.ambient.push_back([offset_K = e["offset"], ramp_K_s = e["ramp"] / 3600.0, from_s = e["from"] * 60.0](
+                               const TimeSeries& ambient, double duration_s) {
+    return with_error(ambient, offset_K, ramp_K_s, from_s, duration_s);
+  });
 }
 
 void check(const Effect&, const ConfigMap& in) {
@@ -45,10 +46,10 @@ void check(const Effect&, const ConfigMap& in) {
 }
 
 Doubt doubt(const std::string& law, const std::string& run, DoubtedNumber size, double trial) {
-  Effect error = make_effect("ambient", Place::kHall, kHallName);
+  Effect error = make_effect("ambient", Place::kAmbient, kAmbientName);
   error.in = run;
   return {.finding = "ambient",
-          .where = kHallName,
+          .where = kAmbientName,
           .law = run.empty() ? law : law + ", in " + run,
           .added = {error},
           .numbers = {std::move(size)},
@@ -59,7 +60,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   const auto offset = [] { return doubted("offset", "K", 2.0, 0.3); };
   const auto ramp = [] { return doubted("ramp", "K/h", 0.7, 0.1); };
   std::vector<Doubt> list = {doubt("offset", "", offset(), 0.5), doubt("ramp", "", ramp(), 0.2)};
-  const bool is_recorded = std::all_of(s.runs.begin(), s.runs.end(), [](const auto& run) { return run.has_hall; });
+  const bool is_recorded = std::all_of(s.runs.begin(), s.runs.end(), [](const auto& run) { return run.has_ambient; });
   if (is_recorded && !s.runs.empty()) list.back().rarity = kSeenByItsThermometer;
   for (std::size_t r = 0; r < s.runs.size(); ++r) {
     const DoubtScene::Run& run = s.runs[r];
@@ -72,7 +73,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     stepped.numbers.push_back(doubted_time(
         "time", run.length_s, [](std::span<Effect> added, double value) { added[0].set("from", value / 60.0); }));
     stepped.grid = time_grid(run.length_s, 10);
-    stepped.rarity = run.has_hall ? kSeenByItsThermometer : 0.0;
+    stepped.rarity = run.has_ambient ? kSeenByItsThermometer : 0.0;
     add_with_lasting(s, r, stepped, list);
     if (s.runs.size() < 2) continue;
     list.push_back(doubt("offset", run.name, offset(), 0.5));
@@ -86,9 +87,9 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 EffectKind ambient() {
   return {.key = "ambient",
-          .title = "hall that is warmer or colder than recorded",
-          .law = "T_hall = recorded + offset + ramp (t - from) from a time on",
-          .places = {Place::kHall},
+          .title = "ambient that is warmer or colder than recorded",
+          .law = "T_ambient = recorded + offset + ramp (t - from) from a time on",
+          .places = {Place::kAmbient},
           .parameters = {{"offset", "K", -50.0, 50.0, 0.0, "true minus recorded"},
                          {"ramp", "K/h", -50.0, 50.0, 0.0, "its growth"},
                          {"from", "min", 0.0, 1e7, 0.0, "when it begins; a step takes a millisecond"}},

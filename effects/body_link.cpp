@@ -30,7 +30,7 @@ bool has_common_neighbour(const DoubtScene& s, const Body& a, const Body& b) {
                      [&](const Body& c) { return !(c == a) && !(c == b) && are_joined(s, a, c) && are_joined(s, b, c); });
 }
 
-/// A path between two bodies that nothing joins: nodes with each other, with the hall, and with regions.
+/// A path between two bodies that nothing joins: nodes with each other, with the ambient, and with regions.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double typical_W_K = s.typical_conductance_W_K();
   std::vector<Doubt> list;
@@ -56,8 +56,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       if (!is_node && is_air_of_films(s, to)) continue;
       if (is_small || has_common_neighbour(s, from, to)) add(from, to);
     }
-    // A region loses its heat to the hall by films.
-    if (is_node && !are_joined(s, from, hall())) add(from, hall());
+    // A region loses its heat to the ambient by films.
+    if (is_node && !are_joined(s, from, ambient_node())) add(from, ambient_node());
   }
   return list;
 }
@@ -66,13 +66,13 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 EffectKind body_link() {
   return {.key = "link",
-          .title = "conductance between a body and a lumped node or the hall",
+          .title = "conductance between a body and a lumped node or the ambient",
           .law = "Q = conductance (T - T_to), spread evenly over the region or surface",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
           .parameters = {{"conductance", "W/K", 0.0, 1e9, {}, "total conductance", 0.1, "contact"}},
           .timing = Timing::kInTime,
           .contribute = contribute,
-          .references = {{"to", {BodyKind::kNode}, {}, "lumped node at the other end, or hall"}},
+          .references = {{"to", {BodyKind::kNode}, {}, "lumped node at the other end, or ambient"}},
           .check = check,
           .doubts = doubts,
           .exchange_finding = "contact"};

@@ -122,7 +122,7 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
 
 /// Whether air or a medium takes part, which a door, a fan or a valve changes from one minute to the next.
 bool is_of_air(const DoubtScene& s, const Exchange& exchange) {
-  if (exchange.surrounding == kHallName || exchange.medium_K || exchange.body.kind == BodyKind::kSurface) return true;
+  if (exchange.surrounding == kAmbientName || exchange.medium_K || exchange.body.kind == BodyKind::kSurface) return true;
   return std::any_of(s.own.begin(), s.own.end(), [&](const Effect& e) {
     return e.kind->key == "air_node" && (e.place == exchange.surrounding || e.place == exchange.body.name);
   });

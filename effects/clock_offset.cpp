@@ -45,7 +45,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 EffectKind clock_offset() {
   return {.key = "clock_offset",
-          .title = "readings logged late or early against drive and hall",
+          .title = "readings logged late or early against drive and ambient",
           .law =
               "reading(t) = reading taken at t - offset, temperatures and displacements; the first and the last one stand "
               "in beyond the ends",

@@ -42,7 +42,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.references.contains("tank")) {
-    if (e.references.at("tank").name == kHallName) in.fail("tank", "a name of its own is wanted; the hall is no tank");
+    if (e.references.at("tank").name == kAmbientName) in.fail("tank", "a name of its own is wanted; the ambient is no tank");
     if (!e.has("volume")) in.fail("volume", "`tank` and `volume` go together");
     if (e.has("set_point") != (e["cooling_power"] > 0.0))
       in.fail("set_point", "`set_point` and `cooling_power` go together");
@@ -96,7 +96,8 @@ EffectKind coolant() {
       .law =
           "Q = W (1 - exp(-passage_conductance / W)) (T - T_tank), W = flow medium_heat_capacity (stream along a wall of "
           "one "
-          "temperature: Incropera & DeWitt, ch. 8.3); C_tank dT_tank/dt = Q + pump_power - tank_exchange (T_tank - T_hall) "
+          "temperature: Incropera & DeWitt, ch. 8.3); C_tank dT_tank/dt = Q + pump_power - tank_exchange (T_tank - "
+          "T_ambient) "
           "- cooling_power from set_point + hysteresis/2 down to set_point - hysteresis/2. It makes the tank's node. "
           "Without `tank`, "
           "T_tank = set_point: a chiller far stronger than the heat",
@@ -108,7 +109,7 @@ EffectKind coolant() {
             "Fundamentals, secondary coolants); water: 4170, mineral oil: 1650"},
            {"passage_conductance", "W/K", 0.0, 1e7, {}, "film times area of the passage", 0.1, "coolant", Doubted::kFactor},
            {"volume", "L", 1e-3, 1e6, kNotGiven, "of the medium in the tank"},
-           {"tank_exchange", "W/K", 0.0, 1e6, 0.0, "between tank and hall", 0.1, "coolant", Doubted::kFactor},
+           {"tank_exchange", "W/K", 0.0, 1e6, 0.0, "between tank and ambient", 0.1, "coolant", Doubted::kFactor},
            {"pump_power", "W", 0.0, 1e6, 0.0, "heat of the pump, while it runs", 0.1, "coolant", Doubted::kFactor},
            {"cooling_power", "W", 0.0, 1e6, 0.0, "of the chiller while it is on; it obeys its thermostat alone", 0.1,
             "coolant", Doubted::kFactor},

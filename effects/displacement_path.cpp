@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSensitivitySd_um_K = 5.0;  // 1 sigma; 1 m of steel on one side: 11.5 um/K
 
-/// Temperature over the reference at each time [K]: of the body that is named, of the hall, or of a recorded column.
+/// Temperature over the reference at each time [K]: of the body that is named, of the ambient, or of a recorded column.
 Eigen::RowVectorXd followed(const Effect& e, const Readings& r) {
   const auto over_time = [&](const auto& value) {
     Eigen::RowVectorXd row(r.n_times());
@@ -19,7 +19,7 @@ Eigen::RowVectorXd followed(const Effect& e, const Readings& r) {
     return row;
   };
   if (const auto body = e.references.find("body"); body != e.references.end()) {
-    if (body->second == hall()) return over_time([&](double t_s) { return r.hall.at(t_s); });
+    if (body->second == ambient_node()) return over_time([&](double t_s) { return r.ambient.at(t_s); });
     return r.value.row(r.mean_of(body->second.name));
   }
   const Cyclogram::Column* column = r.cyclogram.column(e.words.at("column"));
@@ -82,7 +82,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       const auto& known = m.sensitivities;
       add(m.body, std::find(known.begin(), known.end(), d.name) == known.end());
     }
-    add(hall(), true);
+    add(ambient_node(), true);
     for (const DoubtScene::Column& column : s.columns) {
       if (!column.is_temperature()) continue;
       Effect of_column = path;
@@ -99,7 +99,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind displacement_path() {
   return {
       .key = "displacement_path",
-      .title = "displacement that follows one more body, the hall or a recorded temperature",
+      .title = "displacement that follows one more body, the ambient or a recorded temperature",
       .law =
           "u += sensitivity (T - T_reference), T: mean of the body, as `sensitivities` of a displacement have it; of a "
           "column: T - zero. With a lag: lag dx/dt = T - x for T, settled at the start",
@@ -111,7 +111,7 @@ EffectKind displacement_path() {
                      {"zero", "degC", 200.0, 500.0, kZeroCelsius_K + 20.0, "of a column: where it moves nothing"}},
       .timing = Timing::kInRecord,
       .change_readings = change_readings,
-      .references = {{"body", {BodyKind::kNode, BodyKind::kRegion}, "", "body that it follows; `hall`: the hall's air"}},
+      .references = {{"body", {BodyKind::kNode, BodyKind::kRegion}, "", "body that it follows; `ambient`: the ambient air"}},
       .check = check,
       .mentions = {{"column", Mention::Of::kColumn, false, "or: a recorded column of temperatures in degC"}},
       .doubts = doubts};

@@ -21,7 +21,7 @@ struct DoubtScene {
   struct Run {
     std::string name;
     double length_s = 0.0;
-    bool has_hall = false;  ///< its temperature was recorded
+    bool has_ambient = false;  ///< its temperature was recorded
   };
   std::vector<Run> runs;
   struct Displacement {
@@ -105,7 +105,7 @@ struct Doubt {
 /// Whether some film lies on a surface.
 [[nodiscard]] bool has_film(const HeatBalance& balance, const std::string& surface);
 
-/// What a diagnosis calls the place of an exchange: a surface, a joint, or both ends "housing,hall".
+/// What a diagnosis calls the place of an exchange: a surface, a joint, or both ends "housing,ambient".
 [[nodiscard]] std::string where_of(const Exchange& exchange);
 /// And that of an effect: of its exchange where that is doubted as a whole, else its own.
 [[nodiscard]] std::string where_of(const Effect& effect);

@@ -7,9 +7,9 @@ Cyclogram true_cyclogram(const DriveChange& change, Cyclogram recorded) {
   return recorded;
 }
 
-TimeSeries true_hall(const DriveChange& change, TimeSeries hall, const Cyclogram& cyclogram) {
-  for (const auto& changed : change.hall) hall = changed(hall, cyclogram.duration_s());
-  return hall;
+TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyclogram& cyclogram) {
+  for (const auto& changed : change.ambient) ambient = changed(ambient, cyclogram.duration_s());
+  return ambient;
 }
 
 }  // namespace driftwright::effects

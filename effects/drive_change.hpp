@@ -1,5 +1,5 @@
 #pragma once
-// What the record of a drive and of the hall gets wrong: the machine feels the true ones. Each effect brings its own changes.
+// What the record of a drive and of the ambient gets wrong: the machine feels the true ones. Each effect brings its own changes.
 
 #include <functional>
 #include <vector>
@@ -11,14 +11,14 @@ namespace driftwright::effects {
 /// Changes in their order.
 struct DriveChange {
   std::vector<std::function<Cyclogram(const Cyclogram&)>> drive;
-  /// Of the hall's temperature [K] during a cyclogram of that length.
-  std::vector<std::function<TimeSeries(const TimeSeries&, double duration_s)>> hall;
+  /// Of the ambient temperature [K] during a cyclogram of that length.
+  std::vector<std::function<TimeSeries(const TimeSeries&, double duration_s)>> ambient;
 };
 
 /// The drive that the machine felt while another one was recorded.
 [[nodiscard]] Cyclogram true_cyclogram(const DriveChange& change, Cyclogram recorded);
 
-/// The hall that the machine felt. @param hall  recorded, minus the reference temperature [K]
-[[nodiscard]] TimeSeries true_hall(const DriveChange& change, TimeSeries hall, const Cyclogram& cyclogram);
+/// The ambient that the machine felt. @param ambient  recorded, minus the reference temperature [K]
+[[nodiscard]] TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyclogram& cyclogram);
 
 }  // namespace driftwright::effects

@@ -25,7 +25,7 @@ const char* body_key(BodyKind kind) {
 
 /// There is one of them in a shop or a machine.
 bool has_no_name(Place place) {
-  return place == Place::kHall || place == Place::kClock || place == Place::kSpindle;
+  return place == Place::kAmbient || place == Place::kClock || place == Place::kSpindle;
 }
 
 std::size_t index_of(const EffectKind& kind, const std::string& parameter) {
@@ -127,8 +127,8 @@ const char* place_key(Place place) {
       return "joint";
     case Place::kNode:
       return body_key(BodyKind::kNode);
-    case Place::kHall:
-      return "hall";
+    case Place::kAmbient:
+      return "ambient";
     case Place::kSensor:
       return "sensor";
     case Place::kDisplacement:
@@ -144,7 +144,7 @@ const char* place_key(Place place) {
 }
 
 Reference surrounding_reference() {
-  return {"surrounding", {BodyKind::kNode}, kHallName, "lumped node that the body exchanges heat with"};
+  return {"surrounding", {BodyKind::kNode}, kAmbientName, "lumped node that the body exchanges heat with"};
 }
 
 double Effect::operator[](const std::string& parameter) const {
@@ -166,7 +166,7 @@ Body Effect::body() const {
     case Place::kSurface:
       return surface(place);
     case Place::kNode:
-    case Place::kHall:
+    case Place::kAmbient:
       return node(place);
     case Place::kJoint:
       return joint(place);

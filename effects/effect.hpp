@@ -17,9 +17,9 @@
 
 namespace driftwright::effects {
 
-/// What an effect's place is the name of; its YAML key is place_key(). The hall, the clock and the spindle have no name and no key.
+/// What an effect's place is the name of; its YAML key is place_key(). The ambient, the clock and the spindle have no name and no key.
 /// A law is named as in heat_flows.csv: the heat or exchange of another effect.
-enum class Place { kRegion, kSurface, kJoint, kNode, kHall, kSensor, kDisplacement, kClock, kSpindle, kLaw };
+enum class Place { kRegion, kSurface, kJoint, kNode, kAmbient, kSensor, kDisplacement, kClock, kSpindle, kLaw };
 [[nodiscard]] const char* place_key(Place place);
 
 /// How well heat capacity, conductivity and expansion of a body are known where a scenario does not say it.
@@ -49,7 +49,7 @@ inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 /// Another body that an effect names: `surrounding: air_nose`, or `inner: {region: spindle}` for another kind than the first.
 struct Reference {
   std::string name;
-  std::vector<BodyKind> kinds;          ///< allowed; a bare name means the first. "hall" is a node
+  std::vector<BodyKind> kinds;          ///< allowed; a bare name means the first. "ambient" is a node
   std::optional<std::string> fallback;  ///< name when the key is missing, "" for none; compulsory without one
   std::string meaning;
 };
@@ -108,7 +108,7 @@ struct EffectKind {
   void (*contribute)(const Effect&, HeatBalance&) = nullptr;
   /// Or changes what all others do to heat, once their laws are there.
   void (*change_laws)(const Effect&, HeatBalance&) = nullptr;
-  // Or to the drive and the hall that are recorded, to what instruments say, to a material. Null: nothing.
+  // Or to the drive and the ambient that are recorded, to what instruments say, to a material. Null: nothing.
   void (*change_drive)(const Effect&, DriveChange&) = nullptr;
   void (*change_readings)(const Effect&, ReadingChain&) = nullptr;
   void (*change_material)(const Effect&, MaterialFactor&) = nullptr;
@@ -129,14 +129,14 @@ struct EffectKind {
   [[nodiscard]] bool is_of_readings() const { return change_readings && !contribute && !change_laws && !change_drive; }
 };
 
-/// The reference `surrounding` that films share: a lumped node, "hall" by default.
+/// The reference `surrounding` that films share: a lumped node, "ambient" by default.
 [[nodiscard]] Reference surrounding_reference();
 
 /// An effect at a place with its values.
 struct Effect {
   const EffectKind* kind = nullptr;  ///< points into catalogue(), which lives as long as the program
   Place place_kind = Place::kRegion;
-  std::string place = {};                             ///< its name; place_key() for the hall, the clock and the spindle
+  std::string place = {};                             ///< its name; place_key() for the ambient, the clock and the spindle
   std::vector<double> values = {};                    ///< as kind->parameters
   std::map<std::string, Body> references = {};        ///< those given or with a fallback
   std::map<std::string, Where> reference_where = {};  ///< of those that are written, and of mentions
@@ -186,7 +186,7 @@ struct Effect {
 /// What a list of effects does to heat, in their order; capacities of lumped nodes with their factors. Laws of effects that act for a time are
 /// zero outside it, and the balance tells when they jump.
 [[nodiscard]] HeatBalance heat_balance(const std::vector<Effect>& effects);
-/// What it does to the recorded drive and hall, and to readings, during a cyclogram. @param run  its name; "" for none
+/// What it does to the recorded drive and ambient, and to readings, during a cyclogram. @param run  its name; "" for none
 [[nodiscard]] DriveChange drive_change(const std::vector<Effect>& effects, const std::string& run);
 [[nodiscard]] ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string& run);
 /// Whether some effect changes what instruments say, in any cyclogram.

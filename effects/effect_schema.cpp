@@ -28,7 +28,7 @@ const char* meaning_of(Place place) {
       return "its place: a displacement or tilt";
     case Place::kLaw:
       return "its place: a law as heat_flows.csv has it, such as `bearing_friction spindle_bearings`";
-    case Place::kHall:
+    case Place::kAmbient:
     case Place::kClock:
     case Place::kSpindle:
       break;
@@ -36,7 +36,7 @@ const char* meaning_of(Place place) {
   return "";
 }
 
-/// Nothing for the hall, the clock and the spindle: each is there once and has no key.
+/// Nothing for the ambient, the clock and the spindle: each is there once and has no key.
 void add_place(const EffectKind& kind, schema::Map& map) {
   std::vector<std::string> keys;
   for (Place place : kind.places) {

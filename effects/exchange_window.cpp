@@ -11,7 +11,7 @@ bool is_total(const Effect& e) {
 void contribute(const Effect& e, HeatBalance& balance) {
   const auto windows = windows_of(e);
   const double coefficient = is_total(e) ? e["conductance"] : e["film"];
-  const std::string to = e.references.contains("surrounding") ? e.references.at("surrounding").name : kHallName;
+  const std::string to = e.references.contains("surrounding") ? e.references.at("surrounding").name : kAmbientName;
   balance.exchanges.push_back({.name = e.name(),
                                .body = e.body(),
                                .coefficient = within(windows, coefficient),

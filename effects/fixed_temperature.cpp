@@ -4,16 +4,16 @@ namespace driftwright::effects {
 namespace {
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  const bool follows_hall = e.words.at("follows") == kHallName;
+  const bool follows_ambient = e.words.at("follows") == kAmbientName;
   const TimeSeries temperature_K =
-      follows_hall || !e.tables.contains("temperature") ? TimeSeries{} : e.tables.at("temperature");
-  balance.fixed.push_back({e.name(), e.body(), temperature_K, follows_hall});
+      follows_ambient || !e.tables.contains("temperature") ? TimeSeries{} : e.tables.at("temperature");
+  balance.fixed.push_back({e.name(), e.body(), temperature_K, follows_ambient});
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (e.tables.contains("temperature") == (e.words.at("follows") == kHallName)) {
+  if (e.tables.contains("temperature") == (e.words.at("follows") == kAmbientName)) {
     in.fail("temperature",
-            "one of two is wanted: `temperature`, a value or rows of [time, temperature], or `follows: hall`");
+            "one of two is wanted: `temperature`, a value or rows of [time, temperature], or `follows: ambient`");
   }
 }
 
@@ -22,11 +22,11 @@ void check(const Effect& e, const ConfigMap& in) {
 EffectKind fixed_temperature() {
   return {.key = "fixed_temperature",
           .title = "prescribed temperature",
-          .law = "T = temperature(t), linear between rows and constant outside them, or that of the hall",
+          .law = "T = temperature(t), linear between rows and constant outside them, or that of the ambient",
           .places = {Place::kSurface, Place::kNode},
           .parameters = {},
           .contribute = contribute,
-          .choices = {{"follows", {"nothing", kHallName}, "nothing", "`hall`: as warm as the hall at every time"}},
+          .choices = {{"follows", {"nothing", kAmbientName}, "nothing", "`ambient`: as warm as the ambient at every time"}},
           .tables = {{"temperature", "s", "degC", 1.0, 3000.0, false, "over time, or one value"}},
           .check = check};
 }

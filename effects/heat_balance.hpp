@@ -28,22 +28,22 @@ struct Body {
 [[nodiscard]] inline Body surface(std::string name) {
   return {BodyKind::kSurface, std::move(name)};
 }
-/// A lumped node; "hall" is the air of the hall.
+/// A lumped node; "ambient" is the ambient air.
 [[nodiscard]] inline Body node(std::string name) {
   return {BodyKind::kNode, std::move(name)};
 }
 [[nodiscard]] inline Body joint(std::string name) {
   return {BodyKind::kJoint, std::move(name)};
 }
-inline constexpr const char* kHallName = "hall";
-[[nodiscard]] inline Body hall() {
-  return node(kHallName);
+inline constexpr const char* kAmbientName = "ambient";
+[[nodiscard]] inline Body ambient_node() {
+  return node(kAmbientName);
 }
 
 /// What a law may look at.
 struct Inputs {
   Drive drive;
-  double hall_K = 0.0;               ///< hall temperature minus the reference temperature
+  double ambient_K = 0.0;            ///< ambient temperature minus the reference temperature
   double time_s = 0.0;               ///< within the stretch of time at hand; see HeatBalance::change_times_s
   std::vector<double> probe_K = {};  ///< temperatures [K] of the law's probes, absolute, in their order
   std::string_view run = {};         ///< name of the cyclogram that is run; "" where it has none
@@ -83,7 +83,8 @@ struct Exchange {
   Body body;  ///< a surface, region or node; or the joint
   Law coefficient;
   Per per = Per::kArea;
-  std::string surrounding = kHallName;  ///< the other temperature: the hall or a lumped node; of no meaning for a joint
+  std::string surrounding =
+      kAmbientName;                     ///< the other temperature: the ambient or a lumped node; of no meaning for a joint
   std::optional<double> medium_K = {};  ///< instead of a surrounding: a medium of this absolute temperature
 
   [[nodiscard]] bool is_same_place(const Exchange& other) const {
@@ -94,14 +95,14 @@ struct Exchange {
 };
 
 [[nodiscard]] inline Exchange make_film(std::string name, std::string on, Law htc_W_m2K,
-                                        std::string surrounding = kHallName) {
+                                        std::string surrounding = kAmbientName) {
   return {.name = std::move(name),
           .body = surface(std::move(on)),
           .coefficient = std::move(htc_W_m2K),
           .surrounding = std::move(surrounding)};
 }
 [[nodiscard]] inline Exchange make_link(std::string name, Body body, Law conductance_W_K,
-                                        std::string surrounding = kHallName) {
+                                        std::string surrounding = kAmbientName) {
   return {.name = std::move(name),
           .body = std::move(body),
           .coefficient = std::move(conductance_W_K),
@@ -117,7 +118,7 @@ struct Radiation {
   std::string name;
   std::string surface;
   double emissivity = 0.0;
-  std::string surrounding = kHallName;
+  std::string surrounding = kAmbientName;
 };
 
 /// A body with one temperature, such as the air near the nose, an oil tank or a rotor.
@@ -130,14 +131,14 @@ struct LumpedNode {
 struct FixedTemperature {
   std::string name;
   Body body;
-  TimeSeries temperature_K;   ///< absolute; a single knot for a constant
-  bool follows_hall = false;  ///< then temperature_K is not looked at
+  TimeSeries temperature_K;      ///< absolute; a single knot for a constant
+  bool follows_ambient = false;  ///< then temperature_K is not looked at
 };
 
-/// Hall air that is warmer above than below: T(z) = T_hall + gradient (z - level), for every film and radiation to the hall.
+/// Ambient air that is warmer above than below: T(z) = T_ambient + gradient (z - level), for every film and radiation to the ambient.
 struct Stratification {
   double gradient_K_m = 0.0;
-  double level_m = 0.0;  ///< height of the hall's thermometer; Z is up
+  double level_m = 0.0;  ///< height of the ambient thermometer; Z is up
 };
 
 /// A switch with hysteresis: on when the probe rises above on_above_K, off when it falls below off_below_K.

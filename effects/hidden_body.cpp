@@ -9,7 +9,8 @@ namespace {
 constexpr const char* kSuffix = "_hidden";
 constexpr double kCapacitySd = 1.5;  // of the logarithm: from a fifth to five times its body's
 constexpr double kTrial = 0.1;       // of a typical conductance
-constexpr double kRare = 4.0;  // nats; with little capacity a body between is a path to the hall, which is the simpler one
+constexpr double kRare =
+    4.0;  // nats; with little capacity a body between is a path to the ambient, which is the simpler one
 constexpr double kTimeConstants[] = {0.03, 0.12, 0.5};  // tried first, of the longest record
 constexpr double kFollowTrial = 0.1, kLeast = 1e-4;     // of the capacity of its body
 constexpr double kTimeSd = 2.0;                         // of the logarithm
@@ -17,13 +18,14 @@ constexpr double kTypicalTime = 0.1;                    // of the longest record
 constexpr double kFollowTimes[] = {0.01, 0.04, 0.15, 0.6};
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double link_W_K = e["conductance"], to_hall_W_K = e["hall_conductance"];
+  const double link_W_K = e["conductance"], to_ambient_W_K = e["hall_conductance"];
   const std::string own = e.place + kSuffix;
   balance.nodes.push_back({own, e["capacity"]});
   balance.exchanges.push_back(make_link(
       e.name() + " - " + own, e.body(), [=](const Inputs&) { return link_W_K; }, own));
   if (e.has("hall_conductance"))
-    balance.exchanges.push_back(make_link(e.name() + " - hall", node(own), [=](const Inputs&) { return to_hall_W_K; }));
+    balance.exchanges.push_back(
+        make_link(e.name() + " - ambient", node(own), [=](const Inputs&) { return to_ambient_W_K; }));
 }
 
 /// One that is as warm as its body, or that hardly notices it: how much it stores and how fast it follows is what readings tell, and a conductance, which the
@@ -50,7 +52,7 @@ Doubt following(const DoubtScene::Material& m, double longest_s) {
   return d;
 }
 
-/// A body at each region and node: what it exchanges and stores, and in a second law its own way to the hall.
+/// A body at each region and node: what it exchanges and stores, and in a second law its own way to the ambient.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double typical_W_K = s.typical_conductance_W_K(), longest_s = s.longest_s();
   std::vector<Doubt> list;
@@ -77,7 +79,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     list.push_back(following(m, longest_s));
 
     Doubt between = std::move(behind);
-    between.law = "a body between it and the hall";
+    between.law = "a body between it and the ambient";
     DoubtedNumber out = doubted("hall_conductance", "W/K", kCapacitySd, 0.1, typical_W_K);
     out.is_log = true;
     out.grows_with_size = true;
@@ -93,18 +95,19 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 }  // namespace
 
 EffectKind hidden_body() {
-  return {.key = "hidden_body",
-          .title = "body behind another: a cover, a tank, a clamped part, which no node or region of the machine is",
-          .law =
-              "capacity dT_hidden/dt = conductance (T - T_hidden) - hall_conductance (T_hidden - T_hall); it makes the node "
-              "<its body>_hidden, and takes its heat evenly from the region",
-          .places = {Place::kRegion, Place::kNode},
-          .parameters = {{"capacity", "J/K", 1e-6, 1e12, {}, "heat capacity of the hidden body"},
-                         {"conductance", "W/K", 0.0, 1e9, {}, "between the two", 0.1, "hidden_body", Doubted::kFactor},
-                         {"hall_conductance", "W/K", 0.0, 1e9, kNotGiven, "from the hidden body to the hall", 0.1,
-                          "hidden_body", Doubted::kFactor}},
-          .contribute = contribute,
-          .doubts = doubts};
+  return {
+      .key = "hidden_body",
+      .title = "body behind another: a cover, a tank, a clamped part, which no node or region of the machine is",
+      .law =
+          "capacity dT_hidden/dt = conductance (T - T_hidden) - hall_conductance (T_hidden - T_ambient); it makes the node "
+          "<its body>_hidden, and takes its heat evenly from the region",
+      .places = {Place::kRegion, Place::kNode},
+      .parameters = {{"capacity", "J/K", 1e-6, 1e12, {}, "heat capacity of the hidden body"},
+                     {"conductance", "W/K", 0.0, 1e9, {}, "between the two", 0.1, "hidden_body", Doubted::kFactor},
+                     {"hall_conductance", "W/K", 0.0, 1e9, kNotGiven, "from the hidden body to the ambient", 0.1,
+                      "hidden_body", Doubted::kFactor}},
+      .contribute = contribute,
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

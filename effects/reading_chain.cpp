@@ -19,9 +19,9 @@ void ReadingChain::add(ReadingStage stage, Step step) {
 }
 
 Eigen::MatrixXd ReadingChain::apply(const std::vector<std::string>& name, const std::vector<std::string>& unit,
-                                    const std::vector<double>& time_s, const Cyclogram& cyclogram, const TimeSeries& hall,
+                                    const std::vector<double>& time_s, const Cyclogram& cyclogram, const TimeSeries& ambient,
                                     Eigen::MatrixXd outputs) const {
-  Readings readings{name, unit, time_s, cyclogram, hall, std::move(outputs)};
+  Readings readings{name, unit, time_s, cyclogram, ambient, std::move(outputs)};
   for (const auto& [stage, step] : steps_) step(readings);
   return std::move(readings.value);
 }

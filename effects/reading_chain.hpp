@@ -37,7 +37,7 @@ struct Readings {
   const std::vector<std::string>& unit;
   const std::vector<double>& time_s;  ///< increasing, from 0; values between two of them are linear
   const Cyclogram& cyclogram;         ///< the true one
-  const TimeSeries& hall;             ///< the true one [K]
+  const TimeSeries& ambient;          ///< the true one [K]
   Eigen::MatrixXd value;              ///< n_outputs x n_times
 
   /// The row of a sensor; of a displacement or tilt. @throws std::logic_error  for a name that is no such output
@@ -59,8 +59,8 @@ class ReadingChain {
   [[nodiscard]] bool empty() const { return steps_.empty(); }
   /// Readings of a run. @param outputs  n_outputs x n_times, as Readings has them
   [[nodiscard]] Eigen::MatrixXd apply(const std::vector<std::string>& name, const std::vector<std::string>& unit,
-                                      const std::vector<double>& time_s, const Cyclogram& cyclogram, const TimeSeries& hall,
-                                      Eigen::MatrixXd outputs) const;
+                                      const std::vector<double>& time_s, const Cyclogram& cyclogram,
+                                      const TimeSeries& ambient, Eigen::MatrixXd outputs) const;
 
  private:
   std::vector<std::pair<ReadingStage, Step>> steps_;  ///< by stage; within one as they were added

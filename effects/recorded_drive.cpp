@@ -85,7 +85,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       list.push_back(doubt(body, column, "heat in proportion to {}", "gain", "W per " + column.unit, gain_sd(s, column)));
       if (column.unit == "K") list.back().numbers[0].low = -1e300;  // of a difference
       if (column.unit == "W" || column.n_levels > kFewLevels || body.kind != BodyKind::kNode) continue;
-      list.push_back(doubt(body, column, "exchange with the hall that {} opens", "opening", "W/K per " + column.unit,
+      list.push_back(doubt(body, column, "exchange with the ambient that {} opens", "opening", "W/K per " + column.unit,
                            0.2 * s.unknown_heat_W() / column.span));
     }
   }

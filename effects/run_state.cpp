@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kFewRuns = 5;  // of which every choice is tried
 
 bool is_meant(const Effect& e, const Exchange& x) {
-  return e.words.at("of") == "exchange" && x.body.kind != BodyKind::kJoint && x.surrounding == kHallName && !x.medium_K;
+  return e.words.at("of") == "exchange" && x.body.kind != BodyKind::kJoint && x.surrounding == kAmbientName && !x.medium_K;
 }
 
 void change_laws(const Effect& e, HeatBalance& balance) {
@@ -70,7 +70,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
         d.added.back().words["of"] = of;
         d.added.back().in = s.runs[r].name;
       }
-      d.law = fmt::format("another state of running, all {} in {}", is_heat ? "heat" : "exchange with the hall",
+      d.law = fmt::format("another state of running, all {} in {}", is_heat ? "heat" : "exchange with the ambient",
                           fmt::join(names, ", "));
       list.push_back(std::move(d));
     }
@@ -83,12 +83,12 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind run_state() {
   return {.key = "run_state",
           .title = "a record in which the machine ran in another state: another oil, cover or preload, that nobody noted",
-          .law = "P' = factor P of every heat, or c' = factor c of every exchange with the hall, in one record",
+          .law = "P' = factor P of every heat, or c' = factor c of every exchange with the ambient, in one record",
           .places = {Place::kSpindle},
           .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on all of them"}},
           .timing = Timing::kInRecord,
           .change_laws = change_laws,
-          .choices = {{"of", {"heat", "exchange"}, "heat", "what is another: all heat, or all exchange with the hall"}},
+          .choices = {{"of", {"heat", "exchange"}, "heat", "what is another: all heat, or all exchange with the ambient"}},
           .check = check,
           .doubts = doubts};
 }

@@ -7,7 +7,7 @@ void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kDetachment, [sensor = e.place, share = e["share"], time_s = e["time"] * 60.0](Readings& r) {
     const Eigen::Index row = r.sensor(sensor);
     for (Eigen::Index i = 0; i < r.n_times(); ++i) {
-      if (r.time(i) >= time_s) r.value(row, i) += share * (r.hall.at(r.time(i)) - r.value(row, i));
+      if (r.time(i) >= time_s) r.value(row, i) += share * (r.ambient.at(r.time(i)) - r.value(row, i));
     }
   });
 }
@@ -43,7 +43,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind sensor_detached() {
   return {.key = "sensor_detached",
           .title = "sensor that comes off its body",
-          .law = "reading = share T_hall + (1 - share) T from a time on",
+          .law = "reading = share T_ambient + (1 - share) T from a time on",
           .places = {Place::kSensor},
           .parameters = {{"share", "1", 0.0, 1.0, {}, "of air in the reading"},
                          {"time", "min", 0.0, 1e7, {}, "when it comes off"}},

@@ -12,19 +12,19 @@ void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kDetachment, [sensor = e.place, share = e["share"], body = e.references.at("body")](Readings& r) {
     const Eigen::Index row = r.sensor(sensor);
     const Eigen::RowVectorXd here = r.value.row(row);
-    if (body == hall()) {
-      for (Eigen::Index i = 0; i < r.n_times(); ++i) r.value(row, i) += share * (r.hall.at(r.time(i)) - here[i]);
+    if (body == ambient_node()) {
+      for (Eigen::Index i = 0; i < r.n_times(); ++i) r.value(row, i) += share * (r.ambient.at(r.time(i)) - here[i]);
     } else {
       r.value.row(row) += share * (r.value.row(r.mean_of(body.name)) - here);
     }
   });
 }
 
-/// Each other body has a law of its own; the hall has one, too: a thermometer that never touched well.
+/// Each other body has a law of its own; the ambient has one, too: a thermometer that never touched well.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const std::string& sensor : s.sensors) {
-    std::vector<Body> bodies = {hall()};
+    std::vector<Body> bodies = {ambient_node()};
     for (const DoubtScene::Material& m : s.materials) {
       if (m.stores) bodies.push_back(m.body);
     }
@@ -41,7 +41,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .numbers = {share},
                       .trial = 0.3});
       const auto at = s.sensor_bodies.find(sensor);
-      const bool may_touch = body == hall() || at == s.sensor_bodies.end() || are_joined(s, at->second, body);
+      const bool may_touch = body == ambient_node() || at == s.sensor_bodies.end() || are_joined(s, at->second, body);
       list.back().rarity = may_touch ? 0.0 : kTouchWithoutPath;
     }
   }
@@ -58,7 +58,7 @@ EffectKind sensor_place() {
           .parameters = {{"share", "1", 0.0, 1.0, {}, "of the other body in the reading"}},
           .timing = Timing::kInRecord,
           .change_readings = change_readings,
-          .references = {{"body", {BodyKind::kNode, BodyKind::kRegion}, {}, "the other body; `hall`: the hall's air"}},
+          .references = {{"body", {BodyKind::kNode, BodyKind::kRegion}, {}, "the other body; `ambient`: the ambient air"}},
           .doubts = doubts};
 }
 

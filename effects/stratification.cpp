@@ -14,9 +14,9 @@ void contribute(const Effect& e, HeatBalance& balance) {
 std::vector<Doubt> doubts(const DoubtScene& s) {
   if (s.surfaces.empty() || !s.balance.stratifications.empty()) return {};
   return {{.finding = "stratification",
-           .where = kHallName,
-           .law = "warmer above; the hall's thermometer hangs at a level",
-           .added = {make_effect("stratification", Place::kHall, kHallName, {{"level", 1.0}})},
+           .where = kAmbientName,
+           .law = "warmer above; the ambient thermometer hangs at a level",
+           .added = {make_effect("stratification", Place::kAmbient, kAmbientName, {{"level", 1.0}})},
            .numbers = {doubted("gradient", "K/m", kUsual_K_m, 0.2),
                        doubted("level", "m", 0.6, 0.1, 1.0)},  // about where one hangs it
            .trial = 0.5,
@@ -28,11 +28,11 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind stratification() {
   return {
       .key = "stratification",
-      .title = "hall air that is warmer above than below",
-      .law = "T_air(z) = T_hall + gradient (z - level) for films, links and radiation of surfaces to the hall",
-      .places = {Place::kHall},
+      .title = "ambient air that is warmer above than below",
+      .law = "T_air(z) = T_ambient + gradient (z - level) for films, links and radiation of surfaces to the ambient",
+      .places = {Place::kAmbient},
       .parameters = {{"gradient", "K/m", -50.0, 50.0, {}, "upwards", 0.0, "stratification", Doubted::kShift, kWritten_K_m},
-                     {"level", "m", -100.0, 100.0, 0.0, "height z of the hall's thermometer"}},
+                     {"level", "m", -100.0, 100.0, 0.0, "height z of the ambient thermometer"}},
       .contribute = contribute,
       .doubts = doubts};
 }

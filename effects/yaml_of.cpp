@@ -45,7 +45,8 @@ std::string yaml_of(const Parameter& parameter, double value) {
 std::string yaml_of(const Effect& e) {
   std::string text = "{type: " + e.kind->key;
   const auto add = [&](const std::string& key, const std::string& value) { text += fmt::format(", {}: {}", key, value); };
-  const bool has_no_name = e.place_kind == Place::kHall || e.place_kind == Place::kClock || e.place_kind == Place::kSpindle;
+  const bool has_no_name =
+      e.place_kind == Place::kAmbient || e.place_kind == Place::kClock || e.place_kind == Place::kSpindle;
   if (!has_no_name) add(place_key(e.place_kind), word(e.place));
   for (std::size_t p = 0; p < e.values.size(); ++p) {
     const Parameter& parameter = e.kind->parameters[p];

@@ -1,5 +1,7 @@
 #include "findings/diagnosis_data.hpp"
 
+#include "effects/where_in_files.hpp"
+
 namespace driftwright::findings {
 namespace {
 
@@ -14,7 +16,7 @@ void put(Section& section, const std::string& key, Datum datum) {
 Section cause_item(const diagnosis::Cause& c, const std::string& key) {
   Section item{.key = key, .item = output::Item{"effect", c.effect}};
   put(item, "standing", diagnosis::word(c.standing));
-  put(item, "where", c.where);
+  put(item, "where", effects::where_in_files(c.where));
   put(item, "law", c.law);
   output::Table parameters{.key = "parameters",
                            .columns = {{.key = "name"}, {.key = "value"}, {.key = "unit"}, {.key = "ci95"}}};
@@ -62,8 +64,8 @@ Section waveform_item(const diagnosis::Waveform& w) {
   const double scale = is_heat ? 1.0 : 1e6;
   Section item{.key = "waveforms", .item = output::Item{"record", w.run}};
   put(item, "of", is_heat ? "heat" : "growth");
-  put(item, "where", w.where);
-  if (!w.to.empty()) put(item, "to", w.to);
+  put(item, "where", effects::where_in_files(w.where));
+  if (!w.to.empty()) put(item, "to", effects::where_in_files(w.to));
   if (is_heat) {
     put(item, "log_likelihood_gain", w.log_likelihood_gain);
     put(item, "explained", w.explained);

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "effects/where_in_files.hpp"
 #include "findings/diagnosis_data.hpp"
 #include "findings/diagnosis_words.hpp"
 #include "findings/measured_iso230_3.hpp"
@@ -174,10 +175,10 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
   if (u.fails_held_out) put("fails_held_out", true);
   if (u.one_cause) {
     using Quantity = diagnosis::Unnamed::Quantity;
-    put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat   ? "heat"
-                              : u.one_cause->quantity == Quantity::kHall ? "hall temperature"
-                                                                         : "reading");
-    put("one_cause.where", u.one_cause->where);
+    put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat      ? "heat"
+                              : u.one_cause->quantity == Quantity::kAmbient ? "ambient temperature"
+                                                                            : "reading");
+    put("one_cause.where", effects::where_in_files(u.one_cause->where));
     put("one_cause.follows", u.one_cause->follows);
     put("one_cause.instead_of", std::vector<std::int64_t>(u.one_cause->instead_of.begin(), u.one_cause->instead_of.end()));
     put("one_cause.log_evidence_gain", u.one_cause->log_evidence_gain);
@@ -417,7 +418,7 @@ Section numbers_section(const diagnosis::Diagnosis& d, bool detail) {
       .key = "calibrated",
       .caption =
           "The uncertain ones as fitted. Moved: from what the scenario says, in standard deviations of what is known of "
-          "it: the scenario's `known_to`, else 10 %, exponents 3 %, the hall 0.3 K. What is not in the file was fitted and "
+          "it: the scenario's `known_to`, else 10 %, exponents 3 %, the ambient 0.3 K. What is not in the file was fitted and "
           "left "
           "as the scenario has it.",
       .columns = {{.key = "name", .title = "number"},

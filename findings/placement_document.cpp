@@ -264,7 +264,7 @@ output::Document document_of(const Placement& p, const scenarios::Scenario& scen
   add(body, Value{.key = "chosen_on", .words = "chosen on", .datum = p.chosen_on});
   add(body, Value{.key = "judged_on", .words = "judged on", .datum = p.judged_on});
   if (!p.made.empty()) add(body, Value{.key = "made", .words = "of these made of the scenario's drives", .datum = p.made});
-  add(body, Value{.key = "halls", .words = "halls", .datum = p.halls});
+  add(body, Value{.key = "ambients", .words = "courses of the ambient temperature", .datum = p.ambients});
   add(body, Value{.key = "scatter", .words = "model uncertain by", .datum = p.options.scatter});
   add(body, Value{.key = "noise_K", .words = "noise of a reading", .datum = p.options.noise_K, .unit = "K", .digits = output::significant(2)});
   add(body, Value{.key = "drift_um", .words = "drift without correction, RMS", .datum = p.drift_um, .unit = "um", .digits = output::decimals(2)});

@@ -63,7 +63,8 @@ Curves curves_of(const studies::MeasuredTwin& m, const diagnosis::Diagnosis& d, 
 }
 
 Plot drive_plot(const MeasuredRun& run) {
-  Plot plot{.title = "Drive", .x_label = "time [min]", .y_label = "speed [rpm]", .series = {}, .bands = {}, .marks = {}};
+  Plot plot{
+      .title = "Spindle speed", .x_label = "time [min]", .y_label = "speed [rpm]", .series = {}, .bands = {}, .marks = {}};
   Series speed{.label = "speed", .x = {}, .y = {}, .style = Series::Style::kSteps};
   for (double t_s : run.time_s) {
     speed.x.push_back(t_s / 60.0);
@@ -74,14 +75,14 @@ Plot drive_plot(const MeasuredRun& run) {
   return plot;
 }
 
-Plot hall_plot(const MeasuredRun& run, double reference_K) {
-  Plot plot{.title = run.has_ambient ? "Hall as recorded, smoothed" : "Hall of the scenario",
+Plot ambient_plot(const MeasuredRun& run, double reference_K) {
+  Plot plot{.title = run.has_ambient ? "Ambient temperature as recorded, smoothed" : "Ambient temperature of the scenario",
             .x_label = "time [min]",
-            .y_label = "hall [°C]",
-            .series = {{.label = "hall", .x = {}, .y = {}}}};
+            .y_label = "ambient temperature [°C]",
+            .series = {{.label = "ambient", .x = {}, .y = {}}}};
   for (double t_s : run.time_s) {
     plot.series[0].x.push_back(t_s / 60.0);
-    plot.series[0].y.push_back(run.hall.at(t_s) + reference_K - kZeroCelsius_K);
+    plot.series[0].y.push_back(run.ambient.at(t_s) + reference_K - kZeroCelsius_K);
   }
   plot.half_width = true;
   return plot;
@@ -146,7 +147,7 @@ Section record_section(const studies::MeasuredTwin& m, const diagnosis::Diagnosi
   const MeasuredRun& run = m.runs[r];
   Section section{.title = "Record " + run.name, .detail = true};
   add(section, drive_plot(run));
-  add(section, hall_plot(run, m.twin->reference_K()));
+  add(section, ambient_plot(run, m.twin->reference_K()));
   constexpr output::Digits kThree = output::significant(3), kCorrelation = output::signed_decimals(2);
   Table structure{
       .title = "Residuals against noise",

@@ -20,7 +20,7 @@ std::string words(FlowKind kind) {
     case FlowKind::kSource:
       return "source";
     case FlowKind::kSurrounding:
-      return "hall";
+      return "ambient";
     case FlowKind::kPrescribed:
       return "prescribed temperature";
     case FlowKind::kInternal:

@@ -78,7 +78,7 @@ Plot strategies_plot(const studies::TableStudy& study) {
   std::vector<double> t_h = hours(study.run.table.time_s);
   t_h.resize(study.n_judged);
   Plot plot{.title = "Largest position error anywhere on the table", .x_label = "time [h]", .y_label = "error [µm]"};
-  for (const char* name : {"none", "hall temperature", "model alone", "rings", "rings, thermometers between",
+  for (const char* name : {"none", "ambient temperature", "model alone", "rings", "rings, thermometers between",
                            "rings and model of the whole table"}) {
     const studies::TableStrategy& s = strategy(study, name);
     plot.series.push_back({.label = name, .x = t_h, .y = s.course_um});
@@ -159,7 +159,7 @@ Section readings_section(const studies::TableStudy& study) {
                           um_column("rms_left_out_um", "left out"),
                           {.key = "r_squared", .title = "R²", .digits = output::decimals(2)},
                           {.key = "words", .title = "parameters (95 %)"}}};
-  for (const auto& m : study.hall_models)
+  for (const auto& m : study.ambient_models)
     table.rows.push_back({m.name, m.n_parameters, m.rms, m.rms_left_out, m.r_squared, m.parameters});
   add(section, std::move(table));
   add(section, Value{.key = "computed_rms_um",
@@ -168,7 +168,7 @@ Section readings_section(const studies::TableStudy& study) {
                      .unit = "um"});
   add(section, Text{"Left out one at a time, the readings are missed by more than any fit suggests, and the lags may be "
                     "almost anything: "
-                    "they do not carry a model of hall temperature. On the second morning the error rises while the hall "
+                    "they do not carry a model of ambient temperature. On the second morning the error rises while the ambient "
                     "stands still. "
                     "What is missing is a channel: a thermometer on the table and one on its scale."});
   return section;
@@ -363,7 +363,7 @@ output::Document document_of(const studies::TableStudy& study, const scenarios::
   Section over_time{.title = "The table over the run"};
   add(over_time, series_plot(scenario, study));
   add(over_time, temperatures_plot(scenario, study));
-  if (!study.hall_models.empty()) over_time.sections.push_back(readings_section(study));
+  if (!study.ambient_models.empty()) over_time.sections.push_back(readings_section(study));
   body.sections.push_back(std::move(over_time));
   Section probe{.key = "probe", .title = "The probe"};
   add(probe, calibration_table(study));

@@ -39,7 +39,7 @@ class Followed {
   [[nodiscard]] virtual std::vector<WantedChannel> wanted() const = 0;
   /// Before the first row. @param channels  of the stream, all wanted ones among them
   virtual void begin(const std::vector<Channel>& channels) = 0;
-  /// Takes a row. @param step_s  since the row or wait before. @return false: drive or hall are not known yet, and nothing has begun
+  /// Takes a row. @param step_s  since the row or wait before. @return false: drive or ambient are not known yet, and nothing has begun
   virtual bool take(double run_s, const std::vector<double>& values, double step_s) = 0;
   /// There was no row for so long.
   virtual void wait(double step_s) = 0;

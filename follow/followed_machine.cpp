@@ -25,7 +25,7 @@ void require_streamable(const MachineModel& machine) {
           fmt::format("{} {}; a stream does not tell enough of it, and `follow` wants a machine without", e.name(), why));
     };
     if (e.kind->change_drive)
-      refuse("changes what the record of the drive or of the hall says, by what comes before or behind a row");
+      refuse("changes what the record of the drive or of the ambient says, by what comes before or behind a row");
     if (e.kind->change_readings && e.place_kind != effects::Place::kSensor)
       refuse("changes what instruments say of displacements, by all that came before");
     if (!e.in.empty()) refuse(fmt::format("holds in the cyclogram '{}' alone", e.in));
@@ -48,9 +48,9 @@ class FollowedMachine final : public Followed {
       throw InputError(machine_.where, "a machine with thermostats cannot be followed: no row says whether they are on");
     if (model_->reduced() && model_->is_linear()) exact_.emplace(model_->reduced()->system);
     for (const scenarios::Sensor& s : machine_.sensors) {
-      if (scenarios::is_on_hall(s) && hall_.empty()) hall_ = s.name;
+      if (scenarios::is_on_ambient(s) && ambient_.empty()) ambient_ = s.name;
     }
-    if (hall_.empty()) hall_ = scenarios::kAmbient;
+    if (ambient_.empty()) ambient_ = scenarios::kAmbient;
     const solver::Outputs& outputs = model_->outputs();
     OutputSettings settings;
     settings.most_rate_um_s = options.most_rate_um_s.value_or(settings.most_rate_um_s);
@@ -67,19 +67,19 @@ class FollowedMachine final : public Followed {
   }
 
   [[nodiscard]] std::vector<WantedChannel> wanted() const override {
-    return {{"speed", "rpm", path_}, {hall_, "degC", path_}};
+    return {{"speed", "rpm", path_}, {ambient_, "degC", path_}};
   }
-  void begin(const std::vector<Channel>& channels) override { run_.emplace(channels, hall_, machine_.reference_K, true); }
+  void begin(const std::vector<Channel>& channels) override { run_.emplace(channels, ambient_, machine_.reference_K, true); }
 
   bool take(double run_s, const std::vector<double>& values, double step_s) override {
-    const double hall_before_K = run_->hall_K();
+    const double ambient_before_K = run_->ambient_K();
     const bool is_first = run_->n_rows() == 0;
     if (!run_->add(run_s, values)) return false;
     const double now_s = run_->run().readings.time_s.back();
     if (is_first) {
       begin_state();
     } else {
-      advance(now_s, hall_before_K);
+      advance(now_s, ambient_before_K);
     }
     const Eigen::VectorXd outputs = observed();
     for (std::size_t a = 0; a < axes_.size(); ++a) {
@@ -96,7 +96,7 @@ class FollowedMachine final : public Followed {
   [[nodiscard]] const scenarios::Model* model() const override { return &*model_; }
   [[nodiscard]] std::optional<MachineState> machine_state() const override {
     if (!has_begun()) return std::nullopt;
-    return MachineState{state_, run_->hall_K()};
+    return MachineState{state_, run_->ambient_K()};
   }
 
   [[nodiscard]] std::vector<AxisCorrection> axes() const override {
@@ -130,23 +130,23 @@ class FollowedMachine final : public Followed {
   }
 
  private:
-  /// As warm as the hall of the first row, where the scenario's start is the hall or balance with it.
+  /// As warm as the ambient of the first row, where the scenario's start is the ambient or balance with it.
   void begin_state() {
     MachineModel here = machine_;
-    here.hall = {{0.0}, {run_->hall_K()}};
+    here.ambient = {{0.0}, {run_->ambient_K()}};
     double warmer_K = 0.0;
-    if (machine_.start == scenarios::Start::kHall || machine_.start == scenarios::Start::kSteady)
-      warmer_K = scenarios::felt_hall_at_start_K(here) - scenarios::felt_hall_at_start_K(machine_);
+    if (machine_.start == scenarios::Start::kAmbient || machine_.start == scenarios::Start::kSteady)
+      warmer_K = scenarios::felt_ambient_at_start_K(here) - scenarios::felt_ambient_at_start_K(machine_);
     state_ = scenarios::start_of(machine_, *model_) + warmer_K * scenarios::ones_of(*model_);
   }
 
   /// Over the last step; what was before is one section, which is not run again.
-  void advance(double now_s, double hall_before_K) {
+  void advance(double now_s, double ambient_before_K) {
     const double before_s = now_s - run_->run().cyclogram.sections.back().duration_s;
     Cyclogram cyclogram{.name = "stream", .sections = {}};
     if (before_s > 0.0) cyclogram.sections.push_back({before_s, run_->drive_before()});
     cyclogram.sections.push_back({now_s - before_s, run_->drive_before()});
-    const TimeSeries hall{{before_s, now_s}, {hall_before_K, run_->hall_K()}};
+    const TimeSeries ambient{{before_s, now_s}, {ambient_before_K, run_->ambient_K()}};
     solver::TransientOptions from_here = tolerances_;
     from_here.from_s = before_s;
     const auto keep = [&](double, const Eigen::VectorXd& state) { state_ = state; };
@@ -154,21 +154,21 @@ class FollowedMachine final : public Followed {
     const double end_s = cyclogram.duration_s();
     if (exact_) {
       Eigen::MatrixXd states;
-      (void)exact_->run(cyclogram, hall, {end_s}, start, false, &states, before_s);
+      (void)exact_->run(cyclogram, ambient, {end_s}, start, false, &states, before_s);
       state_ = states.col(0);
     } else if (model_->reduced()) {
-      (void)solver::simulate(model_->reduced()->system, cyclogram, hall, {end_s}, from_here, start, keep);
+      (void)solver::simulate(model_->reduced()->system, cyclogram, ambient, {end_s}, from_here, start, keep);
     } else {
-      (void)solver::simulate(model_->full()->system, cyclogram, hall, {end_s}, from_here, start, keep);
+      (void)solver::simulate(model_->full()->system, cyclogram, ambient, {end_s}, from_here, start, keep);
     }
   }
 
   [[nodiscard]] Eigen::VectorXd observed() const {
-    return model_->reduced() ? model_->reduced()->system.observe(state_, run_->hall_K())
-                             : model_->full()->system.observe(state_, run_->hall_K());
+    return model_->reduced() ? model_->reduced()->system.observe(state_, run_->ambient_K())
+                             : model_->full()->system.observe(state_, run_->ambient_K());
   }
 
-  std::string path_, hall_;
+  std::string path_, ambient_;
   MachineModel machine_;
   solver::TransientOptions tolerances_;
   std::optional<scenarios::Model> model_;

@@ -1,5 +1,5 @@
 #pragma once
-// The machine of a scenario on a stream, by drive and hall alone: the drift that `predict` tells, of all its displacements.
+// The machine of a scenario on a stream, by drive and ambient alone: the drift that `predict` tells, of all its displacements.
 
 #include <memory>
 

@@ -14,6 +14,7 @@
 #include "follow/state_json.hpp"
 #include "follow/watch_json.hpp"
 #include "output/predictor_file.hpp"
+#include "scenarios/reader/former_words.hpp"
 
 namespace driftwright::follow {
 namespace {
@@ -44,7 +45,9 @@ void require_laws_of_streams(const std::string& path) {
   const Json laws = output::list(output::value<Json>(file, "observer"), "effects");
   if (laws.empty()) return;
   for (const Json& law : laws) yaml += "  - " + law.get<std::string>() + "\n";
-  for (const ConfigMap& entry : ConfigMap::of_tree(read_config_text(yaml, "the list `effects`")).maps("effects")) {
+  std::vector<scenarios::FormerWord> former;  // of an earlier release
+  const ConfigNodePtr tree = scenarios::in_present_words(read_config_text(yaml, "the list `effects`"), former);
+  for (const ConfigMap& entry : ConfigMap::of_tree(tree).maps("effects")) {
     if (const std::string why = why_not(effects::read_effect(entry)); !why.empty())
       throw InputError(fmt::format("{}: cannot be followed: {}", path, why));
   }
@@ -68,10 +71,10 @@ class FollowedPredictor final : public Followed {
         follower_(file_.predictor),
         stage_(settings_of(file_.predictor, options)) {
     require_laws_of_streams(path);
-    if (observer_ && d().hall.empty())
+    if (observer_ && d().ambient.empty())
       throw InputError(
-          fmt::format("{}: cannot be followed: '{}' takes the hall from its scenario, and a stream has none; a "
-                      "thermometer of the hall (`node: hall`) or `ambient` in the records it is fitted on tells it",
+          fmt::format("{}: cannot be followed: '{}' takes the ambient from its scenario, and a stream has none; a "
+                      "thermometer of the ambient (`node: ambient`) or `ambient` in the records it is fitted on tells it",
                       path, d().name));
     if (file_.judged.is_object() && file_.judged.contains("verdict") && file_.judged["verdict"].is_string())
       axis_.verdict = file_.judged["verdict"].get<std::string>();
@@ -94,7 +97,7 @@ class FollowedPredictor final : public Followed {
       for (const FailSafe::Guard& g : d().fail_safe->guards) want(g.input, g.unit);
     }
     if (observer_) {
-      want(d().hall, "degC");
+      want(d().ambient, "degC");
       want("speed", "rpm");
     }
     if (watch_) {
@@ -104,8 +107,8 @@ class FollowedPredictor final : public Followed {
   }
 
   void begin(const std::vector<Channel>& channels) override {
-    const std::string hall = observer_ ? d().hall : "";
-    run_.emplace(channels, hall, observer_ ? observer_->state().system.reference_K : 273.15, observer_ != nullptr);
+    const std::string ambient = observer_ ? d().ambient : "";
+    run_.emplace(channels, ambient, observer_ ? observer_->state().system.reference_K : 273.15, observer_ != nullptr);
   }
 
   bool take(double run_s, const std::vector<double>& values, double step_s) override {

@@ -14,9 +14,9 @@ constexpr std::size_t kMostKept = 8 * compensation::kRowsBack;
 
 }  // namespace
 
-LiveRun::LiveRun(const std::vector<Channel>& channels, const std::string& hall, double reference_K, bool wants_drive)
+LiveRun::LiveRun(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive)
     : reference_C_(reference_K - kZeroCelsius_K),
-      hall_K_(hall.empty() ? 0.0 : std::numeric_limits<double>::quiet_NaN()),
+      ambient_K_(ambient.empty() ? 0.0 : std::numeric_limits<double>::quiet_NaN()),
       wants_drive_(wants_drive) {
   const auto find = [&](const std::string& name, const char* unit) {
     const auto at =
@@ -29,14 +29,14 @@ LiveRun::LiveRun(const std::vector<Channel>& channels, const std::string& hall, 
   speed_ = find("speed", "rpm");
   cutting_ = find("cutting_power", "W");
   feed_ = {find("feed_x", "mm_min"), find("feed_y", "mm_min"), find("feed_z", "mm_min")};
-  hall_ = find(hall, "degC");
+  ambient_ = find(ambient, "degC");
 }
 
 bool LiveRun::add(double run_s, const std::vector<double>& values) {
   const auto value = [&](std::size_t channel) {
     return channel == kNone ? std::numeric_limits<double>::quiet_NaN() : values[channel];
   };
-  if (const double hall_C = value(hall_); !std::isnan(hall_C)) hall_K_ = hall_C - reference_C_;
+  if (const double ambient_C = value(ambient_); !std::isnan(ambient_C)) ambient_K_ = ambient_C - reference_C_;
   before_ = drive_;
   if (const double rpm = value(speed_); !std::isnan(rpm)) {
     has_drive_ = true;
@@ -51,7 +51,7 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
 
   Record& readings = run_.readings;
   if (readings.time_s.empty()) {
-    if (std::isnan(hall_K_) || (wants_drive_ && !has_drive_)) return false;
+    if (std::isnan(ambient_K_) || (wants_drive_ && !has_drive_)) return false;
     before_ = drive_;
     start_s_ = run_s;
   }
@@ -60,8 +60,8 @@ bool LiveRun::add(double run_s, const std::vector<double>& values) {
   if (!readings.time_s.empty()) run_.cyclogram.sections.push_back({time_s - readings.time_s.back(), before_});
   readings.time_s.push_back(time_s);
   for (std::size_t k = 0; k < values.size(); ++k) readings.channels[k].values.push_back(values[k]);
-  run_.hall.time_s.push_back(time_s);
-  run_.hall.value.push_back(hall_K_);
+  run_.ambient.time_s.push_back(time_s);
+  run_.ambient.value.push_back(ambient_K_);
   return true;
 }
 
@@ -72,8 +72,8 @@ void LiveRun::forget() {
   const auto drop = [&](auto& list) { list.erase(list.begin(), list.begin() + n); };
   drop(readings.time_s);
   for (Channel& c : readings.channels) drop(c.values);
-  drop(run_.hall.time_s);
-  drop(run_.hall.value);
+  drop(run_.ambient.time_s);
+  drop(run_.ambient.value);
   drop(run_.cyclogram.sections);  // one behind each row
   run_.n_forgotten += static_cast<std::size_t>(n);
   run_.cyclogram_from_s = readings.time_s.front();
@@ -83,7 +83,7 @@ LiveRun::State LiveRun::state() const {
   State s{.start_s = start_s_,
           .n_rows = n_rows(),
           .time_s = run_.readings.time_s.back(),
-          .hall_K = hall_K_,
+          .ambient_K = ambient_K_,
           .top_rpm = top_rpm_,
           .values = {},
           .drive = drive_};
@@ -93,7 +93,7 @@ LiveRun::State LiveRun::state() const {
 
 void LiveRun::recall(const State& s) {
   start_s_ = s.start_s;
-  hall_K_ = s.hall_K;
+  ambient_K_ = s.ambient_K;
   top_rpm_ = s.top_rpm;
   drive_ = s.drive;
   has_drive_ = true;
@@ -101,7 +101,7 @@ void LiveRun::recall(const State& s) {
   run_.cyclogram_from_s = s.time_s;
   run_.readings.time_s = {s.time_s};
   for (std::size_t k = 0; k < s.values.size(); ++k) run_.readings.channels[k].values = {s.values[k]};
-  run_.hall = {{s.time_s}, {s.hall_K}};
+  run_.ambient = {{s.time_s}, {s.ambient_K}};
   run_.cyclogram.sections.clear();
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The rows that were taken, as a run that predictors follow: readings, drive and hall, as far back as they look.
+// The rows that were taken, as a run that predictors follow: readings, drive and ambient, as far back as they look.
 
 #include "compensation/predictors/observed_run.hpp"
 #include "follow/stream_row.hpp"
@@ -9,12 +9,12 @@ namespace driftwright::follow {
 class LiveRun {
  public:
   /// @param channels     of the stream
-  /// @param hall         channel in degC that reads the hall; "": nobody asks for it
-  /// @param reference_K  that the hall counts from
+  /// @param ambient         channel in degC that reads the ambient; "": nobody asks for it
+  /// @param reference_K  that the ambient counts from
   /// @param wants_drive  whether rows must say what drives the machine
-  LiveRun(const std::vector<Channel>& channels, const std::string& hall, double reference_K, bool wants_drive);
+  LiveRun(const std::vector<Channel>& channels, const std::string& ambient, double reference_K, bool wants_drive);
 
-  /// Takes a row; a drive or hall that is missing goes on as it was. @return false: no row has told drive and hall yet, and this one does
+  /// Takes a row; a drive or ambient that is missing goes on as it was. @return false: no row has told drive and ambient yet, and this one does
   /// neither, so that the run has not begun
   bool add(double run_s, const std::vector<double>& values);
 
@@ -24,13 +24,13 @@ class LiveRun {
   [[nodiscard]] std::size_t n_rows() const { return run_.n_forgotten + run_.readings.n_samples(); }
   /// From the row before the last until the last.
   [[nodiscard]] const Drive& drive_before() const { return before_; }
-  [[nodiscard]] double hall_K() const { return hall_K_; }  ///< at the last row, minus the reference temperature
+  [[nodiscard]] double ambient_K() const { return ambient_K_; }  ///< at the last row, minus the reference temperature
 
   /// The last row and what it goes on from, such as goes into a file.
   struct State {
     double start_s = 0.0;  ///< of the run, by the guard's time
     std::size_t n_rows = 0;
-    double time_s = 0.0, hall_K = 0.0, top_rpm = 0.0;
+    double time_s = 0.0, ambient_K = 0.0, top_rpm = 0.0;
     std::vector<double> values;
     Drive drive;  ///< from the last row on
   };
@@ -41,9 +41,9 @@ class LiveRun {
   void forget();
 
   compensation::ObservedRun run_;
-  double reference_C_, hall_K_, top_rpm_ = 0.0, start_s_ = 0.0;
+  double reference_C_, ambient_K_, top_rpm_ = 0.0, start_s_ = 0.0;
   bool wants_drive_, has_drive_ = false;
-  std::size_t speed_, cutting_, hall_;  ///< channels; none where there is no such one
+  std::size_t speed_, cutting_, ambient_;  ///< channels; none where there is no such one
   std::array<std::size_t, 3> feed_{};
   Drive drive_, before_;
 };

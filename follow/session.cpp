@@ -115,7 +115,7 @@ FollowLine Session::line(bool is_taken, std::vector<Fault> faults, const std::st
   l.state = !has_begun || trust <= kOff ? "off" : trust < kOn ? "reduced" : is_taken ? "on" : "held";
   if (l.state == "on") return l;
   if (!has_begun) {
-    l.why = "no row has told drive and hall yet";
+    l.why = "no row has told drive and ambient yet";
   } else if (!is_taken) {
     l.why = !passed_over.empty() ? passed_over : fmt::format("the row is passed over: {}", fmt::join(l.faults, ", "));
   } else if (!doubted.empty()) {

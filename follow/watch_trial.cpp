@@ -48,17 +48,17 @@ Cyclogram shop_days(double duration_s, double top_rpm, Random& random) {
 }
 
 /// Minus the reference temperature [K], an hour a knot: a day's wave of 1 to 3 K and what wanders by 0.3 K.
-TimeSeries shop_hall(double duration_s, double at_start_K, Random& random) {
-  TimeSeries hall;
+TimeSeries shop_ambient(double duration_s, double at_start_K, Random& random) {
+  TimeSeries ambient;
   const double wave_K = 0.5 * random.uniform(1.0, 3.0);
   double wander_K = 0.0;
   for (double t_s = 0.0; t_s <= duration_s + kHour_s; t_s += kHour_s) {
     const double day = wave_K * std::sin(2.0 * std::numbers::pi * (t_s / kDay_s - 0.1));
-    hall.time_s.push_back(t_s);
-    hall.value.push_back(at_start_K + day - wave_K * std::sin(-0.2 * std::numbers::pi) + wander_K);
+    ambient.time_s.push_back(t_s);
+    ambient.value.push_back(at_start_K + day - wave_K * std::sin(-0.2 * std::numbers::pi) + wander_K);
     wander_K = 0.9 * wander_K + 0.3 * std::sqrt(1.0 - 0.81) * random.normal();
   }
-  return hall;
+  return ambient;
 }
 
 solver::ReducedSystem broken(const solver::ReducedSystem& machine, const TrialFault& fault) {
@@ -71,7 +71,7 @@ solver::ReducedSystem broken(const solver::ReducedSystem& machine, const TrialFa
   if (fault.kind == Kind::kFilm || fault.kind == Kind::kFanStops) f.exchange.at(fault.index) = fault.factor;
   if (fault.kind == Kind::kDoorOpens) {
     for (std::size_t e = 0; e < f.exchange.size(); ++e)
-      f.exchange[e] = machine.exchanges[e].reaches_hall() ? fault.factor : 1.0;
+      f.exchange[e] = machine.exchanges[e].reaches_ambient() ? fault.factor : 1.0;
   }
   return solver::with_factors(machine, f);
 }
@@ -114,7 +114,7 @@ TrialMachine::TrialMachine(const Observer& model, std::vector<std::string> senso
       sensors_(std::move(sensors)),
       settings_(settings),
       machine_(compensation::scattered(model_.system, settings.scatter, static_cast<int>(seed), true)),
-      observer_(model_.system, model_.start, model_.start_hall_K, sensors_, model_.drift, model_.settings) {
+      observer_(model_.system, model_.start, model_.start_ambient_K, sensors_, model_.drift, model_.settings) {
   const std::vector<std::string>& outputs = machine_.outputs.name;
   for (const std::string& name : sensors_)
     output_.push_back(std::find(outputs.begin(), outputs.end(), name) - outputs.begin());
@@ -122,18 +122,18 @@ TrialMachine::TrialMachine(const Observer& model, std::vector<std::string> senso
   for (const double share : kTestedSpeeds) {
     const Cyclogram test{.name = "test",
                          .sections = {{kTestedFor_s, {.speed_rpm = share * settings.top_rpm}}, {kTestedFor_s, {}}}};
-    tests.push_back(read(test, {{0.0}, {model_.start_hall_K}}, {}, 100 * seed + tests.size(), true));
+    tests.push_back(read(test, {{0.0}, {model_.start_ambient_K}}, {}, 100 * seed + tests.size(), true));
   }
   observer_.learn(tests);
 }
 
-Eigen::MatrixXd TrialMachine::readings_K(const Cyclogram& cyclogram, const TimeSeries& hall,
+Eigen::MatrixXd TrialMachine::readings_K(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                          const std::vector<double>& time_s, const TrialFault& fault) const {
-  const Eigen::VectorXd start = model_.start + (hall.at(0.0) - model_.start_hall_K) * machine_.ones;
+  const Eigen::VectorXd start = model_.start + (ambient.at(0.0) - model_.start_ambient_K) * machine_.ones;
   const bool has_fault = fault.kind != TrialFault::Kind::kNone;
   std::vector<double> before, behind;
   for (double t_s : time_s) (has_fault && t_s >= fault.onset_s ? behind : before).push_back(t_s);
-  if (behind.empty()) return solver::Propagator(machine_).run(cyclogram, hall, before, start).outputs;
+  if (behind.empty()) return solver::Propagator(machine_).run(cyclogram, ambient, before, start).outputs;
   Eigen::MatrixXd states,
       y(static_cast<Eigen::Index>(machine_.outputs.name.size()), static_cast<Eigen::Index>(time_s.size()));
   std::vector<double> until = before;
@@ -141,9 +141,9 @@ Eigen::MatrixXd TrialMachine::readings_K(const Cyclogram& cyclogram, const TimeS
   if (before.back() >= fault.onset_s) until.pop_back();
   const auto n_before = static_cast<Eigen::Index>(before.size()), n_behind = static_cast<Eigen::Index>(behind.size());
   y.leftCols(n_before) =
-      solver::Propagator(machine_).run(cyclogram, hall, until, start, false, &states).outputs.leftCols(n_before);
+      solver::Propagator(machine_).run(cyclogram, ambient, until, start, false, &states).outputs.leftCols(n_before);
   const solver::ReducedSystem now = broken(machine_, fault);
-  TimeSeries air = hall;
+  TimeSeries air = ambient;
   if (fault.kind == TrialFault::Kind::kDoorOpens) {
     for (double& v : air.value) v += kDoor_K;
   }
@@ -153,23 +153,23 @@ Eigen::MatrixXd TrialMachine::readings_K(const Cyclogram& cyclogram, const TimeS
   if (fault.kind == TrialFault::Kind::kSensorFallsOff) {
     const Eigen::Index k = output_.at(fault.index);
     for (Eigen::Index i = n_before; i < y.cols(); ++i) {
-      const double t_s = time_s[static_cast<std::size_t>(i)], h = hall.at(t_s);
+      const double t_s = time_s[static_cast<std::size_t>(i)], h = ambient.at(t_s);
       y(k, i) = h + (y(k, n_before - 1) - h) * std::exp(-(t_s - fault.onset_s) / kFallsFor_s);
     }
   }
   return y;
 }
 
-ObservedRun TrialMachine::read(const Cyclogram& cyclogram, const TimeSeries& hall, const TrialFault& fault,
+ObservedRun TrialMachine::read(const Cyclogram& cyclogram, const TimeSeries& ambient, const TrialFault& fault,
                                std::uint64_t seed, bool with_drift) const {
-  ObservedRun run{.cyclogram = cyclogram, .hall = {}, .readings = {.source = "trial", .time_s = {}, .channels = {}}};
+  ObservedRun run{.cyclogram = cyclogram, .ambient = {}, .readings = {.source = "trial", .time_s = {}, .channels = {}}};
   std::vector<double>& t = run.readings.time_s;
   for (double t_s = 0.0; t_s <= cyclogram.duration_s(); t_s += settings_.period_s) t.push_back(t_s);
-  const Eigen::MatrixXd y = readings_K(cyclogram, hall, t, fault);
+  const Eigen::MatrixXd y = readings_K(cyclogram, ambient, t, fault);
   Random random(seed, 7);
   for (double t_s : t) {
-    run.hall.time_s.push_back(t_s);
-    run.hall.value.push_back(hall.at(t_s) + model_.settings.reading_K * random.normal());
+    run.ambient.time_s.push_back(t_s);
+    run.ambient.value.push_back(ambient.at(t_s) + model_.settings.reading_K * random.normal());
   }
   for (std::size_t k = 0; k < sensors_.size(); ++k) {
     run.readings.channels.push_back({sensors_[k], "degC", {}});
@@ -190,16 +190,16 @@ ObservedRun TrialMachine::read(const Cyclogram& cyclogram, const TimeSeries& hal
 ObservedRun TrialMachine::work(double duration_s, const TrialFault& fault, std::uint64_t seed) const {
   Random random(seed, 8);
   const Cyclogram days = shop_days(duration_s, settings_.top_rpm, random);
-  return read(days, shop_hall(duration_s, model_.start_hall_K, random), fault, seed, false);
+  return read(days, shop_ambient(duration_s, model_.start_ambient_K, random), fault, seed, false);
 }
 
 double TrialMachine::nats(double duration_s, const TrialFault& fault, std::uint64_t seed) const {
   Random random(seed, 8);
   const Cyclogram days = shop_days(duration_s, settings_.top_rpm, random);
-  const TimeSeries hall = shop_hall(duration_s, model_.start_hall_K, random);
+  const TimeSeries ambient = shop_ambient(duration_s, model_.start_ambient_K, random);
   std::vector<double> t;
   for (double t_s = 0.0; t_s <= days.duration_s(); t_s += settings_.period_s) t.push_back(t_s);
-  const Eigen::MatrixXd made = readings_K(days, hall, t, fault) - readings_K(days, hall, t, {});
+  const Eigen::MatrixXd made = readings_K(days, ambient, t, fault) - readings_K(days, ambient, t, {});
   const double rows = kBlock_s / settings_.period_s;
   const double variance = std::pow(model_.settings.model_K, 2) + std::pow(model_.settings.reading_K, 2) / rows;
   double sum = 0.0;
@@ -209,7 +209,7 @@ double TrialMachine::nats(double duration_s, const TrialFault& fault, std::uint6
 
 double TrialMachine::time_constant_s(const TrialFault& fault) const {
   using Kind = TrialFault::Kind;
-  const effects::Inputs at{.drive = {.speed_rpm = 0.5 * settings_.top_rpm}, .hall_K = model_.start_hall_K};
+  const effects::Inputs at{.drive = {.speed_rpm = 0.5 * settings_.top_rpm}, .ambient_K = model_.start_ambient_K};
   Eigen::MatrixXd k = machine_.conduction;
   for (const auto& e : machine_.exchanges) k += e.coefficient(at) * e.matrix;
   Eigen::VectorXd b = Eigen::VectorXd::Zero(machine_.size());
@@ -218,7 +218,7 @@ double TrialMachine::time_constant_s(const TrialFault& fault) const {
   if (fault.kind == Kind::kSensorFallsOff) b = machine_.outputs.state.col(output_.at(fault.index));
   if (fault.kind == Kind::kDoorOpens) {
     for (const auto& e : machine_.exchanges) {
-      if (e.reaches_hall()) b += e.coefficient(at) * e.to_hall;
+      if (e.reaches_ambient()) b += e.coefficient(at) * e.to_ambient;
     }
   }
   const Eigen::VectorXd x = k.ldlt().solve(b);

@@ -32,7 +32,7 @@ class TrialMachine {
   TrialMachine(const compensation::Observer& model, std::vector<std::string> sensors, const TrialSettings& settings,
                std::uint64_t seed);
 
-  /// Days of a shop: sections of 15 min to 2 h at speeds from rest to the top between 6 and 22 h, rests at night and at week-ends; a hall that
+  /// Days of a shop: sections of 15 min to 2 h at speeds from rest to the top between 6 and 22 h, rests at night and at week-ends; an ambient that
   /// follows the day and wanders. Thermometers read with the model's noise.
   [[nodiscard]] compensation::ObservedRun work(double duration_s, const TrialFault& fault, std::uint64_t seed) const;
 
@@ -47,10 +47,10 @@ class TrialMachine {
   [[nodiscard]] const solver::ReducedSystem& system() const { return machine_; }
 
  private:
-  [[nodiscard]] Eigen::MatrixXd readings_K(const Cyclogram& cyclogram, const TimeSeries& hall,
+  [[nodiscard]] Eigen::MatrixXd readings_K(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                            const std::vector<double>& time_s, const TrialFault& fault) const;
-  [[nodiscard]] compensation::ObservedRun read(const Cyclogram& cyclogram, const TimeSeries& hall, const TrialFault& fault,
-                                               std::uint64_t seed, bool with_drift) const;
+  [[nodiscard]] compensation::ObservedRun read(const Cyclogram& cyclogram, const TimeSeries& ambient,
+                                               const TrialFault& fault, std::uint64_t seed, bool with_drift) const;
 
   compensation::Observer::State model_;
   std::vector<std::string> sensors_;
@@ -60,7 +60,7 @@ class TrialMachine {
   compensation::Observer observer_;
 };
 
-/// Thermometers that a watch can read: outputs of the observer's model in K that are not the hall alone, as far as a stream has them.
+/// Thermometers that a watch can read: outputs of the observer's model in K that are not the ambient alone, as far as a stream has them.
 [[nodiscard]] std::vector<std::string> watchable_sensors(const compensation::Observer& observer,
                                                          const std::vector<Channel>& channels);
 

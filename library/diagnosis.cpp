@@ -4,6 +4,7 @@
 
 #include "app/diagnosis_files.hpp"
 #include "diagnosis/extended_scenario.hpp"
+#include "effects/where_in_files.hpp"
 #include "library/parts.hpp"
 #include "studies/measured_twin.hpp"
 
@@ -18,7 +19,7 @@ std::vector<Estimate> plain(const std::vector<diagnosis::Estimate>& estimates) {
 
 Cause plain(const diagnosis::Cause& cause) {
   Cause c{.effect = cause.effect,
-          .where = cause.where,
+          .where = effects::where_in_files(cause.where),
           .law = cause.law,
           .standing = diagnosis::word(cause.standing),
           .parameters = plain(cause.parameters),

@@ -13,7 +13,7 @@
 namespace driftwright {
 
 struct Run::State {
-  scenarios::MachineModel machine;  ///< its hall grows row by row
+  scenarios::MachineModel machine;  ///< its ambient grows row by row
   solver::TransientOptions tolerances;
   std::shared_ptr<const scenarios::Model> model;
   Cyclogram cyclogram;  ///< so far
@@ -53,8 +53,8 @@ std::vector<double> Run::step(const Row& row) {
   s.cyclogram.sections.push_back({row.time_s - before_s, row.drive});
   const double end_s = s.cyclogram.duration_s();
   if (row.ambient_degC) {
-    s.machine.hall.time_s.push_back(end_s);
-    s.machine.hall.value.push_back(*row.ambient_degC + kZeroCelsius_K - s.machine.reference_K);
+    s.machine.ambient.time_s.push_back(end_s);
+    s.machine.ambient.value.push_back(*row.ambient_degC + kZeroCelsius_K - s.machine.reference_K);
   }
   solver::TransientOptions from_here = s.tolerances;
   from_here.from_s = before_s;
@@ -62,7 +62,7 @@ std::vector<double> Run::step(const Row& row) {
   const auto keep = [&](double, const Eigen::VectorXd& state) { s.state = state; };
   const auto run = [&](const auto& system) {
     const Eigen::VectorXd start = s.state;
-    return solver::simulate(system, felt.cyclogram, felt.hall, {end_s}, from_here, start, keep);
+    return solver::simulate(system, felt.cyclogram, felt.ambient, {end_s}, from_here, start, keep);
   };
   const solver::Trajectory step = s.model->reduced() ? run(s.model->reduced()->system) : run(s.model->full()->system);
   s.take(end_s, step.outputs.col(0));
@@ -86,9 +86,9 @@ Run Machine::start(std::optional<double> ambient_degC, const std::string& run_na
   }
   double warmer_K = 0.0;
   if (ambient_degC) {
-    s->machine.hall = {{0.0}, {*ambient_degC + kZeroCelsius_K - own.reference_K}};
-    if (own.start == scenarios::Start::kHall || own.start == scenarios::Start::kSteady)
-      warmer_K = scenarios::felt_hall_at_start_K(s->machine) - scenarios::felt_hall_at_start_K(own);
+    s->machine.ambient = {{0.0}, {*ambient_degC + kZeroCelsius_K - own.reference_K}};
+    if (own.start == scenarios::Start::kAmbient || own.start == scenarios::Start::kSteady)
+      warmer_K = scenarios::felt_ambient_at_start_K(s->machine) - scenarios::felt_ambient_at_start_K(own);
   }
   s->state = scenarios::start_of(own, *s->model) + warmer_K * scenarios::ones_of(*s->model);
   s->remembers = !effects::reading_chain(own.effects, run_name).empty();

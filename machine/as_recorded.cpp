@@ -14,17 +14,18 @@ Record as_recorded(const MachineModel& model, const solver::Trajectory& run, con
   solver::Trajectory told;
   told.time_s = run.time_s;
   told.outputs = run.outputs;
-  Eigen::RowVectorXd hall(static_cast<Eigen::Index>(run.time_s.size()));
-  for (Eigen::Index i = 0; i < hall.size(); ++i) hall[i] = model.hall.at(run.time_s[static_cast<std::size_t>(i)]);
+  Eigen::RowVectorXd ambient(static_cast<Eigen::Index>(run.time_s.size()));
+  for (Eigen::Index i = 0; i < ambient.size(); ++i) ambient[i] = model.ambient.at(run.time_s[static_cast<std::size_t>(i)]);
   for (std::size_t i = 0; i < model.sensors.size(); ++i) {  // outputs begin with the sensors
-    if (is_on_hall(model.sensors[i])) told.outputs.row(static_cast<Eigen::Index>(i)) = hall;
+    if (is_on_ambient(model.sensors[i])) told.outputs.row(static_cast<Eigen::Index>(i)) = ambient;
   }
   if (const effects::ReadingChain chain = effects::reading_chain(model.effects, recorded.name); !chain.empty()) {
     const FeltRun felt = felt_run(model, recorded);
-    told.outputs = chain.apply(outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.hall, std::move(told.outputs));
+    told.outputs =
+        chain.apply(outputs.name, outputs.unit, run.time_s, felt.cyclogram, felt.ambient, std::move(told.outputs));
   }
   Record record = to_record(told, outputs, recorded, model.reference_K);
-  std::vector<Channel> further;  // columns that drive the machine; the hall
+  std::vector<Channel> further;  // columns that drive the machine; the ambient
   for (const std::string& name : wanted_columns(model, recorded.name)) {
     const Cyclogram::Column* column = recorded.column(name);
     const auto is_it = [&](const Channel& c) { return c.name == column->name; };
@@ -36,7 +37,7 @@ Record as_recorded(const MachineModel& model, const solver::Trajectory& run, con
   }
   if (has_ambient_channel(model)) {
     further.push_back({kAmbient, "degC", {}});
-    for (double hall_K : hall) further.back().values.push_back(hall_K + (model.reference_K - kZeroCelsius_K));
+    for (double ambient_K : ambient) further.back().values.push_back(ambient_K + (model.reference_K - kZeroCelsius_K));
   }
   const std::ptrdiff_t n_read = std::count_if(outputs.name.begin(), outputs.name.end(),
                                               [](const std::string& name) { return !effects::is_mean_output(name); });

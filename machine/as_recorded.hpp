@@ -7,8 +7,8 @@
 
 namespace driftwright::scenarios {
 
-/// The record of a run: drive as recorded; sensors, displacements and tilts as instruments tell them. A sensor on the hall reads
-/// the recorded hall; where there is none, the channel `ambient` does.
+/// The record of a run: drive as recorded; sensors, displacements and tilts as instruments tell them. A sensor on the ambient reads
+/// the recorded ambient; where there is none, the channel `ambient` does.
 /// @param run  of felt_run(model, recorded)
 [[nodiscard]] Record as_recorded(const MachineModel& model, const solver::Trajectory& run, const solver::Outputs& outputs,
                                  const Cyclogram& recorded);

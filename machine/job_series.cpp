@@ -40,30 +40,30 @@ class SeriesWriter {
 };
 
 TimeSeries continued(const TimeSeries& run, double end_s, const TimeSeries& scenario) {
-  TimeSeries hall;
+  TimeSeries ambient;
   for (std::size_t i = 0; i < run.time_s.size() && run.time_s[i] < end_s; ++i) {
-    hall.time_s.push_back(run.time_s[i]);
-    hall.value.push_back(run.value[i]);
+    ambient.time_s.push_back(run.time_s[i]);
+    ambient.value.push_back(run.value[i]);
   }
   const double offset_K = run.at(end_s) - scenario.at(end_s);
-  hall.time_s.push_back(end_s);
-  hall.value.push_back(run.at(end_s));
+  ambient.time_s.push_back(end_s);
+  ambient.value.push_back(run.at(end_s));
   for (std::size_t i = 0; i < scenario.time_s.size(); ++i) {
     if (!(scenario.time_s[i] > end_s)) continue;
-    hall.time_s.push_back(scenario.time_s[i]);
-    hall.value.push_back(scenario.value[i] + offset_K);
+    ambient.time_s.push_back(scenario.time_s[i]);
+    ambient.value.push_back(scenario.value[i] + offset_K);
   }
-  return hall;
+  return ambient;
 }
 
 }  // namespace
 
-JobSeries job_series(const Cyclogram& job, const JobOrder& order, const TimeSeries& scenario_hall, double interval_s) {
-  JobSeries series{.cyclogram = {.name = job.name, .sections = {}}, .hall = scenario_hall, .time_s = {}, .parts = {}};
+JobSeries job_series(const Cyclogram& job, const JobOrder& order, const TimeSeries& scenario_ambient, double interval_s) {
+  JobSeries series{.cyclogram = {.name = job.name, .sections = {}}, .ambient = scenario_ambient, .time_s = {}, .parts = {}};
   SeriesWriter writer(series, interval_s);
   if (order.start) {
     (void)writer.add(order.start->cyclogram.sections);
-    if (order.start->has_ambient()) series.hall = continued(order.start->hall, series.time_s.back(), scenario_hall);
+    if (order.start->has_ambient()) series.ambient = continued(order.start->ambient, series.time_s.back(), scenario_ambient);
   }
   writer.add_rest(order.pause_s);
   for (int part = 0; part < order.n_parts; ++part) {

@@ -1,6 +1,6 @@
 #pragma once
 // What a machine does from a known state on: the run that was before, a pause, and a job that is done once or several times. All of
-// it is one cyclogram, so that the machine's state, the hall and the times of its effects go on.
+// it is one cyclogram, so that the machine's state, the ambient and the times of its effects go on.
 
 #include <cstddef>
 #include <optional>
@@ -25,7 +25,7 @@ struct PartRows {
 
 struct JobSeries {
   Cyclogram cyclogram;         ///< from the start of the run before to the end of the last part, named as the job
-  TimeSeries hall;             ///< over the same time, minus the reference temperature [K]
+  TimeSeries ambient;          ///< over the same time, minus the reference temperature [K]
   std::vector<double> time_s;  ///< of outputs: each stretch's own rows and its end, strictly increasing from 0
   std::vector<PartRows> parts;
 
@@ -33,16 +33,16 @@ struct JobSeries {
   [[nodiscard]] double start_s() const { return time_s[parts.front().first]; }
 };
 
-/// The hall is that of the run before while it lasts. Behind it the hall goes on from its last reading by as much as the scenario's
-/// hall changes from that time on:
+/// The ambient is that of the run before while it lasts. Behind it the ambient goes on from its last reading by as much as the scenario's
+/// ambient changes from that time on:
 ///
-///     hall(t) = hall_run(T) + hall_scenario(t) - hall_scenario(T)   for t > T, the end of the run
+///     ambient(t) = ambient_run(T) + ambient_scenario(t) - ambient_scenario(T)   for t > T, the end of the run
 ///
-/// so that it never jumps, and is the scenario's own where the run was simulated in it. A run without a hall had the scenario's.
+/// so that it never jumps, and is the scenario's own where the run was simulated in it. A run without an ambient had the scenario's.
 /// @param job            at least one section
-/// @param scenario_hall  minus the reference temperature [K]
+/// @param scenario_ambient  minus the reference temperature [K]
 /// @param interval_s     between two outputs, > 0
-[[nodiscard]] JobSeries job_series(const Cyclogram& job, const JobOrder& order, const TimeSeries& scenario_hall,
+[[nodiscard]] JobSeries job_series(const Cyclogram& job, const JobOrder& order, const TimeSeries& scenario_ambient,
                                    double interval_s);
 
 }  // namespace driftwright::scenarios

@@ -50,11 +50,15 @@ void must_be_one_of(const Where& where, const std::string& what, const std::stri
   if (std::find(known.begin(), known.end(), name) == known.end()) unknown_name(where, what, name, known);
 }
 
-/// Lumped nodes and the hall. @throws InputError  where two effects make a node of the same name, or one called hall
+/// Lumped nodes and the ambient. @throws InputError  where two effects make a node of the same name, or one called ambient
 std::vector<std::string> node_names(const MachineModel& model) {
-  std::vector<std::string> nodes = {effects::kHallName};
+  std::vector<std::string> nodes = {effects::kAmbientName};
   for (const effects::Effect& e : model.effects) {
     for (const effects::LumpedNode& n : effects::heat_balance({e}).nodes) {
+      if (n.name == effects::kAmbientName)
+        throw InputError(
+            e.where,
+            fmt::format("'{}' is the air around every machine and no lumped node; give the node a name of its own", n.name));
       if (std::find(nodes.begin(), nodes.end(), n.name) != nodes.end()) {
         throw InputError(e.where, fmt::format("there is a lumped node '{}' already; each wants a name of its own", n.name));
       }
@@ -117,8 +121,8 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
       });
       if (is_of_joint && e["decay"] != 0.0)
         throw InputError(e.where, "a joint has no temperature of its own; `decay` wants one");
-    } else if (e.place_kind == effects::Place::kNode && e.place == effects::kHallName) {
-      throw InputError(e.where, "the hall is no lumped node; nothing heats or holds it");
+    } else if (e.place_kind == effects::Place::kNode && e.place == effects::kAmbientName) {
+      throw InputError(e.where, "the ambient is no lumped node; nothing heats or holds it");
     } else {
       must_exist(e.where, e.body().kind, e.body().name);
     }
@@ -321,8 +325,8 @@ PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
       const mesh::MeshPoint at = place_point(mesh, *point);
       const auto s = mesh::shape_values(mesh.cells.shape[at.cell], at.xi);
       for (int i = 0; i < s.n; ++i) weights.emplace_back(mesh.cells.nodes(at.cell)[i], s.N[i]);
-    } else if (const std::string& node = std::get<std::string>(sensor.place); node != "hall") {
-      std::vector<std::string> known = {"hall"};
+    } else if (const std::string& node = std::get<std::string>(sensor.place); node != effects::kAmbientName) {
+      std::vector<std::string> known = {effects::kAmbientName};
       for (std::size_t i = 0; i < placed.balance.nodes.size(); ++i) {
         known.push_back(placed.balance.nodes[i].name);
         if (known.back() == node) weights.emplace_back(mesh.n_nodes() + static_cast<int>(i), 1.0);
@@ -365,7 +369,7 @@ std::vector<effects::Body> bodies_of_readings(const MachineModel& model) {
     if (!e.kind->change_readings) continue;
     for (const auto& [name, body] : e.references) {
       const bool is_new = std::find(bodies.begin(), bodies.end(), body) == bodies.end();
-      if (is_new && !(body == effects::hall())) bodies.push_back(body);
+      if (is_new && !(body == effects::ambient_node())) bodies.push_back(body);
     }
   }
   return bodies;
@@ -389,9 +393,9 @@ solver::Outputs output_names(const MachineModel& model, const PlacedMachine& pla
     out.name.push_back(effects::mean_output(body.name));
     out.unit.emplace_back("K");
   }
-  out.hall = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(out.name.size()));
+  out.ambient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(out.name.size()));
   for (std::size_t i = 0; i < placed.sensor_weights.size(); ++i) {
-    if (placed.sensor_weights[i].empty()) out.hall[static_cast<Eigen::Index>(i)] = 1.0;
+    if (placed.sensor_weights[i].empty()) out.ambient[static_cast<Eigen::Index>(i)] = 1.0;
   }
   return out;
 }
@@ -428,17 +432,18 @@ Machine build_with_influences(const MachineModel& model, PlacedMachine placed, c
 
 Eigen::VectorXd start_state(const MachineModel& model, const Machine& machine) {
   const int n = machine.system.size();
-  const double hall_K = felt_hall_at_start_K(model);
+  const double ambient_K = felt_ambient_at_start_K(model);
   switch (model.start) {
     case Start::kReference:
       return Eigen::VectorXd::Zero(n);
-    case Start::kHall:
-      return Eigen::VectorXd::Constant(n, hall_K);
+    case Start::kAmbient:
+      return Eigen::VectorXd::Constant(n, ambient_K);
     case Start::kUniform:
       return Eigen::VectorXd::Constant(n, model.start_K - model.reference_K);
     case Start::kSteady:
       require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
-      return solver::steady_state(machine.system, {.drive = {}, .hall_K = hall_K}, Eigen::VectorXd::Constant(n, hall_K));
+      return solver::steady_state(machine.system, {.drive = {}, .ambient_K = ambient_K},
+                                  Eigen::VectorXd::Constant(n, ambient_K));
   }
   throw std::logic_error("start_state: no such start");
 }

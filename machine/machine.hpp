@@ -18,7 +18,7 @@ struct PlacedMachine {
   effects::HeatBalance balance;
   std::vector<solver::Support> supports;
   std::vector<solver::JointMechanics> joints;
-  /// Weights of each thermometer on the unknowns; empty for one that reads the hall.
+  /// Weights of each thermometer on the unknowns; empty for one that reads the ambient.
   std::vector<std::vector<std::pair<int, double>>> sensor_weights;
   /// Displacements, then tilts; of no terms for a displacement by sensitivities alone.
   std::vector<solver::DisplacementFunctional> functionals;
@@ -54,10 +54,10 @@ struct Machine {
 [[nodiscard]] Machine build_with_influences(const MachineModel& model, PlacedMachine placed,
                                             const Eigen::MatrixXd& influence);
 
-/// Bodies whose mean temperature effects on readings look at, each once; the hall is none of them.
+/// Bodies whose mean temperature effects on readings look at, each once; the ambient is none of them.
 [[nodiscard]] std::vector<effects::Body> bodies_of_readings(const MachineModel& model);
 
-/// What the instruments of a scenario tell, in its order, then mean temperatures of bodies_of_readings() (effects::mean_output()), and who of them reads the hall; `state` stays empty: before there is a system.
+/// What the instruments of a scenario tell, in its order, then mean temperatures of bodies_of_readings() (effects::mean_output()), and who of them reads the ambient; `state` stays empty: before there is a system.
 [[nodiscard]] solver::Outputs output_names(const MachineModel& model, const PlacedMachine& placed);
 
 /// Temperatures minus the reference temperature at t = 0, by the scenario's `start`.

@@ -12,7 +12,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr int kFormat = 3;  // of the folders; a new one makes all others unknown
+constexpr int kFormat = 4;  // of the folders; a new one makes all others unknown
 
 std::string words(const effects::Body& body) {
   const char* kinds[] = {"region", "surface", "node", "joint"};
@@ -41,7 +41,7 @@ std::string structure(const effects::HeatBalance& balance) {
   for (const auto& r : balance.radiations) add("radiation", r.name, r.surface, r.surrounding);
   for (const auto& n : balance.nodes) add("node", n.name, n.capacity_J_K);
   for (const auto& f : balance.fixed) {
-    add("fixed", f.name, words(f.body), f.follows_hall, fmt::format("{}", fmt::join(f.temperature_K.value, ", ")));
+    add("fixed", f.name, words(f.body), f.follows_ambient, fmt::format("{}", fmt::join(f.temperature_K.value, ", ")));
   }
   for (const auto& s : balance.stratifications) add("stratification", s.gradient_K_m, s.level_m);
   for (const auto& t : balance.thermostats) add("thermostat", t.name, words(t.probe));
@@ -69,8 +69,8 @@ std::string numbers_of_laws(const MachineModel& model) {
 }
 
 /// Of a balance whose laws do not look at temperatures.
-std::vector<double> coefficients_at_standstill(const effects::HeatBalance& balance, double hall_K) {
-  const effects::Inputs standstill{.drive = {}, .hall_K = hall_K};
+std::vector<double> coefficients_at_standstill(const effects::HeatBalance& balance, double ambient_K) {
+  const effects::Inputs standstill{.drive = {}, .ambient_K = ambient_K};
   std::vector<double> values;
   for (const auto& e : balance.exchanges) values.push_back(e.coefficient(standstill));
   return values;
@@ -95,12 +95,12 @@ std::string machine_text(const MachineModel& model) {
     const std::string bytes = read_bytes(imported->path);
     text += fmt::format("mesh file of {} bytes, {}\n", bytes.size(), content_hash(bytes));
   }
-  if (model.start == Start::kHall || model.start == Start::kSteady || !balance.fixed.empty()) {
-    text += fmt::format("hall at the start {} K\n", felt_hall_at_start_K(model));
+  if (model.start == Start::kAmbient || model.start == Start::kSteady || !balance.fixed.empty()) {
+    text += fmt::format("ambient at the start {} K\n", felt_ambient_at_start_K(model));
   }
   if (model.start == Start::kSteady) text += numbers_of_laws(model);
   for (const effects::Body& body : bodies_of_readings(model)) text += fmt::format("mean of {}\n", words(body));
-  if (has_curves(model)) text += fmt::format("curves frozen in a hall of {} K\n", model.hall.at(0.0));
+  if (has_curves(model)) text += fmt::format("curves frozen at an ambient temperature of {} K\n", model.ambient.at(0.0));
   return text;
 }
 
@@ -115,16 +115,17 @@ std::string machine_key(const MachineModel& model, const ReductionPlan& plan, co
     for (const Signal& signal : t.signals) key += fmt::format("typical {} {}\n", signal.name, signal.value);
     key += numbers_of_laws(model);
   } else if (makes_modes) {  // or taken at standstill
-    key +=
-        fmt::format("at standstill {}\n", fmt::join(coefficients_at_standstill(balance, felt_hall_at_start_K(model)), " "));
+    key += fmt::format("at standstill {}\n",
+                       fmt::join(coefficients_at_standstill(balance, felt_ambient_at_start_K(model)), " "));
   }
-  if (freezes_laws || has_curves(model)) key += fmt::format("frozen in a hall of {} K\n", felt_hall_at_start_K(model));
+  if (freezes_laws || has_curves(model))
+    key += fmt::format("frozen at an ambient temperature of {} K\n", felt_ambient_at_start_K(model));
   const auto numbers = [](const Eigen::VectorXd& v) {
     return fmt::format("{}", fmt::join(v.data(), v.data() + v.size(), " "));
   };
   const solver::ReductionDemand& d = plan.demand;
-  key += fmt::format("power {}\nlow {}\nhigh {}\nhall {} K, {} s, tolerance {} K, {} modes, fields {}, parts {}\n",
-                     numbers(d.power_W), numbers(d.low), numbers(d.high), d.hall_K, d.duration_s, plan.tolerance_K,
+  key += fmt::format("power {}\nlow {}\nhigh {}\nambient {} K, {} s, tolerance {} K, {} modes, fields {}, parts {}\n",
+                     numbers(d.power_W), numbers(d.low), numbers(d.high), d.ambient_K, d.duration_s, plan.tolerance_K,
                      plan.n_modes, plan.with_fields, plan.with_parts);
   return key;
 }

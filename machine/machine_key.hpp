@@ -12,7 +12,7 @@ namespace driftwright::scenarios {
 [[nodiscard]] std::string machine_text(const MachineModel& model);
 
 /// What decides a reduced machine: its text, the plan, the version of the program; where a steady start or modal predictors come of
-/// them, the numbers of laws (of a linear machine its coefficients at standstill), and where something is frozen in the hall's first
+/// them, the numbers of laws (of a linear machine its coefficients at standstill), and where something is frozen in the ambient's first
 /// temperature, that.
 [[nodiscard]] std::string machine_key(const MachineModel& model, const ReductionPlan& plan, const std::string& version);
 

@@ -51,7 +51,7 @@ compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenar
                                                 reduced->system.thermostats.front().name));
   }
   return compensation::make_modal_predictors(model.full()->system, n_modes, scenarios::start_state(machine, *model.full()),
-                                             scenarios::felt_hall_at_start_K(machine), typical);
+                                             scenarios::felt_ambient_at_start_K(machine), typical);
 }
 
 scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields) {

@@ -6,6 +6,7 @@
 
 #include "base/file_bytes.hpp"
 #include "base/npy_file.hpp"
+#include "scenarios/reader/former_words.hpp"
 #include "solver/bind_laws.hpp"
 
 namespace driftwright::scenarios {
@@ -40,11 +41,13 @@ Json body_json(const effects::Body& body) {
   return {{"kind", static_cast<int>(body.kind)}, {"name", body.name}};
 }
 effects::Body body_from(const Json& json) {
-  return {static_cast<effects::BodyKind>(json.at("kind").get<int>()), json.at("name")};
+  const auto kind = static_cast<effects::BodyKind>(json.at("kind").get<int>());
+  const std::string name = json.at("name");
+  return {kind, kind == effects::BodyKind::kNode ? name_in_present_words(name) : name};
 }
 
 constexpr const char* kReader =
-    R"(# Reads the reduced model beside this file: dz/dt = -K(c) z + loads P + to_hall c T_hall + offset c,  y = outputs' z + outputs_hall T_hall.
+    R"(# Reads the reduced model beside this file: dz/dt = -K(c) z + loads P + to_hall c T_ambient + offset c,  y = outputs' z + outputs_hall T_ambient.
 # z(0) = start; temperatures in K over reference_K, displacements in m, tilts in rad. c and P at some drives: model.json, "drives".
 import json, os, numpy as np
 here = os.path.dirname(os.path.abspath(__file__))
@@ -54,7 +57,7 @@ a = {n: np.load(os.path.join(here, n + ".npy")) for n in
 r = model["size"]
 G = a["exchanges"].reshape(-1, r, r)  # one symmetric matrix per exchange
 def K(c): return a["conduction"] + np.tensordot(c, G, 1)
-def ABC(drive):  # u = [P of each source, T_hall, 1]
+def ABC(drive):  # u = [P of each source, T_ambient, 1]
     c, col = np.array(drive["coefficients"]), lambda x: x.reshape(r, -1)
     B = np.column_stack([col(a["loads"]), col(a["to_hall"]) @ c, col(a["offset"]) @ c])
     return -K(c), B, a["outputs"].reshape(r, -1).T
@@ -90,7 +93,7 @@ ReadArray from_npy(FileOf file) {
 Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, const WriteArray& write) {
   const auto r = static_cast<Eigen::Index>(system.size());
   Json json = {{"size", system.size()}, {"reference_K", system.reference_K}};
-  std::vector<Eigen::VectorXd> loads, to_hall, flow, offset, medium, probes;
+  std::vector<Eigen::VectorXd> loads, to_ambient, flow, offset, medium, probes;
   Eigen::MatrixXd matrices(r * static_cast<Eigen::Index>(system.exchanges.size()), r);
   for (const auto& s : system.sources) {
     loads.push_back(s.load);
@@ -100,7 +103,7 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
   for (std::size_t i = 0; i < system.exchanges.size(); ++i) {
     const auto& e = system.exchanges[i];
     matrices.middleRows(r * static_cast<Eigen::Index>(i), r) = e.matrix;
-    to_hall.push_back(e.to_hall);
+    to_ambient.push_back(e.to_ambient);
     flow.push_back(e.flow);
     offset.push_back(e.offset);
     medium.push_back(e.medium);
@@ -110,7 +113,7 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
     entry["per"] = static_cast<int>(e.place.per);
     entry["medium_sum"] = e.medium_sum;
     entry["has_medium"] = e.medium.size() > 0;
-    entry["hall_sum"] = e.hall_sum;
+    entry["hall_sum"] = e.ambient_sum;
     entry["offset_sum"] = e.offset_sum;
     entry["has_offset"] = e.offset.size() > 0;
     entry["prescribes"] = e.prescribes;
@@ -119,7 +122,7 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
   for (const auto& p : system.probes) {
     probes.push_back(p.weights);
     json["probes"].push_back(
-        {{"body", body_json(p.body)}, {"before", p.before}, {"hall_share", p.hall_share}, {"offset_K", p.offset_K}});
+        {{"body", body_json(p.body)}, {"before", p.before}, {"hall_share", p.ambient_share}, {"offset_K", p.offset_K}});
   }
   if (!system.parts.empty()) {
     const auto n_parts = static_cast<Eigen::Index>(system.parts.size()), n_outputs = system.outputs.state.cols();
@@ -138,14 +141,14 @@ Json write_system(const ReducedSystem& system, const Eigen::VectorXd& start, con
   json["outputs"] = {{"name", system.outputs.name}, {"unit", system.outputs.unit}};
   write("conduction", system.conduction);
   write("exchanges", matrices);
-  write("to_hall", side_by_side(r, to_hall));
+  write("to_hall", side_by_side(r, to_ambient));
   write("flow", side_by_side(r, flow));
   write("offset", side_by_side(r, offset));
   write("medium", side_by_side(r, medium));
   write("loads", side_by_side(r, loads));
   write("probes", side_by_side(r, probes));
   write("outputs", system.outputs.state);
-  write("outputs_hall", system.outputs.hall);
+  write("outputs_hall", system.outputs.ambient);
   write("ones", system.ones);
   write("start", start);
   return json;
@@ -168,7 +171,7 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   system.mass = Eigen::MatrixXd::Identity(r, r);
   system.conduction = array("conduction", r);
   const Eigen::Index n_exchanges = n_of("exchanges");
-  const Eigen::MatrixXd matrices = sized("exchanges", r * n_exchanges, r), to_hall = array("to_hall", n_exchanges),
+  const Eigen::MatrixXd matrices = sized("exchanges", r * n_exchanges, r), to_ambient = array("to_hall", n_exchanges),
                         flow = array("flow", n_exchanges), offset = array("offset", n_exchanges),
                         medium = array("medium", n_exchanges), loads = array("loads", n_of("sources")),
                         probes = array("probes", n_of("probes"));
@@ -178,11 +181,12 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   i = 0;
   for (const Json& e : json.value("exchanges", none)) {
     system.exchanges.push_back(
-        {.name = e.at("name"),
-         .place = {body_from(e.at("body")), e.at("surrounding"), static_cast<effects::Per>(e.at("per").get<int>())},
+        {.name = name_in_present_words(e.at("name")),
+         .place = {body_from(e.at("body")), name_in_present_words(e.at("surrounding")),
+                   static_cast<effects::Per>(e.at("per").get<int>())},
          .matrix = matrices.middleRows(r * i, r),
-         .to_hall = to_hall.col(i),
-         .hall_sum = e.at("hall_sum"),
+         .to_ambient = to_ambient.col(i),
+         .ambient_sum = e.at("hall_sum"),
          .coefficient = law_from(e),
          .flow = flow.col(i),
          .offset = e.at("has_offset").get<bool>() ? Eigen::VectorXd(offset.col(i)) : Eigen::VectorXd(),
@@ -201,7 +205,7 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   system.outputs.unit = json.at("outputs").at("unit").get<std::vector<std::string>>();
   const auto n_outputs = static_cast<Eigen::Index>(system.outputs.name.size());
   system.outputs.state = array("outputs", n_outputs);
-  system.outputs.hall = sized("outputs_hall", n_outputs, 1);
+  system.outputs.ambient = sized("outputs_hall", n_outputs, 1);
   if (const Eigen::Index n_parts = n_of("parts"); n_parts > 0) {
     const auto parts_of = [&](const char* name, Eigen::Index columns) { return sized(name, r * n_parts, columns); };
     const Eigen::MatrixXd conduction = parts_of("parts_conduction", r), mass = parts_of("parts_mass", r),

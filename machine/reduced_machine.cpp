@@ -34,7 +34,7 @@ solver::ReductionDemand with_prescriptions(solver::ReductionDemand demand, std::
 /// Materials with conductivity and capacity as they are at each region's mean temperature, in the steady state of half the
 /// demanded power, in the middle of the coefficients.
 solver::RegionMaterials at_work(const Machine& machine, const effects::HeatBalance& balance,
-                                const solver::FullSystem& system, const solver::ReductionDemand& demand, double hall_K) {
+                                const solver::FullSystem& system, const solver::ReductionDemand& demand, double ambient_K) {
   const Eigen::VectorXd c = demand.points().front();
   solver::SparseRow k = system.conduction;
   Eigen::VectorXd load = Eigen::VectorXd::Zero(system.size());
@@ -42,7 +42,7 @@ solver::RegionMaterials at_work(const Machine& machine, const effects::HeatBalan
     const auto& exchange = system.exchanges[e];
     const double coefficient = c[static_cast<Eigen::Index>(e)];
     k += coefficient * exchange.matrix;
-    load += coefficient * hall_K * exchange.to_hall;
+    load += coefficient * ambient_K * exchange.to_ambient;
     if (exchange.offset.size() > 0) load += coefficient * exchange.offset;
   }
   for (std::size_t s = 0; s < system.sources.size(); ++s) {
@@ -68,7 +68,7 @@ solver::RegionMaterials at_work(const Machine& machine, const effects::HeatBalan
 solver::FullSystem reducible_system(const MachineModel& model, const Machine& machine, const effects::HeatBalance& balance,
                                     const solver::ReductionDemand& demand, solver::RegionMaterials& materials) {
   for (const solver::FixedUnknowns& f : machine.system.fixed) {
-    if (!f.follows_hall && f.theta.value.size() > 1) {
+    if (!f.follows_ambient && f.theta.value.size() > 1) {
       throw InputError(model.where, fmt::format("{} is prescribed over time; no reduced model follows it. Take `solver: "
                                                 "{{model: full}}`",
                                                 f.name));
@@ -91,7 +91,7 @@ solver::FullSystem reducible_system(const MachineModel& model, const Machine& ma
     system = assemble();
     if (has_curves(machine.placed.materials)) {
       materials = at_work(machine, balance, system, with_prescriptions(demand, system.exchanges.size()),
-                          felt_hall_at_start_K(model));
+                          felt_ambient_at_start_K(model));
       system = assemble();
     }
     system.outputs = machine.system.outputs;
@@ -102,14 +102,14 @@ solver::FullSystem reducible_system(const MachineModel& model, const Machine& ma
 }
 
 std::optional<compensation::ModalPredictors> modal_predictors(const solver::FullSystem& system, const Eigen::VectorXd& start,
-                                                              double hall_K, const ReductionPlan& plan) {
+                                                              double ambient_K, const ReductionPlan& plan) {
   if (!system.thermostats.empty() || plan.n_modes == 0) return std::nullopt;
   solver::FullSystem frozen = system;
   if (system.looks_at_state()) {
-    const effects::Inputs at{.drive = plan.typical, .hall_K = hall_K};
+    const effects::Inputs at{.drive = plan.typical, .ambient_K = ambient_K};
     solver::freeze_laws(frozen, at, solver::steady_state(system, at, start));
   }
-  return compensation::make_modal_predictors(frozen, plan.n_modes, start, hall_K, plan.typical);
+  return compensation::make_modal_predictors(frozen, plan.n_modes, start, ambient_K, plan.typical);
 }
 
 }  // namespace
@@ -122,12 +122,12 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
   std::vector<const Cyclogram*> driven;
   for (const FeltRun& run : felt) driven.push_back(&run.cyclogram);
   ReductionPlan plan;
-  plan.demand = solver::reduction_demand(balance, driven, model.hall, model.reference_K);
-  const bool moves_hall =
+  plan.demand = solver::reduction_demand(balance, driven, model.ambient, model.reference_K);
+  const bool moves_ambient =
       std::any_of(model.effects.begin(), model.effects.end(), [](const auto& e) { return e.kind->change_drive; });
-  if (moves_hall) {  // each run may have a hall of its own
+  if (moves_ambient) {  // each run may have an ambient of its own
     for (const FeltRun& run : felt) {
-      plan.demand.include(solver::reduction_demand(balance, {&run.cyclogram}, run.hall, model.reference_K));
+      plan.demand.include(solver::reduction_demand(balance, {&run.cyclogram}, run.ambient, model.reference_K));
     }
   }
   plan.tolerance_K = scenario.solver.reduction_tolerance_K;
@@ -159,10 +159,10 @@ ReducedMachine reduce(const MachineModel& model, const Machine& machine, const R
   solver::RegionMaterials materials = machine.placed.materials;
   solver::FullSystem system = reducible_system(model, machine, balance, plan.demand, materials);
   if (plan.with_parts) system.parts = body_parts(model, machine, materials, balance);
-  const double hall_K = felt_hall_at_start_K(model);
+  const double ambient_K = felt_ambient_at_start_K(model);
   Eigen::VectorXd start = start_state(model, machine);
   for (const solver::FixedUnknowns& f : machine.system.fixed) {  // what is held jumps at once, as in simulate()
-    for (int i : f.unknowns) start[i] = f.follows_hall ? hall_K : f.theta.at(0.0);
+    for (int i : f.unknowns) start[i] = f.follows_ambient ? ambient_K : f.theta.at(0.0);
   }
   const solver::Reduction reduction = solver::reduce(
       system, with_prescriptions(plan.demand, system.exchanges.size()), start,
@@ -172,7 +172,7 @@ ReducedMachine reduce(const MachineModel& model, const Machine& machine, const R
                          .system = solver::project(system, reduction.basis),
                          .start = reduction.basis.transpose() * (system.mass * start),
                          .error = reduction.error,
-                         .modal = modal_predictors(system, start, hall_K, plan),
+                         .modal = modal_predictors(system, start, ambient_K, plan),
                          .temperature = {},
                          .displacement_m = {}};
   const int n_nodes = machine.placed.mesh.n_nodes();

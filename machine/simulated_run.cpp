@@ -56,7 +56,7 @@ SimulatedRun simulate_run(const MachineModel& machine, const solver::TransientOp
                           const solver::OutputCallback& at_output) {
   const FeltRun felt = felt_run(machine, cyclogram);
   const auto run = [&](const auto& system) {
-    return solver::simulate(system, felt.cyclogram, felt.hall, times_s, options, from, at_output);
+    return solver::simulate(system, felt.cyclogram, felt.ambient, times_s, options, from, at_output);
   };
   SimulatedRun simulated{.record = {},
                          .trajectory = model.reduced() ? run(model.reduced()->system) : run(model.full()->system)};

@@ -16,7 +16,7 @@ struct SimulatedRun {
 };
 
 /// Runs one cyclogram.
-/// @param machine   the scenario's, or one that differs from it in the hall
+/// @param machine   the scenario's, or one that differs from it in the ambient
 /// @param from      state of the model at t = 0
 /// @param times_s   of the outputs, within the cyclogram
 /// @param at_output called at each of them

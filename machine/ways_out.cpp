@@ -32,7 +32,7 @@ class Paths {
     paths_.add(std::vector<int>{a, b});
   }
   [[nodiscard]] int of_surrounding(const std::string& name) const {
-    return name == effects::kHallName ? outside_ : lumped_.at(name);
+    return name == effects::kAmbientName ? outside_ : lumped_.at(name);
   }
   [[nodiscard]] int outside() const { return outside_; }
 
@@ -98,7 +98,7 @@ void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balanc
   if (shut_in.empty()) return;
   throw InputError(where,
                    fmt::format("heat cannot leave {} while the spindle stands: no film, contact, link, radiation or fixed "
-                               "temperature leads to the hall, so there is no steady state and there are no thermal "
+                               "temperature leads to the ambient, so there is no steady state and there are no thermal "
                                "modes. Add one (a film of 0.001 W/(m^2 K) insulates), or take `solver: {{model: full}}`",
                                fmt::join(shut_in, ", ")));
 }

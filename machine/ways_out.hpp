@@ -7,7 +7,7 @@
 
 namespace driftwright::scenarios {
 
-/// Looks, without any matrix, whether from each part heat can reach the hall or a prescribed temperature at standstill: through
+/// Looks, without any matrix, whether from each part heat can reach the ambient or a prescribed temperature at standstill: through
 /// cells, contacts, films, links and radiation whose coefficient is not zero there. Steady states and thermal modes want it.
 /// @throws InputError  at `where`, naming the regions or nodes that cannot
 void require_ways_out(const mesh::Mesh& mesh, const effects::HeatBalance& balance, const Where& where);

@@ -4,6 +4,7 @@
 #include "base/config_text.hpp"
 #include "machine/reduced_files.hpp"
 #include "output/json_value.hpp"
+#include "scenarios/reader/former_words.hpp"
 
 namespace driftwright::output {
 namespace {
@@ -61,8 +62,9 @@ std::vector<effects::Effect> effects_of(const Json& list) {
   }
   std::vector<effects::Effect> effects;
   if (list.empty()) return effects;
-  for (const ConfigMap& entry : ConfigMap::of_tree(read_config_text(yaml, "the list `effects`")).maps("effects"))
-    effects.push_back(effects::read_effect(entry));
+  std::vector<scenarios::FormerWord> former;  // of an earlier release
+  const ConfigNodePtr tree = scenarios::in_present_words(read_config_text(yaml, "the list `effects`"), former);
+  for (const ConfigMap& entry : ConfigMap::of_tree(tree).maps("effects")) effects.push_back(effects::read_effect(entry));
   return effects;
 }
 
@@ -80,7 +82,7 @@ Json observer_json(const Observer& observer, const std::vector<effects::Effect>&
   }
   return {{"sensors", s.sensors},
           {"drift", s.drift},
-          {"start_hall_K", s.start_hall_K},
+          {"start_hall_K", s.start_ambient_K},
           {"settings", settings_json(s.settings)},
           {"factors", {{"mean", matrix_json(s.factors.mean)}, {"covariance", matrix_json(s.factors.covariance)}}},
           {"effects", std::move(laws)},
@@ -92,7 +94,7 @@ Observer observer_of(const Json& j) {
   Observer::State s;
   s.sensors = value<std::vector<std::string>>(j, "sensors");
   s.drift = value<std::string>(j, "drift");
-  s.start_hall_K = finite(j, "start_hall_K");
+  s.start_ambient_K = finite(j, "start_hall_K");
   s.settings = settings_of(value<Json>(j, "settings"));
   const auto factors = value<Json>(j, "factors"), arrays = value<Json>(j, "arrays"), system = value<Json>(j, "system");
   s.factors.mean = matrix_of(value<Json>(factors, "mean")).reshaped();

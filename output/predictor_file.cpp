@@ -114,7 +114,7 @@ PredictorFile file_of(const Json& j) {
   d.from_start = value<bool>(j, "from_start");
   d.is_baseline = value<bool>(j, "baseline");
   d.sensors = value<std::vector<std::string>>(j, "sensors");
-  d.hall = value<std::string>(j, "hall");
+  d.ambient = value<std::string>(j, "hall");
   d.reason = value<std::string>(j, "decided");
   if (const double half = number_or(j, "interval_95_um", NAN); std::isfinite(half)) d.interval_um = half;
   d.predictor = predictor_of(j, d);
@@ -140,7 +140,7 @@ Json predictor_json(const PredictorFile& file, const std::vector<effects::Effect
             {"from_start", d.from_start},
             {"baseline", d.is_baseline},
             {"sensors", d.sensors},
-            {"hall", d.hall},
+            {"hall", d.ambient},
             {"decided", d.reason},
             {"interval_95_um", d.interval_um ? Json(*d.interval_um) : Json(nullptr)},
             {"judged", file.judged},

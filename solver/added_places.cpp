@@ -76,15 +76,15 @@ Exchange<Eigen::MatrixXd> exchange_at(const ReducedSystem& system, const AddedPl
   e.coefficient = BoundLaw([](const effects::Inputs&) { return 0.0; });
   e.matrix = std::move(square.matrix);
   e.flow = mean_weights(system, added, place.body);
-  if (place.surrounding == effects::kHallName) {
-    e.to_hall = std::move(square.of_ones);
-    e.hall_sum = 1.0;
+  if (place.surrounding == effects::kAmbientName) {
+    e.to_ambient = std::move(square.of_ones);
+    e.ambient_sum = 1.0;
     return e;
   }
   const Eigen::VectorXd other = mean_weights(system, added, effects::node(place.surrounding));
   e.matrix += other * other.transpose() - e.flow * other.transpose() - other * e.flow.transpose();
   e.flow -= other;
-  e.to_hall = Eigen::VectorXd::Zero(e.flow.size());
+  e.to_ambient = Eigen::VectorXd::Zero(e.flow.size());
   return e;
 }
 
@@ -119,7 +119,7 @@ ReducedSystem with_places(const ReducedSystem& system, const AddedPlaces& added)
   for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
     s.exchanges[e].matrix = grown(system.exchanges[e].matrix, n);
     for (Eigen::VectorXd* v :
-         {&s.exchanges[e].to_hall, &s.exchanges[e].flow, &s.exchanges[e].offset, &s.exchanges[e].medium})
+         {&s.exchanges[e].to_ambient, &s.exchanges[e].flow, &s.exchanges[e].offset, &s.exchanges[e].medium})
       grow(*v, n);
   }
   for (HeatSource& source : s.sources) grow(source.load, n);

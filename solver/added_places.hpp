@@ -11,7 +11,7 @@ namespace driftwright::solver {
 /// What a system lacks of a heat balance.
 struct AddedPlaces {
   std::vector<std::pair<std::string, double>> nodes;  ///< name, capacity [J/K]
-  std::vector<ExchangePlace> exchanges;               ///< of conductances in all, with the hall or a node
+  std::vector<ExchangePlace> exchanges;               ///< of conductances in all, with the ambient or a node
   [[nodiscard]] bool empty() const { return nodes.empty() && exchanges.empty(); }
   bool operator==(const AddedPlaces&) const = default;
 };

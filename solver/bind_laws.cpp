@@ -71,7 +71,7 @@ class Finder {
  public:
   explicit Finder(ReducedSystem& system, const effects::HeatBalance& balance) : system_(system), balance_(balance) {}
 
-  /// @param before  surface whose air stands for the hall, or ""
+  /// @param before  surface whose air stands for the ambient, or ""
   void bind(BoundLaw& bound, Law law, const std::string& before) {
     if (!bound.frozen_K.empty()) {  // its temperatures are numbers now
       bound.law = std::move(law);
@@ -88,9 +88,9 @@ class Finder {
     bound.law = std::move(law);
   }
   int probe(const Body& body, const std::string& before) {
-    const bool is_hall = body == effects::hall();
-    for (std::size_t p = 0; p < system_.probes.size(); ++p) {  // air before a surface where the hall is stratified
-      if (is_hall && !before.empty() && system_.probes[p].body == body && system_.probes[p].before == before)
+    const bool is_ambient = body == effects::ambient_node();
+    for (std::size_t p = 0; p < system_.probes.size(); ++p) {  // air before a surface where the ambient is stratified
+      if (is_ambient && !before.empty() && system_.probes[p].body == body && system_.probes[p].before == before)
         return static_cast<int>(p);
     }
     for (std::size_t p = 0; p < system_.probes.size(); ++p) {
@@ -98,9 +98,9 @@ class Finder {
     }
     Probe further;
     further.body = body;
-    if (is_hall) {
+    if (is_ambient) {
       further.weights = Eigen::VectorXd::Zero(system_.size());
-      further.hall_share = 1.0;
+      further.ambient_share = 1.0;
     } else {  // heat enters a body where its mean temperature is read
       const auto source =
           std::find_if(system_.sources.begin(), system_.sources.end(), [&](const HeatSource& s) { return s.body == body; });

@@ -21,10 +21,10 @@ struct Loads {
   Eigen::VectorXd coefficient;  // of each exchange
   Eigen::VectorXd constant, slope;
 };
-Loads loads_of(const ReducedSystem& system, const LinearStretch& stretch, const TimeSeries& hall) {
-  const double hall_K = hall.at(stretch.start_s),
-               hall_slope = (hall.at(stretch.end_s) - hall_K) / (stretch.end_s - stretch.start_s);
-  effects::Inputs at{.drive = stretch.drive, .hall_K = hall_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
+Loads loads_of(const ReducedSystem& system, const LinearStretch& stretch, const TimeSeries& ambient) {
+  const double ambient_K = ambient.at(stretch.start_s),
+               ambient_slope = (ambient.at(stretch.end_s) - ambient_K) / (stretch.end_s - stretch.start_s);
+  effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
   at.run = stretch.run;
   Loads l{.coefficient = Eigen::VectorXd(static_cast<Eigen::Index>(system.exchanges.size())),
           .constant = Eigen::VectorXd::Zero(system.size()),
@@ -37,8 +37,8 @@ Loads loads_of(const ReducedSystem& system, const LinearStretch& stretch, const 
     const double c = exchange.coefficient(at);
     l.coefficient[static_cast<Eigen::Index>(e)] = c;
     if (c == 0.0) continue;
-    l.constant += c * hall_K * exchange.to_hall;
-    l.slope += c * hall_slope * exchange.to_hall;
+    l.constant += c * ambient_K * exchange.to_ambient;
+    l.slope += c * ambient_slope * exchange.to_ambient;
     if (exchange.offset.size() > 0) l.constant += c * exchange.offset;
   }
   return l;
@@ -80,7 +80,8 @@ Course::Exponentials Course::exponentials(const Eigen::VectorXd& lambda_1_s, con
 }
 
 std::optional<Course> Course::of(const ReducedSystem& system, Decompositions& decompositions, const Cyclogram& cyclogram,
-                                 const TimeSeries& hall, const std::vector<double>& output_s, const Eigen::VectorXd& start) {
+                                 const TimeSeries& ambient, const std::vector<double>& output_s,
+                                 const Eigen::VectorXd& start) {
   Course c;
   c.conduction_ = system.conduction;
   c.mass_ = system.mass;
@@ -88,8 +89,8 @@ std::optional<Course> Course::of(const ReducedSystem& system, Decompositions& de
   c.states_.resize(system.size(), static_cast<Eigen::Index>(output_s.size()));
   Eigen::VectorXd state = start;
   std::size_t next = 0;
-  for (const LinearStretch& stretch : stretches_of(system, cyclogram, hall)) {
-    const Loads loads = loads_of(system, stretch, hall);
+  for (const LinearStretch& stretch : stretches_of(system, cyclogram, ambient)) {
+    const Loads loads = loads_of(system, stretch, ambient);
     Stretch s;
     s.start_s = stretch.start_s;
     s.end_s = stretch.end_s;
@@ -120,9 +121,9 @@ std::optional<Course> Course::of(const ReducedSystem& system, Decompositions& de
 }
 
 std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, const Cyclogram& cyclogram,
-                                                 const TimeSeries& hall, const Eigen::VectorXd& start) const {
+                                                 const TimeSeries& ambient, const Eigen::VectorXd& start) const {
   if (!other.is_linear()) return std::nullopt;
-  const std::vector<LinearStretch> theirs = stretches_of(other, cyclogram, hall);
+  const std::vector<LinearStretch> theirs = stretches_of(other, cyclogram, ambient);
   if (theirs.size() != stretches_.size()) return std::nullopt;
   for (std::size_t k = 0; k < theirs.size(); ++k) {
     if (theirs[k].start_s != stretches_[k].start_s || theirs[k].end_s != stretches_[k].end_s) return std::nullopt;
@@ -178,7 +179,7 @@ std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, con
   for (std::size_t k = 0; k < theirs.size(); ++k) {
     const Stretch& s = stretches_[k];
     const Decomposition& d = decompositions_[s.decomposition];
-    const Loads loads = loads_of(other, theirs[k], hall);
+    const Loads loads = loads_of(other, theirs[k], ambient);
     Eigen::VectorXd y0 = d.to_modes * off, h0 = d.vectors.transpose() * loads.constant - s.f0,
                     h1 = d.vectors.transpose() * loads.slope - s.f1;
     const Eigen::VectorXd more = loads.coefficient - d.coefficient;

@@ -22,7 +22,7 @@ class Course {
   /// @param decompositions  of the system, which is linear
   /// @returns nothing for a run through more than kMostSets sets of coefficients, each of which is a decomposition to keep
   [[nodiscard]] static std::optional<Course> of(const ReducedSystem& system, Decompositions& decompositions,
-                                                const Cyclogram& cyclogram, const TimeSeries& hall,
+                                                const Cyclogram& cyclogram, const TimeSeries& ambient,
                                                 const std::vector<double>& output_s, const Eigen::VectorXd& start);
   static constexpr std::size_t kMostSets = 64;
 
@@ -32,7 +32,7 @@ class Course {
   /// What the same unknowns come to in another system at the same times, to first order in how it differs, size x n_times.
   /// @returns nothing where the other is not linear or passes other stretches of time: such a one is to be run by itself
   [[nodiscard]] std::optional<Eigen::MatrixXd> states_of(const ReducedSystem& other, const Cyclogram& cyclogram,
-                                                         const TimeSeries& hall, const Eigen::VectorXd& start) const;
+                                                         const TimeSeries& ambient, const Eigen::VectorXd& start) const;
 
  private:
   Course() = default;

@@ -18,12 +18,12 @@ Decompositions::Decompositions(const ReducedSystem& system) : system_(system), u
 void Decompositions::add_flows(Decomposition& d) const {
   const Eigen::Index n_exchanges = d.coefficient.size();
   d.flows.resize(n_exchanges, system_.size());
-  d.hall_W_K.resize(n_exchanges);
+  d.ambient_W_K.resize(n_exchanges);
   d.offset_W.resize(n_exchanges);
   for (Eigen::Index i = 0; i < n_exchanges; ++i) {
     const Exchange<Eigen::MatrixXd>& e = system_.exchanges[static_cast<std::size_t>(i)];
     d.flows.row(i) = d.coefficient[i] * e.flow.transpose();
-    d.hall_W_K[i] = d.coefficient[i] * e.hall_sum;
+    d.ambient_W_K[i] = d.coefficient[i] * e.ambient_sum;
     d.offset_W[i] = d.coefficient[i] * e.offset_sum;
   }
   d.flows = d.flows * d.vectors;
@@ -46,14 +46,14 @@ const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient, bool
   d.coefficient = coefficient;
   const auto n = static_cast<Eigen::Index>(system_.size()), n_exchanges = coefficient.size();
   Eigen::MatrixXd k = system_.conduction;
-  Eigen::VectorXd to_hall = Eigen::VectorXd::Zero(n), offset = to_hall;
+  Eigen::VectorXd to_ambient = Eigen::VectorXd::Zero(n), offset = to_ambient;
   d.flows.resize(0, 0);
   for (Eigen::Index i = 0; i < n_exchanges; ++i) {
     const Exchange<Eigen::MatrixXd>& e = system_.exchanges[static_cast<std::size_t>(i)];
     const double c = coefficient[i];
     if (c == 0.0) continue;
     k += c * e.matrix;
-    to_hall += c * e.to_hall;
+    to_ambient += c * e.to_ambient;
     if (e.offset.size() > 0) offset += c * e.offset;
   }
   if (unit_mass_) {
@@ -69,7 +69,7 @@ const Decomposition& Decompositions::at(const Eigen::VectorXd& coefficient, bool
   }
   d.outputs.noalias() = system_.outputs.state.transpose() * d.vectors;
   d.loads.noalias() = d.vectors.transpose() * loads_;
-  d.to_hall.noalias() = d.vectors.transpose() * to_hall;
+  d.to_ambient.noalias() = d.vectors.transpose() * to_ambient;
   d.offset.noalias() = d.vectors.transpose() * offset;
   if (with_flows) add_flows(d);
   d.stored_J_K.noalias() = system_.ones.transpose() * d.vectors;

@@ -9,14 +9,14 @@ namespace driftwright::solver {
 struct Decomposition {
   Eigen::VectorXd coefficient;  ///< of each exchange: the key
   Eigen::VectorXd lambda_1_s;
-  Eigen::MatrixXd vectors;             ///< V
-  Eigen::MatrixXd to_modes;            ///< V'M
-  Eigen::MatrixXd outputs;             ///< n_outputs x size
-  Eigen::MatrixXd loads;               ///< size x n_sources
-  Eigen::VectorXd to_hall, offset;     ///< Σ c_e g_e, Σ c_e o_e
-  Eigen::MatrixXd flows;               ///< c_e flow_e', n_exchanges x size
-  Eigen::VectorXd hall_W_K, offset_W;  ///< c_e hall_sum_e, c_e offset_sum_e
-  Eigen::RowVectorXd stored_J_K;       ///< 1'M V
+  Eigen::MatrixXd vectors;                ///< V
+  Eigen::MatrixXd to_modes;               ///< V'M
+  Eigen::MatrixXd outputs;                ///< n_outputs x size
+  Eigen::MatrixXd loads;                  ///< size x n_sources
+  Eigen::VectorXd to_ambient, offset;     ///< Σ c_e g_e, Σ c_e o_e
+  Eigen::MatrixXd flows;                  ///< c_e flow_e', n_exchanges x size
+  Eigen::VectorXd ambient_W_K, offset_W;  ///< c_e ambient_sum_e, c_e offset_sum_e
+  Eigen::RowVectorXd stored_J_K;          ///< 1'M V
 };
 
 /// Decompositions of the coefficients met last. One thread at a time.
@@ -25,7 +25,7 @@ class Decompositions {
   /// @param system  borrowed
   explicit Decompositions(const ReducedSystem& system);
 
-  /// Valid until the next call. @param with_flows  else `flows`, `hall_W_K` and `offset_W` may be empty
+  /// Valid until the next call. @param with_flows  else `flows`, `ambient_W_K` and `offset_W` may be empty
   const Decomposition& at(const Eigen::VectorXd& coefficient, bool with_flows = true);
   [[nodiscard]] int n_made() const { return n_made_; }
 

@@ -25,11 +25,11 @@ constexpr int kBisections = 40;
 /// One run on its way.
 class ExponentialRun {
  public:
-  ExponentialRun(const ReducedSystem& system, const TimeSeries& hall, const TransientOptions& options,
+  ExponentialRun(const ReducedSystem& system, const TimeSeries& ambient, const TransientOptions& options,
                  const Eigen::VectorXd& start)
       : system_(system),
-        hall_(hall),
-        rates_(system, hall),
+        ambient_(ambient),
+        rates_(system, ambient),
         state_(start),
         most_s_(options.max_step_s),
         most_switches_(options.most_switches),
@@ -38,7 +38,7 @@ class ExponentialRun {
         n1_(start.size()),
         rest_(start.size()) {
     for (std::size_t i = 0; i < system.thermostats.size(); ++i) {
-      if (beyond_K(i, hall.at(0.0), start) > 0.0) rates_.toggle(i);
+      if (beyond_K(i, ambient.at(0.0), start) > 0.0) rates_.toggle(i);
     }
     double per_unit = 1.0 / system.ones.norm();
     for (const Probe& p : system.probes) per_unit = std::max(per_unit, p.weights.norm());
@@ -96,9 +96,9 @@ class ExponentialRun {
     known_s_ = h_s;
   }
   /// How far a thermostat's probe is past where it switches, when it would be on: > 0 switches it on, < 0 off.
-  [[nodiscard]] double beyond_K(std::size_t i, double hall_K, const Eigen::VectorXd& z) const {
+  [[nodiscard]] double beyond_K(std::size_t i, double ambient_K, const Eigen::VectorXd& z) const {
     const Thermostat& t = system_.thermostats[i];
-    const double probe_K = system_.reference_K + system_.probes[static_cast<std::size_t>(t.probe)].theta_K(z, hall_K);
+    const double probe_K = system_.reference_K + system_.probes[static_cast<std::size_t>(t.probe)].theta_K(z, ambient_K);
     return probe_K - (rates_.is_on(i) ? t.off_below_K : t.on_above_K);
   }
   /// Share of a step from the state to `end` at which the first thermostat switches, on the cubic through both; 1 and none where none does.
@@ -109,11 +109,11 @@ class ExponentialRun {
     for (std::size_t i = 0; i < system_.thermostats.size(); ++i) {
       const bool is_on = rates_.is_on(i);
       const auto has_switched = [&](double beyond_K) { return is_on ? beyond_K < 0.0 : beyond_K > 0.0; };
-      if (!has_switched(beyond_K(i, hall_.at(t_s + h_s), end))) continue;
+      if (!has_switched(beyond_K(i, ambient_.at(t_s + h_s), end))) continue;
       double before = 0.0, after = 1.0;
       for (int k = 0; k < kBisections; ++k) {
         const double s = 0.5 * (before + after);
-        (has_switched(beyond_K(i, hall_.at(t_s + s * h_s), between(s, h_s, end))) ? after : before) = s;
+        (has_switched(beyond_K(i, ambient_.at(t_s + s * h_s), between(s, h_s, end))) ? after : before) = s;
       }
       if (after < first * (1.0 - kSame)) {
         first = after;
@@ -170,7 +170,7 @@ class ExponentialRun {
   }
 
   const ReducedSystem& system_;
-  const TimeSeries& hall_;
+  const TimeSeries& ambient_;
   const LinearStretch* stretch_ = nullptr;
   LiveRate rates_;
   Eigen::VectorXd state_;
@@ -206,14 +206,14 @@ Exponentials exponentials(const Eigen::MatrixXd& x) {
 }
 
 std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram,
-                                                  const TimeSeries& hall, const std::vector<double>& output_s,
+                                                  const TimeSeries& ambient, const std::vector<double>& output_s,
                                                   const TransientOptions& options, const Eigen::VectorXd& start) {
   if (system.size() > kMostOfExponentialRun || options.from_s != 0.0) return std::nullopt;
   Eigen::MatrixXd states(system.size(), static_cast<Eigen::Index>(output_s.size()));
   try {
-    ExponentialRun run(system, hall, options, start);
+    ExponentialRun run(system, ambient, options, start);
     std::size_t next = 0;
-    const std::vector<LinearStretch> stretches = stretches_of(system, cyclogram, hall);
+    const std::vector<LinearStretch> stretches = stretches_of(system, cyclogram, ambient);
     for (const LinearStretch& stretch : stretches) {
       run.enter(stretch);
       double t_s = stretch.start_s;
@@ -232,22 +232,22 @@ std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, c
   return states;
 }
 
-Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& ambient,
                               const std::vector<double>& output_s, const TransientOptions& options,
                               const Eigen::VectorXd& start) {
   if (!system.is_linear()) {
-    if (auto states = exponential_states(system, cyclogram, hall, output_s, options, start)) return *std::move(states);
+    if (auto states = exponential_states(system, cyclogram, ambient, output_s, options, start)) return *std::move(states);
   }
   Eigen::MatrixXd states(system.size(), static_cast<Eigen::Index>(output_s.size()));
   Eigen::Index k = 0;
   const auto take = [&](double, const Eigen::VectorXd& z) { states.col(k++) = z; };
   if (system.is_linear() || system.mass.isIdentity(1e-8)) {
-    (void)simulate(system, cyclogram, hall, output_s, options, start, take);
+    (void)simulate(system, cyclogram, ambient, output_s, options, start, take);
     return states;
   }
   Eigen::VectorXd from = start;
   const ReducedSystem unit = with_unit_mass(system, from);
-  (void)simulate(unit, cyclogram, hall, output_s, options, from, take);
+  (void)simulate(unit, cyclogram, ambient, output_s, options, from, take);
   const Eigen::LLT<Eigen::MatrixXd> factor(system.mass);  // back from w = C'z
   factor.matrixU().solveInPlace(states);
   return states;

@@ -20,14 +20,15 @@ inline constexpr int kMostOfExponentialRun = 40;  ///< unknowns: products of ful
 /// @returns nothing for a system with more unknowns, one whose laws are not defined at a state that was tried, whose temperatures no machine has, or
 ///          whose thermostats switch without end: integrate() then says what is wrong, or goes on
 [[nodiscard]] std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram,
-                                                                const TimeSeries& hall, const std::vector<double>& output_s,
+                                                                const TimeSeries& ambient,
+                                                                const std::vector<double>& output_s,
                                                                 const TransientOptions& options,
                                                                 const Eigen::VectorXd& start);
 
 /// The same of any reduced system by exponentials, where they serve, or by integrate(). @throws SolveError
-[[nodiscard]] Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
-                                            const std::vector<double>& output_s, const TransientOptions& options,
-                                            const Eigen::VectorXd& start);
+[[nodiscard]] Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram,
+                                            const TimeSeries& ambient, const std::vector<double>& output_s,
+                                            const TransientOptions& options, const Eigen::VectorXd& start);
 
 /// e^X, φ1(X) and φ2(X) by scaling: a series, then φ2(2X) = (φ1² + 2 φ2)/4, φ1(2X) = (e^X + 1) φ1 / 2.
 struct Exponentials {

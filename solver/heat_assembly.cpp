@@ -32,9 +32,9 @@ class Places {
     }
     return must_exist(-1, name);
   }
-  /// -1 for the hall.
+  /// -1 for the ambient.
   [[nodiscard]] int unknown_of_surrounding(const std::string& name) const {
-    return name == effects::kHallName ? -1 : unknown_of_node(name);
+    return name == effects::kAmbientName ? -1 : unknown_of_node(name);
   }
   [[nodiscard]] int surface(const std::string& name) const { return must_exist(mesh_.surface(name), name); }
   [[nodiscard]] int region(const std::string& name) const { return must_exist(mesh_.region(name), name); }
@@ -120,7 +120,7 @@ Exchange<SparseRow> to_surrounding(const Places& places, const effects::Exchange
   Exchange<SparseRow> e{.name = exchange.name,
                         .place = place_of(exchange),
                         .matrix = body_matrix(places, body, unknown),
-                        .to_hall = {},
+                        .to_ambient = {},
                         .coefficient = std::move(coefficient),
                         .flow = places.mean_weights(body),
                         .offset = {}};
@@ -135,23 +135,23 @@ Exchange<SparseRow> to_surrounding(const Places& places, const effects::Exchange
   e.flow *= flow_size;
   if (unknown >= 0) {
     e.flow[unknown] -= flow_size;
-    e.to_hall = Eigen::VectorXd::Zero(places.n_unknowns());
+    e.to_ambient = Eigen::VectorXd::Zero(places.n_unknowns());
     return e;
   }
-  e.to_hall = e.matrix * Eigen::VectorXd::Ones(e.matrix.cols());
+  e.to_ambient = e.matrix * Eigen::VectorXd::Ones(e.matrix.cols());
   if (exchange.medium_K) {
-    e.medium = std::move(e.to_hall);
+    e.medium = std::move(e.to_ambient);
     e.medium_sum = e.medium.sum();
-    e.to_hall = Eigen::VectorXd::Zero(places.n_unknowns());
+    e.to_ambient = Eigen::VectorXd::Zero(places.n_unknowns());
     e.hold_medium(*exchange.medium_K - reference_K);
     return e;
   }
-  e.hall_sum = e.to_hall.sum();
+  e.ambient_sum = e.to_ambient.sum();
   if (!air.empty() && body.kind == BodyKind::kSurface) {
     e.offset = Eigen::VectorXd::Zero(places.n_unknowns());
     places.for_each_point(
         body, [&](std::span<const int> nodes, const mesh::ShapeValues& s, double area_m2, const Eigen::Vector3d& position) {
-          const double share = (total ? area_m2 / size : area_m2) * hall_offset_K(air, position.z());
+          const double share = (total ? area_m2 / size : area_m2) * ambient_offset_K(air, position.z());
           for (int i = 0; i < s.n; ++i) e.offset[nodes[i]] += share * s.N[i];
         });
     e.offset_sum = e.offset.sum();
@@ -165,7 +165,7 @@ Exchange<SparseRow> across_joint(const Mesh& mesh, const Places& places, const m
   Exchange<SparseRow> e{.name = exchange.name,
                         .place = place_of(exchange),
                         .matrix = {},
-                        .to_hall = Eigen::VectorXd::Zero(n),
+                        .to_ambient = Eigen::VectorXd::Zero(n),
                         .coefficient = std::move(coefficient),
                         .flow = Eigen::VectorXd::Zero(n),
                         .offset = {}};
@@ -190,11 +190,12 @@ class Binder {
   Binder(const Places& places, const effects::HeatBalance& balance, FullSystem& system)
       : places_(places), balance_(balance), system_(system) {}
 
-  /// @param surface  that the law's film lies on: its hall is the air before it, which may be stratified; nullptr for none
+  /// @param surface  that the law's film lies on: its ambient is the air before it, which may be stratified; nullptr for none
   BoundLaw bind(const effects::Law& law, const Body* surface = nullptr) {
     BoundLaw bound(law);
     for (const Body& body : law.probes) {
-      const bool before_surface = surface && body == effects::node(effects::kHallName) && !balance_.stratifications.empty();
+      const bool before_surface =
+          surface && body == effects::node(effects::kAmbientName) && !balance_.stratifications.empty();
       bound.probes.push_back(before_surface ? air_before(*surface) : probe(body));
     }
     for (std::size_t t = 0; t < balance_.thermostats.size() && !law.thermostat.empty(); ++t) {
@@ -208,7 +209,7 @@ class Binder {
       if (bodies_[i] == body) return static_cast<int>(i);
     }
     bodies_.push_back(body);
-    if (body == effects::node(effects::kHallName)) {
+    if (body == effects::node(effects::kAmbientName)) {
       system_.probes.push_back({body, {}, Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0});
     } else {
       system_.probes.push_back({body, {}, places_.mean_weights(body), 0.0});
@@ -220,12 +221,12 @@ class Binder {
   int air_before(const Body& surface) {
     double offset_K_m2 = 0.0, area_m2 = 0.0;
     places_.for_each_point(surface, [&](auto, auto&, double point_m2, const Eigen::Vector3d& position) {
-      offset_K_m2 += point_m2 * hall_offset_K(balance_.stratifications, position.z());
+      offset_K_m2 += point_m2 * ambient_offset_K(balance_.stratifications, position.z());
       area_m2 += point_m2;
     });
     bodies_.push_back({});  // none that probe() could be asked for
     system_.probes.push_back(
-        {effects::hall(), surface.name, Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0, offset_K_m2 / area_m2});
+        {effects::ambient_node(), surface.name, Eigen::VectorXd::Zero(places_.n_unknowns()), 1.0, offset_K_m2 / area_m2});
     return static_cast<int>(bodies_.size()) - 1;
   }
 
@@ -311,7 +312,7 @@ FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, con
       if (!is_fixed[i]) unknowns.push_back(i);
       is_fixed[i] = 1;
     }
-    system.fixed.push_back({f.name, std::move(unknowns), std::move(theta), f.follows_hall});
+    system.fixed.push_back({f.name, std::move(unknowns), std::move(theta), f.follows_ambient});
   }
   system.change_times_s = balance.change_times_s;
 

@@ -39,10 +39,10 @@ Eigen::VectorXd times(const SparseRow& a, const Eigen::VectorXd& x) {
 }
 
 /// Coldest and warmest of what surrounds the machine at a time.
-std::pair<double, double> surroundings_K(const FullSystem& system, const TimeSeries& hall, double t_s) {
-  double low = hall.at(t_s), high = low;
+std::pair<double, double> surroundings_K(const FullSystem& system, const TimeSeries& ambient, double t_s) {
+  double low = ambient.at(t_s), high = low;
   for (const FixedUnknowns& f : system.fixed) {
-    if (f.follows_hall) continue;
+    if (f.follows_ambient) continue;
     low = std::min(low, f.theta.at(t_s));
     high = std::max(high, f.theta.at(t_s));
   }
@@ -63,9 +63,9 @@ void require_sane(const double* theta, int n, double reference_K, double t_s) {
   }
 }
 
-HeatOde::HeatOde(const FullSystem& system, const TimeSeries& hall, double absolute_K, int worth_multigrid)
+HeatOde::HeatOde(const FullSystem& system, const TimeSeries& ambient, double absolute_K, int worth_multigrid)
     : system_(system),
-      hall_(hall),
+      ambient_(ambient),
       tolerance_K_(kShareOfTolerance * absolute_K),
       n_(system.size()),
       worth_multigrid_(worth_multigrid),
@@ -134,13 +134,13 @@ void HeatOde::begin(const Eigen::VectorXd& start, double* y) {
   auto flow = static_cast<Eigen::Index>(rate_.flows().size());
   for (const FixedUnknowns& f : system_.fixed) {
     const std::vector<double> before(y, y + n_);
-    const double theta_K = (f.follows_hall ? hall_ : f.theta).at(0.0);
+    const double theta_K = (f.follows_ambient ? ambient_ : f.theta).at(0.0);
     for (int i : f.unknowns) y[i] = theta_K;
     jump_J_[flow++] = stored_J(y, before.data());
   }
   began_ = Eigen::Map<const Eigen::VectorXd>(y, n_);
   for (std::size_t i = 0; i < system_.thermostats.size(); ++i) {
-    const double probe_K = rate_.thermostat_probe_K(static_cast<int>(i), y, hall_.at(0.0));
+    const double probe_K = rate_.thermostat_probe_K(static_cast<int>(i), y, ambient_.at(0.0));
     rate_.set_thermostat(static_cast<int>(i), probe_K > system_.thermostats[i].on_above_K);
   }
 }
@@ -153,7 +153,7 @@ void HeatOde::tolerances(double absolute_K, double* tolerance) const {
 bool HeatOde::begin_stretch(const LinearStretch& stretch, double*) {
   const double length_s = stretch.end_s - stretch.start_s;
   for (std::size_t f = 0; f < system_.fixed.size(); ++f) {
-    const TimeSeries& series = system_.fixed[f].follows_hall ? hall_ : system_.fixed[f].theta;
+    const TimeSeries& series = system_.fixed[f].follows_ambient ? ambient_ : system_.fixed[f].theta;
     const double slope_K_s = (series.at(stretch.end_s) - series.at(stretch.start_s)) / length_s;
     if (slope_K_s != slope_K_s_[f]) forget_slopes();
     slope_K_s_[f] = slope_K_s;
@@ -179,13 +179,13 @@ void HeatOde::restart(double t_s, const double* y) {
 void HeatOde::look(double t_s, const double* y) {
   require_sane(y, n_, system_.reference_K, t_s);
   if (system_.is_stratified()) return;  // the air itself has a range
-  const auto [low_K, high_K] = surroundings_K(system_, hall_, t_s);
+  const auto [low_K, high_K] = surroundings_K(system_, ambient_, t_s);
   const auto [least_W, most_W] = rate_.power_range_W();
   watch_.step(t_s, y, n_, low_K, high_K, most_W > 0.0, least_W < 0.0);
 }
 
-Eigen::VectorXd HeatOde::observe(const double* y, double hall_K) const {  // outputs have few entries or many
-  Eigen::VectorXd outputs = hall_K * system_.outputs.hall;
+Eigen::VectorXd HeatOde::observe(const double* y, double ambient_K) const {  // outputs have few entries or many
+  Eigen::VectorXd outputs = ambient_K * system_.outputs.ambient;
   for (Eigen::Index j = 0; j < outputs.size(); ++j) {
     const double* column = system_.outputs.state.col(j).data();
     const std::vector<int>& entries = output_entries_[static_cast<std::size_t>(j)];
@@ -200,14 +200,14 @@ Eigen::VectorXd HeatOde::observe(const double* y, double hall_K) const {  // out
 
 double HeatOde::distance_to_switch_K(int i, double t_s, const double* y) const {
   const Thermostat& thermostat = system_.thermostats[i];
-  return rate_.thermostat_probe_K(i, y, hall_.at(t_s)) -
+  return rate_.thermostat_probe_K(i, y, ambient_.at(t_s)) -
          (rate_.thermostat_is_on(i) ? thermostat.off_below_K : thermostat.on_above_K);
 }
 
 void HeatOde::evaluate(double t_s, const double* theta) {
-  hall_K_ = hall_.at(t_s);
-  rate_.evaluate(theta, hall_K_, heat_.data());
-  rate_.flows_W(theta, hall_K_, flow_W_.data());
+  ambient_K_ = ambient_.at(t_s);
+  rate_.evaluate(theta, ambient_K_, heat_.data());
+  rate_.flows_W(theta, ambient_K_, flow_W_.data());
   if (!system_.capacity) return;
   mass_now_ = system_.mass;
   system_.capacity->add_to(theta, mass_now_);
@@ -258,11 +258,11 @@ void HeatOde::slopes(double t_s, const double* y, double* ydot) {
   std::copy(ydot, ydot + size(), at_start_.value.data());
   at_start_.t_s = t_s;
   at_start_.is_known = at_start_.is_rough = true;
-  if (is_affine_) space_.add(mass_, rate_.tangent(y, hall_K_), x_.data());
+  if (is_affine_) space_.add(mass_, rate_.tangent(y, ambient_K_), x_.data());
 }
 
 void HeatOde::refresh_shifted(double gamma) {
-  stiffness_ = &rate_.tangent(base_.data(), hall_K_);
+  stiffness_ = &rate_.tangent(base_.data(), ambient_K_);
   const double* k = stiffness_->valuePtr();
   const double* m = mass_here().valuePtr();
   double* a = shifted_.valuePtr();

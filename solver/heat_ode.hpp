@@ -25,10 +25,10 @@ namespace driftwright::solver {
 
 class HeatOde : public StageOde {
  public:
-  /// @param system, hall  borrowed
+  /// @param system, ambient  borrowed
   /// @param absolute_K    error allowed of a step; linear solves take a small share of it
   /// @param worth_multigrid  more unknowns than these are conditioned by multigrid where their diagonal takes many iterations
-  HeatOde(const FullSystem& system, const TimeSeries& hall, double absolute_K, int worth_multigrid = kWorthMultigrid);
+  HeatOde(const FullSystem& system, const TimeSeries& ambient, double absolute_K, int worth_multigrid = kWorthMultigrid);
   static constexpr int kWorthMultigrid = 5000;
 
   [[nodiscard]] int size() const override { return n_ + n_flows(); }
@@ -50,7 +50,7 @@ class HeatOde : public StageOde {
   [[nodiscard]] const double* slope_at_end() const override { return latest_.value.data(); }
   void look(double t_s, const double* y) override;
   [[nodiscard]] std::vector<Overshoot> overshoots() const override { return watch_.result(); }
-  [[nodiscard]] Eigen::VectorXd observe(const double* y, double hall_K) const override;
+  [[nodiscard]] Eigen::VectorXd observe(const double* y, double ambient_K) const override;
   [[nodiscard]] Eigen::VectorXd state(const double* y) const override { return Eigen::Map<const Eigen::VectorXd>(y, n_); }
   [[nodiscard]] Eigen::VectorXd heats_J(const double* y) const override;
   [[nodiscard]] double stored_J(const double* y) const override;
@@ -84,7 +84,7 @@ class HeatOde : public StageOde {
   [[nodiscard]] const SparseRow& mass_here() const { return system_.capacity ? mass_now_ : system_.mass; }
 
   const FullSystem& system_;
-  const TimeSeries& hall_;
+  const TimeSeries& ambient_;
   double tolerance_K_;
   int n_;
   int worth_multigrid_ = kWorthMultigrid;
@@ -103,7 +103,7 @@ class HeatOde : public StageOde {
   std::vector<Eigen::VectorXd> mass_fixed_ones_;            ///< M times the members of each prescribed set
   Eigen::VectorXd residual_scale_;
   Eigen::VectorXd base_, gathered_, heat_, x_, residual_, work_, flow_W_;  ///< of the present stage
-  double hall_K_ = 0.0;                                                    ///< of the last evaluation
+  double ambient_K_ = 0.0;                                                 ///< of the last evaluation
   Slope at_start_, latest_;
   SlopeSpace space_;
   Pcg shifted_solver_;

@@ -58,12 +58,13 @@ HeatRate::HeatRate(const FullSystem& system)
     looks_at_state_ |= s.power_W.looks_at_state();
   }
   for (const auto& e : system.exchanges) {
-    crossings_.push_back({Sparse(e.flow), Sparse(e.to_hall), Sparse(e.offset), slots_of(e.matrix, system.conduction)});
+    crossings_.push_back({Sparse(e.flow), Sparse(e.to_ambient), Sparse(e.offset), slots_of(e.matrix, system.conduction)});
     flows_.push_back({e.name, e.leaves_machine() ? FlowKind::kSurrounding : FlowKind::kInternal});
     looks_at_state_ |= e.coefficient.looks_at_state();
   }
   for (const auto& term : system.nonlinear) {
-    if (term->is_flow()) flows_.push_back({term->name, term->reaches_hall() ? FlowKind::kSurrounding : FlowKind::kInternal});
+    if (term->is_flow())
+      flows_.push_back({term->name, term->reaches_ambient() ? FlowKind::kSurrounding : FlowKind::kInternal});
   }
 }
 
@@ -92,7 +93,7 @@ bool HeatRate::set(const Drive& drive, double time_s, std::string_view run) {
   is_set_ = true;
   steady_matrix_ = system_.conduction;
   steady_load_ = Eigen::VectorXd::Zero(system_.size());
-  steady_to_hall_ = steady_load_;
+  steady_to_ambient_ = steady_load_;
   for (std::size_t s = 0; s < sources_.size(); ++s) {
     if (!system_.sources[s].power_W.looks_at_state()) sources_[s].load.add_to(sources_[s].power_W, steady_load_.data());
   }
@@ -103,16 +104,16 @@ bool HeatRate::set(const Drive& drive, double time_s, std::string_view run) {
     for (std::size_t k = 0; k < crossing.slots.size(); ++k) {
       steady_matrix_.valuePtr()[crossing.slots[k]] += crossing.coefficient * exchange.matrix.valuePtr()[k];
     }
-    crossing.to_hall.add_to(crossing.coefficient, steady_to_hall_.data());
+    crossing.to_ambient.add_to(crossing.coefficient, steady_to_ambient_.data());
     crossing.offset.add_to(crossing.coefficient, steady_load_.data());
   }
   return true;
 }
 
-void HeatRate::look_at_state(const double* theta, double hall_K) {
+void HeatRate::look_at_state(const double* theta, double ambient_K) {
   for (std::size_t p = 0; p < probes_.size(); ++p) {
-    probe_K_[p] =
-        system_.reference_K + probes_[p].dot(theta) + system_.probes[p].hall_share * hall_K + system_.probes[p].offset_K;
+    probe_K_[p] = system_.reference_K + probes_[p].dot(theta) + system_.probes[p].ambient_share * ambient_K +
+                  system_.probes[p].offset_K;
   }
   for (std::size_t s = 0; s < sources_.size(); ++s) {
     const HeatSource& source = system_.sources[s];
@@ -126,11 +127,11 @@ void HeatRate::look_at_state(const double* theta, double hall_K) {
   }
 }
 
-void HeatRate::evaluate(const double* theta, double hall_K, double* heat_W) {
+void HeatRate::evaluate(const double* theta, double ambient_K, double* heat_W) {
   const int n = system_.size();
-  if (looks_at_state_) look_at_state(theta, hall_K);
+  if (looks_at_state_) look_at_state(theta, ambient_K);
   multiply(steady_matrix_, theta, product_.data());
-  for (int i = 0; i < n; ++i) heat_W[i] = steady_load_[i] + hall_K * steady_to_hall_[i] - product_[i];
+  for (int i = 0; i < n; ++i) heat_W[i] = steady_load_[i] + ambient_K * steady_to_ambient_[i] - product_[i];
   if (looks_at_state_) {
     for (std::size_t s = 0; s < sources_.size(); ++s) {
       if (system_.sources[s].power_W.looks_at_state()) sources_[s].load.add_to(sources_[s].power_W, heat_W);
@@ -141,29 +142,29 @@ void HeatRate::evaluate(const double* theta, double hall_K, double* heat_W) {
       const Crossing& crossing = crossings_[e];
       multiply(exchange.matrix, theta, product_.data());
       for (int i = 0; i < n; ++i) heat_W[i] -= crossing.coefficient * product_[i];
-      crossing.to_hall.add_to(crossing.coefficient * hall_K, heat_W);
+      crossing.to_ambient.add_to(crossing.coefficient * ambient_K, heat_W);
       crossing.offset.add_to(crossing.coefficient, heat_W);
     }
   }
   if (!system_.nonlinear.empty()) {
     product_.setZero();
-    for (const auto& term : system_.nonlinear) term->add_heat_out(theta, hall_K, product_.data());
+    for (const auto& term : system_.nonlinear) term->add_heat_out(theta, ambient_K, product_.data());
     for (int i = 0; i < n; ++i) heat_W[i] -= product_[i];
   }
 }
 
-void HeatRate::flows_W(const double* theta, double hall_K, double* flows_W) const {
+void HeatRate::flows_W(const double* theta, double ambient_K, double* flows_W) const {
   for (const Source& s : sources_) *flows_W++ = s.power_W;
   for (std::size_t e = 0; e < crossings_.size(); ++e) {
     const Exchange<SparseRow>& exchange = system_.exchanges[e];
     const double crossing_W =
-        crossings_[e].coefficient * (crossings_[e].flow.dot(theta) - exchange.hall_sum * hall_K - exchange.offset_sum);
+        crossings_[e].coefficient * (crossings_[e].flow.dot(theta) - exchange.ambient_sum * ambient_K - exchange.offset_sum);
     *flows_W++ = exchange.leaves_machine() ? -crossing_W : crossing_W;
   }
   for (const auto& term : system_.nonlinear) {
     if (!term->is_flow()) continue;
-    const double out_W = term->heat_out_W(theta, hall_K);
-    *flows_W++ = term->reaches_hall() ? -out_W : out_W;
+    const double out_W = term->heat_out_W(theta, ambient_K);
+    *flows_W++ = term->reaches_ambient() ? -out_W : out_W;
   }
 }
 
@@ -184,7 +185,7 @@ std::pair<double, double> HeatRate::power_range_W() const {
   return range;
 }
 
-const SparseRow& HeatRate::tangent(const double* theta, double hall_K) {
+const SparseRow& HeatRate::tangent(const double* theta, double ambient_K) {
   if (!looks_at_state_ && system_.nonlinear.empty()) return steady_matrix_;
   tangent_ = steady_matrix_;
   for (std::size_t e = 0; e < crossings_.size(); ++e) {
@@ -194,13 +195,13 @@ const SparseRow& HeatRate::tangent(const double* theta, double hall_K) {
       tangent_.valuePtr()[crossings_[e].slots[k]] += crossings_[e].coefficient * exchange.matrix.valuePtr()[k];
     }
   }
-  for (const auto& term : system_.nonlinear) term->add_tangent(theta, hall_K, tangent_);
+  for (const auto& term : system_.nonlinear) term->add_tangent(theta, ambient_K, tangent_);
   return tangent_;
 }
 
-double HeatRate::thermostat_probe_K(int i, const double* theta, double hall_K) const {
+double HeatRate::thermostat_probe_K(int i, const double* theta, double ambient_K) const {
   const int probe = system_.thermostats[i].probe;
-  return system_.reference_K + probes_[probe].dot(theta) + system_.probes[probe].hall_share * hall_K +
+  return system_.reference_K + probes_[probe].dot(theta) + system_.probes[probe].ambient_share * ambient_K +
          system_.probes[probe].offset_K;
 }
 

@@ -19,10 +19,10 @@ class HeatRate {
   bool set(const Drive& drive, double time_s, std::string_view run = {});
 
   /// Net heat into each unknown [W], n long, at θ.
-  void evaluate(const double* theta, double hall_K, double* heat_W);
+  void evaluate(const double* theta, double ambient_K, double* heat_W);
 
   /// Each flow of flows() [W] at the θ of the last evaluate().
-  void flows_W(const double* theta, double hall_K, double* flows_W) const;
+  void flows_W(const double* theta, double ambient_K, double* flows_W) const;
   /// Their derivative along dθ, films' and links' coefficients and radiation as at the last evaluate().
   void flows_along(const double* dtheta, double* dflows_W) const;
   [[nodiscard]] const std::vector<HeatFlow>& flows() const { return flows_; }
@@ -31,10 +31,10 @@ class HeatRate {
   [[nodiscard]] std::pair<double, double> power_range_W() const;
 
   /// Symmetric tangent -d(heat)/dθ [W/K], laws' probes held, at the θ of the last evaluate(). Its pattern is that of K0.
-  [[nodiscard]] const SparseRow& tangent(const double* theta, double hall_K);
+  [[nodiscard]] const SparseRow& tangent(const double* theta, double ambient_K);
 
   /// Absolute temperature of thermostat i's probe [K].
-  [[nodiscard]] double thermostat_probe_K(int i, const double* theta, double hall_K) const;
+  [[nodiscard]] double thermostat_probe_K(int i, const double* theta, double ambient_K) const;
   [[nodiscard]] bool thermostat_is_on(int i) const { return thermostat_on_[i]; }
   /// Call set() afterwards.
   void set_thermostat(int i, bool on) { thermostat_on_[i] = on; }
@@ -53,15 +53,15 @@ class HeatRate {
     double power_W = 0.0;
   };
   struct Crossing {
-    Sparse flow, to_hall, offset;
+    Sparse flow, to_ambient, offset;
     std::vector<int> slots;  ///< of the exchange's matrix in the common pattern
     double coefficient = 0.0;
   };
-  void look_at_state(const double* theta, double hall_K);
+  void look_at_state(const double* theta, double ambient_K);
   [[nodiscard]] double value_of(const BoundLaw& law) const;
 
   const FullSystem& system_;
-  std::vector<HeatFlow> flows_;  ///< sources, exchanges, nonlinear terms to the hall; each in the system's order
+  std::vector<HeatFlow> flows_;  ///< sources, exchanges, nonlinear terms to the ambient; each in the system's order
   std::vector<Sparse> probes_;
   std::vector<Source> sources_;
   std::vector<Crossing> crossings_;
@@ -70,9 +70,9 @@ class HeatRate {
   std::vector<double> probe_K_;
   bool looks_at_state_ = false;
   bool is_set_ = false;
-  // What does not look at the state, merged: heat = steady_load + θ_hall steady_to_hall - steady_matrix θ - ...
+  // What does not look at the state, merged: heat = steady_load + θ_ambient steady_to_ambient - steady_matrix θ - ...
   SparseRow steady_matrix_, tangent_;
-  Eigen::VectorXd steady_load_, steady_to_hall_, product_;
+  Eigen::VectorXd steady_load_, steady_to_ambient_, product_;
 };
 
 }  // namespace driftwright::solver

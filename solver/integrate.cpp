@@ -127,7 +127,7 @@ void interpolate(double share, double step_s, const double* from, const double* 
 
 }  // namespace
 
-Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches, const TimeSeries& hall,
+Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches, const TimeSeries& ambient,
                      const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
                      const OutputCallback& callback) {
   const double from_s = stretches.front().start_s;
@@ -171,7 +171,7 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
   const VectorPtr before(N_VNew_Serial(ode.size(), context.get()));  // the state at which the last step began
   Eigen::Index next = 0;
   const auto take_output = [&](double t_s, N_Vector state_vector) {
-    const Eigen::VectorXd outputs = ode.observe(in(state_vector), hall.at(t_s));
+    const Eigen::VectorXd outputs = ode.observe(in(state_vector), ambient.at(t_s));
     if (next == 0) run.outputs.resize(outputs.size(), n_times);
     run.outputs.col(next) = outputs;
     run.heat_J.col(next).setZero();

@@ -8,7 +8,7 @@ namespace driftwright::solver {
 
 /// @param stretches  of the cyclogram, cut where anything jumps or bends
 /// @throws SolveError  as simulate()
-[[nodiscard]] Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches, const TimeSeries& hall,
+[[nodiscard]] Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches, const TimeSeries& ambient,
                                    const std::vector<double>& output_s, const TransientOptions& options,
                                    const Eigen::VectorXd& start, const OutputCallback& callback);
 

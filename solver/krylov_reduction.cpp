@@ -114,13 +114,13 @@ Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const 
     const double power_W = demand.power_W[static_cast<Eigen::Index>(s)];
     if (power_W > 0.0) loads.push_back(power_W * system.sources[s].load);
   }
-  Eigen::VectorXd hall = Eigen::VectorXd::Zero(system.size()), offset = hall;
+  Eigen::VectorXd ambient = Eigen::VectorXd::Zero(system.size()), offset = ambient;
   for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
     const auto& exchange = system.exchanges[e];
-    hall += c[static_cast<Eigen::Index>(e)] * exchange.to_hall;
+    ambient += c[static_cast<Eigen::Index>(e)] * exchange.to_ambient;
     if (exchange.offset.size() > 0) offset += c[static_cast<Eigen::Index>(e)] * exchange.offset;
   }
-  for (const Eigen::VectorXd& load : {Eigen::VectorXd(demand.hall_K * hall), offset}) {
+  for (const Eigen::VectorXd& load : {Eigen::VectorXd(demand.ambient_K * ambient), offset}) {
     if (load.cwiseAbs().maxCoeff() > 0.0) loads.push_back(load);
   }
   Inputs inputs;

@@ -1,7 +1,7 @@
 #pragma once
 // A basis in which the small system answers like the full one, to a tolerance: a block rational Krylov space.
 //
-// Columns are responses (s M + K(c))⁻¹ b of the full system to its inputs b (each source, the hall, stratified air, the start) at
+// Columns are responses (s M + K(c))⁻¹ b of the full system to its inputs b (each source, the ambient, stratified air, the start) at
 // shifts s [1/s] from standing still to seconds and at several sets of coefficients c. K is affine in c, so that films, joints
 // and links keep their laws in the small system. Each round adds the responses where the residual is largest; the outputs under
 // steps of all inputs then tell how much the round has changed.

@@ -4,8 +4,8 @@
 
 namespace driftwright::solver {
 
-LiveRate::LiveRate(const ReducedSystem& system, const TimeSeries& hall)
-    : system_(system), hall_(hall), is_on_(system.thermostats.size(), 0), probe_K_(system.probes.size()) {
+LiveRate::LiveRate(const ReducedSystem& system, const TimeSeries& ambient)
+    : system_(system), ambient_(ambient), is_on_(system.thermostats.size(), 0), probe_K_(system.probes.size()) {
   if (!system.mass.isIdentity(1e-12))
     per_mass_ = system.mass.llt().solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
   const auto over_mass = [&](const auto& x) { return per_mass_.size() > 0 ? (per_mass_ * x).eval() : x; };
@@ -14,7 +14,7 @@ LiveRate::LiveRate(const ReducedSystem& system, const TimeSeries& hall)
   }
   for (const auto& e : system.exchanges) {
     if (!e.coefficient.looks_at_state()) continue;
-    exchanges_.push_back({&e.coefficient, over_mass(e.matrix), over_mass(e.to_hall),
+    exchanges_.push_back({&e.coefficient, over_mass(e.matrix), over_mass(e.to_ambient),
                           e.offset.size() > 0 ? over_mass(e.offset) : Eigen::VectorXd::Zero(system.size())});
   }
 }
@@ -23,7 +23,7 @@ bool LiveRate::enter(const LinearStretch& stretch) {
   inputs_.drive = stretch.drive;
   inputs_.run = stretch.run;
   inputs_.time_s = 0.5 * (stretch.start_s + stretch.end_s);
-  inputs_.hall_K = hall_.at(stretch.start_s);
+  inputs_.ambient_K = ambient_.at(stretch.start_s);
   inputs_.probe_K.clear();
   std::vector<double> followed;
   followed.reserve(followed_.size());
@@ -37,7 +37,7 @@ bool LiveRate::enter(const LinearStretch& stretch) {
   has_entered_ = true;
   followed_ = std::move(followed);
   conduction_ = system_.conduction;
-  load_ = to_hall_ = Eigen::VectorXd::Zero(system_.size());
+  load_ = to_ambient_ = Eigen::VectorXd::Zero(system_.size());
   auto next = followed_.begin();
   for (const HeatSource& s : system_.sources) {
     if (!s.power_W.looks_at_state()) load_ += *next++ * s.load;
@@ -47,13 +47,13 @@ bool LiveRate::enter(const LinearStretch& stretch) {
     const double c = *next++;
     if (c == 0.0) continue;
     conduction_ += c * e.matrix;
-    to_hall_ += c * e.to_hall;
+    to_ambient_ += c * e.to_ambient;
     if (e.offset.size() > 0) load_ += c * e.offset;
   }
   if (per_mass_.size() > 0) {
     conduction_ = (per_mass_ * conduction_).eval();
     load_ = (per_mass_ * load_).eval();
-    to_hall_ = (per_mass_ * to_hall_).eval();
+    to_ambient_ = (per_mass_ * to_ambient_).eval();
   }
   return true;
 }
@@ -66,20 +66,20 @@ double LiveRate::value(const BoundLaw& law) {
 }
 
 void LiveRate::look(double t_s, const Eigen::VectorXd& z) {
-  inputs_.hall_K = hall_.at(t_s);
+  inputs_.ambient_K = ambient_.at(t_s);
   for (std::size_t p = 0; p < probe_K_.size(); ++p)
-    probe_K_[p] = system_.reference_K + system_.probes[p].theta_K(z, inputs_.hall_K);
+    probe_K_[p] = system_.reference_K + system_.probes[p].theta_K(z, inputs_.ambient_K);
 }
 
 void LiveRate::rate(double t_s, const Eigen::VectorXd& z, Eigen::VectorXd& dz_dt) {
   look(t_s, z);
-  dz_dt = load_ + inputs_.hall_K * to_hall_;
+  dz_dt = load_ + inputs_.ambient_K * to_ambient_;
   dz_dt.noalias() -= conduction_ * z;
   for (const Source& s : sources_) dz_dt += value(*s.law) * s.load;
   for (const Exchange& e : exchanges_) {
     const double c = value(*e.law);
     dz_dt.noalias() -= c * (e.matrix * z);
-    dz_dt += c * (inputs_.hall_K * e.to_hall + e.offset);
+    dz_dt += c * (inputs_.ambient_K * e.to_ambient + e.offset);
   }
 }
 
@@ -103,7 +103,7 @@ Eigen::MatrixXd LiveRate::tangent(double t_s, const Eigen::VectorXd& z) {
   for (const Source& s : sources_) along_probes(*s.law, s.load);
   for (const Exchange& e : exchanges_) {
     slope -= value(*e.law) * e.matrix;
-    along_probes(*e.law, inputs_.hall_K * e.to_hall + e.offset - e.matrix * z);
+    along_probes(*e.law, inputs_.ambient_K * e.to_ambient + e.offset - e.matrix * z);
   }
   return slope;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // dz/dt of a reduced system whose laws look at temperatures, at any state and time:
 //
-//     M dz/dt = f + θ_hall h - K z + Σ_s P_s(z) b_s - Σ_e c_e(z) (G_e z - θ_hall g_e - o_e)
+//     M dz/dt = f + θ_ambient h - K z + Σ_s P_s(z) b_s - Σ_e c_e(z) (G_e z - θ_ambient g_e - o_e)
 //
 // with sums over the laws that look at the state; those that follow drive and time alone are within f, h and K.
 
@@ -12,8 +12,8 @@ namespace driftwright::solver {
 
 class LiveRate {
  public:
-  /// @param system  borrowed, as is the hall; its thermostats are off
-  LiveRate(const ReducedSystem& system, const TimeSeries& hall);
+  /// @param system  borrowed, as is the ambient; its thermostats are off
+  LiveRate(const ReducedSystem& system, const TimeSeries& ambient);
 
   [[nodiscard]] bool is_on(std::size_t thermostat) const { return is_on_[thermostat] != 0; }
   /// Call enter() afterwards.
@@ -34,7 +34,7 @@ class LiveRate {
   struct Exchange {
     const BoundLaw* law;
     Eigen::MatrixXd matrix;
-    Eigen::VectorXd to_hall, offset;
+    Eigen::VectorXd to_ambient, offset;
   };
   [[nodiscard]] bool is_off(const BoundLaw& law) const {
     return law.thermostat >= 0 && is_on_[static_cast<std::size_t>(law.thermostat)] == 0;
@@ -43,7 +43,7 @@ class LiveRate {
   void look(double t_s, const Eigen::VectorXd& z);
 
   const ReducedSystem& system_;
-  const TimeSeries& hall_;
+  const TimeSeries& ambient_;
   Eigen::MatrixXd per_mass_;  ///< M⁻¹; empty where M = 1
   std::vector<char> is_on_;
   std::vector<Source> sources_;
@@ -53,7 +53,7 @@ class LiveRate {
   std::vector<double> followed_;  ///< values of the laws that do not look at the state, 0 where a thermostat has them off
   bool has_entered_ = false;
   Eigen::MatrixXd conduction_;
-  Eigen::VectorXd load_, to_hall_;
+  Eigen::VectorXd load_, to_ambient_;
 };
 
 }  // namespace driftwright::solver

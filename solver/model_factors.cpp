@@ -44,10 +44,10 @@ void check(const ThermalSystem<Matrix>& s, const ModelFactors& f) {
 template <class Matrix>
 void scale(Exchange<Matrix>& exchange, double factor) {
   exchange.matrix *= factor;
-  exchange.to_hall *= factor;
+  exchange.to_ambient *= factor;
   exchange.flow *= factor;
   exchange.offset *= factor;
-  exchange.hall_sum *= factor;
+  exchange.ambient_sum *= factor;
   exchange.offset_sum *= factor;
 }
 
@@ -98,7 +98,7 @@ ThermalSystem<Matrix> with_factors(ThermalSystem<Matrix> system, const ModelFact
   (system.conduction *= factors.conduction) *= factors.rate;
   for (std::size_t o = 0; o < factors.output.size(); ++o) {
     system.outputs.state.col(static_cast<Eigen::Index>(o)) *= factors.output[o];
-    system.outputs.hall[static_cast<Eigen::Index>(o)] *= factors.output[o];
+    system.outputs.ambient[static_cast<Eigen::Index>(o)] *= factors.output[o];
   }
   return system;
 }

@@ -19,7 +19,7 @@ struct ModelFactors {
   /// Per part (row) and output (column): a row of one factor is another coefficient of expansion, a single entry another sensitivity of
   /// one displacement. 0 x 0 means ones.
   Eigen::MatrixXd expansion = {};
-  std::vector<double> output = {};  ///< per output, on what the state and the hall give it; of thermometers usually 1
+  std::vector<double> output = {};  ///< per output, on what the state and the ambient give it; of thermometers usually 1
   double conduction = 1.0;          ///< on all conduction within bodies
   double rate = 1.0;                ///< on all rates of change: a machine of 1/rate of the capacity
 };
@@ -27,7 +27,7 @@ struct ModelFactors {
 /// The system with factors a on sources, c on exchanges, k, m and x on parts, y on outputs, κ on conduction and ρ on rates:
 ///
 ///     K0 -> ρ κ [K0 + Σ_p (k_p - 1) K_p],   b_s -> ρ a_s b_s,   G_e, g_e, o_e -> ρ c_e (G_e, g_e, o_e),   M -> M + Σ_p (m_p - 1) M_p
-///     L_o -> y_o [L_o + Σ_p (x_po - 1) L_po],   l_hall,o -> y_o l_hall,o
+///     L_o -> y_o [L_o + Σ_p (x_po - 1) L_po],   l_ambient,o -> y_o l_ambient,o
 ///
 /// The parts change alike and remain what M, K0 and outputs consist of: factors one after the other act as their product. ρ lets all flows
 /// grow and leaves M alone, so that a model with M = 1 keeps it; the flows of heat that a run reports then are ρ times the machine's.

@@ -15,10 +15,10 @@ class NonlinearTerm {
   virtual ~NonlinearTerm() = default;
 
   /// r += r(θ).
-  virtual void add_heat_out(const double* theta, double hall_K, double* r_W) const = 0;
+  virtual void add_heat_out(const double* theta, double ambient_K, double* r_W) const = 0;
 
   /// k += dr/dθ [W/K] without its antisymmetric part; entries exist in k's pattern.
-  virtual void add_tangent(const double* theta, double hall_K, SparseRow& k) const = 0;
+  virtual void add_tangent(const double* theta, double ambient_K, SparseRow& k) const = 0;
 
   /// Pairs of unknowns that the tangent couples, where the cells may not.
   virtual void add_cliques(Cliques&) const {}
@@ -26,7 +26,7 @@ class NonlinearTerm {
   /// Heat that leaves the surface [W], for a term that is a flow of its own (radiation).
   [[nodiscard]] virtual double heat_out_W(const double*, double) const { return 0.0; }
   [[nodiscard]] virtual bool is_flow() const { return false; }
-  [[nodiscard]] virtual bool reaches_hall() const { return false; }
+  [[nodiscard]] virtual bool reaches_ambient() const { return false; }
 
   std::string name;
 };

@@ -66,7 +66,7 @@ Propagator::Propagator(const ReducedSystem& system) : system_(system), decomposi
   if (!system.is_linear()) throw std::logic_error("only linear systems evolve as exponentials");
 }
 
-Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
+Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& output_s,
                            const Eigen::VectorXd& start, bool with_heat, Eigen::MatrixXd* states, double from_s) {
   const auto n = static_cast<Eigen::Index>(system_.size()), n_times = static_cast<Eigen::Index>(output_s.size());
   const auto n_sources = static_cast<Eigen::Index>(system_.sources.size()),
@@ -75,7 +75,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
   run.time_s = output_s;
   run.outputs.resize(system_.outputs.state.cols(), n_times);
   if (states) states->resize(n, n_times);
-  const bool reads_hall = (system_.outputs.hall.array() != 0.0).any();
+  const bool reads_ambient = (system_.outputs.ambient.array() != 0.0).any();
   Eigen::VectorXd heat_J;  // of every flow up to the stretch's start
   double initial_J = 0.0;
   if (with_heat) {
@@ -90,18 +90,18 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
   Eigen::MatrixXd block, integrals;  // z and ∫ z at the outputs of a stretch, in its eigenvectors
   Eigen::ArrayXd e(n), decay(n);
   std::size_t next = 0;
-  for (const LinearStretch& stretch : behind(from_s, stretches_of(system_, cyclogram, hall))) {
-    const double length_s = stretch.end_s - stretch.start_s, hall_K = hall.at(stretch.start_s),
-                 hall_slope = (hall.at(stretch.end_s) - hall_K) / length_s;
-    effects::Inputs at{.drive = stretch.drive, .hall_K = hall_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
+  for (const LinearStretch& stretch : behind(from_s, stretches_of(system_, cyclogram, ambient))) {
+    const double length_s = stretch.end_s - stretch.start_s, ambient_K = ambient.at(stretch.start_s),
+                 ambient_slope = (ambient.at(stretch.end_s) - ambient_K) / length_s;
+    effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
     at.run = stretch.run;
     for (Eigen::Index i = 0; i < n_exchanges; ++i) {
       coefficient[i] = system_.exchanges[static_cast<std::size_t>(i)].coefficient(at);
     }
     for (Eigen::Index s = 0; s < n_sources; ++s) power_W[s] = system_.sources[static_cast<std::size_t>(s)].power_W(at);
     const Decomposition& d = decompositions_.at(coefficient, with_heat);
-    const Solution solution(d.lambda_1_s, d.to_modes * state, d.loads * power_W + hall_K * d.to_hall + d.offset,
-                            hall_slope * d.to_hall, length_s);
+    const Solution solution(d.lambda_1_s, d.to_modes * state, d.loads * power_W + ambient_K * d.to_ambient + d.offset,
+                            ambient_slope * d.to_ambient, length_s);
 
     std::size_t last = next;
     while (last < output_s.size() && output_s[last] <= stretch.end_s) ++last;
@@ -124,10 +124,10 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
     run.outputs.middleCols(first_column, n_columns).noalias() = d.outputs * block;
     if (states) states->middleCols(first_column, n_columns).noalias() = d.vectors * block;
     const auto heats_after = [&](double dt_s, const auto& integral) {
-      const double hall_Ks = dt_s * (hall_K + 0.5 * hall_slope * dt_s);
+      const double ambient_Ks = dt_s * (ambient_K + 0.5 * ambient_slope * dt_s);
       Eigen::VectorXd heat = heat_J;
       heat.head(n_sources) += dt_s * power_W;
-      const Eigen::VectorXd crossed = d.flows * integral - hall_Ks * d.hall_W_K - dt_s * d.offset_W;
+      const Eigen::VectorXd crossed = d.flows * integral - ambient_Ks * d.ambient_W_K - dt_s * d.offset_W;
       for (Eigen::Index i = 0; i < n_exchanges; ++i) {
         const bool is_internal = run.flows[static_cast<std::size_t>(n_sources + i)].kind == FlowKind::kInternal;
         heat[n_sources + i] += is_internal ? crossed[i] : -crossed[i];
@@ -136,7 +136,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& hall, c
     };
     for (Eigen::Index k = 0; k < n_columns; ++k) {
       const double now_s = output_s[next + static_cast<std::size_t>(k)];
-      if (reads_hall) run.outputs.col(first_column + k) += hall.at(now_s) * system_.outputs.hall;
+      if (reads_ambient) run.outputs.col(first_column + k) += ambient.at(now_s) * system_.outputs.ambient;
       if (!with_heat) continue;
       run.heat_J.col(first_column + k) = heats_after(now_s - stretch.start_s, integrals.col(k));
       run.stored_J[first_column + k] = d.stored_J_K.dot(block.col(k)) - initial_J;

@@ -1,5 +1,5 @@
 #pragma once
-// Linear reduced systems in time, exactly: in each stretch of constant drive and linear hall temperature the solution is a
+// Linear reduced systems in time, exactly: in each stretch of constant drive and linear ambient temperature the solution is a
 // sum of exponentials, so nothing is stepped and nothing but rounding is lost.
 
 #include "base/cyclogram.hpp"
@@ -21,19 +21,19 @@ class Propagator {
 
   /// Runs a cyclogram from `start` (reduced state at t = 0).
   ///
-  /// @param hall       hall temperature minus the reference temperature [K]
+  /// @param ambient       ambient temperature minus the reference temperature [K]
   /// @param output_s   times of the outputs, increasing, within the cyclogram
   /// @param with_heat  also heat_J and stored_J of the result, which otherwise stay empty
   /// @param states     unless null, the reduced states at the outputs, size x n_times
   /// @param from_s     as TransientOptions::from_s
-  [[nodiscard]] Trajectory run(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
+  [[nodiscard]] Trajectory run(const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& output_s,
                                const Eigen::VectorXd& start, bool with_heat = false, Eigen::MatrixXd* states = nullptr,
                                double from_s = 0.0);
 
   /// The same run, kept, for what systems close by would do; nothing where that were too much to keep.
-  [[nodiscard]] std::optional<Course> course(const Cyclogram& cyclogram, const TimeSeries& hall,
+  [[nodiscard]] std::optional<Course> course(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                              const std::vector<double>& output_s, const Eigen::VectorXd& start) {
-    return Course::of(system_, decompositions_, cyclogram, hall, output_s, start);
+    return Course::of(system_, decompositions_, cyclogram, ambient, output_s, start);
   }
 
   [[nodiscard]] int n_decompositions() const { return decompositions_.n_made(); }

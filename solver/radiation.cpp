@@ -26,17 +26,17 @@ class RadiatingSurface : public NonlinearTerm {
   RadiatingSurface(const std::string& term_name, int surrounding, double reference_K)
       : NonlinearTerm(term_name), surrounding_(surrounding), reference_K_(reference_K) {}
 
-  void add_heat_out(const double* theta, double hall_K, double* r_W) const override {
+  void add_heat_out(const double* theta, double ambient_K, double* r_W) const override {
     for (const Facet& facet : facets) {
       for (const Point& point : facet.points) {
-        const double q_W = heat_W(facet, point, theta, hall_K);
+        const double q_W = heat_W(facet, point, theta, ambient_K);
         for (std::size_t i = 0; i < facet.nodes.size(); ++i) r_W[facet.nodes[i]] += point.N[i] * q_W;
         if (surrounding_ >= 0) r_W[surrounding_] -= q_W;
       }
     }
   }
 
-  void add_tangent(const double* theta, double hall_K, SparseRow& k) const override {
+  void add_tangent(const double* theta, double ambient_K, SparseRow& k) const override {
     for (const Facet& facet : facets) {
       std::vector<int> unknowns = facet.nodes;
       if (surrounding_ >= 0) unknowns.push_back(surrounding_);
@@ -49,7 +49,7 @@ class RadiatingSurface : public NonlinearTerm {
         double slope_W_K = 4.0 * point.strength_W_K4 * t_K * t_K * t_K;
         if (surrounding_ >= 0) {  // between the two ends' slopes, so that the tangent stays symmetric
           jump[n - 1] = -1.0;
-          const double s_K = surrounding_K(point, theta, hall_K);
+          const double s_K = surrounding_K(point, theta, ambient_K);
           slope_W_K = point.strength_W_K4 * (t_K * t_K + s_K * s_K) * (t_K + s_K);
         }
         local += slope_W_K * jump * jump.transpose();
@@ -67,15 +67,15 @@ class RadiatingSurface : public NonlinearTerm {
     }
   }
 
-  [[nodiscard]] double heat_out_W(const double* theta, double hall_K) const override {
+  [[nodiscard]] double heat_out_W(const double* theta, double ambient_K) const override {
     double sum_W = 0.0;
     for (const Facet& facet : facets) {
-      for (const Point& point : facet.points) sum_W += heat_W(facet, point, theta, hall_K);
+      for (const Point& point : facet.points) sum_W += heat_W(facet, point, theta, ambient_K);
     }
     return sum_W;
   }
   [[nodiscard]] bool is_flow() const override { return true; }
-  [[nodiscard]] bool reaches_hall() const override { return surrounding_ < 0; }
+  [[nodiscard]] bool reaches_ambient() const override { return surrounding_ < 0; }
 
   std::vector<Facet> facets;
 
@@ -85,11 +85,11 @@ class RadiatingSurface : public NonlinearTerm {
     for (std::size_t i = 0; i < facet.nodes.size(); ++i) t_K += point.N[i] * theta[facet.nodes[i]];
     return t_K;
   }
-  [[nodiscard]] double surrounding_K(const Point& point, const double* theta, double hall_K) const {
-    return reference_K_ + (surrounding_ >= 0 ? theta[surrounding_] : hall_K + point.air_offset_K);
+  [[nodiscard]] double surrounding_K(const Point& point, const double* theta, double ambient_K) const {
+    return reference_K_ + (surrounding_ >= 0 ? theta[surrounding_] : ambient_K + point.air_offset_K);
   }
-  [[nodiscard]] double heat_W(const Facet& facet, const Point& point, const double* theta, double hall_K) const {
-    return point.strength_W_K4 * (pow4(surface_K(facet, point, theta)) - pow4(surrounding_K(point, theta, hall_K)));
+  [[nodiscard]] double heat_W(const Facet& facet, const Point& point, const double* theta, double ambient_K) const {
+    return point.strength_W_K4 * (pow4(surface_K(facet, point, theta)) - pow4(surrounding_K(point, theta, ambient_K)));
   }
 
   int surrounding_;
@@ -98,7 +98,7 @@ class RadiatingSurface : public NonlinearTerm {
 
 }  // namespace
 
-double hall_offset_K(const std::vector<effects::Stratification>& air, double height_m) {
+double ambient_offset_K(const std::vector<effects::Stratification>& air, double height_m) {
   double offset_K = 0.0;
   for (const effects::Stratification& s : air) offset_K += s.gradient_K_m * (height_m - s.level_m);
   return offset_K;
@@ -117,7 +117,7 @@ std::shared_ptr<const NonlinearTerm> radiating_surface(const mesh::Mesh& mesh, c
       const mesh::ShapeValues s = mesh::shape_values(shape, q.xi);
       const Eigen::VectorXd n_values = s.N.head(s.n).transpose();
       facet.points.push_back({radiation.emissivity * kStefanBoltzmann_W_m2K4 * q.weight * mesh::jacobian(s, x, shape).det,
-                              hall_offset_K(air, x.row(2).dot(n_values)), n_values});
+                              ambient_offset_K(air, x.row(2).dot(n_values)), n_values});
     }
     term->facets.push_back(std::move(facet));
   }

@@ -52,7 +52,7 @@ ReducedSystem projected(const ThermalSystem<Matrix>& system, const Eigen::Matrix
   reduced.mass = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
   reduced.conduction = reduce(system.conduction);
   for (const Probe& p : system.probes)
-    reduced.probes.push_back({p.body, p.before, basis.transpose() * p.weights, p.hall_share, p.offset_K});
+    reduced.probes.push_back({p.body, p.before, basis.transpose() * p.weights, p.ambient_share, p.offset_K});
   for (const HeatSource& s : system.sources)
     reduced.sources.push_back({s.name, s.body, basis.transpose() * s.load, s.power_W});
   for (const auto& e : system.exchanges) {
@@ -60,8 +60,8 @@ ReducedSystem projected(const ThermalSystem<Matrix>& system, const Eigen::Matrix
         {.name = e.name,
          .place = e.place,
          .matrix = reduce(e.matrix),
-         .to_hall = basis.transpose() * e.to_hall,
-         .hall_sum = e.hall_sum,
+         .to_ambient = basis.transpose() * e.to_ambient,
+         .ambient_sum = e.ambient_sum,
          .coefficient = e.coefficient,
          .flow = basis.transpose() * e.flow,
          .offset = e.offset.size() > 0 ? Eigen::VectorXd(basis.transpose() * e.offset) : Eigen::VectorXd(),
@@ -74,7 +74,7 @@ ReducedSystem projected(const ThermalSystem<Matrix>& system, const Eigen::Matrix
     reduced.parts.push_back({p.body, reduce(p.conduction), reduce(p.mass), basis.transpose() * p.outputs});
   }
   reduced.outputs = {system.outputs.name, system.outputs.unit, basis.transpose() * system.outputs.state,
-                     system.outputs.hall};
+                     system.outputs.ambient};
   reduced.ones = basis.transpose() * times_ones(system.mass, system.ones);
   return reduced;
 }
@@ -104,7 +104,7 @@ ReducedSystem with_unit_mass(const ReducedSystem& system, Eigen::VectorXd& start
   matrix(unit.conduction);
   for (auto& e : unit.exchanges) {
     matrix(e.matrix);
-    vector(e.to_hall);
+    vector(e.to_ambient);
     vector(e.flow);
     vector(e.offset);
     vector(e.medium);

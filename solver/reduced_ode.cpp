@@ -15,9 +15,9 @@ constexpr double kShareOfTolerance = 0.02;  // errors of Newton's iterations do 
 
 }  // namespace
 
-ReducedOde::ReducedOde(const ReducedSystem& system, const TimeSeries& hall)
+ReducedOde::ReducedOde(const ReducedSystem& system, const TimeSeries& ambient)
     : system_(system),
-      hall_(hall),
+      ambient_(ambient),
       n_(system.size()),
       flows_(flows_of(system)),
       decompositions_(system),
@@ -68,12 +68,12 @@ double ReducedOde::value(const BoundLaw& law, const std::vector<double>& probe_K
   return law.law(inputs);
 }
 
-std::vector<double> ReducedOde::probe_K(const Eigen::VectorXd& w, double hall_K) const {
+std::vector<double> ReducedOde::probe_K(const Eigen::VectorXd& w, double ambient_K) const {
   std::vector<double> t_K(system_.probes.size());
   for (std::size_t p = 0; p < t_K.size(); ++p) {
     const Probe& probe = system_.probes[p];
-    t_K[p] =
-        system_.reference_K + probes_.col(static_cast<Eigen::Index>(p)).dot(w) + probe.hall_share * hall_K + probe.offset_K;
+    t_K[p] = system_.reference_K + probes_.col(static_cast<Eigen::Index>(p)).dot(w) + probe.ambient_share * ambient_K +
+             probe.offset_K;
   }
   return t_K;
 }
@@ -82,7 +82,7 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
   inputs_.drive = stretch.drive;
   inputs_.run = stretch.run;
   inputs_.time_s = 0.5 * (stretch.start_s + stretch.end_s);
-  inputs_.hall_K = hall_.at(stretch.start_s);
+  inputs_.ambient_K = ambient_.at(stretch.start_s);
   Eigen::VectorXd coefficient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system_.exchanges.size())),
                   power_W = Eigen::VectorXd::Zero(power_W_.size());
   for (std::size_t s = 0; s < system_.sources.size(); ++s) {
@@ -109,7 +109,7 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
     }
   };
   weights_of_probes(Eigen::MatrixXd::Identity(n_, n_));
-  const std::vector<double> t_K = probe_K(z, inputs_.hall_K);
+  const std::vector<double> t_K = probe_K(z, inputs_.ambient_K);
   for (LiveExchange& live : live_exchanges_) {
     live.in_diagonal = std::max(0.0, value(system_.exchanges[live.index].coefficient, t_K));
     coefficient[static_cast<Eigen::Index>(live.index)] = live.in_diagonal;
@@ -120,7 +120,7 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
   for (LiveExchange& live : live_exchanges_) {
     const auto& e = system_.exchanges[live.index];
     live.matrix.noalias() = v.transpose() * (e.matrix * v);
-    live.to_hall.noalias() = v.transpose() * e.to_hall;
+    live.to_ambient.noalias() = v.transpose() * e.to_ambient;
     live.offset = e.offset.size() > 0 ? Eigen::VectorXd(v.transpose() * e.offset) : Eigen::VectorXd::Zero(n_);
     live.flow.noalias() = v.transpose() * e.flow;
   }
@@ -137,33 +137,33 @@ double ReducedOde::distance_to_switch_K(int i, double t_s, const double* y) cons
   const Thermostat& thermostat = system_.thermostats[static_cast<std::size_t>(i)];
   const Probe& probe = system_.probes[static_cast<std::size_t>(thermostat.probe)];
   const double t_K = system_.reference_K + probes_.col(thermostat.probe).dot(unknowns(y)) +
-                     probe.hall_share * hall_.at(t_s) + probe.offset_K;
+                     probe.ambient_share * ambient_.at(t_s) + probe.offset_K;
   return t_K - (is_on_[static_cast<std::size_t>(i)] ? thermostat.off_below_K : thermostat.on_above_K);
 }
 
 void ReducedOde::evaluate(double t_s, const Eigen::VectorXd& w, Eigen::VectorXd& heat, Eigen::VectorXd& flow_W) {
-  const double hall_K = hall_.at(t_s);
-  inputs_.hall_K = hall_K;
-  const std::vector<double> t_K = probe_K(w, hall_K);
+  const double ambient_K = ambient_.at(t_s);
+  inputs_.ambient_K = ambient_K;
+  const std::vector<double> t_K = probe_K(w, ambient_K);
   for (LiveSource& live : live_sources_) {
     power_W_[static_cast<Eigen::Index>(live.index)] = live.power_W = value(system_.sources[live.index].power_W, t_K);
   }
-  heat = now_.offset + hall_K * now_.to_hall - now_.lambda_1_s.cwiseProduct(w);
+  heat = now_.offset + ambient_K * now_.to_ambient - now_.lambda_1_s.cwiseProduct(w);
   heat.noalias() += now_.loads * power_W_;
   for (LiveExchange& live : live_exchanges_) {
     live.coefficient = value(system_.exchanges[live.index].coefficient, t_K);
     const double beyond = live.coefficient - live.in_diagonal;
     heat.noalias() -= beyond * (live.matrix * w);
-    heat += beyond * (hall_K * live.to_hall + live.offset);
+    heat += beyond * (ambient_K * live.to_ambient + live.offset);
   }
-  const Eigen::Index n_sources = power_W_.size(), n_exchanges = now_.hall_W_K.size();
+  const Eigen::Index n_sources = power_W_.size(), n_exchanges = now_.ambient_W_K.size();
   flow_W.head(n_sources) = power_W_;
   flow_W.tail(n_exchanges).noalias() = now_.flows * w;
-  flow_W.tail(n_exchanges) -= hall_K * now_.hall_W_K + now_.offset_W;
+  flow_W.tail(n_exchanges) -= ambient_K * now_.ambient_W_K + now_.offset_W;
   for (const LiveExchange& live : live_exchanges_) {
     const auto& e = system_.exchanges[live.index];
     flow_W[n_sources + static_cast<Eigen::Index>(live.index)] =
-        live.coefficient * (live.flow.dot(w) - e.hall_sum * hall_K - e.offset_sum);
+        live.coefficient * (live.flow.dot(w) - e.ambient_sum * ambient_K - e.offset_sum);
   }
   for (Eigen::Index j = n_sources; j < flow_W.size(); ++j) {
     if (flows_[static_cast<std::size_t>(j)].kind != FlowKind::kInternal) flow_W[j] = -flow_W[j];
@@ -172,7 +172,7 @@ void ReducedOde::evaluate(double t_s, const Eigen::VectorXd& w, Eigen::VectorXd&
 
 void ReducedOde::find_slopes(double t_s, const Eigen::VectorXd& w) {
   constexpr double kHalfStep_K = 0.01;
-  const std::vector<double> t_K = probe_K(w, hall_.at(t_s));
+  const std::vector<double> t_K = probe_K(w, ambient_.at(t_s));
   for (LiveSource& live : live_sources_) {
     const BoundLaw& law = system_.sources[live.index].power_W;
     live.slope = Eigen::VectorXd::Zero(n_);
@@ -240,8 +240,8 @@ void ReducedOde::look(double t_s, const double* y) {
   }
 }
 
-Eigen::VectorXd ReducedOde::observe(const double* y, double hall_K) const {
-  return now_.outputs * unknowns(y) + hall_K * system_.outputs.hall;
+Eigen::VectorXd ReducedOde::observe(const double* y, double ambient_K) const {
+  return now_.outputs * unknowns(y) + ambient_K * system_.outputs.ambient;
 }
 
 Eigen::VectorXd ReducedOde::state(const double* y) const {

@@ -4,7 +4,7 @@
 // In each stretch the unknowns are those of the eigenvectors of K, with exchanges that look at temperatures at their value where the
 // stretch began, so that I + γ K is diagonal. What laws of temperature do to heat is a correction of few terms:
 //
-//     dw/dt = f + θ_hall h - Λ w + Σ_s P_s(w) b_s - Σ_e (c_e(w) - c_e0) (G_e w - θ_hall g_e - o_e)
+//     dw/dt = f + θ_ambient h - Λ w + Σ_s P_s(w) b_s - Σ_e (c_e(w) - c_e0) (G_e w - θ_ambient g_e - o_e)
 //
 // Newton's iterations take the diagonal, the slope of each power along its probes (one dense solve of as many equations as there
 // are such sources), and leave the exchanges' change out.
@@ -16,8 +16,8 @@ namespace driftwright::solver {
 
 class ReducedOde : public StageOde {
  public:
-  /// @param system, hall  borrowed
-  ReducedOde(const ReducedSystem& system, const TimeSeries& hall);
+  /// @param system, ambient  borrowed
+  ReducedOde(const ReducedSystem& system, const TimeSeries& ambient);
 
   [[nodiscard]] int size() const override { return n_ + static_cast<int>(flows_.size()); }
   [[nodiscard]] const std::vector<HeatFlow>& flows() const override { return flows_; }
@@ -36,7 +36,7 @@ class ReducedOde : public StageOde {
   [[nodiscard]] const double* slope_at_end() const override { return latest_.data(); }
   [[nodiscard]] bool starts_rough() const override { return is_rough_; }
   void look(double t_s, const double* y) override;
-  [[nodiscard]] Eigen::VectorXd observe(const double* y, double hall_K) const override;
+  [[nodiscard]] Eigen::VectorXd observe(const double* y, double ambient_K) const override;
   [[nodiscard]] Eigen::VectorXd state(const double* y) const override;
   [[nodiscard]] Eigen::VectorXd heats_J(const double* y) const override;
   [[nodiscard]] double stored_J(const double* y) const override;
@@ -56,18 +56,18 @@ class ReducedOde : public StageOde {
     std::size_t index;
     double coefficient = 0.0, in_diagonal = 0.0;  ///< now, and within Λ
     Eigen::MatrixXd matrix;                       ///< V'G V
-    Eigen::VectorXd to_hall, offset, flow;
+    Eigen::VectorXd to_ambient, offset, flow;
   };
   [[nodiscard]] Map unknowns(const double* y) const { return {y, n_}; }
   /// Value of a law at the probes' temperatures.
   [[nodiscard]] double value(const BoundLaw& law, const std::vector<double>& probe_K) const;
-  [[nodiscard]] std::vector<double> probe_K(const Eigen::VectorXd& w, double hall_K) const;
+  [[nodiscard]] std::vector<double> probe_K(const Eigen::VectorXd& w, double ambient_K) const;
   /// Heat into each unknown and each flow at w.
   void evaluate(double t_s, const Eigen::VectorXd& w, Eigen::VectorXd& heat, Eigen::VectorXd& flow_W);
   void find_slopes(double t_s, const Eigen::VectorXd& w);
 
   const ReducedSystem& system_;
-  const TimeSeries& hall_;
+  const TimeSeries& ambient_;
   int n_;
   std::vector<HeatFlow> flows_;
   Decompositions decompositions_;

@@ -7,16 +7,16 @@
 
 namespace driftwright::solver {
 
-Trajectory simulate(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+Trajectory simulate(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& ambient,
                     const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
                     const OutputCallback& callback) {
   if (!system.is_linear()) {
-    ReducedOde ode(system, hall);
-    return integrate(ode, behind(options.from_s, stretches_of(system, cyclogram, hall)), hall, output_s, options, start,
-                     callback);
+    ReducedOde ode(system, ambient);
+    return integrate(ode, behind(options.from_s, stretches_of(system, cyclogram, ambient)), ambient, output_s, options,
+                     start, callback);
   }
   Eigen::MatrixXd states;
-  Trajectory run = Propagator(system).run(cyclogram, hall, output_s, start, true, &states, options.from_s);
+  Trajectory run = Propagator(system).run(cyclogram, ambient, output_s, start, true, &states, options.from_s);
   for (std::size_t k = 0; callback && k < output_s.size(); ++k) {
     callback(output_s[k], states.col(static_cast<Eigen::Index>(k)));
   }

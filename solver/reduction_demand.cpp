@@ -9,7 +9,7 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr double kWarmer_K[] = {2.0, 20.0, 40.0};  // over the hall: where laws of temperature are looked at
+constexpr double kWarmer_K[] = {2.0, 20.0, 40.0};  // over the ambient: where laws of temperature are looked at
 
 double up(double value) {
   return value == 0.0 ? 0.0 : std::exp2(std::ceil(std::log2(value) - 1e-9));
@@ -33,7 +33,7 @@ void look(const effects::Law& law, effects::Inputs at, double reference_K, Range
   for (double warmer_K : kWarmer_K) {
     at.probe_K.clear();
     for (const effects::Body& body : law.probes) {
-      at.probe_K.push_back(reference_K + at.hall_K + (body == effects::node(effects::kHallName) ? 0.0 : warmer_K));
+      at.probe_K.push_back(reference_K + at.ambient_K + (body == effects::node(effects::kAmbientName) ? 0.0 : warmer_K));
     }
     try {
       range.take(std::abs(law(at)));
@@ -46,7 +46,7 @@ void look(const effects::Law& law, effects::Inputs at, double reference_K, Range
 
 void ReductionDemand::include(const ReductionDemand& other) {
   power_W = power_W.cwiseMax(other.power_W);
-  hall_K = std::max(hall_K, other.hall_K);
+  ambient_K = std::max(ambient_K, other.ambient_K);
   duration_s = std::max(duration_s, other.duration_s);
   for (Eigen::Index e = 0; e < low.size(); ++e) {
     const double l = std::min(low[e], other.low[e]), h = std::max(high[e], other.high[e]);
@@ -62,31 +62,31 @@ std::vector<Eigen::VectorXd> ReductionDemand::points() const {
 }
 
 ReductionDemand reduction_demand(const effects::HeatBalance& balance, const std::vector<const Cyclogram*>& cyclograms,
-                                 const TimeSeries& hall, double reference_K) {
+                                 const TimeSeries& ambient, double reference_K) {
   std::vector<const effects::Law*> sources, exchanges;
   for (const effects::HeatInput& h : balance.heats) sources.push_back(&h.power_W);
   for (const effects::Exchange& e : balance.exchanges) exchanges.push_back(&e.coefficient);
   std::vector<Range> of_source(sources.size()), of_exchange(exchanges.size());
 
-  double duration_s = 3600.0, hall_K = 1.0;
+  double duration_s = 3600.0, ambient_K = 1.0;
   std::vector<std::pair<Drive, std::string_view>> drives = {{Drive{}, {}}};  // and the run that it belongs to
   for (const Cyclogram* c : cyclograms) {
     duration_s = std::max(duration_s, c->duration_s());
     for (const auto& section : c->sections) drives.emplace_back(section.drive, c->name);
   }
-  for (double value_K : hall.value) hall_K = std::max(hall_K, std::abs(value_K));
+  for (double value_K : ambient.value) ambient_K = std::max(ambient_K, std::abs(value_K));
   std::vector<double> times_s = {0.0};  // one in each interval between changes
   for (double t_s : balance.change_times_s) times_s.push_back(t_s * (1.0 + 1e-9));
   for (const auto& [drive, run] : drives) {
     for (double t_s : times_s) {
-      effects::Inputs at{.drive = drive, .hall_K = hall.at(t_s), .time_s = t_s};
+      effects::Inputs at{.drive = drive, .ambient_K = ambient.at(t_s), .time_s = t_s};
       at.run = run;
       for (std::size_t s = 0; s < sources.size(); ++s) look(*sources[s], at, reference_K, of_source[s]);
       for (std::size_t e = 0; e < exchanges.size(); ++e) look(*exchanges[e], at, reference_K, of_exchange[e]);
     }
   }
   ReductionDemand demand;
-  demand.hall_K = up(hall_K);
+  demand.ambient_K = up(ambient_K);
   demand.duration_s = up(duration_s);
   demand.power_W.resize(static_cast<Eigen::Index>(sources.size()));
   demand.low.resize(static_cast<Eigen::Index>(exchanges.size()));

@@ -24,7 +24,7 @@ class StageOde {
   virtual void begin(const Eigen::VectorXd& start, double* y) = 0;
   /// Error allowed of each entry of the state, where this much is allowed of a temperature. Heats follow, they do not steer.
   virtual void tolerances(double absolute_K, double* tolerance) const = 0;
-  /// Begins a stretch of constant drive and linear hall. May change what the state's unknowns mean, and y with them: then it returns true.
+  /// Begins a stretch of constant drive and linear ambient. May change what the state's unknowns mean, and y with them: then it returns true.
   /// @return true when some power or coefficient jumps
   virtual bool begin_stretch(const LinearStretch& stretch, double* y) = 0;
   /// Call when the next state is not the end of the last step.
@@ -53,7 +53,7 @@ class StageOde {
   [[nodiscard]] virtual std::vector<Overshoot> overshoots() const { return {}; }
 
   /// What is read off a state.
-  [[nodiscard]] virtual Eigen::VectorXd observe(const double* y, double hall_K) const = 0;
+  [[nodiscard]] virtual Eigen::VectorXd observe(const double* y, double ambient_K) const = 0;
   /// The unknowns as the caller knows them.
   [[nodiscard]] virtual Eigen::VectorXd state(const double* y) const = 0;
   /// Heats of all flows and change of the stored heat since the start [J].

@@ -5,11 +5,11 @@
 
 namespace driftwright::solver {
 
-/// Temperatures θ at which no unknown gains heat, at constant drive and hall. Laws, radiation and properties are taken at the
+/// Temperatures θ at which no unknown gains heat, at constant drive and ambient. Laws, radiation and properties are taken at the
 /// temperatures found (Newton's method without the slope of laws over their probes; the residual is exact). Steps are halved
 /// where they would leave the range of a law, or where they do not shrink.
 ///
-/// @param at     drive, hall and time; prescribed temperatures are those of that time
+/// @param at     drive, ambient and time; prescribed temperatures are those of that time
 /// @param start  first guess, and the state that thermostats are set by
 /// @throws InputError  when a thermostat would not keep that setting
 /// @throws RangeError  when a law is not defined at the first guess

@@ -1,5 +1,5 @@
 #pragma once
-// Where a system's run is cut: at changes of drive, knots of the hall's temperature and times at which laws jump by themselves.
+// Where a system's run is cut: at changes of drive, knots of the ambient temperature and times at which laws jump by themselves.
 
 #include "base/cyclogram.hpp"
 #include "solver/thermal_system.hpp"
@@ -7,17 +7,17 @@
 namespace driftwright::solver {
 
 template <class Matrix>
-[[nodiscard]] std::vector<double> knots_of(const ThermalSystem<Matrix>& system, const TimeSeries& hall) {
-  std::vector<double> knots_s = hall.time_s;
+[[nodiscard]] std::vector<double> knots_of(const ThermalSystem<Matrix>& system, const TimeSeries& ambient) {
+  std::vector<double> knots_s = ambient.time_s;
   knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
   return knots_s;
 }
 
-/// Stretches of constant drive and linear hall in which no law jumps by itself.
+/// Stretches of constant drive and linear ambient in which no law jumps by itself.
 template <class Matrix>
 [[nodiscard]] std::vector<LinearStretch> stretches_of(const ThermalSystem<Matrix>& system, const Cyclogram& cyclogram,
-                                                      const TimeSeries& hall) {
-  return linear_stretches(cyclogram, knots_of(system, hall));
+                                                      const TimeSeries& ambient) {
+  return linear_stretches(cyclogram, knots_of(system, ambient));
 }
 
 }  // namespace driftwright::solver

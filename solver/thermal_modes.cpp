@@ -102,7 +102,7 @@ ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, 
 Eigen::MatrixXd steady_responses(const FullSystem& system, const effects::Inputs& at) {
   const ConductionFactor factor = factor_at(system, at);
   const auto n_sources = static_cast<Eigen::Index>(system.sources.size());
-  // One more where the air is stratified or a temperature prescribed: what stands beside sources and hall.
+  // One more where the air is stratified or a temperature prescribed: what stands beside sources and ambient.
   Eigen::VectorXd offset = Eigen::VectorXd::Zero(system.size());
   for (const auto& e : system.exchanges) {
     if (e.offset.size() > 0) offset += e.coefficient(at) * e.offset;
@@ -110,9 +110,9 @@ Eigen::MatrixXd steady_responses(const FullSystem& system, const effects::Inputs
   const bool has_offset = offset.cwiseAbs().maxCoeff() > 0.0;
   Eigen::MatrixXd responses(system.size(), n_sources + (has_offset ? 2 : 1));
   for (Eigen::Index s = 0; s < n_sources; ++s) responses.col(s) = factor.solve(system.sources[s].load);
-  Eigen::VectorXd hall = Eigen::VectorXd::Zero(system.size());
-  for (const auto& e : system.exchanges) hall += e.coefficient(at) * e.to_hall;
-  responses.col(n_sources) = factor.solve(hall);
+  Eigen::VectorXd ambient = Eigen::VectorXd::Zero(system.size());
+  for (const auto& e : system.exchanges) ambient += e.coefficient(at) * e.to_ambient;
+  responses.col(n_sources) = factor.solve(ambient);
   if (has_offset) responses.col(n_sources + 1) = factor.solve(offset);
   return responses;
 }

@@ -16,7 +16,7 @@ struct ThermalModes {
 /// @throws SolveError  when the eigenvalue iteration does not converge or K(u) is singular (no way for heat to leave)
 [[nodiscard]] ThermalModes thermal_modes(const FullSystem& system, const effects::Inputs& at, int n_modes);
 
-/// Steady temperatures K(u)⁻¹ b under each source's unit heat and under a hall one kelvin warmer; n x (n_sources + 1),
+/// Steady temperatures K(u)⁻¹ b under each source's unit heat and under an ambient one kelvin warmer; n x (n_sources + 1),
 /// and one column more for prescribed temperatures and stratified air, where there are any.
 /// In a basis they carry what the modes cut off.
 /// @throws SolveError  when K(u) is singular

@@ -1,8 +1,8 @@
 #pragma once
 // One thermal system, two sizes. The finite-element model (sparse) and its reduced model (dense) are both
 //
-//     M dθ/dt = -K(u) θ + f(u) - r(θ),   y = L'θ + l_hall θ_hall
-//     K(u) = K0 + Σ_e c_e(u) G_e,  f(u) = Σ_s P_s(u) b_s + Σ_e c_e(u) (θ_hall g_e + o_e),   g_e = G_e 1
+//     M dθ/dt = -K(u) θ + f(u) - r(θ),   y = L'θ + l_ambient θ_ambient
+//     K(u) = K0 + Σ_e c_e(u) G_e,  f(u) = Σ_s P_s(u) b_s + Σ_e c_e(u) (θ_ambient g_e + o_e),   g_e = G_e 1
 //
 // θ: temperature minus the reference temperature [K]. u: effects::Inputs. Everything that may change (films, joints, links)
 // is an Exchange whose matrix is fixed and whose coefficient is a number: nothing is assembled twice. Coefficients may look
@@ -49,33 +49,33 @@ struct HeatSource {
 /// Where an exchange is, in words of the machine.
 struct ExchangePlace {
   effects::Body body;
-  std::string surrounding;  ///< hall or lumped node; "" for a joint and for a medium of a temperature of its own
+  std::string surrounding;  ///< ambient or lumped node; "" for a joint and for a medium of a temperature of its own
   effects::Per per = effects::Per::kArea;
   bool operator==(const ExchangePlace&) const = default;
 };
 [[nodiscard]] ExchangePlace place_of(const effects::Exchange& exchange);
 
-/// Heat flow c(u) G θ between unknowns, or from them to the hall where G 1 != 0.
+/// Heat flow c(u) G θ between unknowns, or from them to the ambient where G 1 != 0.
 template <class Matrix>
 struct Exchange {
   std::string name;
   ExchangePlace place = {};
-  Matrix matrix;            ///< G, symmetric, in [m^2] for films and joints and [1] for links
-  Eigen::VectorXd to_hall;  ///< g = G 1 of the finite-element model (projected in a reduced one)
-  double hall_sum = 0.0;    ///< 1'G 1: surface exposed to the hall [m^2]
-  BoundLaw coefficient;     ///< c(u) [W/(m^2 K)], or [W/K] for links
-  /// The heat that crosses is c (flow'θ - hall_sum θ_hall - 1'o): out of the surface or body, or from side a to side b.
+  Matrix matrix;               ///< G, symmetric, in [m^2] for films and joints and [1] for links
+  Eigen::VectorXd to_ambient;  ///< g = G 1 of the finite-element model (projected in a reduced one)
+  double ambient_sum = 0.0;    ///< 1'G 1: surface exposed to the ambient [m^2]
+  BoundLaw coefficient;        ///< c(u) [W/(m^2 K)], or [W/K] for links
+  /// The heat that crosses is c (flow'θ - ambient_sum θ_ambient - 1'o): out of the surface or body, or from side a to side b.
   Eigen::VectorXd flow = {};
-  Eigen::VectorXd offset = {};  ///< o: ∫ N_i (T_air(z) - T_hall) dA where the hall is stratified, else empty [m^2 K]
+  Eigen::VectorXd offset = {};  ///< o: ∫ N_i (T_air(z) - T_ambient) dA where the ambient is stratified, else empty [m^2 K]
   double offset_sum = 0.0;      ///< 1'o of the finite-element model
   Eigen::VectorXd medium =
       {};  ///< of an exchange with a medium: G 1, whose multiple by the medium's temperature is o; else empty
   double medium_sum = 0.0;  ///< 1'G 1
   bool prescribes = false;  ///< it stands for a prescribed temperature (hold_by_exchanges())
 
-  [[nodiscard]] bool reaches_hall() const { return hall_sum != 0.0; }
-  /// To the hall or to a medium that is held at its temperature.
-  [[nodiscard]] bool leaves_machine() const { return hall_sum != 0.0 || medium_sum != 0.0; }
+  [[nodiscard]] bool reaches_ambient() const { return ambient_sum != 0.0; }
+  /// To the ambient or to a medium that is held at its temperature.
+  [[nodiscard]] bool leaves_machine() const { return ambient_sum != 0.0 || medium_sum != 0.0; }
   /// Of an exchange with a medium: the temperature that the medium is held at, over the reference [K].
   void hold_medium(double theta_K) {
     offset = theta_K * medium;
@@ -83,15 +83,15 @@ struct Exchange {
   }
 };
 
-/// Mean temperature that laws and thermostats look at: weights'θ + hall_share θ_hall + offset + the reference temperature.
+/// Mean temperature that laws and thermostats look at: weights'θ + ambient_share θ_ambient + offset + the reference temperature.
 struct Probe {
   effects::Body body = {};
-  std::string before = {};  ///< surface whose air it is, where the hall is stratified; else ""
+  std::string before = {};  ///< surface whose air it is, where the ambient is stratified; else ""
   Eigen::VectorXd weights;
-  double hall_share = 0.0;
-  double offset_K = 0.0;  ///< of stratified air before a surface above that at the hall's thermometer, mean
-  [[nodiscard]] double theta_K(const Eigen::VectorXd& theta, double hall_K) const {
-    return weights.dot(theta) + hall_share * hall_K + offset_K;
+  double ambient_share = 0.0;
+  double offset_K = 0.0;  ///< of stratified air before a surface above that at the ambient thermometer, mean
+  [[nodiscard]] double theta_K(const Eigen::VectorXd& theta, double ambient_K) const {
+    return weights.dot(theta) + ambient_share * ambient_K + offset_K;
   }
 };
 
@@ -106,7 +106,7 @@ struct FixedUnknowns {
   std::string name;
   std::vector<int> unknowns;
   TimeSeries theta;  ///< minus the reference temperature [K]
-  bool follows_hall = false;
+  bool follows_ambient = false;
 };
 
 /// What one region, or one lumped node, is of the system: M and K0 are sums over them. For those who ask what another material would
@@ -123,7 +123,7 @@ struct Outputs {
   std::vector<std::string> name;
   std::vector<std::string> unit;  ///< "K", "m" or "rad"
   Eigen::MatrixXd state;          ///< n_unknowns x n_outputs
-  Eigen::VectorXd hall;           ///< n_outputs; share of the hall's temperature
+  Eigen::VectorXd ambient;        ///< n_outputs; share of the ambient temperature
 };
 
 template <class Matrix>
@@ -162,7 +162,7 @@ struct ThermalSystem {
     }
     return false;
   }
-  /// True where the hall air has a gradient.
+  /// True where the ambient air has a gradient.
   [[nodiscard]] bool is_stratified() const {
     for (const auto& e : exchanges) {
       if (e.offset.size() > 0) return true;
@@ -175,14 +175,14 @@ struct ThermalSystem {
     Eigen::VectorXd f = Eigen::VectorXd::Zero(size());
     for (const HeatSource& s : sources) f += s.power_W(u) * s.load;
     for (const auto& e : exchanges) {
-      if (e.reaches_hall()) f += e.coefficient(u) * u.hall_K * e.to_hall;
+      if (e.reaches_ambient()) f += e.coefficient(u) * u.ambient_K * e.to_ambient;
       if (e.offset.size() > 0) f += e.coefficient(u) * e.offset;
     }
     return f;
   }
   /// Outputs of a state.
-  [[nodiscard]] Eigen::VectorXd observe(const Eigen::VectorXd& state, double hall_K) const {
-    return outputs.state.transpose() * state + hall_K * outputs.hall;
+  [[nodiscard]] Eigen::VectorXd observe(const Eigen::VectorXd& state, double ambient_K) const {
+    return outputs.state.transpose() * state + ambient_K * outputs.ambient;
   }
 };
 
@@ -192,7 +192,7 @@ using ReducedSystem = ThermalSystem<Eigen::MatrixXd>;
 /// Where a flow of heat comes from.
 enum class FlowKind {
   kSource,       ///< > 0 heats the machine
-  kSurrounding,  ///< film, link or radiation to the hall; > 0 heats the machine
+  kSurrounding,  ///< film, link or radiation to the ambient; > 0 heats the machine
   kPrescribed,   ///< through unknowns of prescribed temperature; > 0 heats the machine
   kInternal,     ///< within the machine: out of a surface into a lumped node, or from side a of a joint to side b
 };

@@ -10,8 +10,8 @@ namespace driftwright::solver {
 namespace {
 
 /// Times at which the drive stays but something else bends or jumps.
-std::vector<double> knots_s(const FullSystem& system, const TimeSeries& hall) {
-  std::vector<double> knots = knots_of(system, hall);
+std::vector<double> knots_s(const FullSystem& system, const TimeSeries& ambient) {
+  std::vector<double> knots = knots_of(system, ambient);
   for (const FixedUnknowns& f : system.fixed) knots.insert(knots.end(), f.theta.time_s.begin(), f.theta.time_s.end());
   return knots;
 }
@@ -30,12 +30,12 @@ double Trajectory::energy_gap() const {
   return magnitude_J == 0.0 ? 0.0 : std::abs(in_J - stored_J[stored_J.size() - 1]) / (0.5 * magnitude_J);
 }
 
-Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const TimeSeries& ambient,
                     const std::vector<double>& output_s, const TransientOptions& options, const Eigen::VectorXd& start,
                     const OutputCallback& callback) {
-  HeatOde ode(system, hall, options.absolute_tolerance_K);
-  return integrate(ode, behind(options.from_s, linear_stretches(cyclogram, knots_s(system, hall))), hall, output_s, options,
-                   start, callback);
+  HeatOde ode(system, ambient, options.absolute_tolerance_K);
+  return integrate(ode, behind(options.from_s, linear_stretches(cyclogram, knots_s(system, ambient))), ambient, output_s,
+                   options, start, callback);
 }
 
 }  // namespace driftwright::solver

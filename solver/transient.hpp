@@ -2,9 +2,9 @@
 // The full model in time: SUNDIALS ARKODE on dθ/dt = M⁻¹ heat with the consistent mass matrix, whose stages HeatOde solves.
 //
 // Stiffly accurate, L-stable ESDIRK of order 3 with error control (ARKODE_ESDIRK324L2SA_4_2_3, Kennedy & Carpenter 2019). The
-// integrator stops exactly where the speed changes or the hall's curve bends and restarts where the speed jumps. Between steps
+// integrator stops exactly where the speed changes or the ambient's curve bends and restarts where the speed jumps. Between steps
 // outputs lie on the cubic through both ends and their slopes. The heat of
-// each source and each exchange with the hall is integrated beside the temperatures with the same stage weights, so that the
+// each source and each exchange with the ambient is integrated beside the temperatures with the same stage weights, so that the
 // energy balance closes to rounding: Runge-Kutta methods keep linear invariants.
 
 #include <functional>
@@ -28,11 +28,11 @@ using OutputCallback = std::function<void(double time_s, const Eigen::VectorXd& 
 
 /// Runs the cyclogram from `start` (state at t = 0, zero: everything at the reference temperature).
 ///
-/// @param hall     hall temperature minus the reference temperature [K]
+/// @param ambient     ambient temperature minus the reference temperature [K]
 /// @param output_s times of the outputs, increasing, within the cyclogram
 /// @throws SolveError  with time and ARKODE's flag when it gives up; at temperatures below absolute zero or above 5000 K;
 ///                     when thermostats switch too often
-[[nodiscard]] Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+[[nodiscard]] Trajectory simulate(const FullSystem& system, const Cyclogram& cyclogram, const TimeSeries& ambient,
                                   const std::vector<double>& output_s, const TransientOptions& options,
                                   const Eigen::VectorXd& start, const OutputCallback& callback = {});
 

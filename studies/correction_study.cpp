@@ -41,13 +41,14 @@ ModalPredictor modes_for(const Scenario& scenario, const scenarios::Model& model
 
 /// A model follows a record only as `validate` would have let it.
 void require_model_follows(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run,
-                           const std::string& hall) {
+                           const std::string& ambient) {
   if (!dynamic_cast<const Observer*>(d.predictor.get())) return;
   if (!scenario.machine)
     throw InputError(fmt::format("'{}' is a model of a machine, and {} has none", d.name, scenario.path));
-  if (d.hall != hall)
-    throw InputError(fmt::format("'{}' takes the hall from {}, which {} does not have", d.name,
-                                 d.hall.empty() ? "the scenario" : "the channel '" + d.hall + "'", run.readings.source));
+  if (d.ambient != ambient)
+    throw InputError(fmt::format("'{}' takes the ambient from {}, which {} does not have", d.name,
+                                 d.ambient.empty() ? "the scenario" : "the channel '" + d.ambient + "'",
+                                 run.readings.source));
   if (const std::string why = why_no_model_follows(*scenario.machine, run); !why.empty())
     throw InputError(fmt::format("'{}' cannot follow this record: {}", d.name, why));
 }
@@ -66,7 +67,7 @@ CorrectionStudy through_none(const DeployedPredictor& d, const ObservedRun& run)
 
 CorrectionStudy through_injector(const Scenario& scenario, const DeployedPredictor& d, const ObservedRun& run) {
   const AxisLoopRun loop = run_axis_loop(scenario.axis_loop->loop, run.readings, d.target, [&](const Record& readings) {
-    return correct(d, {run.cyclogram, run.hall, readings}).correction_um;
+    return correct(d, {run.cyclogram, run.ambient, readings}).correction_um;
   });
   CorrectionStudy o{.time_s = loop.time_s,
                     .drift_um = loop.before_um,
@@ -132,7 +133,7 @@ ObservedRun read_run(const Scenario& scenario, const DeployedPredictor& d, const
   RecordPaths paths;
   if (!request.after.empty()) paths.test.push_back(request.after);
   paths.test.push_back(request.measured);
-  StudyRecords records = read_records(scenario, paths, &d.hall);
+  StudyRecords records = read_records(scenario, paths, &d.ambient);
   notes = records.notes;
   notes.insert(notes.end(), records.findings.begin(), records.findings.end());
   ObservedRun run = std::move(records.test.back());
@@ -141,7 +142,7 @@ ObservedRun read_run(const Scenario& scenario, const DeployedPredictor& d, const
         fmt::format("{} does not continue {}: its times must begin within five rows of the other's end, with the same "
                     "channels in the same units",
                     request.measured, request.after));
-  require_model_follows(scenario, d, run, records.hall);
+  require_model_follows(scenario, d, run, records.ambient);
   return run;
 }
 
@@ -150,25 +151,25 @@ ObservedRun simulate_observed(const Scenario& scenario, const scenarios::Model& 
                               const Listener& listener) {
   if (const scenarios::Machine* full = model.full())
     scenarios::require_ways_out(full->placed.mesh, full->placed.balance, scenario.machine->where);
-  return {cyclogram, scenario.machine->hall,
+  return {cyclogram, scenario.machine->ambient,
           std::move(scenarios::simulate_cyclograms(scenario, model, {&cyclogram}, listener).front().record)};
 }
 
-/// Thermometers as this run of `validate` reads them, where it judges the cyclogram in the scenario's hall. @returns  a note of which
+/// Thermometers as this run of `validate` reads them, where it judges the cyclogram in the scenario's ambient. @returns  a note of which
 std::string read_as_judged(const Scenario& scenario, const Cyclogram& cyclogram, ObservedRun& run) {
   std::optional<Record> read;
   if (scenario.validation) read = as_judged(*scenario.validation, cyclogram.name, run.readings);
   if (!read)
-    return fmt::format("thermometers read exactly, for `validation` does not judge '{}' in the scenario's hall",
+    return fmt::format("thermometers read exactly, for `validation` does not judge '{}' in the scenario's ambient",
                        cyclogram.name);
   run.readings = std::move(*read);
   return "thermometers read with noise and steps, as in this run of `validate`";
 }
 
-/// The drift that is known before the run. A formula reads temperatures that the modes foretell; anything else has drive and hall alone.
+/// The drift that is known before the run. A formula reads temperatures that the modes foretell; anything else has drive and ambient alone.
 std::vector<double> foretold_um(const Scenario& scenario, const scenarios::Model& model, const DeployedPredictor& d,
                                 const ObservedRun& run) {
-  ObservedRun known{run.cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}};
+  ObservedRun known{run.cyclogram, run.ambient, {.source = {}, .time_s = run.readings.time_s, .channels = {}}};
   if (as_formula(*d.predictor))
     known.readings = foretold_record(*scenario.machine, model.outputs(), modes_for(scenario, model, run.cyclogram),
                                      run.cyclogram, run.readings.time_s);

@@ -25,7 +25,7 @@ using Errors = std::vector<Eigen::Matrix3Xd>;
 std::vector<std::string> thermometers_of(const Scenario& scenario) {
   std::vector<std::string> names;
   for (const scenarios::Sensor& s : scenario.machine->sensors) {
-    if (!scenarios::is_on_hall(s)) names.push_back(s.name);
+    if (!scenarios::is_on_ambient(s)) names.push_back(s.name);
   }
   return names;
 }
@@ -59,9 +59,9 @@ Errors rings_of(const Scenario& scenario, const scenarios::Model& model, const s
 Believed by_modes(const Scenario& scenario, const scenarios::Model& model, const scenarios::FeltRun& felt,
                   const std::vector<double>& times_s, int repetition) {
   const compensation::Physics p = physics_for(scenario, model, repetition);
-  return {"thermal modes of a model that is off, from the hall alone",
+  return {"thermal modes of a model that is off, from the ambient alone",
           rings_of(scenario, model, felt,
-                   solver::simulate(p.system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, p.start),
+                   solver::simulate(p.system, felt.cyclogram, felt.ambient, times_s, scenario.solver.transient, p.start),
                    repetition)};
 }
 
@@ -72,9 +72,9 @@ Believed by_observer(const Scenario& scenario, const scenarios::Model& model, co
   const Thermometers& instrument = scenario.table->instrument;
   const double reading_K = std::hypot(instrument.noise_K, instrument.resolution_K / std::sqrt(12.0));  // of rounding
   const Observer observer(
-      p.system, p.start, p.start_hall_K, sensors, "table_1_x",
+      p.system, p.start, p.start_ambient_K, sensors, "table_1_x",
       {.reading_K = reading_K, .longest_step_s = 600.0, .period_s = readings.time_s.at(1) - readings.time_s.at(0)});
-  const Observation seen = observer.observe({felt.cyclogram, felt.hall, readings});
+  const Observation seen = observer.observe({felt.cyclogram, felt.ambient, readings});
   solver::Trajectory run;
   run.time_s = readings.time_s;
   run.outputs = seen.outputs;

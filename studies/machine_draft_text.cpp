@@ -90,7 +90,7 @@ std::string machine_block(const MachineDraft& draft, const mesh::UnnamedGeometry
 
 /// What both kinds of machines are run with and judged by.
 std::string runs_block() {
-  return "\nhall: 20 degC                            # or rows of [time, temperature], or a record (docs/cyclograms.md)\n"
+  return "\nambient: 20 degC                            # or rows of [time, temperature], or a record (docs/cyclograms.md)\n"
          "\ncyclograms:                              # guesses: [duration, spindle speed]\n"
          "  warm_up: [[120 min, 3000 rpm]]\n"
          "  steps: [[40 min, 1000 rpm], [40 min, 3000 rpm], [40 min, 0 rpm]]\n"
@@ -180,7 +180,7 @@ std::string lumped_scenario_text(const std::string& name) {
       "  - {type: heat_source, node: spindle, power: 150 W, at_speed: 3000 rpm, exponent: 1.5, "
       "known_to: {power: guess, exponent: 30 %}}\n"
       "  - {type: link, node: spindle, to: housing, conductance: 12 W/K, known_to: guess}\n"
-      "  - {type: link, node: housing, to: hall, conductance: 5 W/K, known_to: guess}\n"
+      "  - {type: link, node: housing, to: ambient, conductance: 5 W/K, known_to: guess}\n"
       "\nsensors:\n  - {name: t_spindle, node: spindle}\n  - {name: t_housing, node: housing}\n"
       "\ndisplacements:\n  - name: drift_z                        # 0.22 m of steel grow by 2.5 µm for each kelvin\n"
       "    sensitivities: [{node: spindle, sensitivity: 2.5 um/K}]\n";

@@ -94,13 +94,13 @@ void correct(MachineStudy& study, const Scenario& scenario) {
   // The injector works on readings of the run itself. A schedule is written before the run: what it may know of the
   // temperatures is the modal model's prediction of them.
   const auto as_observed = [&](const scenarios::SimulatedRun& run) {
-    return compensation::ObservedRun{scenario.cyclogram(run.record.source), scenario.machine->hall,
+    return compensation::ObservedRun{scenario.cyclogram(run.record.source), scenario.machine->ambient,
                                      as_read(run.record, {.resolution_K = settings.sensor_resolution_K}, 0)};
   };
   std::vector<compensation::ObservedRun> training;
   for (const scenarios::SimulatedRun& run : study.train) training.push_back(as_observed(run));
   const compensation::ObservedRun judged = as_observed(study.judged);
-  const compensation::ObservedRun foretold{judged.cyclogram, judged.hall, study.modal_prediction};
+  const compensation::ObservedRun foretold{judged.cyclogram, judged.ambient, study.modal_prediction};
   std::vector<double> durations_s;
   for (const auto& section : judged.cyclogram.sections) durations_s.push_back(section.duration_s);
   const std::vector<double> boundaries_s = operation_boundaries_s(durations_s);
@@ -124,7 +124,7 @@ void run_axis(MachineStudy& study, const scenarios::AxisLoopSettings& settings) 
         return p.name == kByRegression && p.target == settings.displacement;
       });
   study.axis_loop = run_axis_loop(settings.loop, study.judged.record, settings.displacement, [&](const Record& readings) {
-    return live(*d->predictor, {.cyclogram = {}, .hall = {}, .readings = readings});
+    return live(*d->predictor, {.cyclogram = {}, .ambient = {}, .readings = readings});
   });
 }
 

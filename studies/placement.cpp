@@ -38,9 +38,9 @@ struct Criteria {
   compensation::LeftOfBoth both;
 
   Criteria(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how, const Eigen::MatrixXd& rows,
-           const Eigen::VectorXd& hall)
+           const Eigen::VectorXd& ambient)
       : observer(sensitivities(model, design.runs, design.by_factor, how.noise_K, rows), how.scatter),
-        regression(scattered_runs(model, design.runs, design.scattered, rows, hall), how.noise_K),
+        regression(scattered_runs(model, design.runs, design.scattered, rows, ambient), how.noise_K),
         both(observer, regression) {}
   Criteria(const Criteria&) = delete;
   Criteria& operator=(const Criteria&) = delete;
@@ -109,12 +109,12 @@ Eigen::VectorXd told_everywhere(const PlacementModel& model, const DesignRuns& d
   for (std::size_t first = 0; first < nodes.size() && !listener.wants_end(); first += kBlock) {
     const auto n = static_cast<Eigen::Index>(std::min<std::size_t>(kBlock, nodes.size() - first));
     Eigen::MatrixXd rows(n_mounted + n, model.rows.cols());
-    Eigen::VectorXd hall = Eigen::VectorXd::Zero(n_mounted + n);
+    Eigen::VectorXd ambient = Eigen::VectorXd::Zero(n_mounted + n);
     rows.topRows(n_mounted) = model.rows(mounted, Eigen::all);
-    hall.head(n_mounted) = model.hall(mounted);
+    ambient.head(n_mounted) = model.ambient(mounted);
     for (Eigen::Index i = 0; i < n; ++i)
       rows.row(n_mounted + i) = machine.temperature.row(nodes[first + static_cast<std::size_t>(i)]).cast<double>();
-    const Criteria criteria(model, design, how, rows, hall);
+    const Criteria criteria(model, design, how, rows, ambient);
     const std::vector<double> left = criteria.of(how.placed_for).with_each(beside);
     for (Eigen::Index i = 0; i < n; ++i) told[nodes[first + static_cast<std::size_t>(i)]] = left[static_cast<std::size_t>(n_mounted + i)];
     listener.share(static_cast<double>(first) / static_cast<double>(nodes.size()));
@@ -220,10 +220,10 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
     throw InputError(fmt::format("{} thermometers are to be placed, and there are {} places for them", how.n, model.n_free()));
   how.n_most = std::min(std::max(how.n, how.n_most), model.n_free());
   const std::vector<int> mounted = model.mounted();
-  const std::vector<PlacementRun> chosen_on = runs_in_all_halls(scenario, families.chosen_on, families.halls, kRows);
+  const std::vector<PlacementRun> chosen_on = runs_in_all_ambients(scenario, families.chosen_on, families.ambients, kRows);
   listener.begin(fmt::format("{} places in {} runs", model.n_free(), chosen_on.size()));
   const DesignRuns design{chosen_on, factor_states(model, chosen_on), scattered_states(model, chosen_on, how.scatter, kDesignSeeds)};
-  const Criteria criteria(model, design, how, model.rows.topRows(model.n_candidates), model.hall.head(model.n_candidates));
+  const Criteria criteria(model, design, how, model.rows.topRows(model.n_candidates), model.ambient.head(model.n_candidates));
   const DriftLeft& whole = criteria.of(how.placed_for);
   const compensation::LeftWithLoss with_loss(whole, mounted);
   const DriftLeft& objective = how.any_may_fail ? static_cast<const DriftLeft&>(with_loss) : whole;
@@ -234,7 +234,7 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
                       .factors = factor_names(model),
                       .chosen_on = names_of(families.chosen_on),
                       .judged_on = names_of(families.judged_on),
-                      .halls = {},
+                      .ambients = {},
                       .made = families.made,
                       .spots = model.spots,
                       .mounted = mounted,
@@ -252,7 +252,7 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
                       .model = model.opened.words(),
                       .is_linearised = model.is_linearised,
                       .mesh = {}};
-  for (const auto& hall : families.halls) placement.halls.push_back(hall.name);
+  for (const auto& ambient : families.ambients) placement.ambients.push_back(ambient.name);
   listener.begin("choosing");
   for (const compensation::ThermometerSet& set : compensation::best_sets(objective, how.n_most, mounted, listener)) {
     placement.chosen.sets.push_back(set.members);
@@ -276,7 +276,7 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
   use(random);
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  const PlacementJudge judge(model, chosen_on, runs_in_turn(scenario, families.judged_on, families.halls, kJudgedRow_s), used, how.scatter,
+  const PlacementJudge judge(model, chosen_on, runs_in_turn(scenario, families.judged_on, families.ambients, kJudgedRow_s), used, how.scatter,
                              kJudgedSeeds, how.noise_K);
   placement.drift_um = judge.drift_um();
   JudgedOnce judged(judge);

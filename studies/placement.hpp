@@ -50,7 +50,7 @@ struct TriedTest {
 struct Placement {
   PlacementOptions options;
   std::vector<std::string> channels, regions, left_out, factors;
-  std::vector<std::string> chosen_on, judged_on, halls, made;
+  std::vector<std::string> chosen_on, judged_on, ambients, made;
   std::vector<Spot> spots;             ///< candidates, the mounted last
   std::vector<int> mounted;
   std::vector<std::string> names;      ///< of the places of the set of n, as sensors of the scenario

@@ -47,23 +47,23 @@ PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<Pl
     outputs.name.push_back(name_of(candidate));
     outputs.unit.emplace_back("K");
     outputs.state.col(i) = model.rows.row(candidate).transpose();
-    outputs.hall[i] = model.hall[candidate];
+    outputs.ambient[i] = model.ambient[candidate];
   }
   for (Eigen::Index d = 0; d < n_drifts; ++d) {
     const Eigen::Index of_model = model.drifts[static_cast<std::size_t>(d)];
     outputs.name.push_back(model.channels[static_cast<std::size_t>(d)]);
     outputs.unit.emplace_back("m");
     outputs.state.col(n + d) = model.system.outputs.state.col(of_model);
-    outputs.hall[n + d] = model.system.outputs.hall[of_model];
+    outputs.ambient[n + d] = model.system.outputs.ambient[of_model];
   }
   const compensation::ModalPredictor modes =
-      compensation::make_ritz_predictor(seen, model.start, kObserverModes, {.drive = {}, .hall_K = model.start_hall_K});
+      compensation::make_ritz_predictor(seen, model.start, kObserverModes, {.drive = {}, .ambient_K = model.start_ambient_K});
   compensation::ObserverSettings settings;
   settings.reading_K = std::max(1e-3, noise_K);
   settings.longest_step_s = kLongestStep_s;
   settings.period_s = kLongestStep_s;
   for (const std::string& channel : model.channels)
-    observers_.emplace_back(modes.system, modes.start, model.start_hall_K, std::vector<std::string>{}, channel, settings);
+    observers_.emplace_back(modes.system, modes.start, model.start_ambient_K, std::vector<std::string>{}, channel, settings);
   machines_.resize(scatter.size() * seeds.size());
   parallel_for(machines_.size(), [&](std::size_t m) {
     Machine& machine = machines_[m];
@@ -77,7 +77,7 @@ PlacementJudge::PlacementJudge(const PlacementModel& model, const std::vector<Pl
 ObservedRun PlacementJudge::read(const solver::ReducedSystem& system, const PlacementRun& run, std::uint64_t seed) const {
   const Eigen::MatrixXd states = states_of(model_, system, run);
   const Eigen::MatrixXd drift = studies::drift_um(model_, run, states);
-  ObservedRun observed{.cyclogram = run.felt.cyclogram, .hall = run.felt.hall, .readings = {}};
+  ObservedRun observed{.cyclogram = run.felt.cyclogram, .ambient = run.felt.ambient, .readings = {}};
   Record& record = observed.readings;
   record.source = run.cyclogram;
   record.time_s = run.times_s;
@@ -86,8 +86,8 @@ ObservedRun PlacementJudge::read(const solver::ReducedSystem& system, const Plac
     Random random(seed, static_cast<std::uint64_t>(candidate));
     Channel channel{.name = name_of(candidate), .unit = "degC", .values = {}};
     for (Eigen::Index i = 0; i < states.cols(); ++i) {
-      const double hall_K = run.felt.hall.at(run.times_s[static_cast<std::size_t>(i)]);
-      channel.values.push_back(zero_K + model_.rows.row(candidate).dot(states.col(i)) + model_.hall[candidate] * hall_K +
+      const double ambient_K = run.felt.ambient.at(run.times_s[static_cast<std::size_t>(i)]);
+      channel.values.push_back(zero_K + model_.rows.row(candidate).dot(states.col(i)) + model_.ambient[candidate] * ambient_K +
                                noise_K_ * random.normal());
     }
     record.channels.push_back(std::move(channel));

@@ -41,13 +41,13 @@ void linearise(solver::ReducedSystem& system, const Eigen::VectorXd& start, cons
     throw InputError(scenario.machine->where, fmt::format("thermostat '{}' switches; places are chosen on a linear model, which cannot "
                                                           "follow it",
                                                           system.thermostats.front().name));
-  const double hall_K = scenarios::felt_hall_at_start_K(*scenario.machine);
+  const double ambient_K = scenarios::felt_ambient_at_start_K(*scenario.machine);
   const Cyclogram work{.name = "work", .sections = {{kAtWork_s, mean_drive(cyclograms)}}};
   Eigen::VectorXd state = start;
-  (void)solver::simulate(system, work, {{0.0}, {hall_K}}, {kAtWork_s}, scenario.solver.transient, start,
+  (void)solver::simulate(system, work, {{0.0}, {ambient_K}}, {kAtWork_s}, scenario.solver.transient, start,
                          [&](double, const Eigen::VectorXd& z) { state = z; });
   const auto freeze = [&](solver::BoundLaw& law) {
-    for (int p : law.probes) law.frozen_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(state, hall_K));
+    for (int p : law.probes) law.frozen_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(state, ambient_K));
     law.probes.clear();
   };
   for (solver::HeatSource& source : system.sources) freeze(source.power_W);
@@ -98,7 +98,7 @@ PlacementModel placement_model(const scenarios::Scenario& scenario, const std::v
                        .start = {},
                        .spots = {},
                        .rows = {},
-                       .hall = {},
+                       .ambient = {},
                        .drifts = {},
                        .channels = {},
                        .regions = {},
@@ -106,7 +106,7 @@ PlacementModel placement_model(const scenarios::Scenario& scenario, const std::v
   const scenarios::ReducedMachine& reduced = *model.opened.reduced();
   model.system = reduced.system;
   model.start = reduced.start;
-  model.start_hall_K = scenarios::felt_hall_at_start_K(*scenario.machine);
+  model.start_ambient_K = scenarios::felt_ambient_at_start_K(*scenario.machine);
   if (!model.system.is_linear()) {
     linearise(model.system, model.start, scenario, cyclograms);
     model.is_linearised = true;
@@ -122,11 +122,11 @@ PlacementModel placement_model(const scenarios::Scenario& scenario, const std::v
   }
   model.n_candidates = static_cast<int>(model.spots.size());
   for (const scenarios::Sensor& sensor : scenario.machine->sensors) {
-    if (!scenarios::is_on_hall(sensor) && std::find(mounted.begin(), mounted.end(), sensor.name) == mounted.end())
+    if (!scenarios::is_on_ambient(sensor) && std::find(mounted.begin(), mounted.end(), sensor.name) == mounted.end())
       model.spots.push_back({.sensor = sensor.name});
   }
   model.rows.resize(static_cast<Eigen::Index>(model.spots.size()), model.system.size());
-  model.hall = Eigen::VectorXd::Zero(model.rows.rows());
+  model.ambient = Eigen::VectorXd::Zero(model.rows.rows());
   for (Eigen::Index i = 0; i < model.rows.rows(); ++i) {
     Spot& spot = model.spots[static_cast<std::size_t>(i)];
     if (spot.node >= 0) {
@@ -135,7 +135,7 @@ PlacementModel placement_model(const scenarios::Scenario& scenario, const std::v
     }
     const Eigen::Index output = output_of(model.system, spot.sensor.empty() ? kNodeSensor + spot.region : spot.sensor);
     model.rows.row(i) = model.system.outputs.state.col(output).transpose();
-    model.hall[i] = model.system.outputs.hall[output];
+    model.ambient[i] = model.system.outputs.ambient[output];
     for (const scenarios::Sensor& sensor : scenario.machine->sensors) {
       if (sensor.name != spot.sensor) continue;
       if (const auto* point = std::get_if<scenarios::PointOnRegion>(&sensor.place)) {
@@ -163,23 +163,23 @@ PlacementModel placement_model(const scenarios::Scenario& scenario, const std::v
 }
 
 Eigen::MatrixXd states_of(const PlacementModel& model, const solver::ReducedSystem& system, const PlacementRun& run) {
-  const double warmer_K = run.felt.hall.at(0.0) - model.start_hall_K;
+  const double warmer_K = run.felt.ambient.at(0.0) - model.start_ambient_K;
   Eigen::MatrixXd states;
   solver::Propagator propagator(system);
-  (void)propagator.run(run.felt.cyclogram, run.felt.hall, run.times_s, model.start + warmer_K * system.ones, false, &states);
+  (void)propagator.run(run.felt.cyclogram, run.felt.ambient, run.times_s, model.start + warmer_K * system.ones, false, &states);
   return states;
 }
 
 Eigen::MatrixXd drift_um(const PlacementModel& model, const PlacementRun& run, const Eigen::MatrixXd& states) {
-  const Eigen::VectorXd start = model.start + (run.felt.hall.at(0.0) - model.start_hall_K) * model.system.ones;
+  const Eigen::VectorXd start = model.start + (run.felt.ambient.at(0.0) - model.start_ambient_K) * model.system.ones;
   Eigen::MatrixXd drift(states.cols(), static_cast<Eigen::Index>(model.drifts.size()));
   for (std::size_t d = 0; d < model.drifts.size(); ++d) {
     const Eigen::Index output = model.drifts[d];
     const Eigen::VectorXd row = model.system.outputs.state.col(output);
-    const double hall_share = model.system.outputs.hall[output];
+    const double ambient_share = model.system.outputs.ambient[output];
     for (Eigen::Index i = 0; i < states.cols(); ++i) {
-      const double hall_K = run.felt.hall.at(run.times_s[static_cast<std::size_t>(i)]) - run.felt.hall.at(0.0);
-      drift(i, static_cast<Eigen::Index>(d)) = 1e6 * (row.dot(states.col(i) - start) + hall_share * hall_K);
+      const double ambient_K = run.felt.ambient.at(run.times_s[static_cast<std::size_t>(i)]) - run.felt.ambient.at(0.0);
+      drift(i, static_cast<Eigen::Index>(d)) = 1e6 * (row.dot(states.col(i) - start) + ambient_share * ambient_K);
     }
   }
   return drift;
@@ -236,17 +236,17 @@ std::vector<std::vector<Eigen::MatrixXd>> scattered_states(const PlacementModel&
 
 std::vector<compensation::RunOfCandidates> scattered_runs(const PlacementModel& model, const std::vector<PlacementRun>& runs,
                                                           const std::vector<std::vector<Eigen::MatrixXd>>& states,
-                                                          const Eigen::MatrixXd& rows, const Eigen::VectorXd& hall) {
+                                                          const Eigen::MatrixXd& rows, const Eigen::VectorXd& ambient) {
   std::vector<compensation::RunOfCandidates> result(states.size() * runs.size());
   parallel_for(result.size(), [&](std::size_t i) {
     const std::size_t m = i / runs.size(), r = i % runs.size();
-    const double warmer_K = runs[r].felt.hall.at(0.0) - model.start_hall_K;
+    const double warmer_K = runs[r].felt.ambient.at(0.0) - model.start_ambient_K;
     compensation::RunOfCandidates& run = result[i];
     run.machine = static_cast<int>(m);
     run.group = runs[r].group;
     run.reading_K = rows * (states[m][r].colwise() - (model.start + warmer_K * model.system.ones));
     for (Eigen::Index k = 0; k < run.reading_K.cols(); ++k)
-      run.reading_K.col(k) += (runs[r].felt.hall.at(runs[r].times_s[static_cast<std::size_t>(k)]) - runs[r].felt.hall.at(0.0)) * hall;
+      run.reading_K.col(k) += (runs[r].felt.ambient.at(runs[r].times_s[static_cast<std::size_t>(k)]) - runs[r].felt.ambient.at(0.0)) * ambient;
     run.drift_um = drift_um(model, runs[r], states[m][r]);
   });
   return result;

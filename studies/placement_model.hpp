@@ -10,9 +10,9 @@
 
 namespace driftwright::studies {
 
-/// A cyclogram in one hall, as the machine feels them.
+/// A cyclogram in one ambient, as the machine feels them.
 struct PlacementRun {
-  std::string cyclogram, hall;  ///< names
+  std::string cyclogram, ambient;  ///< names
   scenarios::FeltRun felt;
   int group = 0;                ///< runs of one cyclogram share it
   std::vector<double> times_s;  ///< of rows, from the start on
@@ -22,11 +22,11 @@ struct PlacementModel {
   scenarios::Model opened;         ///< reduced
   solver::ReducedSystem system;    ///< linear
   Eigen::VectorXd start;
-  double start_hall_K = 0.0;
+  double start_ambient_K = 0.0;
   std::vector<Spot> spots;         ///< candidates, of which sensors that are mounted come last; behind them the scenario's other sensors
   int n_candidates = 0, n_mounted = 0;
-  Eigen::MatrixXd rows;            ///< temperature at each spot: rows * z + hall * T_hall [K over the reference], n_spots x size
-  Eigen::VectorXd hall;
+  Eigen::MatrixXd rows;            ///< temperature at each spot: rows * z + ambient * T_ambient [K over the reference], n_spots x size
+  Eigen::VectorXd ambient;
   std::vector<Eigen::Index> drifts;  ///< outputs of the system
   std::vector<std::string> channels; ///< their names
   std::vector<std::string> regions, left_out;
@@ -44,7 +44,7 @@ struct PlacementModel {
                                              const SpotRules& rules, const std::vector<std::string>& mounted,
                                              const std::vector<std::string>& channels, const Listener& listener);
 
-/// Reduced states of a system of the same unknowns over a run, size x n_rows. It starts as the scenario says, as much warmer as its hall is.
+/// Reduced states of a system of the same unknowns over a run, size x n_rows. It starts as the scenario says, as much warmer as its ambient is.
 [[nodiscard]] Eigen::MatrixXd states_of(const PlacementModel& model, const solver::ReducedSystem& system, const PlacementRun& run);
 /// Drifts since the start, n_rows x n_drifts [um].
 [[nodiscard]] Eigen::MatrixXd drift_um(const PlacementModel& model, const PlacementRun& run, const Eigen::MatrixXd& states);
@@ -68,6 +68,6 @@ struct PlacementModel {
 /// Those machines as candidates and drifts see them. @param states  scattered_states() of the runs
 [[nodiscard]] std::vector<compensation::RunOfCandidates> scattered_runs(const PlacementModel& model, const std::vector<PlacementRun>& runs,
                                                                         const std::vector<std::vector<Eigen::MatrixXd>>& states,
-                                                                        const Eigen::MatrixXd& rows, const Eigen::VectorXd& hall);
+                                                                        const Eigen::MatrixXd& rows, const Eigen::VectorXd& ambient);
 
 }  // namespace driftwright::studies

@@ -18,7 +18,7 @@ constexpr std::uint64_t kSeed = 11;
 /// Temperatures of all free candidates and the first drift, named by their numbers.
 Record record_of(const PlacementModel& model, const PlacementRun& run, double noise_K, std::uint64_t seed) {
   const Eigen::MatrixXd states = states_of(model, model.system, run);
-  Record record{.source = run.cyclogram + ", " + run.hall, .time_s = run.times_s, .channels = {}};
+  Record record{.source = run.cyclogram + ", " + run.ambient, .time_s = run.times_s, .channels = {}};
   const double zero_K = model.system.reference_K - kZeroCelsius_K;
   for (Eigen::Index c = 0; c < model.n_free(); ++c) {
     Random random(seed, static_cast<std::uint64_t>(c));

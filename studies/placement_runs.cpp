@@ -55,8 +55,8 @@ Cyclogram made(const std::vector<Drive>& drives, const std::string& name, std::u
 
 PlacementRun run_of(const scenarios::Scenario& scenario, const Cyclogram& cyclogram, const Validation::Season& season, double step_s) {
   scenarios::MachineModel machine = *scenario.machine;
-  machine.hall = scenarios::hall_in(season, machine.hall, cyclogram.duration_s());
-  PlacementRun run{.cyclogram = cyclogram.name, .hall = season.name, .felt = scenarios::felt_run(machine, cyclogram), .times_s = {}};
+  machine.ambient = scenarios::ambient_in(season, machine.ambient, cyclogram.duration_s());
+  PlacementRun run{.cyclogram = cyclogram.name, .ambient = season.name, .felt = scenarios::felt_run(machine, cyclogram), .times_s = {}};
   for (double t_s = 0.0; t_s < cyclogram.duration_s() + 1e-6; t_s += step_s) run.times_s.push_back(std::min(t_s, cyclogram.duration_s()));
   return run;
 }
@@ -107,18 +107,18 @@ PlacementFamilies placement_families(const scenarios::Scenario& scenario, const 
   };
   make(families.chosen_on, kLeastToChooseOn, "made", 100);
   if (families.judged_on.empty()) make(families.judged_on, kMadeToJudgeBy, "unseen", 200);
-  families.halls = scenario.validation ? scenario.validation->seasons
+  families.ambients = scenario.validation ? scenario.validation->seasons
                                        : std::vector<Validation::Season>{{"as it is", 0.0, 0.0}, {"a day of ±3 K", 0.0, 3.0}, {"5 K colder, ±2 K", -5.0, 2.0}};
   return families;
 }
 
-std::vector<PlacementRun> runs_in_all_halls(const scenarios::Scenario& scenario, const std::vector<Cyclogram>& cyclograms,
-                                            const std::vector<Validation::Season>& halls, int rows) {
+std::vector<PlacementRun> runs_in_all_ambients(const scenarios::Scenario& scenario, const std::vector<Cyclogram>& cyclograms,
+                                            const std::vector<Validation::Season>& ambients, int rows) {
   std::vector<PlacementRun> runs;
   for (std::size_t c = 0; c < cyclograms.size(); ++c) {
     const double step_s = std::max(60.0, 60.0 * std::floor(cyclograms[c].duration_s() / rows / 60.0));
-    for (const Validation::Season& hall : halls) {
-      runs.push_back(run_of(scenario, cyclograms[c], hall, step_s));
+    for (const Validation::Season& ambient : ambients) {
+      runs.push_back(run_of(scenario, cyclograms[c], ambient, step_s));
       runs.back().group = static_cast<int>(c);
     }
   }
@@ -126,10 +126,10 @@ std::vector<PlacementRun> runs_in_all_halls(const scenarios::Scenario& scenario,
 }
 
 std::vector<PlacementRun> runs_in_turn(const scenarios::Scenario& scenario, const std::vector<Cyclogram>& cyclograms,
-                                       const std::vector<Validation::Season>& halls, double row_s) {
+                                       const std::vector<Validation::Season>& ambients, double row_s) {
   std::vector<PlacementRun> runs;
   for (std::size_t c = 0; c < cyclograms.size(); ++c) {
-    runs.push_back(run_of(scenario, cyclograms[c], halls[c % halls.size()], row_s));
+    runs.push_back(run_of(scenario, cyclograms[c], ambients[c % ambients.size()], row_s));
     runs.back().group = static_cast<int>(c);
   }
   return runs;

@@ -6,7 +6,7 @@
 namespace driftwright::studies {
 
 /// Programmes of one, two, four and eight hours: the top speed, the middle one or both, held or on and off, with and without rest behind; of other drives
-/// where speeds do not differ. In the scenario's own hall.
+/// where speeds do not differ. In the scenario's own ambient.
 [[nodiscard]] std::vector<Cyclogram> possible_tests(const std::vector<Drive>& drives);
 
 /// What a set leaves behind each of them (PlacementJudge::behind_test()).

@@ -22,7 +22,7 @@ void list_channels(const scenarios::MachineModel& model, PlannedTwin& p) {
   }
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
     const bool is_further = effects::is_mean_output(outputs.name[o]);
-    if (outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) continue;  // on the hall, which is recorded
+    if (outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) continue;  // on the ambient, which is recorded
     if (is_further && std::find(measured_parts.begin(), measured_parts.end(), outputs.name[o]) != measured_parts.end())
       continue;
     (is_further ? p.further : p.channels).push_back({outputs.name[o], static_cast<int>(o), outputs.unit[o], {}});
@@ -51,9 +51,9 @@ PlannedTwin open_planned_twin(const scenarios::Scenario& scenario, const std::st
   PlannedTwin p;
   listener.begin("meshing");
   p.mesh = scenarios::place(model).mesh;
-  p.hall = model.hall;
+  p.ambient = model.ambient;
   std::vector<diagnosis::MeasuredRun> runs;
-  for (const Cyclogram& c : like) runs.push_back(diagnosis::planned_run(c, interval_s, p.hall, true, {}));
+  for (const Cyclogram& c : like) runs.push_back(diagnosis::planned_run(c, interval_s, p.ambient, true, {}));
   p.parts = std::make_unique<TwinParts>(TwinParts{diagnosis::augment(scenario, p.mesh, runs), {}});
   p.parts->machine = scenarios::open_reduced(p.parts->augmented.model, p.parts->augmented.plan, listener);
   solver::TransientOptions tolerances = scenario.solver.transient;  // a fraction of the noise is fine enough

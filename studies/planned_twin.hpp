@@ -18,13 +18,13 @@ struct PlannedTwin {
   std::unique_ptr<diagnosis::Focus> focus;  ///< what it runs on
   std::optional<diagnosis::Twin> twin;
   std::vector<diagnosis::MeasuredChannel>
-      channels;  ///< the scenario's sensors but those on the hall, displacements and tilts
+      channels;  ///< the scenario's sensors but those on the ambient, displacements and tilts
   std::vector<diagnosis::MeasuredChannel> further;  ///< mean temperatures of regions and nodes that no sensor of these is on
   std::map<std::string, diagnosis::NoiseModel> noise;  ///< of both, and no less than the twin's own errors
-  TimeSeries hall;                                     ///< minus the reference [K]
+  TimeSeries ambient;                                  ///< minus the reference [K]
 };
 
-/// Meshes and reduces for cyclograms like these. The hall is recorded beside them, as the scenario has it.
+/// Meshes and reduces for cyclograms like these. The ambient is recorded beside them, as the scenario has it.
 /// @param like  at least one; all of one length
 /// @throws InputError  for a machine without sensors and displacements, or with effects that a recorded column drives
 [[nodiscard]] PlannedTwin open_planned_twin(const scenarios::Scenario& scenario, const std::string& verb,

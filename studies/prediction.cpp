@@ -26,10 +26,10 @@ double duration_s(const std::string& option, const std::string& text) {
   throw InputError(fmt::format("{} '{}': a time from 0 s to {:g} s is wanted", option, text, kMost_s));
 }
 
-std::vector<std::string> sensors_on_hall(const scenarios::MachineModel& machine) {
+std::vector<std::string> sensors_on_ambient(const scenarios::MachineModel& machine) {
   std::vector<std::string> names;
   for (const scenarios::Sensor& sensor : machine.sensors) {
-    if (scenarios::is_on_hall(sensor)) names.push_back(sensor.name);
+    if (scenarios::is_on_ambient(sensor)) names.push_back(sensor.name);
   }
   return names;
 }
@@ -61,7 +61,7 @@ Before read_before(const scenarios::Scenario& scenario, const PredictionOptions&
   if (options.start.empty()) return before;
   if (options.start.ends_with(".csv")) {
     ReadRecord read = read_record(options.start, scenario.columns);
-    before.order.start = scenarios::run_of(read.record, &machine, sensors_on_hall(machine), scenarios::Reading::kStrict);
+    before.order.start = scenarios::run_of(read.record, &machine, sensors_on_ambient(machine), scenarios::Reading::kStrict);
     for (const std::string& note : read.notes) fmt::print(stderr, "note: {}\n", note);
     for (const scenarios::DataFinding& f : before.order.start->findings) fmt::print(stderr, "note: {}\n", f.what);
     before.record = std::move(read.record);
@@ -75,10 +75,10 @@ Before read_before(const scenarios::Scenario& scenario, const PredictionOptions&
 
 std::string start_words(const Before& before, const PredictionOptions& options) {
   if (!before.order.start) return "";
-  const bool lacks_hall = before.record && !before.order.start->has_ambient();
+  const bool lacks_ambient = before.record && !before.order.start->has_ambient();
   return fmt::format("{}{} ({:.4g} min{}){}", before.record ? "" : "cyclogram ", options.start,
                      before.order.start->cyclogram.duration_s() / 60.0,
-                     lacks_hall ? ", without a hall temperature: the scenario's" : "",
+                     lacks_ambient ? ", without an ambient temperature: the scenario's" : "",
                      before.order.pause_s > 0.0 ? fmt::format(" and {:.4g} min at rest", before.order.pause_s / 60.0) : "");
 }
 
@@ -125,7 +125,7 @@ scenarios::ModelKind predicting_model(const scenarios::Scenario& scenario) {
   if (std::holds_alternative<scenarios::LumpedMachine>(machine.mesh)) return scenarios::ModelKind::kFull;
   const effects::HeatBalance balance = effects::heat_balance(machine.effects);
   const bool follows_time = std::any_of(balance.fixed.begin(), balance.fixed.end(), [](const auto& fixed) {
-    return !fixed.follows_hall && fixed.temperature_K.value.size() > 1;
+    return !fixed.follows_ambient && fixed.temperature_K.value.size() > 1;
   });
   return follows_time ? scenarios::ModelKind::kFull : scenarios::ModelKind::kReduced;
 }
@@ -163,17 +163,17 @@ Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, co
                    const Listener& listener, const std::string& verb, PredictingModels& models) {
   const scenarios::MachineModel& own = scenarios::require_machine(scenario, verb);
   Before before = read_before(scenario, options, job.name);
-  scenarios::JobSeries series = scenarios::job_series(job, before.order, own.hall, scenario.solver.output_interval_s);
+  scenarios::JobSeries series = scenarios::job_series(job, before.order, own.ambient, scenario.solver.output_interval_s);
   scenarios::check_cyclogram(scenario, series.cyclogram);
   scenarios::Scenario asked = scenario;
   asked.solver.model = options.model.empty()     ? predicting_model(scenario)
                        : options.model == "full" ? scenarios::ModelKind::kFull
                                                  : scenarios::ModelKind::kReduced;
-  TimeSeries& hall =
-      asked.machine->hall;  // what the model is asked for: halls as warm as the series', behind the scenario's own
-  for (double value_K : series.hall.value) {
-    hall.time_s.push_back(hall.time_s.back() + 1.0);
-    hall.value.push_back(value_K);
+  TimeSeries& ambient =
+      asked.machine->ambient;  // what the model is asked for: ambients as warm as the series', behind the scenario's own
+  for (double value_K : series.ambient.value) {
+    ambient.time_s.push_back(ambient.time_s.back() + 1.0);
+    ambient.value.push_back(value_K);
   }
   Outlook ahead{.machine = own,
                 .model = models.of(asked, series.cyclogram, listener),
@@ -181,11 +181,11 @@ Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, co
                 .series = std::move(series),
                 .before = std::move(before.record),
                 .started_from = start_words(before, options)};
-  ahead.machine.hall = ahead.series.hall;
-  // The model's start is that of the scenario's hall; a run that began in another hall began as much warmer.
+  ahead.machine.ambient = ahead.series.ambient;
+  // The model's start is that of the scenario's ambient; a run that began in another ambient began as much warmer.
   double warmer_K = scenarios::warmer_start_K(ahead.machine, ahead.series.cyclogram);
-  if (own.start == scenarios::Start::kHall || own.start == scenarios::Start::kSteady)
-    warmer_K += scenarios::felt_hall_at_start_K(ahead.machine) - scenarios::felt_hall_at_start_K(own);
+  if (own.start == scenarios::Start::kAmbient || own.start == scenarios::Start::kSteady)
+    warmer_K += scenarios::felt_ambient_at_start_K(ahead.machine) - scenarios::felt_ambient_at_start_K(own);
   ahead.start = scenarios::start_of(own, *ahead.model) + warmer_K * scenarios::ones_of(*ahead.model);
   return ahead;
 }
@@ -215,14 +215,14 @@ compensation::Iso230Figures iso_figures(const Prediction& prediction) {
   compensation::Iso230Figures figures = compensation::iso230_3_figures(prediction.record);
   if (prediction.started_from.empty()) return figures;
   figures.channels.clear();
-  figures.not_available = "the machine was at work before; the test starts from a machine in balance with its hall";
+  figures.not_available = "the machine was at work before; the test starts from a machine in balance with its ambient";
   return figures;
 }
 
 Cyclogram cyclogram_of(const scenarios::Scenario& scenario, const Record& record) {
   scenarios::RecordedRun run = scenarios::run_of(record, nullptr, {}, scenarios::Reading::kStrict);
   for (const scenarios::DataFinding& f : run.findings) {
-    if (f.channel == "speed") fmt::print(stderr, "note: {}\n", f.what);  // the hall is the scenario's
+    if (f.channel == "speed") fmt::print(stderr, "note: {}\n", f.what);  // the ambient is the scenario's
   }
   scenarios::check_cyclogram(scenario, run.cyclogram);
   return std::move(run.cyclogram);

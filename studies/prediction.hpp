@@ -44,7 +44,7 @@ class PredictingModels {
  public:
   PredictingModels();
   ~PredictingModels();
-  /// The model for a cyclogram in the halls of `scenario`, by its `solver.model`.
+  /// The model for a cyclogram in the ambients of `scenario`, by its `solver.model`.
   [[nodiscard]] std::shared_ptr<const scenarios::Model> of(const scenarios::Scenario& scenario, const Cyclogram& cyclogram,
                                                            const Listener& listener);
 
@@ -55,7 +55,7 @@ class PredictingModels {
 
 /// A machine that is about to do a job.
 struct Outlook {
-  scenarios::MachineModel machine;  ///< the scenario's, in the hall of the series
+  scenarios::MachineModel machine;  ///< the scenario's, in the ambient of the series
   std::shared_ptr<const scenarios::Model> model;
   Eigen::VectorXd start;        ///< state of the model at the start of the series
   scenarios::JobSeries series;  ///< what was before, the pause, the job
@@ -78,7 +78,7 @@ struct Outlook {
 [[nodiscard]] Prediction predict_drift(const scenarios::Scenario& scenario, const Cyclogram& job,
                                        const PredictionOptions& options, const Listener& listener, const std::string& verb);
 
-/// The figures of ISO 230-3 of a prediction; none behind another run: the machine is not in balance with its hall then.
+/// The figures of ISO 230-3 of a prediction; none behind another run: the machine is not in balance with its ambient then.
 [[nodiscard]] compensation::Iso230Figures iso_figures(const Prediction& prediction);
 
 /// What a record says drove the machine, as a cyclogram named as its source is; looked at by check_cyclogram().

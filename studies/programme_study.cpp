@@ -53,10 +53,10 @@ void add_noise(std::vector<ThermalTest>& tests, const TestChannels& channels, co
   }
 }
 
-TimeSeries from_start(TimeSeries hall) {
-  const double start_K = hall.at(0.0);
-  for (double& v : hall.value) v -= start_K;
-  return hall;
+TimeSeries from_start(TimeSeries ambient) {
+  const double start_K = ambient.at(0.0);
+  for (double& v : ambient.value) v -= start_K;
+  return ambient;
 }
 
 PredictionError error_of(const Eigen::MatrixXd& truth, const Eigen::MatrixXd& predicted, const TestChannels& channels,
@@ -90,9 +90,9 @@ std::vector<double> row_of(const Eigen::MatrixXd& rows, Eigen::Index channel) {
   return {row.begin(), row.end()};
 }
 
-/// All channels of a cyclogram since the start, in um and urad, n_channels x n_times. @param hall  minus the reference temperature [K]
+/// All channels of a cyclogram since the start, in um and urad, n_channels x n_times. @param ambient  minus the reference temperature [K]
 using Courses =
-    std::function<Eigen::MatrixXd(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& time_s)>;
+    std::function<Eigen::MatrixXd(const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& time_s)>;
 
 /// A predictor of each channel, which takes its row.
 std::vector<compensation::DeployedPredictor> predictors_of(const std::string& name, const TestChannels& channels,
@@ -104,16 +104,16 @@ std::vector<compensation::DeployedPredictor> predictors_of(const std::string& na
     d.target = channels.name[c];
     d.from_start = true;
     d.predictor = std::make_shared<DrivenPredictor>(
-        [courses, row = static_cast<Eigen::Index>(c)](const Cyclogram& cyclogram, const TimeSeries& hall,
+        [courses, row = static_cast<Eigen::Index>(c)](const Cyclogram& cyclogram, const TimeSeries& ambient,
                                                       const std::vector<double>& time_s) {
-          return row_of(courses(cyclogram, hall, time_s), row);
+          return row_of(courses(cyclogram, ambient, time_s), row);
         });
     list.push_back(std::move(d));
   }
   return list;
 }
 
-/// Of a linear model and its state at the start, by what the machine feels of drive and hall.
+/// Of a linear model and its state at the start, by what the machine feels of drive and ambient.
 Courses by_model(const scenarios::MachineModel& machine, const TestChannels& channels, const solver::ReducedSystem& system,
                  const Eigen::VectorXd& start) {
   struct Owned {
@@ -125,21 +125,21 @@ Courses by_model(const scenarios::MachineModel& machine, const TestChannels& cha
   };
   // shared: a function is copied, one for each channel, and all may have what was decomposed for one of them
   return [machine, channels, start, owned = std::make_shared<Owned>(system)](
-             const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& time_s) {
+             const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& time_s) {
     scenarios::MachineModel there = machine;
-    there.hall = hall;
+    there.ambient = ambient;
     const scenarios::FeltRun felt = scenarios::felt_run(there, cyclogram);
-    return rows_of(owned->propagator.run(felt.cyclogram, felt.hall, time_s, start), owned->system.outputs, channels);
+    return rows_of(owned->propagator.run(felt.cyclogram, felt.ambient, time_s, start), owned->system.outputs, channels);
   };
 }
 
-/// Predictors of all channels on all judged cyclograms, before they run. @param hall  minus the reference temperature [K]
-JudgedPredictor judged(const ProgrammeStudy& study, const TimeSeries& hall, const std::string& name,
+/// Predictors of all channels on all judged cyclograms, before they run. @param ambient  minus the reference temperature [K]
+JudgedPredictor judged(const ProgrammeStudy& study, const TimeSeries& ambient, const std::string& name,
                        const Courses& courses) {
   JudgedPredictor p{predictors_of(name, study.channels, courses), {}, {}, 0.0};
   const auto start = std::chrono::steady_clock::now();
   for (const JudgedCyclogram& j : study.judged) {
-    const compensation::ObservedRun known{j.cyclogram, hall, {.source = {}, .time_s = j.time_s, .channels = {}}};
+    const compensation::ObservedRun known{j.cyclogram, ambient, {.source = {}, .time_s = j.time_s, .channels = {}}};
     Eigen::MatrixXd predicted(j.truth.rows(), j.truth.cols());
     for (std::size_t c = 0; c < p.channels.size(); ++c) {
       const std::vector<double> row = ahead(*p.channels[c].predictor, known);
@@ -221,14 +221,14 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
                                const Listener& listener) {
   const scenarios::Programme& programme = *scenario.programme;
   const scenarios::MachineModel& machine = *scenario.machine;
-  const bool starts_with_the_hall =
-      machine.start == scenarios::Start::kHall || machine.start == scenarios::Start::kSteady ||
+  const bool starts_with_the_ambient =
+      machine.start == scenarios::Start::kAmbient || machine.start == scenarios::Start::kSteady ||
       std::abs((machine.start == scenarios::Start::kUniform ? machine.start_K - machine.reference_K : 0.0) -
-               scenarios::felt_hall_at_start_K(machine)) < kBalance_K;
-  if (!starts_with_the_hall) {
-    throw InputError(
-        programme.where,
-        "tests and cyclograms of a programme start in balance with the hall; `start: hall` or `start: steady` is wanted");
+               scenarios::felt_ambient_at_start_K(machine)) < kBalance_K;
+  if (!starts_with_the_ambient) {
+    throw InputError(programme.where,
+                     "tests and cyclograms of a programme start in balance with the ambient; `start: ambient` or `start: "
+                     "steady` is wanted");
   }
   if (effects::has_reading_effects(machine.effects)) {
     throw InputError(
@@ -254,16 +254,16 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
   for (const Cyclogram& c : tests) all.push_back(&c);
   for (const Cyclogram& c : asked) all.push_back(&c);
   const std::vector<scenarios::SimulatedRun> runs = scenarios::simulate_cyclograms(scenario, model, all, listener);
-  const double hall_K = scenarios::felt_hall_at_start_K(machine);
+  const double ambient_K = scenarios::felt_ambient_at_start_K(machine);
   TestBed bed{study.channels, {}};
   for (const scenarios::Sensor& s : machine.sensors) {
-    if (scenarios::is_on_hall(s)) continue;
+    if (scenarios::is_on_ambient(s)) continue;
     bed.all.name.push_back(s.name);
     bed.all.unit.emplace_back("K");
   }
-  const TimeSeries hall = from_start(machine.hall);
+  const TimeSeries ambient = from_start(machine.ambient);
   for (std::size_t t = 0; t < tests.size(); ++t) {
-    bed.tests.push_back({tests[t], hall, runs[t].record.time_s, rows_of(runs[t].record, bed.all)});
+    bed.tests.push_back({tests[t], ambient, runs[t].record.time_s, rows_of(runs[t].record, bed.all)});
   }
   add_noise(bed.tests, bed.all, programme);
   for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -287,7 +287,7 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
         };
   };
   const auto add = [&](const std::string& name, const Courses& courses) {
-    study.predictors.push_back(judged(study, machine.hall, name, courses));
+    study.predictors.push_back(judged(study, machine.ambient, name, courses));
   };
   add("modes from tests", by_tests(study.identified));
   const IdentifiedModes fixed =
@@ -314,11 +314,11 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
     const solver::ReducedSystem& system = reduced->system;
     std::vector<const Cyclogram*> pointers;
     for (const Cyclogram& c : tests) pointers.push_back(&c);
-    const effects::Inputs standstill{.drive = {}, .hall_K = hall_K},
-        typical{.drive = mean_drive(pointers), .hall_K = hall_K};
+    const effects::Inputs standstill{.drive = {}, .ambient_K = ambient_K},
+        typical{.drive = mean_drive(pointers), .ambient_K = ambient_K};
     for (int n = 1; n <= std::min(kMostModelModes, system.size()); ++n) {
       const ModalPredictor p = make_ritz_predictor(system, reduced->start, n, standstill);
-      JudgedPredictor trial = judged(study, machine.hall, fmt::format("{} modes of the model", n),
+      JudgedPredictor trial = judged(study, machine.ambient, fmt::format("{} modes of the model", n),
                                      by_model(machine, study.channels, p.system, p.start));
       study.error_by_modes.emplace_back(n, largest_percent(trial));
       const bool is_enough = study.error_by_modes.back().second <= kWantedPercent;
@@ -335,9 +335,9 @@ ProgrammeStudy study_programme(const scenarios::Scenario& scenario, const scenar
       for (ThermalTest& t : felt_tests) {
         scenarios::FeltRun felt = scenarios::felt_run(machine, t.cyclogram);
         t.cyclogram = std::move(felt.cyclogram);
-        t.hall = from_start(std::move(felt.hall));
+        t.ambient = from_start(std::move(felt.ambient));
       }
-      const ScaledModes scaled = fit_scaled_modes(wrong, p.start, hall_K, felt_tests, bed.all);
+      const ScaledModes scaled = fit_scaled_modes(wrong, p.start, ambient_K, felt_tests, bed.all);
       study.factors = scaled.factors;
       add("hybrid: those, scaled to tests", by_model(machine, study.channels, scaled.system, p.start));
       break;

@@ -28,7 +28,7 @@ struct JudgedCyclogram {
   Eigen::MatrixXd truth;  ///< n_channels x n_times, um and urad, since the start
 };
 
-/// Predictors of one kind, one a channel, and what they foretold of drive and hall alone.
+/// Predictors of one kind, one a channel, and what they foretold of drive and ambient alone.
 struct JudgedPredictor {
   std::vector<compensation::DeployedPredictor> channels;  ///< of one name, as TestChannels; those of tilts tell urad
   std::vector<Eigen::MatrixXd> predicted;                 ///< per judged cyclogram, as its truth

@@ -82,7 +82,7 @@ struct ReadFile {
   std::string path;
   Record record;
   scenarios::RecordedRun recorded;
-  scenarios::FeltRun felt;   ///< drive and hall as the scenario's effects say that they were
+  scenarios::FeltRun felt;   ///< drive and ambient as the scenario's effects say that they were
   std::size_t n_before = 0;  ///< rows in front that are of the record that this one follows
 };
 
@@ -104,7 +104,7 @@ Record read_with_target(const std::string& path, const scenarios::Scenario& scen
 
 /// The files that parts name, each once.
 std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const scenarios::Scenario& scenario,
-                                 const std::string* hall, StudyRecords& into) {
+                                 const std::string* ambient, StudyRecords& into) {
   const std::string& target = scenario.study->target;
   std::vector<ReadFile> files;
   std::vector<Record> as_read;
@@ -130,8 +130,8 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
     } else {
       as_read.push_back(file.record);
     }
-    file.recorded = scenarios::run_of(file.record, scenario.machine ? &*scenario.machine : nullptr, hall_sensors(scenario),
-                                      scenarios::Reading::kLenient);
+    file.recorded = scenarios::run_of(file.record, scenario.machine ? &*scenario.machine : nullptr,
+                                      ambient_sensors(scenario), scenarios::Reading::kLenient);
     for (const scenarios::DataFinding& f : file.recorded.findings) {
       if (std::find(into.findings.begin(), into.findings.end(), f.what) == into.findings.end())
         into.findings.push_back(f.what);
@@ -139,20 +139,20 @@ std::vector<ReadFile> read_files(const std::vector<RecordPart>& parts, const sce
     file.record.time_s = file.recorded.time_s;
     files.push_back(std::move(file));
   }
-  // the hall is an input where every record has it, in the same channel
-  into.hall = files.front().recorded.hall_channel;
+  // the ambient is an input where every record has it, in the same channel
+  into.ambient = files.front().recorded.ambient_channel;
   const bool is_same =
-      std::all_of(files.begin(), files.end(), [&](const ReadFile& f) { return f.recorded.hall_channel == into.hall; });
-  const bool has_hall = is_same && (!hall || (!hall->empty() && *hall == into.hall));
-  if (!has_hall) into.hall.clear();
+      std::all_of(files.begin(), files.end(), [&](const ReadFile& f) { return f.recorded.ambient_channel == into.ambient; });
+  const bool has_ambient = is_same && (!ambient || (!ambient->empty() && *ambient == into.ambient));
+  if (!has_ambient) into.ambient.clear();
   if (!is_same) {
-    into.findings.emplace_back("not every record has the hall's temperature in the same channel; it is used from none");
+    into.findings.emplace_back("not every record has the ambient temperature in the same channel; it is used from none");
   }
   for (ReadFile& file : files) {
-    file.felt = {file.recorded.cyclogram, file.recorded.hall};
+    file.felt = {file.recorded.cyclogram, file.recorded.ambient};
     if (!scenario.machine) continue;
     scenarios::MachineModel there = *scenario.machine;
-    if (has_hall) there.hall = file.recorded.hall;
+    if (has_ambient) there.ambient = file.recorded.ambient;
     file.felt = scenarios::felt_run(there, file.recorded.cyclogram);
     file.felt.cyclogram.name = file.recorded.cyclogram.name;
   }
@@ -165,7 +165,7 @@ double hours(const ReadFile& file, std::size_t row) {
 
 compensation::ObservedRun observed(const ReadFile& file, const RunRows& rows, const std::string& name) {
   compensation::ObservedRun run{.cyclogram = file.felt.cyclogram,
-                                .hall = file.felt.hall,
+                                .ambient = file.felt.ambient,
                                 .readings = file.record,
                                 .n_before = rows.first - rows.history,
                                 .history = fmt::format("{} from row {}", file.path, rows.history)};
@@ -176,7 +176,7 @@ compensation::ObservedRun observed(const ReadFile& file, const RunRows& rows, co
               .last_s = t[rows.last - 1] - t[file.n_before]};
   if (rows.history == 0 && rows.last == t.size()) return run;
   run.cyclogram = scenarios::part_of(run.cyclogram, t[rows.history], t[rows.last - 1]);
-  run.hall = scenarios::part_of(run.hall, t[rows.history], t[rows.last - 1]);
+  run.ambient = scenarios::part_of(run.ambient, t[rows.history], t[rows.last - 1]);
   for (Channel& c : run.readings.channels) c.values.resize(rows.last);
   run.readings.time_s.resize(rows.last);
   run.readings = compensation::own_rows(std::move(run.readings), rows.history);
@@ -208,7 +208,7 @@ std::string words_of_cut(const RecordPart& part, const ReadFile& file, const std
 
 }  // namespace
 
-StudyRecords read_records(const scenarios::Scenario& scenario, const RecordPaths& paths, const std::string* hall) {
+StudyRecords read_records(const scenarios::Scenario& scenario, const RecordPaths& paths, const std::string* ambient) {
   std::vector<RecordPart> parts;
   for (const std::vector<std::string>* list : {&paths.train, &paths.test}) {
     for (const std::string& argument : *list) {
@@ -217,14 +217,14 @@ StudyRecords read_records(const scenarios::Scenario& scenario, const RecordPaths
     }
   }
   StudyRecords records;
-  const std::vector<ReadFile> files = read_files(parts, scenario, hall, records);
+  const std::vector<ReadFile> files = read_files(parts, scenario, ambient, records);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const RecordPart& part = parts[p];
     const ReadFile& file =
         *std::find_if(files.begin(), files.end(), [&](const ReadFile& f) { return is_same_file(f.path, part.file); });
     auto [first, last] = scenarios::rows_of(part, file.record);
     first += file.n_before;
-    const scenarios::CutRecord cut{file.record, file.recorded.cyclogram, file.recorded.hall};
+    const scenarios::CutRecord cut{file.record, file.recorded.cyclogram, file.recorded.ambient};
     if (paths.train.size() == 1 && p == 0) {
       const std::vector<RunRows> runs = scenarios::runs_between_rests(cut, first, last);
       records.notes.push_back(words_of_cut(part, file, runs));
@@ -255,10 +255,10 @@ std::vector<Record> whole_records(std::span<const compensation::ObservedRun> run
   return records;
 }
 
-std::vector<std::string> hall_sensors(const scenarios::Scenario& scenario) {
+std::vector<std::string> ambient_sensors(const scenarios::Scenario& scenario) {
   std::vector<std::string> names;
   for (const scenarios::Sensor& s : scenario.machine ? scenario.machine->sensors : std::vector<scenarios::Sensor>{}) {
-    if (scenarios::is_on_hall(s)) names.push_back(s.name);
+    if (scenarios::is_on_ambient(s)) names.push_back(s.name);
   }
   return names;
 }

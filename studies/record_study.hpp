@@ -17,18 +17,18 @@ struct RecordPaths {
 
 struct StudyRecords {
   std::vector<compensation::ObservedRun> train, test;
-  std::string hall;                   ///< channel of the hall in every record; "": not all have it in the same one
+  std::string ambient;                ///< channel of the ambient in every record; "": not all have it in the same one
   std::vector<std::string> notes;     ///< how records were read and cut, a sentence each
-  std::vector<std::string> findings;  ///< what is wrong with drive and hall, a sentence each
+  std::vector<std::string> findings;  ///< what is wrong with drive and ambient, a sentence each
 };
 
-/// Reads the records, or parts of them (scenarios/reader/record_part.hpp), and checks that they have the study's target. Drive and hall are what the
+/// Reads the records, or parts of them (scenarios/reader/record_part.hpp), and checks that they have the study's target. Drive and ambient are what the
 /// scenario's effects say of the recorded ones. A part goes on from what came before it in its record. A single record to train on is cut
 /// into runs at rests of its drive (scenarios/reader/record_runs.hpp).
 /// @throws InputError  for a missing file or channel, and when rows are given twice: trained on and judged by, or trained on twice
-/// @param hall  null: the hall is read from the channel that all records have it in; else from this one alone, "" for none
+/// @param ambient  null: the ambient is read from the channel that all records have it in; else from this one alone, "" for none
 [[nodiscard]] StudyRecords read_records(const scenarios::Scenario& scenario, const RecordPaths& paths,
-                                        const std::string* hall = nullptr);
+                                        const std::string* ambient = nullptr);
 
 /// The rows of the runs alone, as records.
 [[nodiscard]] std::vector<Record> own_records(std::span<const compensation::ObservedRun> runs);
@@ -40,7 +40,7 @@ struct StudyRecords {
 [[nodiscard]] std::vector<std::string> sensor_warnings(const std::vector<Record>& records,
                                                        const std::vector<std::string>& candidates);
 
-/// Channels that read the hall: sensors on it.
-[[nodiscard]] std::vector<std::string> hall_sensors(const scenarios::Scenario& scenario);
+/// Channels that read the ambient: sensors on it.
+[[nodiscard]] std::vector<std::string> ambient_sensors(const scenarios::Scenario& scenario);
 
 }  // namespace driftwright::studies

@@ -63,7 +63,7 @@ std::vector<double> simulate_member(const scenarios::Scenario& scenario, const s
   const Eigen::VectorXd start = scenarios::start_state(*scenario.machine, machine);
   return collected(
       scenario, machine.system.outputs, collect, [&](const scenarios::FeltRun& felt, const std::vector<double>& times_s) {
-        return solver::simulate(machine.system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, start);
+        return solver::simulate(machine.system, felt.cyclogram, felt.ambient, times_s, scenario.solver.transient, start);
       });
 }
 
@@ -75,8 +75,8 @@ std::vector<double> simulate_member(const scenarios::Scenario& scenario, const s
   if (system.is_linear()) propagator.emplace(system);
   return collected(
       scenario, system.outputs, collect, [&](const scenarios::FeltRun& felt, const std::vector<double>& times_s) {
-        if (propagator) return propagator->run(felt.cyclogram, felt.hall, times_s, machine.start);
-        return solver::simulate(system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, machine.start);
+        if (propagator) return propagator->run(felt.cyclogram, felt.ambient, times_s, machine.start);
+        return solver::simulate(system, felt.cyclogram, felt.ambient, times_s, scenario.solver.transient, machine.start);
       });
 }
 

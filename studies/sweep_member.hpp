@@ -12,7 +12,7 @@ namespace driftwright::studies {
 [[nodiscard]] double scalar_of(const Record& record, const Channel& channel, scenarios::Scalar scalar, double neutral);
 
 /// Simulates the cyclograms that `collect` names, on the calling thread alone where others work beside it.
-/// @param scenario  gives drive, hall, start and solver; its machine is `machine`
+/// @param scenario  gives drive, ambient, start and solver; its machine is `machine`
 /// @returns one number for each of `collect`; peaks count from 0 um, 0 urad and the reference temperature
 /// @throws SolveError, InputError, RangeError
 [[nodiscard]] std::vector<double> simulate_member(const scenarios::Scenario& scenario, const scenarios::Machine& machine,

@@ -56,10 +56,11 @@ Record table_readings(const scenarios::Scenario& scenario, const scenarios::Felt
   for (const Channel& channel : record.channels) {
     if (channel.unit == "degC") thermometers.channels.push_back(channel);
   }
-  Channel hall{kFeltHall, "degC", {}};
-  for (double t_s : record.time_s) hall.values.push_back(felt.hall.at(t_s) + scenario.machine->reference_K - kZeroCelsius_K);
-  thermometers.channels.push_back(hall);
-  result.channels.push_back(hall);
+  Channel ambient{kFeltAmbient, "degC", {}};
+  for (double t_s : record.time_s)
+    ambient.values.push_back(felt.ambient.at(t_s) + scenario.machine->reference_K - kZeroCelsius_K);
+  thermometers.channels.push_back(ambient);
+  result.channels.push_back(ambient);
   // other seeds than the rings': their noise has nothing to do with that of thermometers
   const auto seed = static_cast<std::uint64_t>(s.seed + 1000 * repetition + 500);
   const Record read = compensation::running_mean(

@@ -29,11 +29,11 @@ template <class System>
 
 [[nodiscard]] compensation::RingPlan ring_plan(const scenarios::TableSettings& s, double every_s, int repetition);
 
-/// Channel of table_readings() with the hall that the machine feels; no sensor has a name with a blank.
-inline constexpr const char* kFeltHall = "felt hall";
+/// Channel of table_readings() with the ambient that the machine feels; no sensor has a name with a blank.
+inline constexpr const char* kFeltAmbient = "felt ambient";
 
 /// The record with its temperatures as the table's instrument gives them: read every `update`, averaged backwards, held.
-/// @param felt  of the run, for the hall
+/// @param felt  of the run, for the ambient
 [[nodiscard]] Record table_readings(const scenarios::Scenario& scenario, const scenarios::FeltRun& felt,
                                     const Record& record, int repetition);
 

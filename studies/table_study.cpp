@@ -17,7 +17,7 @@ namespace {
 using compensation::TableErrors;
 using Errors = std::vector<Eigen::Matrix3Xd>;
 
-/// The run of a model that is wrong, in the hall that was recorded.
+/// The run of a model that is wrong, in the ambient that was recorded.
 TableRun wrong_run(const scenarios::Scenario& scenario, const scenarios::Model& model, int repetition) {
   const scenarios::TableSettings& s = *scenario.table;
   const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram(s.cyclogram));
@@ -25,11 +25,11 @@ TableRun wrong_run(const scenarios::Scenario& scenario, const scenarios::Model& 
   scenarios::SimulatedRun run;
   if (const scenarios::Machine* full = model.full()) {
     const Eigen::VectorXd start = scenarios::start_state(*scenario.machine, *full);
-    run.trajectory = solver::simulate(wrong_system(full->system, s, repetition), felt.cyclogram, felt.hall, times_s,
+    run.trajectory = solver::simulate(wrong_system(full->system, s, repetition), felt.cyclogram, felt.ambient, times_s,
                                       scenario.solver.transient, start);
   } else {
     const scenarios::ReducedMachine& reduced = *model.reduced();
-    run.trajectory = solver::simulate(wrong_system(reduced.system, s, repetition), felt.cyclogram, felt.hall, times_s,
+    run.trajectory = solver::simulate(wrong_system(reduced.system, s, repetition), felt.cyclogram, felt.ambient, times_s,
                                       scenario.solver.transient, reduced.start);
   }
   run.record = scenarios::as_recorded(*scenario.machine, run.trajectory, model.outputs(), scenario.cyclogram(s.cyclogram));
@@ -102,11 +102,11 @@ std::vector<compensation::TableFrame> control_frames(const scenarios::TableSetti
 
 void compare_with_readings(TableStudy& study, const scenarios::Scenario& scenario) {
   const scenarios::TableReadings& readings = *scenario.table->readings;
-  TimeSeries hall{readings.time_s, readings.ambient_K};
+  TimeSeries ambient{readings.time_s, readings.ambient_K};
   const double length_um = 1e6 * (scenario.table->high_m[0] - scenario.table->low_m[0]);
-  study.hall_models =
-      compensation::compare_hall_models(hall, readings.time_s, readings.x_um, length_um * table_expansion(scenario).x,
-                                        length_um * scenario.table->scale_x.expansion_1_K);
+  study.ambient_models =
+      compensation::compare_ambient_models(ambient, readings.time_s, readings.x_um, length_um * table_expansion(scenario).x,
+                                           length_um * scenario.table->scale_x.expansion_1_K);
   std::vector<double> x_um;
   for (std::size_t i = 0; i < study.run.table.time_s.size(); ++i)
     x_um.push_back(study.run.table_only_x_um[i] - study.run.scale_only_x_um[i]);
@@ -177,13 +177,13 @@ TableStudy study_table(const scenarios::Scenario& scenario, const scenarios::Mod
   listener.begin("running models that are off");
   const scenarios::FeltRun felt = scenarios::felt_run(*scenario.machine, *cyclogram.front());
   std::vector<Errors> model_m, model_table_m, warmth_m, warmth_table_m;
-  std::vector<std::vector<double>> hall_K, thermometer_K;
+  std::vector<std::vector<double>> ambient_K, thermometer_K;
   for (int k = 0; k < kTableRepetitions; ++k) {
     const TableRun wrong = wrong_run(scenario, model, k);
     model_m.push_back(first_rows(wrong.rings_m, n));
     model_table_m.push_back(first_rows(wrong.table.error_m, n));
     const Record readings = table_readings(scenario, felt, truth.record, k);
-    hall_K.push_back(mean_K(readings, {kFeltHall}));
+    ambient_K.push_back(mean_K(readings, {kFeltAmbient}));
     thermometer_K.push_back(mean_K(readings, {s.thermometer}));
     warmth_m.push_back(first_rows(by_thermometers(scenario, readings, places_m, wrong_expansions(s, k)), n));
     warmth_table_m.push_back(first_rows(by_thermometers(scenario, readings, judged.points_m, wrong_expansions(s, k)), n));
@@ -226,7 +226,7 @@ TableStudy study_table(const scenarios::Scenario& scenario, const scenarios::Mod
   study.control = control(0);
   study.strategies = {
       repeated("none", [&](int) { return judged.error_m; }),
-      repeated("hall temperature", by_temperature(hall_K)),
+      repeated("ambient temperature", by_temperature(ambient_K)),
       repeated("table thermometer", by_temperature(thermometer_K)),
       repeated("control's own (SD43900/43910)",
                [&](int k) {

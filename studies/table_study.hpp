@@ -1,7 +1,7 @@
 #pragma once
 // What `run` does with a scenario's `table:`: the table's errors over the run, and every correction of them through the frame.
 
-#include "compensation/frames/hall_models.hpp"
+#include "compensation/frames/ambient_models.hpp"
 #include "compensation/frames/table_shift.hpp"
 #include "machine/simulated_run.hpp"
 #include "scenarios/reader/read_table.hpp"
@@ -50,8 +50,8 @@ struct TableStudy {
   compensation::AxisTemperature control;
   compensation::TableFrame frame;  ///< of the last measurement of the judged time
   compensation::ProbeStudy probe;
-  std::vector<compensation::HallModel> hall_models;  ///< of the readings, in um
-  double computed_rms_um = 0.0;                      ///< of the computed X against them
+  std::vector<compensation::AmbientModel> ambient_models;  ///< of the readings, in um
+  double computed_rms_um = 0.0;                            ///< of the computed X against them
 };
 
 [[nodiscard]] TableStudy study_table(const scenarios::Scenario& scenario, const scenarios::Model& model,

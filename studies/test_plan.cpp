@@ -139,7 +139,7 @@ TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& o
   for (std::size_t i = 1; i < like.size(); ++i) like[i].name += fmt::format("_{}", i);
   const PlannedTwin p = open_planned_twin(scenario, "plan-test", like, options.interval_s, options.noise, listener);
   const auto run_of = [&](const Cyclogram& c, const std::vector<diagnosis::MeasuredChannel>& channels) {
-    return diagnosis::planned_run(c, options.interval_s, p.hall, true, channels);
+    return diagnosis::planned_run(c, options.interval_s, p.ambient, true, channels);
   };
   const diagnosis::MeasuredRun usual = run_of(like.front(), p.channels);
   const diagnosis::Doubts doubts = diagnosis::doubts_before(*p.twin, usual);

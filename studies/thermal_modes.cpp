@@ -11,7 +11,7 @@ using namespace compensation;
 Record foretold_record(const scenarios::MachineModel& machine, const solver::Outputs& outputs, const ModalPredictor& modes,
                        const Cyclogram& cyclogram, const std::vector<double>& time_s) {
   const scenarios::FeltRun felt = scenarios::felt_run(machine, cyclogram);
-  return scenarios::as_recorded(machine, modes.predict(felt.cyclogram, felt.hall, time_s), outputs, cyclogram);
+  return scenarios::as_recorded(machine, modes.predict(felt.cyclogram, felt.ambient, time_s), outputs, cyclogram);
 }
 
 compensation::DeployedPredictor by_thermal_modes(const scenarios::MachineModel& machine, const solver::Outputs& outputs,
@@ -19,13 +19,13 @@ compensation::DeployedPredictor by_thermal_modes(const scenarios::MachineModel& 
   compensation::DeployedPredictor d;
   d.name = "thermal modes";
   d.target = target;
-  d.predictor =
-      std::make_shared<DrivenPredictor>([machine, outputs, modes, target](const Cyclogram& cyclogram, const TimeSeries& hall,
-                                                                          const std::vector<double>& time_s) {
-        scenarios::MachineModel there = machine;
-        there.hall = hall;
-        return foretold_record(there, outputs, modes, cyclogram, time_s).at(target).values;
-      });
+  d.predictor = std::make_shared<DrivenPredictor>([machine, outputs, modes, target](const Cyclogram& cyclogram,
+                                                                                    const TimeSeries& ambient,
+                                                                                    const std::vector<double>& time_s) {
+    scenarios::MachineModel there = machine;
+    there.ambient = ambient;
+    return foretold_record(there, outputs, modes, cyclogram, time_s).at(target).values;
+  });
   return d;
 }
 

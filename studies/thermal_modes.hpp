@@ -14,7 +14,7 @@ namespace driftwright::studies {
                                      const compensation::ModalPredictor& modes, const Cyclogram& cyclogram,
                                      const std::vector<double>& time_s);
 
-/// One displacement of those records, as recorded and not from the start, in whatever hall a run has.
+/// One displacement of those records, as recorded and not from the start, in whatever ambient a run has.
 /// @param target  displacement of the machine, in um
 [[nodiscard]] compensation::DeployedPredictor by_thermal_modes(const scenarios::MachineModel& machine,
                                                                const solver::Outputs& outputs,

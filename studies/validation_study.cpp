@@ -35,16 +35,16 @@ struct Job {
 /// Simulates, true: no noise, no rounding.
 compensation::ObservedRun simulate(const Scenario& scenario, const scenarios::Model& model, const Job& job) {
   scenarios::MachineModel machine = *scenario.machine;
-  machine.hall = scenarios::hall_in(*job.season, machine.hall, job.cyclogram->duration_s());
+  machine.ambient = scenarios::ambient_in(*job.season, machine.ambient, job.cyclogram->duration_s());
   const scenarios::FeltRun felt = scenarios::felt_run(machine, *job.cyclogram);
   const std::vector<double> times_s = scenarios::output_times_s(*job.cyclogram, scenario.solver.output_interval_s);
   const auto run = [&](const auto& system, const Eigen::VectorXd& start) {
     const Eigen::VectorXd shifted = start + job.season->offset_K * system.ones;
     return scenarios::as_recorded(
-        machine, solver::simulate(system, felt.cyclogram, felt.hall, times_s, scenario.solver.transient, shifted),
+        machine, solver::simulate(system, felt.cyclogram, felt.ambient, times_s, scenario.solver.transient, shifted),
         model.outputs(), *job.cyclogram);
   };
-  compensation::ObservedRun result{.cyclogram = *job.cyclogram, .hall = machine.hall, .readings = {}};
+  compensation::ObservedRun result{.cyclogram = *job.cyclogram, .ambient = machine.ambient, .readings = {}};
   result.readings = model.reduced() ? run(model.reduced()->system, model.reduced()->start)
                                     : run(model.full()->system, scenarios::start_state(*scenario.machine, *model.full()));
   result.readings.source = job.cyclogram->name;
@@ -67,23 +67,25 @@ std::string speed_channel(const Record& record) {
   return *high > *low || *high > 0.0 ? "speed" : "";
 }
 
-/// The hall among the channels of a simulated record: a sensor on it, or `ambient`.
-std::string hall_channel(const Scenario& scenario, const Record& record) {
-  const std::vector<std::string> sensors = hall_sensors(scenario);
+/// The ambient among the channels of a simulated record: a sensor on it, or `ambient`.
+std::string ambient_channel(const Scenario& scenario, const Record& record) {
+  const std::vector<std::string> sensors = ambient_sensors(scenario);
   if (!sensors.empty()) return sensors.front();
   return record.find(scenarios::kAmbient) ? scenarios::kAmbient : "";
 }
 
-constexpr double kWarm_K = 4.0;  // beside the hall, that a model starts as warm as
+constexpr double kWarm_K = 4.0;  // beside the ambient, that a model starts as warm as
 
-/// Why a run does not begin in balance with its hall, going by its first readings; "" where it does.
+/// Why a run does not begin in balance with its ambient, going by its first readings; "" where it does.
 std::string why_not_in_balance(const scenarios::MachineModel& machine, const compensation::ObservedRun& run) {
-  const double hall_C = run.hall.at(0.0) + machine.reference_K - kZeroCelsius_K;
+  const double ambient_C = run.ambient.at(0.0) + machine.reference_K - kZeroCelsius_K;
   for (const scenarios::Sensor& s : machine.sensors) {
     const Channel* c = run.readings.find(s.name);
-    if (!c || scenarios::is_on_hall(s) || !(std::abs(c->values.front() - hall_C) > kWarm_K)) continue;
-    return fmt::format("{} begins with {} at {:.1f} degC in a hall of {:.1f} degC, and a model starts as warm as the hall",
-                       run.readings.source, s.name, c->values.front(), hall_C);
+    if (!c || scenarios::is_on_ambient(s) || !(std::abs(c->values.front() - ambient_C) > kWarm_K)) continue;
+    return fmt::format(
+        "{} begins with {} at {:.1f} degC at an ambient temperature of {:.1f} degC, and a model starts as warm as the "
+        "ambient",
+        run.readings.source, s.name, c->values.front(), ambient_C);
   }
   return "";
 }
@@ -102,19 +104,19 @@ RecordedPhysics physics_for_records(const Scenario& scenario, const std::vector<
     return {std::nullopt, "a model knows drift since the start of a run; `study: {count_from_start: true}` is needed"};
   if (effects::has_reading_effects(machine.effects))
     return {std::nullopt, "the scenario's effects change what instruments read, and a model tells what is true"};
-  if (machine.start != scenarios::Start::kHall)
-    return {std::nullopt, "every record begins in a hall of its own; `start: hall` is needed"};
+  if (machine.start != scenarios::Start::kAmbient)
+    return {std::nullopt, "every record begins at an ambient temperature of its own; `start: ambient` is needed"};
   std::vector<const Cyclogram*> cyclograms;
   for (const compensation::ObservedRun* run : runs) {
     if (std::string why = why_no_model_follows(machine, *run); !why.empty()) return {std::nullopt, std::move(why)};
     cyclograms.push_back(&run->cyclogram);
   }
   Scenario reduced = scenario;
-  for (const compensation::ObservedRun* run : runs) {  // what the model is asked for: halls as warm as recorded
-    TimeSeries& hall = reduced.machine->hall;
-    for (double v : run->hall.value) {
-      hall.time_s.push_back(hall.time_s.back() + 1.0);
-      hall.value.push_back(v);
+  for (const compensation::ObservedRun* run : runs) {  // what the model is asked for: ambients as warm as recorded
+    TimeSeries& ambient = reduced.machine->ambient;
+    for (double v : run->ambient.value) {
+      ambient.time_s.push_back(ambient.time_s.back() + 1.0);
+      ambient.value.push_back(v);
     }
   }
   if (std::holds_alternative<scenarios::LumpedMachine>(machine.mesh)) reduced.solver.model = scenarios::ModelKind::kReduced;
@@ -147,10 +149,10 @@ std::optional<compensation::Physics> physics_of(const Scenario& scenario, const 
                                                 int seed) {
   const scenarios::ReducedMachine* reduced = model.reduced();
   if (!reduced || !reduced->system.is_linear()) return std::nullopt;
-  const double hall_K = scenarios::felt_hall_at_start_K(*scenario.machine);
+  const double ambient_K = scenarios::felt_ambient_at_start_K(*scenario.machine);
   const ModalPredictor modes =
-      make_ritz_predictor(reduced->system, reduced->start, kObserverModes, {.drive = {}, .hall_K = hall_K});
-  return compensation::Physics{scattered(modes.system, scatter, seed, true), modes.start, hall_K};
+      make_ritz_predictor(reduced->system, reduced->start, kObserverModes, {.drive = {}, .ambient_K = ambient_K});
+  return compensation::Physics{scattered(modes.system, scatter, seed, true), modes.start, ambient_K};
 }
 
 std::vector<std::string> candidate_sensors(const scenarios::Study& study, const Record& record) {
@@ -224,7 +226,7 @@ compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const
     const auto target = static_cast<std::size_t>(&runs[i].readings.at(study.target) - runs[i].readings.channels.data());
     for (double& um : runs[i].readings.channels[target].values) um += v.drift_noise_um * random.normal();
   }
-  const std::string hall = hall_channel(scenario, runs.front().readings);
+  const std::string ambient = ambient_channel(scenario, runs.front().readings);
   compensation::MatrixSettings settings;
   compensation::StrategySettings& how = settings.strategies;
   how.target = study.target;
@@ -233,14 +235,14 @@ compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const
   how.count_from_start = true;
   how.image = study.image;
   how.speed = speed_channel(runs.front().readings);
-  how.hall = hall;
+  how.ambient = ambient;
   how.reading_K = std::max(1e-3, std::hypot(v.noise_K, kRounding * v.resolution_K));
   how.drift_um = std::max(0.1, v.drift_noise_um);
   how.physics = physics_of(scenario, model, v.model_scatter, v.seed);
   settings.tolerance_um = v.tolerance_um;
   settings.fails_at = v.fails_at;
   settings.fails_in = v.seasons.front().name;
-  settings.elsewhere = hall;
+  settings.elsewhere = ambient;
   std::vector<compensation::ObservedRun> training(
       std::make_move_iterator(runs.begin()),
       std::make_move_iterator(runs.begin() + static_cast<std::ptrdiff_t>(v.train.size())));
@@ -264,7 +266,7 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   how.count_from_start = study.count_from_start;
   how.image = study.image;
   how.speed = speed_channel(training.front());
-  how.hall = records.hall;
+  how.ambient = records.ambient;
   std::vector<const compensation::ObservedRun*> all;
   for (const std::vector<compensation::ObservedRun>* list : {&records.train, &records.test}) {
     for (const compensation::ObservedRun& run : *list) all.push_back(&run);
@@ -272,8 +274,8 @@ compensation::StrategyMatrix validate_on_records(const Scenario& scenario, Study
   RecordedPhysics physics = physics_for_records(scenario, all, how, listener);
   how.physics = std::move(physics.physics);
   how.without_physics = std::move(physics.why_none);
-  const Channel* elsewhere = how.hall.empty() ? nullptr : records.test.front().readings.find(how.hall);
-  if (elsewhere && elsewhere->unit == training.front().at(how.candidates.front()).unit) settings.elsewhere = how.hall;
+  const Channel* elsewhere = how.ambient.empty() ? nullptr : records.test.front().readings.find(how.ambient);
+  if (elsewhere && elsewhere->unit == training.front().at(how.candidates.front()).unit) settings.elsewhere = how.ambient;
   std::vector<compensation::JudgedRunOfMachine> judged;
   for (compensation::ObservedRun& run : records.test) {
     const std::string name = std::filesystem::path(run.readings.source).filename().string();

@@ -14,7 +14,7 @@ namespace driftwright::studies {
 [[nodiscard]] compensation::StrategyMatrix validate_strategies(const scenarios::Scenario& scenario,
                                                                const scenarios::Model& model, const Listener& listener);
 
-/// The readings of a cyclogram in the scenario's own hall as validate_strategies() gives them to strategies, with the noise of that very run;
+/// The readings of a cyclogram in the scenario's own ambient as validate_strategies() gives them to strategies, with the noise of that very run;
 /// none where it judges no such run. @param exact  as simulated
 [[nodiscard]] std::optional<Record> as_judged(const scenarios::Validation& validation, const std::string& cyclogram,
                                               const Record& exact);
@@ -24,7 +24,7 @@ namespace driftwright::studies {
 [[nodiscard]] compensation::StrategyMatrix validate_on_records(const scenarios::Scenario& scenario, StudyRecords records,
                                                                const Listener& listener);
 
-/// Why a model of the machine cannot follow a measured run: nothing says what drove it, or it begins out of balance with its hall. "" where it can.
+/// Why a model of the machine cannot follow a measured run: nothing says what drove it, or it begins out of balance with its ambient. "" where it can.
 [[nodiscard]] std::string why_no_model_follows(const scenarios::MachineModel& machine, const compensation::ObservedRun& run);
 
 /// The model as strategies get it, off by random factors (compensation::scattered()); none where it is not a linear reduced one.

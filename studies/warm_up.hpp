@@ -2,7 +2,7 @@
 // How long a machine has to warm up before its next job stays within a tolerance, and by which programme of speeds it is there soonest.
 //
 // A job's drift counts from its first row: that is where the tool is set. Every programme is run on the model that predicts (prediction.hpp), from
-// the state that the machine is in now, with the hall going on as job_series() says.
+// the state that the machine is in now, with the ambient going on as job_series() says.
 
 #include <string>
 #include <vector>

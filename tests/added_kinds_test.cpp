@@ -23,8 +23,8 @@ effects:
   - {type: node, node: column, capacity: 40 kJ/K}
   - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
   - {type: link, node: head, to: column, conductance: 12 W/K}
-  - {type: link, node: column, to: hall, conductance: 14 W/K}
-hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
 sensors:
   - {name: t_head, node: head}
   - {name: t_column, node: column}
@@ -49,7 +49,7 @@ struct Added {
 /// The scenario, with one more effect.
 std::string scenario_with(const std::string& entry) {
   std::string text = kMachine;
-  if (!entry.empty()) text.insert(text.find("hall: [["), "  - " + entry + "\n");
+  if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
   return text;
 }
 

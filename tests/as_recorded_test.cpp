@@ -20,7 +20,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// Two bodies: 100 W into `hot` at 1000 rpm, 2 W/K to `cold`, from there 5 W/K to the hall.
+/// Two bodies: 100 W into `hot` at 1000 rpm, 2 W/K to `cold`, from there 5 W/K to the ambient.
 std::string two_bodies(const std::string& effects, const std::string& more = "",
                        const std::string& sensors = "{name: t_hot, node: hot}, {name: t_cold, node: cold}") {
   return "name: two_bodies\nreference_temperature: 20 degC\nmachine: {generator: lumped}\n" + more +
@@ -29,8 +29,8 @@ std::string two_bodies(const std::string& effects, const std::string& more = "",
          "  - {type: node, node: cold, capacity: 4000 J/K}\n"
          "  - {type: heat_source, node: hot, power: 100 W, at_speed: 1000 rpm, exponent: 1}\n"
          "  - {type: link, node: hot, to: cold, conductance: 2 W/K}\n"
-         "  - {type: link, node: cold, to: hall, conductance: 5 W/K}\n" +
-         effects + "hall: [[0 h, 25 degC]]\nsensors: [" + sensors +
+         "  - {type: link, node: cold, to: ambient, conductance: 5 W/K}\n" +
+         effects + "ambient: [[0 h, 25 degC]]\nsensors: [" + sensors +
          "]\n"
          "displacements:\n"
          "  - {name: growth, sensitivities: [{node: hot, sensitivity: 3 um/K}, {node: cold, sensitivity: -1 um/K}]}\n"
@@ -46,14 +46,14 @@ Record record_of(const std::string& text, const std::string& cyclogram) {
   const Machine machine = build(model, place(model));
   const Cyclogram& recorded = scenario.cyclogram(cyclogram);
   const FeltRun felt = felt_run(model, recorded);
-  const solver::Trajectory run = solver::simulate(machine.system, felt.cyclogram, felt.hall,
+  const solver::Trajectory run = solver::simulate(machine.system, felt.cyclogram, felt.ambient,
                                                   output_times_s(recorded, scenario.solver.output_interval_s),
                                                   scenario.solver.transient, start_state(model, machine));
   return as_recorded(model, run, machine.system.outputs, recorded);
 }
 
 TEST(AsRecorded, MachineFeelsTheTruthAndTheRecordTellsTheRest) {
-  // 150 W at 1.5 times the speed in a hall of 27 degC: cold 27 + 30 = 57, hot 57 + 75 = 132 degC; growth 3 * 112 - 37 = 299 um,
+  // 150 W at 1.5 times the speed at an ambient temperature of 27 degC: cold 27 + 30 = 57, hot 57 + 75 = 132 degC; growth 3 * 112 - 37 = 299 um,
   // and (1.5)^2 * 4 = 9 um of centrifugal force, and 6 um of the mount. Time constants of 1500 s at most: settled after 10 h.
   const Record record =
       record_of(two_bodies("  - {type: speed_override, factor: 1.5}\n"
@@ -78,25 +78,25 @@ TEST(AsRecorded, AMissingStopCoolsTheMachineAndLeavesNoTraceInTheSpeed) {
   for (double speed_rpm : record.at("speed").values) EXPECT_EQ(speed_rpm, 1000.0);
 }
 
-TEST(AsRecorded, TheMachineStartsInTheHallThatItFeels) {
+TEST(AsRecorded, TheMachineStartsInTheAmbientThatItFeels) {
   const std::string warmer = "  - {type: ambient, offset: 2 K}\n";
-  for (const char* start : {"start: hall\n", "start: steady\n"}) {
+  for (const char* start : {"start: ambient\n", "start: steady\n"}) {
     const Record record = record_of(two_bodies(warmer, start), "rest");
     for (double t_degC : record.at("t_cold").values) EXPECT_NEAR(t_degC, 27.0, 1e-6) << start;
   }
 }
 
-TEST(AsRecorded, ASensorOnTheHallReadsTheRecordedHallAndStandsForTheChannel) {
+TEST(AsRecorded, ASensorOnTheAmbientReadsTheRecordedAmbientAndStandsForTheChannel) {
   const Record record =
       record_of(two_bodies("  - {type: ambient, offset: 2 K}\n  - {type: sensor_bias, sensor: air, bias: 0.25 K}\n", "",
-                           "{name: t_cold, node: cold}, {name: air, node: hall}"),
+                           "{name: t_cold, node: cold}, {name: air, node: ambient}"),
                 "rest");
   EXPECT_NEAR(record.at("air").values.back(), 25.25, 1e-12);
   EXPECT_EQ(record.find("ambient"), nullptr);
   EXPECT_EQ(sensor_channels(record), (std::vector<std::string>{"t_cold", "air"}));
 }
 
-TEST(AsRecorded, TheHallIsNoSensorToChoose) {
+TEST(AsRecorded, TheAmbientIsNoSensorToChoose) {
   const Record record = record_of(two_bodies(""), "rest");
   EXPECT_EQ(sensor_channels(record), (std::vector<std::string>{"t_hot", "t_cold"}));
   EXPECT_EQ(record.channels[1].name, "ambient");
@@ -136,18 +136,18 @@ INSTANTIATE_TEST_SUITE_P(
             "Did you mean 'long'?"},
         Bad{"{type: missing_stop, start: 1 min, length: 1 min, in: lang}", "no cyclogram 'lang'", "long, rest"}));
 
-TEST(Names, AmbientIsThatOfTheHall) {
+TEST(Names, AmbientIsThatOfTheAmbient) {
   const auto with = [](const char* sensor) { (void)read(two_bodies("", "", sensor)); };
-  EXPECT_THAT([&] { with("{name: ambient, node: hot}"); }, ThrowsMessage<InputError>(HasSubstr("hall's temperature")));
-  EXPECT_NO_THROW(with("{name: ambient, node: hall}"));
+  EXPECT_THAT([&] { with("{name: ambient, node: hot}"); }, ThrowsMessage<InputError>(HasSubstr("that of the ambient temperature")));
+  EXPECT_NO_THROW(with("{name: ambient, node: ambient}"));
 }
 
-TEST(Study, ChoosesTheHallOnlyWhereItIsNamed) {
+TEST(Study, ChoosesTheAmbientOnlyWhereItIsNamed) {
   const std::string study =
       "study: {target: growth, train: [long], judge: rest, sensors_to_choose: 2, candidates: [t_hot, ambient]}\n";
   EXPECT_EQ(read(two_bodies("") + study).study->candidates.size(), 2u);
-  const std::string with_hall = "{name: t_hot, node: hot}, {name: air, node: hall}";
-  EXPECT_THAT([&] { (void)read(two_bodies("", "", with_hall) + study); },
+  const std::string with_ambient = "{name: t_hot, node: hot}, {name: air, node: ambient}";
+  EXPECT_THAT([&] { (void)read(two_bodies("", "", with_ambient) + study); },
               ThrowsMessage<InputError>(HasSubstr("no sensor 'ambient'")));
   const std::string too_many = "study: {target: growth, train: [long], judge: rest, sensors_to_choose: 3}\n";
   EXPECT_THAT([&] { (void)read(two_bodies("") + too_many); },
@@ -238,7 +238,7 @@ TEST(MaterialFactors, OfAnUnknownRegionAreRefused) {
 
 TEST(ReducedMachines, FollowWhatTheFullOneFeels) {
   ColumnAndHead what;
-  what.start = "hall";
+  what.start = "ambient";
   what = with(what, {"{type: speed_override, factor: 1.4}", "{type: missing_stop, start: 15 min, length: 7 min}",
                      "{type: ambient, offset: 1.5 K, ramp: 2 K/h, from: 25 min}", "{type: ambient, offset: -1 K}",
                      "{type: conductivity, region: head, factor: 0.6}", "{type: sensor_lag, sensor: t_head, lag: 4 min}"});
@@ -250,11 +250,11 @@ TEST(ReducedMachines, FollowWhatTheFullOneFeels) {
   const FeltRun felt = felt_run(model, recorded);
   const std::vector<double> times_s = output_times_s(recorded, 300.0);
   const solver::TransientOptions fine{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
-  const Record a =
-      as_recorded(model, solver::simulate(full.system, felt.cyclogram, felt.hall, times_s, fine, start_state(model, full)),
-                  full.system.outputs, recorded);
+  const Record a = as_recorded(
+      model, solver::simulate(full.system, felt.cyclogram, felt.ambient, times_s, fine, start_state(model, full)),
+      full.system.outputs, recorded);
   const Record b =
-      as_recorded(model, solver::simulate(reduced.system, felt.cyclogram, felt.hall, times_s, fine, reduced.start),
+      as_recorded(model, solver::simulate(reduced.system, felt.cyclogram, felt.ambient, times_s, fine, reduced.start),
                   reduced.system.outputs, recorded);
   for (const char* sensor : {"t_head", "t_column"}) {
     for (std::size_t i = 0; i < times_s.size(); ++i) {

@@ -21,15 +21,15 @@ using ::testing::Not;
 
 constexpr const char* kSpindle = R"(name: spindle
 reference_temperature: 20 degC
-start: hall
+start: ambient
 machine: {generator: lumped}
 effects:
   - {type: node, node: shaft, capacity: 5 kJ/K}
   - {type: node, node: housing, capacity: 20 kJ/K}
   - {type: motor_loss, node: shaft, power: 150 W, at_speed: 1000 rpm, exponent: 1.5}
   - {type: link, node: shaft, to: housing, conductance: 12 W/K}
-  - {type: link, node: housing, to: hall, conductance: 9 W/K}
-hall: [[0 min, 20 degC]]
+  - {type: link, node: housing, to: ambient, conductance: 9 W/K}
+ambient: [[0 min, 20 degC]]
 sensors:
   - {name: t_shaft, node: shaft}
   - {name: t_housing, node: housing}
@@ -56,7 +56,7 @@ struct Bench {
     run.name = run.path = "cycle";
     run.cyclogram = scenario.cyclograms.front();
     run.time_s = scenarios::output_times_s(run.cyclogram, scenario.solver.output_interval_s);
-    run.hall = scenario.machine->hall;
+    run.ambient = scenario.machine->ambient;
     run.has_ambient = true;
     set_grid(run);
     const scenarios::PlacedMachine placed = scenarios::place(*scenario.machine);
@@ -226,7 +226,7 @@ TEST(WarmStart, OfABodyWithoutThermometerIsFitted) {
   EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
 }
 
-TEST(WarmStart, IsNotTakenForABiasOrAHallThatIsOff) {
+TEST(WarmStart, IsNotTakenForABiasOrAnAmbientThatIsOff) {
   Bench b;
   b.channel(0).value.array() += 6.0;  // one thermometer of two
   find_warm_starts(b.runs, *b.twin);
@@ -264,17 +264,17 @@ TEST(MissingData, NamesTheChannelsTheThermometersAndTheTime) {
   b.runs[0].has_ambient = false;
   b.runs[0].time_s = {0.0, 10800.0, 21600.0};
   b.runs[0].cyclogram.sections = {{21600.0, {.speed_rpm = 800.0}}};
-  EXPECT_THAT(
-      what_is_missing(*b.twin, b.runs, 3, 150),
-      AllOf(HasSubstr("3 readings of 1 channel are too few"), HasSubstr("do not hold t_shaft, t_housing."),
-            HasSubstr("a thermometer on each of shaft, housing"), HasSubstr("No hall temperature (ambient_degC) in cycle"),
-            HasSubstr("at 800 rpm throughout"), HasSubstr("A row comes every 180 min; one every 10 min is wanted.")));
+  EXPECT_THAT(what_is_missing(*b.twin, b.runs, 3, 150),
+              AllOf(HasSubstr("3 readings of 1 channel are too few"), HasSubstr("do not hold t_shaft, t_housing."),
+                    HasSubstr("a thermometer on each of shaft, housing"),
+                    HasSubstr("No ambient temperature (ambient_degC) in cycle"), HasSubstr("at 800 rpm throughout"),
+                    HasSubstr("A row comes every 180 min; one every 10 min is wanted.")));
 }
 
 TEST(MissingData, IsSilentOnWhatIsThere) {
   Bench b;
   EXPECT_THAT(what_is_missing(*b.twin, b.runs, 100, 150),
-              AllOf(Not(HasSubstr("do not hold")), Not(HasSubstr("No temperature")), Not(HasSubstr("No hall")),
+              AllOf(Not(HasSubstr("do not hold")), Not(HasSubstr("No temperature")), Not(HasSubstr("No ambient")),
                     Not(HasSubstr("throughout")), Not(HasSubstr("A row comes"))));
 }
 

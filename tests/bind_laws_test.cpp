@@ -22,7 +22,7 @@ const std::vector<std::string> kMachine = {
     "{type: heat_source, node: head, power: 150 W, at_speed: 2000 rpm, exponent: 1.3}",
     "{type: motor_loss, node: column, power: 40 W, at_speed: 1000 rpm, idle: 10 W}",
     "{type: link, node: head, to: column, conductance: 12 W/K}",
-    "{type: link, node: column, to: hall, conductance: 14 W/K}",
+    "{type: link, node: column, to: ambient, conductance: 14 W/K}",
     "{type: coolant, node: head, flow: 10 L/min, passage_conductance: 3 W/K, set_point: 22 degC}"};
 
 /// The full system of lumped nodes as a reduced one.
@@ -104,7 +104,7 @@ TEST(BindLaws, ALawFindsTheBodyThatNothingLookedAt) {
 
 TEST(BindLaws, RefusesAPlaceThatTheSystemHasNot) {
   for (const char* text :
-       {"{type: heat_source, node: tail, power: 1 W}", "{type: link, node: head, to: hall, conductance: 1 W/K}"}) {
+       {"{type: heat_source, node: tail, power: 1 W}", "{type: link, node: head, to: ambient, conductance: 1 W/K}"}) {
     std::vector<std::string> other = kMachine;
     other.emplace_back(text);
     ReducedSystem bound = reduced(kMachine);

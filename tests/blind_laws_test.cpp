@@ -23,13 +23,13 @@ effects::HeatBalance balance() {
   b.exchanges.push_back(effects::make_film("convection s", "s", constant(8.0)));
   b.exchanges.push_back(effects::make_film("forced_convection s", "s", constant(5.0)));
   b.exchanges.push_back(effects::make_film("spare s", "s", constant(0.0)));
-  b.exchanges.push_back(effects::make_link("link a - hall", effects::node("a"), constant(4.0)));
+  b.exchanges.push_back(effects::make_link("link a - ambient", effects::node("a"), constant(4.0)));
   b.exchanges.push_back(effects::make_contact("contact a/b", "a/b", constant(2000.0)));
   return b;
 }
 
 effects::Inputs at(double speed_rpm, double time_s = 0.0, std::vector<double> probe_K = {}) {
-  return {.drive = {.speed_rpm = speed_rpm}, .hall_K = 0.0, .time_s = time_s, .probe_K = std::move(probe_K)};
+  return {.drive = {.speed_rpm = speed_rpm}, .ambient_K = 0.0, .time_s = time_s, .probe_K = std::move(probe_K)};
 }
 
 effects::HeatBalance with(const Hidden& h, const Cyclogram& drive = {}) {
@@ -64,9 +64,9 @@ TEST(BlindHeat, FilmsJointsAndLinks) {
   EXPECT_NEAR(with({.what = Hide::kForcedFactor, .where = "s", .size = -ln2}).exchanges[1].coefficient(at(0.0)), 2.5, 1e-12);
   EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a/b", .size = ln2}).exchanges[4].coefficient(at(0.0)), 4000.0,
               1e-9);
-  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a,hall", .size = ln2}).exchanges[3].coefficient(at(0.0)), 8.0,
+  EXPECT_NEAR(with({.what = Hide::kContactFactor, .where = "a,ambient", .size = ln2}).exchanges[3].coefficient(at(0.0)), 8.0,
               1e-12);
-  const auto loosens = with({.what = Hide::kContactLater, .where = "a,hall", .size = -ln2, .time_s = 600.0});
+  const auto loosens = with({.what = Hide::kContactLater, .where = "a,ambient", .size = -ln2, .time_s = 600.0});
   EXPECT_DOUBLE_EQ(loosens.exchanges[3].coefficient(at(0.0, 599.0)), 4.0);
   EXPECT_NEAR(loosens.exchanges[3].coefficient(at(0.0, 600.0)), 2.0, 1e-12);
   const auto draught = with({.what = Hide::kDraught, .where = "s", .size = 20.0, .time_s = 600.0});
@@ -74,7 +74,7 @@ TEST(BlindHeat, FilmsJointsAndLinks) {
   EXPECT_DOUBLE_EQ(draught.exchanges[2].coefficient(at(0.0, 600.0)), 20.0);
   const auto grows = with({.what = Hide::kForcedNew, .where = "s", .size = 30.0, .at_speed_rpm = 4000.0, .exponent = 0.5});
   EXPECT_DOUBLE_EQ(grows.exchanges[2].coefficient(at(1000.0)), 15.0);  // 30 x (1/4)^0.5
-  EXPECT_DOUBLE_EQ(with({.what = Hide::kStratification, .where = "hall", .size = 1.5}).stratifications.at(0).gradient_K_m,
+  EXPECT_DOUBLE_EQ(with({.what = Hide::kStratification, .where = "ambient", .size = 1.5}).stratifications.at(0).gradient_K_m,
                    1.5);
 }
 
@@ -111,12 +111,12 @@ TEST(BlindDrive, TrueSpeedAndAStopThatTheRecordLacks) {
   }
 }
 
-TEST(BlindHall, OffsetRampAndStep) {
-  EXPECT_DOUBLE_EQ(hall_error_K({.what = Hide::kAmbientOffset, .size = 2.0}, 0.0), 2.0);
-  EXPECT_DOUBLE_EQ(hall_error_K({.what = Hide::kAmbientRamp, .size = 2.0}, 1800.0), 1.0);
+TEST(BlindAmbient, OffsetRampAndStep) {
+  EXPECT_DOUBLE_EQ(ambient_error_K({.what = Hide::kAmbientOffset, .size = 2.0}, 0.0), 2.0);
+  EXPECT_DOUBLE_EQ(ambient_error_K({.what = Hide::kAmbientRamp, .size = 2.0}, 1800.0), 1.0);
   const Hidden step{.what = Hide::kAmbientStep, .size = 2.0, .time_s = 600.0};
-  EXPECT_DOUBLE_EQ(hall_error_K(step, 599.0), 0.0);
-  EXPECT_DOUBLE_EQ(hall_error_K(step, 600.0), 2.0);
+  EXPECT_DOUBLE_EQ(ambient_error_K(step, 599.0), 0.0);
+  EXPECT_DOUBLE_EQ(ambient_error_K(step, 600.0), 2.0);
 }
 
 /// Two thermometers and an indicator over 50 min, every 20 s: a = t in min [K], b = 10 K, d = 0.
@@ -124,7 +124,7 @@ Readings readings() {
   Readings r{.step_s = 20.0,
              .name = {"a", "b", "d"},
              .value = Eigen::MatrixXd::Zero(3, 151),
-             .hall_K = Eigen::VectorXd::Constant(151, 4.0)};
+             .ambient_K = Eigen::VectorXd::Constant(151, 4.0)};
   for (Eigen::Index k = 0; k < 151; ++k) r.value(0, k) = r.time_s(k) / 60.0;
   r.value.row(1).setConstant(10.0);
   return r;

@@ -39,18 +39,19 @@ TEST_P(BlindIntegration, AgreesWithTheProgramsOwnAtTightToleranceTo2mKAnd5nm) {
   // sensor (30 mK and 200 nm).
   const Subject s = make_subject(kMachines, GetParam(), 1.0);
   const Cyclogram drive = up_and_down(s.top_speed_rpm);
-  const TimeSeries hall{{0.0, drive.duration_s()}, {0.3, 1.5}};
+  const TimeSeries ambient{{0.0, drive.duration_s()}, {0.3, 1.5}};
   const Values nominal = nominal_values(s);
   const double step_s = truth_step_s(s);
   const Eigen::MatrixXd own = integrate(full_network(s, nominal), laws_of(balance_of(s, nominal)),
-                                        {drive, [&](double t_s) { return hall.at(t_s); }, drive.duration_s(), step_s});
+                                        {drive, [&](double t_s) { return ambient.at(t_s); }, drive.duration_s(), step_s});
 
   const scenarios::Machine machine = scenarios::build(s.model, s.placed, !s.is_lumped());
   const auto every = static_cast<Eigen::Index>(60.0 / step_s);
   const std::vector<double> times_s = scenarios::output_times_s(drive, 60.0);
-  const solver::Trajectory theirs = solver::simulate(
-      machine.system, drive, hall, times_s, {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-6, .max_step_s = 60.0},
-      Eigen::VectorXd::Zero(machine.system.size()));
+  const solver::Trajectory theirs =
+      solver::simulate(machine.system, drive, ambient, times_s,
+                       {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-6, .max_step_s = 60.0},
+                       Eigen::VectorXd::Zero(machine.system.size()));
   Eigen::MatrixXd at_rows(own.rows(), static_cast<Eigen::Index>(times_s.size()));
   for (Eigen::Index k = 0; k < at_rows.cols(); ++k) at_rows.col(k) = own.col(k * every);
   const Apart apart = largest(s, at_rows, theirs.outputs);
@@ -76,7 +77,7 @@ TEST(BlindSmallSystem, SaysHowLoudAnEffectIsToATenth) {
   const Eigen::MatrixXd small = integrate(small_network(s, nominal), laws, run);
   EXPECT_LT(largest(s, large, small).temperature_K, 20e-3);
   for (const Hidden& h : {Hidden{.what = Hide::kHeatConstant, .where = "column", .size = 80.0},
-                          Hidden{.what = Hide::kStratification, .where = "hall", .size = 2.0},
+                          Hidden{.what = Hide::kStratification, .where = "ambient", .size = 2.0},
                           Hidden{.what = Hide::kConductivity, .where = "head", .size = 0.5},
                           Hidden{.what = Hide::kExpansion, .where = "base", .size = 0.5}}) {
     Values values = nominal;

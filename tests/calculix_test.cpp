@@ -17,7 +17,7 @@ namespace {
 using fixtures::text;
 using mesh::CellShape;
 
-constexpr double kHeadPower_W = 150.0, kHeadVolume_m3 = 0.018, kHtc_W_m2K = 12.0, kHall_K = 2.0;
+constexpr double kHeadPower_W = 150.0, kHeadVolume_m3 = 0.018, kHtc_W_m2K = 12.0, kAmbient_K = 2.0;
 constexpr double kOn_s = 1800.0, kEnd_s = 3600.0;
 const std::vector<std::string> kFilmed = {"bed_x0",    "bed_x1",    "bed_y1",  "column_x0",
                                           "column_x1", "column_y0", "head_z1", "head_y1"};
@@ -53,7 +53,7 @@ std::string heat_step(const mesh::Mesh& mesh, const std::vector<std::string>& fi
   std::string step = "*STEP, INC=100000\n" + procedure + "*BOUNDARY\nNbed_z0, 11, 11, 0.\n*DFLUX, OP=NEW\n";
   step += fmt::format("Ehead, BF, {:.12e}\n", power_W / kHeadVolume_m3);
   if (!filmed.empty()) step += "*FILM, OP=NEW\n";
-  for (const std::string& surface : filmed) step += fixtures::calculix_film(mesh, surface, kHall_K, kHtc_W_m2K);
+  for (const std::string& surface : filmed) step += fixtures::calculix_film(mesh, surface, kAmbient_K, kHtc_W_m2K);
   return step + fmt::format("*NODE PRINT, NSET=NALL, FREQUENCY={}\nNT\n*END STEP\n", print_every);
 }
 
@@ -65,7 +65,7 @@ Eigen::VectorXd steady_by_calculix(const mesh::Mesh& mesh, const std::vector<std
 }
 Eigen::VectorXd steady_by_us(const mesh::Mesh& mesh, const std::vector<std::string>& filmed) {
   const FullSystem system = system_of(mesh, filmed);
-  return steady_state(system, {.drive = {.speed_rpm = 1.0}, .hall_K = kHall_K}, Eigen::VectorXd::Zero(system.size()));
+  return steady_state(system, {.drive = {.speed_rpm = 1.0}, .ambient_K = kAmbient_K}, Eigen::VectorXd::Zero(system.size()));
 }
 
 /// At the end of the heating and at the end. CalculiX steps by backward Euler.
@@ -132,7 +132,7 @@ TEST_P(SameMesh, TransientTemperatures) {
   for (int i = 0; i < mesh_.n_nodes(); ++i) all[i] = i;
   fixtures::observe_unknowns(system, all);
   const Cyclogram on_off{.name = "on, off", .sections = {{kOn_s, {.speed_rpm = 1.0}}, {kEnd_s - kOn_s, {}}}};
-  const Trajectory run = simulate(system, on_off, fixtures::still_hall(kHall_K), {kOn_s, kEnd_s},
+  const Trajectory run = simulate(system, on_off, fixtures::still_ambient(kAmbient_K), {kOn_s, kEnd_s},
                                   {.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-6, .max_step_s = kEnd_s},
                                   Eigen::VectorXd::Zero(system.size()));
   RecordProperty("largest_K", text(run.outputs.maxCoeff()));

@@ -16,8 +16,8 @@ effects:
   - {type: node, node: wall, capacity: 9000 J/K}
   - {type: heat_source, node: heater, power: 40 W, at_speed: 1000 rpm, exponent: 1}
   - {type: link, node: heater, to: wall, conductance: 3 W/K}
-  - {type: link, node: wall, to: hall, conductance: 1.5 W/K}
-hall: [[0 h, 21 degC]]
+  - {type: link, node: wall, to: ambient, conductance: 1.5 W/K}
+ambient: [[0 h, 21 degC]]
 sensors:
   - {name: heater, node: heater}
   - {name: wall, node: wall}

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kNoise_K = 0.05, kNoise_um = 0.3;
 
-/// A machine of two bodies, each number times exp(0.1 z), and a hall that is off by 0.3 z K from what is recorded.
+/// A machine of two bodies, each number times exp(0.1 z), and an ambient that is off by 0.3 z K from what is recorded.
 /// @param more  further lines of the list of effects
 std::string machine(Random* random, const std::string& more = "") {
   const auto known = [&](double value) { return value * (random ? std::exp(0.1 * random->normal()) : 1.0); };
@@ -31,14 +31,14 @@ effects:
   - {{type: node, node: column, capacity: {} J/K}}
   - {{type: heat_source, node: head, power: {} W, at_speed: 1000 rpm, exponent: 1.3}}
   - {{type: link, node: head, to: column, conductance: {} W/K}}
-  - {{type: link, node: column, to: hall, conductance: {} W/K}}
+  - {{type: link, node: column, to: ambient, conductance: {} W/K}}
 )",
                                  known(6000.0), known(40000.0), known(100.0), known(12.0), known(14.0));
   for (const char* record : {"monday", "tuesday"}) {
     if (random) text += fmt::format("  - {{type: ambient, offset: {} K, in: {}}}\n", 0.3 * random->normal(), record);
   }
   return text + more +
-         fmt::format(R"(hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+         fmt::format(R"(ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
 sensors:
   - {{name: t_head, node: head}}
   - {{name: t_column, node: column}}
@@ -61,7 +61,7 @@ std::vector<std::string> records_of(const std::string& scenario, Random& random,
     const scenarios::FeltRun felt = scenarios::felt_run(model, c);
     Record r = scenarios::as_recorded(
         model,
-        solver::simulate(full.system, felt.cyclogram, felt.hall, scenarios::output_times_s(c, 120.0),
+        solver::simulate(full.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(c, 120.0),
                          {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7}, scenarios::start_state(model, full)),
         full.system.outputs, c);
     for (Channel& channel : r.channels) {

@@ -62,7 +62,7 @@ void check_convergence(const Convergence& expected, const std::vector<double>& e
   EXPECT_LT(error.back(), expected.error);
 }
 
-// --- cooling from 100 K above the hall, Bi = 1, at Fourier numbers 0.1, 0.3 and 1 ----------------------------------
+// --- cooling from 100 K above the ambient, Bi = 1, at Fourier numbers 0.1, 0.3 and 1 ----------------------------------
 
 constexpr std::array kFourier = {0.1, 0.3, 1.0};
 
@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CoolingBall,
 class HollowCylinder : public ::testing::TestWithParam<Convergence> {};
 
 TEST_P(HollowCylinder, BetweenTwoFilmsConvergesToTheLogarithm) {
-  // Radii 20 and 50 mm; 500 W/(m^2 K) to oil of 60 K inside, 50 W/(m^2 K) to the hall outside; heat per length in series:
+  // Radii 20 and 50 mm; 500 W/(m^2 K) to oil of 60 K inside, 50 W/(m^2 K) to the ambient outside; heat per length in series:
   // q' = 60 K / (1/(2 pi r_i h_i) + ln(r_o/r_i)/(2 pi k) + 1/(2 pi r_o h_o)).
   const double r_i = 0.02, r_o = 0.05, h_i = 500.0, h_o = 50.0, k = fixtures::steel().conductivity_W_mK;
   const double per_length_W_m = 60.0 / ((1 / (r_i * h_i) + std::log(r_o / r_i) / k + 1 / (r_o * h_o)) / (2 * pi));

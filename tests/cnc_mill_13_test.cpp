@@ -48,7 +48,7 @@ TEST_F(CncMill13, DriftsAsItsHeaderSays) {
   EXPECT_EQ(std::min_element(drift.begin(), drift.end()) - drift.begin(), 75);
   EXPECT_NEAR(drift.back(), 5.6, 0.5);
   EXPECT_EQ(judged_.at("X1").values.front(), 20.0);
-  EXPECT_NEAR(judged_.at("X1").values.back(), 22.4, 1e-6);  // the hall's own row at 5 h
+  EXPECT_NEAR(judged_.at("X1").values.back(), 22.4, 1e-6);  // the ambient's own row at 5 h
   EXPECT_LT(summary_["energy_balance_gap"].get<double>(), 1e-6);
 }
 

@@ -43,7 +43,7 @@ inline mesh::Mesh column_and_head() {
 struct ColumnAndHead {
   std::string materials = "{column: cast_iron_gjl250, head: cast_iron_gjl250}";
   std::vector<std::string> effects = {kHeat, kFilm, kContact};
-  std::string hall = "[[0 min, 20 degC], [60 min, 21.5 degC]]";
+  std::string ambient = "[[0 min, 20 degC], [60 min, 21.5 degC]]";
   std::string start = "reference";
   std::string sensor_y = "150 mm";
   std::string cyclograms = "{cycle: [[40 min, 1000 rpm], [20 min, 0 rpm], [30 min, 600 rpm]]}";
@@ -77,17 +77,17 @@ materials: {}
 supports:
   - {{surface: foot, fixed: [x, y, z]}}
 effects:
-{}hall: {}
+{}ambient: {}
 sensors:
   - {{name: t_head, region: head, at: [50 mm, {}, 400 mm]}}
   - {{name: t_column, region: column, at: [100 mm, 50 mm, 150 mm]}}
-  - {{name: hall, node: hall}}
+  - {{name: t_ambient, node: ambient}}
 displacements:
   - {{name: z, along: z, tool: {{region: head, at: [50 mm, 200 mm, 350 mm]}}, table: {{region: column, at: [50 mm, 100 mm, 0 mm]}}}}
 cyclograms: {}
 solver: {}
 {})",
-                       start, materials, list, hall, sensor_y, cyclograms, solver, more);
+                       start, materials, list, ambient, sensor_y, cyclograms, solver, more);
   }
 };
 

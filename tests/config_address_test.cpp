@@ -13,14 +13,14 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-const char* const kText = R"(hall: [[0 h, 22 degC], [4 h, 23 degC]]
+const char* const kText = R"(ambient: [[0 h, 22 degC], [4 h, 23 degC]]
 materials:
   part: steel
   part.1: iron
 effects:
   - {type: node, node: shaft, capacity: 5 kJ/K}
   - {type: link, node: shaft, to: housing, conductance: 15 W/K}
-  - {type: link, node: shaft, to: hall, conductance: 1 W/K}
+  - {type: link, node: shaft, to: ambient, conductance: 1 W/K}
   - {type: convection, surface: a@b, film: 7 W/(m^2 K)}
 numbers: [1, 2]
 empty: []
@@ -38,12 +38,12 @@ std::string text_at(const std::string& address) {
 }
 
 TEST(Address, FindsByNumberKeyAndName) {
-  EXPECT_EQ(text_at("hall[1][1]"), "23 degC");
+  EXPECT_EQ(text_at("ambient[1][1]"), "23 degC");
   EXPECT_EQ(text_at("effects[0].capacity"), "5 kJ/K");
   EXPECT_EQ(text_at("effects[node].capacity"), "5 kJ/K");
   EXPECT_EQ(text_at("effects[housing].conductance"), "15 W/K");
-  EXPECT_EQ(text_at("effects[link@shaft@hall].conductance"), "1 W/K");
-  EXPECT_EQ(text_at("effects[hall@link].conductance"), "1 W/K");  // in any order
+  EXPECT_EQ(text_at("effects[link@shaft@ambient].conductance"), "1 W/K");
+  EXPECT_EQ(text_at("effects[ambient@link].conductance"), "1 W/K");  // in any order
 }
 
 TEST(Address, TakesTheLongestKeyAndNamesWithAnAt) {
@@ -69,14 +69,14 @@ TEST_P(AddressErrors, NameThePlaceOfTheAddressAndWhatThereIs) {
 INSTANTIATE_TEST_SUITE_P(
     Each, AddressErrors,
     ::testing::Values(
-        Bad{"efects[0]", "no key 'efects'; there are hall, materials, effects, numbers, empty. Did you mean 'effects'?"},
+        Bad{"efects[0]", "no key 'efects'; there are ambient, materials, effects, numbers, empty. Did you mean 'effects'?"},
         Bad{"effects[0].capacty",
             "'effects[0]' has no key 'capacty'; there are type, node, capacity. Did you mean 'capacity'?"},
         Bad{"effects[9]", "'effects' has 4 entries, [0] to [3]"}, Bad{"effects[99999999999999999999]", "has 4 entries"},
         Bad{"empty[0]", "'empty' is an empty list"}, Bad{"effects[lnk@shaft]", "no entry of 'effects' is named 'lnk@shaft'"},
         Bad{"effects[lnk@shaft]", "Did you mean 'link@shaft'?"},
         Bad{"effects[link]",
-            "2 entries of 'effects' are named 'link': [1] link@shaft@housing (line 7), [2] link@shaft@hall"},
+            "2 entries of 'effects' are named 'link': [1] link@shaft@housing (line 7), [2] link@shaft@ambient"},
         Bad{"numbers[two]", "entries of 'numbers' have no names"}, Bad{"materials[0]", "'materials' is no list"},
         Bad{"materials.part.density", "'materials.part' is no map and has no key 'density'"},
         Bad{"effects[0", "wants a number or name between [ and ]"}, Bad{"effects[]", "wants a number or name"},

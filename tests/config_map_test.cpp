@@ -32,7 +32,7 @@ const schema::Map& all_kinds() {
       .name = "all kinds",
       .keys = {
           schema::optional("name", text(), "x", ""), schema::optional("length", quantity("m", 0, 1), 0.5, ""),
-          schema::optional("count", integer(0, 100), 3, ""), schema::optional("hall", temperature(), ""),
+          schema::optional("count", integer(0, 100), 3, ""), schema::optional("ambient", temperature(), ""),
           schema::optional("at", schema::vector3("m"), ""),
           schema::optional("rows", rows({quantity("s"), quantity("rpm", 0, 5000)}), ""),
           schema::optional("part", schema::map(part()), ""), schema::optional("list", schema::maps(entry), ""),
@@ -43,14 +43,14 @@ const schema::Map& all_kinds() {
 
 TEST(ConfigMap, ReadsWhatStandsThere) {
   const ConfigMap in = read(
-                           "name: mill\nlength: 80 mm\ncount: 010\nhall: 20 degC\nat: [10 mm, 0 mm, 1.2 m]\n"
+                           "name: mill\nlength: 80 mm\ncount: 010\nambient: 20 degC\nat: [10 mm, 0 mm, 1.2 m]\n"
                            "rows: [[30 min, 2000 rpm], [1 h, 0 rpm]]\npart: {film: 5 W/(m^2 K)}\nlist: [{a: 1}, {a: 2}]\n"
                            "axes: [y, x]\nspring: 0 N/m\nlid: true\n")
                            .described_by(all_kinds());
   EXPECT_EQ(in.text("name"), "mill");
   EXPECT_DOUBLE_EQ(in.quantity("length"), 0.08);
   EXPECT_EQ(in.integer("count"), 10);  // not eight
-  EXPECT_DOUBLE_EQ(in.quantity("hall"), 293.15);
+  EXPECT_DOUBLE_EQ(in.quantity("ambient"), 293.15);
   EXPECT_TRUE(in.vector3("at").isApprox(Eigen::Vector3d(0.01, 0, 1.2), 1e-15));
   EXPECT_EQ(in.rows("rows"), (std::vector<std::vector<double>>{{1800, 2000}, {3600, 0}}));
   EXPECT_EQ(in.map("part").quantity("film"), 5.0);
@@ -177,8 +177,9 @@ template <auto getter, const char* key>
 void get(const ConfigMap& in) {
   (void)(in.described_by(all_kinds()).*getter)(key);
 }
-constexpr char kLength[] = "length", kCount[] = "count", kHall[] = "hall", kKind[] = "kind", kAt[] = "at", kRows[] = "rows",
-               kPart[] = "part", kList[] = "list", kName[] = "name", kAxes[] = "axes", kSpring[] = "spring";
+constexpr char kLength[] = "length", kCount[] = "count", kAmbient[] = "ambient", kKind[] = "kind", kAt[] = "at",
+               kRows[] = "rows", kPart[] = "part", kList[] = "list", kName[] = "name", kAxes[] = "axes",
+               kSpring[] = "spring";
 constexpr double (ConfigMap::*kQuantityOf)(const std::string&) const = &ConfigMap::quantity;
 constexpr std::string (ConfigMap::*kChoiceOf)(const std::string&) const = &ConfigMap::choice;
 constexpr std::string (ConfigMap::*kTextOf)(const std::string&) const = &ConfigMap::text;
@@ -200,7 +201,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"length: [1 m]\n", length, "a single value is wanted"}, Bad{"length:\n", length, "a single value is wanted"},
         Bad{"count: 101\n", count, "'101' is no whole number from 0 to 100"}, Bad{"count: 2.5\n", count, "no whole number"},
         Bad{"count: .nan\n", count, "no whole number"}, Bad{"count: 99999999999999\n", count, "no whole number"},
-        Bad{"hall: -300 degC\n", get<kQuantityOf, kHall>, "-300 degC lies outside what is allowed, -272.15 to 2726.85 degC"},
+        Bad{"ambient: -300 degC\n", get<kQuantityOf, kAmbient>,
+            "-300 degC lies outside what is allowed, -272.15 to 2726.85 degC"},
         Bad{"kind: c\n", get<kChoiceOf, kKind>, "one of a, b is wanted"},
         Bad{"axes: [x, w]\n", get<&ConfigMap::texts, kAxes>, ":1:11: 'w' is not known here; one of x, y is wanted"},
         Bad{"axes: []\n", get<&ConfigMap::texts, kAxes>, "at least 1 are wanted"},

@@ -15,7 +15,7 @@ namespace {
 
 using fixtures::flow;
 
-const TimeSeries kStillHall{{0.0}, {0.0}};
+const TimeSeries kStillAmbient{{0.0}, {0.0}};
 
 Cyclogram rest(double duration_s) {
   return {.name = "rest", .sections = {{duration_s, {}}}};
@@ -80,7 +80,8 @@ TEST(Coolant, ThermostatDrawsTheSawToothOfItsPowers) {
     times_s.push_back(456.0 + 228.0 * period + 152.0);
     expected_K.push_back(5.0);
   }
-  const Trajectory run = simulate(cycling_tank(), rest(times_s.back()), kStillHall, times_s, {}, Eigen::VectorXd::Zero(2));
+  const Trajectory run =
+      simulate(cycling_tank(), rest(times_s.back()), kStillAmbient, times_s, {}, Eigen::VectorXd::Zero(2));
   double worst_K = 0.0;
   for (std::size_t k = 0; k < times_s.size(); ++k) {
     worst_K = std::max(worst_K, std::abs(run.outputs(0, static_cast<Eigen::Index>(k)) - expected_K[k]));
@@ -95,7 +96,7 @@ TEST(Coolant, ThermostatDrawsTheSawToothOfItsPowers) {
 TEST(Coolant, ChillerTakesAwayWhatComesInOverWholePeriods) {
   const double begin_s = 456.0, end_s = begin_s + 100 * 228.0;
   const Trajectory run =
-      simulate(cycling_tank(), rest(end_s), kStillHall, {begin_s - 1e-3, end_s - 1e-3}, {}, Eigen::VectorXd::Zero(2));
+      simulate(cycling_tank(), rest(end_s), kStillAmbient, {begin_s - 1e-3, end_s - 1e-3}, {}, Eigen::VectorXd::Zero(2));
   const Eigen::Index chiller = flow(run, "coolant chiller tank");
   const double taken_J = -(run.heat_J(chiller, 1) - run.heat_J(chiller, 0));
   EXPECT_NEAR(taken_J, 100 * 228.0 * 500.0, 1e-3);  // 11.4 MJ; times of switches to 1e-9 s at 1500 W, a hundred times
@@ -115,7 +116,7 @@ TEST(Coolant, ThermostatOfALoadedSpindleHoldsTheTankWithinItsHysteresis) {
   for (int i = 0; i <= 1200; ++i) times_s.push_back(3600.0 + 5.0 * i);
   const Cyclogram cycle{.name = "c",
                         .sections = {{4800, {.speed_rpm = 2000}}, {2400, {.speed_rpm = 1200}}, {2400, {.speed_rpm = 2500}}}};
-  const Trajectory run = simulate(system, cycle, kStillHall, times_s, {}, Eigen::VectorXd::Zero(2));
+  const Trajectory run = simulate(system, cycle, kStillAmbient, times_s, {}, Eigen::VectorXd::Zero(2));
   // Event location is to rounding; dense output between steps to the tolerances, 5e-4 K + 1e-4 of some kelvin.
   EXPECT_LT(run.outputs.maxCoeff(), 22.5 - 20.0 + 1e-3);
   EXPECT_GT(run.outputs.minCoeff(), 21.5 - 20.0 - 1e-3);
@@ -124,13 +125,13 @@ TEST(Coolant, ThermostatOfALoadedSpindleHoldsTheTankWithinItsHysteresis) {
 }
 
 TEST(Coolant, HasNoSteadyStateWhereItsChillerSwitches) {
-  const auto steady_at = [](double hall_K) {
+  const auto steady_at = [](double ambient_K) {
     const FullSystem system =
         fixtures::lumped_system({"{type: node, node: spindle, capacity: 5 kJ/K}",
                                  "{type: coolant, node: spindle, tank: tank, flow: 6 L/min, passage_conductance: 380 W/K, "
                                  "volume: 10 L, tank_exchange: "
                                  "10 W/K, pump_power: 20 W, cooling_power: 1.5 kW, set_point: 25 degC, hysteresis: 2 K}"});
-    return steady_state(system, {.drive = {}, .hall_K = hall_K}, Eigen::VectorXd::Constant(2, hall_K));
+    return steady_state(system, {.drive = {}, .ambient_K = ambient_K}, Eigen::VectorXd::Constant(2, ambient_K));
   };
   EXPECT_NEAR(steady_at(0.0)[1], 2.0, 1e-9);              // 20 W by 10 W/K: 22 degC, the chiller stays off
   EXPECT_THROW((void)steady_at(4.5), InputError);         // 26.5 degC without the chiller, which starts off and comes on
@@ -141,7 +142,7 @@ TEST(Coolant, HasNoSteadyStateWhereItsChillerSwitches) {
 TEST(Coolant, AThermostatThatSwitchesWithoutEndIsNamed) {
   // A period of 228 s: 40 switches take 4560 s.
   try {
-    (void)simulate(cycling_tank(), rest(86400), kStillHall, {86400}, {.most_switches = 40}, Eigen::VectorXd::Zero(2));
+    (void)simulate(cycling_tank(), rest(86400), kStillAmbient, {86400}, {.most_switches = 40}, Eigen::VectorXd::Zero(2));
     FAIL() << "no error";
   } catch (const SolveError& e) {
     EXPECT_NE(std::string(e.what()).find("thermostat 'tank' switched for the 41th time"), std::string::npos) << e.what();

@@ -17,7 +17,7 @@ const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {12
 /// A system, what surrounds it and where it starts, which a number ε changes.
 struct Driven {
   ReducedSystem system;
-  TimeSeries hall;
+  TimeSeries ambient;
   Eigen::VectorXd start;
 };
 using Change = std::function<void(Driven&, double)>;
@@ -30,7 +30,7 @@ std::vector<double> times_s() {
 
 Eigen::MatrixXd states(const Driven& d) {
   Eigen::MatrixXd z;
-  (void)Propagator(d.system).run(kCycle, d.hall, times_s(), d.start, false, &z);
+  (void)Propagator(d.system).run(kCycle, d.ambient, times_s(), d.start, false, &z);
   return z;
 }
 
@@ -43,8 +43,8 @@ double miss(const Driven& base, const Change& change) {
     return d;
   };
   const Driven there = changed(1.0);
-  const Course course = Propagator(base.system).course(kCycle, base.hall, times_s(), base.start).value();
-  const auto first_order = course.states_of(there.system, kCycle, there.hall, there.start);
+  const Course course = Propagator(base.system).course(kCycle, base.ambient, times_s(), base.start).value();
+  const auto first_order = course.states_of(there.system, kCycle, there.ambient, there.start);
   if (!first_order) return INFINITY;
   const Eigen::MatrixXd slope = *first_order - course.states(),
                         expected = (states(changed(kSmall)) - states(changed(-kSmall))) / (2.0 * kSmall);
@@ -55,14 +55,14 @@ double miss(const Driven& base, const Change& change) {
 Driven two_blocks() {
   const FullSystem full = fixtures::two_blocks(1);
   const Eigen::MatrixXd basis = orthonormalise(full.mass, Eigen::MatrixXd::Identity(full.size(), full.size()));
-  Driven d{.system = project(full, basis), .hall = {{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}}, .start = {}};
+  Driven d{.system = project(full, basis), .ambient = {{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}}, .start = {}};
   d.start = 3.0 * d.system.ones;
   return d;
 }
 
 TEST(Course, RunsAsThePropagatorDoes) {
   const Driven d = two_blocks();
-  const Course course = Propagator(d.system).course(kCycle, d.hall, times_s(), d.start).value();
+  const Course course = Propagator(d.system).course(kCycle, d.ambient, times_s(), d.start).value();
   const Eigen::MatrixXd expected = states(d);
   EXPECT_LT((course.states() - expected).cwiseAbs().maxCoeff(), 1e-10 * expected.cwiseAbs().maxCoeff());
 }
@@ -93,10 +93,10 @@ TEST(Course, KnowsWhatEveryKindOfDifferenceDoes) {
       << "heat";
   EXPECT_LT(miss(base,
                  [](Driven& d, double epsilon) {
-                   for (double& v : d.hall.value) v += epsilon * (1.0 + v);
+                   for (double& v : d.ambient.value) v += epsilon * (1.0 + v);
                  }),
             kDifferences)
-      << "the hall";
+      << "the ambient";
   EXPECT_LT(miss(base, [](Driven& d, double epsilon) { d.start += epsilon * d.system.ones; }), kDifferences) << "the start";
 }
 
@@ -111,19 +111,19 @@ Driven equal_bodies(double loss_W_K) {
   s.sources.push_back({"heat", {}, all, [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
   s.exchanges.push_back({.name = "films",
                          .matrix = Eigen::MatrixXd::Identity(kBodies, kBodies) / 3600.0,
-                         .to_hall = all,
-                         .hall_sum = 4.0,
+                         .to_ambient = all,
+                         .ambient_sum = 4.0,
                          .coefficient = fixtures::constant(loss_W_K),
                          .flow = all});
   Eigen::VectorXd across = Eigen::VectorXd::Zero(kBodies);
   across.head(2) << 1.0 / 60.0, -1.0 / 60.0;
   s.exchanges.push_back({.name = "link",
                          .matrix = across * across.transpose(),
-                         .to_hall = Eigen::VectorXd::Zero(kBodies),
+                         .to_ambient = Eigen::VectorXd::Zero(kBodies),
                          .coefficient = fixtures::constant(0.2),
                          .flow = across});
   s.ones = Eigen::VectorXd::Constant(kBodies, 60.0);
-  d.hall = {{0, 7200}, {1.0, 3.0}};
+  d.ambient = {{0, 7200}, {1.0, 3.0}};
   d.start = Eigen::VectorXd::LinSpaced(kBodies, 0.0, 300.0);
   return d;
 }
@@ -142,16 +142,16 @@ TEST(Course, HoldsForEqualBodiesAndForThoseWithoutLosses) {
 
 TEST(Course, LeavesToARunOfItsOwnWhatIsDrivenAtOtherTimes) {
   const Driven d = two_blocks();
-  const Course course = Propagator(d.system).course(kCycle, d.hall, times_s(), d.start).value();
+  const Course course = Propagator(d.system).course(kCycle, d.ambient, times_s(), d.start).value();
   Cyclogram later = kCycle;
   later.sections[0].duration_s += 60.0;
-  EXPECT_FALSE(course.states_of(d.system, later, d.hall, d.start));
+  EXPECT_FALSE(course.states_of(d.system, later, d.ambient, d.start));
   ReducedSystem jumps = d.system;
   jumps.change_times_s.push_back(1000.0);
-  EXPECT_FALSE(course.states_of(jumps, kCycle, d.hall, d.start));
+  EXPECT_FALSE(course.states_of(jumps, kCycle, d.ambient, d.start));
   ReducedSystem watched = d.system;
   watched.thermostats.push_back({"cooler", 0, 300.0, 299.0});
-  EXPECT_FALSE(course.states_of(watched, kCycle, d.hall, d.start));
+  EXPECT_FALSE(course.states_of(watched, kCycle, d.ambient, d.start));
 }
 
 TEST(Course, IsNotKeptThroughMoreSetsOfCoefficientsThanItHolds) {
@@ -159,9 +159,9 @@ TEST(Course, IsNotKeptThroughMoreSetsOfCoefficientsThanItHolds) {
   Cyclogram many{.name = "many", .sections = {}};
   for (std::size_t i = 0; i <= Course::kMostSets; ++i)
     many.sections.push_back({60.0, {.speed_rpm = 10.0 * static_cast<double>(i)}});
-  EXPECT_FALSE(Propagator(d.system).course(many, d.hall, {600.0}, d.start));
+  EXPECT_FALSE(Propagator(d.system).course(many, d.ambient, {600.0}, d.start));
   many.sections.pop_back();
-  EXPECT_TRUE(Propagator(d.system).course(many, d.hall, {600.0}, d.start));
+  EXPECT_TRUE(Propagator(d.system).course(many, d.ambient, {600.0}, d.start));
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST(Cyclogram, SplitAtFurtherTimesEndsAtTheSameTimeToTheLastBit) {
   EXPECT_EQ(split.column("heater_K"), nullptr);
 }
 
-TEST(LinearStretches, EndAtChangesOfSpeedAndAtKnotsOfTheHall) {
+TEST(LinearStretches, EndAtChangesOfSpeedAndAtKnotsOfTheAmbient) {
   // Knots at 0 and 100 coincide with starts of sections; 30 and 250 lie inside; 900 lies behind the end.
   const auto stretches = linear_stretches(kCycle, TimeSeries{{0, 30, 100, 250, 900}, {0, 1, 2, 3, 4}});
   const std::vector<double> start = {0, 30, 100, 150, 200, 250}, end = {30, 100, 150, 200, 250, 400};

@@ -32,8 +32,8 @@ class Stream {
     if (r.n_samples() > 0)
       run_.cyclogram.sections.push_back({t_s - r.time_s.back(), whole_.cyclogram.drive(r.time_s.back())});
     r.time_s.push_back(t_s);
-    run_.hall.time_s.push_back(t_s);
-    run_.hall.value.push_back(whole_.hall.at(t_s));
+    run_.ambient.time_s.push_back(t_s);
+    run_.ambient.value.push_back(whole_.ambient.at(t_s));
     for (std::size_t c = 0; c < r.channels.size(); ++c)
       r.channels[c].values.push_back(whole_.readings.channels[c].values[i]);
     while (r.n_samples() > kRowsBack + 1) forget_first();
@@ -50,8 +50,8 @@ class Stream {
     const auto drop = [](auto& list) { list.erase(list.begin()); };
     drop(r.time_s);
     for (Channel& c : r.channels) drop(c.values);
-    drop(run_.hall.time_s);
-    drop(run_.hall.value);
+    drop(run_.ambient.time_s);
+    drop(run_.ambient.value);
     drop(run_.cyclogram.sections);
     run_.cyclogram_from_s = r.time_s.front();
     ++run_.n_forgotten;
@@ -107,7 +107,7 @@ constexpr std::size_t kNever = static_cast<std::size_t>(-1);
 
 ObservedRun machine_with_faults() {
   ObservedRun run{.cyclogram = {.name = "work", .sections = {{9e4, {.speed_rpm = 1500.0}}}},
-                  .hall = {{0.0, 9000.0}, {0.0, 1.5}},
+                  .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
                   .readings = fixtures::machine(7, 60.0)};
   std::vector<double>& x = run.readings.channels[1].values;
   for (std::size_t i = 120; i < 140; ++i) x[i] = NAN;   // a broken wire

@@ -105,7 +105,7 @@ TEST_P(LoudEffects, AreNamedAtTheirPlace) {
     if (hidden["d_prime_beside_others"] < kLoud) continue;
     ++n_loud;
     const std::string effect = hidden["effect"], where = hidden["where"];
-    if (effect == "ambient") continue;  // its loudness was counted for a hall that is known without error
+    if (effect == "ambient") continue;  // its loudness was counted for an ambient that is known without error
     const auto matches = [&](const Cause& c) { return c.effect == effect && c.where == where; };
     EXPECT_TRUE(std::any_of(t.diagnosis.causes.begin(), t.diagnosis.causes.end(), matches))
         << effect << " at " << where << ": " << t.diagnosis.reason;
@@ -113,7 +113,7 @@ TEST_P(LoudEffects, AreNamedAtTheirPlace) {
   EXPECT_GT(n_loud, 0);
   EXPECT_LE(t.diagnosis.causes.size(), t.truth["effects"].size()) << t.diagnosis.reason;
   for (const ChannelGain& g : t.diagnosis.gain) {  // kept out of the fit: within a fifth of the noise
-    // what is not known of the hall of a record that nothing was fitted to is in it: 0.3 K, and 2 um of each kelvin
+    // what is not known of the ambient of a record that nothing was fitted to is in it: 0.3 K, and 2 um of each kelvin
     EXPECT_LT(g.rmse_after, std::hypot(1.2 * g.noise_floor, g.unit == "K" ? 0.3 : 0.6)) << g.name;
   }
 }

@@ -37,6 +37,20 @@ TEST(DiagnosisData, CausesHaveTheirNumbersAndAlternatives) {
   EXPECT_EQ(named["alternatives"][0]["alternatives"], Json::array());
 }
 
+// The value of `where` that programs read is fixed, whatever scenarios call the air around a machine.
+TEST(DiagnosisData, TheAmbientIsStillCalledHallUnderWhere) {
+  diagnosis::Cause cause{"ambient", "ambient", "an offset", {}, 41.25, {}};
+  cause.alternatives.push_back({"link", "housing,ambient", "another path", {}, 39.0, {}});
+  cause.alternatives.push_back({"sensor_bias", "t_ambient", "a bias", {}, 38.0, {}});
+  output::Section section;
+  add_causes_data(section, {cause});
+  const Json json = output::section_json(section)["causes"][0];
+  EXPECT_EQ(json["effect"], "ambient");
+  EXPECT_EQ(json["where"], "hall");
+  EXPECT_EQ(json["alternatives"][0]["where"], "housing,hall");
+  EXPECT_EQ(json["alternatives"][1]["where"], "t_ambient");  // a sensor's name is the user's
+}
+
 TEST(DiagnosisData, CausesThatAreNotWrittenSayWhy) {
   diagnosis::Cause cause{"convection", "nose", "another film", {}, 41.25, {}};
   cause.is_written = false;

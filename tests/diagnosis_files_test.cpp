@@ -64,10 +64,10 @@ TEST(DiagnosisWords, SayWhichNumbersMayHaveTakenUpWhatIsNotWritten) {
   EXPECT_EQ(taken_up_text(d), "");
   d.causes = {{"heat_source", "head", "constant heat", {}, 30.0, {}}, {"exchange_window", "air", "windows", {}, 60.0, {}}};
   d.written.taken_up = {1};
-  d.calibrated = {{"contact air,hall conductance", "W/K", 9.0, 8.0, 10.0, 4.2},
+  d.calibrated = {{"contact air,ambient conductance", "W/K", 9.0, 8.0, 10.0, 4.2},
                   {"convection nose film", "W/K", 9.0, 8.0, 10.0, 3.4}};
   EXPECT_THAT(taken_up_text(d),
-              AllOf(HasSubstr("without exchange_window at air"), HasSubstr("contact air,hall conductance by +4.2 sigmas"),
+              AllOf(HasSubstr("without exchange_window at air"), HasSubstr("contact air,ambient conductance by +4.2 sigmas"),
                     Not(HasSubstr("nose")), Not(HasSubstr("heat_source"))));
   d.moved = {0};  // a cause by its own key
   EXPECT_THAT(taken_up_text(d), Not(HasSubstr("sigmas")));

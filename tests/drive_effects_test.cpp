@@ -1,4 +1,4 @@
-// What the record of drive and hall gets wrong, as the user writes it, by value; and what it refuses.
+// What the record of drive and ambient gets wrong, as the user writes it, by value; and what it refuses.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -92,34 +92,36 @@ TEST(TrueCyclogram, AStopOfOneCyclogramSparesTheOthers) {
   EXPECT_THAT(speeds_rpm(true_cyclogram(change_of(stop, "other"), kRecorded)), ElementsAre(1000, 0, 1000, 3000, 0));
 }
 
-// A hall that warms by 3 K in 20 min, during a cyclogram of 25 min.
-const TimeSeries kHall{{0, 1200}, {1.0, 4.0}};
+// An ambient that warms by 3 K in 20 min, during a cyclogram of 25 min.
+const TimeSeries kAmbient{{0, 1200}, {1.0, 4.0}};
 
-TEST(TrueHall, OffsetFromTheStartOnHoldsEverywhere) {
-  const TimeSeries hall = true_hall(change_of("{type: ambient, offset: -2 K}"), kHall, kRecorded);
-  EXPECT_DOUBLE_EQ(hall.at(0), -1.0);
-  EXPECT_DOUBLE_EQ(hall.at(600), 0.5);
-  EXPECT_DOUBLE_EQ(hall.at(1500), 2.0);
+TEST(TrueAmbient, OffsetFromTheStartOnHoldsEverywhere) {
+  const TimeSeries ambient = true_ambient(change_of("{type: ambient, offset: -2 K}"), kAmbient, kRecorded);
+  EXPECT_DOUBLE_EQ(ambient.at(0), -1.0);
+  EXPECT_DOUBLE_EQ(ambient.at(600), 0.5);
+  EXPECT_DOUBLE_EQ(ambient.at(1500), 2.0);
 }
 
-TEST(TrueHall, StepTakesAMillisecondAndRampGoesOnToTheEnd) {
-  const TimeSeries hall = true_hall(change_of("{type: ambient, offset: 2 K, ramp: 6 K/h, from: 5 min}"), kHall, kRecorded);
-  EXPECT_DOUBLE_EQ(hall.at(150), 1.375);              // untouched
-  EXPECT_DOUBLE_EQ(hall.at(300), 1.75);               // the last value before
-  EXPECT_NEAR(hall.at(300.001), 1.75 + 2.0, 1e-5);    // a millisecond of both slopes is 4 uK
-  EXPECT_NEAR(hall.at(900), 3.25 + 2.0 + 1.0, 1e-9);  // 10 min of 6 K/h: rounding of interpolation alone
-  EXPECT_NEAR(hall.at(1500), 4.0 + 2.0 + 2.0, 1e-9);  // beyond the hall's own knots
+TEST(TrueAmbient, StepTakesAMillisecondAndRampGoesOnToTheEnd) {
+  const TimeSeries ambient =
+      true_ambient(change_of("{type: ambient, offset: 2 K, ramp: 6 K/h, from: 5 min}"), kAmbient, kRecorded);
+  EXPECT_DOUBLE_EQ(ambient.at(150), 1.375);              // untouched
+  EXPECT_DOUBLE_EQ(ambient.at(300), 1.75);               // the last value before
+  EXPECT_NEAR(ambient.at(300.001), 1.75 + 2.0, 1e-5);    // a millisecond of both slopes is 4 uK
+  EXPECT_NEAR(ambient.at(900), 3.25 + 2.0 + 1.0, 1e-9);  // 10 min of 6 K/h: rounding of interpolation alone
+  EXPECT_NEAR(ambient.at(1500), 4.0 + 2.0 + 2.0, 1e-9);  // beyond the ambient's own knots
 }
 
-TEST(TrueHall, ErrorsAddUp) {
+TEST(TrueAmbient, ErrorsAddUp) {
   const DriveChange both =
       drive_change({read("{type: ambient, offset: 1 K}"), read("{type: ambient, offset: 2 K}")}, "shift");
-  EXPECT_DOUBLE_EQ(true_hall(both, kHall, kRecorded).at(600), 5.5);
+  EXPECT_DOUBLE_EQ(true_ambient(both, kAmbient, kRecorded).at(600), 5.5);
 }
 
-TEST(TrueHall, AnErrorOfOneCyclogramSparesTheOthers) {
-  EXPECT_EQ(true_hall(change_of("{type: ambient, offset: 1 K, in: other}"), kHall, kRecorded).value, kHall.value);
-  EXPECT_NE(true_hall(change_of("{type: ambient, offset: 1 K, in: other}", "other"), kHall, kRecorded).value, kHall.value);
+TEST(TrueAmbient, AnErrorOfOneCyclogramSparesTheOthers) {
+  EXPECT_EQ(true_ambient(change_of("{type: ambient, offset: 1 K, in: other}"), kAmbient, kRecorded).value, kAmbient.value);
+  EXPECT_NE(true_ambient(change_of("{type: ambient, offset: 1 K, in: other}", "other"), kAmbient, kRecorded).value,
+            kAmbient.value);
 }
 
 struct Bad {
@@ -134,7 +136,7 @@ TEST_P(BadDriveEffect, IsAnInputError) {
 
 INSTANTIATE_TEST_SUITE_P(Each, BadDriveEffect,
                          ::testing::Values(Bad{"{type: ambient}", "`offset`, `ramp` or both"},
-                                           Bad{"{type: ambient, hall: hall, offset: 1 K}", "unknown key 'hall'"},
+                                           Bad{"{type: ambient, ambient: ambient, offset: 1 K}", "unknown key 'ambient'"},
                                            Bad{"{type: ambient, offset: 1 K/h}", "wrong unit"},
                                            Bad{"{type: speed_override}", "key 'factor' is missing"},
                                            Bad{"{type: speed_override, factor: -1}", "outside what is allowed"},

@@ -17,8 +17,8 @@ effects:
   - {type: node, node: wall, capacity: 900 J/K}
   - {type: heat_source, node: heater, power: 40 W, at_speed: 1000 rpm, exponent: 1}
   - {type: link, node: heater, to: wall, conductance: 3 W/K}
-  - {type: link, node: wall, to: hall, conductance: 0.8 W/K}
-hall: [[0 h, 21 degC]]
+  - {type: link, node: wall, to: ambient, conductance: 0.8 W/K}
+ambient: [[0 h, 21 degC]]
 sensors:
   - {name: heater, node: heater}
   - {name: wall, node: wall}
@@ -53,7 +53,7 @@ std::vector<std::string> stages(const Listener& also = {}) {
 TEST(ADiagnosis, IsCompleteWhereNobodyWantsAnEnd) {
   const Diagnosis d = diagnose(*beside().twin, nullptr, beside().runs, {});
   EXPECT_EQ(d.ended_at, "");
-  EXPECT_EQ(d.verdict, Verdict::kAmbiguous) << d.reason;  // with a warmer hall
+  EXPECT_EQ(d.verdict, Verdict::kAmbiguous) << d.reason;  // with a warmer ambient
   EXPECT_TRUE(d.written.keeps_numbers);
 }
 

@@ -186,13 +186,13 @@ TEST(HiddenBody, IsANodeBehindItsBody) {
   EXPECT_EQ(b.exchanges[0].coefficient({}), 9.0);
 }
 
-TEST(HiddenBody, HasAWayToTheHallWhereGiven) {
+TEST(HiddenBody, HasAWayToTheAmbientWhereGiven) {
   const HeatBalance b =
       balance_of("{type: hidden_body, node: head, capacity: 8 kJ/K, conductance: 9 W/K, hall_conductance: 2 W/K}");
   ASSERT_EQ(b.exchanges.size(), 2u);
   EXPECT_EQ(b.exchanges[0].body, node("head"));
   EXPECT_EQ(b.exchanges[1].body, node("head_hidden"));
-  EXPECT_EQ(b.exchanges[1].surrounding, kHallName);
+  EXPECT_EQ(b.exchanges[1].surrounding, kAmbientName);
   EXPECT_EQ(b.exchanges[1].coefficient({}), 2.0);
 }
 
@@ -288,7 +288,8 @@ TEST(Windows, JointsAndLinksHaveThem) {
       balance_of("{type: contact, joint: a/b, conductance: 2000 W/(m^2 K), until: 60 s}").exchanges.at(0).coefficient;
   EXPECT_EQ(joint({.drive = {}, .time_s = 59.0}), 2000.0);
   EXPECT_EQ(joint({.drive = {}, .time_s = 60.0}), 0.0);
-  const Law link = balance_of("{type: link, node: n, to: hall, conductance: 3 W/K, from: 60 s}").exchanges.at(0).coefficient;
+  const Law link =
+      balance_of("{type: link, node: n, to: ambient, conductance: 3 W/K, from: 60 s}").exchanges.at(0).coefficient;
   EXPECT_EQ(link({.drive = {}, .time_s = 59.0}), 0.0);
   EXPECT_EQ(link({.drive = {}, .time_s = 60.0}), 3.0);
 }
@@ -323,7 +324,7 @@ Law law_of(const std::vector<std::string>& entries) {
   return b.heats.empty() ? b.exchanges.at(0).coefficient : b.heats[0].power_W;
 }
 Inputs at(double speed_rpm, double time_s = 0.0, std::string_view run = {}, std::vector<double> probe_K = {}) {
-  Inputs u{.drive = {.speed_rpm = speed_rpm}, .hall_K = 0.0, .time_s = time_s, .probe_K = std::move(probe_K)};
+  Inputs u{.drive = {.speed_rpm = speed_rpm}, .ambient_K = 0.0, .time_s = time_s, .probe_K = std::move(probe_K)};
   u.run = run;
   return u;
 }
@@ -348,8 +349,8 @@ TEST(ChangedLaw, LeavesALawThatLooksAtTemperaturesItsOwnProbes) {
 
 TEST(ChangedLaw, HoldsForAWhileAndInOneRunAndTellsWhenItJumps) {
   const std::vector<std::string> entries = {
-      "{type: link, node: a, to: hall, conductance: 10 W/K}",
-      "{type: changed_law, law: link a - hall, factor: 0.2, from: 10 min, until: 20 min, in: monday}"};
+      "{type: link, node: a, to: ambient, conductance: 10 W/K}",
+      "{type: changed_law, law: link a - ambient, factor: 0.2, from: 10 min, until: 20 min, in: monday}"};
   const Law law = law_of(entries);
   EXPECT_EQ(law(at(0.0, 599.0, "monday")), 10.0);
   EXPECT_EQ(law(at(0.0, 600.0, "monday")), 2.0);
@@ -408,9 +409,9 @@ TEST(HeatWindow, HeatsWithinItsWindowsOnceOrAgainAndAgain) {
   EXPECT_THROW((void)read("{type: heat_window, node: a, power: 30 W, windows: [[20 s, 10 s]]}"), InputError);
 }
 
-TEST(RunState, ChangesAllHeatOrAllExchangeWithTheHallOfOneRecord) {
+TEST(RunState, ChangesAllHeatOrAllExchangeWithTheAmbientOfOneRecord) {
   const std::vector<Effect> machine = {read("{type: heat_source, node: a, power: 50 W}"),
-                                       read("{type: link, node: a, to: hall, conductance: 4 W/K}"),
+                                       read("{type: link, node: a, to: ambient, conductance: 4 W/K}"),
                                        read("{type: link, node: a, to: b, conductance: 7 W/K}")};
   const auto in_state = [&](const std::string& state) {
     std::vector<Effect> all = machine;
@@ -485,13 +486,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: heat_source, region: n, power: 1 W, period: 20 min}", "`until` is wanted"},
         Bad{"{type: heat_source, region: n, power: 1 W, period: 1 min, until: 1e7 s}", "at most 10000 periods"},
         Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), from: 20 s, until: 10 s}", "behind `from`"},
-        Bad{"{type: link, node: n, to: hall, conductance: 1 W/K, from: 20 s, until: 10 s}", "behind `from`"},
+        Bad{"{type: link, node: n, to: ambient, conductance: 1 W/K, from: 20 s, until: 10 s}", "behind `from`"},
         Bad{"{type: convection, surface: s, film: 1 W/(m^2 K), from: -1 s}", "outside what is allowed"},
         Bad{"{type: natural_convection, surface: s, length: 1 m}", "key 'orientation' is missing"},
         Bad{"{type: natural_convection, surface: s, orientation: up, length: 0 m}", "outside what is allowed"},
         Bad{"{type: radiation, surface: s, emissivity: 1.1}", "outside what is allowed"},
         Bad{"{type: fixed_temperature, surface: s}", "one of two is wanted"},
-        Bad{"{type: fixed_temperature, surface: s, temperature: 20 degC, follows: hall}", "one of two is wanted"},
+        Bad{"{type: fixed_temperature, surface: s, temperature: 20 degC, follows: ambient}", "one of two is wanted"},
         Bad{"{type: fixed_temperature, surface: s, temperature: [[0 s, 20 degC], [0 s, 30 degC]]}", "must increase"},
         Bad{"{type: contact, joint: j}", "one of two is wanted"},
         Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), conductance_over_pressure: [[0 Pa, 1 W/(m^2 K)]], "
@@ -512,11 +513,12 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: node, node: n, capacity: -1 J/K}", "outside what is allowed"},
         Bad{"{type: link, node: n, conductance: 1 W/K}", "key 'to' is missing"},
         Bad{"{type: link, node: n, conductance: 1 W/K, to: n}", "joins two bodies"},
-        Bad{"{type: link, node: n, conductance: -1 W/K, to: hall}", "outside what is allowed"},
+        Bad{"{type: link, node: n, conductance: -1 W/K, to: ambient}", "outside what is allowed"},
         Bad{"{type: hidden_body, node: n, conductance: 1 W/K}", "key 'capacity' is missing"},
         Bad{"{type: hidden_body, node: n, capacity: 0 J/K, conductance: 1 W/K}", "outside what is allowed"},
         Bad{"{type: hidden_body, surface: s, capacity: 1 J/K, conductance: 1 W/K}", "wants one place: region or node"},
-        Bad{"{type: coolant, region: r, tank: hall, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L}", "is no tank"},
+        Bad{"{type: coolant, region: r, tank: ambient, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L}",
+            "is no tank"},
         Bad{"{type: coolant, region: r, tank: t, flow: 0 L/min, passage_conductance: 1 W/K, volume: 1 L}",
             "outside what is allowed"},
         Bad{"{type: coolant, region: r, tank: t, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L, cooling_power: 1 "
@@ -530,7 +532,7 @@ INSTANTIATE_TEST_SUITE_P(
             "set_point: 20 degC, hysteresis: 0 K}",
             "outside what is allowed"},
         Bad{"{type: stratification, gradient: 100 K/m}", "outside what is allowed"},
-        Bad{"{type: stratification, hall: hall, gradient: 1 K/m}", "unknown key 'hall'"}));
+        Bad{"{type: stratification, ambient: ambient, gradient: 1 K/m}", "unknown key 'ambient'"}));
 
 }  // namespace
 }  // namespace driftwright::effects

@@ -153,13 +153,13 @@ TEST(Catalogue, EveryEffectDoesSomethingAtEachPlaceItAllows) {
       const Effect effect = sample(kind, place);
       if (!kind.contribute) {
         const DriveChange drive = drive_change({effect}, "");
-        EXPECT_TRUE(!drive.hall.empty() || !drive.drive.empty() || !reading_chain({effect}, "").empty() ||
+        EXPECT_TRUE(!drive.ambient.empty() || !drive.drive.empty() || !reading_chain({effect}, "").empty() ||
                     material_factors({effect}).size() == 1u || kind.change_laws)
             << kind.key << " at a " << place_key(place);
         continue;
       }
       const HeatBalance b = heat_balance({effect});
-      if (place == Place::kHall) {
+      if (place == Place::kAmbient) {
         EXPECT_EQ(b.stratifications.size(), 1u) << kind.key;
       } else {
         EXPECT_GE(n_entries_at(b, "spot"), 1) << kind.key << " at a " << place_key(place);
@@ -171,10 +171,10 @@ TEST(Catalogue, EveryEffectDoesSomethingAtEachPlaceItAllows) {
 // --- laws, as the user writes them ------------------------------------------------------------------------------
 
 double power_W(const std::string& text, double speed_rpm) {
-  return heat_balance({read(text)}).heats.at(0).power_W({.drive = {.speed_rpm = speed_rpm}, .hall_K = 0.0});
+  return heat_balance({read(text)}).heats.at(0).power_W({.drive = {.speed_rpm = speed_rpm}, .ambient_K = 0.0});
 }
 double htc_W_m2K(const std::string& text, double speed_rpm) {
-  return heat_balance({read(text)}).exchanges.at(0).coefficient({.drive = {.speed_rpm = speed_rpm}, .hall_K = 0.0});
+  return heat_balance({read(text)}).exchanges.at(0).coefficient({.drive = {.speed_rpm = speed_rpm}, .ambient_K = 0.0});
 }
 
 TEST(Laws, BearingFrictionAddsBothTorquesTimesTheCount) {
@@ -225,9 +225,9 @@ TEST(Laws, ContactAndAirNodeCarryTheirNumbers) {
   EXPECT_EQ(air.exchanges.at(0).coefficient({}), 4.0);
 }
 
-TEST(Laws, SurroundingIsTheHallUnlessNamed) {
+TEST(Laws, SurroundingIsTheAmbientUnlessNamed) {
   EXPECT_EQ(heat_balance({read("{type: convection, surface: s, film: 8 W/(m^2 K)}")}).exchanges.at(0).surrounding,
-            effects::kHallName);
+            effects::kAmbientName);
   EXPECT_EQ(heat_balance({read("{type: convection, surface: s, film: 8 W/(m^2 K), surrounding: air}")})
                 .exchanges.at(0)
                 .surrounding,

@@ -42,11 +42,11 @@ MeasuredRun run_of(const scenarios::Scenario& s, Cyclogram cyclogram, const solv
   }
   run.cyclogram = cyclogram;
   run.path = s.path;  // stands for its file, which nobody opens
-  run.hall = s.machine->hall;
+  run.ambient = s.machine->ambient;
   for (double row = 0.0; row <= kRows; row += 1.0) run.time_s.push_back(std::min(end_s, row / kRows * end_s));
   set_grid(run);
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
-    if (outputs.hall[static_cast<Eigen::Index>(o)] == 1.0) continue;
+    if (outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) continue;
     run.channels.push_back({outputs.name[o], static_cast<int>(o), outputs.unit[o],
                             Eigen::VectorXd::Zero(static_cast<Eigen::Index>(run.time_s.size()))});
   }

@@ -29,8 +29,8 @@ effects:
   - {type: node, node: column, capacity: 40 kJ/K}
   - {type: heat_source, node: head, power: 150 W, at_speed: 2000 rpm, exponent: 1.3}
   - {type: link, node: head, to: column, conductance: 12 W/K}
-  - {type: link, node: column, to: hall, conductance: 14 W/K}
-hall: [[0 min, 20 degC], [90 min, 20 degC]]
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+ambient: [[0 min, 20 degC], [90 min, 20 degC]]
 sensors:
   - {name: t_head, node: head}
 displacements:
@@ -51,7 +51,7 @@ class OneSpeed : public testing::Test {
     MeasuredRun run;
     run.name = "monday";
     run.cyclogram = {"monday", {{6.0 * 3600.0, {.speed_rpm = 2000.0}}}};
-    run.hall = {{0.0}, {0.0}};
+    run.ambient = {{0.0}, {0.0}};
     for (int i = 0; i <= 360; ++i) run.time_s.push_back(60.0 * i);
     set_grid(run);
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(361);

@@ -14,12 +14,12 @@ namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
 
-/// A spindle in a bearing in a housing in the hall: friction that falls as the bearing warms, a film that grows with the housing's temperature, a link.
+/// A spindle in a bearing in a housing in the ambient: friction that falls as the bearing warms, a film that grows with the housing's temperature, a link.
 struct Machine {
   double friction_W = 300.0, decay_1_K = 0.012, film_W_K = 12.0, link_W_K = 20.0, heat_W = 0.0, from_s = 0.0, until_s = 0.0,
          chiller_W = 0.0;
   Eigen::Vector3d capacity_J_K = {20800.0, 1650.0, 60000.0};
-  TimeSeries hall = {{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}};
+  TimeSeries ambient = {{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}};
   Eigen::Vector3d start_K = {1.0, 2.0, 0.5};
 
   [[nodiscard]] ReducedSystem system() const {
@@ -62,17 +62,17 @@ struct Machine {
     if (until_s > from_s) s.change_times_s = {from_s, until_s};
     Exchange<Eigen::MatrixXd> film;
     film.matrix = Eigen::Vector3d(0.0, 0.0, 1.0).asDiagonal();
-    film.to_hall = film.flow = Eigen::VectorXd::Unit(3, 2);
-    film.hall_sum = 1.0;
+    film.to_ambient = film.flow = Eigen::VectorXd::Unit(3, 2);
+    film.ambient_sum = 1.0;
     film.coefficient.law = [*this](const effects::Inputs& u) {
-      return film_W_K * std::pow(std::max(1e-3, std::abs(u.probe_K[0] - 293.15 - u.hall_K)), 0.25);
+      return film_W_K * std::pow(std::max(1e-3, std::abs(u.probe_K[0] - 293.15 - u.ambient_K)), 0.25);
     };
     film.coefficient.probes = {2};
     s.exchanges = {film};
     s.outputs.name = {"t"};
     s.outputs.unit = {"K"};
     s.outputs.state = Eigen::VectorXd::Unit(3, 1);
-    s.outputs.hall = Eigen::VectorXd::Zero(1);
+    s.outputs.ambient = Eigen::VectorXd::Zero(1);
     s.ones = Eigen::VectorXd::Ones(3);
     return s;
   }
@@ -90,14 +90,14 @@ Eigen::MatrixXd integrated(const Machine& m, double every_s) {
   const ReducedSystem unit = with_unit_mass(m.system(), start);
   Eigen::MatrixXd states(3, static_cast<Eigen::Index>(times_s(every_s).size()));
   Eigen::Index k = 0;
-  (void)simulate(unit, kCycle, m.hall, times_s(every_s),
+  (void)simulate(unit, kCycle, m.ambient, times_s(every_s),
                  {.relative_tolerance = 1e-10, .absolute_tolerance_K = 1e-9, .max_step_s = 30.0}, start,
                  [&](double, const Eigen::VectorXd& w) { states.col(k++) = w.cwiseQuotient(m.capacity_J_K.cwiseSqrt()); });
   return states;
 }
 double miss_K(const Machine& m, const Eigen::MatrixXd& expected, double every_s, double tolerance_K) {
   const auto states =
-      exponential_states(m.system(), kCycle, m.hall, times_s(every_s), {.absolute_tolerance_K = tolerance_K}, m.start_K);
+      exponential_states(m.system(), kCycle, m.ambient, times_s(every_s), {.absolute_tolerance_K = tolerance_K}, m.start_K);
   return states ? (*states - expected).cwiseAbs().maxCoeff() : INFINITY;
 }
 
@@ -106,7 +106,7 @@ TEST(ExponentialRun, MeetsTheIntegratorWithinItsTolerance) {
            [](Machine&) {}, [](Machine& m) { m.decay_1_K = 0.05; }, [](Machine& m) { m.film_W_K = 60.0; },
            [](Machine& m) { m.capacity_J_K[1] = 200.0; },  // a time constant of 4 s beside rows of 150 s
            [](Machine& m) {
-             m.hall.value = {1.0, 0.5, 2.5, -1.0};
+             m.ambient.value = {1.0, 0.5, 2.5, -1.0};
            },
            [](Machine& m) { m.heat_W = 200.0, m.from_s = 1234.5, m.until_s = 2101.7; }}) {
     Machine m;
@@ -137,7 +137,7 @@ TEST(ExponentialRun, IsExactWhereNothingLooksAtTemperatures) {
 TEST(ExponentialRun, LeavesToTheIntegratorWhatHasNoStepsOfItsOwn) {
   const Machine m;
   const auto has_states = [&](const ReducedSystem& s) {
-    return exponential_states(s, kCycle, m.hall, times_s(150.0), {}, m.start_K).has_value();
+    return exponential_states(s, kCycle, m.ambient, times_s(150.0), {}, m.start_K).has_value();
   };
   EXPECT_TRUE(has_states(m.system()));
   Machine chilled = m;

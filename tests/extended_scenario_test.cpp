@@ -40,11 +40,11 @@ effects:
   - {type: link, node: shaft, to: housing, conductance: 12 W/K}
   - type: link
     node: housing
-    to: hall
+    to: ambient
     conductance: 9 W/K
   - {type: coolant, node: housing, tank: tank, flow: 2 L/min, passage_conductance: 15 W/K, volume: 10 L, tank_exchange: 8 W/K}
 # what follows the list
-hall: [[0 min, 20 degC], [90 min, 22 degC]]
+ambient: [[0 min, 20 degC], [90 min, 22 degC]]
 sensors:
   - {name: t_shaft, node: shaft}
   - {name: t_housing, node: housing}
@@ -70,7 +70,7 @@ MeasuredRun run_of(const scenarios::Scenario& s) {
   run.name = s.cyclograms.front().name;
   run.cyclogram = s.cyclograms.front();
   run.time_s = scenarios::output_times_s(run.cyclogram, s.solver.output_interval_s);
-  run.hall = s.machine->hall;
+  run.ambient = s.machine->ambient;
   run.grid_s = run.time_s;  // as a simulation, whose readings are linear between its rows
   for (std::size_t i = 0; i < run.time_s.size(); ++i) run.row_in_grid.push_back(static_cast<Eigen::Index>(i));
   return run;
@@ -134,7 +134,7 @@ Eigen::MatrixXd by_simulation(const std::string& path) {
   const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
   const Cyclogram& cyclogram = s.cyclograms.front();
   const scenarios::FeltRun felt = scenarios::felt_run(model, cyclogram);
-  const solver::Trajectory run = solver::simulate(machine.system, felt.cyclogram, felt.hall,
+  const solver::Trajectory run = solver::simulate(machine.system, felt.cyclogram, felt.ambient,
                                                   scenarios::output_times_s(cyclogram, s.solver.output_interval_s), kTight,
                                                   scenarios::start_state(model, machine));
   const Record record = scenarios::as_recorded(model, run, machine.system.outputs, cyclogram);
@@ -192,13 +192,13 @@ const std::vector<Case> kCases = {
     {"heat_in_a_wave", false,
      added({"{type: heat_source, node: shaft, power: 60 W, period: 25 min, delay: 200 s, mean: -10 W, until: 90 min}"})},
     {"a_link_that_loosens", false,
-     added({"{type: changed_law, law: link housing - hall, factor: 0.3, from: 30 min, in: cycle}"})},
+     added({"{type: changed_law, law: link housing - ambient, factor: 0.3, from: 30 min, in: cycle}"})},
     {"a_joint_that_loosens", true, added({"{type: changed_law, law: contact column/head, factor: 0.3, from: 30 min}"})},
     {"another_exponent", false,
      added({"{type: changed_law, law: bearing_friction shaft, factor: 1.2, exponent: 0.6, at_speed: 700 rpm}"})},
     {"heat_of_two_laws_that_falls", false,
      added({"{type: changed_law, law: motor_loss housing, exponent: 0.3, at_speed: 700 rpm, decay: 0.03 1/K}"})},
-    {"a_path_that_was_missing", false, added({"{type: link, node: shaft, to: hall, conductance: 3 W/K}"})},
+    {"a_path_that_was_missing", false, added({"{type: link, node: shaft, to: ambient, conductance: 3 W/K}"})},
     {"a_hidden_body", false, added({"{type: hidden_body, node: housing, capacity: 30 kJ/K, conductance: 9 W/K}"})},
     {"a_hidden_body_with_a_way_out", false,
      added({"{type: hidden_body, node: shaft, capacity: 4 kJ/K, conductance: 6 W/K, hall_conductance: 2 W/K}"})},
@@ -207,7 +207,7 @@ const std::vector<Case> kCases = {
             "{type: hidden_body, node: housing, capacity: 9 kJ/K, conductance: 6 W/K}"})},
     {"a_hidden_body_behind_a_region", true,
      added({"{type: hidden_body, region: head, capacity: 8 kJ/K, conductance: 9 W/K, hall_conductance: 4 W/K}"})},
-    {"another_link", false, added({"{type: changed_law, law: link housing - hall, factor: 1.7}"})},
+    {"another_link", false, added({"{type: changed_law, law: link housing - ambient, factor: 1.7}"})},
     {"a_link_of_another_number", false, [](TwinState& t) { t[5].set("conductance", 15.3); }},
     {"another_coolant", false, [](TwinState& t) { t[6].values[2] *= 2.0; }},
     {"a_coolant_where_there_is_none", false,
@@ -236,8 +236,8 @@ const std::vector<Case> kCases = {
     {"another_heat_capacity", true, added({"{type: heat_capacity, region: head, factor: 1.5}"})},
     {"another_expansion", true, added({"{type: expansion, region: head, factor: 1.6}"})},
     {"stratified_air", true, added({"{type: stratification, gradient: 5 K/m, level: -0.5 m}"})},
-    {"hall_offset", false, added({"{type: ambient, offset: 1.5 K}"})},
-    {"hall_step_and_ramp", false, added({"{type: ambient, offset: 1.5 K, ramp: 1 K/h, from: 20 min, in: cycle}"})},
+    {"ambient_offset", false, added({"{type: ambient, offset: 1.5 K}"})},
+    {"ambient_step_and_ramp", false, added({"{type: ambient, offset: 1.5 K, ramp: 1 K/h, from: 20 min, in: cycle}"})},
     {"other_speed", false, added({"{type: speed_override, factor: 1.2}"})},
     {"a_stop", false, added({"{type: missing_stop, start: 10 min, length: 15 min, in: cycle}"})},
     {"growth", false, added({"{type: spindle_growth, displacement: nose, growth: 5 um, at_speed: 800 rpm, lag: 8 min}"})},
@@ -260,7 +260,7 @@ TEST(AnotherRun, WhatHappenedInItDoesNothingHere) {
   for (const char* text :
        {"{type: heat_source, node: shaft, power: 40 W, in: tuesday}", "{type: ambient, offset: 2 K, in: tuesday}",
         "{type: sensor_bias, sensor: t_shaft, bias: 1 K, in: tuesday}", "{type: speed_override, factor: 2, in: tuesday}",
-        "{type: changed_law, law: link housing - hall, factor: 3, in: tuesday}",
+        "{type: changed_law, law: link housing - ambient, factor: 3, in: tuesday}",
         "{type: exchange_window, node: shaft, conductance: 9 W/K, windows: [[0 min, 90 min]], in: tuesday}"}) {
     EXPECT_EQ(by_twin(spindle(), added({text})), before) << text;
   }
@@ -272,7 +272,7 @@ const Bench& semi_closed() {
     fixtures::ColumnAndHead what;
     what.effects.insert(what.effects.end(),
                         {"{type: node, node: screw, capacity: 1.8 kJ/K}", "{type: heat_source, node: screw, power: 20 W}",
-                         "{type: link, node: screw, to: hall, conductance: 2 W/K}"});
+                         "{type: link, node: screw, to: ambient, conductance: 2 W/K}"});
     const std::string path = fixtures::write_column_and_head(fresh_folder("semi_closed"), what);
     std::string text = what.text();
     text.insert(text.find("}\ncyclograms:"),
@@ -327,7 +327,7 @@ TEST(AHiddenBody, StartsSteadyAsTheRest) {
 }
 
 TEST(WrittenStratification, OfAnotherGradientRunsAsTheTwinPredicted) {
-  const Bench& b = written_with("hall", "{type: stratification, gradient: 1 K/m, level: 0.1 m}");
+  const Bench& b = written_with("ambient", "{type: stratification, gradient: 1 K/m, level: 0.1 m}");
   expect_runs_as_predicted(b, {"gradient", true, [](TwinState& t) { t.back().set("gradient", 13.0); }});
   expect_runs_as_predicted(b, {"level", true, [](TwinState& t) {
                                  t.back().set("gradient", 13.0);
@@ -413,7 +413,7 @@ TEST(ExtendedScenario, AFileInWhichMuchStandsInQuotesIsEditedInPlace) {
 /// The spindle with its last link in a writing that leaves no room for an edit.
 void expect_written_all_the_same(const std::string& name, const std::string& link, const std::string& anchor) {
   std::string text = kSpindle;
-  const std::string was = "  - type: link\n    node: housing\n    to: hall\n    conductance: 9 W/K\n";
+  const std::string was = "  - type: link\n    node: housing\n    to: ambient\n    conductance: 9 W/K\n";
   text.replace(text.find(was), was.size(), link);
   text.insert(text.find("12 W/K"), anchor);
   const auto b = bench(write_file(name + ".yaml", text));
@@ -429,38 +429,38 @@ void expect_written_all_the_same(const std::string& name, const std::string& lin
 }
 
 TEST(ExtendedScenario, WritesWhereANumberStandsInQuotes) {
-  expect_written_all_the_same("quoted", "  - {type: link, node: housing, to: hall, conductance: \"9 W/K\"}\n", "");
+  expect_written_all_the_same("quoted", "  - {type: link, node: housing, to: ambient, conductance: \"9 W/K\"}\n", "");
 }
 TEST(ExtendedScenario, WritesWhereANumberIsAnAlias) {
-  expect_written_all_the_same("aliased", "  - {type: link, node: housing, to: hall, conductance: *way}\n", "&way ");
+  expect_written_all_the_same("aliased", "  - {type: link, node: housing, to: ambient, conductance: *way}\n", "&way ");
 }
 
 TEST(ExtendedScenario, WritesIntoAListInBracketsThatEndsWithACommaAndBeforeTheEndOfTheDocument) {
   const std::string text = R"(name: flow
 reference_temperature: 20 degC
 machine: {generator: lumped}
-hall: [[0 min, 20 degC], [90 min, 22 degC]]
+ambient: [[0 min, 20 degC], [90 min, 22 degC]]
 sensors: [{name: t, node: a}]
 cyclograms: {cycle: [[40 min, 1000 rpm], [20 min, 0 rpm]]}
 solver: {output_interval: 2 min}
 )";
-  const std::string effects = "{type: node, node: a, capacity: 5 kJ/K}, {type: link, node: a, to: hall, conductance: 9 W/K}";
+  const std::string effects = "{type: node, node: a, capacity: 5 kJ/K}, {type: link, node: a, to: ambient, conductance: 9 W/K}";
   const std::vector<std::string> lists = {"effects: [" + effects + ",   # the last\n]\n", "effects: [" + effects + "]\n",
                                           "effects:\n  - {type: node, node: a, capacity: 5 kJ/K}\n  - {type: link, node: a, "
-                                          "to: hall, conductance: 9 W/K}\n...\n"};
+                                          "to: ambient, conductance: 9 W/K}\n...\n"};
   for (const std::string& list : lists) {
     const auto b = bench(write_file("flow.yaml", text + list));
     expect_runs_as_predicted(*b, {"flow", false, added({"{type: heat_source, node: a, power: 40 W}"})});
   }
 }
 
-TEST(ExtendedScenario, StartsInTheHallThatTheRunReallyHad) {
+TEST(ExtendedScenario, StartsInTheAmbientThatTheRunReallyHad) {
   std::string text = kSpindle;
-  text.insert(text.find("hall: [["), "start: hall\n");
-  const auto b = bench(write_file("in_the_hall.yaml", text));
+  text.insert(text.find("ambient: [["), "start: ambient\n");
+  const auto b = bench(write_file("in_the_ambient.yaml", text));
   const Change change = added({"{type: ambient, offset: 3 K, in: cycle}"});
   const ExtendedScenario e = extend(*b, change);
-  const scenarios::Scenario s = scenarios::read_scenario(write_file("in_the_hall_extended.yaml", e.text));
+  const scenarios::Scenario s = scenarios::read_scenario(write_file("in_the_ambient_extended.yaml", e.text));
   EXPECT_NEAR(scenarios::warmer_start_K(*s.machine, s.cyclograms.front()), 3.0, 1e-12);
   Cyclogram another = s.cyclograms.front();
   another.name = "another";

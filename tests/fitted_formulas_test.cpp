@@ -186,21 +186,21 @@ TEST(WithLags, FindsALagOfTwentyMinutes) {
   for (std::size_t i = 0; i < predicted.size(); ++i) EXPECT_NEAR(predicted[i], judged.channels[1].values[i], 0.1);
 }
 
-/// Drift of a drive, tau d' + d = 1e-6 n^2 + 0.002 n at tau = 35 min, exact between rows; and the hall at 0.5 um/K behind 100 min.
-Record driven(std::uint64_t seed, double hall_um_K) {
+/// Drift of a drive, tau d' + d = 1e-6 n^2 + 0.002 n at tau = 35 min, exact between rows; and the ambient at 0.5 um/K behind 100 min.
+Record driven(std::uint64_t seed, double ambient_um_K) {
   Random random(seed);
   Record r{
-      .source = "driven", .time_s = {}, .channels = {{"speed", "rpm", {}}, {"hall", "degC", {}}, {"drift_y", "um", {}}}};
-  double speed = 2000.0 * random.uniform(), hall = 20.0, lag = 0.0, lag_hall = 20.0;
+      .source = "driven", .time_s = {}, .channels = {{"speed", "rpm", {}}, {"ambient", "degC", {}}, {"drift_y", "um", {}}}};
+  double speed = 2000.0 * random.uniform(), ambient = 20.0, lag = 0.0, lag_ambient = 20.0;
   for (int i = 0; i < 500; ++i) {
     r.time_s.push_back(60.0 * i);
     r.channels[0].values.push_back(speed);
-    r.channels[1].values.push_back(hall);
-    r.channels[2].values.push_back(lag + hall_um_K * (lag_hall - 20.0));
+    r.channels[1].values.push_back(ambient);
+    r.channels[2].values.push_back(lag + ambient_um_K * (lag_ambient - 20.0));
     lag += (1.0 - std::exp(-60.0 / 2100.0)) * (1e-6 * speed * speed + 0.002 * speed - lag);
     const double next = 20.0 + 4.0 * std::sin(2e-2 * i + static_cast<double>(seed));
-    lag_hall += (1.0 - std::exp(-60.0 / 6000.0)) * (0.5 * (hall + next) - lag_hall);
-    hall = next;
+    lag_ambient += (1.0 - std::exp(-60.0 / 6000.0)) * (0.5 * (ambient + next) - lag_ambient);
+    ambient = next;
     if (random.chance(0.03)) speed = 4000.0 * random.uniform();
   }
   return r;
@@ -221,24 +221,24 @@ TEST(FromSpeed, FindsGainAndTimeConstant) {
   EXPECT_NEAR(square, 1e-6, 1e-12);
 }
 
-TEST(FromSpeed, FindsTheHallBesideIt) {
+TEST(FromSpeed, FindsTheAmbientBesideIt) {
   const std::vector<Record> records = {driven(1, 0.5), driven(2, 0.5), driven(3, 0.5)};
-  const FittedFormula f = fit_from_speed(records, "speed", "hall", "drift_y");
+  const FittedFormula f = fit_from_speed(records, "speed", "ambient", "drift_y");
   EXPECT_LT(f.held_out_rmse, 1e-5);
-  bool has_hall = false;
+  bool has_ambient = false;
   for (const DriftModel::Term& t : f.model.terms) {
-    if (t.input != "hall") continue;
-    has_hall = true;
+    if (t.input != "ambient") continue;
+    has_ambient = true;
     EXPECT_EQ(t.lag_s, 6000.0);
     EXPECT_NEAR(t.coefficient, 0.5, 1e-5);
   }
-  EXPECT_TRUE(has_hall);
+  EXPECT_TRUE(has_ambient);
 }
 
-TEST(FromSpeed, GoesOnWithoutAHallThatNeverChanges) {
+TEST(FromSpeed, GoesOnWithoutAnAmbientThatNeverChanges) {
   std::vector<Record> records = {driven(1, 0.0), driven(2, 0.0)};
   for (Record& r : records) std::fill(r.channels[1].values.begin(), r.channels[1].values.end(), 20.0);
-  const FittedFormula f = fit_from_speed(records, "speed", "hall", "drift_y");
+  const FittedFormula f = fit_from_speed(records, "speed", "ambient", "drift_y");
   for (const DriftModel::Term& t : f.model.terms) EXPECT_EQ(t.input, "speed");
   EXPECT_LT(f.held_out_rmse, 1e-5);
 }

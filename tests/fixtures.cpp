@@ -263,7 +263,7 @@ void observe_unknowns(solver::FullSystem& system, const std::vector<int>& unknow
   const auto n = static_cast<Eigen::Index>(unknowns.size());
   system.outputs = {};
   system.outputs.state = Eigen::MatrixXd::Zero(system.size(), n);
-  system.outputs.hall = Eigen::VectorXd::Zero(n);
+  system.outputs.ambient = Eigen::VectorXd::Zero(n);
   for (Eigen::Index j = 0; j < n; ++j) {
     system.outputs.name.push_back("unknown " + std::to_string(unknowns[j]));
     system.outputs.unit.emplace_back("K");

@@ -83,7 +83,7 @@ struct Asked {
   bool co_simulation = true;
   double step_s = 60.0;
   std::size_t rewind_at_row = 0;
-  int hall_from_input = -1;
+  int ambient_from_input = -1;
   bool tells_behind_step = false;
 };
 struct Told {
@@ -96,9 +96,9 @@ Told import_unit(const Unit& unit, const Record& inputs, const std::vector<std::
   const std::size_t n_rows = inputs.n_samples();
   std::vector<unsigned> in, out;
   std::vector<double> rows;
-  int hall = -1;
+  int ambient = -1;
   for (const Channel& c : inputs.channels) {
-    if (c.name == "hall_temperature") hall = static_cast<int>(in.size());
+    if (c.name == "ambient_temperature") ambient = static_cast<int>(in.size());
     in.push_back(unit.reference.at(c.name));
   }
   for (std::size_t i = 0; i < n_rows; ++i) {
@@ -117,10 +117,10 @@ Told import_unit(const Unit& unit, const Record& inputs, const std::vector<std::
   run.inputs = in.data();
   run.time_s = inputs.time_s.data();
   run.input_rows = rows.data();
-  run.hall_from_input = asked.hall_from_input;
-  run.hall_from_input_reference = 3000;
+  run.ambient_from_input = asked.ambient_from_input;
+  run.ambient_from_input_reference = 3000;
   run.step_s = asked.step_s;
-  run.hall_input = asked.hall_from_input == 1 ? hall : -1;
+  run.ambient_input = asked.ambient_from_input == 1 ? ambient : -1;
   run.rewind_at_row = asked.rewind_at_row;
   run.tells_behind_step = asked.tells_behind_step;
   run.n_states = unit.states.size();
@@ -205,7 +205,7 @@ TEST_P(Fmu, InModelExchangeIsTheSameByTheImportersIntegrator) {
   const Unit unit(fp3.order(GetParam()), name("exchange"));
   ASSERT_EQ(unit.states.size(), static_cast<std::size_t>(fp3.fmu.start.size()));
   const Record predicted = fp3.predicted("chaotic");
-  // Rows where the speed changes, and the end: between them the integrator is alone, but for the knots of the hall.
+  // Rows where the speed changes, and the end: between them the integrator is alone, but for the knots of the ambient.
   Record inputs = Fp3::speed_of(predicted), rows{.source = "rows", .time_s = {}, .channels = {{"spindle_speed", "rpm", {}}}};
   std::vector<std::size_t> at;
   for (std::size_t i = 0; i < inputs.n_samples(); ++i) {
@@ -221,25 +221,26 @@ TEST_P(Fmu, InModelExchangeIsTheSameByTheImportersIntegrator) {
     for (std::size_t i : at) wanted.push_back(predicted.at(fp3.outputs[o]).values[i]);
     EXPECT_LT(largest_gap(told.of[o], wanted, wanted.size()), kSame_um) << fp3.outputs[o];
   }
-  EXPECT_EQ(told.run.n_events, static_cast<int>(rows.n_samples()) + 1) << "one at each row, and the hall's knot at 120 min";
+  EXPECT_EQ(told.run.n_events, static_cast<int>(rows.n_samples()) + 1)
+      << "one at each row, and the ambient's knot at 120 min";
   EXPECT_LT(told.run.jacobian_gap, 1e-6) << "directional derivatives along states and speed, against differences";
 }
 
-TEST_P(Fmu, TakesTheHallAsAnInput) {
+TEST_P(Fmu, TakesTheAmbientAsAnInput) {
   const Fp3& fp3 = Fp3::get();
-  const Unit unit(fp3.order(GetParam()), name("hall"));
+  const Unit unit(fp3.order(GetParam()), name("ambient"));
   const Record predicted = fp3.predicted("chaotic");
   Record inputs = Fp3::speed_of(predicted);
-  Channel hall{"hall_temperature", "degC", {}};
+  Channel ambient{"ambient_temperature", "degC", {}};
   for (double t_s : predicted.time_s)
-    hall.values.push_back(fp3.scenario.machine->hall.at(t_s) + fp3.scenario.machine->reference_K - kZeroCelsius_K);
-  inputs.channels.push_back(hall);
-  fp3.expect_as(predicted, import_unit(unit, inputs, fp3.outputs, {.step_s = 7.0, .hall_from_input = 1}), kSame_um);
-  // Of a machine that starts as warm as its hall, in a hall that is 3 K warmer all the time, everything is as much warmer.
+    ambient.values.push_back(fp3.scenario.machine->ambient.at(t_s) + fp3.scenario.machine->reference_K - kZeroCelsius_K);
+  inputs.channels.push_back(ambient);
+  fp3.expect_as(predicted, import_unit(unit, inputs, fp3.outputs, {.step_s = 7.0, .ambient_from_input = 1}), kSame_um);
+  // Of a machine that starts as warm as its ambient, in an ambient that is 3 K warmer all the time, everything is as much warmer.
   FmuOrder order = fp3.order(GetParam());
-  order.model.start_follows_hall = true;
+  order.model.start_follows_ambient = true;
   for (double& value : inputs.channels[1].values) value += 3.0;
-  const Told warmer = import_unit(Unit(order, name("warmer")), inputs, {"t11"}, {.hall_from_input = 1});
+  const Told warmer = import_unit(Unit(order, name("warmer")), inputs, {"t11"}, {.ambient_from_input = 1});
   for (std::size_t i = 0; i < predicted.n_samples(); ++i)
     EXPECT_NEAR(warmer.of[0][i], predicted.at("t11").values[i] + 3.0, 1e-6);
 }
@@ -278,10 +279,10 @@ TEST_P(Fmu, IsValidByTheSchemaAndTheSameBytesEachTime) {
   EXPECT_EQ(unit.files, Unit(fp3.order(GetParam()), name("again")).files);
 }
 
-/// Readings with noise, one of which goes wrong, and a hall's thermometer that jumps for a while.
+/// Readings with noise, one of which goes wrong, and an ambient's thermometer that jumps for a while.
 compensation::ObservedRun troubled_run(const Fp3& fp3) {
   const Record predicted = fp3.predicted("chaotic");
-  compensation::ObservedRun run{.cyclogram = fp3.scenario.cyclogram("chaotic"), .hall = {}, .readings = predicted};
+  compensation::ObservedRun run{.cyclogram = fp3.scenario.cyclogram("chaotic"), .ambient = {}, .readings = predicted};
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, 0.1);
   for (Channel& c : run.readings.channels) {
@@ -293,8 +294,8 @@ compensation::ObservedRun troubled_run(const Fp3& fp3) {
     }
   }
   for (std::size_t i = 0; i < predicted.n_samples(); ++i) {
-    run.hall.time_s.push_back(predicted.time_s[i]);
-    run.hall.value.push_back(fp3.scenario.machine->hall.at(predicted.time_s[i]) + (i > 60 && i < 75 ? 6.0 : 0.0));
+    run.ambient.time_s.push_back(predicted.time_s[i]);
+    run.ambient.value.push_back(fp3.scenario.machine->ambient.at(predicted.time_s[i]) + (i > 60 && i < 75 ? 6.0 : 0.0));
   }
   return run;
 }
@@ -302,7 +303,7 @@ compensation::ObservedRun troubled_run(const Fp3& fp3) {
 TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
   const Fp3& fp3 = Fp3::get();
   const scenarios::ReducedMachine& reduced = *fp3.model.reduced();
-  compensation::Observer observer(reduced.system, reduced.start, fp3.fmu.start_hall_K, {"t05", "t06", "t07", "t10"},
+  compensation::Observer observer(reduced.system, reduced.start, fp3.fmu.start_ambient_K, {"t05", "t06", "t07", "t10"},
                                   "drift_y");
   const compensation::ObservedRun run = troubled_run(fp3);
   compensation::ObservedRun lesson = run;
@@ -313,12 +314,12 @@ TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
   }
   observer.learn(std::span(&lesson, 1));  // what it has learned goes along
   const compensation::Observation seen = observer.observe(run);
-  ASSERT_EQ(seen.distrusted.size(), 2u) << "the hall's thermometer, and t05";
+  ASSERT_EQ(seen.distrusted.size(), 2u) << "the ambient thermometer, and t05";
   const Unit unit({.model = observer_fmu(fp3.scenario, observer), .version = GetParam()}, name("observer"));
   Record inputs = Fp3::speed_of(run.readings);
-  Channel hall{"hall_temperature", "degC", {}};
-  for (double v : run.hall.value) hall.values.push_back(v + fp3.scenario.machine->reference_K - kZeroCelsius_K);
-  inputs.channels.push_back(hall);
+  Channel ambient{"ambient_temperature", "degC", {}};
+  for (double v : run.ambient.value) ambient.values.push_back(v + fp3.scenario.machine->reference_K - kZeroCelsius_K);
+  inputs.channels.push_back(ambient);
   for (const std::string& s : observer.sensors()) inputs.channels.push_back(run.readings.at(s));
   const std::vector<std::string> outputs = {"drift_y", "drift_y_deviation", "model.drift_y", "doubted.t05", "doubted.t06"};
   const std::size_t n = inputs.n_samples() - 1;  // the last row begins no step
@@ -369,9 +370,9 @@ machine: {generator: lumped}
 effects:
   - {type: node, node: head, capacity: 60 kJ/K}
   - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
-  - {type: link, node: head, to: hall, conductance: 20 W/K}
-start: hall
-hall: [[0 h, 20 degC], [9 h, 20 degC]]
+  - {type: link, node: head, to: ambient, conductance: 20 W/K}
+start: ambient
+ambient: [[0 h, 20 degC], [9 h, 20 degC]]
 sensors: [{name: t_head, node: head}]
 displacements: [{name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}]
 cyclograms:

@@ -26,7 +26,7 @@ CURRENT = """<?xml version="1.0" encoding="UTF-8"?>
         </Samples>
       </ComponentStream>
       <ComponentStream component="Environmental" componentId="e1">
-        <Samples><Temperature dataItemId="e2" sequence="7" timestamp="2026-11-23T11:50:00Z">{hall}</Temperature></Samples>
+        <Samples><Temperature dataItemId="e2" sequence="7" timestamp="2026-11-23T11:50:00Z">{ambient}</Temperature></Samples>
         <Condition><Normal dataItemId="e3" sequence="8" timestamp="2026-11-23T11:50:00Z" type="TEMPERATURE"/></Condition>
       </ComponentStream>
     </DeviceStream>
@@ -86,26 +86,26 @@ def main():
     with tempfile.TemporaryDirectory(prefix="driftwright_mtconnect-") as folder:
         os.environ["XDG_CACHE_HOME"] = folder + "/cache"
         pathlib.Path(folder, "head.yaml").write_text(HEAD)
-        agent = Agent({"speed": "1000", "hall": "20"})
+        agent = Agent({"speed": "1000", "ambient": "20"})
         address = f"http://127.0.0.1:{agent.port}"
         running = follow(program, folder, address + "/mill", "speed_rpm=S1speed", "ambient_degC=e2")
         threading.Thread(target=lambda: lines.extend(json.loads(line) for line in running.stdout), daemon=True).start()
 
-        def is_at(um):  # 12 J/K on 20 W/K settle within 4 s to 300 W / 2000 rpm / 20 W/K * 4 um/K above the hall
+        def is_at(um):  # 12 J/K on 20 W/K settle within 4 s to 300 W / 2000 rpm / 20 W/K * 4 um/K above the ambient
             return bool(lines) and abs(lines[-1]["axes"]["nose_z"]["predicted_um"] - um) < 0.05 and lines[-1]["state"] == "on"
 
         wait_for("drift of 1000 rpm", lambda: is_at(1000 * 0.15 / 20 * 4))
-        agent.values = {"speed": "500", "hall": "21.5"}
-        wait_for("drift of 500 rpm in a warmer hall", lambda: is_at((500 * 0.15 / 20 + 1.5) * 4))
-        agent.values = {"speed": "UNAVAILABLE", "hall": "21.5"}
+        agent.values = {"speed": "500", "ambient": "21.5"}
+        wait_for("drift of 500 rpm in a warmer ambient", lambda: is_at((500 * 0.15 / 20 + 1.5) * 4))
+        agent.values = {"speed": "UNAVAILABLE", "ambient": "21.5"}
         n = len(lines)
         wait_for("rows without a speed", lambda: len(lines) > n + 40)  # 8 s; the body settles in 4
         assert is_at((500 * 0.15 / 20 + 1.5) * 4), lines[-1]  # what is missing is held, and is not 0
-        agent.values = {"speed": "500", "hall": "21.5"}
+        agent.values = {"speed": "500", "ambient": "21.5"}
         agent.leave()
         n = len(lines)
         wait_for("rows while it is away", lambda: len(lines) > n + 4)
-        again = Agent({"speed": "2000", "hall": "20"}, agent.port)
+        again = Agent({"speed": "2000", "ambient": "20"}, agent.port)
         wait_for("drift after it has come back", lambda: is_at(2000 * 0.15 / 20 * 4))
         running.send_signal(signal.SIGTERM)
         assert running.wait(30) == 0

@@ -10,19 +10,19 @@ import tempfile
 
 MACHINE = """name: spindle
 reference_temperature: 20 degC
-hall: 20 degC
+ambient: 20 degC
 machine: {generator: lumped}
 effects:
   - {type: node, node: spindle, capacity: 5.6 kJ/K}
   - {type: node, node: housing, capacity: 19 kJ/K}
   - {type: heat_source, node: spindle, power: 150 W, at_speed: 6000 rpm, exponent: 1.5}
   - {type: link, node: spindle, to: housing, conductance: 12 W/K}
-  - {type: link, node: housing, to: hall, conductance: 5 W/KUNTIL}
+  - {type: link, node: housing, to: ambient, conductance: 5 W/KUNTIL}
 sensors: [{name: t_housing, node: housing}]
 displacements: [{name: nose_z, sensitivities: [{node: spindle, sensitivity: 2.5 um/K}]}]
 cyclograms: {shift: [[120 min, 6000 rpm], [40 min, 0 rpm], [100 min, 3000 rpm], [60 min, 6000 rpm], [90 min, 0 rpm], [120 min, 4500 rpm]]}
 """
-FAULT = ", until: 200 min}\n  - {type: link, node: housing, to: hall, conductance: 2 W/K, from: 200 min"
+FAULT = ", until: 200 min}\n  - {type: link, node: housing, to: ambient, conductance: 2 W/K, from: 200 min"
 
 
 def main():

@@ -60,7 +60,7 @@ StreamRow row_of(const Record& r, std::size_t i) {
 TEST(FollowSession, GivesTheCorrectionThatWasJudged) {
   const Record r = fixtures::machine(7, 60.0);
   const output::PredictorFile file = formula(true);
-  const GuardedCorrection judged = correct(file.predictor, {.cyclogram = {}, .hall = {}, .readings = r});
+  const GuardedCorrection judged = correct(file.predictor, {.cyclogram = {}, .ambient = {}, .readings = r});
   Session session = session_of(path_of(file));
   session.begin(r.channels);
   for (std::size_t i = 0; i < r.n_samples(); ++i) {

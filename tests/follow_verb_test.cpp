@@ -17,16 +17,16 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-/// One body of 60 kJ/K on 20 W/K to the hall: 15 K and 60 um at 2000 rpm with a time constant of 50 min. The hall warms.
+/// One body of 60 kJ/K on 20 W/K to the ambient: 15 K and 60 um at 2000 rpm with a time constant of 50 min. The ambient warms.
 constexpr const char* kHead = R"(name: head
 reference_temperature: 20 degC
 machine: {generator: lumped}
 effects:
   - {type: node, node: head, capacity: 60 kJ/K}
   - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
-  - {type: link, node: head, to: hall, conductance: 20 W/K}
-start: hall
-hall: [[0 h, 21 degC], [2 h, 23 degC], [9 h, 22 degC]]
+  - {type: link, node: head, to: ambient, conductance: 20 W/K}
+start: ambient
+ambient: [[0 h, 21 degC], [2 h, 23 degC], [9 h, 22 degC]]
 sensors: [{name: t_head, node: head}]
 displacements:
   - {name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}
@@ -198,7 +198,7 @@ TEST(FollowVerb, SaysWhatItCannotFollow) {
   refused("head.yaml --state pipe", "mkfifo pipe; cat day.csv |", "a file is wanted");
   refused("head.yaml --state /dev/zero", "cat day.csv |", "a file is wanted");
   std::string grows = kHead;
-  grows.insert(grows.find("start: hall"),
+  grows.insert(grows.find("start: ambient"),
                "  - {type: spindle_growth, displacement: nose_z, growth: 5 um, at_speed: 2000 rpm, lag: 5 min}\n");
   write_file("grows.yaml", grows);
   refused("grows.yaml", "true |", "spindle_growth nose_z");

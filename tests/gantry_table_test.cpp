@@ -55,7 +55,7 @@ double tape_degC(const Record& record, std::size_t i) {
   return sum;
 }
 
-// Free steel of 9.9 m at 2.5 K would be 285 um; the paper's first day lies between 20 and 120 um. At 8:00 all is as warm as the hall, and
+// Free steel of 9.9 m at 2.5 K would be 285 um; the paper's first day lies between 20 and 120 um. At 8:00 all is as warm as the ambient, and
 // what is computed is nothing but (11.5 - 11.0) um/(m K) times 9.9 m times 3 K = 14.85 um: below the paper's 20, out of its band. With
 // each expansion known to 3 % it is 15 +- 14 um. The later three lie in the band.
 TEST(GantryTable, GrowsByTableLessScaleAsThePapersFirstDayButForItsStart) {

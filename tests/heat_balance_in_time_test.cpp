@@ -20,7 +20,7 @@ const TransientOptions kShipped{.relative_tolerance = 1e-3, .absolute_tolerance_
 // --- balance ----------------------------------------------------------------------------------------------------
 
 /// Everything at once that leaves a system linear: two blocks and a joint, lumped air and an oil tank of prescribed
-/// temperature, a surface of prescribed temperature, one that follows the hall, films with speed, stratified air.
+/// temperature, a surface of prescribed temperature, one that follows the ambient, films with speed, stratified air.
 effects::HeatBalance everything_linear() {
   effects::HeatBalance balance;
   balance.heats.push_back(
@@ -31,7 +31,7 @@ effects::HeatBalance everything_linear() {
       {"feed", effects::region("b"), [](const effects::Inputs& u) { return 500.0 * u.drive.feed_m_s[1]; }});
   const auto grows = [](const effects::Inputs& u) { return 5.0 + 0.02 * u.drive.speed_rpm; };
   balance.exchanges.push_back(effects::make_film("nose", "a.z0", grows, "air"));
-  balance.exchanges.push_back(effects::make_film("side", "a.y1", grows, "hall"));
+  balance.exchanges.push_back(effects::make_film("side", "a.y1", grows, "ambient"));
   balance.exchanges.push_back(film("b.y1", 30.0));
   balance.exchanges.push_back(film("b.y0", 40.0, "oil"));
   balance.exchanges.push_back(effects::make_contact("contact", "a/b", constant(1500.0)));
@@ -59,9 +59,9 @@ Trajectory run_everything(const effects::HeatBalance& balance, CellShape shape, 
                                      {1200, {.speed_rpm = 500, .feed_m_s = {0, 0.2, 0}, .cutting_power_W = 300}},
                                      {3600, {.speed_rpm = 3000}},
                                      {1800, {}}}};
-  const TimeSeries hall{{0, 2000, 5000, 8000}, {0.0, 1.5, 1.5, -2.0}};
+  const TimeSeries ambient{{0, 2000, 5000, 8000}, {0.0, 1.5, 1.5, -2.0}};
   Eigen::VectorXd start = Eigen::VectorXd::LinSpaced(system.size(), -1.0, 1.0);
-  return simulate(system, cycle, hall, {9000}, kShipped, start);
+  return simulate(system, cycle, ambient, {9000}, kShipped, start);
 }
 
 class BalanceInEachCell : public ::testing::TestWithParam<CellShape> {};
@@ -80,7 +80,7 @@ TEST_P(BalanceInEachCell, HeatBalancesWithEverythingLinearAtOnceAtTheShippedTole
 
 TEST_P(BalanceInEachCell, HeatBalancesNearlyWithRadiationLawsOfTemperatureAndProperties) {
   effects::HeatBalance balance = everything_linear();
-  balance.radiations = {{"to the hall", "a.z1", 0.9}, {"to the air", "b.z1", 0.6, "air"}};
+  balance.radiations = {{"to the ambient", "a.z1", 0.9}, {"to the air", "b.z1", 0.6, "air"}};
   const auto thins = [](const effects::Inputs& u) {
     return 0.1 * u.drive.speed_rpm * std::exp(-0.03 * (u.probe_K[0] - 293.15));
   };
@@ -117,7 +117,7 @@ TEST(Pulses, OfCuttingAndFeedWithinHoursOfRestLeaveTheirHeat) {
   TransientOptions options = kShipped;
   options.max_step_s = 7200.0;
   const Trajectory run =
-      simulate(system, pulse, fixtures::still_hall(), {kHalf_s, kHalf_s + 15, kHalf_s + 30, kHalf_s + 45, 2 * kHalf_s},
+      simulate(system, pulse, fixtures::still_ambient(), {kHalf_s, kHalf_s + 15, kHalf_s + 30, kHalf_s + 45, 2 * kHalf_s},
                options, Eigen::VectorXd::Zero(system.size()));
   const std::array exact_J = {0.0, 4500.0, 10500.0, 12000.0, 12000.0};
   for (int k = 0; k < 5; ++k) {
@@ -144,8 +144,8 @@ TEST(Pulses, OfAPrescribedTemperatureWithinHoursOfRestAreFollowed) {
   TransientOptions options = kShipped;
   options.max_step_s = 7200.0;
   const std::vector<double> times_s = {kHalf_s, kHalf_s + 1, kHalf_s + 29, kHalf_s + 30, kHalf_s + 230};
-  const Trajectory run = simulate(system, {.name = "rest", .sections = {{2 * kHalf_s, {}}}}, fixtures::still_hall(), times_s,
-                                  options, Eigen::VectorXd::Zero(2));
+  const Trajectory run = simulate(system, {.name = "rest", .sections = {{2 * kHalf_s, {}}}}, fixtures::still_ambient(),
+                                  times_s, options, Eigen::VectorXd::Zero(2));
   const auto ramp = [](double t_s) { return t_s <= 0.0 ? 0.0 : 40.0 * (t_s + 200.0 * std::expm1(-t_s / 200.0)); };
   double worst_K = 0.0;
   for (std::size_t k = 0; k < times_s.size(); ++k) {
@@ -172,7 +172,7 @@ TEST(Pulses, OfAPrescribedSurfaceWithinHoursOfRestStoreTheHeatOfFineSteps) {
   const std::vector<double> times_s = {kHalf_s, kHalf_s + 15, kHalf_s + 30, kHalf_s + 120};
   const Cyclogram rest{.name = "rest", .sections = {{2 * kHalf_s, {}}}};
   const auto run = [&](const TransientOptions& options) {
-    return simulate(system, rest, fixtures::still_hall(), times_s, options, Eigen::VectorXd::Zero(system.size()));
+    return simulate(system, rest, fixtures::still_ambient(), times_s, options, Eigen::VectorXd::Zero(system.size()));
   };
   const Trajectory shipped = run({.relative_tolerance = 1e-3, .absolute_tolerance_K = 5e-3, .max_step_s = 7200.0});
   const Trajectory fine = run({.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7, .max_step_s = 1.0});

@@ -39,7 +39,7 @@ inline constexpr std::array kAllShapes = {mesh::CellShape::kTet4,  mesh::CellSha
 }
 
 [[nodiscard]] inline effects::Exchange film(const std::string& surface, double htc_W_m2K,
-                                            const std::string& surrounding = effects::kHallName) {
+                                            const std::string& surrounding = effects::kAmbientName) {
   return effects::make_film("film " + surface, surface, constant(htc_W_m2K), surrounding);
 }
 
@@ -49,19 +49,19 @@ inline constexpr std::array kAllShapes = {mesh::CellShape::kTet4,  mesh::CellSha
   return {name, std::move(body), {{0.0}, {temperature_K}}, false};
 }
 
-/// A hall that stays `theta_K` above the reference temperature.
-[[nodiscard]] inline TimeSeries still_hall(double theta_K = 0.0) {
+/// An ambient that stays `theta_K` above the reference temperature.
+[[nodiscard]] inline TimeSeries still_ambient(double theta_K = 0.0) {
   return {{0.0}, {theta_K}};
 }
 
 /// A run at standstill with equal relative and absolute (times 1 K) tolerance.
 [[nodiscard]] inline solver::Trajectory run_at_rest(const solver::FullSystem& system, const std::vector<double>& output_s,
                                                     double tolerance, const Eigen::VectorXd& start,
-                                                    const TimeSeries& hall = still_hall()) {
+                                                    const TimeSeries& ambient = still_ambient()) {
   const solver::TransientOptions options{
       .relative_tolerance = tolerance, .absolute_tolerance_K = tolerance, .max_step_s = output_s.back()};
   const Cyclogram rest{.name = "rest", .sections = {{output_s.back(), {}}}};
-  return solver::simulate(system, rest, hall, output_s, options, start);
+  return solver::simulate(system, rest, ambient, output_s, options, start);
 }
 
 /// "1.234e-05", for RecordProperty and messages.

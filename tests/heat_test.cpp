@@ -17,9 +17,9 @@ using fixtures::Box;
 using mesh::CellShape;
 using std::numbers::pi;
 
-const TimeSeries kStillHall{{0.0}, {0.0}};
+const TimeSeries kStillAmbient{{0.0}, {0.0}};
 
-effects::Exchange film(const std::string& surface, double htc_W_m2K, const std::string& surrounding = "hall") {
+effects::Exchange film(const std::string& surface, double htc_W_m2K, const std::string& surrounding = "ambient") {
   return effects::make_film("film " + surface, surface, fixtures::constant(htc_W_m2K), surrounding);
 }
 
@@ -27,20 +27,20 @@ effects::Exchange film(const std::string& surface, double htc_W_m2K, const std::
 Eigen::VectorXd after(const FullSystem& system, double time_s, const Eigen::VectorXd& start, double tolerance) {
   const TransientOptions options{.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance, .max_step_s = time_s};
   const Cyclogram rest{.name = "rest", .sections = {{time_s, 0.0}}};
-  return simulate(system, rest, kStillHall, {time_s}, options, start).outputs.col(0);
+  return simulate(system, rest, kStillAmbient, {time_s}, options, start).outputs.col(0);
 }
 
 // --- steady -----------------------------------------------------------------------------------------------------
 
 TEST(SteadySlab, HeatedEvenlyIsAParabola) {
-  // q = 5e4 W/m^3 in L = 0.2 m, film h = 25 on x = L: T = q L / h + q (L^2 - x^2) / (2 k) above the hall; T(0) = 425 K.
+  // q = 5e4 W/m^3 in L = 0.2 m, film h = 25 on x = L: T = q L / h + q (L^2 - x^2) / (2 k) above the ambient; T(0) = 425 K.
   // A parabola lies in the space of quadratic cells: exact to the rounding of the solve.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.2, 0.05, 0.05}, .n = {4, 1, 1}});
   effects::HeatBalance balance;
   balance.heats.push_back({"heat", effects::region("body"), fixtures::constant(5e4 * 0.2 * 0.05 * 0.05)});
   balance.exchanges.push_back(film("x1", 25.0));
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
-  const Eigen::VectorXd t = fixtures::steady(system, {.drive = {.speed_rpm = 0.0}, .hall_K = 3.0});
+  const Eigen::VectorXd t = fixtures::steady(system, {.drive = {.speed_rpm = 0.0}, .ambient_K = 3.0});
   const double k = fixtures::steel().conductivity_W_mK;
   for (int i = 0; i < mesh.n_nodes(); ++i) {
     const double x = mesh.coords(0, i);
@@ -269,8 +269,8 @@ TEST(TwoLumps, ExchangeHeatLikeTwoCoupledExponentials) {
               1e-9);  // P (G + H2) / (H1 H2 + G (H1 + H2))
 }
 
-TEST(AirNode, IsABodyBetweenFilmAndHall) {
-  // A heated block in a pocket of air of 500 J/K that has 0.04 W/K to the hall; film 5 W/(m^2 K) on 0.01 m^2.
+TEST(AirNode, IsABodyBetweenFilmAndAmbient) {
+  // A heated block in a pocket of air of 500 J/K that has 0.04 W/K to the ambient; film 5 W/(m^2 K) on 0.01 m^2.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {1, 1, 1}});
   effects::HeatBalance balance;
   balance.heats.push_back({"heat", effects::region("body"), fixtures::constant(1.0)});
@@ -305,7 +305,7 @@ TEST(HeatMatrices, UniformTemperatureDrivesNoHeatAndMassIsTheHeatCapacity) {
     EXPECT_LT(flow.cwiseAbs().maxCoeff(), 1e-12);                            // rounding of entries of 10 W/K
     EXPECT_NEAR(system.ones.dot(system.mass * system.ones), 24000.0, 1e-8);  // rho c V
     EXPECT_NEAR(system.sources[0].load.sum(), 1.0, 1e-14);
-    EXPECT_NEAR(system.exchanges[0].hall_sum, 0.06, 1e-15);
+    EXPECT_NEAR(system.exchanges[0].ambient_sum, 0.06, 1e-15);
     EXPECT_LT((Eigen::MatrixXd(system.conduction) - Eigen::MatrixXd(system.conduction).transpose()).norm(), 1e-12);
   }
 }

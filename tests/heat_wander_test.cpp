@@ -21,9 +21,9 @@ effects:
   - {type: heat_source, node: heater, power: 40 W, at_speed: 1000 rpm, exponent: 1}
   - {type: link, node: heater, to: air, conductance: 2.3 W/K}
   - {type: link, node: air, to: wall, conductance: 3 W/K}
-  - {type: link, node: air, to: hall, conductance: 0.8 W/K}
-  - {type: link, node: wall, to: hall, conductance: 0.5 W/K}
-hall: [[0 h, 21 degC]]
+  - {type: link, node: air, to: ambient, conductance: 0.8 W/K}
+  - {type: link, node: wall, to: ambient, conductance: 0.5 W/K}
+ambient: [[0 h, 21 degC]]
 sensors:
   - {name: heater, node: heater}
   - {name: inside, node: air}

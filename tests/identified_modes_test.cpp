@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 constexpr double kTau_s[] = {9000.0, 1500.0};  // slow, fast, at standstill
 constexpr double kTop_rpm = 2000.0;
 const TestChannels kChannels{{"drift", "across", "t1", "t2"}, {"um", "um", "K", "K"}};
-const TimeSeries kQuietHall{{0.0}, {0.0}};
+const TimeSeries kQuietAmbient{{0.0}, {0.0}};
 
 /// Steady level of a mode in a channel: standstill has none, heat grows a little faster than speed.
 double level(std::size_t mode, std::size_t channel, double rpm) {
@@ -56,7 +56,7 @@ std::vector<double> every_minute(double end_s) {
 }
 
 ThermalTest of(const Cyclogram& cyclogram, double growth) {
-  ThermalTest t{cyclogram, kQuietHall, every_minute(cyclogram.duration_s()), {}};
+  ThermalTest t{cyclogram, kQuietAmbient, every_minute(cyclogram.duration_s()), {}};
   t.readings.resize(4, static_cast<Eigen::Index>(t.time_s.size()));
   for (std::size_t c = 0; c < 4; ++c) {
     for (std::size_t i = 0; i < t.time_s.size(); ++i)
@@ -85,7 +85,7 @@ void add_noise(std::vector<ThermalTest>& tests, std::uint64_t seed) {
 /// Largest error of a channel over its peak.
 double error_over_peak(const IdentifiedModes& modes, const Cyclogram& cyclogram, std::size_t channel, double growth) {
   const std::vector<double> time_s = every_minute(cyclogram.duration_s());
-  const Eigen::MatrixXd y = modes.predict(cyclogram, kQuietHall, time_s);
+  const Eigen::MatrixXd y = modes.predict(cyclogram, kQuietAmbient, time_s);
   double worst = 0.0, peak = 0.0;
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     const double truth = exact(cyclogram, channel, time_s[i], growth);
@@ -168,8 +168,8 @@ TEST(IdentifiedModes, FromNoisyTestsAreTwoAndTheirIntervalsHoldTheTruth) {
   EXPECT_GE(n_inside, 13);
 }
 
-TEST(IdentifiedModes, FollowTheHall) {
-  // One channel that follows the hall alone, dθ/dt = (θ_hall - θ) / τ, while it rises by 1 K/h: θ = r (t - τ (1 - e^(-t/τ))).
+TEST(IdentifiedModes, FollowTheAmbient) {
+  // One channel that follows the ambient alone, dθ/dt = (θ_ambient - θ) / τ, while it rises by 1 K/h: θ = r (t - τ (1 - e^(-t/τ))).
   const double rate_K_s = 1.0 / 3600.0, tau = 3000.0;
   const auto truth = [&](double t_s) { return rate_K_s * (t_s - tau * (1.0 - std::exp(-t_s / tau))); };
   std::vector<ThermalTest> tests;
@@ -226,7 +226,7 @@ TEST(IdentifiedModes, NameWhatIsWrongWithTests) {
 TEST(IdentifiedModes, RefuseWhatTestsSayNothingAbout) {
   const IdentifiedModes modes = identify_modes(five_tests(0.0), kChannels, two_modes());
   const auto asked = [&](const Drive& drive, bool extrapolate = false) {
-    return message_of([&] { (void)modes.predict({"job", {{600, drive}}}, kQuietHall, {0.0, 600.0}, extrapolate); });
+    return message_of([&] { (void)modes.predict({"job", {{600, drive}}}, kQuietAmbient, {0.0, 600.0}, extrapolate); });
   };
   EXPECT_EQ(asked({.speed_rpm = 2000.0}), "no InputError");
   EXPECT_EQ(asked({}), "no InputError");
@@ -239,12 +239,12 @@ TEST(IdentifiedModes, RefuseWhatTestsSayNothingAbout) {
   std::vector<ThermalTest> never_off;
   for (double rpm : {400.0, 800.0, 2000.0}) never_off.push_back(of({"test", {{14400, {.speed_rpm = rpm}}}}, 0.0));
   const IdentifiedModes hot = identify_modes(never_off, kChannels, two_modes());
-  EXPECT_THAT(message_of([&] { (void)hot.predict(on_and_off(), kQuietHall, {0.0}); }),
+  EXPECT_THAT(message_of([&] { (void)hot.predict(on_and_off(), kQuietAmbient, {0.0}); }),
               HasSubstr("stands still, which no test does"));
 }
 
 TEST(AveragedTests, NeverAverageAcrossAChangeOfTheDrive) {
-  ThermalTest t{{"test", {{150, {.speed_rpm = 500.0}}, {450, {}}}}, kQuietHall, every_minute(600), {}};
+  ThermalTest t{{"test", {{150, {.speed_rpm = 500.0}}, {450, {}}}}, kQuietAmbient, every_minute(600), {}};
   t.readings = Eigen::RowVectorXd::LinSpaced(11, 0.0, 10.0);
   const ThermalTest mean = averaged(t, 300.0);
   EXPECT_EQ(mean.time_s, (std::vector<double>{60.0, 300.0, 540.0}));  // rows 0-2 | 3-7 | 8-10

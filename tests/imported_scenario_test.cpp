@@ -37,7 +37,7 @@ effects:
   - {type: heat_source, region: head, power: 20 W, at_speed: 1000 rpm, exponent: 1}
   - {type: convection, surface: outside, film: 10 W/(m^2 K)}
   - {type: contact, joint: column/head, conductance: 2000 W/(m^2 K)}
-hall: [[0 min, 20 degC]]
+ambient: [[0 min, 20 degC]]
 sensors:
   - {name: t1, region: head, at: [50 mm, 150 mm, 400 mm]}
 displacements:

@@ -19,8 +19,8 @@ effects:
   - {type: node, node: wall, capacity: 9000 J/K}
   - {type: heat_source, node: heater, power: 40 W, at_speed: 1000 rpm, exponent: 1}
   - {type: link, node: heater, to: wall, conductance: 3 W/K}
-  - {type: link, node: wall, to: hall, conductance: 1.5 W/K}
-hall: [[0 h, 21 degC]]
+  - {type: link, node: wall, to: ambient, conductance: 1.5 W/K}
+ambient: [[0 h, 21 degC]]
 sensors:
   - {name: heater, node: heater}
   - {name: wall, node: wall}
@@ -53,7 +53,7 @@ class TwoRecords : public testing::Test {
     const Twin& twin = *beside_.twin;
     standing_ = candidates(twin, runs, {});
     std::vector<Knob> numbers = scatter(twin);
-    for (Knob& k : hall_scatter(runs)) numbers.push_back(std::move(k));
+    for (Knob& k : ambient_scatter(runs)) numbers.push_back(std::move(k));
     fresh_ = std::make_unique<Fitter>(twin, runs, numbers, unknown_columns(twin, nullptr, 1.0, runs, twin.as_written()));
     Twin::Workspace workspace(twin);
     as_written_ = fresh_->predict({}, Eigen::VectorXd::Zero(fresh_->n_nuisance()), workspace);

@@ -61,13 +61,13 @@ Answer answer_of(const mesh::Mesh& mesh, bool radiates) {
   const RegionMaterials materials(mesh.regions.size(), fixtures::steel());
   FullSystem system = assemble_heat(mesh, materials, load(radiates));
   Answer answer;
-  answer.steady = steady_state(system, {.drive = {.speed_rpm = 3000}, .hall_K = 2.0, .time_s = 1000.0},
+  answer.steady = steady_state(system, {.drive = {.speed_rpm = 3000}, .ambient_K = 2.0, .time_s = 1000.0},
                                Eigen::VectorXd::Zero(system.size()));
   std::vector<int> all(system.size());
   for (int i = 0; i < system.size(); ++i) all[i] = i;
   fixtures::observe_unknowns(system, all);
   const Cyclogram cycle{.name = "c", .sections = {{400, {.speed_rpm = 3000}}, {600, {}}}};
-  const Trajectory run = simulate(system, cycle, fixtures::still_hall(2.0), {400, 1000},
+  const Trajectory run = simulate(system, cycle, fixtures::still_ambient(2.0), {400, 1000},
                                   {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7, .max_step_s = 600.0},
                                   Eigen::VectorXd::Zero(system.size()));
   answer.transient = Eigen::Map<const Eigen::VectorXd>(run.outputs.data(), run.outputs.size());

@@ -11,24 +11,24 @@ namespace {
 using ::testing::ElementsAre;
 
 const Cyclogram kJob{.name = "job", .sections = {{100.0, {.speed_rpm = 2000.0}}, {50.0, {.speed_rpm = 500.0}}}};
-const TimeSeries kHall{{0.0, 1000.0}, {1.0, 3.0}};  // 2 mK/s
+const TimeSeries kWarming{{0.0, 1000.0}, {1.0, 3.0}};  // 2 mK/s
 
-RecordedRun morning(double hall_at_end_K, bool has_hall) {
+RecordedRun morning(double ambient_at_end_K, bool has_ambient) {
   RecordedRun run;
   run.time_s = {0.0, 60.0, 120.0};
   run.cyclogram = {.name = "morning", .sections = {{120.0, {.speed_rpm = 1000.0}}}};
-  run.hall = {{0.0, 120.0}, {5.0, hall_at_end_K}};
-  run.hall_channel = has_hall ? "ambient" : "";
+  run.ambient = {{0.0, 120.0}, {5.0, ambient_at_end_K}};
+  run.ambient_channel = has_ambient ? "ambient" : "";
   return run;
 }
 
 TEST(JobSeries, OfOnePartFromTheScenariosStartIsTheJob) {
-  const JobSeries series = job_series(kJob, {}, kHall, 60.0);
+  const JobSeries series = job_series(kJob, {}, kWarming, 60.0);
   EXPECT_EQ(series.cyclogram.name, "job");
   EXPECT_EQ(series.cyclogram.sections, kJob.sections);
   EXPECT_THAT(series.time_s, ElementsAre(0, 60, 120, 150));
-  EXPECT_EQ(series.hall.time_s, kHall.time_s);
-  EXPECT_EQ(series.hall.value, kHall.value);
+  EXPECT_EQ(series.ambient.time_s, kWarming.time_s);
+  EXPECT_EQ(series.ambient.value, kWarming.value);
   ASSERT_EQ(series.parts.size(), 1U);
   EXPECT_EQ(series.parts[0].first, 0U);
   EXPECT_EQ(series.parts[0].last, 3U);
@@ -36,7 +36,7 @@ TEST(JobSeries, OfOnePartFromTheScenariosStartIsTheJob) {
 
 TEST(JobSeries, LinesUpRunPausePartsAndTheTimesBetween) {
   const JobSeries series =
-      job_series(kJob, {.start = morning(6.0, true), .pause_s = 30.0, .n_parts = 2, .between_s = 10.0}, kHall, 60.0);
+      job_series(kJob, {.start = morning(6.0, true), .pause_s = 30.0, .n_parts = 2, .between_s = 10.0}, kWarming, 60.0);
   EXPECT_DOUBLE_EQ(series.start_s(), 150.0);
   EXPECT_THAT(series.time_s, ElementsAre(0, 60, 120, 150, 210, 270, 300, 310, 370, 430, 460));
   ASSERT_EQ(series.parts.size(), 2U);
@@ -52,29 +52,29 @@ TEST(JobSeries, LinesUpRunPausePartsAndTheTimesBetween) {
 }
 
 TEST(JobSeries, PartsWithoutATimeBetweenShareARow) {
-  const JobSeries series = job_series(kJob, {.start = {}, .pause_s = 0.0, .n_parts = 3, .between_s = 0.0}, kHall, 60.0);
+  const JobSeries series = job_series(kJob, {.start = {}, .pause_s = 0.0, .n_parts = 3, .between_s = 0.0}, kWarming, 60.0);
   EXPECT_THAT(series.time_s, ElementsAre(0, 60, 120, 150, 210, 270, 300, 360, 420, 450));
   EXPECT_EQ(series.parts[1].first, series.parts[0].last);
   EXPECT_EQ(series.parts[2].first, series.parts[1].last);
 }
 
-// The hall ends the run 6 K above the reference and warms by the scenario's 2 mK/s from there.
-TEST(JobSeries, TheHallGoesOnFromItsLastReadingAsTheScenariosDoes) {
-  const TimeSeries hall = job_series(kJob, {.start = morning(6.0, true)}, kHall, 60.0).hall;
-  EXPECT_DOUBLE_EQ(hall.at(0.0), 5.0);
-  EXPECT_DOUBLE_EQ(hall.at(60.0), 5.5);
-  EXPECT_DOUBLE_EQ(hall.at(120.0), 6.0);
-  EXPECT_NEAR(hall.at(220.0), 6.2, 1e-12);
-  EXPECT_NEAR(hall.at(1000.0), 6.0 + 0.002 * 880.0, 1e-12);
-  EXPECT_NEAR(hall.at(2000.0), hall.at(1000.0), 1e-12);
+// The ambient ends the run 6 K above the reference and warms by the scenario's 2 mK/s from there.
+TEST(JobSeries, TheAmbientGoesOnFromItsLastReadingAsTheScenariosDoes) {
+  const TimeSeries ambient = job_series(kJob, {.start = morning(6.0, true)}, kWarming, 60.0).ambient;
+  EXPECT_DOUBLE_EQ(ambient.at(0.0), 5.0);
+  EXPECT_DOUBLE_EQ(ambient.at(60.0), 5.5);
+  EXPECT_DOUBLE_EQ(ambient.at(120.0), 6.0);
+  EXPECT_NEAR(ambient.at(220.0), 6.2, 1e-12);
+  EXPECT_NEAR(ambient.at(1000.0), 6.0 + 0.002 * 880.0, 1e-12);
+  EXPECT_NEAR(ambient.at(2000.0), ambient.at(1000.0), 1e-12);
 }
 
-TEST(JobSeries, ARunInTheScenariosHallOrWithoutOneGoesOnInIt) {
+TEST(JobSeries, ARunInTheScenariosAmbientOrWithoutOneGoesOnInIt) {
   for (double t_s : {0.0, 60.0, 120.0, 500.0, 1000.0}) {
-    EXPECT_NEAR(job_series(kJob, {.start = morning(6.0, false)}, kHall, 60.0).hall.at(t_s), kHall.at(t_s), 1e-12);
+    EXPECT_NEAR(job_series(kJob, {.start = morning(6.0, false)}, kWarming, 60.0).ambient.at(t_s), kWarming.at(t_s), 1e-12);
     RecordedRun own = morning(6.0, true);
-    own.hall = {{0.0, 60.0, 120.0}, {1.0, 1.12, 1.24}};
-    EXPECT_NEAR(job_series(kJob, {.start = own}, kHall, 60.0).hall.at(t_s), kHall.at(t_s), 1e-12);
+    own.ambient = {{0.0, 60.0, 120.0}, {1.0, 1.12, 1.24}};
+    EXPECT_NEAR(job_series(kJob, {.start = own}, kWarming, 60.0).ambient.at(t_s), kWarming.at(t_s), 1e-12);
   }
 }
 

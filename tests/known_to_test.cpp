@@ -29,8 +29,8 @@ effects:
   - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
   - {type: link, node: head, to: column, )" +
          link + R"(}
-  - {type: link, node: column, to: hall, conductance: 14 W/K}
-hall: [[0 min, 20 degC], [400 min, 21 degC]]
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+ambient: [[0 min, 20 degC], [400 min, 21 degC]]
 sensors:
   - {name: t_head, node: head}
   - {name: t_column, node: column}

@@ -14,7 +14,7 @@ namespace driftwright::solver {
 namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
-const TimeSeries kRampingHall{{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}};
+const TimeSeries kRampingAmbient{{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}};
 
 std::vector<double> every_minute() {
   std::vector<double> times_s;
@@ -23,13 +23,13 @@ std::vector<double> every_minute() {
 }
 
 ReductionDemand demand() {
-  return reduction_demand(fixtures::two_blocks_balance(), {&kCycle}, kRampingHall, 293.15);
+  return reduction_demand(fixtures::two_blocks_balance(), {&kCycle}, kRampingAmbient, 293.15);
 }
 
 Trajectory run_in(const FullSystem& system, const Eigen::MatrixXd& basis, const Eigen::VectorXd& start,
                   const Cyclogram& cycle = kCycle) {
   const ReducedSystem reduced = project(system, basis);
-  return Propagator(reduced).run(cycle, kRampingHall, every_minute(), basis.transpose() * (system.mass * start), true);
+  return Propagator(reduced).run(cycle, kRampingAmbient, every_minute(), basis.transpose() * (system.mass * start), true);
 }
 
 /// The exact answer: in a basis of all unknowns.
@@ -91,11 +91,11 @@ TEST(KrylovReduction, BasisIsOrthonormalInMass) {
 
 TEST(ReductionDemand, SpansDrivesAndTemperaturesRoundedOutwards) {
   effects::HeatBalance balance = fixtures::two_blocks_balance();
-  // A link that grows with the temperature of block a over the hall: 1 W/K per K.
+  // A link that grows with the temperature of block a over the ambient: 1 W/K per K.
   balance.exchanges.push_back(
       effects::make_link("growing", effects::region("a"),
                          effects::Law([](const effects::Inputs& u) { return u.probe_K[0] - u.probe_K[1]; },
-                                      {effects::region("a"), effects::node("hall")})));
+                                      {effects::region("a"), effects::node("ambient")})));
   const ReductionDemand demand = reduction_demand(balance, {&kCycle}, {{0}, {0}}, 293.15);
   EXPECT_DOUBLE_EQ(demand.power_W[0], 512.0);  // 300 W
   EXPECT_DOUBLE_EQ(demand.duration_s, 8192.0);
@@ -119,7 +119,7 @@ TEST(ReductionDemand, IsTheSameForCyclogramsThatAskNearlyTheSame) {
   EXPECT_EQ(a.high, b.high);
   EXPECT_EQ(a.power_W, b.power_W);
   EXPECT_EQ(a.duration_s, b.duration_s);
-  EXPECT_EQ(a.hall_K, b.hall_K);
+  EXPECT_EQ(a.ambient_K, b.ambient_K);
 }
 
 TEST(ReductionDemand, LooksAtBothSidesOfEachChangeAndOfEachThermostat) {
@@ -137,12 +137,12 @@ TEST(ReductionDemand, LooksAtBothSidesOfEachChangeAndOfEachThermostat) {
 }
 
 TEST(ReductionDemand, IncludesOthersInAnyOrderAndWidensOnlyWhatDiffers) {
-  const auto of = [](double power_W, double low, double high, double hall_K, double duration_s) {
+  const auto of = [](double power_W, double low, double high, double ambient_K, double duration_s) {
     ReductionDemand d;
     d.power_W = Eigen::VectorXd::Constant(1, power_W);
     d.low = Eigen::Vector2d(low, 30.0);  // the second never moves
     d.high = Eigen::Vector2d(high, 30.0);
-    d.hall_K = hall_K;
+    d.ambient_K = ambient_K;
     d.duration_s = duration_s;
     return d;
   };
@@ -154,7 +154,7 @@ TEST(ReductionDemand, IncludesOthersInAnyOrderAndWidensOnlyWhatDiffers) {
   EXPECT_EQ(same.high, demands[0].high);
   EXPECT_EQ(same.points().size(), 1u);
   EXPECT_DOUBLE_EQ(same.power_W[0], 64.0);
-  EXPECT_DOUBLE_EQ(same.hall_K, 4.0);
+  EXPECT_DOUBLE_EQ(same.ambient_K, 4.0);
   EXPECT_DOUBLE_EQ(same.duration_s, 4096.0);
   same.include(demands[2]);
   EXPECT_DOUBLE_EQ(same.low[0], 8.0);  // 9 and 13, outwards to powers of two
@@ -170,7 +170,7 @@ TEST(ReductionDemand, IncludesOthersInAnyOrderAndWidensOnlyWhatDiffers) {
     EXPECT_EQ(all.low, Eigen::Vector2d(0.0, 30.0));
     EXPECT_EQ(all.high, Eigen::Vector2d(16.0, 30.0));
     EXPECT_DOUBLE_EQ(all.power_W[0], 128.0);
-    EXPECT_DOUBLE_EQ(all.hall_K, 4.0);
+    EXPECT_DOUBLE_EQ(all.ambient_K, 4.0);
     EXPECT_DOUBLE_EQ(all.duration_s, 8192.0);
   } while (std::next_permutation(order.begin(), order.end()));
 }

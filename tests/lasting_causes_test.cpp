@@ -26,9 +26,9 @@ effects:
   - {type: node, node: column, capacity: 40 kJ/K}
   - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
   - {type: link, node: head, to: column, conductance: 12 W/K}
-  - {type: link, node: column, to: hall, conductance: 14 W/K}
-  - {type: link, node: head, to: hall, conductance: 4 W/K}
-hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+  - {type: link, node: head, to: ambient, conductance: 4 W/K}
+ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
 sensors:
   - {name: t_head, node: head}
   - {name: t_column, node: column}
@@ -108,19 +108,19 @@ INSTANTIATE_TEST_SUITE_P(
               "all later records",
               0.6,
               0.05},
-        Cause{"a_hall_that_stays_warmer",
+        Cause{"an_ambient_that_stays_warmer",
               {"{type: ambient, offset: 1.5 K, from: 120 min, in: monday}", "{type: ambient, offset: 1.5 K, in: tuesday}",
                "{type: ambient, offset: 1.5 K, in: friday}"},
               "ambient",
-              "hall",
+              "ambient",
               "all later records",
               1.5,
               0.15},
         Cause{"a_fan_that_stays_on",
-              {"{type: changed_law, law: link column - hall, factor: 1.8, from: 100 min, in: tuesday}",
-               "{type: changed_law, law: link column - hall, factor: 1.8, in: friday}"},
+              {"{type: changed_law, law: link column - ambient, factor: 1.8, from: 100 min, in: tuesday}",
+               "{type: changed_law, law: link column - ambient, factor: 1.8, in: friday}"},
               "contact",
-              "column,hall",
+              "column,ambient",
               "all later records",
               1.8,
               0.2},
@@ -156,8 +156,8 @@ effects:
   - {type: node, node: housing, capacity: 19 kJ/K}
   - {type: heat_source, node: spindle, power: 150 W, at_speed: 6000 rpm, exponent: 1.5}
   - {type: link, node: spindle, to: housing, conductance: 12 W/K}
-  - {type: link, node: housing, to: hall, conductance: 5 W/K}
-hall: [[0 min, 20 degC]]
+  - {type: link, node: housing, to: ambient, conductance: 5 W/K}
+ambient: [[0 min, 20 degC]]
 sensors:
   - {name: t_spindle, node: spindle}
   - {name: t_housing, node: housing}

@@ -76,7 +76,7 @@ TEST(LoggerImport, CatmanWithUnitsBelowTheNames) {
   expect_values(record, "t_lager_vorn_degC", {20.1, 20.4, 20.9, 21.3});
   expect_values(record, "ambient_degC", {19.9, 19.9, 20.0, 20.0});
   expect_values(record, "weg_z_um", {0.0, 0.8, 2.1, 3.6});
-  EXPECT_THAT(import.guesses, Contains(HasSubstr("'T_Raum' is taken to be the air of the hall")));
+  EXPECT_THAT(import.guesses, Contains(HasSubstr("'T_Raum' is taken to be the ambient air")));
 }
 
 TEST(LoggerImport, PicoLogOverTheEndOfSummerTime) {

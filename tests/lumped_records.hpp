@@ -13,9 +13,9 @@
 
 namespace driftwright::diagnosis {
 
-/// A scenario's text with one more effect, before its key `hall`.
+/// A scenario's text with one more effect, before its key `ambient`.
 inline std::string with_effect(std::string text, const std::string& entry) {
-  if (!entry.empty()) text.insert(text.find("hall: [["), "  - " + entry + "\n");
+  if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
   return text;
 }
 
@@ -31,7 +31,7 @@ inline std::vector<std::string> noisy_records(const std::string& scenario, const
     const scenarios::FeltRun felt = scenarios::felt_run(model, c);
     Record r = scenarios::as_recorded(
         model,
-        solver::simulate(machine.system, felt.cyclogram, felt.hall, scenarios::output_times_s(c, row_s),
+        solver::simulate(machine.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(c, row_s),
                          {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7}, scenarios::start_state(model, machine)),
         machine.system.outputs, c);
     for (Channel& channel : r.channels) {

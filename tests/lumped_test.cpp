@@ -17,7 +17,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-/// Two bodies: 100 W into `hot` while the spindle turns at 1000 rpm, 2 W/K to `cold`, from there 5 W/K to the hall.
+/// Two bodies: 100 W into `hot` while the spindle turns at 1000 rpm, 2 W/K to `cold`, from there 5 W/K to the ambient.
 std::string two_bodies(const std::string& more = "", const std::string& effects = "") {
   return "name: two_bodies\nreference_temperature: 20 degC\nmachine: {generator: lumped}\n" + more +
          "effects:\n"
@@ -25,9 +25,9 @@ std::string two_bodies(const std::string& more = "", const std::string& effects 
          "  - {type: node, node: cold, capacity: 4000 J/K}\n"
          "  - {type: heat_source, node: hot, power: 100 W, at_speed: 1000 rpm, exponent: 1}\n"
          "  - {type: link, node: hot, to: cold, conductance: 2 W/K}\n"
-         "  - {type: link, node: cold, to: hall, conductance: 5 W/K}\n" +
+         "  - {type: link, node: cold, to: ambient, conductance: 5 W/K}\n" +
          effects +
-         "hall: [[0 h, 25 degC]]\n"
+         "ambient: [[0 h, 25 degC]]\n"
          "sensors: [{name: t_hot, node: hot}, {name: t_cold, node: cold}]\n"
          "displacements:\n"
          "  - {name: growth, sensitivities: [{node: hot, sensitivity: 3 um/K}, {node: cold, sensitivity: -1 um/K}]}\n"
@@ -47,7 +47,7 @@ Simulated simulate(const std::string& text, const std::string& cyclogram) {
   const Scenario scenario = read(text);
   const Machine machine = build(*scenario.machine, place(*scenario.machine));
   Simulated run;
-  run.trajectory = solver::simulate(machine.system, scenario.cyclogram(cyclogram), scenario.machine->hall,
+  run.trajectory = solver::simulate(machine.system, scenario.cyclogram(cyclogram), scenario.machine->ambient,
                                     output_times_s(scenario.cyclogram(cyclogram), scenario.solver.output_interval_s),
                                     scenario.solver.transient, start_state(*scenario.machine, machine));
   run.record = to_record(run.trajectory, machine.system.outputs, scenario.cyclogram(cyclogram), 293.15);
@@ -55,7 +55,7 @@ Simulated simulate(const std::string& text, const std::string& cyclogram) {
 }
 
 TEST(LumpedMachine, ReachesTheSteadyStateByHandWithoutAMesh) {
-  // Steady: 100 W / 5 W/K = 20 K over the hall's 25 degC: cold 45 degC; 100 / 2 = 50 K more: hot 95 degC. Growth from 20 degC:
+  // Steady: 100 W / 5 W/K = 20 K over the ambient's 25 degC: cold 45 degC; 100 / 2 = 50 K more: hot 95 degC. Growth from 20 degC:
   // 3 * 75 - 25 = 200 um. The slowest time constant is about 1500 s: after 36 000 s nothing is left of the way.
   const Simulated run = simulate(two_bodies(), "long");
   EXPECT_NEAR(run.record.at("t_cold").values.back(), 45.0, 1e-4);
@@ -64,7 +64,7 @@ TEST(LumpedMachine, ReachesTheSteadyStateByHandWithoutAMesh) {
   EXPECT_LT(run.trajectory.energy_gap(), 1e-12);
   const Record heat = heat_flow_record(run.trajectory, "long");
   EXPECT_NEAR(heat.at("heat_source_hot").values.back(), 100.0, 1e-9);
-  EXPECT_NEAR(heat.at("link_cold_-_hall").values.back(), -100.0, 1e-3);
+  EXPECT_NEAR(heat.at("link_cold_-_ambient").values.back(), -100.0, 1e-3);
   EXPECT_NEAR(heat.at("within_link_hot_-_cold").values.back(), 100.0, 1e-3);
 }
 
@@ -73,12 +73,12 @@ TEST(Start, SetsTheFirstRow) {
     return simulate(two_bodies("start: " + start + "\n"), "rest").record.at("t_hot").values.front();
   };
   EXPECT_NEAR(first("reference"), 20.0, 1e-12);
-  EXPECT_NEAR(first("hall"), 25.0, 1e-12);
+  EXPECT_NEAR(first("ambient"), 25.0, 1e-12);
   EXPECT_NEAR(first("31.5 degC"), 31.5, 1e-9);
 }
 
 TEST(Start, SteadyStaysWhereItIs) {
-  // 35 W into the cold body at rest, too: 35 / 5 = 7 K over the hall.
+  // 35 W into the cold body at rest, too: 35 / 5 = 7 K over the ambient.
   const Simulated run =
       simulate(two_bodies("start: steady\n", "  - {type: heat_source, node: cold, power: 35 W}\n"), "rest");
   for (double t_degC : run.record.at("t_cold").values) EXPECT_NEAR(t_degC, 32.0, 1e-6);
@@ -113,10 +113,10 @@ TEST(Effects, WhatOnlyOneCanRuleIsRefusedTwice) {
   const std::string held = "  - {type: fixed_temperature, node: hot, temperature: 30 degC}\n";
   const auto at = [](const std::string& effects) { (void)place(*read(two_bodies("", effects)).machine); };
   EXPECT_NO_THROW(at(held));
-  EXPECT_THAT([&] { at(held + "  - {type: fixed_temperature, node: hot, follows: hall}\n"); },
+  EXPECT_THAT([&] { at(held + "  - {type: fixed_temperature, node: hot, follows: ambient}\n"); },
               ThrowsMessage<InputError>(HasSubstr("fixed_temperature hot stands there twice")));
   const std::string air = "  - {type: stratification, gradient: 1 K/m}\n";
-  EXPECT_THAT([&] { at(air + air); }, ThrowsMessage<InputError>(HasSubstr("stratification hall stands there twice")));
+  EXPECT_THAT([&] { at(air + air); }, ThrowsMessage<InputError>(HasSubstr("stratification ambient stands there twice")));
 }
 
 TEST(LumpedMachine, HasNoFieldsToAskFor) {

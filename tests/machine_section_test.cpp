@@ -30,7 +30,8 @@ TEST(WorstMoment, IsThatOfTheLargestDisplacementOfAnyNode) {
 TEST(AddMachine, ShowsFieldsElseSurfacesAndNothingWithoutAMesh) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.2}, .n = {1, 1, 2}});
   scenarios::MachineModel machine;
-  machine.sensors = {{"t1", scenarios::PointOnRegion{"body", {0.0, 0.05, 0.1}, {}}, {}}, {"air", std::string("hall"), {}}};
+  machine.sensors = {{"t1", scenarios::PointOnRegion{"body", {0.0, 0.05, 0.1}, {}}, {}},
+                     {"air", std::string("ambient"), {}}};
   const auto shown = [&](const mesh::Mesh& of, const WorstMoment& worst) {
     output::Section body;
     add_machine(body, machine, of, "shift", worst);

@@ -49,7 +49,7 @@ ReducedMachine reduced(const Scenario& s) {
 }
 solver::Trajectory run(const Scenario& s, const ReducedMachine& machine) {
   const Cyclogram& cycle = s.cyclograms.front();
-  return solver::simulate(machine.system, cycle, s.machine->hall, output_times_s(cycle, 300.0), {}, machine.start);
+  return solver::simulate(machine.system, cycle, s.machine->ambient, output_times_s(cycle, 300.0), {}, machine.start);
 }
 effects::HeatBalance balance_of(const Scenario& s) {
   return effects::heat_balance(s.machine->effects);
@@ -86,18 +86,18 @@ TEST_P(SameKeys, BelongToMachinesThatDifferInLawsWithinTheDemand) {
 }
 
 const char* const kSteel = "{column: cast_iron_gjl250, head: steel_c45}";
-Change curves_in_a_hall_of(const char* hall) {
-  return [hall](ColumnAndHead& m) {
+Change curves_in_an_ambient_of(const char* ambient) {
+  return [ambient](ColumnAndHead& m) {
     m.materials =
         "{column: cast_iron_gjl250, head: {density: 7200 kg/m^3, conductivity: [[20 degC, 50 W/(m K)], [70 degC, 40 W/(m "
         "K)]], "
         "heat_capacity: 500 J/(kg K), youngs_modulus: 110 GPa, poisson_ratio: 0.26, expansion: 11e-6 1/K, source: made up}}";
-    m.hall = hall;
+    m.ambient = ambient;
   };
 }
-Change hall_with(const char* hall, std::vector<std::string> effects, const char* start = "reference") {
+Change ambient_with(const char* ambient, std::vector<std::string> effects, const char* start = "reference") {
   return [=](ColumnAndHead& m) {
-    m.hall = hall;
+    m.ambient = ambient;
     m.start = start;
     m.effects.insert(m.effects.end(), effects.begin(), effects.end());
   };
@@ -105,7 +105,7 @@ Change hall_with(const char* hall, std::vector<std::string> effects, const char*
 Change node(const char* capacity) {
   return [capacity](ColumnAndHead& m) {
     m.effects.push_back(fmt::format("{{type: node, node: pump, capacity: {}}}", capacity));
-    m.effects.push_back("{type: link, node: pump, to: hall, conductance: 1 W/K}");
+    m.effects.push_back("{type: link, node: pump, to: ambient, conductance: 1 W/K}");
   };
 }
 Change film_from_the_start(const char* film) {
@@ -117,10 +117,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         KeyCase{"Material", kAsItIs, [](ColumnAndHead& m) { m.materials = kSteel; }},
         KeyCase{"Sensor", kAsItIs, [](ColumnAndHead& m) { m.sensor_y = "149 mm"; }},
-        KeyCase{"Start", kAsItIs, [](ColumnAndHead& m) { m.start = "hall"; }},
+        KeyCase{"Start", kAsItIs, [](ColumnAndHead& m) { m.start = "ambient"; }},
         KeyCase{"StartTemperature", [](ColumnAndHead& m) { m.start = "21 degC"; },
                 [](ColumnAndHead& m) { m.start = "22 degC"; }},
-        KeyCase{"HallToStartFrom", hall_with("[[0 h, 20.2 degC]]", {}, "hall"), hall_with("[[0 h, 20.4 degC]]", {}, "hall")},
+        KeyCase{"AmbientToStartFrom", ambient_with("[[0 h, 20.2 degC]]", {}, "ambient"),
+                ambient_with("[[0 h, 20.4 degC]]", {}, "ambient")},
         KeyCase{"LawsOfASteadyStart", [](ColumnAndHead& m) { m.start = "steady"; },
                 [](ColumnAndHead& m) {
                   m.start = "steady";
@@ -130,8 +131,8 @@ INSTANTIATE_TEST_SUITE_P(
                 effect("{type: conductivity, region: head, factor: 1.21}")},
         KeyCase{"FactorOnAnotherProperty", effect("{type: conductivity, region: head, factor: 1.2}"),
                 effect("{type: expansion, region: head, factor: 1.2}")},
-        KeyCase{"FeltHallToStartFrom", hall_with("[[0 h, 20.2 degC]]", {"{type: ambient, offset: 0.1 K}"}, "hall"),
-                hall_with("[[0 h, 20.2 degC]]", {"{type: ambient, offset: 0.2 K}"}, "hall")},
+        KeyCase{"FeltAmbientToStartFrom", ambient_with("[[0 h, 20.2 degC]]", {"{type: ambient, offset: 0.1 K}"}, "ambient"),
+                ambient_with("[[0 h, 20.2 degC]]", {"{type: ambient, offset: 0.2 K}"}, "ambient")},
         KeyCase{"FourTimesTheSpeed", kAsItIs, effect("{type: speed_override, factor: 4}")},
         KeyCase{"NodeCapacity", node("900 J/K"), node("901 J/K")},
         KeyCase{"Tolerance", kAsItIs,
@@ -151,12 +152,12 @@ INSTANTIATE_TEST_SUITE_P(
                 effect("{type: fixed_temperature, surface: front, temperature: 25 degC}")},
         KeyCase{"Gradient", effect("{type: stratification, gradient: 1 K/m, level: 0 m}"),
                 effect("{type: stratification, gradient: 1.1 K/m, level: 0 m}")},
-        // What modal predictors are made at: the films at standstill, the hall that laws are frozen in.
+        // What modal predictors are made at: the films at standstill, the ambient that laws are frozen in.
         KeyCase{"FilmAtStandstill", film_from_the_start("10 W/(m^2 K)"), film_from_the_start("11 W/(m^2 K)")},
-        KeyCase{"HallOfFrozenLaws", hall_with("[[0 h, 20.2 degC]]", {kUpwards}),
-                hall_with("[[0 h, 20.4 degC]]", {kUpwards})},
-        KeyCase{"HallOfFrozenMaterials", curves_in_a_hall_of("[[0 h, 20.2 degC]]"),
-                curves_in_a_hall_of("[[0 h, 20.4 degC]]")}),
+        KeyCase{"AmbientOfFrozenLaws", ambient_with("[[0 h, 20.2 degC]]", {kUpwards}),
+                ambient_with("[[0 h, 20.4 degC]]", {kUpwards})},
+        KeyCase{"AmbientOfFrozenMaterials", curves_in_an_ambient_of("[[0 h, 20.2 degC]]"),
+                curves_in_an_ambient_of("[[0 h, 20.4 degC]]")}),
     [](const auto& one) { return std::string(one.param.name); });
 
 Change cyclogram(const char* text) {
@@ -171,8 +172,8 @@ INSTANTIATE_TEST_SUITE_P(
     Of, SameKeys,
     ::testing::Values(KeyCase{"AFanOfTheSameOctave", fan("12"), fan("13")},
                       KeyCase{"ErrorsOfInstruments", kAsItIs, effect("{type: sensor_bias, sensor: t_head, bias: 1 K}")},
-                      KeyCase{"ErrorsOfInstrumentsOfASteadyStart", hall_with("[[0 h, 20.2 degC]]", {}, "steady"),
-                              hall_with("[[0 h, 20.2 degC]]", {"{type: clock_offset, offset: 1 min}"}, "steady")},
+                      KeyCase{"ErrorsOfInstrumentsOfASteadyStart", ambient_with("[[0 h, 20.2 degC]]", {}, "steady"),
+                              ambient_with("[[0 h, 20.2 degC]]", {"{type: clock_offset, offset: 1 min}"}, "steady")},
                       KeyCase{"SpeedOfTheSameOctave", kAsItIs, effect("{type: speed_override, factor: 0.9}")},
                       KeyCase{"PowerOfTheSameOctave", kAsItIs,
                               [](ColumnAndHead& m) {
@@ -181,8 +182,8 @@ INSTANTIATE_TEST_SUITE_P(
                               }},
                       KeyCase{"ACyclogramThatAsksNearlyTheSame", cyclogram("{cycle: [[80 min, 1000 rpm], [10 min, 0 rpm]]}"),
                               cyclogram("{other: [[70 min, 950 rpm], [15 min, 0 rpm]]}")},
-                      KeyCase{"AHallThatEndsElsewhere", kAsItIs,
-                              [](ColumnAndHead& m) { m.hall = "[[0 min, 20 degC], [60 min, 21.7 degC]]"; }}),
+                      KeyCase{"AnAmbientThatEndsElsewhere", kAsItIs,
+                              [](ColumnAndHead& m) { m.ambient = "[[0 min, 20 degC], [60 min, 21.7 degC]]"; }}),
     [](const auto& one) { return std::string(one.param.name); });
 
 TEST(MachineKey, CountsTheProgramTheModesAndTheBytesOfTheMesh) {
@@ -266,8 +267,8 @@ TEST_P(RoundTrips, GiveTheSameBits) {
   for (auto which : {&compensation::ModalPredictors::bare, &compensation::ModalPredictors::completed}) {
     const compensation::ModalPredictor &read = (*found->modal).*which, &written = (*kept.modal).*which;
     EXPECT_EQ(read.time_constant_s, written.time_constant_s);
-    expect_same(read.predict(s.cyclograms.front(), s.machine->hall, {600, 3600}),
-                written.predict(s.cyclograms.front(), s.machine->hall, {600, 3600}));
+    expect_same(read.predict(s.cyclograms.front(), s.machine->ambient, {600, 3600}),
+                written.predict(s.cyclograms.front(), s.machine->ambient, {600, 3600}));
   }
   EXPECT_FALSE(load_machine(store, key + " ", balance_of(s)));
 }
@@ -463,15 +464,15 @@ TEST(ExportReduced, IsWhatNumPyIntegratesToTheSameRecord) {
                  [&](const std::string& name) { return folder / name; });
   std::vector<double> ends_s = {0.0};
   for (const auto& section : cycle.sections) ends_s.push_back(ends_s.back() + section.duration_s);
-  const solver::Trajectory right = solver::simulate(machine.system, cycle, s.machine->hall, ends_s, {}, machine.start);
+  const solver::Trajectory right = solver::simulate(machine.system, cycle, s.machine->ambient, ends_s, {}, machine.start);
   EXPECT_GT(right.outputs.row(0).maxCoeff(), 3.0);
   write_npy(folder / "right.npy", right.outputs);
-  // The hall rises by 1.5 K in the first hour and stays; sections end at 40, 60 and 90 min, so it bends where one ends.
+  // The ambient rises by 1.5 K in the first hour and stays; sections end at 40, 60 and 90 min, so it bends where one ends.
   EXPECT_EQ(run_numpy(R"(
 import sys; sys.path.insert(0, 'exported')
 from reduced_model import *
 right = np.load('exported/right.npy')
-assert [o for o in model['outputs']['name']] == ['t_head', 't_column', 'hall', 'z'], model['outputs']
+assert [o for o in model['outputs']['name']] == ['t_head', 't_column', 'ambient', 'z'], model['outputs']
 assert [x['name'] for x in model['sources']], model['sources']
 assert len(model['drives']) == 3 and model['drives'][0]['speed_rpm'] == 1000
 def expm(a):
@@ -480,16 +481,16 @@ def expm(a):
     for k in range(1, 14): term = term @ a / k; e = e + term
     for _ in range(n): e = e @ e
     return e
-z, hall, t = a['start'].copy(), 0.0, 0.0
+z, ambient, t = a['start'].copy(), 0.0, 0.0
 for k, (drive, duration, slope) in enumerate(zip(model['drives'], [2400, 1200, 1800], [1.5 / 3600, 1.5 / 3600, 0])):
     A, B, C = ABC(drive)
     P = drive['powers_W']
-    big = np.zeros((r + 2, r + 2))  # z, hall, 1
+    big = np.zeros((r + 2, r + 2))  # z, ambient, 1
     big[:r, :r], big[:r, r], big[:r, r + 1] = A, B[:, -2], B[:, :-2] @ P + B[:, -1]
     big[r, r + 1] = slope
-    x = expm(big * duration) @ np.concatenate([z, [hall, 1]])
-    z, hall = x[:r], x[r]
-    y = C @ z + a['outputs_hall'] * hall
+    x = expm(big * duration) @ np.concatenate([z, [ambient, 1]])
+    z, ambient = x[:r], x[r]
+    y = C @ z + a['outputs_hall'] * ambient
     off = np.abs(y - right[:, k + 1])
     assert off.max() < 1e-8 and off[3] < 1e-14, (k, y, right[:, k + 1])
 )"),

@@ -70,12 +70,12 @@ missing: ["9.90000000E+37"]
 time: {column: Time, format: "%m/%d/%Y %H:%M:%S"}
 channels:
   bearing: {column: Chan 101 (C), unit: degC}
-  hall: {column: Chan 103 (C), unit: degC}
+  ambient: {column: Chan 103 (C), unit: degC}
   tip_z: {column: Chan 201 (VDC), unit: mm, factor: -0.2, offset: 10 um}
 )yaml");
   expect_times(read.record, {0.0, 10.0, 20.25});
   expect_values(read.record, "bearing_degC", {20.125, 20.25, 20.375});
-  expect_values(read.record, "hall_degC", {kMissing, 20.5, 20.625});
+  expect_values(read.record, "ambient_degC", {kMissing, 20.5, 20.625});
   expect_values(read.record, "tip_z_um", {10.0 - 73.647326, 10.0 - 125.638466, 10.0 - 76.476424});
   EXPECT_THAT(read.notes, ElementsAre(AllOf(HasSubstr("not read"), HasSubstr("'Sweep #', 'Chan 102 (C)'"))));
 }
@@ -85,7 +85,7 @@ TEST(MappedRecord, BenchLinkInUtf16) {
 time: {column: Time, format: "%m/%d/%Y %H:%M:%S"}
 channels:
   bearing: {column: "101 <bearing> (C)", unit: degC}
-  ambient: {column: "102 <hall> (°C)", unit: "°C"}
+  ambient: {column: "102 <ambient> (°C)", unit: "°C"}
 )yaml");
   expect_times(read.record, {0.0, 10.002, 20.0});
   expect_values(read.record, "bearing_degC", {23.5, 23.75, 24.0});

@@ -103,14 +103,14 @@ TEST(FlThermal, ALongRecordIsCutIntoRunsAndJudgedByItsOtherPart) {
   EXPECT_NEAR(cell(csv, "no correction", "peak_before_um"), 69.131, 1e-3);
 }
 
-// The network of docs/fl_thermal.md, in the recorded hall: what it leaves of the hours that it was not fitted to.
+// The network of docs/fl_thermal.md, in the recorded ambient: what it leaves of the hours that it was not fitted to.
 TEST(FlThermalNetwork, LeavesOfTheHoursKeptOutWhatItsTutorialSays) {
   const std::filesystem::path file = std::filesystem::absolute("../shared/data/fl_thermal/first_28h.csv");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;
   const auto folder = fresh_folder("fl_thermal_network");
   std::string scenario = read_text("scenarios/measured/fl_thermal_network.yaml");
-  const std::size_t hall = scenario.find("\nhall: ") + 1;
-  scenario.replace(hall, scenario.find('\n', hall) - hall, "hall: {csv: " + file.string() + ", channel: t16}");
+  const std::size_t ambient = scenario.find("\nambient: ") + 1;
+  scenario.replace(ambient, scenario.find('\n', ambient) - ambient, "ambient: {csv: " + file.string() + ", channel: t16}");
   std::ofstream(folder / "here.yaml") << scenario;
   const CommandOutcome run = run_program("simulate " + (folder / "here.yaml").string() + " --cyclogram " + file.string() +
                                          " -o " + (folder / "out").string());

@@ -18,9 +18,9 @@ using ::testing::Not;
 
 solver::Outputs outputs() {
   solver::Outputs o;
-  o.name = {"t_front", "nose_z", "hall"};
+  o.name = {"t_front", "nose_z", "t_ambient"};
   o.unit = {"K", "m", "K"};
-  o.hall = Eigen::Vector3d(0.0, 0.0, 1.0);
+  o.ambient = Eigen::Vector3d(0.0, 0.0, 1.0);
   return o;
 }
 
@@ -30,7 +30,7 @@ class MeasuredRunTest : public testing::Test {
     const std::string path = write_file("measured.csv", text);
     scenarios::MachineModel model;
     model.reference_K = 293.15;
-    model.hall = {{0.0}, {0.0}};
+    model.ambient = {{0.0}, {0.0}};
     return read_measured(path, model, outputs());
   }
   std::string refusal(const std::string& text) {
@@ -43,7 +43,7 @@ class MeasuredRunTest : public testing::Test {
   }
 };
 
-TEST_F(MeasuredRunTest, TakesSpeedAsSectionsTheHallAsKnotsAndReadingsInSI) {
+TEST_F(MeasuredRunTest, TakesSpeedAsSectionsTheAmbientAsKnotsAndReadingsInSI) {
   std::string text = "time_min,speed_rpm,ambient_degC,t_front_degC,nose_z_um\n";
   for (int i = 0; i <= 60; ++i) {
     text += std::to_string(10 + i) + (i < 30 ? ",1000" : ",0") + ",21," + std::to_string(20.0 + 0.1 * i) + "," +
@@ -54,7 +54,7 @@ TEST_F(MeasuredRunTest, TakesSpeedAsSectionsTheHallAsKnotsAndReadingsInSI) {
   ASSERT_EQ(run.cyclogram.sections.size(), 2u);
   EXPECT_EQ(run.cyclogram.sections[0].duration_s, 1800.0);
   EXPECT_EQ(run.cyclogram.sections[1].drive.speed_rpm, 0.0);
-  EXPECT_NEAR(run.hall.at(1234.0), 1.0, 1e-9);
+  EXPECT_NEAR(run.ambient.at(1234.0), 1.0, 1e-9);
   ASSERT_NE(run.find("t_front"), nullptr);
   EXPECT_NEAR(run.find("t_front")->value[10], 1.0, 1e-9);
   EXPECT_NEAR(run.find("nose_z")->value[10], 5e-6, 1e-15);
@@ -93,45 +93,45 @@ TEST_F(MeasuredRunTest, HoldsTheSpeedOverJitterAndGapsAndAsksOftenerAfterItsChan
   EXPECT_DOUBLE_EQ(run.grid_s[static_cast<std::size_t>(run.row_in_grid[20]) + 1], 1215.0);
 }
 
-TEST_F(MeasuredRunTest, TakesAThermometerInTheHallForTheHall) {
-  std::string text = "time_s,speed_rpm,t_front_degC,hall_degC\n";
+TEST_F(MeasuredRunTest, TakesAThermometerInTheAmbientForTheAmbient) {
+  std::string text = "time_s,speed_rpm,t_front_degC,t_ambient_degC\n";
   for (int i = 0; i < 40; ++i) text += std::to_string(60 * i) + ",500," + std::to_string(20.0 + 0.013 * i) + ",23\n";
   const MeasuredRun run = read(text);
   EXPECT_TRUE(run.has_ambient);
-  EXPECT_NEAR(run.hall.at(600.0), 3.0, 1e-9);
-  EXPECT_EQ(run.find("hall"), nullptr);  // it is an input now
+  EXPECT_NEAR(run.ambient.at(600.0), 3.0, 1e-9);
+  EXPECT_EQ(run.find("t_ambient"), nullptr);  // it is an input now
 }
 
-/// The largest difference of a body's temperatures in a recorded hall and in the hall as it is read, by its exact answer to straight pieces.
-double missed_K(const MeasuredRun& run, const std::vector<double>& hall_K, double time_constant_s) {
-  double recorded_K = hall_K[0], read_K = run.hall.at(0.0), most = 0.0;
+/// The largest difference of a body's temperatures in a recorded ambient and in the ambient as it is read, by its exact answer to straight pieces.
+double missed_K(const MeasuredRun& run, const std::vector<double>& ambient_K, double time_constant_s) {
+  double recorded_K = ambient_K[0], read_K = run.ambient.at(0.0), most = 0.0;
   const double step_s = run.time_s[1] - run.time_s[0], kept = std::exp(-step_s / time_constant_s);
   const auto next = [&](double body, double from, double to) {
     const double lag = (to - from) / step_s * time_constant_s;
     return to - lag + kept * (body - from + lag);
   };
-  for (std::size_t i = 1; i < hall_K.size(); ++i) {
-    recorded_K = next(recorded_K, hall_K[i - 1], hall_K[i]);
-    read_K = next(read_K, run.hall.at(run.time_s[i - 1]), run.hall.at(run.time_s[i]));
+  for (std::size_t i = 1; i < ambient_K.size(); ++i) {
+    recorded_K = next(recorded_K, ambient_K[i - 1], ambient_K[i]);
+    read_K = next(read_K, run.ambient.at(run.time_s[i - 1]), run.ambient.at(run.time_s[i]));
     most = std::max(most, std::abs(recorded_K - read_K));
   }
   return most;
 }
 
 // A thermometer in the open air shows gusts, and a body of five hours feels them: 0.4 K from one reading to the next are 0.03 K of its own.
-TEST_F(MeasuredRunTest, KeepsAHallThatChangesByMoreThanThermometersErr) {
+TEST_F(MeasuredRunTest, KeepsAnAmbientThatChangesByMoreThanThermometersErr) {
   for (const double wandering_K : {0.03, 0.4}) {
     Random random(11);
     std::string text = "time_s,speed_rpm,ambient_degC,t_front_degC\n";
-    std::vector<double> hall_K;
+    std::vector<double> ambient_K;
     for (int i = 0; i < 500; ++i) {
-      hall_K.push_back(4.0 * std::sin(i / 60.0) + wandering_K * random.normal());
-      text += fmt::format("{},500,{:.6f},{}\n", 300 * i, 20.0 + hall_K.back(), 20.0 + 0.01 * i);
+      ambient_K.push_back(4.0 * std::sin(i / 60.0) + wandering_K * random.normal());
+      text += fmt::format("{},500,{:.6f},{}\n", 300 * i, 20.0 + ambient_K.back(), 20.0 + 0.01 * i);
     }
     const MeasuredRun run = read(text);
-    EXPECT_LT(missed_K(run, hall_K, 5.0 * 3600.0), 0.012) << wandering_K;
+    EXPECT_LT(missed_K(run, ambient_K, 5.0 * 3600.0), 0.012) << wandering_K;
     if (wandering_K < 0.1) {
-      EXPECT_LT(run.hall.time_s.size(), 300u);  // noise, which nobody feels
+      EXPECT_LT(run.ambient.time_s.size(), 300u);  // noise, which nobody feels
     }
   }
 }
@@ -145,7 +145,7 @@ TEST_F(MeasuredRunTest, LeavesOutAStuckSensorByNameAndCountsGaps) {
   std::string all;
   for (const DataFinding& f : run.findings) all += f.what + "\n";
   EXPECT_THAT(all, AllOf(HasSubstr("t_front is stuck"), HasSubstr("23.4 degC"), HasSubstr("nose_z misses 1 of 40"),
-                         HasSubstr("no hall temperature")));
+                         HasSubstr("no ambient temperature")));
 }
 
 TEST_F(MeasuredRunTest, RecognisesTheStepOfAnInstrument) {
@@ -284,7 +284,7 @@ TEST_F(MeasuredRunTest, KnowsTheStepOfAnInstrumentWithAnOffset) {  // 1/16 K and
   EXPECT_NEAR(run.find("t_front")->quantum, 0.0625, 1e-9);
 }
 
-TEST_F(MeasuredRunTest, RefusesAHallInFahrenheitOrKelvin) {
+TEST_F(MeasuredRunTest, RefusesAnAmbientInFahrenheitOrKelvin) {
   const auto record = [](double ambient) {
     std::string text = "time_s,speed_rpm,ambient_degC,t_front_degC\n";
     for (int i = 0; i < 5; ++i) text += fmt::format("{},0,{},{}\n", 60 * i, ambient, 20.0 + 0.1 * i);

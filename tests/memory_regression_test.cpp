@@ -162,11 +162,11 @@ TEST(Memories, KeepStillWhereNothingCanBeKnown) {
   EXPECT_LT(rms_off_um(f.model, runs[3]), 1.2 * score(off).rmse);
 }
 
-TEST(Memories, TakeTheHallOnceAndNothingThatNeverMoves) {
+TEST(Memories, TakeTheAmbientOnceAndNothingThatNeverMoves) {
   std::vector<Record> runs = {record_of(1, speeds(1, 600)), record_of(2, speeds(2, 600))};
   for (Record& r : runs) r.channels.push_back({"flat", "degC", std::vector<double>(r.n_samples(), 21.0)});
-  const auto n_of = [&](const std::vector<std::string>& sensors, const std::string& hall, const std::string& input) {
-    const FittedFormula f = fit_with_memories(runs, sensors, "", hall, "drift_z");
+  const auto n_of = [&](const std::vector<std::string>& sensors, const std::string& ambient, const std::string& input) {
+    const FittedFormula f = fit_with_memories(runs, sensors, "", ambient, "drift_z");
     return std::count_if(f.model.terms.begin(), f.model.terms.end(), [&](const auto& t) { return t.input == input; });
   };
   EXPECT_EQ(n_of({"bed", "flat"}, "other", "other"), 4);  // at once and behind three lags

@@ -27,9 +27,9 @@ effects:
   - {type: link, node: spindle, to: head, conductance: 14 W/K}
   - {type: link, node: motor, to: head, conductance: 6 W/K}
   - {type: link, node: head, to: column, conductance: 12 W/K}
-  - {type: link, node: column, to: hall, conductance: 14 W/K}
-  - {type: link, node: motor, to: hall, conductance: 3 W/K}
-hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+  - {type: link, node: motor, to: ambient, conductance: 3 W/K}
+ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
 sensors:
   - {name: t_spindle, node: spindle}
   - {name: t_head, node: head}
@@ -48,7 +48,7 @@ solver: {output_interval: 1 min}
 
 std::string scenario_with(const std::string& entry) {
   std::string text = kMachine;
-  if (!entry.empty()) text.insert(text.find("hall: [["), "  - " + entry + "\n");
+  if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
   return text;
 }
 
@@ -88,30 +88,34 @@ TEST_P(AMissingPath, IsNamedWithItsNumbersAndWritten) {
   EXPECT_EQ(again.diagnosed(3).verdict, Verdict::kConsistent);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    OfEachSort, AMissingPath,
-    ::testing::Values(
-        Missing{"to_the_hall", "{type: link, node: head, to: hall, conductance: 5 W/K}", "link", "head,hall", {5.0}, 0.1},
-        Missing{"between_nodes",
-                "{type: link, node: spindle, to: column, conductance: 5 W/K}",
-                "link",
-                "spindle,column",
-                {5.0},
-                0.15},
-        Missing{"hidden_body",
-                "{type: hidden_body, node: head, capacity: 25 kJ/K, conductance: 6 W/K}",
-                "hidden_body",
-                "head",
-                {25e3, 25e3 / 6.0 / 60.0},  // capacity, and the time constant in min
-                0.15},
-        Missing{"hidden_body_with_a_way_out",
-                "{type: hidden_body, node: spindle, capacity: 12 kJ/K, conductance: 5 W/K, "
-                "hall_conductance: 4 W/K}",
-                "hidden_body",
-                "spindle",
-                {5.0, 12e3, 4.0},
-                0.25}),
-    [](const auto& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(OfEachSort, AMissingPath,
+                         ::testing::Values(Missing{"to_the_ambient",
+                                                   "{type: link, node: head, to: ambient, conductance: 5 W/K}",
+                                                   "link",
+                                                   "head,ambient",
+                                                   {5.0},
+                                                   0.1},
+                                           Missing{"between_nodes",
+                                                   "{type: link, node: spindle, to: column, conductance: 5 W/K}",
+                                                   "link",
+                                                   "spindle,column",
+                                                   {5.0},
+                                                   0.15},
+                                           Missing{"hidden_body",
+                                                   "{type: hidden_body, node: head, capacity: 25 kJ/K, conductance: 6 W/K}",
+                                                   "hidden_body",
+                                                   "head",
+                                                   {25e3, 25e3 / 6.0 / 60.0},  // capacity, and the time constant in min
+                                                   0.15},
+                                           Missing{
+                                               "hidden_body_with_a_way_out",
+                                               "{type: hidden_body, node: spindle, capacity: 12 kJ/K, conductance: 5 W/K, "
+                                               "hall_conductance: 4 W/K}",
+                                               "hidden_body",
+                                               "spindle",
+                                               {5.0, 12e3, 4.0},
+                                               0.25}),
+                         [](const auto& one) { return std::string(one.param.name); });
 
 TEST(NoMissingPath, IsConsistent) {
   const std::string plain = write_file("plain.yaml", scenario_with(""));
@@ -127,15 +131,15 @@ TEST(MissingPaths, AreOfferedOnceWhereNothingJoinsTwoBodies) {
     if (c.effect == "link") links.push_back(c.where);
     if (c.effect == "hidden_body") bodies.push_back(c.where);
   }
-  EXPECT_THAT(links,
-              testing::UnorderedElementsAre("spindle,column", "spindle,motor", "spindle,hall", "head,hall", "column,motor"));
+  EXPECT_THAT(links, testing::UnorderedElementsAre("spindle,column", "spindle,motor", "spindle,ambient", "head,ambient",
+                                                   "column,motor"));
   EXPECT_THAT(bodies, testing::UnorderedElementsAre("spindle", "head", "column", "motor"));
 }
 
 TEST(AWrittenGradient, ThatIsFarOffIsFound) {
   const auto written = [](const std::string& gradient) {
     fixtures::ColumnAndHead what;
-    what.start = "hall";
+    what.start = "ambient";
     what.effects.push_back("{type: stratification, gradient: " + gradient + ", level: 0.1 m}");
     what.cyclograms = "{cycle: [[100 min, 1000 rpm], [100 min, 0 rpm], [100 min, 600 rpm], [60 min, 1500 rpm]]}";
     return fixtures::write_column_and_head(fresh_folder("gradient_" + gradient.substr(0, 2)), what);
@@ -145,7 +149,7 @@ TEST(AWrittenGradient, ThatIsFarOffIsFound) {
   EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "stratification");
-  EXPECT_EQ(d.causes[0].where, "hall");
+  EXPECT_EQ(d.causes[0].where, "ambient");
   EXPECT_NEAR(d.causes[0].parameters[0].value, 13.0, 1.5);
 }
 

@@ -28,14 +28,14 @@ Matrix as(const Eigen::MatrixXd& m) {
   }
 }
 
-constexpr double kHall_K = 3.0;
-const effects::Inputs kAtWork{.drive = {.speed_rpm = 2000.0}, .hall_K = kHall_K};
+constexpr double kAmbient_K = 3.0;
+const effects::Inputs kAtWork{.drive = {.speed_rpm = 2000.0}, .ambient_K = kAmbient_K};
 const Cyclogram kWork{.name = "work", .sections = {{20000.0, {.speed_rpm = 2000.0}}}};
-const TimeSeries kHall{{0.0}, {kHall_K}};
+const TimeSeries kAmbient{{0.0}, {kAmbient_K}};
 
 /// Nodes of 4, 5 and 10 kJ/K. Part "head" is nodes 0 and 1 with 20 W/K between them, "bed" node 2 with nothing to conduct; a joint of 15 W/K
-/// from 1 to 2; films of 6 W/K on 0 and, with air 0.7 K warmer than the hall, 8 W/K on 2; motor into 0, screw into 1. Outputs: T0, T2 with
-/// a tenth of the hall's, and the drift 2, 3 um/K of the head's nodes and 1.5 um/K of the bed's.
+/// from 1 to 2; films of 6 W/K on 0 and, with air 0.7 K warmer than the ambient, 8 W/K on 2; motor into 0, screw into 1. Outputs: T0, T2 with
+/// a tenth of the ambient's, and the drift 2, 3 um/K of the head's nodes and 1.5 um/K of the bed's.
 template <class Matrix = Eigen::MatrixXd>
 ThermalSystem<Matrix> head_and_bed() {
   const auto unit = [](int i) -> Eigen::VectorXd { return Eigen::Vector3d::Unit(i); };
@@ -45,11 +45,11 @@ ThermalSystem<Matrix> head_and_bed() {
   s.conduction = as<Matrix>(20.0 * across * across.transpose());
   s.sources = {{"motor", {}, unit(0), BoundLaw([](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; })},
                {"screw", {}, unit(1), BoundLaw([](const effects::Inputs& u) { return 0.03 * u.drive.speed_rpm; })}};
-  const auto exchange = [&](const char* name, const Eigen::VectorXd& from, double hall_sum, double W_K) {
+  const auto exchange = [&](const char* name, const Eigen::VectorXd& from, double ambient_sum, double W_K) {
     s.exchanges.push_back({.name = name,
                            .matrix = as<Matrix>(from * from.transpose()),
-                           .to_hall = hall_sum * from,
-                           .hall_sum = hall_sum,
+                           .to_ambient = ambient_sum * from,
+                           .ambient_sum = ambient_sum,
                            .coefficient = BoundLaw([W_K](const effects::Inputs&) { return W_K; }),
                            .flow = from});
   };
@@ -64,7 +64,7 @@ ThermalSystem<Matrix> head_and_bed() {
   s.outputs.state.col(0) = unit(0);
   s.outputs.state.col(1) = 0.9 * unit(2);
   s.outputs.state.col(2) = 1e-6 * Eigen::Vector3d(2.0, 3.0, 1.5);
-  s.outputs.hall = Eigen::Vector3d(0.0, 0.1, 0.0);
+  s.outputs.ambient = Eigen::Vector3d(0.0, 0.1, 0.0);
   s.ones = Eigen::Vector3d::Ones();
   for (const auto& [body, of] :
        {std::pair{"head", Eigen::Vector3d(1.0, 1.0, 0.0)}, {"bed", Eigen::Vector3d(0.0, 0.0, 1.0)}}) {
@@ -77,7 +77,7 @@ ThermalSystem<Matrix> head_and_bed() {
   return s;
 }
 
-/// One node of 4 kJ/K with a film of 6 W/K and 200 W at work, in a hall at the reference temperature.
+/// One node of 4 kJ/K with a film of 6 W/K and 200 W at work, in an ambient at the reference temperature.
 ReducedSystem one_node() {
   ReducedSystem s;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
@@ -87,8 +87,8 @@ ReducedSystem one_node() {
   s.sources = {{"motor", {}, on, BoundLaw([](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; })}};
   s.exchanges.push_back({.name = "film",
                          .matrix = one,
-                         .to_hall = on,
-                         .hall_sum = 1.0,
+                         .to_ambient = on,
+                         .ambient_sum = 1.0,
                          .coefficient = BoundLaw([](const effects::Inputs&) { return 6.0; }),
                          .flow = on});
   s.outputs = {{"T"}, {"K"}, one, Eigen::VectorXd::Zero(1)};
@@ -108,7 +108,7 @@ Eigen::MatrixXd k_of(const ThermalSystem<Matrix>& s) {
 }
 template <class Matrix>
 Eigen::VectorXd steady_outputs(const ThermalSystem<Matrix>& s) {
-  return s.observe(k_of(s).lu().solve(s.load(kAtWork)), kHall_K);
+  return s.observe(k_of(s).lu().solve(s.load(kAtWork)), kAmbient_K);
 }
 
 /// Everything that factors reach, in a row.
@@ -121,9 +121,9 @@ std::vector<double> numbers_of(const ThermalSystem<Matrix>& s) {
   for (const HeatSource& source : s.sources) add(source.load);
   for (const auto& e : s.exchanges) {
     for (const Eigen::MatrixXd& m :
-         {Eigen::MatrixXd(e.matrix), Eigen::MatrixXd(e.to_hall), Eigen::MatrixXd(e.flow), Eigen::MatrixXd(e.offset)})
+         {Eigen::MatrixXd(e.matrix), Eigen::MatrixXd(e.to_ambient), Eigen::MatrixXd(e.flow), Eigen::MatrixXd(e.offset)})
       add(m);
-    all.push_back(e.hall_sum);
+    all.push_back(e.ambient_sum);
     all.push_back(e.offset_sum);
   }
   for (const auto& p : s.parts) {
@@ -132,7 +132,7 @@ std::vector<double> numbers_of(const ThermalSystem<Matrix>& s) {
     add(p.outputs);
   }
   add(s.outputs.state);
-  add(s.outputs.hall);
+  add(s.outputs.ambient);
   return all;
 }
 
@@ -172,13 +172,13 @@ TEST(ModelFactors, OnTheCapacityOfOneNodeStretchItsTimeConstant) {
   }
 }
 
-// K(u) stays as it is only as a whole: conduction, films and joint, motor, hall and stratified air, all have to be faster.
+// K(u) stays as it is only as a whole: conduction, films and joint, motor, ambient and stratified air, all have to be faster.
 TEST(ModelFactors, OnRatesStretchTimeAndLeaveLevels) {
   const ReducedSystem s = head_and_bed(), fast = with_factors(s, {.rate = 1.6});
   const Eigen::VectorXd start = Eigen::Vector3d(1.0, -2.0, 4.0);
   const std::vector<double> time_s = {160.0, 1600.0, 16000.0}, sooner_s = {100.0, 1000.0, 10000.0};
-  const Eigen::MatrixXd slow_y = Propagator(s).run(kWork, kHall, time_s, start).outputs,
-                        fast_y = Propagator(fast).run(kWork, kHall, sooner_s, start).outputs;
+  const Eigen::MatrixXd slow_y = Propagator(s).run(kWork, kAmbient, time_s, start).outputs,
+                        fast_y = Propagator(fast).run(kWork, kAmbient, sooner_s, start).outputs;
   EXPECT_LT((slow_y - fast_y).topRows(2).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_LT((slow_y - fast_y).row(2).cwiseAbs().maxCoeff(), 1e-16);
   EXPECT_LT((steady_outputs(s) - steady_outputs(fast)).cwiseAbs().maxCoeff(), 1e-11);
@@ -187,21 +187,22 @@ TEST(ModelFactors, OnRatesStretchTimeAndLeaveLevels) {
 TEST(ModelFactors, OnExpansionsAndOutputsScaleWhatIsReadOffTheState) {
   const ReducedSystem s = head_and_bed();
   const Eigen::Vector3d state(10.0, 20.0, 40.0);
-  const double hall_K = 5.0;
+  const double ambient_K = 5.0;
   Eigen::MatrixXd expansion = Eigen::MatrixXd::Ones(2, 3);
   expansion.row(0).setConstant(1.1);  // of the head: its 2 * 10 + 3 * 20 um
-  const Eigen::VectorXd grown = with_factors(s, {.expansion = expansion}).observe(state, hall_K);
+  const Eigen::VectorXd grown = with_factors(s, {.expansion = expansion}).observe(state, ambient_K);
   EXPECT_NEAR(grown(2), 1e-6 * (1.1 * 80.0 + 60.0), 1e-18);
   EXPECT_EQ(grown(0), 10.0);
-  EXPECT_EQ(grown(1), 0.9 * 40.0 + 0.1 * hall_K);
-  const Eigen::VectorXd scaled = with_factors(s, {.output = {1.0, 2.0, 0.5}}).observe(state, hall_K);
+  EXPECT_EQ(grown(1), 0.9 * 40.0 + 0.1 * ambient_K);
+  const Eigen::VectorXd scaled = with_factors(s, {.output = {1.0, 2.0, 0.5}}).observe(state, ambient_K);
   EXPECT_EQ(scaled(0), 10.0);
-  EXPECT_NEAR(scaled(1), 2.0 * (0.9 * 40.0 + 0.1 * hall_K), 1e-13);
+  EXPECT_NEAR(scaled(1), 2.0 * (0.9 * 40.0 + 0.1 * ambient_K), 1e-13);
   EXPECT_NEAR(scaled(2), 0.5e-6 * 140.0, 1e-18);
   expansion.setOnes();
   expansion(1, 2) = 3.0;  // after a factor on the output, parts are still what it consists of
-  EXPECT_NEAR(with_factors(with_factors(s, {.output = {1.0, 2.0, 0.5}}), {.expansion = expansion}).observe(state, hall_K)(2),
-              0.5e-6 * (80.0 + 3.0 * 60.0), 1e-18);
+  EXPECT_NEAR(
+      with_factors(with_factors(s, {.output = {1.0, 2.0, 0.5}}), {.expansion = expansion}).observe(state, ambient_K)(2),
+      0.5e-6 * (80.0 + 3.0 * 60.0), 1e-18);
 }
 
 TEST(ModelFactors, NameAndTakeFlowsInOneOrder) {
@@ -252,7 +253,7 @@ TYPED_TEST(ModelFactorsOf, OneAfterTheOtherAreTheirProduct) {
   }
 }
 
-// With θ = K^-1 f: a source's factor moves θ by K^-1 P b, an exchange's by K^-1 c (g θ_hall + o - G θ), conduction's by -K^-1 K0 θ.
+// With θ = K^-1 f: a source's factor moves θ by K^-1 P b, an exchange's by K^-1 c (g θ_ambient + o - G θ), conduction's by -K^-1 K0 θ.
 TYPED_TEST(ModelFactorsOf, SensitivitiesOfTheSteadyOutputsAreThoseDerivedByHand) {
   const ThermalSystem<TypeParam> s = head_and_bed<TypeParam>();
   const Eigen::MatrixXd inverse = k_of(s).inverse(), l = s.outputs.state;
@@ -274,7 +275,7 @@ TYPED_TEST(ModelFactorsOf, SensitivitiesOfTheSteadyOutputsAreThoseDerivedByHand)
   }
   for (std::size_t i = 0; i < s.exchanges.size(); ++i) {
     const auto& e = s.exchanges[i];
-    Eigen::VectorXd into = kHall_K * e.to_hall - Eigen::MatrixXd(e.matrix) * theta;
+    Eigen::VectorXd into = kAmbient_K * e.to_ambient - Eigen::MatrixXd(e.matrix) * theta;
     if (e.offset.size() > 0) into += e.offset;
     cases.push_back({e.name.c_str(),
                      [i](ModelFactors& f, double x) {
@@ -299,7 +300,7 @@ TYPED_TEST(ModelFactorsOf, SensitivitiesOfTheSteadyOutputsAreThoseDerivedByHand)
                    [](ModelFactors& f, double x) {
                      f.output = {1.0, 1.0, x};
                    },
-                   Eigen::Vector3d(0.0, 0.0, s.observe(theta, kHall_K)(2))});
+                   Eigen::Vector3d(0.0, 0.0, s.observe(theta, kAmbient_K)(2))});
   constexpr double kStep = 1e-4;  // central: its square of the third derivative, 1e-8, beside 1e-16 / 1e-4 of rounding
   for (const Case& c : cases) {
     ModelFactors more, less;

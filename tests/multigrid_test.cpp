@@ -33,7 +33,7 @@ struct Heat {
 Heat heat_in_block(int n, mesh::CellShape shape = mesh::CellShape::kTet4) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.3, 0.2, 0.4}, .n = {n, n, n}, .shape = shape});
   effects::HeatBalance balance;
-  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(10.0), "hall"));
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(10.0), "ambient"));
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   return {system.mass, fixtures::stiffness(system)};
 }
@@ -101,7 +101,7 @@ TEST(MultigridOfHeat, TakesARowThatCouplesWithThousands) {
   effects::HeatBalance balance;
   balance.nodes.push_back({.name = "oil", .capacity_J_K = 1e4});
   balance.exchanges.push_back(effects::make_film("film", "z0", fixtures::constant(200.0), "oil"));
-  balance.exchanges.push_back(effects::make_film("air", "z1", fixtures::constant(10.0), "hall"));
+  balance.exchanges.push_back(effects::make_film("air", "z1", fixtures::constant(10.0), "ambient"));
   const SparseRow k = fixtures::stiffness(assemble_heat(mesh, {fixtures::steel()}, balance));
   const Eigen::VectorXd b = random_vector(k.rows(), 6), exact = ConductionFactor(k).solve(b);
   const Multigrid multigrid(k);

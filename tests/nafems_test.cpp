@@ -56,19 +56,19 @@ mesh::Mesh uneven_bar(CellShape shape) {
 }
 
 /// Largest deviation from the target over the nodes of the radiating end.
-double t2_error_K(const mesh::Mesh& mesh, const std::string& surrounding, double hall_K) {
+double t2_error_K(const mesh::Mesh& mesh, const std::string& surrounding, double ambient_K) {
   Material m = fixtures::steel();
   m.conductivity_W_mK = kT2Conductivity_W_mK;
   effects::HeatBalance balance;
   balance.fixed.push_back(fixed_at(effects::surface("x0"), 1000.0));
   balance.radiations.push_back({"radiation", "x1", kT2Emissivity, surrounding});
-  if (surrounding != effects::kHallName) {
+  if (surrounding != effects::kAmbientName) {
     balance.nodes.push_back({surrounding, 1.0});
     balance.fixed.push_back(fixed_at(effects::node(surrounding), kT2Surrounding_K));
   }
   const FullSystem system = assemble_heat(mesh, {m}, balance);
   const Eigen::VectorXd theta =
-      steady_state(system, {.drive = {}, .hall_K = hall_K - system.reference_K}, Eigen::VectorXd::Zero(system.size()));
+      steady_state(system, {.drive = {}, .ambient_K = ambient_K - system.reference_K}, Eigen::VectorXd::Zero(system.size()));
   double worst_K = 0.0;
   for (int i = 0; i < mesh.n_nodes(); ++i) {
     if (mesh.coords(0, i) < kT2Length_m * (1.0 - 1e-9)) continue;
@@ -81,9 +81,9 @@ TEST_P(NafemsOnEachCell, NafemsT2IsExactOnEveryMesh) {
   // The temperature is linear in place, which every cell holds: only the solve errs, by 1e-10 of some 700 K at most.
   EXPECT_NEAR(t2_exact_K(), 927.0, 0.05);  // the target's digits
   const double coarse_K =
-      t2_error_K(fixtures::box_mesh({.size_m = {kT2Length_m, 0.02, 0.02}, .shape = GetParam()}), "hall", 300.0);
-  const double uneven_K = t2_error_K(uneven_bar(GetParam()), "hall", 300.0);
-  const double to_node_K = t2_error_K(uneven_bar(GetParam()), "walls", 280.0);  // the hall is not what it radiates to
+      t2_error_K(fixtures::box_mesh({.size_m = {kT2Length_m, 0.02, 0.02}, .shape = GetParam()}), "ambient", 300.0);
+  const double uneven_K = t2_error_K(uneven_bar(GetParam()), "ambient", 300.0);
+  const double to_node_K = t2_error_K(uneven_bar(GetParam()), "walls", 280.0);  // the ambient is not what it radiates to
   RecordProperty("exact_K", text(t2_exact_K(), 9));
   RecordProperty("error_one_cell_K", text(coarse_K));
   RecordProperty("error_uneven_K", text(uneven_K));

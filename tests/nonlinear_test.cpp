@@ -20,7 +20,7 @@ namespace {
 
 using fixtures::flow;
 
-const TimeSeries kStillHall{{0.0}, {0.0}};
+const TimeSeries kStillAmbient{{0.0}, {0.0}};
 const TransientOptions kFine{.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-5};
 constexpr double kSigma = 5.670374419e-8;
 
@@ -42,14 +42,14 @@ void note(const std::string& key, double value) {
 // --- radiation --------------------------------------------------------------------------------------------------
 
 TEST(Radiation, LumpCoolsByTheClosedFormOfTheFourthPower) {
-  // dT/dt = -k T^4 into a hall of 1 K (1e-10 of it comes back): T = (T0^-3 + 3 k t)^(-1/3), k = 0.9 sigma 0.01 m^2 / 4000 J/K.
+  // dT/dt = -k T^4 into an ambient of 1 K (1e-10 of it comes back): T = (T0^-3 + 3 k t)^(-1/3), k = 0.9 sigma 0.01 m^2 / 4000 J/K.
   FullSystem system = assemble_heat(cube(), {fixtures::lump(1e5)},
                                     fixtures::balance_of({"{type: radiation, surface: x1, emissivity: 0.9}"}), 400.0);
   fixtures::observe_unknowns(system, {0});
-  const TimeSeries hall{{0.0}, {-399.0}};
+  const TimeSeries ambient{{0.0}, {-399.0}};
   const std::vector<double> times_s = {1000, 10000, 50000, 200000};
   const Trajectory run =
-      simulate(system, at_speed(200000, 0), hall, times_s, kFine, Eigen::VectorXd::Constant(system.size(), 200.0));
+      simulate(system, at_speed(200000, 0), ambient, times_s, kFine, Eigen::VectorXd::Constant(system.size(), 200.0));
   for (std::size_t k = 0; k < times_s.size(); ++k) {
     const double exact_K = std::pow(std::pow(600.0, -3) + 3.0 * 0.9 * kSigma * 0.01 / 4000.0 * times_s[k], -1.0 / 3.0);
     // The cube's temperatures differ by q L / k = 6600 * 0.1 / 1e5 = 6.6 mK at first; the tolerance adds 0.2 mK a step.
@@ -61,7 +61,7 @@ TEST(Radiation, LumpCoolsByTheClosedFormOfTheFourthPower) {
 }
 
 TEST(Radiation, BetweenAPlateAndAHotNeighbourAsTheClosedForm) {
-  // A neighbour held at 500 degC shines on x0, x1 radiates to the hall of 20 degC, both with 0.8: T^4 is the mean of the two.
+  // A neighbour held at 500 degC shines on x0, x1 radiates to the ambient of 20 degC, both with 0.8: T^4 is the mean of the two.
   const mesh::Mesh mesh = cube();
   FullSystem system =
       assemble_heat(mesh, {fixtures::lump(1e7)},
@@ -74,7 +74,7 @@ TEST(Radiation, BetweenAPlateAndAHotNeighbourAsTheClosedForm) {
   EXPECT_NEAR(293.15 + theta[0], exact_K, 2e-4);  // 8.1 kW/m^2 * 0.1 m / 1e7 W/(m K) = 81 uK within the cube
   // 0.8 sigma (T_furnace^4 - T^4) 0.01 m^2 = 79.4 W cross the cube.
   const double through_W = 0.8 * kSigma * 0.01 * (std::pow(773.15, 4) - std::pow(exact_K, 4));
-  const Trajectory on = simulate(system, at_speed(100, 0), kStillHall, {100}, {}, theta);
+  const Trajectory on = simulate(system, at_speed(100, 0), kStillAmbient, {100}, {}, theta);
   EXPECT_NEAR(on.heat_J(flow(on, "radiation x1"), 0) / 100.0, -through_W, 1e-3);
   EXPECT_NEAR(on.heat_J(flow(on, "radiation x0"), 0) / 100.0, -through_W, 1e-3);  // out of the cube, into the node
   EXPECT_NEAR(on.heat_J(flow(on, "fixed_temperature furnace"), 0) / 100.0, through_W, 1e-3);
@@ -112,7 +112,7 @@ TEST(Nonlinear, TransientEndsInTheSteadyStateOfItsLaws) {
   const FullSystem system = spindle();
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
   const Eigen::VectorXd theta = steady_state(system, {.drive = {.speed_rpm = 3000}}, zero);
-  const Trajectory fine = simulate(system, at_speed(6e5, 3000), kStillHall, {6e5},
+  const Trajectory fine = simulate(system, at_speed(6e5, 3000), kStillAmbient, {6e5},
                                    {.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-5}, zero);
   const Eigen::VectorXd expected = system.observe(theta, 0.0);
   EXPECT_GT(expected[0], 10.0);
@@ -126,21 +126,21 @@ TEST(Nonlinear, HeatBalancesToRoundingAtAnyTolerance) {
   const Cyclogram cycle{
       .name = "cycle",
       .sections = {{1800, {.speed_rpm = 2000}}, {600, {}}, {1200, {.speed_rpm = 500}}, {3600, {.speed_rpm = 3000}}}};
-  const TimeSeries hall{{0, 2000, 5000}, {0.0, 1.5, -1.0}};
+  const TimeSeries ambient{{0, 2000, 5000}, {0.0, 1.5, -1.0}};
   for (double tolerance : {1e-2, 5e-4, 1e-5}) {
     const Trajectory run =
-        simulate(system, cycle, hall, {7200}, {.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance},
+        simulate(system, cycle, ambient, {7200}, {.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance},
                  Eigen::VectorXd::Zero(system.size()));
     EXPECT_LT(run.energy_gap(), 1e-9) << tolerance;  // Runge-Kutta weights serve temperatures and heats alike
     note("gap_at_" + std::to_string(tolerance), run.energy_gap());
   }
-  const Trajectory standard = simulate(system, cycle, hall, {7200}, {}, Eigen::VectorXd::Zero(system.size()));
+  const Trajectory standard = simulate(system, cycle, ambient, {7200}, {}, Eigen::VectorXd::Zero(system.size()));
   note("gap_at_default", standard.energy_gap());
   note("steps_at_default", standard.n_steps);
 }
 
 TEST(Nonlinear, SteadyStateSolvesTheLawsOfASmallModel) {
-  // One lump by hand: P(T) of the bearing = h(T) A (T - T_hall), solved by bisection on the same formulas, outside the solver.
+  // One lump by hand: P(T) of the bearing = h(T) A (T - T_ambient), solved by bisection on the same formulas, outside the solver.
   const mesh::Mesh mesh = cube();
   const FullSystem system =
       assemble_heat(mesh, {fixtures::lump(1e7)},
@@ -164,7 +164,7 @@ TEST(Nonlinear, SteadyStateSolvesTheLawsOfASmallModel) {
 TEST(Nonlinear, SteadyStateTakesShorterStepsWhereALawIsSteep) {
   // θ = 100 exp(-θ / 5): whole steps without the law's slope (-2.2 at the solution) would swing between 0.2 K and 96 K.
   effects::HeatBalance balance = fixtures::balance_of(
-      {"{type: node, node: a, capacity: 1 J/K}", "{type: link, node: a, to: hall, conductance: 1 W/K}"});
+      {"{type: node, node: a, capacity: 1 J/K}", "{type: link, node: a, to: ambient, conductance: 1 W/K}"});
   balance.heats.push_back(
       {"steep", effects::node("a"),
        effects::Law([](const effects::Inputs& u) { return 100.0 * std::exp(-(u.probe_K.at(0) - 293.15) / 5.0); },
@@ -182,7 +182,7 @@ TEST(Nonlinear, ALawThatIsLeftForGoodIsNamedWhenTheRunGivesUp) {
                     fixtures::balance_of({"{type: heat_source, region: body, power: 20 kW}",
                                           "{type: natural_convection, surface: x1, orientation: vertical, length: 0.1 m}"}));
   EXPECT_THAT(
-      [&] { (void)simulate(system, at_speed(7200, 0), kStillHall, {7200}, {}, Eigen::VectorXd::Zero(system.size())); },
+      [&] { (void)simulate(system, at_speed(7200, 0), kStillAmbient, {7200}, {}, Eigen::VectorXd::Zero(system.size())); },
       ::testing::ThrowsMessage<SolveError>(::testing::HasSubstr("air temperature [K]")));
 }
 
@@ -207,7 +207,7 @@ TEST(VariableConductivity, SlabFollowsTheKirchhoffTransform) {
     }));
     if (n < 8) continue;
     fixtures::observe_unknowns(system, {0});
-    const Trajectory run = simulate(system, at_speed(1000, 0), kStillHall, {1000}, kFine, theta);
+    const Trajectory run = simulate(system, at_speed(1000, 0), kStillAmbient, {1000}, kFine, theta);
     EXPECT_NEAR(run.heat_J(flow(run, "fixed_temperature x0"), 0) / 1000.0, 700.0, 1e-3);  // the tolerance of steps
     EXPECT_LT(run.energy_gap(), 1e-9);
     note("gap", run.energy_gap());
@@ -227,7 +227,7 @@ TEST(VariableCapacity, LumpTakesUpTheIntegralOfItsHeatCapacity) {
   fixtures::observe_unknowns(system, {0});
   const std::vector<double> times_s = {600, 3600, 7200};
   const Trajectory run =
-      simulate(system, at_speed(7200, 0), kStillHall, times_s, kFine, Eigen::VectorXd::Zero(system.size()));
+      simulate(system, at_speed(7200, 0), kStillAmbient, times_s, kFine, Eigen::VectorXd::Zero(system.size()));
   for (std::size_t k = 0; k < times_s.size(); ++k) {
     const double heat_J_kg = 400.0 * times_s[k] / 8.0;
     EXPECT_NEAR(run.outputs(0, static_cast<Eigen::Index>(k)), -500.0 + std::sqrt(250000.0 + 2.0 * heat_J_kg), 2e-3)
@@ -236,7 +236,7 @@ TEST(VariableCapacity, LumpTakesUpTheIntegralOfItsHeatCapacity) {
   // Where heat capacity varies the heat stored is no linear function of the temperatures; it balances as exactly as they are
   // integrated: 1e-4 of the temperature a step by default, and with the tolerance.
   const Trajectory standard =
-      simulate(system, at_speed(7200, 0), kStillHall, {7200}, {}, Eigen::VectorXd::Zero(system.size()));
+      simulate(system, at_speed(7200, 0), kStillAmbient, {7200}, {}, Eigen::VectorXd::Zero(system.size()));
   note("gap_at_1e-6", run.energy_gap());
   note("gap_at_default", standard.energy_gap());
   EXPECT_LT(standard.energy_gap(), 1e-4);
@@ -246,21 +246,21 @@ TEST(VariableCapacity, LumpTakesUpTheIntegralOfItsHeatCapacity) {
 // --- the linear model -------------------------------------------------------------------------------------------
 
 TEST(Linearised, FollowsASmallPerturbationOfRadiationAndPrescribedTemperature) {
-  // Around a steady state by radiation and a held face, 0.2 K of the hall: both models move alike to second order.
+  // Around a steady state by radiation and a held face, 0.2 K of the ambient: both models move alike to second order.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {2, 1, 1}});
   const FullSystem system =
       assemble_heat(mesh, {fixtures::steel()},
                     fixtures::balance_of({"{type: fixed_temperature, surface: x0, temperature: 60 degC}",
                                           "{type: radiation, surface: x1, emissivity: 0.9}",
                                           "{type: convection, surface: y1, film: 10 W/(m^2 K)}"}));
-  const effects::Inputs at{.drive = {}, .hall_K = 1.0};
+  const effects::Inputs at{.drive = {}, .ambient_K = 1.0};
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
   const Eigen::VectorXd theta = steady_state(system, at, zero);
   const FullSystem linear = linearised(system, at, theta);
   ASSERT_TRUE(linear.is_linear());
   EXPECT_LT((fixtures::steady(linear, at) - theta).cwiseAbs().maxCoeff(), 1e-4);  // stiff rows: 1e-6 of the flux's rise
   effects::Inputs moved = at;
-  moved.hall_K += 0.2;
+  moved.ambient_K += 0.2;
   const Eigen::VectorXd full_step = steady_state(system, moved, theta) - theta;
   const Eigen::VectorXd linear_step = fixtures::steady(linear, moved) - fixtures::steady(linear, at);
   EXPECT_GT(full_step.maxCoeff(), 5e-3);
@@ -293,9 +293,10 @@ TEST(Nonlinear, TemperaturesThatNoMachineHasEndTheRun) {
   // 3 kW out of a node that 2 W/K keep warm tends to -1480 degC; 1 MW into it to 500 000 degC.
   for (const char* power : {"-3 kW", "1 MW"}) {
     const FullSystem system = fixtures::lumped_system({"{type: node, node: b, capacity: 10 kJ/K}",
-                                                       "{type: link, node: b, to: hall, conductance: 2 W/K}",
+                                                       "{type: link, node: b, to: ambient, conductance: 2 W/K}",
                                                        std::string("{type: heat_source, node: b, power: ") + power + "}"});
-    EXPECT_THROW((void)simulate(system, at_speed(36000, 0), kStillHall, {36000}, {}, Eigen::VectorXd::Zero(1)), SolveError);
+    EXPECT_THROW((void)simulate(system, at_speed(36000, 0), kStillAmbient, {36000}, {}, Eigen::VectorXd::Zero(1)),
+                 SolveError);
   }
 }
 

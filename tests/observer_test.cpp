@@ -133,8 +133,8 @@ TEST(Observer, LearnsTheFactorOfASourceAndTheScaleOfTheDrift) {
   EXPECT_EQ(o.observe(judged).drift_um, o.observe(judged).drift_um);
 }
 
-// The drift counts from the start: what the machine was displaced by before, warm hall or cold, is no part of it, whatever the scale.
-TEST(Observer, LearnsTheScaleOfTheDriftInAWarmHallToo) {
+// The drift counts from the start: what the machine was displaced by before, warm ambient or cold, is no part of it, whatever the scale.
+TEST(Observer, LearnsTheScaleOfTheDriftInAWarmAmbientToo) {
   solver::ReducedSystem machine = three_parts();
   machine.outputs.state.col(3) *= 1.06;
   for (const double warmer_K : {10.0, -10.0}) {
@@ -227,18 +227,18 @@ TEST(Observer, RowByRowSaysTheSameAsOfTheWholeRun) {
   }
 }
 
-// A thermometer of the hall whose plug is exchanged for a warm one: its last reading holds, and it counts again once it is back.
-TEST(Observer, AHallThatJumpsIsHeld) {
+// An ambient thermometer whose plug is exchanged for a warm one: its last reading holds, and it counts again once it is back.
+TEST(Observer, AnAmbientThatJumpsIsHeld) {
   const ObservedRun run = run_of(three_parts(), 60.0, 4.0);
   ObservedRun exchanged = run;
-  exchanged.hall = {{0.0, 3599.0, 3600.0, 7200.0, 7201.0}, {4.0, 4.0, 19.0, 26.0, 4.0}};
+  exchanged.ambient = {{0.0, 3599.0, 3600.0, 7200.0, 7201.0}, {4.0, 4.0, 19.0, 26.0, 4.0}};
   for (const std::vector<std::string>& sensors : {std::vector<std::string>{}, {"T1", "T3"}}) {
     const Observation o = observer_of(three_parts(), sensors).observe(exchanged);
     EXPECT_LT(worst_um(o.drift_um, run), 1e-8) << sensors.size();
-    EXPECT_THAT(o.distrusted, ElementsAre(HasSubstr("the hall's thermometer from 60 min")));
+    EXPECT_THAT(o.distrusted, ElementsAre(HasSubstr("the ambient thermometer from 60 min")));
   }
-  ObservedRun slow = run;  // what is slower is a hall
-  slow.hall = {{0.0, 3600.0, 7200.0}, {4.0, 4.0, 26.0}};
+  ObservedRun slow = run;  // what is slower is an ambient
+  slow.ambient = {{0.0, 3600.0, 7200.0}, {4.0, 4.0, 26.0}};
   EXPECT_THAT(observer_of(three_parts(), {}).observe(slow).distrusted, IsEmpty());
   EXPECT_GT(worst_um(observer_of(three_parts(), {}).observe(slow).drift_um, run), 1.0);
 }
@@ -254,7 +254,7 @@ TEST(Observer, AheadItIsTheModelWithItsFactors) {
   const ObservedRun run = run_of(with_motor(1.2));
   Observer o = observer_of(three_parts(), {"T1", "T3"});
   o.learn(std::vector<ObservedRun>{run, run});
-  EXPECT_EQ(ahead(o, {run.cyclogram, run.hall, {.source = {}, .time_s = run.readings.time_s, .channels = {}}}),
+  EXPECT_EQ(ahead(o, {run.cyclogram, run.ambient, {.source = {}, .time_s = run.readings.time_s, .channels = {}}}),
             o.with_sensors({}).observe(run).drift_um);
 }
 
@@ -389,10 +389,10 @@ TEST(Scattered, MultipliesHeatAndFilmsAndIsTheSameForASeed) {
   EXPECT_NE(a.sources[0].load, c.sources[0].load);
   EXPECT_EQ(none.sources[0].load, s.sources[0].load);
   for (std::size_t e = 0; e < 2; ++e) {
-    const double f = a.exchanges[e].hall_sum / s.exchanges[e].hall_sum;
+    const double f = a.exchanges[e].ambient_sum / s.exchanges[e].ambient_sum;
     EXPECT_NE(f, 1.0);
     EXPECT_LT((a.exchanges[e].matrix - f * s.exchanges[e].matrix).norm(), 1e-15);
-    EXPECT_LT((a.exchanges[e].to_hall - f * s.exchanges[e].to_hall).norm(), 1e-15);
+    EXPECT_LT((a.exchanges[e].to_ambient - f * s.exchanges[e].to_ambient).norm(), 1e-15);
     EXPECT_LT((a.exchanges[e].flow - f * s.exchanges[e].flow).norm(), 1e-15);
   }
 }

@@ -5,9 +5,9 @@ machine: {generator: lumped}
 effects:
   - {type: node, node: head, capacity: 60 kJ/K}
   - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
-  - {type: link, node: head, to: hall, conductance: 20 W/K}
-start: hall
-hall: [[0 h, 20 degC], [9 h, 20 degC]]
+  - {type: link, node: head, to: ambient, conductance: 20 W/K}
+start: ambient
+ambient: [[0 h, 20 degC], [9 h, 20 degC]]
 displacements: [{name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}]
 cyclograms: {day: [[60 min, 2000 rpm]]}
 solver: {model: reduced}

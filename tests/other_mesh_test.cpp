@@ -105,7 +105,7 @@ effects:
   - {type: convection, surface: table_top, film: 8 W/(m^2 K)}
   - {type: convection, surface: bed_sides, film: 6 W/(m^2 K)}
   - {type: heat_source, region: table, power: 50 W, at_speed: 1 rpm, exponent: 0}
-hall: [[0 min, 20 degC]]
+ambient: [[0 min, 20 degC]]
 sensors:
   - {name: mid, region: table, at: [0 m, 0 m, 0 m]}
   - {name: low, region: bed, at: [-1 m, 0 m, -400 mm]}

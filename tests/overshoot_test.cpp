@@ -129,7 +129,7 @@ std::vector<double> undershoots(const HeatedBar& bar, const std::vector<double>&
   for (double t : times) times_s.push_back(t * bar.critical_s());
   const Cyclogram on{.name = "on", .sections = {{times_s.back(), {.speed_rpm = 1.0}}}};
   const Trajectory run =
-      simulate(bar.system, on, fixtures::still_hall(), times_s,
+      simulate(bar.system, on, fixtures::still_ambient(), times_s,
                {.relative_tolerance = tolerance_K, .absolute_tolerance_K = tolerance_K, .max_step_s = times_s.back()},
                Eigen::VectorXd::Zero(bar.system.size()));
   std::vector<double> found;
@@ -195,7 +195,7 @@ TEST_P(AfterAJump, ReportNamesJumpTimeNodeAndAmount) {
   const HeatedBar bar(GetParam().shape, h_m, flux_W_m2);
   const Cyclogram cycle{.name = "c", .sections = {{100.0, {}}, {200.0, {.speed_rpm = 1.0}}}};
   const auto run = [&](const std::vector<double>& output_s) {
-    return simulate(bar.system, cycle, fixtures::still_hall(), output_s,
+    return simulate(bar.system, cycle, fixtures::still_ambient(), output_s,
                     {.relative_tolerance = 1e-4, .absolute_tolerance_K = 1e-4, .max_step_s = 300.0},
                     Eigen::VectorXd::Zero(bar.system.size()));
   };

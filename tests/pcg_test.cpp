@@ -16,7 +16,7 @@ namespace {
 SparseRow shifted() {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {2, 2, 2}});
   effects::HeatBalance balance;
-  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "hall"));
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "ambient"));
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   return system.mass + 60.0 * fixtures::stiffness(system);
 }
@@ -137,7 +137,7 @@ TEST(Pcg, WithMultigridFindsTheSameInFewerIterationsAndConservesHeat) {
   const mesh::Mesh mesh =
       fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {14, 14, 14}, .shape = mesh::CellShape::kTet4});
   effects::HeatBalance balance;
-  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "hall"));
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "ambient"));
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   const SparseRow a = system.mass + 600.0 * fixtures::stiffness(system);
   const Eigen::VectorXd exact = random_vector(a.rows(), 13), b = a * exact;

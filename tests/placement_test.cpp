@@ -28,15 +28,15 @@ using ::testing::UnorderedElementsAre;
 // Each is heated by its own source and cooled by its own link; the tool sees the difference.
 constexpr const char* kTwoBodies = R"(name: two_bodies
 reference_temperature: 20 degC
-hall: 20 degC
+ambient: 20 degC
 machine: {generator: lumped}
 effects:
   - {type: node, node: head, capacity: 20 kJ/K}
   - {type: node, node: base, capacity: 60 kJ/K}
   - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1}
   - {type: heat_source, node: base, power: 60 W, at_speed: 1000 rpm, exponent: 1}
-  - {type: link, node: head, to: hall, conductance: 5 W/K}
-  - {type: link, node: base, to: hall, conductance: 4 W/K}
+  - {type: link, node: head, to: ambient, conductance: 5 W/K}
+  - {type: link, node: base, to: ambient, conductance: 4 W/K}
 sensors: [{name: t_head, node: head}]
 displacements: [{name: nose, sensitivities: [{node: head, sensitivity: 2 um/K}, {node: base, sensitivity: -1 um/K}]}]
 cyclograms:
@@ -60,7 +60,7 @@ TEST(Placement, OfTwoBodiesLeavesTheVarianceThatIsWorkedOutByHand) {
   const PlacementModel model = model_of(scenario);
   ASSERT_EQ(model.n_candidates, 2);
   ASSERT_EQ(model.spots[0].region, "head");
-  const std::vector<PlacementRun> runs = runs_in_all_halls(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 0.0}}, 36);
+  const std::vector<PlacementRun> runs = runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 0.0}}, 36);
   ASSERT_EQ(runs.size(), 1u);
   const double noise_K = 0.1, scatter = 0.3, row_s = 300.0;
   const std::vector<compensation::RunSensitivity> numerical = sensitivities(model, runs, factor_states(model, runs), noise_K, model.rows);
@@ -95,10 +95,10 @@ TEST(Placement, OfTwoBodiesLeavesTheVarianceThatIsWorkedOutByHand) {
 /// Twelve bodies in a row, with heat, links and sensitivities drawn at random.
 std::string chain(int seed) {
   Random random(static_cast<std::uint64_t>(seed), 77);
-  std::string text = "name: chain\nreference_temperature: 20 degC\nhall: 20 degC\nmachine: {generator: lumped}\neffects:\n", moved;
+  std::string text = "name: chain\nreference_temperature: 20 degC\nambient: 20 degC\nmachine: {generator: lumped}\neffects:\n", moved;
   for (int i = 0; i < 12; ++i) {
     text += fmt::format("  - {{type: node, node: b{}, capacity: {:.3f} kJ/K}}\n", i, random.log_uniform(2.0, 40.0));
-    text += fmt::format("  - {{type: link, node: b{}, to: hall, conductance: {:.3f} W/K}}\n", i, random.log_uniform(0.5, 4.0));
+    text += fmt::format("  - {{type: link, node: b{}, to: ambient, conductance: {:.3f} W/K}}\n", i, random.log_uniform(0.5, 4.0));
     if (i > 0) text += fmt::format("  - {{type: link, node: b{}, to: b{}, conductance: {:.3f} W/K}}\n", i, i - 1, random.log_uniform(2.0, 30.0));
     if (i % 3 == 0) text += fmt::format("  - {{type: heat_source, node: b{}, power: {:.1f} W, at_speed: 1000 rpm, exponent: {:.2f}}}\n", i, random.log_uniform(20.0, 200.0), random.uniform(0.8, 2.0));
     moved += fmt::format("{}{{node: b{}, sensitivity: {:.3f} um/K}}", i > 0 ? ", " : "", i, random.normal());
@@ -113,9 +113,9 @@ TEST(Placement, OnTwelveBodiesIsTheBestOfAllSetsOfThree) {
   for (int seed = 1; seed <= 6; ++seed) {
     const scenarios::Scenario scenario = scenario_of(chain(seed));
     const PlacementModel model = model_of(scenario);
-    const std::vector<PlacementRun> runs = runs_in_all_halls(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 3.0}}, 24);
+    const std::vector<PlacementRun> runs = runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 3.0}}, 24);
     const compensation::ObserverLeft observer(sensitivities(model, runs, factor_states(model, runs), 0.1, model.rows), {0.1, 0.3});
-    const compensation::RegressionLeft regression(scattered_runs(model, runs, scattered_states(model, runs, {0.1, 0.3}, {1, 2}), model.rows, model.hall), 0.1);
+    const compensation::RegressionLeft regression(scattered_runs(model, runs, scattered_states(model, runs, {0.1, 0.3}, {1, 2}), model.rows, model.ambient), 0.1);
     const compensation::LeftOfBoth both(observer, regression);
     const compensation::LeftWithLoss with_loss(both);
     for (const compensation::DriftLeft* left : {static_cast<const compensation::DriftLeft*>(&observer), static_cast<const compensation::DriftLeft*>(&regression),
@@ -231,7 +231,7 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   const PlacementModel model = model_of(scenario, {.n_points = 60});
   const scenarios::Model again = scenarios::open_model(placed, {}, {}, false);
   const std::vector<scenarios::SimulatedRun> runs = scenarios::simulate_cyclograms(placed, again, {&placed.cyclogram("cycle")}, {});
-  const PlacementRun run{.cyclogram = "cycle", .hall = "", .felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram("cycle")), .times_s = runs[0].record.time_s};
+  const PlacementRun run{.cyclogram = "cycle", .ambient = "", .felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram("cycle")), .times_s = runs[0].record.time_s};
   const Eigen::MatrixXd states = states_of(model, model.system, run);
   for (std::size_t i = 0; i < 2; ++i) {
     const int node = p.spots[static_cast<std::size_t>(p.chosen.sets[1][i])].node;

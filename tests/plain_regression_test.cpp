@@ -20,7 +20,7 @@ MeasuredRun growing(std::uint64_t seed) {
   for (int section = 0; section < 10; ++section)
     run.cyclogram.sections.push_back(
         {.duration_s = 3600.0, .drive = {.speed_rpm = section % 2 ? 2000.0 * random.uniform() : 0.0}});
-  run.hall = {{0.0}, {0.0}};
+  run.ambient = {{0.0}, {0.0}};
   Eigen::VectorXd growth(601), warm(601);
   double lagged = 0.0;
   for (int i = 0; i <= 600; ++i) {

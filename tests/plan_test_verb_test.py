@@ -18,7 +18,7 @@ failures = []
 
 AXES = """name: axes
 reference_temperature: 20 degC
-hall: [[0 h, 20 degC], [4 h, 21 degC]]
+ambient: [[0 h, 20 degC], [4 h, 21 degC]]
 machine: {generator: lumped}
 effects:
   - {type: node, node: spindle, capacity: 5.6 kJ/K}
@@ -28,8 +28,8 @@ effects:
   - {type: servo_loss, node: screw, axis: z, power: 40 W, at_feed: 6 m/min, exponent: 1}
   - {type: link, node: spindle, to: housing, conductance: 12 W/K}
   - {type: link, node: screw, to: housing, conductance: 3 W/K}
-  - {type: link, node: housing, to: hall, conductance: 5 W/K}
-sensors: [{name: t_housing, node: housing}, {name: t_hall, node: hall}]
+  - {type: link, node: housing, to: ambient, conductance: 5 W/K}
+sensors: [{name: t_housing, node: housing}, {name: t_ambient, node: ambient}]
 displacements: [{name: nose_z, sensitivities: [{node: spindle, sensitivity: 2.5 um/K}, {node: screw, sensitivity: -1 um/K}]}]
 """
 JOB = """cyclograms:
@@ -68,7 +68,7 @@ def main():
         expect(any(s["feed_z_mm_min"] > 0 and s["speed_rpm"] == 0 for s in sections) or any(s["feed_z_mm_min"] == 0 and s["speed_rpm"] > 0 for s in sections),
                "spindle and axis are told apart by running one of them alone")
         expect(not (folder / "axes/plan_test.ngc").exists(), "no NC program where axes move")
-        expect("t_hall" not in json.dumps(summary["channels"]), "a thermometer on the hall is the hall's record")
+        expect("t_ambient" not in json.dumps(summary["channels"]), "an ambient thermometer is the ambient record")
 
         # the written cyclogram, in the scenario in place of its job
         (folder / "again.yaml").write_text(AXES + (folder / "axes/plan_test.yaml").read_text() + "\nsolver: {output_interval: 30 s}\n")

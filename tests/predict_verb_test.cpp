@@ -26,9 +26,9 @@ machine: {generator: lumped}
 effects:
   - {type: node, node: head, capacity: 60 kJ/K}
   - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
-  - {type: link, node: head, to: hall, conductance: 20 W/K}
-start: hall
-hall: [[0 h, 20 degC], [9 h, 20 degC]]
+  - {type: link, node: head, to: ambient, conductance: 20 W/K}
+start: ambient
+ambient: [[0 h, 20 degC], [9 h, 20 degC]]
 sensors: [{name: t_head, node: head}]
 displacements: [{name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}]
 cyclograms:
@@ -184,7 +184,7 @@ TEST(WarmStart, APauseIsTimeAtRest) {
   expect_continues(day, warm, 105 * 60.0, 2e-4);
 }
 
-// Friction that follows the oil, a chiller that switches and a hall that warms by 1.5 K: the shipped motor spindle, within what the
+// Friction that follows the oil, a chiller that switches and an ambient that warms by 1.5 K: the shipped motor spindle, within what the
 // integrator is asked for (1e-3 K, 2.9 um/K; switches may come a step apart).
 TEST(WarmStart, OfAMachineThatSwitchesAgreesToTheIntegratorsTolerance) {
   const std::string scenario = write_file(
@@ -198,13 +198,13 @@ TEST(WarmStart, OfAMachineThatSwitchesAgreesToTheIntegratorsTolerance) {
   expect_continues(both, second, 3600.0, 0.05);
 }
 
-// The same morning in a hall that is 5 K warmer: a linear machine that starts as warm as its hall is 20 um further all along.
-TEST(WarmStart, FollowsTheHallOfTheRecord) {
+// The same morning in an ambient that is 5 K warmer: a linear machine that starts as warm as its ambient is 20 um further all along.
+TEST(WarmStart, FollowsTheAmbientOfTheRecord) {
   const std::string scenario = write_file("exact.yaml", exact_head());
-  const auto morning = run_verb("hall_cold", "simulate " + scenario + " --cyclogram morning");
+  const auto morning = run_verb("ambient_cold", "simulate " + scenario + " --cyclogram morning");
   const std::string warmer =
       write_file("warmer.yaml", with(exact_head(), "[[0 h, 20 degC], [9 h, 20 degC]]", "[[0 h, 25 degC], [9 h, 25 degC]]"));
-  const auto warm_morning = run_verb("hall_warm", "simulate " + warmer + " --cyclogram morning");
+  const auto warm_morning = run_verb("ambient_warm", "simulate " + warmer + " --cyclogram morning");
   const auto after = [&](const std::string& name, const std::filesystem::path& record) {
     return record_in(
         run_verb(name, "predict " + scenario + " --cyclogram afternoon --start " + (record / "record.csv").string()));
@@ -235,7 +235,8 @@ TEST(WarmStart, RefusesARecordThatIsNoRunAndTimesThatAreNone) {
 
 TEST(WarmStart, RefusesToLeaveOutAnEffectOfTheRecordsRun) {
   const std::string scenario = write_file(
-      "in.yaml", with(kHead, "start: hall", "  - {type: heat_source, node: head, power: 50 W, in: morning}\nstart: hall"));
+      "in.yaml",
+      with(kHead, "start: ambient", "  - {type: heat_source, node: head, power: 50 W, in: morning}\nstart: ambient"));
   const std::string start = write_file("morning.csv", "time_min,speed_rpm\n0,2000\n60,0\n");
   const CommandOutcome outcome = run_program("predict " + scenario + " --cyclogram afternoon --start " + start);
   EXPECT_EQ(outcome.exit_code, 2);

@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 ObservedRun machine(std::uint64_t seed) {
   return {.cyclogram = {.name = "work", .sections = {{9000.0, {.speed_rpm = 2000.0}}, {9e4, {}}}},
-          .hall = {{0.0, 9000.0}, {0.0, 1.5}},
+          .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
           .readings = fixtures::machine(seed, 60.0)};
 }
 
@@ -37,7 +37,7 @@ PredictorFile formula(bool from_start) {
   d.target = "drift_y";
   d.from_start = from_start;
   d.sensors = {"X1", "X2", "X3", "X4"};
-  d.hall = "X4";
+  d.ambient = "X4";
   d.reason = "because";
   d.fail_safe = std::move(model.safe);
   d.predictor = std::make_shared<FormulaPredictor>(std::move(model.model));

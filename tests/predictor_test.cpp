@@ -22,7 +22,7 @@ using ::testing::IsNan;
 /// Four thermometers with holes and a speed.
 ObservedRun run_with_holes() {
   ObservedRun run{.cyclogram = {.name = "work", .sections = {{9e4, {.speed_rpm = 1500.0}}}},
-                  .hall = {{0.0, 9000.0}, {0.0, 1.5}},
+                  .ambient = {{0.0, 9000.0}, {0.0, 1.5}},
                   .readings = fixtures::sensor_record(3, 300, 4, 0.02, 0.1)};
   Record& r = run.readings;
   r.channels.push_back({"spindle", "rpm", {}});
@@ -76,7 +76,7 @@ TEST(Predictor, ALagOfSpeedIsItsClosedForm) {
                             .intercept = 0.0,
                             .terms = {{.input = "spindle", .unit = "rpm", .coefficient = 0.01, .lag_s = 600.0}}});
   ObservedRun run{
-      .cyclogram = {}, .hall = {}, .readings = {.source = {}, .time_s = {}, .channels = {{"spindle", "rpm", {}}}}};
+      .cyclogram = {}, .ambient = {}, .readings = {.source = {}, .time_s = {}, .channels = {{"spindle", "rpm", {}}}}};
   for (int i = 0; i < 50; ++i) {
     run.readings.time_s.push_back(40.0 * i);
     run.readings.channels[0].values.push_back(3000.0);
@@ -93,7 +93,7 @@ TEST(Predictor, ARunMayGrowBetweenRows) {
   const std::vector<double> at_once = live(p, whole);
   const std::unique_ptr<Follower> follower = p.follow();
   ObservedRun growing{.cyclogram = whole.cyclogram,
-                      .hall = whole.hall,
+                      .ambient = whole.ambient,
                       .readings = {.source = {}, .time_s = {}, .channels = whole.readings.channels}};
   for (Channel& c : growing.readings.channels) c.values.clear();
   std::vector<double> row_by_row;
@@ -120,21 +120,21 @@ TEST(Predictor, EarlierRunsAreTheirMeanAtTheSameTime) {
                                     {"b", {0.0, 200.0}, {{"z", "um", {2.0, 6.0}}}}};
   const EarlierRunsPredictor p(runs, "z");
   const ObservedRun run{
-      .cyclogram = {}, .hall = {}, .readings = {.source = {}, .time_s = {0.0, 50.0, 150.0, 201.0}, .channels = {}}};
+      .cyclogram = {}, .ambient = {}, .readings = {.source = {}, .time_s = {0.0, 50.0, 150.0, 201.0}, .channels = {}}};
   EXPECT_THAT(live(p, run), ElementsAre(1.0, 4.0, 5.0, IsNan()));
 }
 
-// 2 um/K of the hall, and 1e-3 um/rpm of the spindle: known before the run, and followed while it grows.
+// 2 um/K of the ambient, and 1e-3 um/rpm of the spindle: known before the run, and followed while it grows.
 TEST(Predictor, WhatFollowsFromTheDriveIsKnownAheadAndFollowsAGrowingRun) {
   int n_asked = 0;
-  const DrivenPredictor p([&](const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& time_s) {
+  const DrivenPredictor p([&](const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& time_s) {
     ++n_asked;
     std::vector<double> drift_um;
-    for (double t_s : time_s) drift_um.push_back(2.0 * hall.at(t_s) + 1e-3 * cyclogram.speed_rpm(t_s));
+    for (double t_s : time_s) drift_um.push_back(2.0 * ambient.at(t_s) + 1e-3 * cyclogram.speed_rpm(t_s));
     return drift_um;
   });
   const ObservedRun run{.cyclogram = {.name = "work", .sections = {{100.0, {.speed_rpm = 3000.0}}, {900.0, {}}}},
-                        .hall = {{0.0, 200.0}, {0.0, 1.0}},
+                        .ambient = {{0.0, 200.0}, {0.0, 1.0}},
                         .readings = {.source = {}, .time_s = {0.0, 50.0, 150.0, 300.0}, .channels = {}}};
   EXPECT_THAT(ahead(p, run), ElementsAre(3.0, 3.5, 1.5, 2.0));
   EXPECT_EQ(n_asked, 1);

@@ -14,7 +14,7 @@ namespace {
 
 using fixtures::flow;
 
-const TimeSeries kStillHall{{0.0}, {0.0}};
+const TimeSeries kStillAmbient{{0.0}, {0.0}};
 
 Cyclogram rest(double duration_s) {
   return {.name = "rest", .sections = {{duration_s, {}}}};
@@ -35,7 +35,8 @@ TEST(FixedTemperature, SlabBetweenTwoTemperatures) {
   const auto exact = fixtures::at_nodes(mesh, [](const Eigen::Vector3d& x) { return 30.0 * (1.0 - x[0] / 0.1); });
   EXPECT_LT((theta - exact).cwiseAbs().maxCoeff(), 1e-9);  // a linear field is exact; the solver's tolerance
   fixtures::observe_unknowns(system, {0});
-  const Trajectory run = simulate(system, rest(20000), kStillHall, {10000, 20000}, {}, Eigen::VectorXd::Zero(system.size()));
+  const Trajectory run =
+      simulate(system, rest(20000), kStillAmbient, {10000, 20000}, {}, Eigen::VectorXd::Zero(system.size()));
   const Eigen::Index hot = flow(run, "fixed_temperature x0"), cold = flow(run, "fixed_temperature x1");
   // After 10 000 s exp(-pi^2 a t / L^2) = 5e-5 of the start is left in rates; 0.1 %.
   EXPECT_NEAR((run.heat_J(hot, 1) - run.heat_J(hot, 0)) / 10000.0, 120.0, 0.12);
@@ -55,7 +56,7 @@ TEST(FixedTemperature, RampIsFollowedWithTheLagOfTheClosedForm) {
   fixtures::observe_unknowns(system, {face, middle, far});
   const TransientOptions fine{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
   const Trajectory run =
-      simulate(system, rest(14400), kStillHall, {10800, 14400}, fine, Eigen::VectorXd::Zero(system.size()));
+      simulate(system, rest(14400), kStillAmbient, {10800, 14400}, fine, Eigen::VectorXd::Zero(system.size()));
   // exp(-pi^2 a t / (4 L^2)) at 3 h = 2.7e-12: nothing is left of the start. A parabola is exact in quadratic cells.
   EXPECT_NEAR(run.outputs(0, 1), 144.0, 1e-9);         // rounding
   EXPECT_NEAR(run.outputs(1, 1), 144.0 - 3.75, 2e-4);  // tolerance 1e-7 of 144 K a step
@@ -66,23 +67,23 @@ TEST(FixedTemperature, RampIsFollowedWithTheLagOfTheClosedForm) {
   RecordProperty("gap", std::to_string(1e12 * run.energy_gap()) + "e-12");
 }
 
-TEST(FixedTemperature, OfANodeAndOfAFaceThatFollowTheHall) {
+TEST(FixedTemperature, OfANodeAndOfAFaceThatFollowTheAmbient) {
   const mesh::Mesh mesh = slab();
   FullSystem system =
       assemble_heat(mesh, {fixtures::steel()},
-                    fixtures::balance_of({"{type: fixed_temperature, surface: x0, follows: hall}",
+                    fixtures::balance_of({"{type: fixed_temperature, surface: x0, follows: ambient}",
                                           "{type: node, node: bath, capacity: 100 J/K}",
                                           "{type: fixed_temperature, node: bath, temperature: 60 degC}",
                                           "{type: convection, surface: x1, film: 400 W/(m^2 K), surrounding: bath}"}));
   // 4 W/K of the film and 4 W/K of the slab in a row: half of the difference falls off in each.
-  const Eigen::VectorXd theta = steady_state(system, {.drive = {}, .hall_K = 4.0}, Eigen::VectorXd::Zero(system.size()));
+  const Eigen::VectorXd theta = steady_state(system, {.drive = {}, .ambient_K = 4.0}, Eigen::VectorXd::Zero(system.size()));
   EXPECT_NEAR(theta[fixtures::node_at(mesh, {0.1, 0, 0})], 22.0, 1e-9);
   EXPECT_NEAR(theta[mesh.n_nodes()], 40.0, 1e-12);
   fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0, 0, 0}), mesh.n_nodes()});
-  const TimeSeries hall{{0, 1000, 3000}, {0.0, 2.0, -1.0}};
-  const Trajectory run = simulate(system, rest(4000), hall, {500, 2000, 4000}, {}, Eigen::VectorXd::Zero(system.size()));
+  const TimeSeries ambient{{0, 1000, 3000}, {0.0, 2.0, -1.0}};
+  const Trajectory run = simulate(system, rest(4000), ambient, {500, 2000, 4000}, {}, Eigen::VectorXd::Zero(system.size()));
   for (Eigen::Index k = 0; k < 3; ++k) {
-    EXPECT_NEAR(run.outputs(0, k), hall.at(run.time_s[k]), 1e-9);
+    EXPECT_NEAR(run.outputs(0, k), ambient.at(run.time_s[k]), 1e-9);
     EXPECT_NEAR(run.outputs(1, k), 40.0, 1e-9);
   }
   EXPECT_LT(run.energy_gap(), 1e-9);
@@ -96,7 +97,7 @@ TEST(FixedTemperature, OfTwoFacesThatMeetAtAnEdgeCountsTheEdgeOnce) {
                             "{type: fixed_temperature, surface: y0, temperature: 30 degC}",
                             "{type: heat_source, region: body, power: 100 W}"}));
   fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0, 0, 0})});
-  const Trajectory run = simulate(system, rest(3000), kStillHall, {1000, 3000}, {}, Eigen::VectorXd::Zero(system.size()));
+  const Trajectory run = simulate(system, rest(3000), kStillAmbient, {1000, 3000}, {}, Eigen::VectorXd::Zero(system.size()));
   EXPECT_LT(run.energy_gap(), 1e-9);
   EXPECT_NEAR(run.outputs(0, 0), 15.0, 1e-9);  // the first of the two rules where they meet
 }
@@ -115,7 +116,8 @@ TEST(FixedTemperature, TheJumpAtTheStartBringsItsHeatOnAnyMesh) {
     FullSystem system = assemble_heat(
         mesh, {fixtures::steel()}, fixtures::balance_of({"{type: fixed_temperature, surface: x0, temperature: 50 degC}"}));
     fixtures::observe_unknowns(system, {0});
-    const Trajectory run = simulate(system, rest(40000), kStillHall, {0, 40000}, {}, Eigen::VectorXd::Zero(system.size()));
+    const Trajectory run =
+        simulate(system, rest(40000), kStillAmbient, {0, 40000}, {}, Eigen::VectorXd::Zero(system.size()));
     EXPECT_EQ(run.stored_J[0], 0.0);
     EXPECT_NEAR(run.stored_J[1], 120e3, 1.0);  // exp(-pi^2 a t / (4 L^2)) = 5e-5 of a part of it
     EXPECT_NEAR(run.heat_J(flow(run, "fixed_temperature x0"), 1), run.stored_J[1], 1e-4);
@@ -135,7 +137,7 @@ TEST(FixedTemperature, RampOfABodyWhoseHeatCapacityIsNotThatOfTheReference) {
   fixtures::observe_unknowns(system, {fixtures::node_at(mesh, {0.1, 0, 0})});
   const TransientOptions fine{.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-5};
   const Trajectory run =
-      simulate(system, rest(28800), kStillHall, {25200, 28800}, fine, Eigen::VectorXd::Zero(system.size()));
+      simulate(system, rest(28800), kStillAmbient, {25200, 28800}, fine, Eigen::VectorXd::Zero(system.size()));
   EXPECT_NEAR(run.outputs(0, 1), 288.0 - 10.0, 2e-3);  // exp(-pi^2 a t / (4 L^2)) of the start is left: 4e-16; tolerance
   const Eigen::Index held = flow(run, "fixed_temperature x0");
   EXPECT_NEAR((run.heat_J(held, 1) - run.heat_J(held, 0)) / 3600.0, 80.0, 1e-2);

@@ -24,8 +24,8 @@ machine:
   generator: lumped
 effects:
   - {type: node, node: body, capacity: 10 kJ/K}
-  - {type: link, node: body, to: hall, conductance: 5 W/K}
-hall: [[0 h, 20 degC]]
+  - {type: link, node: body, to: ambient, conductance: 5 W/K}
+ambient: [[0 h, 20 degC]]
 sensors:
   - {name: t_body, node: body}
 displacements:

@@ -180,8 +180,8 @@ TEST(ProgrammeMistakes, EndWithTwoAndWriteNothing) {
   expect(write_file("p2.yaml", lumped + replaced(kProgramme, "[4000 rpm, 8000 rpm, 12000 rpm]", "[0 rpm]")),
          {"p2.yaml:", "a list of quantities in rpm is wanted, at least 3"});
   expect(write_file("p3.yaml", lumped + replaced(kProgramme, "count", "cont")), {"p3.yaml:", "count"});
-  expect(write_file("p4.yaml", replaced(lumped, "hall: [[0 h, 22 degC]", "hall: [[0 h, 20 degC]") + kProgramme),
-         {"p4.yaml:", "start in balance with the hall", "`start: steady`"});
+  expect(write_file("p4.yaml", replaced(lumped, "ambient: [[0 h, 22 degC]", "ambient: [[0 h, 20 degC]") + kProgramme),
+         {"p4.yaml:", "start in balance with the ambient", "`start: steady`"});
   expect("scenarios/fp3_spindle.yaml --train missing.csv", {"wants --test too"});
 }
 

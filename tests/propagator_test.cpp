@@ -14,7 +14,7 @@ namespace driftwright::solver {
 namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
-const TimeSeries kRampingHall{{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}};
+const TimeSeries kRampingAmbient{{0, 2000, 5000, 7200}, {0.0, 1.5, 1.5, -2.0}};
 
 TEST(Orthonormalise, DropsColumnsThatAddNothing) {
   const FullSystem system = fixtures::two_blocks(1);
@@ -26,9 +26,9 @@ TEST(Orthonormalise, DropsColumnsThatAddNothing) {
   EXPECT_LT((basis.transpose() * (system.mass * basis) - Eigen::Matrix2d::Identity()).norm(), 1e-12);
 }
 
-Trajectory evolved(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& hall,
+Trajectory evolved(const ReducedSystem& system, const Cyclogram& cyclogram, const TimeSeries& ambient,
                    const std::vector<double>& output_s, const Eigen::VectorXd& start) {
-  return Propagator(system).run(cyclogram, hall, output_s, start, true);
+  return Propagator(system).run(cyclogram, ambient, output_s, start, true);
 }
 
 /// Largest difference of two runs over all outputs and times [K].
@@ -49,16 +49,16 @@ TEST(Propagator, InACompleteBasisIsTheFullModel) {
   const ReducedSystem reduced = project(system, basis);
   // Both start from 5 K everywhere.
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(system.size(), 5.0);
-  const Trajectory exact = evolved(reduced, kCycle, kRampingHall, every(300), 5.0 * reduced.ones);
+  const Trajectory exact = evolved(reduced, kCycle, kRampingAmbient, every(300), 5.0 * reduced.ones);
   const Trajectory full =
-      simulate(system, kCycle, kRampingHall, every(300), {.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8}, start);
+      simulate(system, kCycle, kRampingAmbient, every(300), {.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8}, start);
   EXPECT_GT(full.outputs.maxCoeff(), 30.0);
   RecordProperty("difference_K", std::to_string(1e9 * difference_K(exact, full)) + "e-9");
   EXPECT_LT(difference_K(exact, full), 1e-5);  // 1e-8 of 60 K a step, over some hundred steps
 }
 
 TEST(Propagator, ARunThatGoesOnEndsAsTheWhole) {
-  // In the middle of a section, on its end, and beside a knot of the hall; heat counts from where the run goes on.
+  // In the middle of a section, on its end, and beside a knot of the ambient; heat counts from where the run goes on.
   const FullSystem system = fixtures::two_blocks(1);
   const ReducedSystem reduced =
       project(system, orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size())));
@@ -66,9 +66,9 @@ TEST(Propagator, ARunThatGoesOnEndsAsTheWhole) {
   const double end_s = kCycle.duration_s();
   for (const double from_s : {700.0, 1800.0, 2000.0, 7100.0}) {
     Eigen::MatrixXd states;
-    const Trajectory whole = Propagator(reduced).run(kCycle, kRampingHall, {from_s, end_s}, start, true, &states);
+    const Trajectory whole = Propagator(reduced).run(kCycle, kRampingAmbient, {from_s, end_s}, start, true, &states);
     const Trajectory rest =
-        Propagator(reduced).run(kCycle, kRampingHall, {from_s, end_s}, states.col(0), true, nullptr, from_s);
+        Propagator(reduced).run(kCycle, kRampingAmbient, {from_s, end_s}, states.col(0), true, nullptr, from_s);
     EXPECT_LT(difference_K(whole, rest), 1e-10) << from_s;
     EXPECT_LT((whole.heat_J.col(1) - whole.heat_J.col(0) - rest.heat_J.col(1)).cwiseAbs().maxCoeff(),
               1e-9 * whole.heat_J.cwiseAbs().maxCoeff())
@@ -85,10 +85,10 @@ TEST(Transient, ARunThatGoesOnEndsAsTheWhole) {
   const auto keep = [&](double time_s, const Eigen::VectorXd& state) {
     if (time_s == from_s) at_from = state;
   };
-  const Trajectory whole = simulate(system, kCycle, kRampingHall, {from_s, end_s}, options,
+  const Trajectory whole = simulate(system, kCycle, kRampingAmbient, {from_s, end_s}, options,
                                     Eigen::VectorXd::Constant(system.size(), 5.0), keep);
   options.from_s = from_s;
-  const Trajectory rest = simulate(system, kCycle, kRampingHall, {from_s, end_s}, options, at_from);
+  const Trajectory rest = simulate(system, kCycle, kRampingAmbient, {from_s, end_s}, options, at_from);
   EXPECT_LT(difference_K(whole, rest), 1e-5);  // 1e-8 of 60 K a step, over some hundred steps
   EXPECT_LT(std::abs(whole.stored_J[1] - whole.stored_J[0] - rest.stored_J[1]), 1e-6 * std::abs(whole.stored_J[1]));
 }
@@ -96,18 +96,18 @@ TEST(Transient, ARunThatGoesOnEndsAsTheWhole) {
 TEST(Propagator, ModesWithSteadyResponsesBeatModesAlone) {
   // Six modes without and with the steady responses at both ends of the range of speed.
   const FullSystem system = fixtures::two_blocks(2);
-  const effects::Inputs slow{.drive = {.speed_rpm = 0.0}, .hall_K = 0.0},
-      fast{.drive = {.speed_rpm = 3000.0}, .hall_K = 0.0};
+  const effects::Inputs slow{.drive = {.speed_rpm = 0.0}, .ambient_K = 0.0},
+      fast{.drive = {.speed_rpm = 3000.0}, .ambient_K = 0.0};
   const Eigen::MatrixXd modes = thermal_modes(system, fast, 6).shapes;
   const Eigen::MatrixXd at_rest = steady_responses(system, slow), at_speed = steady_responses(system, fast);
   Eigen::MatrixXd more(system.size(), modes.cols() + at_rest.cols() + at_speed.cols());
   more << modes, at_rest, at_speed;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
   const Trajectory full =
-      simulate(system, kCycle, kRampingHall, every(300), {.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-6}, zero);
+      simulate(system, kCycle, kRampingAmbient, every(300), {.relative_tolerance = 1e-6, .absolute_tolerance_K = 1e-6}, zero);
   const auto error_K = [&](const Eigen::MatrixXd& columns) {
     const ReducedSystem reduced = project(system, orthonormalise(system.mass, columns));
-    return difference_K(evolved(reduced, kCycle, kRampingHall, every(300), Eigen::VectorXd::Zero(reduced.size())), full);
+    return difference_K(evolved(reduced, kCycle, kRampingAmbient, every(300), Eigen::VectorXd::Zero(reduced.size())), full);
   };
   const double alone_K = error_K(modes), together_K = error_K(more);
   RecordProperty("alone_K", std::to_string(alone_K));
@@ -119,11 +119,11 @@ TEST(Propagator, ModesWithSteadyResponsesBeatModesAlone) {
   const ReducedSystem reduced = project(system, orthonormalise(system.mass, more));
   const Trajectory end = evolved(reduced, for_ever, {{0}, {2.0}}, {1e7}, Eigen::VectorXd::Zero(reduced.size()));
   const Eigen::VectorXd exact =
-      system.outputs.state.transpose() * fixtures::steady(system, {.drive = {.speed_rpm = 3000}, .hall_K = 2});
+      system.outputs.state.transpose() * fixtures::steady(system, {.drive = {.speed_rpm = 3000}, .ambient_K = 2});
   EXPECT_LT((end.outputs.col(0) - exact).cwiseAbs().maxCoeff(), 1e-8 * exact.maxCoeff());
 }
 
-/// C θ' = P(speed) - H (θ - θ_hall), as a system of the one unknown z = √C θ.
+/// C θ' = P(speed) - H (θ - θ_ambient), as a system of the one unknown z = √C θ.
 ReducedSystem one_body(double capacity_J_K, double loss_W_K) {
   const double root = std::sqrt(capacity_J_K);
   ReducedSystem s;
@@ -133,8 +133,8 @@ ReducedSystem one_body(double capacity_J_K, double loss_W_K) {
   s.sources.push_back({"heat", {}, scaled, [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
   s.exchanges.push_back({.name = "film",
                          .matrix = scaled * scaled.transpose(),
-                         .to_hall = scaled,
-                         .hall_sum = 1.0,
+                         .to_ambient = scaled,
+                         .ambient_sum = 1.0,
                          .coefficient = fixtures::constant(loss_W_K),
                          .flow = scaled});
   s.outputs = {{"t"}, {"K"}, scaled, Eigen::VectorXd::Zero(1)};
@@ -142,8 +142,8 @@ ReducedSystem one_body(double capacity_J_K, double loss_W_K) {
   return s;
 }
 
-TEST(Propagator, FollowsARampOfTheHallExactly) {
-  // tau = 4000 s; hall 2 K/h: θ = s (t - tau + tau e^(-t/tau)).
+TEST(Propagator, FollowsARampOfTheAmbientExactly) {
+  // tau = 4000 s; ambient 2 K/h: θ = s (t - tau + tau e^(-t/tau)).
   const double slope_K_s = 2.0 / 3600;
   const std::vector<double> times_s = {1, 600, 3600, 7200};
   const Trajectory run = evolved(one_body(4000, 1), {.name = "rest", .sections = {{7200, 0}}}, {{0, 7200}, {0, 4.0}},
@@ -156,7 +156,7 @@ TEST(Propagator, FollowsARampOfTheHallExactly) {
 }
 
 TEST(Propagator, HeatsInOnePieceOrInMany) {
-  // P = 100 W for 2 h: θ = P/H (1 - e^(-t/tau)), whether the cyclogram and the hall cut it or not.
+  // P = 100 W for 2 h: θ = P/H (1 - e^(-t/tau)), whether the cyclogram and the ambient cut it or not.
   const double exact_K = -100.0 * std::expm1(-7200.0 / 4000.0);
   const Cyclogram one{.name = "", .sections = {{7200, 1000}}};
   const Cyclogram many{.name = "", .sections = {{1000, 1000}, {200, 1000}, {0.5, 1000}, {5999.5, 1000}}};
@@ -179,7 +179,7 @@ TEST(Propagator, HeatsAddUpToWhatIsStored) {
   Eigen::MatrixXd columns(system.size(), 6);
   columns << system.ones, Eigen::MatrixXd::Random(system.size(), 5);
   const ReducedSystem reduced = project(system, orthonormalise(system.mass, columns));
-  const Trajectory run = evolved(reduced, kCycle, kRampingHall, every(300), 5.0 * reduced.ones);
+  const Trajectory run = evolved(reduced, kCycle, kRampingAmbient, every(300), 5.0 * reduced.ones);
   EXPECT_LT(run.energy_gap(), 1e-12);
   EXPECT_EQ(run.heat_J.rows(), 4);  // bearing, two films, the joint
   EXPECT_NEAR(run.heat_J(0, run.heat_J.cols() - 1), 0.1 * (1800 * 2000 + 1200 * 500 + 3600 * 3000.0), 1e-6);
@@ -190,9 +190,9 @@ TEST(Propagator, FlowsAreThoseOfTheFullModel) {
   const Eigen::MatrixXd basis = orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size()));
   const ReducedSystem reduced = project(system, basis);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
-  const Trajectory exact = evolved(reduced, kCycle, kRampingHall, every(300), zero);
+  const Trajectory exact = evolved(reduced, kCycle, kRampingAmbient, every(300), zero);
   const Trajectory full =
-      simulate(system, kCycle, kRampingHall, every(300), {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7}, zero);
+      simulate(system, kCycle, kRampingAmbient, every(300), {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7}, zero);
   ASSERT_EQ(exact.flows.size(), full.flows.size());
   for (std::size_t j = 0; j < full.flows.size(); ++j) {
     EXPECT_EQ(exact.flows[j].name, full.flows[j].name);
@@ -214,15 +214,15 @@ TEST(Propagator, DecomposesOncePerSetOfCoefficients) {
   const ReducedSystem reduced = project(system, orthonormalise(system.mass, steady_responses(system, {})));
   Propagator propagator(reduced);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(reduced.size());
-  const Trajectory first = propagator.run(kCycle, kRampingHall, every(300), zero);
+  const Trajectory first = propagator.run(kCycle, kRampingAmbient, every(300), zero);
   EXPECT_EQ(propagator.n_decompositions(), 4);  // four speeds
-  const Trajectory again = propagator.run(kCycle, kRampingHall, every(300), zero);
+  const Trajectory again = propagator.run(kCycle, kRampingAmbient, every(300), zero);
   EXPECT_EQ(propagator.n_decompositions(), 4);
   EXPECT_EQ(first.outputs, again.outputs);
   for (int rpm = 0; rpm < 40; ++rpm) {  // more than are kept
-    (void)propagator.run({.name = "", .sections = {{60, {.speed_rpm = 10.0 * rpm}}}}, kRampingHall, {60}, zero);
+    (void)propagator.run({.name = "", .sections = {{60, {.speed_rpm = 10.0 * rpm}}}}, kRampingAmbient, {60}, zero);
   }
-  EXPECT_EQ(propagator.run(kCycle, kRampingHall, every(300), zero).outputs, first.outputs);
+  EXPECT_EQ(propagator.run(kCycle, kRampingAmbient, every(300), zero).outputs, first.outputs);
 }
 
 TEST(Propagator, RefusesWhatIsNotLinear) {

@@ -72,7 +72,7 @@ class Package(unittest.TestCase):
         live = pd.DataFrame(steps)
         for column in ("drift_x_um", "drift_y_um", "drift_z_um"):
             np.testing.assert_allclose(live[column], whole[column].iloc[1:], atol=1e-9)
-        for column in ("t05_degC", "t06_degC", "air_degC", "hall_degC"):
+        for column in ("t05_degC", "t06_degC", "air_degC", "t_ambient_degC"):
             np.testing.assert_allclose(live[column], whole[column].iloc[1:], atol=1e-9)
 
     def test_row_by_row_follows_the_ambient_of_each_row(self):

@@ -8,7 +8,7 @@
 
 #include "machine/machine.hpp"
 #include "nc/program.hpp"
-#include "scenarios/reader/read_hall.hpp"
+#include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/recorded_run.hpp"
 #include "tests/temporary_file.hpp"
 
@@ -191,17 +191,17 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"nc_dwell_unit", "  a: {nc_program: bad.ngc, dwell_unit: min}\n", {"one of s, ms"}}),
     [](const auto& wrong) { return std::string(wrong.param.name); });
 
-TimeSeries hall(const std::string& entry) {
-  return read_hall(ConfigMap::read_file(write_file("scenario.yaml", "hall: " + entry + "\n"))
-                       .described_by({.name = "hall of a test", .keys = {hall_key()}}),
+TimeSeries ambient(const std::string& entry) {
+  return read_ambient(ConfigMap::read_file(write_file("scenario.yaml", "ambient: " + entry + "\n"))
+                       .described_by({.name = "ambient of a test", .keys = {ambient_key()}}),
                    293.15);
 }
 
-TEST(Hall, OfOneTemperatureIsConstant) {
-  const TimeSeries h = hall("22.5 degC");
+TEST(Ambient, OfOneTemperatureIsConstant) {
+  const TimeSeries h = ambient("22.5 degC");
   EXPECT_NEAR(h.at(0.0), 2.5, 1e-12);
   EXPECT_NEAR(h.at(1e6), 2.5, 1e-12);
-  EXPECT_THAT([] { (void)hall("22.5 K"); }, ThrowsMessage<InputError>(HasSubstr("hall")));
+  EXPECT_THAT([] { (void)ambient("22.5 K"); }, ThrowsMessage<InputError>(HasSubstr("ambient")));
 }
 
 TEST(ReadCyclogram, TakesAFileOfALoggerByItsColumns) {
@@ -212,20 +212,20 @@ TEST(ReadCyclogram, TakesAFileOfALoggerByItsColumns) {
   EXPECT_EQ(c.sections, (std::vector<Cyclogram::Section>{{60, {.speed_rpm = 1500}}, {60, {}}}));
 }
 
-TEST(ReadHall, TakesAFileOfALoggerByItsColumns) {
-  (void)write_file("hall.log", "Zeit;T\n0;68\n2;77\n");
-  const TimeSeries h = hall(
-      "{csv: hall.log, channel: t_hall, columns: {time: {column: Zeit, unit: h}, channels: {t_hall: {column: T, unit: "
+TEST(ReadAmbient, TakesAFileOfALoggerByItsColumns) {
+  (void)write_file("ambient.log", "Zeit;T\n0;68\n2;77\n");
+  const TimeSeries h = ambient(
+      "{csv: ambient.log, channel: t_ambient, columns: {time: {column: Zeit, unit: h}, channels: {t_ambient: {column: T, unit: "
       "degF}}}}");
   EXPECT_EQ(h.time_s, (std::vector<double>{0, 7200}));
   EXPECT_NEAR(h.value[0], 0.0, 1e-9);
   EXPECT_NEAR(h.value[1], 5.0, 1e-9);
 }
 
-TEST(ReadHall, TakesRowsOrAChannelOfARecord) {
-  (void)write_file("hall.csv", "time_h,ambient_degC,door_1\n0,21,0\n2,25.5,1\n");
-  for (const char* entry : {"[[0 s, 21 degC], [2 h, 298.65 K]]", "{csv: hall.csv, channel: ambient}"}) {
-    const TimeSeries h = hall(entry);
+TEST(ReadAmbient, TakesRowsOrAChannelOfARecord) {
+  (void)write_file("ambient.csv", "time_h,ambient_degC,door_1\n0,21,0\n2,25.5,1\n");
+  for (const char* entry : {"[[0 s, 21 degC], [2 h, 298.65 K]]", "{csv: ambient.csv, channel: ambient}"}) {
+    const TimeSeries h = ambient(entry);
     EXPECT_EQ(h.time_s, (std::vector<double>{0, 7200}));
     ASSERT_EQ(h.value.size(), 2u);
     EXPECT_NEAR(h.value[0], 1.0, 1e-12);  // kelvin of some hundred, rounded
@@ -233,19 +233,19 @@ TEST(ReadHall, TakesRowsOrAChannelOfARecord) {
   }
 }
 
-TEST(ReadHall, RefusesWhatIsNoHallTemperature) {
-  (void)write_file("hall.csv", "time_h,ambient_degC,door_1\n0,21,0\n2,,1\n");
-  EXPECT_THAT([] { (void)hall("{csv: hall.csv, channel: ambient}"); },
+TEST(ReadAmbient, RefusesWhatIsNoAmbientTemperature) {
+  (void)write_file("ambient.csv", "time_h,ambient_degC,door_1\n0,21,0\n2,,1\n");
+  EXPECT_THAT([] { (void)ambient("{csv: ambient.csv, channel: ambient}"); },
               ThrowsMessage<InputError>(HasSubstr("ambient_degC is missing or outside -73 to 127 degC at 7200 s")));
-  EXPECT_THAT([] { (void)hall("{csv: hall.csv, channel: door}"); },
+  EXPECT_THAT([] { (void)ambient("{csv: ambient.csv, channel: door}"); },
               ThrowsMessage<InputError>(HasSubstr("door_1 is no temperature in degC")));
-  EXPECT_THAT([] { (void)hall("{csv: hall.csv, channel: roof}"); },
+  EXPECT_THAT([] { (void)ambient("{csv: ambient.csv, channel: roof}"); },
               ThrowsMessage<InputError>(HasSubstr("no channel 'roof'")));
-  EXPECT_THAT([] { (void)hall("{csv: hall.csv, channel: ambient, offset: 3}"); },
+  EXPECT_THAT([] { (void)ambient("{csv: ambient.csv, channel: ambient, offset: 3}"); },
               ThrowsMessage<InputError>(HasSubstr("unknown key 'offset'")));
-  EXPECT_THAT([] { (void)hall("[[0 s, 21 degC], [0 s, 22 degC]]"); },
+  EXPECT_THAT([] { (void)ambient("[[0 s, 21 degC], [0 s, 22 degC]]"); },
               ThrowsMessage<InputError>(HasSubstr("times must increase")));
-  EXPECT_THAT([] { (void)hall("[[0 s, 200 degC]]"); },
+  EXPECT_THAT([] { (void)ambient("[[0 s, 200 degC]]"); },
               ThrowsMessage<InputError>(HasSubstr("200 degC lies outside what is allowed, -73.15 to 126.85 degC")));
 }
 

@@ -22,7 +22,7 @@ Effect read(const std::string& text) {
 const std::vector<double> kTime_s = {0, 60, 150, 300, 600, 900};
 const Cyclogram kCyclogram{.name = "shift",
                            .sections = {{150, {.speed_rpm = 2000}}, {450, {.speed_rpm = 1000}}, {300, {.speed_rpm = 0}}}};
-const TimeSeries kHall{{0, 900}, {0.0, 9.0}};
+const TimeSeries kAmbient{{0, 900}, {0.0, 9.0}};
 
 /// Rows a [K], b [K], z [m], tilt [rad].
 Eigen::MatrixXd truth() {
@@ -34,7 +34,7 @@ Eigen::MatrixXd truth() {
   return outputs;
 }
 Eigen::MatrixXd told(const ReadingChain& chain, const Cyclogram& cyclogram = kCyclogram) {
-  return chain.apply({"a", "b", "z", "tilt"}, {"K", "K", "m", "rad"}, kTime_s, cyclogram, kHall, truth());
+  return chain.apply({"a", "b", "z", "tilt"}, {"K", "K", "m", "rad"}, kTime_s, cyclogram, kAmbient, truth());
 }
 Eigen::MatrixXd told(const std::vector<std::string>& entries, const Cyclogram& cyclogram = kCyclogram) {
   std::vector<Effect> effects;
@@ -77,7 +77,7 @@ TEST(Centrifugal, FollowsTheSquareOfSpeedAtOnce) {
   expect_row(1e6 * m, kZ, {-12, -12, -3, -3, 0, 0}, 1e-12);  // a section holds from its start on
 }
 
-TEST(DisplacementPath, FollowsABodyTheHallOrAColumn) {
+TEST(DisplacementPath, FollowsABodyTheAmbientOrAColumn) {
   const auto z_um = [](const std::string& keys) -> Eigen::MatrixXd {
     Cyclogram cyclogram = kCyclogram;
     cyclogram.columns = {{"bed", "degC", {{0, 300}, {25, 40}}}};
@@ -86,15 +86,15 @@ TEST(DisplacementPath, FollowsABodyTheHallOrAColumn) {
     outputs << 0, 0, 0, 0, 0, 0,  //
         1, 2, 3, 4, 5, 6;
     return 1e6 *
-           reading_chain({e}, "shift").apply({"z", mean_output("head")}, {"m", "K"}, kTime_s, cyclogram, kHall, outputs);
+           reading_chain({e}, "shift").apply({"z", mean_output("head")}, {"m", "K"}, kTime_s, cyclogram, kAmbient, outputs);
   };
   expect_row(z_um("body: head, sensitivity: 3 um/K"), 0, {3, 6, 9, 12, 15, 18}, 1e-12);
-  expect_row(z_um("body: hall, sensitivity: -2 um/K"), 0, {0, -1.2, -3, -6, -12, -18}, 1e-12);
+  expect_row(z_um("body: ambient, sensitivity: -2 um/K"), 0, {0, -1.2, -3, -6, -12, -18}, 1e-12);
   expect_row(z_um("column: bed, zero: 22 degC, sensitivity: 1 um/K"), 0, {3, 3, 3, 18, 18, 18},
              1e-12);  // held from row to row
-  // The hall rises by 0.01 K/s from its start on: 100 s behind it is 0.01 (t - 100 (1 - exp(-t/100)))
+  // The ambient rises by 0.01 K/s from its start on: 100 s behind it is 0.01 (t - 100 (1 - exp(-t/100)))
   const auto behind = [](double t_s) { return 0.01 * (t_s - 100.0 * (1.0 - std::exp(-t_s / 100.0))); };
-  expect_row(z_um("body: hall, sensitivity: 1 um/K, lag: 1.6666666666666667 min"), 0,
+  expect_row(z_um("body: ambient, sensitivity: 1 um/K, lag: 1.6666666666666667 min"), 0,
              {0, behind(60), behind(150), behind(300), behind(600), behind(900)}, 1e-9);
 }
 
@@ -154,7 +154,7 @@ TEST(SensorLag, OfNothingIsNone) {
 }
 
 TEST(SensorDetached, ReadsAShareOfAir) {
-  // Hall 0.01 K/s: 3 K at 300 s, 6 K at 600 s, 9 K at 900 s.
+  // Ambient 0.01 K/s: 3 K at 300 s, 6 K at 600 s, 9 K at 900 s.
   expect_row(told(std::vector<std::string>{"{type: sensor_detached, sensor: b, share: 0.75, time: 5 min}"}), kB,
              {1, 2, 3, 0.25 * 4 + 0.75 * 3, 0.25 * 5 + 0.75 * 6, 0.25 * 6 + 0.75 * 9}, 1e-14);
 }
@@ -177,7 +177,7 @@ TEST(ClockOffset, EarlyReadingsEndWithTheLast) {
 }
 
 TEST(Readings, ActInTheirOrder) {
-  // Detached at 0 from the body (share 1: hall 0 0.6 1.5 ...), biased by 1 K, then wired to b's channel.
+  // Detached at 0 from the body (share 1: ambient 0 0.6 1.5 ...), biased by 1 K, then wired to b's channel.
   const Eigen::MatrixXd m =
       told(std::vector<std::string>{"{type: sensor_swap, sensor: a, with: b}", "{type: sensor_bias, sensor: a, bias: 1 K}",
                                     "{type: sensor_detached, sensor: a, share: 1, time: 0 min}"});

@@ -53,7 +53,7 @@ Record record_of(const std::vector<Stretch>& stretches) {
 struct Cut {
   explicit Cut(const std::vector<Stretch>& stretches)
       : record(record_of(stretches)), run(run_of(record, nullptr, {}, Reading::kStrict)) {}
-  [[nodiscard]] CutRecord cut() const { return {record, run.cyclogram, run.hall}; }
+  [[nodiscard]] CutRecord cut() const { return {record, run.cyclogram, run.ambient}; }
   [[nodiscard]] std::vector<RunRows> runs() const { return runs_between_rests(cut(), 0, record.n_samples()); }
   Record record;
   RecordedRun run;
@@ -96,11 +96,11 @@ TEST(RecordRuns, AFeedIsNoRest) {
   Record r = record_of({{2, 1000}, {1, 0}, {2, 500}});
   r.channels.push_back({"feed_x", "mm_min", std::vector<double>(r.n_samples(), -600.0)});
   const RecordedRun run = run_of(r, nullptr, {}, Reading::kStrict);
-  EXPECT_THAT(runs_between_rests({r, run.cyclogram, run.hall}, 0, r.n_samples()), SizeIs(1));
+  EXPECT_THAT(runs_between_rests({r, run.cyclogram, run.ambient}, 0, r.n_samples()), SizeIs(1));
 }
 
-// The machine came back to its hall, which is warmer by now; without the hall it has not come back.
-TEST(RecordRuns, BalanceIsWithTheHall) {
+// The machine came back to its ambient, which is warmer by now; without the ambient it has not come back.
+TEST(RecordRuns, BalanceIsWithTheAmbient) {
   Record r = record_of({{2, 1000}, {5, 0}, {1, 1000}});
   Channel ambient{"ambient", "degC", {}};
   for (std::size_t i = 0; i < r.n_samples(); ++i) {
@@ -109,10 +109,10 @@ TEST(RecordRuns, BalanceIsWithTheHall) {
     r.channels[1].values[i] += rise_K;
   }
   const RecordedRun alone = run_of(r, nullptr, {}, Reading::kStrict);
-  EXPECT_FALSE(is_back_in_balance({r, alone.cyclogram, alone.hall}, 420));
+  EXPECT_FALSE(is_back_in_balance({r, alone.cyclogram, alone.ambient}, 420));
   r.channels.push_back(ambient);
-  const RecordedRun with_hall = run_of(r, nullptr, {}, Reading::kStrict);
-  EXPECT_TRUE(is_back_in_balance({r, with_hall.cyclogram, with_hall.hall}, 420));
+  const RecordedRun with_ambient = run_of(r, nullptr, {}, Reading::kStrict);
+  EXPECT_TRUE(is_back_in_balance({r, with_ambient.cyclogram, with_ambient.ambient}, 420));
 }
 
 TEST(RecordPart, NamesRowsByTimeSinceTheFirst) {
@@ -160,20 +160,20 @@ TEST(RecordPart, KnowsWhetherItHasRowsOfOthers) {
   EXPECT_FALSE(has(other));
 }
 
-TEST(RecordRuns, PartsOfDriveAndHall) {
+TEST(RecordRuns, PartsOfDriveAndAmbient) {
   const Cyclogram c{.name = "c", .sections = {{100, {.speed_rpm = 1}}, {100, {.speed_rpm = 2}}, {100, {.speed_rpm = 3}}}};
   const Cyclogram part = part_of(c, 50, 220);
   ASSERT_THAT(part.sections, SizeIs(3));
   for (double t_s : {0.0, 49.0, 51.0, 149.0, 151.0, 169.0}) EXPECT_EQ(part.speed_rpm(t_s), c.speed_rpm(t_s + 50.0)) << t_s;
   EXPECT_DOUBLE_EQ(part.duration_s(), 170.0);
-  const TimeSeries hall{{0, 100, 200}, {0, 10, 0}}, of_hall = part_of(hall, 50, 150);
-  for (double t_s : {0.0, 25.0, 50.0}) EXPECT_DOUBLE_EQ(of_hall.at(t_s), hall.at(t_s + 50.0));
+  const TimeSeries ambient{{0, 100, 200}, {0, 10, 0}}, of_ambient = part_of(ambient, 50, 150);
+  for (double t_s : {0.0, 25.0, 50.0}) EXPECT_DOUBLE_EQ(of_ambient.at(t_s), ambient.at(t_s + 50.0));
   EXPECT_THAT(part_of(TimeSeries{}, 0, 10).time_s, IsEmpty());
 }
 
 /// Rows [0, last) of a record, of which the first `n_before` are lead-in.
 ObservedRun with_lead_in(const Record& record, std::size_t n_before, std::size_t last) {
-  ObservedRun run{.cyclogram = {}, .hall = {}, .readings = record, .n_before = n_before, .history = "week"};
+  ObservedRun run{.cyclogram = {}, .ambient = {}, .readings = record, .n_before = n_before, .history = "week"};
   run.readings.time_s.resize(last);
   for (Channel& c : run.readings.channels) c.values.resize(last);
   return run;

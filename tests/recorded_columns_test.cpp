@@ -36,9 +36,9 @@ effects:
   - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
   - {type: link, node: head, to: column, conductance: 12 W/K}
   - {type: link, node: column, to: bed, conductance: 9 W/K}
-  - {type: link, node: column, to: hall, conductance: 14 W/K}
-  - {type: link, node: bed, to: hall, conductance: 11 W/K}
-hall: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+  - {type: link, node: bed, to: ambient, conductance: 11 W/K}
+ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
 sensors:
   - {name: t_head, node: head}
   - {name: t_column, node: column}
@@ -62,7 +62,7 @@ constexpr double kNoise_K = 0.03, kNoise_um = 0.2;
 /// The scenario with further effects. @param with_columns  whether its cyclograms say more than speeds
 std::string scenario_with(const std::string& entry, bool with_columns = true) {
   std::string text = kMachine;
-  if (!entry.empty()) text.insert(text.find("hall: [["), "  - " + entry + "\n");
+  if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
   if (!with_columns) return text + "  idle: [[60 min, 500 rpm]]\nsolver: {output_interval: 1 min}\n";
   for (int i = 0; i < 2; ++i)
     text += std::string(i == 0 ? "  monday" : "  tuesday") + ": {columns: " + kColumns + ", rows: " + kRows[i] + "}\n";
@@ -74,7 +74,7 @@ Record simulated(const scenarios::MachineModel& model, const Cyclogram& cyclogra
   const scenarios::FeltRun felt = scenarios::felt_run(model, cyclogram);
   return scenarios::as_recorded(
       model,
-      solver::simulate(machine.system, felt.cyclogram, felt.hall, scenarios::output_times_s(cyclogram, 60.0),
+      solver::simulate(machine.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(cyclogram, 60.0),
                        {.relative_tolerance = 1e-8, .absolute_tolerance_K = 1e-8}, scenarios::start_state(model, machine)),
       machine.system.outputs, cyclogram);
 }
@@ -249,7 +249,7 @@ TEST(RecordedColumns, AreWhatAResidualIsComparedWith) {
     residual[i] = 0.02 * behind;
   }
   run.cyclogram = {.name = "run", .sections = {{18000.0, {}}}, .remarks = {}, .columns = {{"heater", "W", heater}}};
-  run.hall = {{0.0}, {0.0}};
+  run.ambient = {{0.0}, {0.0}};
   const ResidualStructure s = residual_structure(run, residual);
   ASSERT_TRUE(s.lag);
   EXPECT_EQ(s.lag->quantity, "heater_W");

@@ -60,39 +60,40 @@ TEST(RecordedRun, TakesFeedsAndCuttingPowerWhereTheyAreRecorded) {
   EXPECT_EQ(run.cyclogram.sections[1].drive.cutting_power_W, 250.0);
 }
 
-TEST(RecordedRun, KnowsTheHallFromAmbientFromASensorOnItOrFromTheMachine) {
+TEST(RecordedRun, KnowsTheAmbientFromAmbientFromASensorOnItOrFromTheMachine) {
   MachineModel machine;
-  machine.hall = {{0.0}, {3.0}};
+  machine.ambient = {{0.0}, {3.0}};
   const Channel ambient{"ambient", "degC", {22, 22, kMissing, 22, 22}};
   const Channel sensor{"t_air", "degC", {24, 24, 24, 24, 24}};
   const RecordedRun by_ambient = run_of(with(with(record(), sensor), ambient), &machine, {"t_air"}, Reading::kStrict);
   EXPECT_TRUE(by_ambient.has_ambient());
-  EXPECT_THAT(by_ambient.hall.value, Each(DoubleNear(2.0, 1e-9)));  // over 20 degC
-  EXPECT_THAT(run_of(with(record(), sensor), &machine, {"t_air"}, Reading::kStrict).hall.value, Each(DoubleNear(4.0, 1e-9)));
+  EXPECT_THAT(by_ambient.ambient.value, Each(DoubleNear(2.0, 1e-9)));  // over 20 degC
+  EXPECT_THAT(run_of(with(record(), sensor), &machine, {"t_air"}, Reading::kStrict).ambient.value,
+              Each(DoubleNear(4.0, 1e-9)));
   const RecordedRun without = run_of(record(), &machine, {}, Reading::kStrict);
   EXPECT_FALSE(without.has_ambient());
-  EXPECT_EQ(without.hall.value, machine.hall.value);
+  EXPECT_EQ(without.ambient.value, machine.ambient.value);
   // nobody knows it: no knot, and nobody may ask
   const RecordedRun unknown = run_of(record(), nullptr, {}, Reading::kStrict);
-  EXPECT_THAT(unknown.hall.time_s, IsEmpty());
-  EXPECT_THROW((void)unknown.hall.at(0.0), std::logic_error);
+  EXPECT_THAT(unknown.ambient.time_s, IsEmpty());
+  EXPECT_THROW((void)unknown.ambient.at(0.0), std::logic_error);
 }
 
 // What a control cannot know is not made up: a gap holds the last reading, whatever comes after it.
-TEST(RecordedRun, HoldsTheHallOverGapsAtTheRowsOwnTimes) {
+TEST(RecordedRun, HoldsTheAmbientOverGapsAtTheRowsOwnTimes) {
   const Channel ambient{"ambient", "degC", {20.5, 21, kMissing, kMissing, 25}};
   const RecordedRun run = run_of(with(record(), ambient), nullptr, {}, Reading::kStrict);
-  EXPECT_NEAR(run.hall.at(30.0), 0.75, 1e-9);  // from 0, not from the record's 300 s
-  EXPECT_NEAR(run.hall.at(180.0), 1.0, 1e-9);
-  EXPECT_NEAR(run.hall.at(240.0), 5.0, 1e-9);
+  EXPECT_NEAR(run.ambient.at(30.0), 0.75, 1e-9);  // from 0, not from the record's 300 s
+  EXPECT_NEAR(run.ambient.at(180.0), 1.0, 1e-9);
+  EXPECT_NEAR(run.ambient.at(240.0), 5.0, 1e-9);
   ASSERT_THAT(run.findings, SizeIs(1));
   EXPECT_THAT(run.findings[0].what, HasSubstr("no reading in 40 % of the rows"));
 }
 
-TEST(RecordedRun, TakesASensorOnTheHallWhereAmbientIsEmpty) {
+TEST(RecordedRun, TakesASensorOnTheAmbientWhereAmbientIsEmpty) {
   const Record r = with(with(record(), {"ambient", "degC", std::vector<double>(5, kMissing)}),
                         {"t_air", "degC", std::vector<double>(5, 21.0)});
-  EXPECT_EQ(run_of(r, nullptr, {"t_air"}, Reading::kStrict).hall_channel, "t_air");
+  EXPECT_EQ(run_of(r, nullptr, {"t_air"}, Reading::kStrict).ambient_channel, "t_air");
 }
 
 TEST(RecordedRun, HoldsFeedsThatAreMissingAndRefusesForeignOnes) {
@@ -114,12 +115,12 @@ TEST(RecordedRun, AnEmptyAmbientIsNone) {
   const RecordedRun run = run_of(with(record(), ambient), nullptr, {}, Reading::kStrict);
   EXPECT_FALSE(run.has_ambient());
   ASSERT_THAT(run.findings, SizeIs(1));
-  EXPECT_THAT(run.findings[0].what, HasSubstr("no hall temperature"));
+  EXPECT_THAT(run.findings[0].what, HasSubstr("no ambient temperature"));
 }
 
 TEST(RecordedRun, RefusesStrictlyWhatItSaysLeniently) {
   MachineModel machine;
-  machine.hall = {{0.0}, {0.0}};
+  machine.ambient = {{0.0}, {0.0}};
   Record no_speed = record();
   no_speed.channels[0].name = "torque";
   Record reversed = record();

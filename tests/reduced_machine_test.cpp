@@ -53,12 +53,12 @@ std::vector<double> times_of(const Scenario& s) {
   return output_times_s(s.cyclograms.front(), s.solver.output_interval_s);
 }
 solver::Trajectory run_full(const Scenario& s, const Machine& machine, const solver::OutputCallback& look = {}) {
-  return solver::simulate(machine.system, s.cyclograms.front(), s.machine->hall, times_of(s), kTight,
+  return solver::simulate(machine.system, s.cyclograms.front(), s.machine->ambient, times_of(s), kTight,
                           start_state(*s.machine, machine), look);
 }
 solver::Trajectory run_small(const Scenario& s, const solver::ReducedSystem& system, const Eigen::VectorXd& start,
                              const solver::OutputCallback& look = {}) {
-  return solver::simulate(system, s.cyclograms.front(), s.machine->hall, times_of(s), kTight, start, look);
+  return solver::simulate(system, s.cyclograms.front(), s.machine->ambient, times_of(s), kTight, start, look);
 }
 
 /// Largest difference of temperatures [K]; displacements [m] count 1 K for 2 um.
@@ -100,7 +100,8 @@ INSTANTIATE_TEST_SUITE_P(
                                                     ColumnAndHead::kContact}}},
         std::pair{"NaturalConvection",
                   ColumnAndHead{.effects = {ColumnAndHead::kHeat, ColumnAndHead::kFilm, kUpwards, ColumnAndHead::kContact}}},
-        std::pair{"AHallToStartFrom", ColumnAndHead{.hall = "[[0 min, 26 degC], [60 min, 22 degC]]", .start = "hall"}},
+        std::pair{"AnAmbientToStartFrom",
+                  ColumnAndHead{.ambient = "[[0 min, 26 degC], [60 min, 22 degC]]", .start = "ambient"}},
         std::pair{"ASteadyStart",
                   ColumnAndHead{.effects = {ColumnAndHead::kHeat, ColumnAndHead::kFilm, ColumnAndHead::kContact,
                                             "{type: motor_loss, region: column, power: 10 W, at_speed: 1000 "
@@ -108,9 +109,9 @@ INSTANTIATE_TEST_SUITE_P(
                                 .start = "steady"}},
         std::pair{"AHeldFace",
                   ColumnAndHead{.effects = {ColumnAndHead::kHeat, ColumnAndHead::kFilm, ColumnAndHead::kContact, kHeld}}},
-        std::pair{"AFaceThatFollowsTheHall",
+        std::pair{"AFaceThatFollowsTheAmbient",
                   ColumnAndHead{.effects = {ColumnAndHead::kHeat, ColumnAndHead::kFilm, ColumnAndHead::kContact,
-                                            "{type: fixed_temperature, surface: front, follows: hall}"}}}),
+                                            "{type: fixed_temperature, surface: front, follows: ambient}"}}}),
     [](const auto& one) { return std::string(one.param.first); });
 
 TEST(Reducible, MakesOfRadiationTheFilmThatIsExactAtOneTemperature) {
@@ -289,14 +290,14 @@ TEST_P(ModalPredictors, AreThoseOfTheFullSystem) {
   for (const bool with_steady : {false, true}) {
     const auto& small = with_steady ? of.reduced.modal->completed : of.reduced.modal->bare;
     const auto of_full_system = compensation::make_modal_predictors(
-        of.machine.system, 20, start_state(*s.machine, of.machine), s.machine->hall.at(0.0), plan_of(s).typical);
+        of.machine.system, 20, start_state(*s.machine, of.machine), s.machine->ambient.at(0.0), plan_of(s).typical);
     const auto& full = with_steady ? of_full_system.completed : of_full_system.bare;
     ASSERT_EQ(small.time_constant_s.size(), full.time_constant_s.size());
     for (std::size_t i = 0; i < full.time_constant_s.size(); ++i) {
       EXPECT_NEAR(small.time_constant_s[i], full.time_constant_s[i], 1e-8 * full.time_constant_s[i]);
     }
-    const auto of_small = small.predict(s.cyclograms.front(), s.machine->hall, times_of(s)),
-               of_full = full.predict(s.cyclograms.front(), s.machine->hall, times_of(s));
+    const auto of_small = small.predict(s.cyclograms.front(), s.machine->ambient, times_of(s)),
+               of_full = full.predict(s.cyclograms.front(), s.machine->ambient, times_of(s));
     EXPECT_GT(of_full.outputs.row(0).maxCoeff(), 1.0);
     EXPECT_LT(difference_K(of_small, of_full, of.machine.system.outputs), 1e-6);  // rounding in shapes of 20 modes
   }

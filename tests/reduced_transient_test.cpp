@@ -19,7 +19,7 @@ namespace driftwright::solver {
 namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {1800, 3000}}};
-const TimeSeries kRampingHall{{0, 2000, 4000, 5400}, {0.0, 1.5, 1.5, -2.0}};
+const TimeSeries kRampingAmbient{{0, 2000, 4000, 5400}, {0.0, 1.5, 1.5, -2.0}};
 
 std::vector<double> every(double interval_s) {
   std::vector<double> times_s;
@@ -73,7 +73,7 @@ TEST_P(InACompleteBasis, TheSmallSystemIsTheFullOne) {
   const ReducedSystem reduced = project(system, basis);
   EXPECT_EQ(!reduced.is_linear(), GetParam().is_live);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
-  const Trajectory full = simulate(system, kCycle, kRampingHall, every(60), tolerance(1e-7), zero);
+  const Trajectory full = simulate(system, kCycle, kRampingAmbient, every(60), tolerance(1e-7), zero);
   std::vector<double> called_s;
   double worst_K = 0.0;
   const auto look = [&](double time_s, const Eigen::VectorXd& state) {
@@ -82,7 +82,7 @@ TEST_P(InACompleteBasis, TheSmallSystemIsTheFullOne) {
     const auto k = static_cast<Eigen::Index>(called_s.size()) - 1;
     worst_K = std::max(worst_K, (reduced.outputs.state.transpose() * state - full.outputs.col(k)).cwiseAbs().maxCoeff());
   };
-  const Trajectory small = simulate(reduced, kCycle, kRampingHall, every(60), tolerance(1e-7), zero, look);
+  const Trajectory small = simulate(reduced, kCycle, kRampingAmbient, every(60), tolerance(1e-7), zero, look);
   EXPECT_EQ(called_s, every(60));
   // 1e-7 of some 40 K a step, both ways, over a thousand steps.
   EXPECT_GT(full.outputs.maxCoeff(), 10.0);
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"NaturalConvectionFromZeroDifference", {kHeat, kFilm, kJoint, kUpwards}, true},
                       Case{"DraughtByTheClock", {kHeat, kFilm, kJoint, kDraught}, false},
                       Case{"DraughtBesideFriction", {kOil, kFilm, kJoint, kDraught}, true},
-                      Case{"StratifiedHall", {kHeat, kFilm, kJoint, kUpwards, kLayers}, true},
+                      Case{"StratifiedAmbient", {kHeat, kFilm, kJoint, kUpwards, kLayers}, true},
                       Case{"Chiller", {kHeat, kFilm, kJoint, kChiller}, true},
                       Case{"AllAtOnce", {kOil, kHeat, kFilm, kJoint, kUpwards, kDraught, kChiller, kLayers}, true}),
     [](const auto& one) { return std::string(one.param.name); });
@@ -129,8 +129,8 @@ TEST(ReducedTransient, SwitchesAsOftenAndWhenTheFullModelDoes) {
   const ReducedSystem reduced =
       project(system, orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size())));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
-  const Trajectory full = simulate(system, kCycle, kRampingHall, every(2), tolerance(1e-6), zero),
-                   small = simulate(reduced, kCycle, kRampingHall, every(2), tolerance(1e-6), zero);
+  const Trajectory full = simulate(system, kCycle, kRampingAmbient, every(2), tolerance(1e-6), zero),
+                   small = simulate(reduced, kCycle, kRampingAmbient, every(2), tolerance(1e-6), zero);
   EXPECT_GE(troughs_s(full, 2).size(), 5u);  // of the tank
   EXPECT_EQ(troughs_s(small, 2), troughs_s(full, 2));
 }
@@ -140,10 +140,10 @@ TEST(ReducedTransient, ErrorsFollowTheTolerance) {
   const ReducedSystem reduced =
       project(system, orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size())));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
-  const Trajectory exact = simulate(reduced, kCycle, kRampingHall, every(60), tolerance(1e-9), zero);
+  const Trajectory exact = simulate(reduced, kCycle, kRampingAmbient, every(60), tolerance(1e-9), zero);
   double last_K = 1.0;
   for (double relative : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
-    const Trajectory run = simulate(reduced, kCycle, kRampingHall, every(60), tolerance(relative), zero);
+    const Trajectory run = simulate(reduced, kCycle, kRampingAmbient, every(60), tolerance(relative), zero);
     const double error_K = (run.outputs - exact.outputs).cwiseAbs().maxCoeff();
     RecordProperty("at_" + fixtures::text(relative), fixtures::text(error_K));
     EXPECT_LT(error_K, 100.0 * relative);  // some ten steps' errors of a temperature of 40 K
@@ -157,12 +157,12 @@ TEST(ReducedTransient, StepsOfALinearSystemFindItsExponentials) {
   const Eigen::MatrixXd basis = orthonormalise(system.mass, Eigen::MatrixXd::Random(system.size(), 12));
   const ReducedSystem reduced = project(system, basis);
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(reduced.size(), 20.0);
-  const Trajectory exact = simulate(reduced, kCycle, kRampingHall, every(60), {}, start);
-  std::vector<double> knots_s = kRampingHall.time_s;
+  const Trajectory exact = simulate(reduced, kCycle, kRampingAmbient, every(60), {}, start);
+  std::vector<double> knots_s = kRampingAmbient.time_s;
   knots_s.insert(knots_s.end(), {1200.0, 3000.0});
-  ReducedOde ode(reduced, kRampingHall);
+  ReducedOde ode(reduced, kRampingAmbient);
   const Trajectory stepped =
-      integrate(ode, linear_stretches(kCycle, knots_s), kRampingHall, every(60), tolerance(1e-8), start, {});
+      integrate(ode, linear_stretches(kCycle, knots_s), kRampingAmbient, every(60), tolerance(1e-8), start, {});
   EXPECT_EQ(exact.n_steps, 0);
   EXPECT_GT(stepped.n_steps, 100);
   EXPECT_LT((stepped.outputs - exact.outputs).cwiseAbs().maxCoeff(), 1e-5);
@@ -178,7 +178,7 @@ TEST(ReducedTransient, HeatBalancesInABasisOfAFewVectorsAtAnyTolerance) {
   const ReducedSystem reduced = project(system, orthonormalise(system.mass, columns));
   for (double relative : {1e-3, 1e-6}) {
     const Trajectory run =
-        simulate(reduced, kCycle, kRampingHall, every(60), tolerance(relative), Eigen::VectorXd::Zero(reduced.size()));
+        simulate(reduced, kCycle, kRampingAmbient, every(60), tolerance(relative), Eigen::VectorXd::Zero(reduced.size()));
     RecordProperty("gap_at_" + fixtures::text(relative), fixtures::text(run.energy_gap()));
     EXPECT_LT(run.energy_gap(), 1e-9) << relative;
   }
@@ -193,9 +193,9 @@ void expect_held_alike(const std::string& held, double start_K) {
   const Eigen::MatrixXd basis = orthonormalise(free.mass, Eigen::MatrixXd::Identity(free.size(), free.size()));
   const ReducedSystem reduced = project(free, basis);
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(system.size(), start_K);
-  const Trajectory full = simulate(system, kCycle, kRampingHall, every(60), tolerance(1e-7), start);
+  const Trajectory full = simulate(system, kCycle, kRampingAmbient, every(60), tolerance(1e-7), start);
   const Trajectory small =
-      simulate(reduced, kCycle, kRampingHall, every(60), tolerance(1e-7), basis.transpose() * (free.mass * start));
+      simulate(reduced, kCycle, kRampingAmbient, every(60), tolerance(1e-7), basis.transpose() * (free.mass * start));
   // The exchanges are a million times stiffer than conduction: what is held gives way by a millionth of 40 K.
   EXPECT_LT((small.outputs - full.outputs).cwiseAbs().maxCoeff(), 4e-4);
   const double most_J = full.heat_J.cwiseAbs().maxCoeff();
@@ -211,17 +211,17 @@ void expect_held_alike(const std::string& held, double start_K) {
 TEST(ReducedTransient, HoldsATemperature) {
   expect_held_alike("{type: fixed_temperature, surface: b.x1, temperature: 30 degC}", 10.0);
 }
-TEST(ReducedTransient, FollowsTheHall) {
-  expect_held_alike("{type: fixed_temperature, surface: b.x1, follows: hall}", 0.0);
+TEST(ReducedTransient, FollowsTheAmbient) {
+  expect_held_alike("{type: fixed_temperature, surface: b.x1, follows: ambient}", 0.0);
 }
 
 TEST(ReducedTransient, RunsOfOneSystemDoNotDisturbEachOther) {
   const FullSystem system = blocks({kOil, kFilm, kJoint, kChiller});
   const ReducedSystem reduced = project(system, orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), 30)));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(reduced.size());
-  const Trajectory first = simulate(reduced, kCycle, kRampingHall, every(60), {}, zero);
-  (void)simulate(reduced, {.name = "", .sections = {{3600, 3000}}}, kRampingHall, {3600}, {}, zero);
-  const Trajectory again = simulate(reduced, kCycle, kRampingHall, every(60), {}, zero);
+  const Trajectory first = simulate(reduced, kCycle, kRampingAmbient, every(60), {}, zero);
+  (void)simulate(reduced, {.name = "", .sections = {{3600, 3000}}}, kRampingAmbient, {3600}, {}, zero);
+  const Trajectory again = simulate(reduced, kCycle, kRampingAmbient, every(60), {}, zero);
   EXPECT_EQ(first.outputs, again.outputs);
   EXPECT_EQ(first.heat_J, again.heat_J);
 }
@@ -231,7 +231,8 @@ TEST(ReducedTransient, StopsAtTemperaturesThatNoMachineHas) {
       blocks({"{type: heat_source, region: a, power: 1 MW, at_speed: 3000 rpm, exponent: 1}", kFilm, kJoint, kUpwards});
   const ReducedSystem reduced =
       project(system, orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size())));
-  EXPECT_THROW((void)simulate(reduced, kCycle, kRampingHall, {5400}, {}, Eigen::VectorXd::Zero(reduced.size())), SolveError);
+  EXPECT_THROW((void)simulate(reduced, kCycle, kRampingAmbient, {5400}, {}, Eigen::VectorXd::Zero(reduced.size())),
+               SolveError);
 }
 
 }  // namespace

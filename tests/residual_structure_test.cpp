@@ -12,15 +12,15 @@
 namespace driftwright::diagnosis {
 namespace {
 
-/// Eight hours, a row a minute, the speed changing every 40 min, a hall that swings once in five hours.
+/// Eight hours, a row a minute, the speed changing every 40 min, an ambient that swings once in five hours.
 MeasuredRun run() {
   MeasuredRun r;
   for (int i = 0; i <= 480; ++i) r.time_s.push_back(60.0 * i);
   for (double rpm : {1000.0, 0.0, 3000.0, 2000.0, 0.0, 500.0, 3000.0, 0.0, 1500.0, 2500.0, 0.0, 1000.0})
     r.cyclogram.sections.push_back({2400.0, {.speed_rpm = rpm}});
   for (double t_s : r.time_s) {
-    r.hall.time_s.push_back(t_s);
-    r.hall.value.push_back(std::sin(2.0 * std::numbers::pi * t_s / 18000.0));
+    r.ambient.time_s.push_back(t_s);
+    r.ambient.value.push_back(std::sin(2.0 * std::numbers::pi * t_s / 18000.0));
   }
   return r;
 }
@@ -72,7 +72,7 @@ TEST(ResidualStructure, FindsHowLongAgoTheSpeedWas) {
   }
 }
 
-TEST(ResidualStructure, TellsSpeedFromItsSquareItsChangesAndTheHall) {
+TEST(ResidualStructure, TellsSpeedFromItsSquareItsChangesAndTheAmbient) {
   const MeasuredRun r = run();
   const auto square =
       residual_structure(r, series(r, [&](double t_s) { return std::pow(r.cyclogram.drive(t_s).speed_rpm, 2); }));
@@ -83,9 +83,9 @@ TEST(ResidualStructure, TellsSpeedFromItsSquareItsChangesAndTheHall) {
                            return std::abs(r.cyclogram.drive(t_s).speed_rpm - r.cyclogram.drive(t_s - 60.0).speed_rpm);
                          }));
   EXPECT_GT(likeness(changes, "|change of speed|", 0), 0.99);
-  const auto hall = residual_structure(r, series(r, [&](double t_s) { return -r.hall.at(t_s); }));
-  EXPECT_NEAR(likeness(hall, "hall", 0), -1.0, 1e-9);
-  EXPECT_LT(std::abs(likeness(hall, "hall rate", 0)), 0.5);
+  const auto ambient = residual_structure(r, series(r, [&](double t_s) { return -r.ambient.at(t_s); }));
+  EXPECT_NEAR(likeness(ambient, "ambient", 0), -1.0, 1e-9);
+  EXPECT_LT(std::abs(likeness(ambient, "ambient rate", 0)), 0.5);
 }
 
 TEST(ResidualStructure, FindsTheTimeConstantOfAStepResponse) {
@@ -107,9 +107,9 @@ TEST(ResidualStructure, FindsTheTimeConstantOfAStepResponse) {
 
 TEST(ResidualStructure, WhatDoesNotChangeIsLikeNothing) {
   MeasuredRun r = run();
-  for (double& v : r.hall.value) v = 1.7;
+  for (double& v : r.ambient.value) v = 1.7;
   const auto s = residual_structure(r, series(r, [&](double t_s) { return r.cyclogram.drive(t_s).speed_rpm; }));
-  EXPECT_TRUE(std::isnan(likeness(s, "hall", 0)));
+  EXPECT_TRUE(std::isnan(likeness(s, "ambient", 0)));
 }
 
 }  // namespace

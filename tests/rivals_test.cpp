@@ -17,10 +17,10 @@ using ::testing::IsEmpty;
 TEST(Odds, AreSharedByEvidenceOverKindsAndOverPlacesOfAKind) {
   // 4 : 2 : 1 : 1
   const double ln2 = std::log(2.0);
-  const std::vector<Rival> rivals = {{"link", "head,hall", 50.0},
+  const std::vector<Rival> rivals = {{"link", "head,ambient", 50.0},
                                      {"contact", "head,bed", 50.0 - ln2},
-                                     {"link", "bed,hall", 50.0 - 2 * ln2},
-                                     {"ambient", "hall", 50.0 - 2 * ln2}};
+                                     {"link", "bed,ambient", 50.0 - 2 * ln2},
+                                     {"ambient", "ambient", 50.0 - 2 * ln2}};
   EXPECT_THAT(shares_of(rivals), ElementsAre(DoubleNear(0.5, 1e-12), DoubleNear(0.25, 1e-12), DoubleNear(0.125, 1e-12),
                                              DoubleNear(0.125, 1e-12)));
   EXPECT_NEAR(odds_of(rivals).kind, 0.625, 1e-12);
@@ -41,7 +41,7 @@ TEST(Odds, OfAnotherKindBelowOneToNineLeaveNothingOpen) {
 
 TEST(Odds, OfOneKindAtTwoPlacesLeaveThePlaceOpenAlone) {
   const std::vector<Rival> rivals = {
-      {"recorded_drive", "platen", 53.6}, {"recorded_drive", "cavity", 53.4}, {"ambient", "hall", 50.0}};
+      {"recorded_drive", "platen", 53.6}, {"recorded_drive", "cavity", 53.4}, {"ambient", "ambient", 50.0}};
   EXPECT_GT(odds_of(rivals).kind, kSure);
   EXPECT_NEAR(odds_of(rivals).place, 1.0 / (1.0 + std::exp(-0.2)), 1e-12);
   EXPECT_THAT(open_rivals(rivals), ElementsAre(1));

@@ -30,8 +30,8 @@ solver::ReducedSystem two_nodes(double heat_of_a, double films) {
     solver::Exchange<Eigen::MatrixXd> e;
     e.name = i == 0 ? "film of a" : "film of b";
     e.matrix = unit(i) * unit(i).transpose();
-    e.to_hall = e.flow = unit(i);
-    e.hall_sum = 1.0;
+    e.to_ambient = e.flow = unit(i);
+    e.ambient_sum = 1.0;
     e.coefficient = solver::BoundLaw(
         [=](const effects::Inputs& u) { return films * (i == 0 ? 1e-4 + 2e-7 * u.drive.speed_rpm : 2e-4); });
     s.exchanges.push_back(e);
@@ -39,25 +39,25 @@ solver::ReducedSystem two_nodes(double heat_of_a, double films) {
   s.outputs.name = {"t_a", "t_b", "drift"};
   s.outputs.unit = {"K", "K", "m"};
   s.outputs.state = (Eigen::MatrixXd(2, 3) << 1, 0, 4e-6, 0, 1, -1.5e-6).finished();
-  s.outputs.hall = Eigen::Vector3d::Zero();
+  s.outputs.ambient = Eigen::Vector3d::Zero();
   s.ones = Eigen::Vector2d::Ones();
   return s;
 }
 
 const TestChannels kChannels{{"drift", "t_b", "t_a"}, {"um", "K", "K"}};  // any order
-constexpr double kHall_K = 2.0;                                           // over the reference
+constexpr double kAmbient_K = 2.0;                                        // over the reference
 
-/// Four tests of the true machine, in a hall that warms by 1 K, with noise of 1 um and 0.1 K.
+/// Four tests of the true machine, in an ambient that warms by 1 K, with noise of 1 um and 0.1 K.
 std::vector<ThermalTest> tests_of(const solver::ReducedSystem& truth, double noise, std::uint64_t seed) {
   Random random(seed);
   std::vector<ThermalTest> tests;
   for (double rpm : {500.0, 1000.0, 1500.0, 2000.0}) {
     ThermalTest t{{"test", {{14400, {.speed_rpm = rpm}}, {14400, {}}}}, {{0.0, 28800.0}, {0.0, 1.0}}, {}, {}};
     for (int i = 0; i <= 480; ++i) t.time_s.push_back(60.0 * i);
-    const Eigen::MatrixXd y =
-        solver::Propagator(truth)
-            .run(t.cyclogram, {{0.0, 28800.0}, {kHall_K, kHall_K + 1.0}}, t.time_s, Eigen::Vector2d::Constant(kHall_K))
-            .outputs;
+    const Eigen::MatrixXd y = solver::Propagator(truth)
+                                  .run(t.cyclogram, {{0.0, 28800.0}, {kAmbient_K, kAmbient_K + 1.0}}, t.time_s,
+                                       Eigen::Vector2d::Constant(kAmbient_K))
+                                  .outputs;
     t.readings.resize(3, y.cols());
     t.readings << 1e6 * y.row(2), y.row(1), y.row(0);
     t.readings.colwise() -= t.readings.col(0).eval();
@@ -70,7 +70,7 @@ std::vector<ThermalTest> tests_of(const solver::ReducedSystem& truth, double noi
 }
 
 ScaledModes fitted(const std::vector<ThermalTest>& tests) {
-  return fit_scaled_modes(two_nodes(1.0, 1.0), Eigen::Vector2d::Constant(kHall_K), kHall_K, tests, kChannels);
+  return fit_scaled_modes(two_nodes(1.0, 1.0), Eigen::Vector2d::Constant(kAmbient_K), kAmbient_K, tests, kChannels);
 }
 
 const ScaledModes::Factor& factor(const ScaledModes& modes, const std::string& name) {
@@ -83,7 +83,7 @@ TEST(ScaledModes, FindTheFactorsOfExactTests) {
   // The prior pulls each logarithm to 0: of 2000 readings at 0.2 % of their range it leaves less than 0.5 %.
   EXPECT_NEAR(factor(modes, "heat of a").value, kHeat, 5e-3);
   EXPECT_NEAR(factor(modes, "heat of b").value, 1.0, 5e-3);
-  EXPECT_NEAR(factor(modes, "films and links to the hall").value, kFilms, 5e-3);
+  EXPECT_NEAR(factor(modes, "films and links to the ambient").value, kFilms, 5e-3);
   EXPECT_NEAR(factor(modes, "rates of change").value, 1.0, 5e-3);
   EXPECT_NEAR(factor(modes, "displacement drift").value, 1.0, 5e-3);
 }
@@ -94,7 +94,7 @@ TEST(ScaledModes, FindAMachineOfLessCapacityAndOtherSensitivity) {
   EXPECT_NEAR(factor(modes, "rates of change").value, truth.rate, 5e-3);  // the prior, as above
   EXPECT_NEAR(factor(modes, "displacement drift").value, 0.9, 5e-3);
   EXPECT_NEAR(factor(modes, "heat of a").value, 1.0, 5e-3);
-  EXPECT_NEAR(factor(modes, "films and links to the hall").value, 1.0, 5e-3);
+  EXPECT_NEAR(factor(modes, "films and links to the ambient").value, 1.0, 5e-3);
 }
 
 TEST(ScaledModes, OfNoisyTestsHoldTheTruthInTheirIntervals) {
@@ -103,7 +103,7 @@ TEST(ScaledModes, OfNoisyTestsHoldTheTruthInTheirIntervals) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const ScaledModes modes = fitted(tests_of(two_nodes(kHeat, kFilms), 1.0, seed));
     for (const auto& [name, truth] :
-         {std::pair{"heat of a", kHeat}, std::pair{"heat of b", 1.0}, std::pair{"films and links to the hall", kFilms},
+         {std::pair{"heat of a", kHeat}, std::pair{"heat of b", 1.0}, std::pair{"films and links to the ambient", kFilms},
           std::pair{"rates of change", 1.0}, std::pair{"displacement drift", 1.0}}) {
       const auto& f = factor(modes, name);
       n_inside += f.low <= truth && truth <= f.high;
@@ -117,11 +117,11 @@ TEST(ScaledModes, PredictAsTheTrueMachineDoes) {
   const solver::ReducedSystem truth = two_nodes(kHeat, kFilms);
   const ScaledModes modes = fitted(tests_of(truth, 1.0, 3));
   const Cyclogram job{"job", {{3000, {.speed_rpm = 2000}}, {1500, {}}, {6000, {.speed_rpm = 700}}}};
-  const TimeSeries hall{{0.0}, {kHall_K}};
+  const TimeSeries ambient{{0.0}, {kAmbient_K}};
   const std::vector<double> time_s = {0, 1000, 3000, 4500, 8000, 10500};
-  const Eigen::VectorXd start = Eigen::Vector2d::Constant(kHall_K);
+  const Eigen::VectorXd start = Eigen::Vector2d::Constant(kAmbient_K);
   const auto drift_um = [&](const solver::ReducedSystem& s) -> Eigen::VectorXd {
-    const Eigen::MatrixXd y = solver::Propagator(s).run(job, hall, time_s, start).outputs;
+    const Eigen::MatrixXd y = solver::Propagator(s).run(job, ambient, time_s, start).outputs;
     return 1e6 * (y.row(2).array() - y(2, 0));
   };
   const Eigen::VectorXd exact = drift_um(truth);
@@ -130,15 +130,16 @@ TEST(ScaledModes, PredictAsTheTrueMachineDoes) {
 }
 
 TEST(ScaledModes, ScaleTheAirsStratification) {
-  // Air before the film of b is 1 K warmer than at the hall's thermometer: what films let through scales with them.
+  // Air before the film of b is 1 K warmer than at the ambient thermometer: what films let through scales with them.
   const auto stratified = [](double films) {
     solver::ReducedSystem s = two_nodes(1.0, films);
-    for (auto& e : s.exchanges) e.offset = e.to_hall;
+    for (auto& e : s.exchanges) e.offset = e.to_ambient;
     return s;
   };
   const std::vector<ThermalTest> tests = tests_of(stratified(kFilms), 0.0, 1);
-  const ScaledModes modes = fit_scaled_modes(stratified(1.0), Eigen::Vector2d::Constant(kHall_K), kHall_K, tests, kChannels);
-  EXPECT_NEAR(factor(modes, "films and links to the hall").value, kFilms, 5e-3);
+  const ScaledModes modes =
+      fit_scaled_modes(stratified(1.0), Eigen::Vector2d::Constant(kAmbient_K), kAmbient_K, tests, kChannels);
+  EXPECT_NEAR(factor(modes, "films and links to the ambient").value, kFilms, 5e-3);
   EXPECT_NEAR(factor(modes, "heat of a").value, 1.0, 5e-3);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kScenario = R"(name: two_bodies
 reference_temperature: 20 degC
-start: hall
+start: ambient
 machine:
   generator: lumped
 effects:
@@ -26,9 +26,9 @@ effects:
   - {type: heat_source, node: spindle, power: 120 W, at_speed: 3000 rpm, exponent: 1.3}
   - {type: heat_source, node: column, power: 40 W, in: second}
   - {type: link, node: spindle, to: column, conductance: 6 W/K}
-  - {type: link, node: spindle, to: hall, conductance: 2 W/K}
-  - {type: link, node: column, to: hall, conductance: 8 W/K}
-hall: [[0 h, 20 degC]]
+  - {type: link, node: spindle, to: ambient, conductance: 2 W/K}
+  - {type: link, node: column, to: ambient, conductance: 8 W/K}
+ambient: [[0 h, 20 degC]]
 sensors:
   - {name: t_spindle, node: spindle}
   - {name: t_column, node: column}
@@ -42,7 +42,7 @@ cyclograms:
   second: [[60 min, 1000 rpm]]
 )";
 
-/// Only the drive, the hall and the rows' times count: nothing is fitted.
+/// Only the drive, the ambient and the rows' times count: nothing is fitted.
 std::string record(const std::string& name, double rpm) {
   std::string text = "time_s,speed_rpm,ambient_degC,t_spindle_degC,t_column_degC,tip_z_um\n";
   for (int i = 0; i <= 90; ++i)

@@ -35,8 +35,8 @@ machine: {generator: lumped}
 effects:
   - {type: node, node: head, capacity: 60 kJ/K}
   - {type: motor_loss, node: head, power: 300 W, at_speed: 2000 rpm, exponent: 1}
-  - {type: link, node: head, to: hall, conductance: 20 W/K}
-hall: [[0 h, 20 degC], [9 h, 20 degC]]
+  - {type: link, node: head, to: ambient, conductance: 20 W/K}
+ambient: [[0 h, 20 degC], [9 h, 20 degC]]
 sensors: [{name: t_head, node: head}]
 displacements:
   - {name: nose_z, sensitivities: [{node: head, sensitivity: 4 um/K}]}
@@ -177,7 +177,7 @@ TEST(ScheduleVerb, SaysLoudlyThatOffsetsAreOverwritten) {
 // The machine stands 5 K above its reference, 20 um: corrected from the start on, unless the workpiece was set up warm.
 TEST(ScheduleVerb, CountsTheDriftFromTheReferenceOrFromTheStart) {
   std::string scenario = kHead;
-  scenario.replace(scenario.find("reference_temperature: 20 degC"), 30, "reference_temperature: 15 degC\nstart: hall");
+  scenario.replace(scenario.find("reference_temperature: 20 degC"), 30, "reference_temperature: 15 degC\nstart: ambient");
   const std::string reference = read_text(run_schedule("from_reference", passes(), "", scenario).folder / "schedule.csv");
   const std::string start =
       read_text(run_schedule("from_start", passes(), "", scenario + "  drift_from: start\n").folder / "schedule.csv");

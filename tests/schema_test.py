@@ -66,7 +66,7 @@ WRONG = [
     (SPINDLE, "reference_temperature: 22 degC", "reference_temperature: 22 degC\nreference: 3", "unknown key 'reference'"),
     (SPINDLE, "  output_interval: 30 s", "  output_intervall: 30 s", "unknown key 'output_intervall'"),
     (SPINDLE, "    f0: 0.4  ", "    f_0: 3\n    f0: 0.4  ", "unknown key 'f_0'"),
-    (SPINDLE, "{name: t_hall, node: hall}", "{name: t_hall, node: hall, at: [0 m, 0 m, 0 m]}", "key 'region' is missing"),
+    (SPINDLE, "{name: t_ambient, node: ambient}", "{name: t_ambient, node: ambient, at: [0 m, 0 m, 0 m]}", "key 'region' is missing"),
     (SPINDLE, "sensitivity: 2.9 um/K", "sensitivity: 2.9 um/K, share: 1", "unknown key 'share'"),
     (MILL, "signal_period: 1 um", "signal_period: 1 um\n  speed: 1 rpm", "unknown key 'speed'"),
     (MILL, "bore: 95 mm", "bore: 95 mm, bores: 95 mm", "unknown key 'bores'"),
@@ -86,7 +86,7 @@ WRONG = [
     # a compulsory key left out
     (SPINDLE, "    passage_conductance: 150 W/K\n", "", "key 'passage_conductance' is missing"),
     (SPINDLE, "reference_temperature: 22 degC\n", "", "key 'reference_temperature' is missing"),
-    (SPINDLE, "{type: link, node: shaft, to: hall, ", "{type: link, node: shaft, ", "key 'to' is missing"),
+    (SPINDLE, "{type: link, node: shaft, to: ambient, ", "{type: link, node: shaft, ", "key 'to' is missing"),
     (MILL, "  judge: chaotic\n", "", "key 'judge' is missing"),
     (MILL, "feed: 600 mm/min, every: 20 s", "feed: 600 mm/min", "key 'every' is missing"),
     (TABLE, "  judge_until: 24 h  ", "  # ", "key 'judge_until' is missing"),

@@ -28,13 +28,13 @@ const std::string kPoints =
 const std::string kScrew =
     "sensitivities: [{node: screw, sensitivity: -5.75 um/K}, {region: column, sensitivity: 5.5 um/K}]";
 
-/// Column and head with a screw of 20 W that gives 2 W/K to the hall, and displacements as given.
-ColumnAndHead with_screw(const std::string& hall = "[[0 min, 20 degC], [60 min, 21.5 degC]]") {
+/// Column and head with a screw of 20 W that gives 2 W/K to the ambient, and displacements as given.
+ColumnAndHead with_screw(const std::string& ambient = "[[0 min, 20 degC], [60 min, 21.5 degC]]") {
   ColumnAndHead machine;
   machine.effects.insert(machine.effects.end(),
                          {"{type: node, node: screw, capacity: 1.8 kJ/K}", "{type: heat_source, node: screw, power: 20 W}",
-                          "{type: link, node: screw, to: hall, conductance: 2 W/K}"});
-  machine.hall = hall;
+                          "{type: link, node: screw, to: ambient, conductance: 2 W/K}"});
+  machine.ambient = ambient;
   return machine;
 }
 Scenario read(const ColumnAndHead& machine, const std::string& displacements) {
@@ -69,22 +69,22 @@ TEST(SemiClosedAxis, PointsAndSensitivitiesAddUpInTheFullModelAndInTheReducedOne
   const Machine machine = build(*s.machine, place(*s.machine));
   const Cyclogram& cycle = s.cyclograms.front();
   const std::vector<double> times_s = output_times_s(cycle, s.solver.output_interval_s);
-  expect_both_is_the_sum(solver::simulate(machine.system, cycle, s.machine->hall, times_s, s.solver.transient,
+  expect_both_is_the_sum(solver::simulate(machine.system, cycle, s.machine->ambient, times_s, s.solver.transient,
                                           start_state(*s.machine, machine)),
                          machine.system.outputs);
   const ReducedMachine reduced = reduce(*s.machine, machine, reduction_plan(s, {&cycle}));
   expect_both_is_the_sum(
-      solver::simulate(reduced.system, cycle, s.machine->hall, times_s, s.solver.transient, reduced.start),
+      solver::simulate(reduced.system, cycle, s.machine->ambient, times_s, s.solver.transient, reduced.start),
       machine.system.outputs);
 }
 
 TEST(SemiClosedAxis, AHeatedScrewMovesTheToolByItsFreeGrowth) {
-  // The spindle stands in a hall at the reference temperature: only the screw warms, by P / G = 20 W / (2 W/K) = 10 K. Its growth
+  // The spindle stands in an ambient at the reference temperature: only the screw warms, by P / G = 20 W / (2 W/K) = 10 K. Its growth
   // alpha L P / G = 11.5e-6 1/K x 0.5 m x 10 K = 57.5 um lowers the tool.
   const Scenario s = read(with_screw("[[0 min, 20 degC]]"), kAllThree);
   const Machine machine = build(*s.machine, place(*s.machine));
   const Eigen::VectorXd steady =
-      solver::steady_state(machine.system, {.drive = {}, .hall_K = 0.0}, Eigen::VectorXd::Zero(machine.system.size()));
+      solver::steady_state(machine.system, {.drive = {}, .ambient_K = 0.0}, Eigen::VectorXd::Zero(machine.system.size()));
   const Eigen::VectorXd read_m = machine.system.outputs.state.transpose() * steady;
   EXPECT_NEAR(1e6 * read_m[3], -57.5, 1e-6);  // behind three thermometers; rounding of a linear solve
   EXPECT_NEAR(1e6 * read_m[4], 0.0, 1e-6);

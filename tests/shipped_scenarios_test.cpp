@@ -36,7 +36,7 @@ TEST(LumpedSpindle, CoolerCyclesBetweenItsSwitchingPoints) {
 
 TEST(LumpedSpindle, WhatFlowsInMakesWhatIsStoredInEachRow) {
   const Record heat = read_record_csv((simulate("lumped_spindle", "shift") / "heat_flows.csv").string());
-  std::vector<std::string> across;  // those that cross the boundary: sources, and links to the hall
+  std::vector<std::string> across;  // those that cross the boundary: sources, and links to the ambient
   for (const Channel& c : heat.channels) {
     const bool within = c.name.starts_with("within_");
     if (c.name != "stored" && !within) across.push_back(c.name);
@@ -59,7 +59,7 @@ TEST(CFrame, FromADrawingToFieldsWithStresses) {
   // Its header's values, to the digits given there: a change of the model shows here first.
   EXPECT_NEAR(record.at("nose_y").values.back(), -29.0, 0.5);
   EXPECT_NEAR(record.at("nose_z_x0").values.back(), -22.0, 0.5);
-  EXPECT_DOUBLE_EQ(record.at("t_head").values.front(), 20.5);  // start: hall
+  EXPECT_DOUBLE_EQ(record.at("t_head").values.front(), 20.5);  // start: ambient
   const Record heat = read_record_csv((folder / "heat_flows.csv").string());
   EXPECT_GT(heat.at("bearing_friction_spindle").values[1], heat.at("bearing_friction_spindle").values.back())
       << "warm oil is thin";

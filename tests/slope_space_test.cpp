@@ -19,7 +19,7 @@ struct Matrices {
   explicit Matrices(int n) {
     const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {n, n, n}, .shape = mesh::CellShape::kTet4});
     effects::HeatBalance balance;
-    balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "hall"));
+    balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "ambient"));
     const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
     mass = system.mass;
     stiffness = fixtures::stiffness(system);

@@ -75,8 +75,8 @@ seed: 3
 vary:
   - {name: preload, key: "effects[bearing_friction@bearing_front].load", uniform: [0.2 kN, 400 N]}
   - {name: volume, key: "effects[coolant].volume", log_uniform: [1 L, 100 L]}
-  - name: hall
-    key: ["hall[0][1]", "hall[1][1]"]
+  - name: ambient
+    key: ["ambient[0][1]", "ambient[1][1]"]
     normal: {mean: 22 degC, sd: 2 K}
   - {name: f1, key: "effects[bearing_friction@bearing_front].f1", values: [0.0004, 0.0006]}
 )";
@@ -86,22 +86,22 @@ TEST(SweepPlan, AHypercubeFollowsItsDistributions) {
   ASSERT_EQ(plan.n_members, 40u);
   int below_10 = 0, below_22 = 0, second = 0;
   for (std::size_t m = 0; m < 40; ++m) {
-    const double preload_kN = plan.value(m, 0).number, volume_L = plan.value(m, 1).number, hall = plan.value(m, 2).number;
+    const double preload_kN = plan.value(m, 0).number, volume_L = plan.value(m, 1).number, ambient = plan.value(m, 2).number;
     EXPECT_TRUE(preload_kN > 0.2 && preload_kN < 0.4);
     EXPECT_TRUE(volume_L > 1.0 && volume_L < 100.0);
     below_10 += volume_L < 10.0 ? 1 : 0;
-    below_22 += hall < 22.0 ? 1 : 0;
+    below_22 += ambient < 22.0 ? 1 : 0;
     second += plan.value(m, 3).label == "0.0006" ? 1 : 0;
     const Scenario scenario = read_scenario(plan.scenario_of(m));
-    EXPECT_NEAR(scenario.machine->hall.value[0] + 22.0, hall, 1e-9);
-    EXPECT_NEAR(scenario.machine->hall.value[1] + 22.0, hall, 1e-9);
+    EXPECT_NEAR(scenario.machine->ambient.value[0] + 22.0, ambient, 1e-9);
+    EXPECT_NEAR(scenario.machine->ambient.value[1] + 22.0, ambient, 1e-9);
     EXPECT_DOUBLE_EQ(parameter(plan, m, "bearing_friction", "load"), 1e3 * preload_kN);
   }
   // Half the strata each, exactly: that is what a Latin hypercube is for.
   EXPECT_EQ(below_10, 20);
   EXPECT_EQ(below_22, 20);
   EXPECT_EQ(second, 20);
-  EXPECT_THAT(plan.table_header(), HasSubstr("member,preload_kN,volume_L,hall_degC,f1_1,shift_nose_z_peak_um,"));
+  EXPECT_THAT(plan.table_header(), HasSubstr("member,preload_kN,volume_L,ambient_degC,f1_1,shift_nose_z_peak_um,"));
 }
 
 TEST(SweepPlan, ASpreadHasItsMoments) {
@@ -122,14 +122,14 @@ TEST(SweepPlan, ASpreadHasItsMoments) {
 TEST(Sharing, FollowsWhatDecidesStructureAndMachine) {
   const SweepPlan plan = read(R"(design: grid
 vary:
-  - {key: "hall[0][1]", values: [20 degC, 22 degC]}
+  - {key: "ambient[0][1]", values: [20 degC, 22 degC]}
   - {key: solver.relative_tolerance, values: [1e-4, 1e-5]}
   - {key: "effects[coolant].flow", values: [4 L/min, 6 L/min]}
   - {key: "displacements[nose_z].sensitivities[shaft].sensitivity", values: [2.9 um/K, 3.1 um/K]}
 )");
   ASSERT_EQ(plan.n_members, 16u);
   const auto key = [&](std::size_t member, Shared what) { return sharing_key(plan, member, what); };
-  EXPECT_EQ(key(0, Shared::kMachine), key(8, Shared::kMachine)) << "hall";
+  EXPECT_EQ(key(0, Shared::kMachine), key(8, Shared::kMachine)) << "ambient";
   EXPECT_EQ(key(0, Shared::kMachine), key(4, Shared::kMachine)) << "solver";
   EXPECT_NE(key(0, Shared::kMachine), key(2, Shared::kMachine)) << "effects";
   EXPECT_EQ(key(0, Shared::kStructure), key(2, Shared::kStructure)) << "effects";
@@ -158,7 +158,7 @@ vary:
 TEST(Parts, AreDisjointCompleteBalancedAndKeepMachinesTogether) {
   const SweepPlan plan = read(R"(design: grid
 vary:
-  - {key: "hall[0][1]", from: 20 degC, to: 22 degC, steps: 5}
+  - {key: "ambient[0][1]", from: 20 degC, to: 22 degC, steps: 5}
   - {key: "effects[coolant].flow", values: [4 L/min, 6 L/min]}
 )");
   for (const std::size_t n : {1u, 2u, 3u, 7u, 10u, 13u}) {
@@ -181,7 +181,7 @@ TEST(ContentKey, ChangesWithStudyScenarioVersionAndTheFilesTheyName) {
   scenario.replace(scenario.find("  warm_up: "), 10, "  plan: {csv: plan.csv}\n  warm_up:");
   write_file("spindle.yaml", scenario);
   const std::string study =
-      "name: s\nscenario: spindle.yaml\ndesign: list\nvary: [{key: \"hall[0][1]\", values: [20 degC]}]\n";
+      "name: s\nscenario: spindle.yaml\ndesign: list\nvary: [{key: \"ambient[0][1]\", values: [20 degC]}]\n";
   const auto key = [&](const std::string& text, const std::string& version) {
     return content_key(read_sweep_plan(write_file("s.yaml", text)), version);
   };
@@ -219,30 +219,31 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"unknown_effect",
             "design: list\nvary: [{key: \"effects[coolnt].flow\", values: [1 L/min]}]\n",
             {"no entry of 'effects' is named 'coolnt'", "Did you mean 'coolant'?"}},
-        Bad{"unknown_design", "design: random\nvary: [{key: start, values: [hall]}]\n", {"'random' is not known here"}},
+        Bad{"unknown_design", "design: random\nvary: [{key: start, values: [ambient]}]\n", {"'random' is not known here"}},
         Bad{"nothing_varies", "design: list\n", {"key 'vary' is missing"}},
         Bad{"name_varies", "design: list\nvary: [{key: name, values: [a]}]\n", {"changes nothing that is simulated"}},
-        Bad{"no_values", "design: list\nvary: [{key: \"hall[0][1]\"}]\n", {"one of values, from, uniform"}},
-        Bad{"empty_values", "design: list\nvary: [{key: \"hall[0][1]\", values: []}]\n", {"at least one"}},
+        Bad{"no_values", "design: list\nvary: [{key: \"ambient[0][1]\"}]\n", {"one of values, from, uniform"}},
+        Bad{"empty_values", "design: list\nvary: [{key: \"ambient[0][1]\", values: []}]\n", {"at least one"}},
         Bad{"two_kinds",
-            "design: list\nvary: [{key: \"hall[0][1]\", values: [20 degC], from: 1 K}]\n",
+            "design: list\nvary: [{key: \"ambient[0][1]\", values: [20 degC], from: 1 K}]\n",
             {"one of values, from, uniform", "beside the key"}},
         Bad{"spread_in_grid",
-            "design: grid\nvary: [{key: \"hall[0][1]\", uniform: [20 degC, 22 degC]}]\n",
+            "design: grid\nvary: [{key: \"ambient[0][1]\", uniform: [20 degC, 22 degC]}]\n",
             {"a distribution wants `design: latin_hypercube`"}},
         Bad{"unequal_list",
-            "design: list\nvary: [{name: a, key: \"hall[0][1]\", values: [20 degC]}, {name: b, key: \"hall[1][1]\", values: "
+            "design: list\nvary: [{name: a, key: \"ambient[0][1]\", values: [20 degC]}, {name: b, key: \"ambient[1][1]\", "
+            "values: "
             "[20 "
             "degC, 21 degC]}]\n",
             {"'a' has 1, 'b' has 2"}},
         Bad{"units_differ",
-            "design: grid\nvary: [{key: \"hall[0][1]\", from: 20 degC, to: 30 N, steps: 3}]\n",
-            {":4:47: ", "wrong unit 'N'", "[vary[0].to]"}},
+            "design: grid\nvary: [{key: \"ambient[0][1]\", from: 20 degC, to: 30 N, steps: 3}]\n",
+            {":4:50: ", "wrong unit 'N'", "[vary[0].to]"}},
         Bad{"one_step",
-            "design: grid\nvary: [{key: \"hall[0][1]\", from: 20 degC, to: 30 degC, steps: 1}]\n",
+            "design: grid\nvary: [{key: \"ambient[0][1]\", from: 20 degC, to: 30 degC, steps: 1}]\n",
             {"no whole number from 2"}},
         Bad{"log_of_degC",
-            "design: grid\nvary: [{key: \"hall[0][1]\", from: 20 degC, to: 30 degC, steps: 3, spacing: log}]\n",
+            "design: grid\nvary: [{key: \"ambient[0][1]\", from: 20 degC, to: 30 degC, steps: 3, spacing: log}]\n",
             {"and no degC"}},
         Bad{"reversed",
             "design: latin_hypercube\nsamples: 3\nvary: [{key: \"effects[coolant].flow\", uniform: [2 L/min, 1 L/min]}]\n",
@@ -252,41 +253,43 @@ INSTANTIATE_TEST_SUITE_P(
             "L/min]}]\n",
             {"wants numbers above 0"}},
         Bad{"sd_of_zero",
-            "design: latin_hypercube\nsamples: 3\nvary: [{key: \"hall[0][1]\", normal: {mean: 20 degC, sd: 0 K}}]\n",
+            "design: latin_hypercube\nsamples: 3\nvary: [{key: \"ambient[0][1]\", normal: {mean: 20 degC, sd: 0 K}}]\n",
             {"must be above 0"}},
         Bad{"sd_in_degC",
-            "design: latin_hypercube\nsamples: 3\nvary: [{key: \"hall[0][1]\", normal: {mean: 20 degC, sd: 2 degC}}]\n",
+            "design: latin_hypercube\nsamples: 3\nvary: [{key: \"ambient[0][1]\", normal: {mean: 20 degC, sd: 2 degC}}]\n",
             {"a temperature difference in K is wanted"}},
         Bad{"no_samples",
-            "design: latin_hypercube\nvary: [{key: \"hall[0][1]\", uniform: [20 degC, 22 degC]}]\n",
+            "design: latin_hypercube\nvary: [{key: \"ambient[0][1]\", uniform: [20 degC, 22 degC]}]\n",
             {"key 'samples' is missing"}},
         Bad{"samples_of_grid",
-            "design: grid\nsamples: 3\nvary: [{key: \"hall[0][1]\", values: [20 degC]}]\n",
+            "design: grid\nsamples: 3\nvary: [{key: \"ambient[0][1]\", values: [20 degC]}]\n",
             {"unknown key 'samples'"}},
         Bad{"twice",
-            "design: grid\nvary: [{key: \"hall[0][1]\", values: [20 degC]}, {name: b, key: hall, values: {x: [[0 s, 20 "
+            "design: grid\nvary: [{key: \"ambient[0][1]\", values: [20 degC]}, {name: b, key: ambient, values: {x: [[0 s, "
+            "20 "
             "degC]]}}]\n",
             {"vary[0] changes the same value, or one within it"}},
         Bad{"same_column",
-            "design: grid\nvary: [{name: a, key: \"hall[0][1]\", values: [20 degC]}, {name: a, key: \"hall[1][1]\", values: "
+            "design: grid\nvary: [{name: a, key: \"ambient[0][1]\", values: [20 degC]}, {name: a, key: \"ambient[1][1]\", "
+            "values: "
             "[20 "
             "degC]}]\n",
             {"there is a column 'a_degC' already"}},
         Bad{"unknown_channel",
-            "design: list\nvary: [{key: \"hall[0][1]\", values: [20 degC]}]\ncollect: [nose_y]\n",
+            "design: list\nvary: [{key: \"ambient[0][1]\", values: [20 degC]}]\ncollect: [nose_y]\n",
             {"no channel 'nose_y'", "Did you mean 'nose_z'?"}},
         Bad{"unknown_scalar",
-            "design: list\nvary: [{key: \"hall[0][1]\", values: [20 degC]}]\ncollect: [nose_z.top]\n",
+            "design: list\nvary: [{key: \"ambient[0][1]\", values: [20 degC]}]\ncollect: [nose_z.top]\n",
             {"one of peak, time_of_peak, end, min, max is wanted"}},
         Bad{"collected_twice",
-            "design: list\nvary: [{key: \"hall[0][1]\", values: [20 degC]}]\ncollect: [nose_z, nose_z.end]\n",
+            "design: list\nvary: [{key: \"ambient[0][1]\", values: [20 degC]}]\ncollect: [nose_z, nose_z.end]\n",
             {"is collected twice"}},
         Bad{"unknown_cyclogram",
-            "design: list\nvary: [{key: \"hall[0][1]\", values: [20 degC]}]\ncyclograms: [warmup]\n",
+            "design: list\nvary: [{key: \"ambient[0][1]\", values: [20 degC]}]\ncyclograms: [warmup]\n",
             {"no cyclogram 'warmup'", "Did you mean 'warm_up'?"}},
         Bad{"too_many",
-            "design: grid\nvary: [{key: \"hall[0][1]\", from: 1 degC, to: 9 degC, steps: 1000000}, {key: "
-            "\"hall[1][1]\", from: 1 degC, to: 9 degC, steps: 2}]\n",
+            "design: grid\nvary: [{key: \"ambient[0][1]\", from: 1 degC, to: 9 degC, steps: 1000000}, {key: "
+            "\"ambient[1][1]\", from: 1 degC, to: 9 degC, steps: 2}]\n",
             {"more than 1000000 members"}}),
     [](const auto& of) { return std::string(of.param.name); });
 

@@ -137,8 +137,8 @@ machine: {generator: lumped}
 effects:
   - {type: node, node: body, capacity: 5 kJ/K}
   - {type: heat_source, node: body, power: 20 W}
-  - {type: link, node: body, to: hall, conductance: 4 W/K}
-hall: [[0 h, 20 degC]]
+  - {type: link, node: body, to: ambient, conductance: 4 W/K}
+ambient: [[0 h, 20 degC]]
 sensors: [{name: t_body, node: body}]
 cyclograms: {rest: [[60 min, 0 rpm]]}
 solver: {model: reduced}
@@ -147,7 +147,7 @@ solver: {model: reduced}
 cyclograms: [rest]
 vary:
   - name: link
-    key: effects[link@body@hall].conductance
+    key: effects[link@body@ambient].conductance
     values: [4 W/K, 0 W/K, 5 W/K]
 collect: [t_body.end]
 )";
@@ -322,7 +322,7 @@ supports: [{surface: foot, fixed: [x, y, z]}]
 effects:
   - {type: heat_source, region: column, power: 20 W, at_speed: 1000 rpm, exponent: 1}
   - {type: convection, surface: outside, film: 10 W/(m^2 K)}
-hall: [[0 min, 20 degC]]
+ambient: [[0 min, 20 degC]]
 sensors: [{name: t, region: column, at: [50 mm, 50 mm, 300 mm]}]
 displacements:
   - {name: z, along: z, tool: {region: column, at: [50 mm, 50 mm, 300 mm]}, table: {region: column, at: [50 mm, 50 mm, 0 mm]}}

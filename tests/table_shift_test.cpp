@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "compensation/frames/ambient_models.hpp"
 #include "compensation/frames/even_growth.hpp"
-#include "compensation/frames/hall_models.hpp"
 #include "compensation/frames/minimax_frame.hpp"
 
 namespace driftwright::compensation {
@@ -234,10 +234,10 @@ TEST(AxisTemperature, IsFollowedNoFasterThanTheAxisMay) {
 }
 
 const std::vector<double> kReadAt_s = {0, 10800, 21600, 32400, 86400, 97200, 108000, 118800};
-const TimeSeries kHall{kReadAt_s, {23, 24.5, 25.5, 25.5, 22.5, 22.5, 22.5, 24.5}};
+const TimeSeries kAmbient{kReadAt_s, {23, 24.5, 25.5, 25.5, 22.5, 22.5, 22.5, 24.5}};
 
 // Closed form: after a ramp of 1 K/h for 3 h, T = t - tau (1 - exp(-t / tau)).
-TEST(LaggedHall, FollowsARampAsTheClosedFormSays) {
+TEST(LaggedAmbient, FollowsARampAsTheClosedFormSays) {
   const TimeSeries ramp{{0.0, 10800.0, 36000.0}, {0.0, 3.0, 3.0}};
   const std::vector<double> t = {3600.0, 10800.0, 18000.0};
   const std::vector<double> body = lagged(ramp, 7200.0, t);
@@ -249,9 +249,9 @@ TEST(LaggedHall, FollowsARampAsTheClosedFormSays) {
 }
 
 // The eight published readings. R^2 of the line is 0.44 as stated with them.
-TEST(HallModels, EightReadingsDoNotCarryTwoLags) {
+TEST(AmbientModels, EightReadingsDoNotCarryTwoLags) {
   const std::vector<double> dx_um = {20, 90, 100, 120, 40, 50, 90, 50};
-  const std::vector<HallModel> models = compare_hall_models(kHall, kReadAt_s, dx_um, 113.9, 108.9);
+  const std::vector<AmbientModel> models = compare_ambient_models(kAmbient, kReadAt_s, dx_um, 113.9, 108.9);
   ASSERT_EQ(models.size(), 3u);
   EXPECT_NEAR(models[0].r_squared, 0.44, 0.005);
   EXPECT_GT(models[0].rms_left_out, models[0].rms);
@@ -261,28 +261,28 @@ TEST(HallModels, EightReadingsDoNotCarryTwoLags) {
   EXPECT_NEAR(models[2].rms / models[1].rms, 1.063, 0.005);
   EXPECT_NEAR(models[2].rms / models[0].rms, 1.005, 0.005);
   EXPECT_NEAR(models[2].rms_left_out / models[0].rms_left_out, 1.310, 0.005);
-  EXPECT_THROW((void)compare_hall_models(kHall, std::span(kReadAt_s).first(5), std::span(dx_um).first(5), 1.0, 1.0),
+  EXPECT_THROW((void)compare_ambient_models(kAmbient, std::span(kReadAt_s).first(5), std::span(dx_um).first(5), 1.0, 1.0),
                InputError);
 }
 
 /// Two lags found in 40 readings of a table that has them.
-HallModel found(double table_lag_s, double scale_lag_s) {
+AmbientModel found(double table_lag_s, double scale_lag_s) {
   std::vector<double> t, y;
   for (int i = 0; i < 40; ++i) t.push_back(3600.0 * i);
-  const std::vector<double> table = lagged(kHall, table_lag_s, t), scale = lagged(kHall, scale_lag_s, t);
+  const std::vector<double> table = lagged(kAmbient, table_lag_s, t), scale = lagged(kAmbient, scale_lag_s, t);
   for (std::size_t i = 0; i < t.size(); ++i) y.push_back(5.0 + 100.0 * table[i] - 60.0 * scale[i]);
-  return compare_hall_models(kHall, t, y, 100.0, 60.0)[2];
+  return compare_ambient_models(kAmbient, t, y, 100.0, 60.0)[2];
 }
 
 // Lags are searched from 0.1 h in 66 steps of 12.2 % to 200 h: those on a step are found exactly. 6 h lie between 5.6 and 6.3 h, 1 h
 // beside 1.0 h; what that costs is measured: 2.66 um for readings left out, R^2 0.9966. With slopes given nothing can make up for it.
-TEST(HallModels, FindLagsThatAreThere) {
+TEST(AmbientModels, FindLagsThatAreThere) {
   const auto step_s = [](int i) { return 360.0 * std::pow(2000.0, i / 66.0); };
-  const HallModel exact = found(step_s(36), step_s(20));
+  const AmbientModel exact = found(step_s(36), step_s(20));
   EXPECT_LT(exact.rms_left_out, 1e-9);
   EXPECT_GT(exact.r_squared, 1.0 - 1e-12);
   EXPECT_THAT(exact.parameters, HasSubstr("lag of the table 6.3 h (6.3 to 6.3 h), of the scale 1.0 h (1.0 to 1.0 h)"));
-  const HallModel between = found(6 * 3600.0, 3600.0);
+  const AmbientModel between = found(6 * 3600.0, 3600.0);
   EXPECT_NEAR(between.rms_left_out, 2.66, 0.02);
   EXPECT_NEAR(between.r_squared, 0.9966, 0.0002);
   EXPECT_THAT(between.parameters, HasSubstr("lag of the table 6.3 h (6.3 to 6.3 h), of the scale 1.0 h (1.0 to 1.1 h)"));

@@ -15,12 +15,12 @@ struct Case {
   Record record{.source = "truth", .time_s = {}, .channels = {{"a", "degC", {}}, {"b", "degC", {}}, {"u", "um", {}}}};
 };
 
-/// 200 rows every 10 min; a stays at 20.04 degC, b rises by 0.3 K/h, the hall is 0.27 K above the reference.
+/// 200 rows every 10 min; a stays at 20.04 degC, b rises by 0.3 K/h, the ambient is 0.27 K above the reference.
 Case steady() {
   Case c;
   c.scenario.machine.emplace();
   c.scenario.table.emplace();
-  c.felt.hall = {{0.0, 2e5}, {0.27, 0.27}};
+  c.felt.ambient = {{0.0, 2e5}, {0.27, 0.27}};
   for (int i = 0; i < 200; ++i) {
     c.record.time_s.push_back(600.0 * i);
     c.record.channels[0].values.push_back(20.04);
@@ -36,12 +36,12 @@ double rms_off(const std::vector<double>& values, double from) {
   return std::sqrt(square);
 }
 
-// 0.1 K of noise and rounding to 0.1 K: 0.104 K; 200 readings know that to 5 %, 3 sigma are allowed. The hall is read by the same instrument.
+// 0.1 K of noise and rounding to 0.1 K: 0.104 K; 200 readings know that to 5 %, 3 sigma are allowed. The ambient is read by the same instrument.
 TEST(TableReadings, HaveTheInstrumentsNoiseAndStepsByDefault) {
   const Case c = steady();
   const Record read = studies::table_readings(c.scenario, c.felt, c.record, 0);
   EXPECT_NEAR(rms_off(read.at("a").values, 20.04), 0.104, 0.016);
-  EXPECT_NEAR(rms_off(read.at(studies::kFeltHall).values, 20.27), 0.104, 0.016);
+  EXPECT_NEAR(rms_off(read.at(studies::kFeltAmbient).values, 20.27), 0.104, 0.016);
   for (double v : read.at("a").values) EXPECT_NEAR(10.0 * v, std::round(10.0 * v), 1e-9);
   EXPECT_EQ(read.at("u").values, c.record.at("u").values);
   EXPECT_NE(studies::table_readings(c.scenario, c.felt, c.record, 1).at("a").values, read.at("a").values);

@@ -21,12 +21,12 @@ using ::testing::ThrowsMessage;
 // 20 K and 4000 s at 1000 rpm.
 constexpr const char* kOneBody = R"(name: one_body
 reference_temperature: 20 degC
-hall: 20 degC
+ambient: 20 degC
 machine: {generator: lumped}
 effects:
   - {type: node, node: body, capacity: 20 kJ/K}
   - {type: heat_source, node: body, power: 100 W, at_speed: 1000 rpm, exponent: 1}
-  - {type: link, node: body, to: hall, conductance: 5 W/K}
+  - {type: link, node: body, to: ambient, conductance: 5 W/K}
 sensors: [{name: t_body, node: body}]
 cyclograms:
   job: [[120 min, 1000 rpm]]
@@ -34,7 +34,7 @@ cyclograms:
 
 constexpr const char* kTwoBodies = R"(name: two_bodies
 reference_temperature: 20 degC
-hall: [[0 h, 20 degC], [8 h, 22 degC]]
+ambient: [[0 h, 20 degC], [8 h, 22 degC]]
 machine: {generator: lumped}
 effects:
   - {type: node, node: spindle, capacity: 5.6 kJ/K}
@@ -42,7 +42,7 @@ effects:
   - {type: heat_source, node: spindle, power: 150 W, at_speed: 6000 rpm, exponent: 1.5}
   - {type: servo_loss, node: housing, axis: x, power: 60 W, at_feed: 6 m/min, exponent: 1}
   - {type: link, node: spindle, to: housing, conductance: 12 W/K}
-  - {type: link, node: housing, to: hall, conductance: 5 W/K}
+  - {type: link, node: housing, to: ambient, conductance: 5 W/K}
 sensors: [{name: t_housing, node: housing}]
 displacements: [{name: nose_z, sensitivities: [{node: spindle, sensitivity: 2.5 um/K}]}]
 cyclograms:
@@ -66,7 +66,7 @@ struct Planned {
         levels(test_levels(scenario, 0.0)),
         p(open_planned_twin(scenario, "plan-test", {cyclogram_of(usual_test(levels), levels, duration_s, "planned")}, 60.0,
                             {}, {})),
-        usual(diagnosis::planned_run(cyclogram_of(usual_test(levels), levels, duration_s, "planned"), 60.0, p.hall, true,
+        usual(diagnosis::planned_run(cyclogram_of(usual_test(levels), levels, duration_s, "planned"), 60.0, p.ambient, true,
                                      p.channels)),
         doubts(diagnosis::doubts_before(*p.twin, usual)) {}
 };
@@ -111,13 +111,13 @@ TEST(Prospect, HasTheDistanceOfTheDiscriminatingExperiment) {
   EXPECT_NEAR(prospect(q, columns.transpose() * columns).d(0, 1), discrimination(a, b), 1e-10);
 }
 
-// Heat and loss to the hall of one body: T = P/G (1 - e^-t/tau), so dT/dlog P = T and dT/dlog G = -P/G (1 - e^-t/tau (1 + t/tau)), in readings every minute of
+// Heat and loss to the ambient of one body: T = P/G (1 - e^-t/tau), so dT/dlog P = T and dT/dlog G = -P/G (1 - e^-t/tau (1 + t/tau)), in readings every minute of
 // 0.05 K. The information of both is their sum over the rows.
 TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
   Planned planned(kOneBody);
   planned.p.noise.at("t_body") = {0.05, 0.0, 0.0};
   const diagnosis::MeasuredRun step = diagnosis::planned_run({"planned", {{8.0 * 3600.0, Drive{.speed_rpm = 1000.0}}}}, 60.0,
-                                                             planned.p.hall, true, planned.p.channels);
+                                                             planned.p.ambient, true, planned.p.channels);
   const Eigen::MatrixXd information =
       diagnosis::information_by_channel(*planned.p.twin, planned.doubts, step, planned.p.noise).front();
   double pp = 0.0, gg = 0.0, pg = 0.0;
@@ -137,7 +137,7 @@ TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
   EXPECT_NEAR(information(p, p) / pp, 1.0, 0.06);
   EXPECT_NEAR(information(g, g) / gg, 1.0, 0.06);
   EXPECT_NEAR(information(p, g) / pg, 1.0, 0.06);
-  // Another power and another conductance to the hall, each off by 0.7 of its logarithm, are told apart by the hand's formula as by the program's.
+  // Another power and another conductance to the ambient, each off by 0.7 of its logarithm, are told apart by the hand's formula as by the program's.
   Question q = planned.doubts.question;
   q.number_sd = Eigen::VectorXd(0);
   q.laws = {{.effect = "heat_source", .size_sd = 0.7}, {.effect = "link", .size_sd = 0.7}};
@@ -148,14 +148,14 @@ TEST(Foresight, OfOneBodyUnderAStepIsTheFisherInformation) {
 }
 
 // C T' = P - G (T - h), h rising evenly over the step: T is the sum of e^-x T0, (P/G + h0) (1 - e^-x) and rise (1 - (1 - e^-x) / x).
-TEST(LinearStep, OfOneBodyInAHallThatRisesIsTheClosedForm) {
+TEST(LinearStep, OfOneBodyInAnAmbientThatRisesIsTheClosedForm) {
   const diagnosis::LinearSystem body{Eigen::MatrixXd::Constant(1, 1, 5.0), Eigen::VectorXd::Constant(1, 100.0),
                                      Eigen::VectorXd::Constant(1, 5.0)};
   const diagnosis::LinearStep step = linear_step(body, Eigen::MatrixXd::Constant(1, 1, 20e3), 3000.0);
   const double x = 3000.0 * 5.0 / 20e3, gone = 1.0 - std::exp(-x);
   EXPECT_NEAR(step.phi(0, 0), std::exp(-x), 1e-12);
   EXPECT_NEAR(step.constant[0], 20.0 * gone, 1e-10);
-  EXPECT_NEAR(step.of_hall[0], gone, 1e-12);
+  EXPECT_NEAR(step.of_ambient[0], gone, 1e-12);
   EXPECT_NEAR(step.of_rise[0], 1.0 - gone / x, 1e-12);
 }
 
@@ -181,14 +181,14 @@ TEST(LinearStep, TakesALawOfTemperatureToFirstOrder) {
   EXPECT_NEAR(linear.constant[0], 100.0, 1e-8);
 }
 
-// What the search runs on says of a programme what the fitter says: slots of a quarter of an hour, axes and a hall that warms.
+// What the search runs on says of a programme what the fitter says: slots of a quarter of an hour, axes and an ambient that warms.
 TEST(LevelMachine, HasTheInformationOfTheFittersOwnSlopes) {
   Planned planned(kTwoBodies);
   const double row_s = 300.0;
   std::mt19937_64 random(3);
   const TestProgramme programme = random_test(planned.levels, random);
   const diagnosis::MeasuredRun run = diagnosis::planned_run(cyclogram_of(programme, planned.levels, 8.0 * 3600.0, "planned"),
-                                                            row_s, planned.p.hall, true, planned.p.channels);
+                                                            row_s, planned.p.ambient, true, planned.p.channels);
   planned.doubts = diagnosis::thinned(*planned.p.twin, planned.doubts, planned.usual, 100);
   const diagnosis::LevelMachine machine(*planned.p.twin, planned.doubts, planned.levels.drives, planned.usual, row_s, row_s,
                                         planned.p.noise);
@@ -266,7 +266,7 @@ TEST(TestPlan, IsRefusedWhereNothingDrivesOrNothingIsRead) {
   EXPECT_THAT([&] { (void)plan_test(scenario_of(text), {}, {}); },
               ThrowsMessage<InputError>(HasSubstr("no cyclogram of the scenario drives anything")));
   text = kOneBody;
-  text.replace(text.find("node: body}]\n"), 13, "node: hall}]\n");
+  text.replace(text.find("node: body}]\n"), 13, "node: ambient}]\n");
   EXPECT_THAT([&] { (void)plan_test(scenario_of(text), {}, {}); },
               ThrowsMessage<InputError>(HasSubstr("needs a thermometer or a displacement")));
 }

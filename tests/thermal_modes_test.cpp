@@ -18,7 +18,7 @@ TEST(ThermalModes, OfASlabHaveTheTimeConstantsOfTheTranscendentalRoots) {
   const double length_m = 0.4, htc = 150.0;
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {length_m, 0.01, 0.01}, .n = {40, 1, 1}});
   effects::HeatBalance balance;
-  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(htc), "hall"));
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(htc), "ambient"));
   const FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   const ThermalModes modes = thermal_modes(system, {}, 5);
   ASSERT_EQ(modes.time_constant_s.size(), 5u);
@@ -38,7 +38,7 @@ TEST(ThermalModes, OfASlabHaveTheTimeConstantsOfTheTranscendentalRoots) {
 
 TEST(ThermalModes, AreOrthonormalInMass) {
   const FullSystem system = fixtures::two_blocks(1);
-  const ThermalModes modes = thermal_modes(system, {.drive = {.speed_rpm = 1000.0}, .hall_K = 0.0}, 12);
+  const ThermalModes modes = thermal_modes(system, {.drive = {.speed_rpm = 1000.0}, .ambient_K = 0.0}, 12);
   const Eigen::MatrixXd gram = modes.shapes.transpose() * (system.mass * modes.shapes);
   EXPECT_LT((gram - Eigen::MatrixXd::Identity(12, 12)).cwiseAbs().maxCoeff(),
             1e-9);  // the eigensolver's 1e-10
@@ -57,7 +57,7 @@ TEST(ThermalModes, WithoutAWayOutForHeatAreRefused) {
 TEST(ThermalModes, WithOneInsulatedPartAreRefused) {
   const mesh::Mesh mesh = fixtures::two_boxes({}, {.low = {1, 0, 0}}, "a.x1", "b.x0");
   effects::HeatBalance balance;
-  balance.exchanges.push_back(effects::make_film("film", "a.x0", fixtures::constant(10.0), "hall"));
+  balance.exchanges.push_back(effects::make_film("film", "a.x0", fixtures::constant(10.0), "ambient"));
   balance.exchanges.push_back(effects::make_contact("contact", "a/b", fixtures::constant(0.0)));
   const RegionMaterials materials = {fixtures::steel(), fixtures::steel()};
   EXPECT_THROW((void)steady_responses(assemble_heat(mesh, materials, balance), {}), SolveError);
@@ -73,10 +73,10 @@ TEST(ThermalModes, MoreThanThereAreUnknownsAreRefused) {
 
 TEST(SteadyResponses, AreTheSteadyTemperaturesPerWattAndPerKelvin) {
   const FullSystem system = fixtures::two_blocks(1);
-  const effects::Inputs at{.drive = {.speed_rpm = 2000.0}, .hall_K = 3.0};
+  const effects::Inputs at{.drive = {.speed_rpm = 2000.0}, .ambient_K = 3.0};
   const Eigen::MatrixXd r = steady_responses(system, at);
   ASSERT_EQ(r.cols(), 2);
-  EXPECT_LT((r.col(1).array() - 1.0).abs().maxCoeff(), 1e-9);  // a warmer hall warms all alike
+  EXPECT_LT((r.col(1).array() - 1.0).abs().maxCoeff(), 1e-9);  // a warmer ambient warms all alike
   EXPECT_LT((200.0 * r.col(0) + 3.0 * r.col(1) - fixtures::steady(system, at)).cwiseAbs().maxCoeff(), 1e-7);
 }
 

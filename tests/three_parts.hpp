@@ -11,7 +11,7 @@ namespace driftwright::fixtures {
 
 using compensation::ObservedRun;
 
-/// Parts of heat capacity C = 4, 10, 30 kJ/K in a row: 20 and 15 W/K between them, 6 and 8 W/K from the first and last to the hall; motor heat into
+/// Parts of heat capacity C = 4, 10, 30 kJ/K in a row: 20 and 15 W/K between them, 6 and 8 W/K from the first and last to the ambient; motor heat into
 /// the first, screw heat into the second. State: temperatures times sqrt(C), so that M = 1. Outputs: T1, T2, T3 and the drift
 /// 2, 3 and 1.5 um/K of each.
 inline solver::ReducedSystem three_parts() {
@@ -34,10 +34,10 @@ inline solver::ReducedSystem three_parts() {
     const Eigen::Vector3d at = Eigen::Vector3d::Unit(part);
     solver::Exchange<Eigen::MatrixXd> e{.name = name,
                                         .matrix = scaled(at * at.transpose()),
-                                        .to_hall = inverse(part) * at,
-                                        .hall_sum = 1.0,
+                                        .to_ambient = inverse(part) * at,
+                                        .ambient_sum = 1.0,
                                         .coefficient = solver::BoundLaw([W_K](const effects::Inputs&) { return W_K; })};
-    e.flow = e.to_hall;
+    e.flow = e.to_ambient;
     s.exchanges.push_back(std::move(e));
   };
   film("film 1", 0, 6.0);
@@ -47,7 +47,7 @@ inline solver::ReducedSystem three_parts() {
   s.outputs.state = Eigen::MatrixXd::Zero(3, 4);
   s.outputs.state.leftCols(3) = inverse.asDiagonal();
   s.outputs.state.col(3) = 1e-6 * inverse.cwiseProduct(Eigen::Vector3d(2.0, 3.0, 1.5));
-  s.outputs.hall = Eigen::VectorXd::Zero(4);
+  s.outputs.ambient = Eigen::VectorXd::Zero(4);
   s.ones = root;
   return s;
 }
@@ -56,14 +56,14 @@ inline const Cyclogram kWork{
     .name = "work",
     .sections = {{3600, {.speed_rpm = 2000}}, {1800, {}}, {5400, {.speed_rpm = 3000}}, {3600, {.speed_rpm = 500}}}};
 
-/// The run of a machine: readings in degC, the drift since the start in um. @param warmer_K  of hall and machine at the start
+/// The run of a machine: readings in degC, the drift since the start in um. @param warmer_K  of ambient and machine at the start
 inline ObservedRun run_of(const solver::ReducedSystem& machine, double period_s = 60.0, double warmer_K = 0.0,
                           double noise_K = 0.0, std::uint64_t seed = 1, const Cyclogram& cyclogram = kWork) {
   ObservedRun run{
-      .cyclogram = cyclogram, .hall = {{0.0}, {warmer_K}}, .readings = {.source = "run", .time_s = {}, .channels = {}}};
+      .cyclogram = cyclogram, .ambient = {{0.0}, {warmer_K}}, .readings = {.source = "run", .time_s = {}, .channels = {}}};
   for (double t = 0.0; t <= cyclogram.duration_s(); t += period_s) run.readings.time_s.push_back(t);
   const Eigen::MatrixXd y =
-      solver::Propagator(machine).run(run.cyclogram, run.hall, run.readings.time_s, warmer_K * machine.ones).outputs;
+      solver::Propagator(machine).run(run.cyclogram, run.ambient, run.readings.time_s, warmer_K * machine.ones).outputs;
   Random random(seed, 6);
   for (Eigen::Index j = 0; j < 4; ++j) {
     Channel c{machine.outputs.name[static_cast<std::size_t>(j)], j < 3 ? "degC" : "um", {}};

@@ -43,7 +43,7 @@ TransientOptions options_of(double tolerance, double max_step_s) {
 
 // --- linear -----------------------------------------------------------------------------------------------------
 
-/// A bar with one end on a ramp of temperature, heat in pulses, a film to a hall that bends: M θ' = -K θ + f0 + f1 t in each
+/// A bar with one end on a ramp of temperature, heat in pulses, a film to an ambient that bends: M θ' = -K θ + f0 + f1 t in each
 /// piece of time for the free unknowns. Its exact solution by the eigenmodes of (K, M), independent of the integrator.
 class PiecewiseLinearBar {
  public:
@@ -91,7 +91,7 @@ class PiecewiseLinearBar {
   std::vector<int> free;
   Cyclogram cycle{.name = "pulses",
                   .sections = {{600, {.speed_rpm = 2000}}, {900, {}}, {30, {.speed_rpm = 3000}}, {2470, {}}}};
-  TimeSeries hall{{0, 2000, 4000}, {0.0, 4.0, -2.0}};
+  TimeSeries ambient{{0, 2000, 4000}, {0.0, 4.0, -2.0}};
 
  private:
   [[nodiscard]] Eigen::VectorXd modal_load(double t_s, double from_s, double to_s) const {
@@ -103,7 +103,7 @@ class PiecewiseLinearBar {
       rising[i] = slope_K_s;
     }
     const Eigen::VectorXd f =
-        system.load({.drive = cycle.drive(middle_s), .hall_K = hall.at(t_s)}) - k_ * held - m_ * rising;
+        system.load({.drive = cycle.drive(middle_s), .ambient_K = ambient.at(t_s)}) - k_ * held - m_ * rising;
     return modes_.eigenvectors().transpose() * f(free);
   }
 
@@ -120,7 +120,7 @@ TEST(LinearSystem, ErrorFollowsTheToleranceUnderRampsPulsesAndPrescribedTemperat
   ASSERT_GT(largest_K, 10.0);
   RecordProperty("largest_K", text(largest_K));
   const auto error_K = [&](double tolerance) {
-    const Trajectory run = simulate(bar.system, bar.cycle, bar.hall, times_s, options_of(tolerance, 2000.0),
+    const Trajectory run = simulate(bar.system, bar.cycle, bar.ambient, times_s, options_of(tolerance, 2000.0),
                                     Eigen::VectorXd::Zero(bar.system.size()));
     double worst_K = 0.0;
     for (std::size_t k = 0; k < times_s.size(); ++k) {

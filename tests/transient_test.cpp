@@ -22,7 +22,7 @@ using mesh::CellShape;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-const TimeSeries kStillHall{{0.0}, {0.0}};
+const TimeSeries kStillAmbient{{0.0}, {0.0}};
 
 /// Two steel blocks with a joint: heat and a film that grow with speed, a constant film, a pocket of air.
 FullSystem machine(int n) {
@@ -34,8 +34,8 @@ FullSystem machine(int n) {
   balance.heats.push_back({"pump", effects::region("b"), fixtures::constant(20.0)});
   const auto grows = [](const effects::Inputs& u) { return 5.0 + 0.02 * u.drive.speed_rpm; };
   balance.exchanges.push_back(effects::make_film("nose", "a.x0", grows, "air"));
-  balance.exchanges.push_back(effects::make_film("side", "a.y1", grows, "hall"));
-  balance.exchanges.push_back(effects::make_film("back", "b.x1", fixtures::constant(30.0), "hall"));
+  balance.exchanges.push_back(effects::make_film("side", "a.y1", grows, "ambient"));
+  balance.exchanges.push_back(effects::make_film("back", "b.x1", fixtures::constant(30.0), "ambient"));
   balance.nodes.push_back({"air", 300.0});
   balance.exchanges.push_back(
       effects::make_link("air_node " + std::string("air"), effects::node("air"), fixtures::constant(2.0)));
@@ -46,7 +46,7 @@ FullSystem machine(int n) {
 }
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}, {1800, 0}}};
-const TimeSeries kRampingHall{{0, 2000, 5000, 8000}, {0.0, 1.5, 1.5, -2.0}};
+const TimeSeries kRampingAmbient{{0, 2000, 5000, 8000}, {0.0, 1.5, 1.5, -2.0}};
 
 // --- balance ----------------------------------------------------------------------------------------------------
 
@@ -54,7 +54,7 @@ TEST(EnergyBalance, ClosesToRoundingOnACyclogramWithRampsAtAnyTolerance) {
   const FullSystem system = machine(2);
   for (double tolerance : {1e-2, 5e-4, 1e-5}) {
     const Trajectory run =
-        simulate(system, kCycle, kRampingHall, {4000, 9000},
+        simulate(system, kCycle, kRampingAmbient, {4000, 9000},
                  {.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance}, Eigen::VectorXd::Zero(system.size()));
     // Sums over some thousand unknowns and steps, each to 1e-16, and the last steps' projected residuals.
     EXPECT_LT(run.energy_gap(), 1e-9) << "tolerance " << tolerance;
@@ -64,7 +64,7 @@ TEST(EnergyBalance, ClosesToRoundingOnACyclogramWithRampsAtAnyTolerance) {
 
 TEST(EnergyBalance, HeatOfASourceIsPowerTimesTime) {
   const FullSystem system = machine(1);
-  const Trajectory run = simulate(system, kCycle, kRampingHall, {1800, 9000}, {}, Eigen::VectorXd::Zero(system.size()));
+  const Trajectory run = simulate(system, kCycle, kRampingAmbient, {1800, 9000}, {}, Eigen::VectorXd::Zero(system.size()));
   std::vector<std::string> names;
   for (const HeatFlow& f : run.flows) names.push_back(f.name);
   ASSERT_EQ(names, (std::vector<std::string>{"bearing", "pump", "nose", "side", "back", "air_node air", "contact"}));
@@ -124,7 +124,7 @@ TEST(Multigrid, OfTheLongStepsGivesWhatTheDiagonalGivesInFewerIterations) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {18, 18, 18}, .shape = CellShape::kTet4});
   effects::HeatBalance balance;
   balance.heats.push_back({"motor", effects::surface("x0"), [](const effects::Inputs& u) { return u.drive.speed_rpm; }});
-  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "hall"));
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(20.0), "ambient"));
   balance.fixed.push_back({"bed", effects::surface("z0"), {{0.0}, {0.0}}, true});
   FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   fixtures::observe_unknowns(system, {0, mesh.n_nodes() / 2, mesh.n_nodes() - 1});
@@ -132,9 +132,9 @@ TEST(Multigrid, OfTheLongStepsGivesWhatTheDiagonalGivesInFewerIterations) {
   constexpr double kTolerance = 2e-3;
   const TransientOptions options{.relative_tolerance = kTolerance, .absolute_tolerance_K = kTolerance};
   const auto run = [&](int worth_multigrid) {
-    HeatOde ode(system, kStillHall, kTolerance, worth_multigrid);
+    HeatOde ode(system, kStillAmbient, kTolerance, worth_multigrid);
     const Cyclogram cycle{.name = "cycle", .sections = {{3600, 100}, {3600, 0}}};
-    return integrate(ode, linear_stretches(cycle, std::vector<double>{}), kStillHall, minutes, options,
+    return integrate(ode, linear_stretches(cycle, std::vector<double>{}), kStillAmbient, minutes, options,
                      Eigen::VectorXd::Zero(system.size()), {});
   };
   const Trajectory diagonal = run(mesh.n_nodes()), multigrid = run(1000);
@@ -157,7 +157,7 @@ TEST(Changes, AShortPulseWithinHoursOfRestIsNotSteppedOver) {
   FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   fixtures::observe_unknowns(system, {0});
   const Cyclogram pulse{.name = "pulse", .sections = {{14400, 0}, {30, 1000}, {14400, 0}}};
-  const Trajectory run = simulate(system, pulse, kStillHall, {14400, 14415, 14430, 28830}, {.max_step_s = 7200.0},
+  const Trajectory run = simulate(system, pulse, kStillAmbient, {14400, 14415, 14430, 28830}, {.max_step_s = 7200.0},
                                   Eigen::VectorXd::Zero(system.size()));
   // The program's arithmetic conserves heat to rounding; 1e-9 of 3000 J.
   EXPECT_NEAR(run.stored_J[0], 0.0, 3e-6);
@@ -168,18 +168,18 @@ TEST(Changes, AShortPulseWithinHoursOfRestIsNotSteppedOver) {
               1e-3);  // evened out to 0.75 K, within two of the tolerances
 }
 
-TEST(Changes, AShortKnickOfTheHallIsNotSteppedOver) {
-  // The hall rises by 30 K for 60 s within 8 h: a triangle of 900 K s. A lump with C = 4000 J/K and h A = 1 W/K takes up
+TEST(Changes, AShortKnickOfTheAmbientIsNotSteppedOver) {
+  // The ambient rises by 30 K for 60 s within 8 h: a triangle of 900 K s. A lump with C = 4000 J/K and h A = 1 W/K takes up
   // hA * integral = 900 J = 0.225 K less 1 % by the loss on the way; then it cools with tau = 4000 s.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.1}, .n = {1, 1, 1}});
   effects::HeatBalance balance;
-  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(100.0), "hall"));
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(100.0), "ambient"));
   FullSystem system = assemble_heat(mesh, {fixtures::lump()}, balance);
   fixtures::observe_unknowns(system, {0});
-  const TimeSeries hall{{0, 14400, 14430, 14460, 28800}, {0, 0, 30, 0, 0}};
-  const Trajectory run = simulate(system, {.name = "rest", .sections = {{28800, 0}}}, hall, {14400, 14460},
+  const TimeSeries ambient{{0, 14400, 14430, 14460, 28800}, {0, 0, 30, 0, 0}};
+  const Trajectory run = simulate(system, {.name = "rest", .sections = {{28800, 0}}}, ambient, {14400, 14460},
                                   {.max_step_s = 7200.0}, Eigen::VectorXd::Zero(system.size()));
-  // Exact for C T' = h A (T_hall - T): the response to a triangle, from that to a ramp of slope s,
+  // Exact for C T' = h A (T_ambient - T): the response to a triangle, from that to a ramp of slope s,
   // r(t) = s (t - tau + tau e^(-t/tau)): T(60) = r(60) - 2 r(30).
   const auto ramp = [](double t) { return t + 4000.0 * std::expm1(-t / 4000.0); };
   EXPECT_NEAR(run.outputs(0, 0), 0.0, 1e-9);
@@ -192,7 +192,7 @@ TEST(Changes, AShortKnickOfTheHallIsNotSteppedOver) {
 double error_K(double tolerance) {
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.2, 0.1, 0.1}, .n = {3, 1, 1}});
   effects::HeatBalance balance;
-  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(200.0), "hall"));
+  balance.exchanges.push_back(effects::make_film("film", "x1", fixtures::constant(200.0), "ambient"));
   FullSystem system = assemble_heat(mesh, {fixtures::steel()}, balance);
   std::vector<int> all(system.size());
   for (int i = 0; i < system.size(); ++i) all[i] = i;
@@ -203,7 +203,7 @@ double error_K(double tolerance) {
   const Eigen::VectorXd fast = 5.0 * eigen.eigenvectors().col(1) / eigen.eigenvectors().col(1).cwiseAbs().maxCoeff();
   const std::vector<double> times_s = {10, 100, 137, 1000, 3000, 9999, 20000};
   const Trajectory run =
-      simulate(system, {.name = "rest", .sections = {{20000, 0}}}, kStillHall, times_s,
+      simulate(system, {.name = "rest", .sections = {{20000, 0}}}, kStillAmbient, times_s,
                {.relative_tolerance = tolerance, .absolute_tolerance_K = tolerance, .max_step_s = 1e4}, slow + fast);
   double worst = 0.0;
   for (std::size_t k = 0; k < times_s.size(); ++k) {
@@ -233,12 +233,12 @@ TEST(Accuracy, OutputsBetweenStepsAreAsGoodAsThoseOnThem) {
   for (int i = 0; i <= 900; ++i) many.push_back(10.0 * i);
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(system.size());
   const TransientOptions fine{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
-  const Trajectory loose = simulate(system, kCycle, kRampingHall, many, {}, start);
-  const Trajectory tight = simulate(system, kCycle, kRampingHall, many, fine, start);
+  const Trajectory loose = simulate(system, kCycle, kRampingAmbient, many, {}, start);
+  const Trajectory tight = simulate(system, kCycle, kRampingAmbient, many, fine, start);
   // Temperatures reach 60 K: the tolerance is 1e-4 of it + 5e-4 K = 6.5 mK a step.
   EXPECT_GT(tight.outputs.row(0).maxCoeff(), 30.0);
   EXPECT_LT((loose.outputs - tight.outputs).cwiseAbs().maxCoeff(), 10e-3);
-  const Trajectory end = simulate(system, kCycle, kRampingHall, {9000}, {}, start);
+  const Trajectory end = simulate(system, kCycle, kRampingAmbient, {9000}, {}, start);
   EXPECT_EQ(end.outputs.col(0), loose.outputs.rightCols<1>());
 }
 
@@ -248,7 +248,7 @@ TEST(Threads, GiveTheSameBits) {
   const Cyclogram cycle{.name = "c", .sections = {{5, 2000}}};
   const auto run = [&](int n_threads) {
     omp_set_num_threads(n_threads);
-    return simulate(system, cycle, kRampingHall, {2, 5}, {.relative_tolerance = 0.1, .absolute_tolerance_K = 0.1},
+    return simulate(system, cycle, kRampingAmbient, {2, 5}, {.relative_tolerance = 0.1, .absolute_tolerance_K = 0.1},
                     Eigen::VectorXd::Zero(system.size()));
   };
   const int n_before = omp_get_max_threads();
@@ -271,7 +271,7 @@ TEST(Simulate, CallsBackAtEachOutputAndStopsWhenTheCallbackThrows) {
   };
   EXPECT_THAT(
       [&] {
-        (void)simulate(system, kCycle, kStillHall, {0, 100, 700, 800}, {}, Eigen::VectorXd::Zero(system.size()), note);
+        (void)simulate(system, kCycle, kStillAmbient, {0, 100, 700, 800}, {}, Eigen::VectorXd::Zero(system.size()), note);
       },
       ::testing::ThrowsMessage<std::runtime_error>("enough"));
   EXPECT_EQ(called_s, (std::vector<double>{0, 100, 700}));
@@ -280,7 +280,7 @@ TEST(Simulate, CallsBackAtEachOutputAndStopsWhenTheCallbackThrows) {
 TEST(Simulate, NotANumberIsASolveError) {
   FullSystem system = machine(1);
   system.sources[0].power_W = fixtures::constant(std::nan(""));
-  EXPECT_THROW((void)simulate(system, kCycle, kStillHall, {100}, {}, Eigen::VectorXd::Zero(system.size())), SolveError);
+  EXPECT_THROW((void)simulate(system, kCycle, kStillAmbient, {100}, {}, Eigen::VectorXd::Zero(system.size())), SolveError);
 }
 
 }  // namespace

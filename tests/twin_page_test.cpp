@@ -81,13 +81,13 @@ TEST(TwinPage, NamesAreTextWhateverTheyHold) {
   system.mass = system.conduction = Eigen::MatrixXd::Identity(1, 1);
   system.ones = Eigen::VectorXd::Ones(1);
   system.outputs = {
-      .name = {hostile}, .unit = {"K"}, .state = Eigen::MatrixXd::Ones(1, 1), .hall = Eigen::VectorXd::Zero(1)};
+      .name = {hostile}, .unit = {"K"}, .state = Eigen::MatrixXd::Ones(1, 1), .ambient = Eigen::VectorXd::Zero(1)};
   TwinPage page{.name = hostile, .subtitle = hostile, .first = hostile};
-  page.model = {.system = system, .start = Eigen::VectorXd::Zero(1), .hall = {{0.0}, {0.0}}, .notes = {hostile}};
+  page.model = {.system = system, .start = Eigen::VectorXd::Zero(1), .ambient = {{0.0}, {0.0}}, .notes = {hostile}};
   page.cyclograms = {{.name = hostile, .sections = {{60.0, {}}}}};
   page.check.time_s = {0.0};
   page.check.channels = {{hostile, "degC", {20.0}}};
-  page.network = {.node = {hostile, "hall"}, .link = {{0, 1}}, .temperature = Eigen::MatrixXd::Ones(1, 1)};
+  page.network = {.node = {hostile, "ambient"}, .link = {{0, 1}}, .temperature = Eigen::MatrixXd::Ones(1, 1)};
   const std::string text = twin_html(page, {"0", hostile});
   EXPECT_THAT(text, Not(HasSubstr("alert(1)<")));
   EXPECT_THAT(text, Not(HasSubstr("<!--")));

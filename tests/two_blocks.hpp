@@ -12,8 +12,8 @@ inline effects::HeatBalance two_blocks_balance() {
   balance.heats.push_back(
       {"bearing", effects::region("a"), [](const effects::Inputs& u) { return 0.1 * u.drive.speed_rpm; }});
   balance.exchanges.push_back(effects::make_film(
-      "side", "a.y1", [](const effects::Inputs& u) { return 5.0 + 0.02 * u.drive.speed_rpm; }, "hall"));
-  balance.exchanges.push_back(effects::make_film("back", "b.x1", constant(30.0), "hall"));
+      "side", "a.y1", [](const effects::Inputs& u) { return 5.0 + 0.02 * u.drive.speed_rpm; }, "ambient"));
+  balance.exchanges.push_back(effects::make_film("back", "b.x1", constant(30.0), "ambient"));
   balance.exchanges.push_back(effects::make_contact("contact", "a/b", constant(1500.0)));
   return balance;
 }

@@ -1,4 +1,4 @@
-// `validate` on records as a user has them: with and without a machine in the scenario, with a hall, without one.
+// `validate` on records as a user has them: with and without a machine in the scenario, with an ambient, without one.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -25,16 +25,16 @@ using Json = nlohmann::json;
 // A spindle and a column of lumped nodes whose films do not follow temperatures.
 constexpr const char* kMachine = R"(name: two_bodies
 reference_temperature: 20 degC
-start: hall
+start: ambient
 machine: {generator: lumped}
 effects:
   - {type: node, node: spindle, capacity: 6 kJ/K}
   - {type: node, node: column, capacity: 60 kJ/K}
   - {type: heat_source, node: spindle, power: 120 W, at_speed: 3000 rpm, exponent: 1.3}
   - {type: link, node: spindle, to: column, conductance: 6 W/K}
-  - {type: link, node: spindle, to: hall, conductance: 2 W/K}
-  - {type: link, node: column, to: hall, conductance: 8 W/K}
-hall: [[0 h, 20 degC], [5 h, 22 degC]]
+  - {type: link, node: spindle, to: ambient, conductance: 2 W/K}
+  - {type: link, node: column, to: ambient, conductance: 8 W/K}
+ambient: [[0 h, 20 degC], [5 h, 22 degC]]
 sensors:
   - {name: t_spindle, node: spindle}
   - {name: t_column, node: column}
@@ -115,7 +115,7 @@ class ValidateRecords : public ::testing::Test {
     }
     return nullptr;
   }
-  /// The model is the machine itself: what it leaves are the seven digits of the record, and the hall between its rows.
+  /// The model is the machine itself: what it leaves are the seven digits of the record, and the ambient between its rows.
   static void expect_exact(const Json& summary) {
     for (const char* name : {"thermal modes of the model", "model fitted to the training runs", "observer"}) {
       const Json* s = strategy(summary, name);
@@ -192,13 +192,13 @@ TEST_F(ValidateRecords, AModelFollowsNoRecordThatItCannot) {
     }
     return true;
   });
-  EXPECT_THAT(refused(machine_, record("warm_start")), HasSubstr("starts as warm as the hall"));
+  EXPECT_THAT(refused(machine_, record("warm_start")), HasSubstr("starts as warm as the ambient"));
 }
 
-// The recorded hall drives the model, not the scenario's; and a record's clock may start anywhere.
-TEST_F(ValidateRecords, InAnotherHallAndFromAnotherTimeOn) {
+// The recorded ambient drives the model, not the scenario's; and a record's clock may start anywhere.
+TEST_F(ValidateRecords, InAnotherAmbientAndFromAnotherTimeOn) {
   simulate(
-      scenario("warm_hall",
+      scenario("warm_ambient",
                [](std::string& t) { replace(t, "[[0 h, 20 degC], [5 h, 22 degC]]", "[[0 h, 27 degC], [2 h, 25 degC]]"); }),
       "to_and_fro", "in_summer");
   edited("in_summer", "later", [](std::vector<std::string>& cells, const std::vector<std::string>&) {
@@ -208,13 +208,13 @@ TEST_F(ValidateRecords, InAnotherHallAndFromAnotherTimeOn) {
   expect_exact(validate(machine_, "later"));
 }
 
-// What the scenario's effects say of drive, hall and single runs holds for records of that name, too.
-TEST_F(ValidateRecords, EffectsOnDriveHallAndSingleRunsAct) {
+// What the scenario's effects say of drive, ambient and single runs holds for records of that name, too.
+TEST_F(ValidateRecords, EffectsOnDriveAmbientAndSingleRunsAct) {
   const std::string doubted = scenario("doubted", [](std::string& t) {
-    replace(t, "hall: [[",
+    replace(t, "ambient: [[",
             "  - {type: heat_source, node: column, power: 20 W, in: doubtful}\n  - {type: speed_override, factor: 1.2, in: "
             "doubtful}\n"
-            "  - {type: ambient, offset: 1 K, in: doubtful}\nhall: [[");
+            "  - {type: ambient, offset: 1 K, in: doubtful}\nambient: [[");
     replace(t, "  to_and_fro:", "  doubtful: [[60 min, 2500 rpm], [60 min, 1000 rpm]]\n  to_and_fro:");
   });
   simulate(doubted, "doubtful", "simulated");
@@ -233,15 +233,17 @@ TEST_F(ValidateRecords, WhatAModelCannotKnowLeavesItOutWithTheReason) {
   const auto with = [](const std::string& name, const std::string& what, const std::string& by) {
     return scenario(name, [&](std::string& t) { replace(t, what, by); });
   };
-  expect_left_out(validate(with("reference", "start: hall\n", ""), "to_and_fro"), "start: hall");
+  expect_left_out(validate(with("reference", "start: ambient\n", ""), "to_and_fro"), "start: ambient");
   expect_left_out(
-      validate(with("biased", "hall: [[", "  - {type: sensor_bias, sensor: t_column, bias: 2 K}\nhall: [["), "to_and_fro"),
+      validate(with("biased", "ambient: [[", "  - {type: sensor_bias, sensor: t_column, bias: 2 K}\nambient: [["),
+               "to_and_fro"),
       "what instruments read");
   expect_left_out(validate(with("renamed", "name: t_column", "name: t_back"), "to_and_fro"), "no sensor 't_column'");
   expect_left_out(
-      validate(with("thermostat", "hall: [[",
-                    "  - {type: fixed_temperature, node: column, temperature: [[0 h, 20 degC], [5 h, 25 degC]]}\nhall: [["),
-               "to_and_fro"),
+      validate(
+          with("thermostat", "ambient: [[",
+               "  - {type: fixed_temperature, node: column, temperature: [[0 h, 20 degC], [5 h, 25 degC]]}\nambient: [["),
+          "to_and_fro"),
       "");
   int row = 0;
   edited("to_and_fro", "warm", [&](std::vector<std::string>&, const std::vector<std::string>&) { return ++row > 50; });
@@ -253,14 +255,14 @@ TEST_F(ValidateRecords, WhatAModelCannotKnowLeavesItOutWithTheReason) {
   expect_left_out(validate(machine_, "reversed"), "does not say what drove the machine");
 }
 
-TEST_F(ValidateRecords, AHallThermometerThatNeverReadIsSaid) {
-  edited("to_and_fro", "no_hall", [](std::vector<std::string>& cells, const std::vector<std::string>& header) {
+TEST_F(ValidateRecords, AnAmbientThermometerThatNeverReadIsSaid) {
+  edited("to_and_fro", "no_ambient", [](std::vector<std::string>& cells, const std::vector<std::string>& header) {
     cells[static_cast<std::size_t>(std::find(header.begin(), header.end(), "ambient_degC") - header.begin())].clear();
     return true;
   });
   for (const std::string& scenario : {records_only_, machine_}) {
-    const Json summary = validate(scenario, "no_hall");
-    EXPECT_THAT(summary["warnings"].dump(), AllOf(HasSubstr("no hall temperature"), HasSubstr("used from none")));
+    const Json summary = validate(scenario, "no_ambient");
+    EXPECT_THAT(summary["warnings"].dump(), AllOf(HasSubstr("no ambient temperature"), HasSubstr("used from none")));
     EXPECT_TRUE(strategy(summary, "transfer functions from speed"));
   }
 }

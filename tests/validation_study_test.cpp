@@ -74,7 +74,7 @@ bool is_intact(const CsvRow& r) {
 }
 
 // What is wanted of the best strategy: a tenth of the peak with sensors intact, three tenths with one failed, in its worst run. An exchange of
-// the hall's thermometer with another one is beyond it (0.43, docs/validation.md), and so it is safe within limits.
+// the ambient thermometer with another one is beyond it (0.43, docs/validation.md), and so it is safe within limits.
 TEST_F(ValidationStudy, TheObserverLeavesATenthAndThreeTenthsWithAFailedSensor) {
   double intact = 0.0, failed = 0.0, exchanged = 0.0;
   for (const CsvRow& r : rows_) {

@@ -137,18 +137,18 @@ INSTANTIATE_TEST_SUITE_P(
             {":3:", "at least 2", "[families.r.speeds]"}}),
     [](const auto& p) { return std::string(p.param.name); });
 
-TEST(HallIn, IsTheScenariosWithOffsetAndASineOfADay) {
-  const TimeSeries hall{{0.0, 7200.0}, {1.0, 3.0}};
-  const TimeSeries same = hall_in({.name = "as trained"}, hall, 3600.0);
+TEST(AmbientIn, IsTheScenariosWithOffsetAndASineOfADay) {
+  const TimeSeries ambient{{0.0, 7200.0}, {1.0, 3.0}};
+  const TimeSeries same = ambient_in({.name = "as trained"}, ambient, 3600.0);
   EXPECT_THAT(same.time_s, ElementsAre(0.0, 3600.0));
   EXPECT_THAT(same.value, ElementsAre(1.0, 2.0));
-  const TimeSeries summer = hall_in({.name = "summer", .offset_K = 5.0, .swing_K = 2.0}, hall, 21600.0);
+  const TimeSeries summer = ambient_in({.name = "summer", .offset_K = 5.0, .swing_K = 2.0}, ambient, 21600.0);
   EXPECT_EQ(summer.value.front(), 6.0);
   EXPECT_NEAR(summer.at(21600.0), 3.0 + 5.0 + 2.0, 1e-12);       // a quarter of a day
   EXPECT_NEAR(summer.at(7200.0), 3.0 + 5.0 + 2.0 * 0.5, 1e-12);  // sin 30 degrees
   // linear between knots of 10 min: 2 (600 w)^2 / 8 = 5e-4 K off at most
   for (double t = 0.0; t < 21600.0; t += 77.0)
-    EXPECT_NEAR(summer.at(t), hall.at(t) + 5.0 + 2.0 * std::sin(2.0 * M_PI * t / 86400.0), 5e-4);
+    EXPECT_NEAR(summer.at(t), ambient.at(t) + 5.0 + 2.0 * std::sin(2.0 * M_PI * t / 86400.0), 5e-4);
   for (std::size_t i = 1; i < summer.time_s.size(); ++i) EXPECT_GT(summer.time_s[i], summer.time_s[i - 1]);
 }
 

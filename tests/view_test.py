@@ -19,12 +19,12 @@ MOST_MB, MOST_FRAME_MS = 15.0, 8.0
 NODE = "</script><script>document.title='broken out'</script><img src=x onerror=document.title='broken out'>"
 HOSTILE = f"""name: hostile
 reference_temperature: 20 degC
-hall: 20 degC
+ambient: 20 degC
 machine: {{generator: lumped}}
 effects:
   - {{type: node, node: "{NODE}", capacity: 5.6 kJ/K}}
   - {{type: heat_source, node: "{NODE}", power: 150 W, at_speed: 6000 rpm, exponent: 1.5}}
-  - {{type: link, node: "{NODE}", to: hall, conductance: 5 W/K}}
+  - {{type: link, node: "{NODE}", to: ambient, conductance: 5 W/K}}
 sensors: [{{name: t_spindle, node: "{NODE}"}}]
 cyclograms: {{shift: [[60 min, 6000 rpm]]}}
 """

@@ -20,12 +20,12 @@ using ::testing::ThrowsMessage;
 // 20 K at 1000 rpm, 4000 s, 1 um/K.
 constexpr const char* kOneBody = R"(name: one_body
 reference_temperature: 20 degC
-hall: 20 degC
+ambient: 20 degC
 machine: {generator: lumped}
 effects:
   - {type: node, node: body, capacity: 20 kJ/K}
   - {type: heat_source, node: body, power: 100 W, at_speed: 1000 rpm, exponent: 1}
-  - {type: link, node: body, to: hall, conductance: 5 W/K}
+  - {type: link, node: body, to: ambient, conductance: 5 W/K}
 sensors: [{name: t_body, node: body}]
 displacements: [{name: nose, sensitivities: [{node: body, sensitivity: 1 um/K}]}]
 cyclograms:
@@ -106,10 +106,10 @@ TEST(WarmUp, IsRestWhereNoSpeedIsEnough) {
   EXPECT_LE(plan.staged.duration_s(), plan.at_rest.duration_s());
 }
 
-// A hall that turns warm after an hour and a half: what is enough earlier is not later, and minutes against micrometres say the same as the plan.
+// An ambient that turns warm after an hour and a half: what is enough earlier is not later, and minutes against micrometres say the same as the plan.
 TEST(WarmUp, IsNoLongerThanAnyThatIsShownToBeEnough) {
   std::string text = kOneBody;
-  text.replace(text.find("hall: 20 degC"), 13, "hall: [[0 min, 20 degC], [90 min, 20 degC], [100 min, 24 degC]]");
+  text.replace(text.find("ambient: 20 degC"), 13, "ambient: [[0 min, 20 degC], [90 min, 20 degC], [100 min, 24 degC]]");
   for (double tolerance_um : {0.5, 4.0}) {
     const WarmUpPlan plan = planned(text, {.tolerance_um = tolerance_um});
     bool is_shown = false;
@@ -135,14 +135,14 @@ TEST(WarmUp, KeepsAMarginFreeAndAsksForNothingWhereTheJobIsWithinItAtOnce) {
 // A spindle that warms in 8 min on a column that takes hours: full speed makes the column warm and the spindle too warm, which a second speed mends.
 constexpr const char* kTwoBodies = R"(name: two_bodies
 reference_temperature: 20 degC
-hall: 20 degC
+ambient: 20 degC
 machine: {generator: lumped}
 effects:
   - {type: node, node: spindle, capacity: 5 kJ/K}
   - {type: node, node: column, capacity: 30 kJ/K}
   - {type: heat_source, node: spindle, power: 200 W, at_speed: 1000 rpm, exponent: 1}
   - {type: link, node: spindle, to: column, conductance: 10 W/K}
-  - {type: link, node: column, to: hall, conductance: 8 W/K}
+  - {type: link, node: column, to: ambient, conductance: 8 W/K}
 sensors: [{name: t_spindle, node: spindle}]
 displacements: [{name: nose, sensitivities: [{node: spindle, sensitivity: 1 um/K}, {node: column, sensitivity: 1 um/K}]}]
 cyclograms:

@@ -25,12 +25,12 @@ def expect(holds, what):
 
 LAG = """name: lag
 reference_temperature: 20 degC
-hall: 20 degC
+ambient: 20 degC
 machine: {generator: lumped}
 effects:
   - {type: node, node: body, capacity: 20 kJ/K}
   - {type: heat_source, node: body, power: 100 W, at_speed: 1000 rpm, exponent: 1}
-  - {type: link, node: body, to: hall, conductance: 5 W/K}
+  - {type: link, node: body, to: ambient, conductance: 5 W/K}
   - {type: scale_expansion, displacement: nose, lag: 60 min}
 sensors: [{name: t_body, node: body}]
 displacements: [{name: nose, sensitivities: [{node: body, sensitivity: 1 um/K}]}]

@@ -27,8 +27,8 @@ effects:
   - {type: heat_source, node: heater, power: 40 W, at_speed: 1000 rpm, exponent: 1}
   - {type: link, node: heater, to: air, conductance: 2.3 W/K}
   - {type: link, node: air, to: wall, conductance: 3 W/K}
-  - {type: link, node: air, to: hall, conductance: 0.8 W/K}
-hall: [[0 h, 21 degC]]
+  - {type: link, node: air, to: ambient, conductance: 0.8 W/K}
+ambient: [[0 h, 21 degC]]
 sensors:
   - {name: inside, node: air}
   - {name: wall, node: wall}
@@ -66,12 +66,12 @@ constexpr const char* kLids =
     "{type: exchange_window, node: air, conductance: 15 W/K, windows: [[10 min, 11 min], [20.5 min, 21.5 min], [33 min, 34 "
     "min]]}";
 
-TEST(AWaveform, ShowsLidsAsWindowsOfOneConductanceToTheHall) {
+TEST(AWaveform, ShowsLidsAsWindowsOfOneConductanceToTheAmbient) {
   const std::vector<Waveform> list = waves_of(kLids);
   ASSERT_FALSE(list.empty());
   const Waveform& w = list.front();
   EXPECT_EQ(w.where, "air");
-  EXPECT_EQ(w.to, "hall");
+  EXPECT_EQ(w.to, "ambient");
   EXPECT_EQ(w.shape.shape, Shape::kWindows);
   EXPECT_GT(w.explained, 0.99);
   EXPECT_NEAR(w.shape.size, 15.0, 3.0);  // K over a minute in which the air's time constant is 13 s, at rows of 15 s

@@ -46,7 +46,7 @@ void expect_same(const Effect& a, const Effect& b, const std::string& text) {
 Effect drawn(const EffectKind& kind, Place place, Random& random) {
   Effect e = make_effect(
       kind.key, place,
-      place == Place::kHall || place == Place::kClock || place == Place::kSpindle ? place_key(place) : "the spot-1/b@c");
+      place == Place::kAmbient || place == Place::kClock || place == Place::kSpindle ? place_key(place) : "the spot-1/b@c");
   for (std::size_t p = 0; p < kind.parameters.size(); ++p) {
     const Parameter& parameter = kind.parameters[p];
     const bool may_be_left_out = parameter.fallback && std::isnan(*parameter.fallback);

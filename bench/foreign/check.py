@@ -25,8 +25,8 @@ def one_of_each(machine, record):
     return [
         (Fault("heat_source", dict(node=body, law="constant", from_s=at)), 40.0, f"{{type: heat_source, {node}, power: 40 W, from: {at:g} s}}"),
         (Fault("heat_source", dict(node=body, law="power", from_s=0.0, at=top, exponent=1.4)), 40.0, f"{{type: heat_source, {node}, power: 40 W, at_speed: {top:g} rpm, exponent: 1.4}}"),
-        (Fault("exchange_window", dict(a=body, b="hall"), windows=windows), 12.0, f"{{type: exchange_window, {node}, conductance: 12 W/K, surrounding: hall, windows: {rows}}}"),
-        (Fault("link", dict(a=body, b="hall")), 3.0, f"{{type: link, {node}, to: hall, conductance: 3 W/K}}"),
+        (Fault("exchange_window", dict(a=body, b="hall"), windows=windows), 12.0, f"{{type: exchange_window, {node}, conductance: 12 W/K, surrounding: ambient, windows: {rows}}}"),
+        (Fault("link", dict(a=body, b="hall")), 3.0, f"{{type: link, {node}, to: ambient, conductance: 3 W/K}}"),
         (Fault("ambient", dict(from_s=at)), 2.0, f"{{type: ambient, offset: 2 K, from: {at:g} s}}"),
         (Fault("ambient", dict(from_s=0.0)), -2.0, "{type: ambient, offset: -2 K}"),
         (Fault("sensor_bias", dict(sensor=sensor)), 1.0, f"{{type: sensor_bias, sensor: {sensor}, bias: 1 K}}"),
@@ -48,7 +48,7 @@ def met(program, machine, record, dt, hidden=(), line=""):
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         text = scenario(machine, dt)
-        (folder / "scenario.yaml").write_text(text.replace("\nhall:", f"\n  - {line}\nhall:", 1) if line else text)
+        (folder / "scenario.yaml").write_text(text.replace("\nambient:", f"\n  - {line}\nambient:", 1) if line else text)
         (folder / "measured_1.csv").write_text(record_csv(machine, record, temperatures, displacements))
         run = subprocess.run([program, "simulate", "scenario.yaml", "--cyclogram", "measured_1.csv", "-o", "out"], cwd=folder, capture_output=True, text=True)
         if run.returncode:

@@ -14,10 +14,10 @@ import sys
 import tempfile
 
 
-def with_hall(text, csv_file):
-    """The scenario with the hall of another record."""
-    hall = f"hall: {{csv: {csv_file}, channel: ambient}}\n"
-    return re.sub(r"^hall:.*?(?=^[^\s\-#]|\Z)", lambda _: hall, text, count=1, flags=re.M | re.S)
+def with_ambient(text, csv_file):
+    """The scenario with the ambient temperature of another record."""
+    ambient = f"ambient: {{csv: {csv_file}, channel: ambient}}\n"
+    return re.sub(r"^(?:ambient|hall):.*?(?=^[^\s\-#]|\Z)", lambda _: ambient, text, count=1, flags=re.M | re.S)
 
 
 def rows_of(text):
@@ -40,7 +40,7 @@ def simulated(program, scenario, cyclogram, folder):
 def simulate_file(program, case, file):
     """Beside the file, so that its paths hold; else in a folder with the case's records."""
     holdout = case / "holdout_1.csv"
-    text = with_hall(file.read_text(), holdout)
+    text = with_ambient(file.read_text(), holdout)
     message = ""
     with tempfile.TemporaryDirectory() as away:
         beside = file.parent / f".{file.stem}_on_holdout.yaml"

@@ -14,10 +14,15 @@ def g(x):
     return f"{x:.6g}"
 
 
+def body(b):
+    """As scenarios call it: `hall`, here and as a value of `where` in diagnosis.json, is `ambient` there."""
+    return "ambient" if b == "hall" else b
+
+
 def scenario(machine, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="measured_1.csv", name=None):
     v = {k: x for k, (x, _) in machine.numbers.items()}
     out = [f"# {TITLES[machine.family].capitalize()}. Nominal numbers are estimates.", f"name: {name or machine.family}", f"reference_temperature: {g(machine.t_ref)} degC",
-           f"start: {machine.start if isinstance(machine.start, str) else g(machine.start) + ' degC'}", "machine: {generator: lumped}", "effects:"]
+           f"start: {body(machine.start) if isinstance(machine.start, str) else g(machine.start) + ' degC'}", "machine: {generator: lumped}", "effects:"]
     for b in machine.bodies:
         if b in machine.air:
             out.append(f"  - {{type: air_node, node: {b}, capacity: {g(v['C ' + b])} J/K, exchange: {g(v[f'G {b} hall'])} W/K}}")
@@ -25,7 +30,7 @@ def scenario(machine, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="
             out.append(f"  - {{type: node, node: {b}, capacity: {g(v['C ' + b])} J/K}}")
     for a, b in machine.links:
         if not (a in machine.air and b == "hall"):
-            out.append(f"  - {{type: link, node: {a}, to: {b}, conductance: {g(v[f'G {a} {b}'])} W/K}}")
+            out.append(f"  - {{type: link, node: {a}, to: {body(b)}, conductance: {g(v[f'G {a} {b}'])} W/K}}")
     for node, set_point in machine.circuits:
         out.append(f"  - {{type: coolant, node: {node}, flow: {g(v['flow ' + node])} L/min, passage_conductance: {g(v['passage ' + node])} W/K, set_point: {g(set_point)} degC}}")
     for i, law in enumerate(machine.heats):
@@ -41,10 +46,10 @@ def scenario(machine, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="
         else:
             decay = f", decay: {g(v[f'decay {i}'])} 1/K, at_temperature: {g(machine.t_ref)} degC" if law["has_decay"] else ""
             out.append(f"{head}, power: {g(p)} W, at_speed: {g(law['at'])} rpm{e}{idle}{decay}}}")
-    out.append(f"hall: {hall}")
+    out.append(f"ambient: {hall}")
     if machine.sensors:
         out.append("sensors:")
-        out += [f"  - {{name: {n}, node: {b}}}" for n, b in machine.sensors]
+        out += [f"  - {{name: {n}, node: {body(b)}}}" for n, b in machine.sensors]
     if machine.displacements:
         out.append("displacements:")
         for name_d, _, nodes in machine.displacements:

@@ -1,7 +1,7 @@
 """The machine, its load and its readings: what every program of this comparison is given.
 
 Column .4 x .5 x 1.5 m with a headstock .3 x .6 x .4 m, two bearing zones (cylinders R = .08 m) that are heated, and a nose
-(R = .05 m) whose end is the tool point. Grey iron. The bottom keeps the hall's temperature and is clamped; all other faces
+(R = .05 m) whose end is the tool point. Grey iron. The bottom keeps the ambient temperature and is clamped; all other faces
 have a film of 10 W/(m^2 K). Heat ~ speed ratio^1.5. 300 minutes in six sections, readings each minute.
 """
 import csv
@@ -29,7 +29,7 @@ def info(folder):
 
 
 def read_rows(path):
-    """Rows minute, 12 temperatures over the hall's [K], 3 displacements [um] (absent from a run of heat alone), by minute."""
+    """Rows minute, 12 temperatures over the ambient's [K], 3 displacements [um] (absent from a run of heat alone), by minute."""
     with open(path) as file:
         return {round(float(row[0]), 3): [float(x) for x in row[1:]] for row in csv.reader(file) if row}
 

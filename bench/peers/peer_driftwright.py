@@ -24,7 +24,7 @@ def scenario(info, options):
         text += ("  - {type: heat_source, region: %s, power: %g W, at_speed: %g rpm, exponent: %g}\n"
                  % (region, power_W, case.SPEED_AT_RATIO_1_rpm, case.EXPONENT))
     text += "  - {type: convection, surface: exterior, film: %g W/(m^2 K)}\n" % case.FILM_W_m2K
-    text += "  - {type: fixed_temperature, surface: bottom, follows: hall}\nhall: [[0 min, 20 degC]]\nsensors:\n"
+    text += "  - {type: fixed_temperature, surface: bottom, follows: ambient}\nambient: [[0 min, 20 degC]]\nsensors:\n"
     for i, (at, region) in enumerate(zip(info["sensors_m"], info["regions"])):
         text += "  - {name: t%d, region: %s, at: %s}\n" % (i, region, mm(at))
     if not options.heat_only:

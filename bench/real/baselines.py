@@ -9,7 +9,7 @@ import math
 
 PENALTIES = [1e-5, 1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0]
 DRIVE_LAGS_MIN = [2, 5, 10, 20, 40, 80, 160]
-HALL_LAGS_MIN = [30, 60, 120, 240, 480]
+AMBIENT_LAGS_MIN = [30, 60, 120, 240, 480]
 STATE_LAGS_MIN = [0, 5, 10, 20, 40, 80, 160]
 
 
@@ -157,14 +157,14 @@ def thermometers(case, table):
 
 
 def memories(case, table):
-    """Thermometers, drive, its square and whether it is on, at once and behind lags, and lags of the hall."""
+    """Thermometers, drive, its square and whether it is on, at once and behind lags, and lags of the ambient."""
     columns = [readings(case, table, n) for n in case.thermometers]
     if case.drive:
         n = held(table.columns[case.drive])
         for u in (n, [v * v for v in n], [1.0 if v != 0.0 else 0.0 for v in n]):
             columns += [lagged(table.time_s, u, 60.0 * lag, True) for lag in [0, *DRIVE_LAGS_MIN]]
-    if case.hall:
-        columns += [lagged(table.time_s, readings(case, table, case.hall), 60.0 * lag, False) for lag in HALL_LAGS_MIN]
+    if case.ambient:
+        columns += [lagged(table.time_s, readings(case, table, case.ambient), 60.0 * lag, False) for lag in AMBIENT_LAGS_MIN]
     return across(columns)
 
 

@@ -44,7 +44,7 @@ class Case:
     judge: list
     thermometers: list
     drive: str = ""            # column of what drives the machine: speed, voltage, heater
-    hall: str = ""             # column of the surroundings' temperature, among the thermometers
+    ambient: str = ""             # column of the surroundings' temperature, among the thermometers
     from_start: bool = False   # temperatures and target count from the first row of a run
     fit_rows: object = None    # function of time [s]
     judge_rows: object = None
@@ -66,7 +66,7 @@ LATHE_SENSORS = ["ambient_degC", "bed_degC", "spindle_rear_degC", "spindle_front
 def lathe(data, fit, judge, split):
     path = {os.path.basename(p).split("_")[1][:-4]: p for p in glob.glob(os.path.join(data, "lathe", "*.csv"))}
     return Case("lathe", split, "diameter_um", [read(path[d]) for d in fit], [read(path[d]) for d in judge], LATHE_SENSORS,
-                hall="ambient_degC", from_start=True, sensors_to_choose=3, scenario="lathe", conversion="lathe",
+                ambient="ambient_degC", from_start=True, sensors_to_choose=3, scenario="lathe", conversion="lathe",
                 scenario_target="diameter_um", fit_files=[path[d] for d in fit], judge_files=[path[d] for d in judge])
 
 
@@ -127,6 +127,6 @@ def cases(data):
                                  drive="speed_rpm"))
     path = os.path.join(data, "test_house", "prbs.csv")
     result.append(parted("test_house", path, "second half kept out", *halves(path), "indoor_degC", ["outdoor_degC", "solar_W_m2"],
-                         drive="heater_W", hall="outdoor_degC", scenario="test_house", conversion="test_house",
+                         drive="heater_W", ambient="outdoor_degC", scenario="test_house", conversion="test_house",
                          scenario_target="indoor_degC"))
     return result

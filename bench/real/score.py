@@ -143,7 +143,7 @@ def simulated(case, program, scenario, record, folder, name):
     text = re.sub(r"^cyclograms:.*\n", lambda m: m.group(0) + f"  kept_out: {{csv: {record}}}\n", text, count=1, flags=re.M)
     rows = raw_rows(record)
     if "ambient_degC" in rows[0]:
-        text = re.sub(r"^hall:.*$", f"hall: {{csv: {record}, channel: ambient}}", text, count=1, flags=re.M)
+        text = re.sub(r"^(?:ambient|hall):.*$", f"ambient: {{csv: {record}, channel: ambient}}", text, count=1, flags=re.M)
     # paths of extended.yaml are absolute; it may lie anywhere
     edited = os.path.join(folder, name + ".yaml")
     with open(edited, "w", encoding="utf-8") as file:

@@ -124,7 +124,8 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
               selection = select_by_observability(p.system, p.start, histories, s.candidates, s.target, s.n_sensors, how);
               f.reason = fmt::format("{}: {}", fmt::join(selection.sensors, ", "), selection.reason);
             }
-            Observer observer(p.system, p.start, p.start_hall_K, learns ? s.candidates : selection.sensors, s.target, how);
+            Observer observer(p.system, p.start, p.start_ambient_K, learns ? s.candidates : selection.sensors, s.target,
+                              how);
             if (learns) {
               observer.learn(without_others_readings(histories, s));
               f.reason += fmt::format("{}factors learned: {}", f.reason.empty() ? "" : "; ", words(observer.factors()));
@@ -134,8 +135,8 @@ Strategy observing(const std::string& name, const StrategySettings& s, bool with
             f.from_start = true;
             f.predictor = std::make_shared<Observer>(std::move(observer));
             f.sensors = selection.sensors;
-            if (!s.hall.empty() && std::find(f.sensors.begin(), f.sensors.end(), s.hall) == f.sensors.end())
-              f.sensors.push_back(s.hall);
+            if (!s.ambient.empty() && std::find(f.sensors.begin(), f.sensors.end(), s.ambient) == f.sensors.end())
+              f.sensors.push_back(s.ambient);
             return f;
           }};
 }
@@ -183,14 +184,14 @@ std::vector<Strategy> strategies(const StrategySettings& s) {
                   }});
   if (!s.speed.empty()) {
     list.push_back({"transfer functions from speed", false, [s](std::span<const ObservedRun> training) {
-                      FittedFormula f = fit_from_speed(records_of(training, s), s.speed, s.hall, s.target);
+                      FittedFormula f = fit_from_speed(records_of(training, s), s.speed, s.ambient, s.target);
                       return of_formula(std::move(f.model), std::move(f.reason), s);
                     }});
   }
   list.push_back({"thermometers and memories", false, [s](std::span<const ObservedRun> training) {
                     // runs cut from one record are one again: its own blocks tell more of it than two or three runs
                     const std::vector<Record> records = records_of(joined_histories(training, s.target), s);
-                    FittedFormula f = fit_with_memories(records, s.candidates, s.speed, s.hall, s.target);
+                    FittedFormula f = fit_with_memories(records, s.candidates, s.speed, s.ambient, s.target);
                     return of_formula(std::move(f.model), std::move(f.reason), s);
                   }});
   if (s.physics) {
@@ -239,7 +240,7 @@ DeployedPredictor fit_one(const Strategy& strategy, const StrategySettings& s, s
   DeployedPredictor f = strategy.fit(training);
   f.name = strategy.name;
   f.is_baseline = strategy.is_baseline;
-  f.hall = s.hall;
+  f.ambient = s.ambient;
   f.interval_um = interval(strategy, s, training);
   if (f.is_baseline) return f;
   std::vector<std::vector<double>> predicted;

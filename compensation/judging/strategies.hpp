@@ -13,8 +13,8 @@ namespace driftwright::compensation {
 /// A linear model of the machine that strategies may use. It need not be right.
 struct Physics {
   solver::ReducedSystem system;
-  Eigen::VectorXd start;      ///< state at the start of runs in a hall at `start_hall_K`
-  double start_hall_K = 0.0;  ///< minus the reference temperature
+  Eigen::VectorXd start;         ///< state at the start of runs in an ambient at `start_ambient_K`
+  double start_ambient_K = 0.0;  ///< minus the reference temperature
 };
 
 struct StrategySettings {
@@ -23,7 +23,7 @@ struct StrategySettings {
   int n_sensors = 4;
   bool count_from_start = false;
   Image image = Image::kAutomatic;  ///< of grey grades
-  std::string speed, hall;          ///< channels; empty: there is none
+  std::string speed, ambient;       ///< channels; empty: there is none
   double reading_K = 0.1;           ///< 1 sigma of a thermometer, for the observer
   double drift_um = 1.0;            ///< 1 sigma of the indicator in the training runs
   std::optional<Physics> physics;

@@ -39,24 +39,25 @@ constexpr Failure kFailures[] = {{SensorFailure::kStuck, "stuck"},
                                  {SensorFailure::kRising, "drifting up"},
                                  {SensorFailure::kFalling, "drifting down"}};
 
-/// The hall as a thermometer tells it that fails at a time. One that gives nothing new leaves its last reading; any other tells what it read then,
+/// The ambient as a thermometer tells it that fails at a time. One that gives nothing new leaves its last reading; any other tells what it read then,
 /// and from there on as much more as its channel does. One that nobody knows stays unknown.
-/// @param readings  after the failure; @param channel  of the hall's thermometer in them
-TimeSeries failed_hall(const TimeSeries& hall, SensorFailure failure, double from_s, const Record& readings,
-                       const std::string& channel) {
-  if (hall.time_s.empty()) return hall;
+/// @param readings  after the failure; @param channel  of the ambient thermometer in them
+TimeSeries failed_ambient(const TimeSeries& ambient, SensorFailure failure, double from_s, const Record& readings,
+                          const std::string& channel) {
+  if (ambient.time_s.empty()) return ambient;
   TimeSeries told;
   const auto add = [&](double t_s, double value) {
     told.time_s.push_back(t_s);
     told.value.push_back(value);
   };
-  for (std::size_t i = 0; i < hall.time_s.size() && hall.time_s[i] < from_s; ++i) add(hall.time_s[i], hall.value[i]);
-  add(from_s, hall.at(from_s));
+  for (std::size_t i = 0; i < ambient.time_s.size() && ambient.time_s[i] < from_s; ++i)
+    add(ambient.time_s[i], ambient.value[i]);
+  add(from_s, ambient.at(from_s));
   if (failure == SensorFailure::kStuck || failure == SensorFailure::kOpen) return told;
   if (failure == SensorFailure::kRising || failure == SensorFailure::kFalling) {
     const double rate_K_s = (failure == SensorFailure::kRising ? 1.0 : -1.0) * kSensorDrift_K_h / 3600.0;
     for (double t_s : readings.time_s) {
-      if (t_s > from_s) add(t_s, hall.at(t_s) + rate_K_s * (t_s - from_s));
+      if (t_s > from_s) add(t_s, ambient.at(t_s) + rate_K_s * (t_s - from_s));
     }
     return told;
   }
@@ -67,7 +68,7 @@ TimeSeries failed_hall(const TimeSeries& hall, SensorFailure failure, double fro
     if (t_s < from_s) {
       if (std::isfinite(read[i])) first = read[i];
     } else if (t_s > from_s && std::isfinite(read[i] - first)) {
-      add(t_s, hall.at(from_s) + read[i] - first);
+      add(t_s, ambient.at(from_s) + read[i] - first);
     }
   }
   return told;
@@ -104,8 +105,8 @@ std::vector<std::pair<std::string, ObservedRun>> conditions(const MatrixSettings
     ObservedRun run = judged.run;
     run.readings = with_failed_sensor(std::move(run.readings), sensor, kind, from_s, elsewhere);
     for (const std::string& failed : {sensor, kind == SensorFailure::kSwapped ? elsewhere : sensor}) {
-      if (failed != settings.strategies.hall) continue;
-      run.hall = failed_hall(judged.run.hall, kind, from_s, run.readings, failed);
+      if (failed != settings.strategies.ambient) continue;
+      run.ambient = failed_ambient(judged.run.ambient, kind, from_s, run.readings, failed);
       break;
     }
     list.emplace_back(words, std::move(run));

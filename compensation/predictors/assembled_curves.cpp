@@ -97,11 +97,11 @@ AssembledCurves::AssembledCurves(const std::vector<ThermalTest>& tests, const Te
     Curves c{sections[0].drive.speed_rpm, {}, {}};
     std::vector<double> time_s;
     for (double t_s = 0.0; t_s <= kLength_s; t_s += kStep_s) time_s.push_back(t_s);
-    const TimeSeries no_hall{{0.0}, {0.0}};
-    c.heating = fit.predict({"", {{kLength_s + kStep_s, sections[0].drive}}}, no_hall, time_s);
+    const TimeSeries no_ambient{{0.0}, {0.0}};
+    c.heating = fit.predict({"", {{kLength_s + kStep_s, sections[0].drive}}}, no_ambient, time_s);
     std::vector<double> later_s;
     for (double t_s : time_s) later_s.push_back(sections[0].duration_s + t_s);
-    c.cooling = fit.predict({"", {sections[0], {kLength_s + kStep_s, {}}}}, no_hall, later_s);
+    c.cooling = fit.predict({"", {sections[0], {kLength_s + kStep_s, {}}}}, no_ambient, later_s);
     if (std::any_of(curves_.begin(), curves_.end(), [&](const Curves& o) { return o.speed_rpm == c.speed_rpm; })) {
       throw InputError(fmt::format("two tests at {:g} rpm", c.speed_rpm));
     }

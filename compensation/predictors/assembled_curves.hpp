@@ -7,7 +7,7 @@
 //   shrinks with it in proportion (intermittent off);
 // - down to a speed whose curve never reaches the level (stepwise down), where the paper says that steps are wanted and not which: the excess over the
 //   steady level of the new speed falls as the cooling curve after that speed does, δ = δ∞(n) + (δ0 - δ∞(n)) c(t) / c(0). This rule is ours.
-// Curves between tested speeds are linear in speed at equal times. The hall is not looked at: the tests' own is in their curves.
+// Curves between tested speeds are linear in speed at equal times. The ambient is not looked at: the tests' own is in their curves.
 // A channel whose heating curve turns round has two times at one level, and one whose level lies beyond both curves has none: the first time, or the
 // nearest level, is then taken; the method is no good there.
 // Source: Polyakov, Marusich & Nikitina.
@@ -27,7 +27,7 @@ class AssembledCurves {
   /// @throws InputError  for a test of another form, two tests of one speed
   AssembledCurves(const std::vector<ThermalTest>& tests, const TestChannels& channels);
 
-  /// As IdentifiedModes::predict(), the hall left out.
+  /// As IdentifiedModes::predict(), the ambient left out.
   [[nodiscard]] Eigen::MatrixXd predict(const Cyclogram& cyclogram, const std::vector<double>& output_s,
                                         bool extrapolate = false) const;
 

@@ -14,8 +14,8 @@ struct DeployedPredictor {
   bool from_start = false;   ///< drift and temperatures count from the first row of the run
   bool is_baseline = false;  ///< what others have to beat; it has no fail-safe
   std::shared_ptr<const Predictor> predictor;
-  std::vector<std::string> sensors = {};  ///< what it reads and may fail: thermometers, among them the hall's
-  std::string hall = {};                  ///< channel of the hall in its training runs; "" where there was none
+  std::vector<std::string> sensors = {};  ///< what it reads and may fail: thermometers, among them the ambient's
+  std::string ambient = {};               ///< channel of the ambient in its training runs; "" where there was none
   std::string reason = {};                ///< what the fit decided, one sentence; may be empty
   std::optional<FailSafe> fail_safe = {};
   /// Half width of the 95 % prediction interval [um]: of each training run left out in turn the error that 95 % of its rows keep, the

@@ -11,7 +11,7 @@ class DrivenFollower final : public Follower {
 
   double next(const ObservedRun& run) override {
     if (row_ == known_um_.size()) {
-      known_um_ = drift_um_(run.cyclogram, run.hall, run.readings.time_s);
+      known_um_ = drift_um_(run.cyclogram, run.ambient, run.readings.time_s);
       if (known_um_.size() != run.readings.n_samples() || row_ >= known_um_.size())
         throw std::logic_error("a drift that follows from the drive has one value a row");
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Drift that follows from what drives the machine and from its hall, without any reading: thermal modes, curves of tests, a model.
+// Drift that follows from what drives the machine and from its ambient, without any reading: thermal modes, curves of tests, a model.
 
 #include <functional>
 
@@ -9,11 +9,11 @@ namespace driftwright::compensation {
 
 class DrivenPredictor final : public Predictor {
  public:
-  /// The drift [um] at times of a run, one value each; what it says of a time follows from drive and hall up to that time.
+  /// The drift [um] at times of a run, one value each; what it says of a time follows from drive and ambient up to that time.
   /// @param cyclogram  from t = 0
-  /// @param hall       minus the reference temperature [K]
+  /// @param ambient       minus the reference temperature [K]
   /// @param time_s     strictly increasing, from 0 or later
-  using Drift = std::function<std::vector<double>(const Cyclogram& cyclogram, const TimeSeries& hall,
+  using Drift = std::function<std::vector<double>(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                                   const std::vector<double>& time_s)>;
   explicit DrivenPredictor(Drift drift_um) : drift_um_(std::move(drift_um)) {}
   [[nodiscard]] std::vector<Input> inputs() const override { return {}; }

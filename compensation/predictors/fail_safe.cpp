@@ -38,7 +38,7 @@ struct Range {
   [[nodiscard]] double width() const { return high - low; }
 };
 
-/// What the others say of an input: ridge regression, for what thermometers that move alike have in common holds in another hall too,
+/// What the others say of an input: ridge regression, for what thermometers that move alike have in common holds in another ambient too,
 /// and their small differences do not.
 struct Relation {
   double intercept = 0.0;

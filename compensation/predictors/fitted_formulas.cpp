@@ -205,44 +205,44 @@ FittedFormula fit_with_lags(std::span<const Record> records, const std::vector<s
   return formula_of(sums, best, channels.terms, "regression with lags", fmt::format("a lag of {:g} min", best_lag_min));
 }
 
-FittedFormula fit_from_speed(std::span<const Record> records, const std::string& drive, const std::string& hall,
+FittedFormula fit_from_speed(std::span<const Record> records, const std::string& drive, const std::string& ambient,
                              const std::string& target) {
   const auto n_lags = static_cast<int>(kLags_min.size());
   std::vector<DriftModel::Term> terms;
   for (double lag_min : kLags_min) {
     for (int power : {1, 2}) terms.push_back({.input = drive, .unit = {}, .power = power, .lag_s = 60.0 * lag_min});
   }
-  if (!hall.empty()) {
-    for (double lag_min : kLags_min) terms.push_back({.input = hall, .unit = {}, .lag_s = 60.0 * lag_min});
+  if (!ambient.empty()) {
+    for (double lag_min : kLags_min) terms.push_back({.input = ambient, .unit = {}, .lag_s = 60.0 * lag_min});
   }
   const TermColumns channels = term_columns(records, terms, target);
   const ProductSums sums = product_sums(channels.records, channels.names, target);
-  const bool has_hall = !hall.empty() && !sums.is_constant[static_cast<std::size_t>(2 * n_lags)];
+  const bool has_ambient = !ambient.empty() && !sums.is_constant[static_cast<std::size_t>(2 * n_lags)];
   Choice best;
-  // one lag more as long as it helps; the hall's lag is sought with the first and kept
-  std::vector<int> lags, hall_columns;
+  // one lag more as long as it helps; the ambient's lag is sought with the first and kept
+  std::vector<int> lags, ambient_columns;
   for (int n = 1; n <= 3; ++n) {
     Choice with_more = best;
-    int added = -1, with_hall = -1;
+    int added = -1, with_ambient = -1;
     for (int l = 0; l < n_lags; ++l) {
       if (std::find(lags.begin(), lags.end(), l) != lags.end()) continue;
-      for (int h = 0; h < (n == 1 && has_hall ? n_lags : 1); ++h) {
-        std::vector<int> columns = hall_columns;
-        if (n == 1 && has_hall) columns.push_back(2 * n_lags + h);
+      for (int h = 0; h < (n == 1 && has_ambient ? n_lags : 1); ++h) {
+        std::vector<int> columns = ambient_columns;
+        if (n == 1 && has_ambient) columns.push_back(2 * n_lags + h);
         for (int k : lags) columns.insert(columns.end(), {2 * k, 2 * k + 1});
         columns.insert(columns.end(), {2 * l, 2 * l + 1});
         const double before = with_more.error;
         try_columns(sums, columns, with_more);
         if (with_more.error < before) {
           added = l;
-          with_hall = h;
+          with_ambient = h;
         }
       }
     }
     if (added < 0) break;
     best = with_more;
     lags.push_back(added);
-    if (n == 1 && has_hall) hall_columns = {2 * n_lags + with_hall};
+    if (n == 1 && has_ambient) ambient_columns = {2 * n_lags + with_ambient};
   }
   std::string words;
   for (int l : lags) words += fmt::format("{}{:g}", words.empty() ? "" : ", ", kLags_min[static_cast<std::size_t>(l)]);

@@ -32,10 +32,10 @@ struct FittedFormula {
 /// first-order lag that all share, y = b0 + sum_j (b_j x_j + c_j L[x_j]), ridge penalty and lag by runs left out.
 [[nodiscard]] FittedFormula fit_with_lags(std::span<const Record> records, const std::vector<std::string>& inputs,
                                           const std::string& target);
-/// Transfer functions from the drive alone: speed and its square behind one, two or three lags, the hall (if it is a channel) behind one.
-/// @param drive  channel in rpm; @param hall  channel or ""
+/// Transfer functions from the drive alone: speed and its square behind one, two or three lags, the ambient (if it is a channel) behind one.
+/// @param drive  channel in rpm; @param ambient  channel or ""
 [[nodiscard]] FittedFormula fit_from_speed(std::span<const Record> records, const std::string& drive,
-                                           const std::string& hall, const std::string& target);
+                                           const std::string& ambient, const std::string& target);
 // All: @throws InputError  as product_sums(), and for fewer than two records.
 
 }  // namespace driftwright::compensation

@@ -29,8 +29,8 @@ double steady_level(int m, double x) {
   return x > 0.0 ? std::pow(x, m - 1) : 0.0;
 }
 
-/// First-order states with one rate a section: of the level of each power, then of the hall. n_powers + 1 columns.
-Eigen::MatrixXd mode_states(const Cyclogram& cyclogram, const TimeSeries& hall, const std::vector<double>& output_s,
+/// First-order states with one rate a section: of the level of each power, then of the ambient. n_powers + 1 columns.
+Eigen::MatrixXd mode_states(const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& output_s,
                             double time_constant_s, double growth, double top_rpm, int powers) {
   Eigen::MatrixXd states(static_cast<Eigen::Index>(output_s.size()), powers + 1);
   Eigen::VectorXd now = Eigen::VectorXd::Zero(powers + 1);
@@ -39,10 +39,10 @@ Eigen::MatrixXd mode_states(const Cyclogram& cyclogram, const TimeSeries& hall, 
     for (; next < output_s.size() && (output_s[next] < end_s || is_last); ++next)
       states.row(static_cast<Eigen::Index>(next)) = at(output_s[next]).transpose();
   };
-  const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, hall);
+  const std::vector<LinearStretch> stretches = linear_stretches(cyclogram, ambient);
   for (const LinearStretch& s : stretches) {
     const double x = s.drive.speed_rpm / top_rpm, lambda = rate_1_s(time_constant_s, growth, x);
-    const double hall_K = hall.at(s.start_s), slope_K_s = (hall.at(s.end_s) - hall_K) / (s.end_s - s.start_s);
+    const double ambient_K = ambient.at(s.start_s), slope_K_s = (ambient.at(s.end_s) - ambient_K) / (s.end_s - s.start_s);
     const auto at = [&, start = now](double t_s) {
       const double dt_s = t_s - s.start_s, e = std::exp(-lambda * dt_s);
       Eigen::VectorXd y(powers + 1);
@@ -51,7 +51,7 @@ Eigen::MatrixXd mode_states(const Cyclogram& cyclogram, const TimeSeries& hall, 
         y[m] = level + (start[m] - level) * e;
       }
       const double behind_K = slope_K_s / lambda;  // a ramp is followed at this distance
-      y[powers] = hall_K + slope_K_s * dt_s - behind_K + (start[powers] - hall_K + behind_K) * e;
+      y[powers] = ambient_K + slope_K_s * dt_s - behind_K + (start[powers] - ambient_K + behind_K) * e;
       return y;
     };
     write_until(s.end_s, &s == &stretches.back(), at);
@@ -160,13 +160,13 @@ Eigen::MatrixXd basis(const Table& t, const Shape& shape, int powers, std::size_
   const std::vector<double> time_constant_s = time_constants_s(shape);
   for (std::size_t k = 0; k < n_modes; ++k) {
     columns.middleCols(static_cast<Eigen::Index>(k) * (powers + 1), powers + 1) =
-        mode_states(of.cyclogram, of.hall, of.time_s, time_constant_s[k], shape.back(), t.top_rpm, powers);
+        mode_states(of.cyclogram, of.ambient, of.time_s, time_constant_s[k], shape.back(), t.top_rpm, powers);
   }
   return columns;
 }
 
 /// Steady levels of given time constants: least squares with a prior that none is larger than the channel itself (1 sigma is its range), and that
-/// a kelvin of hall does no more than a kelvin of machine, without which columns that the tests tell apart badly would cancel each other there and not elsewhere.
+/// a kelvin of ambient does no more than a kelvin of machine, without which columns that the tests tell apart badly would cancel each other there and not elsewhere.
 struct Linear {
   Eigen::MatrixXd amplitude;  ///< n_columns x n_channels, in units of noise
   Eigen::MatrixXd residual;   ///< of the rows that take part, then amplitude over its prior
@@ -339,12 +339,12 @@ IdentifiedModes identify_modes(const std::vector<ThermalTest>& tests, const Test
     const Eigen::MatrixXd of_mode =
         t.noise.asDiagonal() * a.middleRows(i * (options.powers + 1), options.powers + 1).transpose();
     m.level.emplace_back(of_mode.leftCols(options.powers));
-    m.hall.emplace_back(of_mode.col(options.powers));
+    m.ambient.emplace_back(of_mode.col(options.powers));
   }
   return m;
 }
 
-Eigen::MatrixXd IdentifiedModes::predict(const Cyclogram& cyclogram, const TimeSeries& hall_K,
+Eigen::MatrixXd IdentifiedModes::predict(const Cyclogram& cyclogram, const TimeSeries& ambient_K,
                                          const std::vector<double>& output_s, bool extrapolate) const {
   require_tested(cyclogram, tested, extrapolate);
   Eigen::MatrixXd y =
@@ -352,9 +352,9 @@ Eigen::MatrixXd IdentifiedModes::predict(const Cyclogram& cyclogram, const TimeS
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const auto powers = static_cast<int>(level[k].cols());
     const Eigen::MatrixXd states =
-        mode_states(cyclogram, hall_K, output_s, modes[k].time_constant_s, modes[k].growth, tested.top_rpm, powers);
+        mode_states(cyclogram, ambient_K, output_s, modes[k].time_constant_s, modes[k].growth, tested.top_rpm, powers);
     y.noalias() += level[k] * states.leftCols(powers).transpose();
-    y.noalias() += hall[k] * states.col(powers).transpose();
+    y.noalias() += ambient[k] * states.col(powers).transpose();
   }
   return y;
 }

@@ -1,12 +1,12 @@
 #pragma once
 // Thermal modes from tests alone: each channel is a sum of first-order states that all channels share.
 //
-//     y_c(t) = Σ_k a_ck(t),   a_ck' = λ_k(n) (A_ck(n) + H_ck θ_hall - a_ck),   x = n / N,   λ_k(n) = (1 + g x^0.7) / τ_k
+//     y_c(t) = Σ_k a_ck(t),   a_ck' = λ_k(n) (A_ck(n) + H_ck θ_ambient - a_ck),   x = n / N,   λ_k(n) = (1 + g x^0.7) / τ_k
 //
 // Over a section at constant speed that is the sum of exponentials of heating and cooling tests, T = Σ A (1 - e^(-t/τ)) + Σ B e^(-t/τ); what goes
 // beyond it is that states live on when the speed changes, that rates grow with speed as forced films do (one g for all modes), and that steady
 // levels A between the tested speeds follow one polynomial of x, with a level of its own at standstill. Steady levels are linear in the data;
-// τ_k and g are found by variable projection. All channels start at 0, in balance with the hall.
+// τ_k and g are found by variable projection. All channels start at 0, in balance with the ambient.
 // Source: Polyakov, Marusich & Nikitina (thermal modes); Golub & Pereyra, SIAM J. Numer. Anal. 10 (1973) 413-432.
 
 #include "compensation/predictors/thermal_test.hpp"
@@ -21,14 +21,14 @@ struct IdentifiedModes {
   };
   std::vector<Mode> modes;  ///< slowest first
   TestChannels channels;
-  std::vector<Eigen::MatrixXd> level;  ///< per mode, n_channels x n_powers
-  std::vector<Eigen::VectorXd> hall;   ///< per mode, H of each channel
-  TestedSpeeds tested;                 ///< its top is N
-  double held_out_error = 0.0;         ///< root mean square in units of the noise, speeds left out of the fit one at a time
+  std::vector<Eigen::MatrixXd> level;    ///< per mode, n_channels x n_powers
+  std::vector<Eigen::VectorXd> ambient;  ///< per mode, H of each channel
+  TestedSpeeds tested;                   ///< its top is N
+  double held_out_error = 0.0;  ///< root mean square in units of the noise, speeds left out of the fit one at a time
 
-  /// Channels at the times asked for, n_channels x n_times. @param hall  minus its temperature at the start [K]
+  /// Channels at the times asked for, n_channels x n_times. @param ambient  minus its temperature at the start [K]
   /// @throws InputError  as require_tested()
-  [[nodiscard]] Eigen::MatrixXd predict(const Cyclogram& cyclogram, const TimeSeries& hall,
+  [[nodiscard]] Eigen::MatrixXd predict(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                         const std::vector<double>& output_s, bool extrapolate = false) const;
 };
 

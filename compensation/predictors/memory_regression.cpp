@@ -25,9 +25,10 @@ constexpr std::size_t kParts = 24;        // of a single record
 constexpr std::size_t kPartsLeftOut = 3;  // neighbours, so that what is predicted is not beside what was fitted
 
 std::vector<DriftModel::Term> terms_of(const std::vector<std::string>& sensors, const std::string& drive,
-                                       const std::string& hall) {
+                                       const std::string& ambient) {
   std::vector<std::string> temperatures = sensors;
-  if (!hall.empty() && std::find(sensors.begin(), sensors.end(), hall) == sensors.end()) temperatures.push_back(hall);
+  if (!ambient.empty() && std::find(sensors.begin(), sensors.end(), ambient) == sensors.end())
+    temperatures.push_back(ambient);
   std::vector<DriftModel::Term> terms;
   for (const std::string& t : temperatures) {
     terms.push_back({.input = t, .unit = {}});
@@ -112,8 +113,8 @@ std::vector<Eigen::MatrixXd> folds_of(const ProductSums& sums, std::size_t n_tog
 }  // namespace
 
 FittedFormula fit_with_memories(std::span<const Record> records, const std::vector<std::string>& sensors,
-                                const std::string& drive, const std::string& hall, const std::string& target) {
-  const TermColumns columns = term_columns(records, terms_of(sensors, drive, hall), target);
+                                const std::string& drive, const std::string& ambient, const std::string& target) {
+  const TermColumns columns = term_columns(records, terms_of(sensors, drive, ambient), target);
   if (columns.terms.empty())
     throw InputError(fmt::format("the regression of '{}' was given no thermometer and no drive", target));
   const bool is_single = records.size() == 1;

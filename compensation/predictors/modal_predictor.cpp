@@ -11,22 +11,22 @@
 
 namespace driftwright::compensation {
 
-solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const TimeSeries& hall,
+solver::Trajectory ModalPredictor::predict(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                            const std::vector<double>& output_s) const {
-  return solver::Propagator(system).run(cyclogram, hall, output_s, start);
+  return solver::Propagator(system).run(cyclogram, ambient, output_s, start);
 }
 
 ModalPredictors make_modal_predictors(const solver::FullSystem& full, int most_modes, const Eigen::VectorXd& from,
-                                      double hall_K, const Drive& typical) {
-  const effects::Inputs standstill{.drive = {}, .hall_K = hall_K};
+                                      double ambient_K, const Drive& typical) {
+  const effects::Inputs standstill{.drive = {}, .ambient_K = ambient_K};
   Eigen::VectorXd start = from;  // what is held jumps at once, as in simulate()
   for (const solver::FixedUnknowns& f : full.fixed) {
-    for (int i : f.unknowns) start[i] = f.follows_hall ? hall_K : f.theta.at(0.0);
+    for (int i : f.unknowns) start[i] = f.follows_ambient ? ambient_K : f.theta.at(0.0);
   }
   const int n_modes = std::min(most_modes, full.size());
   const auto frozen = [&] {
     solver::require_linearisable(full);
-    const effects::Inputs at{.drive = typical, .hall_K = hall_K};
+    const effects::Inputs at{.drive = typical, .ambient_K = ambient_K};
     return solver::linearised(full, at, solver::steady_state(full, at, start));
   };
   const solver::FullSystem system = full.is_linear() ? full : frozen();
@@ -46,10 +46,10 @@ ModalPredictors make_modal_predictors(const solver::FullSystem& full, int most_m
 ModalPredictor make_ritz_predictor(const solver::ReducedSystem& system, const Eigen::VectorXd& start, int n_modes,
                                    const effects::Inputs& at) {
   Eigen::MatrixXd k = system.conduction;
-  Eigen::VectorXd hall = Eigen::VectorXd::Zero(system.size()), stratified = hall;
+  Eigen::VectorXd ambient = Eigen::VectorXd::Zero(system.size()), stratified = ambient;
   for (const auto& e : system.exchanges) {
     k += e.coefficient(at) * e.matrix;
-    if (e.reaches_hall()) hall += e.coefficient(at) * e.to_hall;
+    if (e.reaches_ambient()) ambient += e.coefficient(at) * e.to_ambient;
     if (e.offset.size() > 0) stratified += e.coefficient(at) * e.offset;
   }
   const dense::SymmetricEigen eigen(k);
@@ -61,7 +61,7 @@ ModalPredictor make_ritz_predictor(const solver::ReducedSystem& system, const Ei
   columns.leftCols(n) = eigen.eigenvectors().leftCols(n);
   for (std::size_t s = 0; s < system.sources.size(); ++s)
     columns.col(n + static_cast<Eigen::Index>(s)) = system.sources[s].load;
-  columns.col(columns.cols() - 3) = hall;
+  columns.col(columns.cols() - 3) = ambient;
   columns.col(columns.cols() - 2) = stratified;
   auto loads = columns.middleCols(n, columns.cols() - n - 1);
   loads = dense::solve_symmetric(k, loads);  // what they warm in the end

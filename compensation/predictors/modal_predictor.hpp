@@ -1,5 +1,5 @@
 #pragma once
-// Drift of any cyclogram without sensors: the machine's thermal modes, driven by the cyclogram and the hall.
+// Drift of any cyclogram without sensors: the machine's thermal modes, driven by the cyclogram and the ambient.
 
 #include "base/cyclogram.hpp"
 #include "solver/thermal_system.hpp"
@@ -7,7 +7,7 @@
 namespace driftwright::compensation {
 
 /// The slowest thermal modes of the machine at standstill, completed by its steady responses to each heat source and to
-/// the hall. The modes carry the slow memory, the steady responses what the cut-off fast modes would have settled to: 20
+/// the ambient. The modes carry the slow memory, the steady responses what the cut-off fast modes would have settled to: 20
 /// modes alone miss a bearing by kelvins.
 struct ModalPredictor {
   std::vector<double> time_constant_s;  ///< of the modes, falling
@@ -15,7 +15,7 @@ struct ModalPredictor {
   Eigen::VectorXd start;  ///< reduced state at t = 0
 
   /// Outputs in K, m and rad over a cyclogram from `start` on, exact between the changes of speed.
-  [[nodiscard]] solver::Trajectory predict(const Cyclogram& cyclogram, const TimeSeries& hall,
+  [[nodiscard]] solver::Trajectory predict(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                            const std::vector<double>& output_s) const;
 };
 
@@ -26,15 +26,15 @@ struct ModalPredictors {
 
 /// @param n_modes  >= 1; a machine of fewer lumped nodes has all of its own
 /// @param start    temperatures at t = 0 minus the reference temperature
-/// @param hall_K   hall temperature at t = 0 minus the reference temperature
-/// @param typical  drive whose steady state in that hall laws of temperature are frozen at: the mean of the cyclograms to come.
+/// @param ambient_K   ambient temperature at t = 0 minus the reference temperature
+/// @param typical  drive whose steady state in that ambient laws of temperature are frozen at: the mean of the cyclograms to come.
 ///                 A film that grows with the temperature difference, frozen at the start, would be none at all
 /// @throws InputError, SolveError  as thermal_modes()
 [[nodiscard]] ModalPredictors make_modal_predictors(const solver::FullSystem& system, int n_modes,
-                                                    const Eigen::VectorXd& start, double hall_K, const Drive& typical);
+                                                    const Eigen::VectorXd& start, double ambient_K, const Drive& typical);
 
 /// The same from a reduced model with M = 1: its slowest Ritz modes at some inputs, completed by its steady responses to each heat source and
-/// to the hall there. They are modes of the reduced model, close to the machine's own where those are slow.
+/// to the ambient there. They are modes of the reduced model, close to the machine's own where those are slow.
 /// @param system  linear
 /// @throws SolveError  when it has no steady state there
 [[nodiscard]] ModalPredictor make_ritz_predictor(const solver::ReducedSystem& system, const Eigen::VectorXd& start,

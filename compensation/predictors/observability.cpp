@@ -27,7 +27,7 @@ Eigen::MatrixXd outputs_of(const solver::ReducedSystem& system, const Eigen::Vec
     std::vector<double> times_s;
     for (std::size_t i = kEvery; i < run.readings.n_samples(); i += kEvery) times_s.push_back(run.readings.time_s[i]);
     if (times_s.empty()) continue;
-    const Eigen::MatrixXd outputs = propagator.run(run.cyclogram, run.hall, times_s, start).outputs;
+    const Eigen::MatrixXd outputs = propagator.run(run.cyclogram, run.ambient, times_s, start).outputs;
     all.conservativeResize(Eigen::NoChange, all.cols() + outputs.cols());
     all.rightCols(outputs.cols()) = outputs;
   }

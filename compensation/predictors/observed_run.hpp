@@ -1,5 +1,5 @@
 #pragma once
-// A run of the machine as predictors see it: drive, hall and readings, and how much of them came before what is fitted and scored.
+// A run of the machine as predictors see it: drive, ambient and readings, and how much of them came before what is fitted and scored.
 
 #include <span>
 #include <string>
@@ -23,8 +23,8 @@ inline constexpr std::size_t kRowsBack = 32;
 /// follow the lead-in, so that what has a memory - lags, states of a model, a fail-safe - starts the run with what came before it; nothing is fitted
 /// to its drift, and it is not scored. Where temperatures and drift count from the start, they count from the first row of the lead-in.
 struct ObservedRun {
-  Cyclogram cyclogram;       ///< from the first row of the readings, as the hall
-  TimeSeries hall;           ///< minus the reference temperature [K]
+  Cyclogram cyclogram;       ///< from the first row of the readings, as the ambient
+  TimeSeries ambient;        ///< minus the reference temperature [K]
   Record readings;           ///< channels named as the model's outputs; temperatures in degC, displacements in um
   std::size_t n_before = 0;  ///< rows of lead-in, less than all
   RowsOfFile rows = {};      ///< the run's own, where it was measured

@@ -19,9 +19,9 @@ constexpr double kOutlier = 6.0;     // deviations of one innovation: that readi
 constexpr double kMemory = 0.9;      // of the mean innovation from row to row
 constexpr std::size_t kReturn = 30;  // rows by which the filter goes back when a sensor is dropped
 static_assert(kReturn < kRowsBack);
-constexpr double kZero = 2.0;            // of an indicator's deviation: what its zero may be off by
-constexpr double kHallJump_K = 3.0;      // that no hall changes by from row to row
-constexpr double kHallJumpIn_s = 600.0;  // of rows further apart, in so long
+constexpr double kZero = 2.0;               // of an indicator's deviation: what its zero may be off by
+constexpr double kAmbientJump_K = 3.0;      // that no ambient changes by from row to row
+constexpr double kAmbientJumpIn_s = 600.0;  // of rows further apart, in so long
 constexpr std::size_t kStepsKept = 512;
 constexpr double kStart_K = 0.1;  // by which all of the machine may be warmer than the start says
 
@@ -59,7 +59,7 @@ class Observer::Run final : public ObserverFollower {
     if (row_ == 0) begin(run);
     history_.push_back({row_, belief_});
     if (history_.size() > kReturn) history_.pop_front();
-    judge_hall(run, row_);
+    judge_ambient(run, row_);
     take_row(run, row_);
     if (const int suspect = worst_suspect(row_); suspect >= 0) drop(run, static_cast<std::size_t>(suspect));
     return 1e6 * drift_m(row_++);
@@ -69,15 +69,15 @@ class Observer::Run final : public ObserverFollower {
     const Eigen::VectorXd h = drift_gradient();
     return 1e6 * std::sqrt(std::max(0.0, h.dot(belief_.covariance * h)));
   }
-  [[nodiscard]] Eigen::VectorXd outputs() const override { return s_.observe(belief_.mean.head(n_), hall_K_.back()); }
+  [[nodiscard]] Eigen::VectorXd outputs() const override { return s_.observe(belief_.mean.head(n_), ambient_K_.back()); }
   [[nodiscard]] const std::vector<double>& innovation_K() const override { return innovation_K_; }
   [[nodiscard]] std::vector<std::string> given_up() const override { return distrusted_; }
 
   /// Rows that the filter could go back to are not in it: a sensor that is given up soon after a recall counts until then.
   [[nodiscard]] std::vector<double> memory() const override {
     const auto n = belief_.mean.size();
-    std::vector<double> m = {static_cast<double>(row_), start_hall_K_, hall_K_.back(),
-                             static_cast<double>(is_hall_doubted_.back())};
+    std::vector<double> m = {static_cast<double>(row_), start_ambient_K_, ambient_K_.back(),
+                             static_cast<double>(is_ambient_doubted_.back())};
     for (std::size_t k = 0; k < live_.size(); ++k)
       m.insert(m.end(), {static_cast<double>(live_[k]), dropped_s_[k], mean_innovation_[k], last_s_[k]});
     m.insert(m.end(), start_state_.begin(), start_state_.end());
@@ -95,10 +95,10 @@ class Observer::Run final : public ObserverFollower {
     auto at = memory.begin();
     const auto take = [&] { return *at++; };
     row_ = static_cast<std::size_t>(take());
-    start_hall_K_ = take();
-    hall_K_ = {take()};
-    is_hall_doubted_ = {take() != 0.0};
-    first_hall_row_ = row_ - 1;
+    start_ambient_K_ = take();
+    ambient_K_ = {take()};
+    is_ambient_doubted_ = {take() != 0.0};
+    first_ambient_row_ = row_ - 1;
     for (std::size_t k = 0; k < n_sensors; ++k) {
       live_[k] = take() != 0.0;
       dropped_s_[k] = take();
@@ -139,37 +139,37 @@ class Observer::Run final : public ObserverFollower {
   }
 
   void begin(const ObservedRun& run) {
-    start_hall_K_ = run.hall.at(run.readings.time_s.front());
-    belief_.mean.head(n_) = o_.start_ + (start_hall_K_ - o_.start_hall_K_) * s_.ones;
+    start_ambient_K_ = run.ambient.at(run.readings.time_s.front());
+    belief_.mean.head(n_) = o_.start_ + (start_ambient_K_ - o_.start_ambient_K_) * s_.ones;
     start_state_ = belief_.mean.head(n_);
   }
 
-  /// What the hall's thermometer is believed at a row. One that jumps does not tell of a hall: its last reading holds until it is back near it.
-  void judge_hall(const ObservedRun& run, std::size_t i) {
+  /// What the ambient thermometer is believed at a row. One that jumps does not tell of an ambient: its last reading holds until it is back near it.
+  void judge_ambient(const ObservedRun& run, std::size_t i) {
     const std::vector<double>& t = run.readings.time_s;
-    const double t_s = t[run.at(i)], told_K = run.hall.at(t_s);
-    if (hall_K_.size() > kRowsBack) {
-      hall_K_.pop_front();
-      is_hall_doubted_.pop_front();
-      ++first_hall_row_;
+    const double t_s = t[run.at(i)], told_K = run.ambient.at(t_s);
+    if (ambient_K_.size() > kRowsBack) {
+      ambient_K_.pop_front();
+      is_ambient_doubted_.pop_front();
+      ++first_ambient_row_;
     }
     if (i == 0) {
-      hall_K_.push_back(told_K);
-      is_hall_doubted_.push_back(false);
+      ambient_K_.push_back(told_K);
+      is_ambient_doubted_.push_back(false);
       return;
     }
-    const double most_K = kHallJump_K * std::max(1.0, (t_s - t[run.at(i) - 1]) / kHallJumpIn_s);
-    const bool is_doubted = std::abs(told_K - hall_K_.back()) > most_K;
-    if (is_doubted && !is_hall_doubted_.back())
-      distrusted_.push_back(fmt::format("the hall's thermometer from {:.0f} min", t_s / 60.0));
-    hall_K_.push_back(is_doubted ? hall_K_.back() : told_K);
-    is_hall_doubted_.push_back(is_doubted);
+    const double most_K = kAmbientJump_K * std::max(1.0, (t_s - t[run.at(i) - 1]) / kAmbientJumpIn_s);
+    const bool is_doubted = std::abs(told_K - ambient_K_.back()) > most_K;
+    if (is_doubted && !is_ambient_doubted_.back())
+      distrusted_.push_back(fmt::format("the ambient thermometer from {:.0f} min", t_s / 60.0));
+    ambient_K_.push_back(is_doubted ? ambient_K_.back() : told_K);
+    is_ambient_doubted_.push_back(is_doubted);
   }
 
   /// Between the row before and row i.
-  [[nodiscard]] double hall_K(const ObservedRun& run, std::size_t i, double t_s) const {
-    const std::size_t k = i - first_hall_row_;
-    return is_hall_doubted_[k] || is_hall_doubted_[k - 1] ? hall_K_[k] : run.hall.at(t_s);
+  [[nodiscard]] double ambient_K(const ObservedRun& run, std::size_t i, double t_s) const {
+    const std::size_t k = i - first_ambient_row_;
+    return is_ambient_doubted_[k] || is_ambient_doubted_[k - 1] ? ambient_K_[k] : run.ambient.at(t_s);
   }
 
   /// Goes back to before its mean innovation began to grow, and follows the rows since then without it.
@@ -200,7 +200,7 @@ class Observer::Run final : public ObserverFollower {
       const Eigen::Index output = o_.sensor_output_[k];
       Eigen::VectorXd h = Eigen::VectorXd::Zero(belief_.mean.size());
       h.head(n_) = s_.outputs.state.col(output);
-      const double expected_K = h.dot(belief_.mean) + s_.outputs.hall(output) * hall_at(i) + s_.reference_K - 273.15;
+      const double expected_K = h.dot(belief_.mean) + s_.outputs.ambient(output) * ambient_at(i) + s_.reference_K - 273.15;
       const double variance = variance_of(o_.settings_.reading_K, o_.settings_.model_K, t_s, last_s_[k]);
       const double innovation = read - expected_K, spread = std::sqrt(h.dot(belief_.covariance * h) + variance);
       innovation_K_[k] = innovation;
@@ -255,7 +255,7 @@ class Observer::Run final : public ObserverFollower {
         const auto n_left = std::ceil((until_s - from_s) / o_.settings_.longest_step_s - 1e-9);
         const double h_s = (until_s - from_s) / n_left;
         effects::Inputs at{
-            .drive = run.cyclogram.sections[c].drive, .hall_K = hall_K(run, i, from_s + 0.5 * h_s), .time_s = from_s};
+            .drive = run.cyclogram.sections[c].drive, .ambient_K = ambient_K(run, i, from_s + 0.5 * h_s), .time_s = from_s};
         at.run = run.cyclogram.name;
         step(at, h_s);
         from_s += h_s;
@@ -291,7 +291,7 @@ class Observer::Run final : public ObserverFollower {
   }
 
   void step(const effects::Inputs& at, double h_s) {
-    const double hall_K = at.hall_K;
+    const double ambient_K = at.ambient_K;
     const Step& now = step_of(at, h_s);
     const Eigen::VectorXd z = belief_.mean.head(n_);
     Eigen::VectorXd load = Eigen::VectorXd::Zero(n_);
@@ -305,7 +305,7 @@ class Observer::Run final : public ObserverFollower {
       const auto& exchange = s_.exchanges[static_cast<std::size_t>(e)];
       const double c = now.coefficient[static_cast<std::size_t>(e)];
       Eigen::VectorXd outside = Eigen::VectorXd::Zero(n_);
-      if (exchange.reaches_hall()) outside += hall_K * exchange.to_hall;
+      if (exchange.reaches_ambient()) outside += ambient_K * exchange.to_ambient;
       if (exchange.offset.size() > 0) outside += exchange.offset;
       load += c * outside;
       by_factor.col(n_sources_ + e) = c * (outside - exchange.matrix * z);
@@ -336,9 +336,9 @@ class Observer::Run final : public ObserverFollower {
   /// Since the start of the run: a scale of the displacement leaves alone what was there before.
   [[nodiscard]] double drift_m(std::size_t i) const {
     return (1.0 + belief_.mean(scale_)) * unscaled_drift_m() +
-           s_.outputs.hall(o_.drift_output_) * (hall_at(i) - start_hall_K_);
+           s_.outputs.ambient(o_.drift_output_) * (ambient_at(i) - start_ambient_K_);
   }
-  [[nodiscard]] double hall_at(std::size_t row) const { return hall_K_[row - first_hall_row_]; }
+  [[nodiscard]] double ambient_at(std::size_t row) const { return ambient_K_[row - first_ambient_row_]; }
   [[nodiscard]] double unscaled_drift_m() const {
     return s_.outputs.state.col(o_.drift_output_).dot(belief_.mean.head(n_) - start_state_);
   }
@@ -356,15 +356,15 @@ class Observer::Run final : public ObserverFollower {
   Eigen::Index scale_ = 0, zero_ = 0;  // of the drift: its factor, and what the indicator showed at the start of the run
   Belief belief_;
   Eigen::VectorXd start_state_;
-  double start_hall_K_ = 0.0, drift_zero_m_ = 0.0;
+  double start_ambient_K_ = 0.0, drift_zero_m_ = 0.0;
   std::size_t row_ = 0, first_drift_ = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> sensor_channel_;
   std::size_t drift_channel_ = 0;
   std::vector<bool> live_;
   std::vector<std::string> distrusted_;
-  std::deque<double> hall_K_;  // of the last rows taken: as believed
-  std::deque<bool> is_hall_doubted_;
-  std::size_t first_hall_row_ = 0;
+  std::deque<double> ambient_K_;  // of the last rows taken: as believed
+  std::deque<bool> is_ambient_doubted_;
+  std::size_t first_ambient_row_ = 0;
   bool has_channels_ = false;
   std::vector<double> innovation_K_, dropped_s_;
   std::vector<double> mean_innovation_;
@@ -374,11 +374,11 @@ class Observer::Run final : public ObserverFollower {
   std::map<std::vector<double>, Step> steps_;
 };
 
-Observer::Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_hall_K,
+Observer::Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_ambient_K,
                    std::vector<std::string> sensors, std::string drift, ObserverSettings settings)
     : system_(std::move(system)),
       start_(std::move(start)),
-      start_hall_K_(start_hall_K),
+      start_ambient_K_(start_ambient_K),
       sensors_(std::move(sensors)),
       drift_(std::move(drift)),
       settings_(settings) {
@@ -406,7 +406,7 @@ void Observer::learn(std::span<const ObservedRun> runs) {
 }
 
 Observer Observer::with_sensors(std::vector<std::string> sensors) const {
-  Observer other(system_, start_, start_hall_K_, std::move(sensors), drift_, settings_);
+  Observer other(system_, start_, start_ambient_K_, std::move(sensors), drift_, settings_);
   other.factors_ = factors_;
   return other;
 }
@@ -440,11 +440,11 @@ std::unique_ptr<ObserverFollower> Observer::watch() const {
 }
 
 Observer::State Observer::state() const {
-  return {system_, start_, start_hall_K_, sensors_, drift_, settings_, factors_};
+  return {system_, start_, start_ambient_K_, sensors_, drift_, settings_, factors_};
 }
 
 Observer Observer::of_state(State state) {
-  Observer observer(std::move(state.system), std::move(state.start), state.start_hall_K, std::move(state.sensors),
+  Observer observer(std::move(state.system), std::move(state.start), state.start_ambient_K, std::move(state.sensors),
                     std::move(state.drift), state.settings);
   if (state.factors.mean.size() != observer.factors_.mean.size() ||
       state.factors.covariance.rows() != observer.factors_.covariance.rows() ||

@@ -44,21 +44,21 @@ class ObserverFollower : public Follower {
 
 /// Extended Kalman filter over the reduced state z and factors on everything uncertain:
 ///
-///     dz/dt = -K(u) z + sum_s (1 + w_s) P_s(u) b_s + f_hall(u) + sum_e v_e c_e(u) (hall g_e + o_e - G_e z),   w, v: random walks
-///     reading_i = l_i'z + hall share,   drift = (1 + g) l_d'(z - z_start) + hall share
+///     dz/dt = -K(u) z + sum_s (1 + w_s) P_s(u) b_s + f_ambient(u) + sum_e v_e c_e(u) (ambient g_e + o_e - G_e z),   w, v: random walks
+///     reading_i = l_i'z + ambient share,   drift = (1 + g) l_d'(z - z_start) + ambient share
 ///
 /// K(u) enters by its exponential, exact for any step; factors on exchanges act as heat over a step. Where readings keep away from what the
 /// rest expects (their mean over about ten rows by more than five deviations), the sensor is dropped for the rest of the run and the filter
-/// goes back to before it began. A hall that jumps by more than 3 K from row to row (of rows more than 10 min apart: in 10 min) is held where it was until it is back. Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
+/// goes back to before it began. An ambient that jumps by more than 3 K from row to row (of rows more than 10 min apart: in 10 min) is held where it was until it is back. Source: Kalman, J. Basic Eng. 82 (1960) 35; Jazwinski, Stochastic Processes and Filtering Theory (1970), ch. 8.
 class Observer final : public Predictor {
  public:
   /// @param system   linear, M = 1; copied
-  /// @param start    its state at the start of every run at the hall temperature `start_hall_K`; a run that starts in another hall starts
+  /// @param start    its state at the start of every run at the ambient temperature `start_ambient_K`; a run that starts in another ambient starts
   ///                 as many kelvins higher everywhere
   /// @param sensors  outputs in K that it reads; none: the model alone
   /// @param drift    output in m
   /// @throws std::logic_error  for a system that is not linear; @throws InputError  for an output that the system has not
-  Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_hall_K, std::vector<std::string> sensors,
+  Observer(solver::ReducedSystem system, Eigen::VectorXd start, double start_ambient_K, std::vector<std::string> sensors,
            std::string drift, ObserverSettings settings = {});
 
   /// Follows runs in which the drift was measured too; what it learns of the factors stays.
@@ -95,7 +95,7 @@ class Observer final : public Predictor {
   struct State {
     solver::ReducedSystem system;
     Eigen::VectorXd start;
-    double start_hall_K = 0.0;
+    double start_ambient_K = 0.0;
     std::vector<std::string> sensors;
     std::string drift;
     ObserverSettings settings;
@@ -111,7 +111,7 @@ class Observer final : public Predictor {
 
   solver::ReducedSystem system_;
   Eigen::VectorXd start_;
-  double start_hall_K_ = 0.0;
+  double start_ambient_K_ = 0.0;
   std::vector<std::string> sensors_;
   std::string drift_;
   ObserverSettings settings_;

@@ -37,7 +37,7 @@ struct Input {
 class Predictor {
  public:
   virtual ~Predictor() = default;
-  /// What it reads, each once. Drive and hall of the run, which a model looks at, are no channels.
+  /// What it reads, each once. Drive and ambient of the run, which a model looks at, are no channels.
   [[nodiscard]] virtual std::vector<Input> inputs() const = 0;
   /// At the start of a run. The follower outlives no predictor.
   [[nodiscard]] virtual std::unique_ptr<Follower> follow() const = 0;
@@ -47,7 +47,7 @@ class Predictor {
 /// @throws InputError  for readings that lack an input or have it in another unit
 [[nodiscard]] std::vector<double> live(const Predictor& predictor, const ObservedRun& run);
 
-/// The drift before the run [um]: by drive and hall alone, with no reading but those of channels that are known ahead. All NaN for a predictor
+/// The drift before the run [um]: by drive and ambient alone, with no reading but those of channels that are known ahead. All NaN for a predictor
 /// that cannot do without its thermometers.
 /// @param known  its readings hold the times, and channels that are known ahead: `speed`, which follows from the cyclogram, or temperatures that
 ///               a model foretells

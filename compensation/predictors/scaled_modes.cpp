@@ -16,13 +16,13 @@ namespace {
 constexpr double kPrior = 0.3;  // 1 sigma of a factor's logarithm: tests decide
 constexpr double kRowsEvery_s = 300.0;
 
-/// Factors from their logarithms: sources, hall, joints, rates, then displacements.
+/// Factors from their logarithms: sources, ambient, joints, rates, then displacements.
 solver::ModelFactors factors_of(const solver::ReducedSystem& model, const double* log_factor) {
   const auto next = [&] { return std::exp(*log_factor++); };
   solver::ModelFactors f;
   for (std::size_t s = 0; s < model.sources.size(); ++s) f.source.push_back(next());
-  const double hall = next(), joints = next();
-  for (const auto& e : model.exchanges) f.exchange.push_back(e.reaches_hall() ? hall : joints);
+  const double ambient = next(), joints = next();
+  for (const auto& e : model.exchanges) f.exchange.push_back(e.reaches_ambient() ? ambient : joints);
   f.rate = next();
   for (const std::string& unit : model.outputs.unit) f.output.push_back(unit == "K" ? 1.0 : next());
   return f;
@@ -30,7 +30,7 @@ solver::ModelFactors factors_of(const solver::ReducedSystem& model, const double
 
 }  // namespace
 
-ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::VectorXd& start, double hall_K,
+ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::VectorXd& start, double ambient_K,
                              const std::vector<ThermalTest>& tests, const TestChannels& channels) {
   if (tests.empty()) throw InputError("a model cannot be scaled without tests");
   std::vector<std::size_t> output;
@@ -41,7 +41,7 @@ ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::Ve
   }
   ScaledModes m;
   for (const auto& s : model.sources) m.factors.push_back({"heat of " + s.name});
-  for (const char* name : {"films and links to the hall", "joints and links between bodies", "rates of change"})
+  for (const char* name : {"films and links to the ambient", "joints and links between bodies", "rates of change"})
     m.factors.push_back({name});
   for (std::size_t o = 0; o < model.outputs.name.size(); ++o) {
     if (model.outputs.unit[o] != "K") m.factors.push_back({"displacement " + model.outputs.name[o]});
@@ -60,13 +60,13 @@ ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::Ve
   for (const ThermalTest& t : rows) n_residuals += static_cast<int>(t.readings.size());
   const auto residual = [&](double const* const* parameters, double* out) {
     const solver::ReducedSystem s = solver::with_factors(model, factors_of(model, parameters[0]));
-    const Eigen::VectorXd at_start = s.observe(start, hall_K);
+    const Eigen::VectorXd at_start = s.observe(start, ambient_K);
     solver::Propagator propagator(s);
     Eigen::Index at = 0;
     for (std::size_t t = 0; t < tests.size(); ++t) {
-      TimeSeries hall = tests[t].hall;
-      for (double& v : hall.value) v += hall_K;
-      const solver::Trajectory run = propagator.run(tests[t].cyclogram, hall, rows[t].time_s, start);
+      TimeSeries ambient = tests[t].ambient;
+      for (double& v : ambient.value) v += ambient_K;
+      const solver::Trajectory run = propagator.run(tests[t].cyclogram, ambient, rows[t].time_s, start);
       for (std::size_t c = 0; c < output.size(); ++c) {
         const auto o = static_cast<Eigen::Index>(output[c]);
         const bool is_temperature = channels.unit[c] == "K";

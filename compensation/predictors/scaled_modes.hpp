@@ -1,6 +1,6 @@
 #pragma once
 // Hybrid of model and tests: the structure is the model's (which source heats what, how channels hang together, how films grow with speed), a
-// few factors are the tests': one on each heat source, one on all films and links to the hall, one on all joints, one on all rates of
+// few factors are the tests': one on each heat source, one on all films and links to the ambient, one on all joints, one on all rates of
 // change, one on each displacement and tilt.
 
 #include "compensation/predictors/thermal_test.hpp"
@@ -20,11 +20,12 @@ struct ScaledModes {
 
 /// @param model     linear, M = 1; borrowed while it runs
 /// @param start     its state at t = 0
-/// @param hall_K    temperature of the hall at the start minus the reference temperature: tests' halls count from it
+/// @param ambient_K    temperature of the ambient at the start minus the reference temperature: tests' ambients count from it
 /// @param channels  all of them outputs of the model
 /// @throws InputError  for a channel that the model has not, tests that lack readings
 /// @throws SolveError  when no factors are found
-[[nodiscard]] ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::VectorXd& start, double hall_K,
-                                           const std::vector<ThermalTest>& tests, const TestChannels& channels);
+[[nodiscard]] ScaledModes fit_scaled_modes(const solver::ReducedSystem& model, const Eigen::VectorXd& start,
+                                           double ambient_K, const std::vector<ThermalTest>& tests,
+                                           const TestChannels& channels);
 
 }  // namespace driftwright::compensation

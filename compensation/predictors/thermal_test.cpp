@@ -10,7 +10,7 @@
 namespace driftwright::compensation {
 
 ThermalTest averaged(const ThermalTest& test, double over_s) {
-  ThermalTest mean{test.cyclogram, test.hall, {}, {}};
+  ThermalTest mean{test.cyclogram, test.ambient, {}, {}};
   std::vector<Eigen::VectorXd> columns;
   for (std::size_t i = 0; i < test.time_s.size();) {
     const Drive drive = test.cyclogram.drive(test.time_s[i]);

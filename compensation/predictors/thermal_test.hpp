@@ -1,5 +1,5 @@
 #pragma once
-// What a predictor without sensors learns from: a machine running at known speeds in a known hall, and what was read.
+// What a predictor without sensors learns from: a machine running at known speeds in a known ambient, and what was read.
 
 #include <Eigen/Core>
 #include <string>
@@ -11,7 +11,7 @@ namespace driftwright::compensation {
 
 struct ThermalTest {
   Cyclogram cyclogram;
-  TimeSeries hall;  ///< minus its temperature at the start [K]
+  TimeSeries ambient;  ///< minus its temperature at the start [K]
   std::vector<double> time_s;
   Eigen::MatrixXd readings;  ///< n_channels x n_times, each minus what it was at the start
 };

@@ -10,7 +10,7 @@ namespace driftwright::compensation {
 /// A run of one machine: temperatures and drifts since its start.
 struct RunOfCandidates {
   int machine = 0;             ///< runs of one machine are fitted together
-  int group = 0;               ///< is left out as a whole: a cyclogram, in all its halls
+  int group = 0;               ///< is left out as a whole: a cyclogram, in all its ambients
   Eigen::MatrixXd reading_K;   ///< n_candidates x n_rows, without noise
   Eigen::MatrixXd drift_um;    ///< n_rows x n_drifts
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What the machine is told and what surrounds it, over time: the drive in sections, hall temperature in knots.
+// What the machine is told and what surrounds it, over time: the drive in sections, ambient temperature in knots.
 
 #include <array>
 #include <string>
@@ -82,14 +82,14 @@ struct LinearStretch {
 };
 
 /// Cuts a cyclogram at its changes of drive and at further knots, in order, without empty pieces.
-/// @param knots_s  times at which an integrator must stop although the drive does not change: knots of the hall
+/// @param knots_s  times at which an integrator must stop although the drive does not change: knots of the ambient
 ///                 temperature or of prescribed temperatures, onsets of a draught. Any order, repetitions allowed; those
 ///                 outside the cyclogram do nothing, nor do those within 1e-9 of the time of another cut.
 /// @throws std::logic_error  for a knot that is NaN
 [[nodiscard]] std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const std::vector<double>& knots_s);
 /// What of them lies behind a time: the one that it divides begins there, and no drive changes with that.
 [[nodiscard]] std::vector<LinearStretch> behind(double time_s, std::vector<LinearStretch> stretches);
-/// The same with the knots of the hall temperature alone.
-[[nodiscard]] std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const TimeSeries& hall);
+/// The same with the knots of the ambient temperature alone.
+[[nodiscard]] std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const TimeSeries& ambient);
 
 }  // namespace driftwright

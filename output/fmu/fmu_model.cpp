@@ -64,7 +64,7 @@ std::vector<FmuOutput> outputs_of(const solver::Outputs& outputs, double referen
                             : outputs.unit[o] == "m" ? "um"
                                                      : "urad",
                     .state = outputs.state.col(column),
-                    .hall = outputs.hall[column],
+                    .ambient = outputs.ambient[column],
                     .factor = is_temperature ? 1.0 : 1e6,
                     .offset = is_temperature ? reference_K - kZeroCelsius_K : 0.0});
   }
@@ -84,18 +84,18 @@ FmuModel model_of(const Scenario& scenario, const solver::ReducedSystem& system)
   FmuModel model{.name = scenario.name, .drive = ranges_of(scenario), .reference_K = system.reference_K};
   const Eigen::Index n = system.size();
   model.conduction = system.conduction;
-  model.constant_load = model.hall_load = Eigen::VectorXd::Zero(n);
+  model.constant_load = model.ambient_load = Eigen::VectorXd::Zero(n);
   for (const solver::HeatSource& s : system.sources)
     model.sources.push_back({s.load, table_of(scenario, s.power_W, s.name, model.drive)});
   for (const auto& e : system.exchanges) {
     model.exchanges.push_back({.matrix = e.matrix,
-                               .to_hall = e.reaches_hall() ? e.to_hall : Eigen::VectorXd(Eigen::VectorXd::Zero(n)),
+                               .to_ambient = e.reaches_ambient() ? e.to_ambient : Eigen::VectorXd(Eigen::VectorXd::Zero(n)),
                                .offset = e.offset.size() > 0 ? e.offset : Eigen::VectorXd(Eigen::VectorXd::Zero(n)),
                                .coefficient = table_of(scenario, e.coefficient, e.name, model.drive)});
   }
   model.outputs = outputs_of(system.outputs, system.reference_K);
   model.ones = system.ones;
-  model.hall = machine.hall;
+  model.ambient = machine.ambient;
   model.known_drives = drives_of(scenario, model.drive);
   return model;
 }
@@ -109,7 +109,7 @@ void sum_up_constants(FmuModel& model) {
     if (!e.coefficient.terms.empty()) return false;
     const double c = e.coefficient.at_rest;
     model.conduction += c * e.matrix;
-    model.hall_load += c * e.to_hall;
+    model.ambient_load += c * e.to_ambient;
     model.constant_load += c * e.offset;
     return true;
   });
@@ -124,7 +124,8 @@ void require_exportable(const Scenario& scenario) {
   };
   for (const effects::Effect& e : machine.effects) {
     if (e.kind->change_readings) refuse(e, "acts on what instruments say, and an FMU holds the machine alone");
-    if (e.kind->change_drive) refuse(e, "says that drive or hall were recorded wrongly, and an FMU is given the true ones");
+    if (e.kind->change_drive)
+      refuse(e, "says that drive or ambient were recorded wrongly, and an FMU is given the true ones");
     if (!e.in.empty() || e.from_s > 0.0 || e.until_s < effects::kNever_s)
       refuse(e, "acts for a time or in one cyclogram alone, and an FMU knows neither");
   }
@@ -143,8 +144,8 @@ FmuModel machine_fmu(const Scenario& scenario, const scenarios::ReducedMachine& 
   std::erase_if(model.outputs, [](const FmuOutput& o) { return effects::is_mean_output(o.name); });  // of no instrument
   sum_up_constants(model);
   model.start = reduced.start;
-  model.start_hall_K = scenarios::felt_hall_at_start_K(machine);
-  model.start_follows_hall = machine.start == scenarios::Start::kHall || machine.start == scenarios::Start::kSteady;
+  model.start_ambient_K = scenarios::felt_ambient_at_start_K(machine);
+  model.start_follows_ambient = machine.start == scenarios::Start::kAmbient || machine.start == scenarios::Start::kSteady;
   model.description = fmt::format(
       "Thermal drift of a machine tool: reduced model of {} states for {} temperature unknowns, estimated to miss them by "
       "at most "
@@ -157,8 +158,8 @@ FmuModel observer_fmu(const Scenario& scenario, const compensation::Observer& ob
   compensation::Observer::State state = observer.state();
   FmuModel model = model_of(scenario, state.system);
   model.start = state.start;
-  model.start_hall_K = state.start_hall_K;
-  model.start_follows_hall = true;
+  model.start_ambient_K = state.start_ambient_K;
+  model.start_follows_ambient = true;
   FmuObserver o{.sensors = state.sensors, .settings = state.settings, .factors = state.factors};
   const auto index_of = [&](const std::string& name) {
     const auto at =

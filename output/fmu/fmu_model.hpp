@@ -14,7 +14,7 @@ namespace driftwright::output {
 struct FmuOutput {
   std::string name, unit;             ///< "degC", "um" or "urad"
   Eigen::VectorXd state;              ///< of K, m or rad per unit of each state
-  double hall = 0.0;                  ///< per kelvin of the hall
+  double ambient = 0.0;               ///< per kelvin of the ambient
   double factor = 1.0, offset = 0.0;  ///< from K, m, rad to the unit
 };
 
@@ -24,7 +24,7 @@ struct FmuSource {
 };
 struct FmuExchange {
   Eigen::MatrixXd matrix;
-  Eigen::VectorXd to_hall, offset;
+  Eigen::VectorXd to_ambient, offset;
   DriveLaw coefficient;
 };
 
@@ -45,21 +45,21 @@ struct FmuModel {
   std::vector<DriveRange> drive = {};
   double reference_K = 293.15;
   Eigen::MatrixXd conduction = {};
-  Eigen::VectorXd constant_load = {}, hall_load = {};
+  Eigen::VectorXd constant_load = {}, ambient_load = {};
   std::vector<FmuSource> sources = {};
   std::vector<FmuExchange> exchanges = {};
   std::vector<FmuOutput> outputs = {};
   Eigen::VectorXd start = {}, ones = {};
-  double start_hall_K = 0.0;
-  bool start_follows_hall = false;
-  TimeSeries hall = {};
+  double start_ambient_K = 0.0;
+  bool start_follows_ambient = false;
+  TimeSeries ambient = {};
   std::vector<std::vector<double>> known_drives = {};  ///< of the cyclograms: decomposed when an instance is made
   double duration_s = 0.0;                             ///< of the cyclogram of the reference result
   std::optional<FmuObserver> observer = {};
 };
 
-/// Looks whether a scenario's machine can be exported: whether drive and hall say all. Cheap, before anything is computed.
-/// @throws InputError  naming the effect: one of drive, hall or instruments, one for a time or one cyclogram alone, one that follows a column
+/// Looks whether a scenario's machine can be exported: whether drive and ambient say all. Cheap, before anything is computed.
+/// @throws InputError  naming the effect: one of drive, ambient or instruments, one for a time or one cyclogram alone, one that follows a column
 void require_exportable(const scenarios::Scenario& scenario);
 
 /// @param reduced  linear

@@ -86,11 +86,11 @@ std::string observer_text(const FmuModel& model) {
 
 std::string model_data_c(const FmuModel& model, const std::string& identifier, const std::string& guid,
                          const std::string& made_by) {
-  std::vector<double> conduction, constant, hall, loads, exchanges, to_hall, offsets, outputs, outputs_hall, factor, offset,
-      start, ones, most, known;
+  std::vector<double> conduction, constant, ambient, loads, exchanges, to_ambient, offsets, outputs, outputs_ambient, factor,
+      offset, start, ones, most, known;
   append(conduction, model.conduction);
   append(constant, model.constant_load);
-  append(hall, model.hall_load);
+  append(ambient, model.ambient_load);
   std::vector<const DriveLaw*> powers, coefficients;
   for (const FmuSource& s : model.sources) {
     append(loads, s.load);
@@ -98,13 +98,13 @@ std::string model_data_c(const FmuModel& model, const std::string& identifier, c
   }
   for (const FmuExchange& e : model.exchanges) {
     append(exchanges, e.matrix);
-    append(to_hall, e.to_hall);
+    append(to_ambient, e.to_ambient);
     append(offsets, e.offset);
     coefficients.push_back(&e.coefficient);
   }
   for (const FmuOutput& o : model.outputs) {
     append(outputs, o.state);
-    outputs_hall.push_back(o.hall);
+    outputs_ambient.push_back(o.ambient);
     factor.push_back(o.factor);
     offset.push_back(o.offset);
   }
@@ -116,21 +116,21 @@ std::string model_data_c(const FmuModel& model, const std::string& identifier, c
   std::string text = fmt::format("/* {} {} */\n#include \"model_data.h\"\n\n", comment(model.description), comment(made_by));
   text += fmt::format("const char *const model_guid = \"{}\";\nconst char *const model_identifier = \"{}\";\n\n", guid,
                       identifier);
-  text += array("conduction", conduction) + array("constant_load", constant) + array("hall_load", hall) +
-          array("loads", loads) + laws("powers", powers) + array("exchanges", exchanges) + array("to_hall", to_hall) +
+  text += array("conduction", conduction) + array("constant_load", constant) + array("ambient_load", ambient) +
+          array("loads", loads) + laws("powers", powers) + array("exchanges", exchanges) + array("to_ambient", to_ambient) +
           array("offsets", offsets) + laws("coefficients", coefficients) + array("outputs", outputs) +
-          array("outputs_hall", outputs_hall) + array("output_factor", factor) + array("output_offset", offset) +
-          array("start", start) + array("ones", ones) + array("hall_time_s", model.hall.time_s) +
-          array("hall_K", model.hall.value) + array("most_drive", most) + array("nominal", nominal_of(model)) +
+          array("outputs_ambient", outputs_ambient) + array("output_factor", factor) + array("output_offset", offset) +
+          array("start", start) + array("ones", ones) + array("ambient_time_s", model.ambient.time_s) +
+          array("ambient_K", model.ambient.value) + array("most_drive", most) + array("nominal", nominal_of(model)) +
           array("known_drive", known);
   text += fmt::format(
-      "const thermal_data thermal = {{\n  {}, {}, {}, {}, {},\n  conduction, constant_load, hall_load, loads, powers, "
+      "const thermal_data thermal = {{\n  {}, {}, {}, {}, {},\n  conduction, constant_load, ambient_load, loads, powers, "
       "exchanges, "
-      "to_hall, offsets, coefficients,\n  outputs, outputs_hall, output_factor, output_offset, start, ones, {:a}, {}, "
+      "to_ambient, offsets, coefficients,\n  outputs, outputs_ambient, output_factor, output_offset, start, ones, {:a}, {}, "
       "{:a},\n  {}, "
-      "hall_time_s, hall_K, most_drive, nominal, {}, known_drive}};\n",
+      "ambient_time_s, ambient_K, most_drive, nominal, {}, known_drive}};\n",
       model.start.size(), model.drive.size(), model.sources.size(), model.exchanges.size(), model.outputs.size(),
-      model.start_hall_K, model.start_follows_hall ? 1 : 0, model.reference_K - 273.15, model.hall.time_s.size(),
+      model.start_ambient_K, model.start_follows_ambient ? 1 : 0, model.reference_K - 273.15, model.ambient.time_s.size(),
       model.known_drives.size());
   return text + observer_text(model);
 }

@@ -13,7 +13,7 @@
 namespace driftwright::output {
 namespace {
 
-constexpr unsigned kInputs = 1000, kStartWarmer = 2000, kHallFromInput = 3000, kOutputs = 4000, kStates = 10000,
+constexpr unsigned kInputs = 1000, kStartWarmer = 2000, kAmbientFromInput = 3000, kOutputs = 4000, kStates = 10000,
                    kDerivatives = 20000;
 
 struct Unit {
@@ -122,7 +122,7 @@ void add_observer(std::vector<FmuVariable>& list, const FmuModel& model) {
   for (const FmuOutput& out : model.outputs)
     add("model." + out.name, words_of(out.unit) + " of the model in the state that is believed", out.unit);
   for (const std::string& sensor : o.sensors) add("doubted." + sensor, "1 where the thermometer is no longer believed", "");
-  add("doubted.hall_temperature", "1 while the hall's thermometer is not believed", "");
+  add("doubted.ambient_temperature", "1 while the ambient thermometer is not believed", "");
 }
 
 std::string interface_attributes(FmiVersion version, const FmuModel& model, bool is_co_simulation,
@@ -173,15 +173,16 @@ bool is_state(const FmuVariable& v) {
   return v.reference >= kStates && v.reference < kDerivatives;
 }
 
-/// What an output of the machine depends on: the states that it reads, and the hall.
+/// What an output of the machine depends on: the states that it reads, and the ambient.
 std::vector<std::size_t> dependencies(const FmuModel& model, const std::vector<FmuVariable>& variables,
                                       const FmuVariable& output) {
   std::vector<std::size_t> list;
   const FmuOutput& o = model.outputs[output.reference - kOutputs];
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const FmuVariable& v = variables[i];
-    const bool is_hall = v.name == "hall_temperature" || v.name == "hall_temperature_rate" || v.causality == "independent";
-    if ((is_hall && o.hall != 0.0) || (is_state(v) && o.state[v.reference - kStates] != 0.0)) list.push_back(i);
+    const bool is_ambient =
+        v.name == "ambient_temperature" || v.name == "ambient_temperature_rate" || v.causality == "independent";
+    if ((is_ambient && o.ambient != 0.0) || (is_state(v) && o.state[v.reference - kStates] != 0.0)) list.push_back(i);
   }
   return list;
 }
@@ -218,7 +219,7 @@ std::string structure_xml(const FmuModel& model, const std::vector<FmuVariable>&
 }  // namespace
 
 std::vector<FmuVariable> variables_of(const FmuModel& model) {
-  const double hall_degC = model.start_hall_K + model.reference_K - kZeroCelsius_K;
+  const double ambient_degC = model.start_ambient_K + model.reference_K - kZeroCelsius_K;
   std::vector<FmuVariable> list = {{.name = "time",
                                     .reference = 0,
                                     .description = "since the start of the scenario",
@@ -228,13 +229,13 @@ std::vector<FmuVariable> variables_of(const FmuModel& model) {
   unsigned reference = kInputs;
   for (const DriveRange& range : model.drive) list.push_back(drive_input(range, reference++));
   const bool is_observer = model.observer.has_value();
-  list.push_back({.name = "hall_temperature",
+  list.push_back({.name = "ambient_temperature",
                   .reference = reference++,
-                  .description = is_observer ? "of the hall, at each sample" : "of the hall, where hall_from_input",
+                  .description = is_observer ? "of the ambient, at each sample" : "of the ambient, where ambient_from_input",
                   .causality = "input",
                   .variability = is_observer ? "discrete" : "continuous",
                   .unit = "degC",
-                  .start = hall_degC});
+                  .start = ambient_degC});
   if (is_observer) {
     for (const std::string& sensor : model.observer->sensors)
       list.push_back({.name = sensor,
@@ -243,16 +244,17 @@ std::vector<FmuVariable> variables_of(const FmuModel& model) {
                       .causality = "input",
                       .variability = "discrete",
                       .unit = "degC",
-                      .start = hall_degC});
+                      .start = ambient_degC});
     add_observer(list, model);
   } else {
-    list.push_back({.name = "hall_temperature_rate",
-                    .reference = reference++,
-                    .description = "by which hall_temperature goes on changing after it was set, where hall_from_input",
-                    .causality = "input",
-                    .variability = "continuous",
-                    .unit = "K/s",
-                    .start = 0.0});
+    list.push_back(
+        {.name = "ambient_temperature_rate",
+         .reference = reference++,
+         .description = "by which ambient_temperature goes on changing after it was set, where ambient_from_input",
+         .causality = "input",
+         .variability = "continuous",
+         .unit = "K/s",
+         .start = 0.0});
     list.push_back({.name = "start_warmer",
                     .reference = kStartWarmer,
                     .description = "everything starts as much warmer than the scenario says",
@@ -261,9 +263,9 @@ std::vector<FmuVariable> variables_of(const FmuModel& model) {
                     .initial = "exact",
                     .unit = "K",
                     .start = 0.0});
-    list.push_back({.name = "hall_from_input",
-                    .reference = kHallFromInput,
-                    .description = "true: the hall is the input hall_temperature; false: the hall of the scenario",
+    list.push_back({.name = "ambient_from_input",
+                    .reference = kAmbientFromInput,
+                    .description = "true: the ambient is the input ambient_temperature; false: the ambient of the scenario",
                     .causality = "parameter",
                     .variability = "fixed",
                     .initial = "exact",

@@ -14,8 +14,9 @@ namespace {
 using scenarios::MachineModel;
 using scenarios::Scenario;
 
-constexpr std::size_t kMostTimes = 200;               // at which laws change by themselves
-constexpr double kColder_K = 25.0, kWarmer_K = 90.0;  // than hall and reference, what laws of temperature are tabulated for
+constexpr std::size_t kMostTimes = 200;  // at which laws change by themselves
+constexpr double kColder_K = 25.0,
+                 kWarmer_K = 90.0;  // than ambient and reference, what laws of temperature are tabulated for
 
 std::vector<DriveRange> ranges_of(const Scenario& scenario) {
   std::vector<DriveRange> ranges;
@@ -31,7 +32,7 @@ std::vector<DriveRange> ranges_of(const Scenario& scenario) {
 }
 
 TemperatureRange temperatures_of(const MachineModel& machine) {
-  const auto [low, high] = std::minmax_element(machine.hall.value.begin(), machine.hall.value.end());
+  const auto [low, high] = std::minmax_element(machine.ambient.value.begin(), machine.ambient.value.end());
   return {.low_K = machine.reference_K + std::min(0.0, *low) - kColder_K,
           .high_K = machine.reference_K + std::max(0.0, *high) + kWarmer_K,
           .usual_K = machine.reference_K};
@@ -90,7 +91,7 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
     if (e.kind->change_readings)
       notes.push_back(fmt::format("{} acts on what instruments say; here they say what is.", e.name()));
     if (e.kind->change_drive)
-      notes.push_back(fmt::format("{} changes the recorded drive or hall; here both are as they are set.", e.name()));
+      notes.push_back(fmt::format("{} changes the recorded drive or ambient; here both are as they are set.", e.name()));
     if (!e.in.empty())
       notes.push_back(fmt::format("{} acts in the cyclogram '{}' alone, and here not at all.", e.name(), e.in));
   }
@@ -112,8 +113,11 @@ TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& syst
   if (system.change_times_s.size() > kMostTimes)
     throw InputError(machine.where, fmt::format("laws change {} times by themselves; the page holds up to {} (docs/view.md)",
                                                 system.change_times_s.size(), kMostTimes));
-  TwinModel model{
-      .drive = ranges_of(scenario), .system = system, .start = start, .hall = machine.hall, .notes = notes_of(machine)};
+  TwinModel model{.drive = ranges_of(scenario),
+                  .system = system,
+                  .start = start,
+                  .ambient = machine.ambient,
+                  .notes = notes_of(machine)};
   for (const solver::HeatSource& s : system.sources)
     model.powers_W.push_back(timed_law(scenario, s.power_W, s.name, model, system.change_times_s));
   for (const auto& e : system.exchanges)
@@ -124,7 +128,7 @@ TwinModel twin_model(const Scenario& scenario, const solver::ReducedSystem& syst
 LumpedSystem lumped_system(const MachineModel& model) {
   const scenarios::Machine machine = scenarios::build(model, scenarios::place(model), false);
   for (const solver::FixedUnknowns& f : machine.system.fixed) {
-    if (!f.follows_hall && f.theta.value.size() > 1)
+    if (!f.follows_ambient && f.theta.value.size() > 1)
       throw InputError(
           model.where,
           fmt::format("{} is prescribed over time; no page is made of such a machine yet (docs/view.md)", f.name));
@@ -135,7 +139,7 @@ LumpedSystem lumped_system(const MachineModel& model) {
   const Eigen::MatrixXd basis = solver::orthonormalise(system.mass, Eigen::MatrixXd::Identity(n, n));
   Eigen::VectorXd start = scenarios::start_state(model, machine);
   for (const solver::FixedUnknowns& f : machine.system.fixed) {  // what is held jumps at once, as in simulate()
-    for (int i : f.unknowns) start[i] = f.follows_hall ? scenarios::felt_hall_at_start_K(model) : f.theta.at(0.0);
+    for (int i : f.unknowns) start[i] = f.follows_ambient ? scenarios::felt_ambient_at_start_K(model) : f.theta.at(0.0);
   }
   return {.system = solver::project(system, basis),
           .start = basis.transpose() * (system.mass * start),

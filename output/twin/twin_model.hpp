@@ -22,7 +22,7 @@ struct TwinModel {
   solver::ReducedSystem system = {};  ///< M = 1; its laws stand in `powers_W` and `coefficients`
   Eigen::VectorXd start = {};
   std::vector<TwinTimedLaw> powers_W = {}, coefficients = {};
-  TimeSeries hall = {};                 ///< over the reference temperature [K]
+  TimeSeries ambient = {};              ///< over the reference temperature [K]
   std::vector<std::string> notes = {};  ///< what of the scenario the page leaves out, a sentence each
   [[nodiscard]] bool follows_temperatures() const { return system.looks_at_state() || !system.thermostats.empty(); }
 };

@@ -64,24 +64,24 @@ std::vector<Eigen::Index> told_outputs(const solver::Outputs& outputs) {
 Json json_of(const TwinModel& model) {
   const solver::ReducedSystem& s = model.system;
   const Eigen::Index n = s.size();
-  Rows loads(n), exchanges(n * n), to_hall(n), offsets(n), probes(n), outputs(n);
-  std::vector<double> probe_hall, probe_offset_K, output_hall;
+  Rows loads(n), exchanges(n * n), to_ambient(n), offsets(n), probes(n), outputs(n);
+  std::vector<double> probe_ambient, probe_offset_K, output_ambient;
   Json powers = Json::array(), coefficients = Json::array(), told = Json::array(), thermostats = Json::array();
   for (const solver::HeatSource& source : s.sources) loads.add(source.load);
   for (const auto& e : s.exchanges) {
     exchanges.add(e.matrix.reshaped());
-    to_hall.add(e.reaches_hall() ? e.to_hall : Eigen::VectorXd());
+    to_ambient.add(e.reaches_ambient() ? e.to_ambient : Eigen::VectorXd());
     offsets.add(e.offset);
   }
   for (const solver::Probe& p : s.probes) {
     probes.add(p.weights);
-    probe_hall.push_back(p.hall_share);
+    probe_ambient.push_back(p.ambient_share);
     probe_offset_K.push_back(p.offset_K);
   }
   for (Eigen::Index o : told_outputs(s.outputs)) {
     const auto i = static_cast<std::size_t>(o);
     outputs.add(s.outputs.state.col(o));
-    output_hall.push_back(s.outputs.hall[o]);
+    output_ambient.push_back(s.outputs.ambient[o]);
     const bool is_temperature = s.outputs.unit[i] == "K";
     told.push_back({{"name", s.outputs.name[i]},
                     {"unit", is_temperature             ? "degC"
@@ -104,20 +104,20 @@ Json json_of(const TwinModel& model) {
            {{"conduction", text_of(s.conduction)},
             {"loads", loads.text()},
             {"exchanges", exchanges.text()},
-            {"to_hall", to_hall.text()},
+            {"to_ambient", to_ambient.text()},
             {"offsets", offsets.text()},
             {"probe_weights", probes.text()},
-            {"probe_hall", text_of(probe_hall)},
+            {"probe_ambient", text_of(probe_ambient)},
             {"probe_offset_K", text_of(probe_offset_K)},
             {"output_state", outputs.text()},
-            {"output_hall", text_of(output_hall)},
+            {"output_ambient", text_of(output_ambient)},
             {"start", text_of(model.start)}}},
           {"powers", powers},
           {"coefficients", coefficients},
           {"change_times_s", s.change_times_s},
           {"thermostats", thermostats},
           {"outputs_told", told},
-          {"hall", {{"time_s", text_of(model.hall.time_s)}, {"value_K", text_of(model.hall.value)}}}};
+          {"ambient", {{"time_s", text_of(model.ambient.time_s)}, {"value_K", text_of(model.ambient.value)}}}};
 }
 
 struct DriveWords {

@@ -51,13 +51,13 @@ void for_each_wanted_column(const MachineModel& model, const std::string& cyclog
 
 }  // namespace
 
-bool is_on_hall(const Sensor& sensor) {
+bool is_on_ambient(const Sensor& sensor) {
   const auto* node = std::get_if<std::string>(&sensor.place);
-  return node && *node == effects::kHallName;
+  return node && *node == effects::kAmbientName;
 }
 
 bool has_ambient_channel(const MachineModel& model) {
-  return std::none_of(model.sensors.begin(), model.sensors.end(), is_on_hall);
+  return std::none_of(model.sensors.begin(), model.sensors.end(), is_on_ambient);
 }
 
 std::vector<std::string> wanted_columns(const MachineModel& model, const std::string& cyclogram) {
@@ -93,16 +93,16 @@ FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
 
 FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded) {
   const effects::DriveChange change = effects::drive_change(model.effects, recorded.name);
-  return {effects::true_cyclogram(change, recorded), effects::true_hall(change, model.hall, recorded)};
+  return {effects::true_cyclogram(change, recorded), effects::true_ambient(change, model.ambient, recorded)};
 }
 
-double felt_hall_at_start_K(const MachineModel& model) {
-  return effects::true_hall(effects::drive_change(model.effects, ""), model.hall, {}).at(0.0);
+double felt_ambient_at_start_K(const MachineModel& model) {
+  return effects::true_ambient(effects::drive_change(model.effects, ""), model.ambient, {}).at(0.0);
 }
 
 double warmer_start_K(const MachineModel& model, const Cyclogram& recorded) {
-  if (model.start != Start::kHall && model.start != Start::kSteady) return 0.0;
-  return felt_run_as_far_as_known(model, recorded).hall.at(0.0) - felt_hall_at_start_K(model);
+  if (model.start != Start::kAmbient && model.start != Start::kSteady) return 0.0;
+  return felt_run_as_far_as_known(model, recorded).ambient.at(0.0) - felt_ambient_at_start_K(model);
 }
 
 std::vector<std::string> sensor_channels(const Record& record) {

@@ -6,15 +6,15 @@
 
 namespace driftwright::scenarios {
 
-/// Channel of the recorded hall temperature.
+/// Channel of the recorded ambient temperature.
 inline constexpr const char* kAmbient = "ambient";
 
-/// Drive and hall as the machine feels them.
+/// Drive and ambient as the machine feels them.
 struct FeltRun {
   Cyclogram cyclogram;
-  TimeSeries hall;  ///< minus the reference temperature [K]
+  TimeSeries ambient;  ///< minus the reference temperature [K]
 };
-/// What is felt while the record says `recorded` and the scenario's hall; its effects tell them apart.
+/// What is felt while the record says `recorded` and the scenario's ambient; its effects tell them apart.
 /// @throws InputError  where an effect wants a column that the cyclogram does not have
 [[nodiscard]] FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded);
 /// The same of a cyclogram that is looked at and not run: a column that it does not have counts as 0.
@@ -23,14 +23,14 @@ struct FeltRun {
 [[nodiscard]] std::vector<std::string> wanted_columns(const MachineModel& model, const std::string& cyclogram);
 /// @throws InputError  for one that the cyclogram does not have, and for a displacement that would follow a column that is no temperature
 void require_columns(const MachineModel& model, const Cyclogram& cyclogram);
-/// The hall that the machine starts in, minus the reference temperature [K]: with errors that every cyclogram has, so that all
+/// The ambient that the machine starts in, minus the reference temperature [K]: with errors that every cyclogram has, so that all
 /// of them start alike.
-[[nodiscard]] double felt_hall_at_start_K(const MachineModel& model);
-/// How much warmer a run begins than the machine usually starts [K], everywhere: where it starts as warm as the hall or in balance with it, and
-/// the hall's record was wrong in this cyclogram alone.
+[[nodiscard]] double felt_ambient_at_start_K(const MachineModel& model);
+/// How much warmer a run begins than the machine usually starts [K], everywhere: where it starts as warm as the ambient or in balance with it, and
+/// the ambient record was wrong in this cyclogram alone.
 [[nodiscard]] double warmer_start_K(const MachineModel& model, const Cyclogram& recorded);
 
-[[nodiscard]] bool is_on_hall(const Sensor& sensor);
+[[nodiscard]] bool is_on_ambient(const Sensor& sensor);
 /// Whether the machine's records have the channel `ambient`.
 [[nodiscard]] bool has_ambient_channel(const MachineModel& model);
 

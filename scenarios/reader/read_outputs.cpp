@@ -70,7 +70,7 @@ schema::Map sensor_schema() {
           .keys = {compulsory("name", schema::name(), "of its channel"),
                    schema::optional("region", text(), "of the mesh that it sits on"),
                    schema::optional("at", schema::vector3("m"), "where on it; moved onto the region by at most 5 mm"),
-                   schema::optional("node", text(), "or: a lumped node, or `hall`")},
+                   schema::optional("node", text(), "or: a lumped node, or `ambient`")},
           .groups = {{Group::Rule::kExactlyOne,
                       {"node", "region"},
                       "where does it sit? `region` and `at`, or `node`, is wanted"},

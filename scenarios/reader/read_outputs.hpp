@@ -19,7 +19,7 @@ struct PointOnRegion {
   Where where;
 };
 
-/// A thermometer: at a point of a region, or on a lumped node ("hall" is the hall).
+/// A thermometer: at a point of a region, or on a lumped node ("ambient" is the ambient).
 struct Sensor {
   std::string name;
   std::variant<PointOnRegion, std::string> place;

@@ -11,6 +11,7 @@
 
 #include "base/designs.hpp"
 #include "base/quantity.hpp"
+#include "scenarios/reader/former_words.hpp"
 #include "scenarios/reader/sweep_plan.hpp"
 
 namespace driftwright::scenarios {
@@ -133,8 +134,9 @@ std::string name_of_address(const std::string& address) {
 
 Variation read_variation(const ConfigMap& in, const ConfigNode& scenario, Design design) {
   Variation v;
-  const std::vector<std::string> addresses = in.is_list("key") ? in.texts("key") : std::vector{in.text("key")};
-  for (const std::string& address : addresses) {
+  std::vector<std::string> addresses = in.is_list("key") ? in.texts("key") : std::vector{in.text("key")};
+  for (std::string& address : addresses) {
+    address = address_in_present_words(address, in.where("key"));
     v.places.push_back(find_address(scenario, address, in.where("key")));
     v.tops.push_back(scenario.keys[v.places.back()[0]].text);
     if (v.tops.back() == "name" || v.tops.back() == "study")
@@ -145,6 +147,7 @@ Variation read_variation(const ConfigMap& in, const ConfigNode& scenario, Design
   v.written_at = in.value(kind);
   if (kind == "values") {
     read_values(in, v);
+    for (SweepValue& value : v.values) value.node = value_in_present_words(value.node, addresses[0]);
   } else if (kind == "from") {
     read_steps(in, v);
   } else if (kind == "normal") {
@@ -341,7 +344,7 @@ SweepPlan read_sweep_plan(const std::string& path) {
   const auto scenario_path = std::filesystem::path(path).parent_path() / in.text("scenario");  // an absolute path stays
   if (!std::filesystem::is_regular_file(scenario_path))
     in.fail("scenario", fmt::format("there is no file '{}' (paths are relative to the study)", scenario_path.string()));
-  plan.scenario = read_config_tree(scenario_path.string());
+  plan.scenario = read_scenario_tree(scenario_path.string());
   const std::map<std::string, Design> designs = {
       {"list", Design::kList}, {"grid", Design::kGrid}, {"latin_hypercube", Design::kLatinHypercube}};
   plan.design = designs.at(in.choice("design"));

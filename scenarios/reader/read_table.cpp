@@ -150,7 +150,7 @@ schema::Map table_schema() {
                            "within which the probe may move")}};
   const schema::Map readings = {.name = "table, readings",
                                 .keys = {compulsory("csv", text(), "a record, relative to the scenario"),
-                                         compulsory("ambient", text(), "its channel of the hall"),
+                                         compulsory("ambient", text(), "its channel of the ambient"),
                                          compulsory("x", text(), "its channel of the table along x"),
                                          compulsory("y", text(), "along y"), compulsory("z", text(), "along z")},
                                 .about = "Readings of others to compare the computed table with."};

@@ -49,11 +49,11 @@ std::vector<Rest> rests_of(const CutRecord& cut, std::size_t first, std::size_t 
   return list;
 }
 
-/// A channel over the hall where that is known and it is a temperature.
-std::vector<double> over_hall(const CutRecord& cut, const Channel& channel, bool is_temperature) {
+/// A channel over the ambient where that is known and it is a temperature.
+std::vector<double> over_ambient(const CutRecord& cut, const Channel& channel, bool is_temperature) {
   std::vector<double> x = channel.values;
-  if (!is_temperature || cut.hall.time_s.empty()) return x;
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= cut.hall.at(cut.record.time_s[i] - cut.record.time_s.front());
+  if (!is_temperature || cut.ambient.time_s.empty()) return x;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= cut.ambient.at(cut.record.time_s[i] - cut.record.time_s.front());
   return x;
 }
 
@@ -74,7 +74,7 @@ std::vector<std::size_t> in_balance(const CutRecord& cut, const std::vector<std:
   for (const Channel& c : cut.record.channels) {
     const bool is_temperature = c.unit == "degC" || c.unit == "K";
     if (!is_temperature && c.unit != "um") continue;
-    const std::vector<double> x = over_hall(cut, c, is_temperature);
+    const std::vector<double> x = over_ambient(cut, c, is_temperature);
     const double begin = mean_of(x, 0, std::min(kMeanRows, x.size()));
     if (std::isnan(begin)) continue;
     double way = 0.0;

@@ -16,14 +16,14 @@ struct RunRows {
 struct CutRecord {
   const Record& record;
   const Cyclogram& cyclogram;  ///< the drive, from the record's first row on; no section: unknown
-  const TimeSeries& hall;      ///< the same; no knot: unknown
+  const TimeSeries& ambient;   ///< the same; no knot: unknown
 };
 
 /// The rows in [first, last) at which the drive starts anew after it has rested for at least ten minutes. It rests where the spindle turns no faster
 /// than at 1 % of its top speed, and nothing feeds or cuts.
 [[nodiscard]] std::vector<std::size_t> starts_after_rests(const CutRecord& cut, std::size_t first, std::size_t last);
 
-/// True where at `row` all temperatures (over the hall, where it is known) and displacements are back where they were in the record's first rows:
+/// True where at `row` all temperatures (over the ambient, where it is known) and displacements are back where they were in the record's first rows:
 /// within 5 % of the way they have gone in between, or within 0.2 K and 0.5 um.
 [[nodiscard]] bool is_back_in_balance(const CutRecord& cut, std::size_t row);
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double kJitter = 0.01;      // of the top speed: no change of the drive, unless it stays
 constexpr std::size_t kStays = 3;     // rows of one and the same value, which no tachometer that jitters shows
 constexpr double kRoom_K = 293.15;    // the reference where there is no machine
-constexpr double kManyMissing = 0.1;  // of the readings of speed or hall
+constexpr double kManyMissing = 0.1;  // of the readings of speed or ambient
 
 std::ptrdiff_t n_readings(const Channel& channel) {
   return std::count_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isnan(v); });
@@ -107,12 +107,12 @@ Cyclogram drive_of(const Record& record, const std::vector<double>& time_s, bool
   return cyclogram;
 }
 
-/// What was recorded beside drive, hall and readings.
+/// What was recorded beside drive, ambient and readings.
 std::vector<Cyclogram::Column> columns_of(const Record& record, const std::vector<double>& time_s,
-                                          const MachineModel* machine, const std::vector<std::string>& on_hall) {
+                                          const MachineModel* machine, const std::vector<std::string>& on_ambient) {
   std::vector<std::string> known = {kSpeed.name, kCutting.name, kAmbient};
   for (const DriveKind& feed : kFeeds) known.emplace_back(feed.name);
-  known.insert(known.end(), on_hall.begin(), on_hall.end());
+  known.insert(known.end(), on_ambient.begin(), on_ambient.end());
   if (machine) {
     for (const Sensor& s : machine->sensors) known.push_back(s.name);
     for (const DisplacementOutput& d : machine->displacements) known.push_back(d.name);
@@ -132,30 +132,30 @@ std::vector<Cyclogram::Column> columns_of(const Record& record, const std::vecto
   return columns;
 }
 
-/// The recorded hall, held where a reading is missing, over the reference.
-/// @throws InputError  for a unit that is none of a hall, in the header or by the numbers
-TimeSeries hall_of(const Record& record, const Channel& ambient, const std::vector<double>& time_s, double reference_C,
-                   const TimeSeries* expected) {
-  if (ambient.unit != "degC") {
-    throw InputError(fmt::format("{}: channel {} is in {}; degC is wanted", record.source, ambient.name, ambient.unit));
+/// The recorded ambient, held where a reading is missing, over the reference.
+/// @throws InputError  for a unit that is none of an ambient temperature, in the header or by the numbers
+TimeSeries ambient_of(const Record& record, const Channel& channel, const std::vector<double>& time_s, double reference_C,
+                      const TimeSeries* expected) {
+  if (channel.unit != "degC") {
+    throw InputError(fmt::format("{}: channel {} is in {}; degC is wanted", record.source, channel.name, channel.unit));
   }
   const double first_C =
-      *std::find_if(ambient.values.begin(), ambient.values.end(), [](double v) { return !std::isnan(v); });
-  if (expected && !expected->value.empty()) {  // the hall drives the machine: in the wrong unit it spoils every channel
+      *std::find_if(channel.values.begin(), channel.values.end(), [](double v) { return !std::isnan(v); });
+  if (expected && !expected->value.empty()) {  // the ambient drives the machine: in the wrong unit it spoils every channel
     const auto [low, high] = std::minmax_element(expected->value.begin(), expected->value.end());
-    if (const auto unit = foreign_temperature(ambient.values, reference_C + *low, reference_C + *high)) {
+    if (const auto unit = foreign_temperature(channel.values, reference_C + *low, reference_C + *high)) {
       throw InputError(fmt::format(
-          "{}: {} looks like {}: it begins with {:g}, and the scenario's hall is {:g} to {:g} degC; write it in degC",
-          record.source, ambient.header(), *unit, first_C, reference_C + *low, reference_C + *high));
+          "{}: {} looks like {}: it begins with {:g}, and the scenario's ambient is {:g} to {:g} degC; write it in degC",
+          record.source, channel.header(), *unit, first_C, reference_C + *low, reference_C + *high));
     }
   }
-  TimeSeries hall{.time_s = time_s, .value = {}};
+  TimeSeries ambient{.time_s = time_s, .value = {}};
   double last_C = first_C;
-  for (double v : ambient.values) {
+  for (double v : channel.values) {
     if (!std::isnan(v)) last_C = v;
-    hall.value.push_back(last_C - reference_C);
+    ambient.value.push_back(last_C - reference_C);
   }
-  return hall;
+  return ambient;
 }
 
 /// As it may become the name of a cyclogram.
@@ -174,7 +174,7 @@ bool is_of_column(const std::string& unit) {
   return std::find(std::begin(kOther), std::end(kOther), unit) == std::end(kOther);
 }
 
-RecordedRun run_of(const Record& record, const MachineModel* machine, const std::vector<std::string>& on_hall,
+RecordedRun run_of(const Record& record, const MachineModel* machine, const std::vector<std::string>& on_ambient,
                    Reading reading) {
   RecordedRun run;
   for (double t_s : record.time_s) run.time_s.push_back(t_s - record.time_s.front());
@@ -197,17 +197,17 @@ RecordedRun run_of(const Record& record, const MachineModel* machine, const std:
   attempt("speed", [&] { run.cyclogram = drive_of(record, run.time_s, reading == Reading::kPlan); });
   if (!run.cyclogram.sections.empty()) note_gaps(record.at("speed"));
   run.cyclogram.name = name_of(record.source);
-  run.cyclogram.columns = columns_of(record, run.time_s, machine, on_hall);
-  if (machine) run.hall = machine->hall;
+  run.cyclogram.columns = columns_of(record, run.time_s, machine, on_ambient);
+  if (machine) run.ambient = machine->ambient;
   std::vector<std::string> names = {kAmbient};
-  names.insert(names.end(), on_hall.begin(), on_hall.end());
+  names.insert(names.end(), on_ambient.begin(), on_ambient.end());
   for (const std::string& name : names) {
     const Channel* channel = record.find(name);
     if (!channel || n_readings(*channel) == 0) continue;
     attempt(name, [&] {
-      run.hall = hall_of(record, *channel, run.time_s, (machine ? machine->reference_K : kRoom_K) - kZeroCelsius_K,
-                         machine ? &machine->hall : nullptr);
-      run.hall_channel = name;
+      run.ambient = ambient_of(record, *channel, run.time_s, (machine ? machine->reference_K : kRoom_K) - kZeroCelsius_K,
+                               machine ? &machine->ambient : nullptr);
+      run.ambient_channel = name;
     });
     if (run.has_ambient()) note_gaps(*channel);
     break;
@@ -215,7 +215,7 @@ RecordedRun run_of(const Record& record, const MachineModel* machine, const std:
   if (!run.has_ambient()) {
     run.findings.push_back(
         {kAmbient,
-         fmt::format("the record has no hall temperature (ambient_degC){}", machine ? "; the scenario's is taken" : ""),
+         fmt::format("the record has no ambient temperature (ambient_degC){}", machine ? "; the scenario's is taken" : ""),
          false});
   }
   return run;

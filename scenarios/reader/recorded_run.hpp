@@ -31,10 +31,11 @@ struct RecordedRun {
   /// is no output of the machine and has a unit that may drive one (is_of_column()), what is missing held.
   Cyclogram cyclogram;
   TimeSeries
-      hall;  ///< as read, its last reading held; else the machine's; minus the reference [K]; no knot where neither is known
-  std::string hall_channel;  ///< that was read for it: `ambient`, else a sensor on the hall; "" where none has a reading
+      ambient;  ///< as read, its last reading held; else the machine's; minus the reference [K]; no knot where neither is known
+  std::string
+      ambient_channel;  ///< that was read for it: `ambient`, else a sensor on the ambient; "" where none has a reading
   std::vector<DataFinding> findings;
-  [[nodiscard]] bool has_ambient() const { return !hall_channel.empty(); }
+  [[nodiscard]] bool has_ambient() const { return !ambient_channel.empty(); }
 };
 
 /// Whether a unit of a record may be that of something that drives a machine: all but lengths, angles and times.
@@ -42,11 +43,11 @@ struct RecordedRun {
 
 /// @param record   two rows at least; its source names it in messages
 /// @param machine  of the scenario; null: there is none, and the reference is 20 degC
-/// @param on_hall  channels that read the hall as well as `ambient` does
+/// @param on_ambient  channels that read the ambient as well as `ambient` does
 /// @throws InputError  strict: without a speed, with speeds and powers below 0 (the sign of a feed does not count), values that no machine has or
-///                     units that fit no drive or hall, with a hall in another unit than its header says. Plan: for missing values and a
+///                     units that fit no drive or ambient, with an ambient in another unit than its header says. Plan: for missing values and a
 ///                     late start, too. Lenient: never
-[[nodiscard]] RecordedRun run_of(const Record& record, const MachineModel* machine, const std::vector<std::string>& on_hall,
-                                 Reading reading);
+[[nodiscard]] RecordedRun run_of(const Record& record, const MachineModel* machine,
+                                 const std::vector<std::string>& on_ambient, Reading reading);
 
 }  // namespace driftwright::scenarios

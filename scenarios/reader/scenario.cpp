@@ -9,9 +9,10 @@
 
 #include "effects/effect_schema.hpp"
 #include "scenarios/reader/felt_run.hpp"
+#include "scenarios/reader/former_words.hpp"
 #include "scenarios/reader/read_columns.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
-#include "scenarios/reader/read_hall.hpp"
+#include "scenarios/reader/read_ambient.hpp"
 #include "scenarios/reader/read_materials.hpp"
 
 namespace driftwright::scenarios {
@@ -29,28 +30,28 @@ void reject_repeated_names(const ConfigMap& in, const MachineModel& m) {
   };
   for (const Sensor& s : m.sensors) add(s.name, "sensors");
   for (const Sensor& s : m.sensors) {
-    if (s.name == kAmbient && !is_on_hall(s)) in.fail("sensors", "the name 'ambient' is that of the hall's temperature");
+    if (s.name == kAmbient && !is_on_ambient(s)) in.fail("sensors", "the name 'ambient' is that of the ambient temperature");
   }
   names.insert(kAmbient);
   for (const DisplacementOutput& d : m.displacements) add(d.name, "displacements");
   for (const TiltOutput& t : m.tilts) add(t.name, "tilts");
 }
 
-/// `start: reference | hall | steady`, or a temperature.
+/// `start: reference | ambient | steady`, or a temperature.
 void read_start(const ConfigMap& in, MachineModel& m) {
   if (!in.has("start")) return;
   const std::string text = in.text("start");
   if (text == "reference") {
     m.start = Start::kReference;
-  } else if (text == "hall") {
-    m.start = Start::kHall;
+  } else if (text == effects::kAmbientName) {
+    m.start = Start::kAmbient;
   } else if (text == "steady") {
     m.start = Start::kSteady;
   } else if (std::isdigit(static_cast<unsigned char>(text.front())) || text.find_first_of("+-.") == 0) {
     m.start = Start::kUniform;
     m.start_K = in.quantity("start");
   } else {
-    in.fail("start", fmt::format("'{}' is no start; reference, hall, steady or a temperature is wanted", text));
+    in.fail("start", fmt::format("'{}' is no start; reference, ambient, steady or a temperature is wanted", text));
   }
 }
 
@@ -67,7 +68,7 @@ MachineModel read_machine(const ConfigMap& in) {
     for (DisplacementOutput& d : read_displacements(entry)) m.displacements.push_back(std::move(d));
   }
   for (const ConfigMap& entry : in.maps("tilts")) m.tilts.push_back(read_tilt(entry));
-  m.hall = read_hall(in, m.reference_K);
+  m.ambient = read_ambient(in, m.reference_K);
   read_start(in, m);
   m.where = in.where("machine");
   for (const char* key : {"reference_temperature", "machine", "materials", "supports", "joints", "sensors", "displacements",
@@ -277,8 +278,8 @@ schema::Map machine_scenario_schema() {
            compulsory("machine", mesh_recipe_schema(),
                       "the mesh: a generator and its dimensions, a file (docs/meshes.md), or none"),
            compulsory("reference_temperature", temperature(), "the machine is straight and free of stress at it"),
-           schema::optional("start", Ways{choice({"reference", "hall", "steady"}), temperature()}, Said{"reference"},
-                            "state at t = 0: at the reference temperature, at the hall's first temperature, at standstill "
+           schema::optional("start", Ways{choice({"reference", "ambient", "steady"}), temperature()}, Said{"reference"},
+                            "state at t = 0: at the reference temperature, at the first ambient temperature, at standstill "
                             "in it, or at a temperature"),
            schema::optional("materials", schema::map(materials_schema()), "of each region of the mesh"),
            schema::optional("supports", schema::maps(support_schema()),
@@ -287,7 +288,7 @@ schema::Map machine_scenario_schema() {
                             "mechanics of joints that are not tied (below)"),
            schema::optional("effects", list(one_of(effects::effect_schemas())),
                             "what heats, cools, connects and measures (below); every joint needs a `contact`"),
-           hall_key(),
+           ambient_key(),
            schema::optional("sensors", schema::maps(sensor_schema()), "thermometers"),
            schema::optional("displacements", schema::maps(displacement_schema()), "errors of the tool against the table"),
            schema::optional("tilts", schema::maps(tilt_schema()), "changes of angle"),
@@ -392,7 +393,7 @@ const std::vector<schema::Map>& scenario_schemas() {
 }
 
 Scenario read_scenario(const std::string& path) {
-  return read_scenario(ConfigMap::read_file(path));
+  return read_scenario(ConfigMap::of_tree(read_scenario_tree(path)));
 }
 
 Scenario read_scenario(const ConfigMap& top) {

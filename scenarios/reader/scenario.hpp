@@ -38,9 +38,9 @@ struct MaterialEntry {
 /// The state at t = 0.
 enum class Start {
   kReference,  ///< everything at the reference temperature
-  kHall,       ///< everything at the hall's first temperature
+  kAmbient,    ///< everything at the first ambient temperature
   kUniform,    ///< everything at MachineModel::start_K
-  kSteady,     ///< the steady state at standstill in the hall's first temperature
+  kSteady,     ///< the steady state at standstill in the first ambient temperature
 };
 
 /// All that the simulation needs.
@@ -56,7 +56,7 @@ struct MachineModel {
   std::vector<TiltOutput> tilts;
   Start start = Start::kReference;
   double start_K = 293.15;  ///< for Start::kUniform
-  TimeSeries hall;          ///< minus reference_K [K]
+  TimeSeries ambient;       ///< minus reference_K [K]
   Where where;
   std::string
       written;  ///< the keys that decide mesh and matrices, as the scenario has them; numbers of effects are not among them

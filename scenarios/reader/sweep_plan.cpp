@@ -110,7 +110,7 @@ std::string expansion_factors(const SweepPlan& plan, std::size_t member) {
 }  // namespace
 
 std::string sharing_key(const SweepPlan& plan, std::size_t member, Shared what) {
-  static const std::set<std::string> of_run = {"cyclograms", "hall", "solver", "start"};
+  static const std::set<std::string> of_run = {"cyclograms", "ambient", "solver", "start"};
   static const std::set<std::string> of_structure = {"machine", "materials", "supports", "joints", "displacements", "tilts"};
   std::string key;
   for (std::size_t i = 0; i < plan.variations.size(); ++i) {

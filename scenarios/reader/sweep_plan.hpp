@@ -90,7 +90,7 @@ struct SweepPlan {
 /// What two members have in common when their keys agree.
 enum class Shared {
   kStructure,  ///< mesh and influence vectors
-  kMachine,    ///< the whole machine; drive, hall, start and solver may differ
+  kMachine,    ///< the whole machine; drive, ambient, start and solver may differ
 };
 /// @returns "" where all members of the plan agree
 [[nodiscard]] std::string sharing_key(const SweepPlan& plan, std::size_t member, Shared what);

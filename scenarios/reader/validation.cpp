@@ -53,12 +53,12 @@ schema::Map validation_schema() {
                                                             "names of cyclograms, or how random ones are made")}};
   const schema::Map season = {
       .name = "validation, seasons",
-      .keys = {schema::optional("offset", quantity("K", -50.0, 50.0), 0.0, "of the hall against the scenario's"),
+      .keys = {schema::optional("offset", quantity("K", -50.0, 50.0), 0.0, "of the ambient against the scenario's"),
                schema::optional("swing", quantity("K", 0.0, 30.0), 0.0,
                                 "amplitude of a sine of 24 h that begins with each cyclogram")},
-      .about = "A season of the hall, by its name."};
+      .about = "A season of the ambient, by its name."};
   const schema::Map seasons = {.name = "validation, seasons by name",
-                               .others = {schema::optional("season", schema::map(season), "how the hall is then")}};
+                               .others = {schema::optional("season", schema::map(season), "how the ambient is then")}};
   return {
       .name = "validation",
       .keys =
@@ -66,8 +66,8 @@ schema::Map validation_schema() {
                       "names of cyclograms that strategies are fitted on, two at least: what a fit leaves open is decided "
                       "on runs left out"),
            compulsory("families", schema::map(families), "cyclograms to judge on, by kind"),
-           schema::optional("seasons", schema::map(seasons), Said{"the scenario's hall alone"},
-                            "the hall to judge in, beside the scenario's own"),
+           schema::optional("seasons", schema::map(seasons), Said{"the scenario's ambient alone"},
+                            "the ambient to judge in, beside the scenario's own"),
            schema::optional("sensor_noise", quantity("K", 0.0, 10.0), v.noise_K, "of thermometers, white, 1 sigma"),
            schema::optional("sensor_resolution", quantity("K", 0.0, 10.0), v.resolution_K, "step of their readings"),
            schema::optional("displacement_noise", quantity("um", 0.0, 1e3), v.drift_noise_um,
@@ -110,7 +110,8 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
   v.seasons.push_back({.name = "as trained"});
   if (const auto seasons = in.optional_map("seasons")) {
     for (const std::string& name : seasons->keys()) {
-      if (name == v.seasons.front().name) seasons->fail(name, "this is the scenario's own hall, which is always judged in");
+      if (name == v.seasons.front().name)
+        seasons->fail(name, "this is the scenario's own ambient, which is always judged in");
       const ConfigMap season = seasons->map(name);
       v.seasons.push_back({.name = name, .offset_K = season.quantity("offset"), .swing_K = season.quantity("swing")});
       season.reject_unknown_keys();
@@ -126,9 +127,9 @@ Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogra
   return v;
 }
 
-TimeSeries hall_in(const Validation::Season& season, const TimeSeries& hall, double duration_s) {
+TimeSeries ambient_in(const Validation::Season& season, const TimeSeries& ambient, double duration_s) {
   std::vector<double> times_s = {0.0, duration_s};
-  for (double t_s : hall.time_s) {
+  for (double t_s : ambient.time_s) {
     if (t_s > 0.0 && t_s < duration_s) times_s.push_back(t_s);
   }
   if (season.swing_K > 0.0) {
@@ -138,7 +139,7 @@ TimeSeries hall_in(const Validation::Season& season, const TimeSeries& hall, dou
   times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
   TimeSeries result{.time_s = times_s, .value = {}};
   for (double t_s : times_s)
-    result.value.push_back(hall.at(t_s) + season.offset_K +
+    result.value.push_back(ambient.at(t_s) + season.offset_K +
                            season.swing_K * std::sin(2.0 * std::numbers::pi * t_s / kDay_s));
   return result;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What strategies of correction are judged on: families of cyclograms, seasons of the hall, instruments, failing sensors.
+// What strategies of correction are judged on: families of cyclograms, seasons of the ambient, instruments, failing sensors.
 
 #include "base/config_map.hpp"
 #include "base/cyclogram.hpp"
@@ -7,7 +7,7 @@
 namespace driftwright::scenarios {
 
 struct Validation {
-  std::vector<Cyclogram> train;  ///< fitted on, in the hall as the scenario has it
+  std::vector<Cyclogram> train;  ///< fitted on, in the ambient as the scenario has it
   struct Family {
     std::string name;
     std::vector<Cyclogram> cyclograms;
@@ -15,10 +15,10 @@ struct Validation {
   std::vector<Family> families;
   struct Season {
     std::string name;
-    double offset_K = 0.0;  ///< of the hall against the scenario's
+    double offset_K = 0.0;  ///< of the ambient against the scenario's
     double swing_K = 0.0;   ///< amplitude of a sine of 24 h that begins with each cyclogram
   };
-  std::vector<Season> seasons;  ///< the first is the scenario's own hall, "as trained"
+  std::vector<Season> seasons;  ///< the first is the scenario's own ambient, "as trained"
   double noise_K = 0.0;         ///< of thermometers, white, 1 sigma
   double resolution_K = 0.0;
   double drift_noise_um = 0.0;  ///< of the indicator in the training runs
@@ -38,7 +38,7 @@ struct Validation {
 [[nodiscard]] Validation read_validation(const ConfigMap& in, const std::vector<const Cyclogram*>& known,
                                          double tolerance_um);
 
-/// The hall of a season [K, as the series given], over a cyclogram.
-[[nodiscard]] TimeSeries hall_in(const Validation::Season& season, const TimeSeries& hall, double duration_s);
+/// The ambient of a season [K, as the series given], over a cyclogram.
+[[nodiscard]] TimeSeries ambient_in(const Validation::Season& season, const TimeSeries& ambient, double duration_s);
 
 }  // namespace driftwright::scenarios

@@ -32,7 +32,7 @@ def measured(rows, seed):
     """Every second row, with noise; speeds change at even minutes."""
     noise = random.Random(seed)
     head = rows[0].split(",")
-    sd = [NOISE.get(name.rsplit("_", 1)[-1], 0.0) if name not in ("hall_degC", "ambient_degC") else 0.0 for name in head]
+    sd = [NOISE.get(name.rsplit("_", 1)[-1], 0.0) if name not in ("t_ambient_degC", "ambient_degC") else 0.0 for name in head]
     out = [rows[0]]
     for row in rows[1::2]:
         out.append(",".join(f"{float(v) + noise.gauss(0, s):.2f}" if s else v for v, s in zip(row.split(","), sd)))
@@ -43,7 +43,7 @@ def as_a_logger(rows):
     """A record as a logger in Germany might have written it: stamps, semicolons, decimal commas, Latin-1, other names, mm."""
     columns = [name.split(",") for name in rows]
     head, start = columns[0], datetime.datetime(2024, 3, 9, 7, 0)
-    names = {"speed_rpm": "Spindel [U/min]", "hall_degC": "Halle (°C)", "drift_y_um": "Drift Y (mm)"}
+    names = {"speed_rpm": "Spindel [U/min]", "t_ambient_degC": "Halle (°C)", "drift_y_um": "Drift Y (mm)"}
     names |= {f"t{i:02}_degC": f"T{i:02} (°C)" for i in range(1, 13)}
     taken = [i for i, name in enumerate(head) if name in names]
     lines = ["Messprotokoll;Fräsmaschine", "", "Zeitstempel;" + ";".join(names[head[i]] for i in taken)]

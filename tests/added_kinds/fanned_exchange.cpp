@@ -27,8 +27,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 EffectKind fanned_exchange() {
   return {.key = "fanned_exchange",
-          .title = "exchange with the hall that a fan on the spindle makes",
-          .law = "Q = conductance n / 1000 rpm (T - T_hall)",
+          .title = "exchange with the ambient that a fan on the spindle makes",
+          .law = "Q = conductance n / 1000 rpm (T - T_ambient)",
           .places = {Place::kNode},
           .parameters = {{"conductance", "W/K", 0.0, 1e6, {}, "at 1000 rpm", 0.1, "fanned_exchange"}},
           .timing = Timing::kInTime,

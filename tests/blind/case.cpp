@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/quantity.hpp"
+#include "effects/where_in_files.hpp"
 
 namespace driftwright::blind {
 namespace {
@@ -131,7 +132,7 @@ Json truth_json(const Subject& s, const Case& c) {
         t.hidden.record < 0 ? Json(nullptr) : Json(c.plan.records[static_cast<std::size_t>(t.hidden.record)].name);
     truth["effects"].push_back({{"effect", key.empty() ? Json(nullptr) : Json(key)},
                                 {"law", law_name(t.hidden.what)},
-                                {"where", t.hidden.where},
+                                {"where", effects::where_in_files(t.hidden.where)},
                                 {"parameters", parameters},
                                 {"record", record},
                                 {"d_prime", t.d_prime},
@@ -213,7 +214,7 @@ Record measured(const Subject& s, const Case& c, std::size_t record) {
     const double t_s = static_cast<double>(k) * kRow_s;
     out.time_s.push_back(t_s);
     speed.values.push_back(planned.drive.speed_rpm(t_s));
-    ambient.values.push_back(reference_degC + planned.hall.at(t_s) + c.plan.ambient_noise_K * air.normal());
+    ambient.values.push_back(reference_degC + planned.ambient.at(t_s) + c.plan.ambient_noise_K * air.normal());
   }
   out.channels = {speed, ambient};
   for (std::size_t i = 0; i < s.n_outputs(); ++i) {
@@ -254,10 +255,10 @@ void write_case(const Subject& s, const Case& c, const std::filesystem::path& fo
 }
 
 Record further_record(const Subject& s, Case of, Cyclogram cyclogram, std::uint64_t further) {
-  Random hall(of.plan.seed, 5000 + further);
+  Random ambient(of.plan.seed, 5000 + further);
   const double duration_s = cyclogram.duration_s();
   of.plan.records.resize(of.plan.records.size() + further);  // seeds of noise go by the number of the record
-  of.plan.records.push_back({"further", std::move(cyclogram), draw_hall(duration_s, hall)});
+  of.plan.records.push_back({"further", std::move(cyclogram), draw_ambient(duration_s, ambient)});
   return measured(s, of, of.plan.records.size() - 1);
 }
 

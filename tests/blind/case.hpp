@@ -39,9 +39,9 @@ struct Case {
 /// drawing that the scenario names to <folder>/../parts.
 void write_case(const Subject& subject, const Case& of, const std::filesystem::path& folder);
 
-/// One more record of a case, with a cyclogram of the user's own: the same machine and hidden effects, another hall, fresh noise. What
+/// One more record of a case, with a cyclogram of the user's own: the same machine and hidden effects, another ambient, fresh noise. What
 /// happened in one record only does not happen again.
-/// @param further  0, 1, ...: each has its own hall and noise
+/// @param further  0, 1, ...: each has its own ambient and noise
 [[nodiscard]] Record further_record(const Subject& subject, Case of, Cyclogram cyclogram, std::uint64_t further);
 
 /// Makes cases of a range of seeds; those whose truth.json is there are kept.

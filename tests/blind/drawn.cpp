@@ -10,11 +10,12 @@ namespace {
 using effects::Place;
 
 /// Places of the nominal effects of a kind.
-std::vector<std::string> places_of(const Subject& s, const std::string& key, bool of_hall_alone = false) {
+std::vector<std::string> places_of(const Subject& s, const std::string& key, bool of_ambient_alone = false) {
   std::vector<std::string> list;
   for (const effects::Effect& e : s.model.effects) {
     if (e.kind->key != key) continue;
-    if (of_hall_alone && e.references.contains("surrounding") && e.references.at("surrounding").name != effects::kHallName)
+    if (of_ambient_alone && e.references.contains("surrounding") &&
+        e.references.at("surrounding").name != effects::kAmbientName)
       continue;
     list.push_back(e.place);
   }
@@ -47,7 +48,7 @@ double heat_W(const Subject& s) {
   double sum_W = 0.0;
   for (const effects::HeatInput& h : effects::heat_balance(s.model.effects).heats) {
     const effects::Inputs u{.drive = {.speed_rpm = 0.7 * s.top_speed_rpm},
-                            .hall_K = 0.0,
+                            .ambient_K = 0.0,
                             .time_s = 0.0,
                             .probe_K = std::vector<double>(h.power_W.probes.size(), 305.0)};
     sum_W += std::abs(h.power_W(u));
@@ -112,12 +113,12 @@ std::size_t subject_of(std::uint64_t seed) {
   return static_cast<std::size_t>((seed + seed / 40) % subject_names().size());
 }
 
-double HallCurve::at(double time_s) const {
+double AmbientCurve::at(double time_s) const {
   return start_K + ramp_K_s * time_s +
          sine_K * (std::sin(2.0 * std::numbers::pi * time_s / period_s + phase) - std::sin(phase));
 }
 
-HallCurve draw_hall(double duration_s, Random& random) {
+AmbientCurve draw_ambient(double duration_s, Random& random) {
   const double range_K = random.uniform(1.0, 3.0);
   const double share = random.uniform(0.3, 0.8);
   return {.start_K = random.uniform(-0.4, 0.6),
@@ -141,7 +142,7 @@ CasePlan draw_plan(const Subject& s, std::uint64_t seed) {
   Random drives(seed, 1), noises(seed, 2);
   for (const char* name : {"measured_1", "measured_2", "holdout"}) {
     RecordPlan record{name, draw_drive(name, s.top_speed_rpm, drives), {}};
-    record.hall = draw_hall(record.drive.duration_s(), drives);
+    record.ambient = draw_ambient(record.drive.duration_s(), drives);
     plan.records.push_back(std::move(record));
   }
   const bool is_slow = noises.chance(1.0 / 3.0), is_rounded = noises.chance(1.0 / 3.0);
@@ -245,17 +246,17 @@ Hidden draw_hidden(const Subject& s, const CasePlan& plan, Random& random) {
       sized(contacts, ln_least, 2.0, sign);
       break;
     case Hide::kAmbientOffset:
-      sized({"hall"}, 0.2, 6.0, sign);
+      sized({effects::kAmbientName}, 0.2, 6.0, sign);
       break;
     case Hide::kAmbientRamp:
-      sized({"hall"}, 0.1, 3.0, sign);
+      sized({effects::kAmbientName}, 0.1, 3.0, sign);
       break;
     case Hide::kAmbientStep:
-      sized({"hall"}, 0.3, 6.0, sign);
+      sized({effects::kAmbientName}, 0.3, 6.0, sign);
       at_a_time();
       break;
     case Hide::kStratification:
-      sized({"hall"}, 0.2, 6.0, 1.0);
+      sized({effects::kAmbientName}, 0.2, 6.0, 1.0);
       break;
     case Hide::kRadiation:
       sized(open_films, 3.0, 0.8 * all_W, 1.0);

@@ -1,5 +1,5 @@
 #pragma once
-// What a seed decides: class, machine, cyclograms, hall, noise, and which effects are hidden where.
+// What a seed decides: class, machine, cyclograms, ambient, noise, and which effects are hidden where.
 
 #include <array>
 #include <cstdint>
@@ -21,19 +21,19 @@ inline constexpr std::uint64_t kFirstOfLater = 400;
 /// Index into subject_names(); each class meets each machine.
 [[nodiscard]] std::size_t subject_of(std::uint64_t seed);
 
-/// The recorded hall: a ramp and a slow sine, over the reference.
-struct HallCurve {
+/// The recorded ambient: a ramp and a slow sine, over the reference.
+struct AmbientCurve {
   double start_K = 0.0, ramp_K_s = 0.0, sine_K = 0.0, period_s = 7200.0, phase = 0.0;
   [[nodiscard]] double at(double time_s) const;
 };
 
 /// A range of 1 to 3 K over a record, partly ramp, partly sine.
-[[nodiscard]] HallCurve draw_hall(double duration_s, Random& random);
+[[nodiscard]] AmbientCurve draw_ambient(double duration_s, Random& random);
 
 struct RecordPlan {
   std::string name;  ///< "measured_1", "measured_2" or "holdout"
   Cyclogram drive;   ///< as recorded
-  HallCurve hall;
+  AmbientCurve ambient;
 };
 
 /// Noise of a channel, in its record's unit (degC or um).

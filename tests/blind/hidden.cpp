@@ -305,7 +305,7 @@ void hide_in_heat(const Hidden& h, const Subject& s, const Cyclogram& drive, Hea
       heat.power_W = Law(
           [=, reference_K = s.model.reference_K](const Inputs& u) {
             const bool open = u.time_s >= from_s && u.time_s < from_s + period_s;
-            return open ? size * (reference_K + u.hall_K - u.probe_K[0]) : 0.0;
+            return open ? size * (reference_K + u.ambient_K - u.probe_K[0]) : 0.0;
           },
           {heat.body});
       return;
@@ -343,7 +343,7 @@ Cyclogram true_drive(const Hidden& h, const Cyclogram& drive) {
   return felt;
 }
 
-double hall_error_K(const Hidden& h, double time_s) {
+double ambient_error_K(const Hidden& h, double time_s) {
   if (h.what == Hide::kAmbientOffset) return h.size;
   if (h.what == Hide::kAmbientRamp) return h.size * time_s / 3600.0;
   if (h.what == Hide::kAmbientStep) return time_s >= h.time_s ? h.size : 0.0;
@@ -405,7 +405,7 @@ void hide_in_readings(const Hidden& h, const Cyclogram& drive, double top_speed_
     case Hide::kSensorDetached:
       at_from([&](Eigen::Index k) {
         double& reading = r.value(r.row(h.where), k);
-        reading = h.size * r.hall_K[k] + (1.0 - h.size) * reading;
+        reading = h.size * r.ambient_K[k] + (1.0 - h.size) * reading;
       });
       return;
     case Hide::kSensorLag: {

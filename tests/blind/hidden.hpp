@@ -1,5 +1,5 @@
 #pragma once
-// What is hidden in a case: one effect of a kind, at a place, of a size, and its own laws for heat, drive, hall and readings. Keys and
+// What is hidden in a case: one effect of a kind, at a place, of a size, and its own laws for heat, drive, ambient and readings. Keys and
 // meanings are the catalogue's; nothing of the catalogue's code is used.
 
 #include <string>
@@ -21,7 +21,7 @@ enum class Hide {
   kForcedFactor,      ///< growth times exp(size)
   kForcedNew,         ///< film size (n / at_speed)^exponent
   kContactFactor,     ///< joint or link times exp(size)
-  kAmbientOffset,     ///< true minus recorded hall: size K
+  kAmbientOffset,     ///< true minus recorded ambient: size K
   kAmbientRamp,       ///< size K/h
   kAmbientStep,       ///< size K from time_s on
   kStratification,    ///< size K/m about 1.2 m
@@ -47,7 +47,7 @@ enum class Hide {
   kContactLater,      ///< link times exp(size) from time_s on
   kProbeLag,          ///< size um more in a displacement, in all records: a probe that triggers late
   kCoolantHeld,       ///< size W/K between a body and a medium lag_s kelvins below the reference temperature
-  kDoorOpen,          ///< size W/K between a node and the hall, from time_s on for lag_s
+  kDoorOpen,          ///< size W/K between a node and the ambient, from time_s on for lag_s
 };
 
 struct Hidden {
@@ -81,8 +81,8 @@ void hide_in_values(const Hidden& hidden, const Subject& subject, Values& values
 void hide_in_heat(const Hidden& hidden, const Subject& subject, const Cyclogram& true_drive, effects::HeatBalance& balance);
 /// The true drive of a recorded one.
 [[nodiscard]] Cyclogram true_drive(const Hidden& hidden, const Cyclogram& drive);
-/// True minus recorded hall temperature [K].
-[[nodiscard]] double hall_error_K(const Hidden& hidden, double time_s);
+/// True minus recorded ambient temperature [K].
+[[nodiscard]] double ambient_error_K(const Hidden& hidden, double time_s);
 /// Changes readings. Called in the order of reading_order().
 void hide_in_readings(const Hidden& hidden, const Cyclogram& true_drive, double top_speed_rpm, Readings& readings);
 /// Displacements first, then detachment, lag, errors, swap, clock.

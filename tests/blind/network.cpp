@@ -69,7 +69,7 @@ class Stepper {
     double fine_until_s = 0.0;
     for (Eigen::Index step = 0; step <= n_steps; ++step) {
       const double t_s = static_cast<double>(step) * run_.step_s;
-      out.col(step) = net_.outputs.transpose() * theta + run_.hall_K(t_s) * net_.outputs_hall;
+      out.col(step) = net_.outputs.transpose() * theta + run_.ambient_K(t_s) * net_.outputs_ambient;
       if (step == n_steps) break;
       if (look_around(t_s + 0.5 * run_.step_s)) fine_until_s = t_s + kFine_s;
       const bool is_fine = t_s < fine_until_s;
@@ -93,7 +93,7 @@ class Stepper {
 
  private:
   [[nodiscard]] effects::Inputs inputs(double t_s) const {
-    return {.drive = drive_, .hall_K = run_.hall_K(t_s), .time_s = t_s, .probe_K = {}};
+    return {.drive = drive_, .ambient_K = run_.ambient_K(t_s), .time_s = t_s, .probe_K = {}};
   }
 
   /// Drive and coefficients at a time. @return true where they are others than before
@@ -107,12 +107,12 @@ class Stepper {
     if (!is_other) return !(drive_ == before);
     c_ = std::move(c);
     k_ = net_.conduction;
-    g_hall_ = g_offset_ = Eigen::VectorXd::Zero(net_.size());
+    g_ambient_ = g_offset_ = Eigen::VectorXd::Zero(net_.size());
     for (std::size_t e = 0; e < c_.size(); ++e) {
       if (c_[e] == 0.0) continue;
       const auto& exchange = net_.exchanges[e];
       k_ += c_[e] * exchange.matrix;
-      g_hall_ += c_[e] * exchange.hall;
+      g_ambient_ += c_[e] * exchange.ambient;
       if (exchange.offset.size() > 0) g_offset_ += c_[e] * laws_.gradient_K_m * exchange.offset;
     }
     fine_factor_.reset();
@@ -122,7 +122,7 @@ class Stepper {
 
   /// dθ/dt of the stage: (M + γ h K) k = f(t, θ + γ h k) - K θ.
   Eigen::VectorXd stage(const Eigen::VectorXd& theta, double t_s, const Eigen::VectorXd& guess) const {
-    const Eigen::VectorXd fixed = run_.hall_K(t_s) * g_hall_ + g_offset_ - k_ * theta;
+    const Eigen::VectorXd fixed = run_.ambient_K(t_s) * g_ambient_ + g_offset_ - k_ * theta;
     Eigen::VectorXd k = guess;
     for (int round = 0; round < (looks_ ? 3 : 1); ++round) {
       effects::Inputs u = inputs(t_s);
@@ -149,7 +149,7 @@ class Stepper {
   Drive drive_;
   std::vector<double> c_;
   Matrix k_;
-  Eigen::VectorXd g_hall_, g_offset_;
+  Eigen::VectorXd g_ambient_, g_offset_;
   double h_s_ = 0.0;
   std::unique_ptr<Factor> fine_factor_, coarse_factor_;
   std::unique_ptr<Factor>* factor_ = nullptr;

@@ -1,7 +1,7 @@
 #pragma once
 // The thermal matrices of a machine without their laws, and the laws beside them: what this side's own time integration runs.
 //
-//     M dθ/dt = -K(u) θ + f(u),   K = K0 + Σ_e c_e G_e,   f = Σ_s P_s b_s + Σ_e c_e (θ_hall g_e + gradient o_e)
+//     M dθ/dt = -K(u) θ + f(u),   K = K0 + Σ_e c_e G_e,   f = Σ_s P_s b_s + Σ_e c_e (θ_ambient g_e + gradient o_e)
 //
 // The matrices are the solver's; laws, steps and stages are not.
 
@@ -24,14 +24,14 @@ struct Network {
   Matrix mass, conduction;
   std::vector<Eigen::VectorXd> sources;  ///< b_s
   struct Exchange {
-    Matrix matrix;           ///< G_e
-    Eigen::VectorXd hall;    ///< g_e
-    Eigen::VectorXd offset;  ///< o_e [m^2 m] for a gradient of 1 K/m of the hall air, or empty
+    Matrix matrix;            ///< G_e
+    Eigen::VectorXd ambient;  ///< g_e
+    Eigen::VectorXd offset;   ///< o_e [m^2 m] for a gradient of 1 K/m of the ambient air, or empty
   };
   std::vector<Exchange> exchanges;
   std::map<std::string, Eigen::VectorXd> means;  ///< weights of the mean temperature of regions and nodes
   Eigen::MatrixXd outputs;                       ///< size x n_outputs
-  Eigen::VectorXd outputs_hall;                  ///< share of the hall's temperature
+  Eigen::VectorXd outputs_ambient;               ///< share of the ambient temperature
 
   [[nodiscard]] Eigen::Index size() const { return mass.rows(); }
 };
@@ -41,14 +41,14 @@ using SmallNetwork = Network<Eigen::MatrixXd>;
 /// Laws in the order of the network's sources and exchanges, as a heat balance lists them: films, links, contacts.
 struct Laws {
   std::vector<effects::Law> powers_W, coefficients;
-  double gradient_K_m = 0.0;  ///< of the hall air
+  double gradient_K_m = 0.0;  ///< of the ambient air
 };
 [[nodiscard]] Laws laws_of(const effects::HeatBalance& balance);
 
 /// What surrounds and drives a run.
 struct Run {
-  Cyclogram drive;                       ///< the true one; sections begin at multiples of the step
-  std::function<double(double)> hall_K;  ///< true hall temperature minus the reference at a time [s]
+  Cyclogram drive;                          ///< the true one; sections begin at multiples of the step
+  std::function<double(double)> ambient_K;  ///< true ambient temperature minus the reference at a time [s]
   double duration_s = 0.0;
   double step_s = 20.0;
 };

@@ -13,8 +13,8 @@ namespace driftwright::blind {
 struct Readings {
   double step_s = 20.0;
   std::vector<std::string> name;
-  Eigen::MatrixXd value;   ///< n_outputs x n_times; temperatures over the reference [K], displacements [m]
-  Eigen::VectorXd hall_K;  ///< true air over the reference, n_times
+  Eigen::MatrixXd value;      ///< n_outputs x n_times; temperatures over the reference [K], displacements [m]
+  Eigen::VectorXd ambient_K;  ///< true air over the reference, n_times
 
   [[nodiscard]] double time_s(Eigen::Index k) const { return static_cast<double>(k) * step_s; }
   /// @throws std::logic_error  for a name that is no output

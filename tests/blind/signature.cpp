@@ -26,7 +26,7 @@ Readings readings_of(const Subject& s, const Values& scattered, const std::vecto
   }
   std::stable_sort(hidden.begin(), hidden.end(),
                    [](const Hidden& a, const Hidden& b) { return reading_order(a.what) < reading_order(b.what); });
-  Run run{.drive = planned.drive, .hall_K = {}, .duration_s = planned.drive.duration_s() + kBeyond_s, .step_s = step_s};
+  Run run{.drive = planned.drive, .ambient_K = {}, .duration_s = planned.drive.duration_s() + kBeyond_s, .step_s = step_s};
   run.drive.sections.back().duration_s += kBeyond_s;
   Values values = scattered;
   for (const Hidden& h : hidden) {
@@ -35,17 +35,17 @@ Readings readings_of(const Subject& s, const Values& scattered, const std::vecto
   }
   effects::HeatBalance balance = balance_of(s, values);
   for (const Hidden& h : hidden) hide_in_heat(h, s, run.drive, balance);
-  run.hall_K = [&](double t_s) {
-    double hall_K = planned.hall.at(t_s);
-    for (const Hidden& h : hidden) hall_K += hall_error_K(h, t_s);
-    return hall_K;
+  run.ambient_K = [&](double t_s) {
+    double ambient_K = planned.ambient.at(t_s);
+    for (const Hidden& h : hidden) ambient_K += ambient_error_K(h, t_s);
+    return ambient_K;
   };
   const Laws laws = laws_of(balance);
-  Readings r{.step_s = step_s, .name = {}, .value = {}, .hall_K = {}};
+  Readings r{.step_s = step_s, .name = {}, .value = {}, .ambient_K = {}};
   for (std::size_t i = 0; i < s.n_outputs(); ++i) r.name.push_back(s.output_name(i));
   r.value = is_full ? integrate(full_network(s, values), laws, run) : integrate(small_network(s, values), laws, run);
-  r.hall_K.resize(r.value.cols());
-  for (Eigen::Index k = 0; k < r.hall_K.size(); ++k) r.hall_K[k] = run.hall_K(r.time_s(k));
+  r.ambient_K.resize(r.value.cols());
+  for (Eigen::Index k = 0; k < r.ambient_K.size(); ++k) r.ambient_K[k] = run.ambient_K(r.time_s(k));
   for (const Hidden& h : hidden) hide_in_readings(h, run.drive, s.top_speed_rpm, r);
   return r;
 }

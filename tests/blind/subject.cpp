@@ -120,18 +120,18 @@ FullNetwork assembled(const Subject& s, const Values& v, bool with_gradient) {
   net.mass = system.mass;
   net.conduction = system.conduction;
   for (const auto& source : system.sources) net.sources.push_back(source.load);
-  for (const auto& e : system.exchanges) net.exchanges.push_back({e.matrix, e.to_hall, e.offset});
+  for (const auto& e : system.exchanges) net.exchanges.push_back({e.matrix, e.to_ambient, e.offset});
   for (const std::string& r : s.placed.mesh.regions) {
     net.means[r] = solver::mean_weights(s.placed.mesh, balance, effects::region(r));
   }
   for (const std::string& n : s.nodes) net.means[n] = solver::mean_weights(s.placed.mesh, balance, effects::node(n));
   const auto n_outputs = static_cast<Eigen::Index>(s.n_outputs());
   net.outputs = Eigen::MatrixXd::Zero(system.size(), n_outputs);
-  net.outputs_hall = Eigen::VectorXd::Zero(n_outputs);
+  net.outputs_ambient = Eigen::VectorXd::Zero(n_outputs);
   for (std::size_t i = 0; i < s.n_sensors(); ++i) {
     for (const auto& [unknown, weight] : s.placed.sensor_weights[i])
       net.outputs(unknown, static_cast<Eigen::Index>(i)) += weight;
-    if (s.placed.sensor_weights[i].empty()) net.outputs_hall[static_cast<Eigen::Index>(i)] = 1.0;
+    if (s.placed.sensor_weights[i].empty()) net.outputs_ambient[static_cast<Eigen::Index>(i)] = 1.0;
   }
   for (std::size_t r = 0; r < s.influence.size(); ++r) {
     net.outputs.block(0, static_cast<Eigen::Index>(s.n_sensors()), s.influence[r].rows(), s.influence[r].cols()) +=
@@ -165,11 +165,11 @@ Eigen::MatrixXd answers(const Subject& s, const FullNetwork& net, const effects:
   const Laws laws = laws_of(balance);
   std::vector<Eigen::VectorXd> inputs = net.sources;
   SparseRow k = net.conduction;
-  const effects::Inputs u{.drive = {.speed_rpm = 0.5 * s.top_speed_rpm}, .hall_K = 0.0, .time_s = 0.0, .probe_K = {}};
+  const effects::Inputs u{.drive = {.speed_rpm = 0.5 * s.top_speed_rpm}, .ambient_K = 0.0, .time_s = 0.0, .probe_K = {}};
   for (std::size_t e = 0; e < net.exchanges.size(); ++e) {
     const auto& exchange = net.exchanges[e];
     k += laws.coefficients[e](u) * exchange.matrix;
-    if (exchange.hall.squaredNorm() > 0.0) inputs.push_back(exchange.hall);
+    if (exchange.ambient.squaredNorm() > 0.0) inputs.push_back(exchange.ambient);
     if (exchange.offset.size() > 0) inputs.push_back(exchange.offset);
   }
   const solver::FullSystem system = solver::assemble_heat(s.placed.mesh, s.placed.materials, balance, s.model.reference_K);
@@ -219,12 +219,12 @@ void find_small(Subject& s) {
   s.small.conduction = reduced(net.conduction);
   for (const auto& b : net.sources) s.small.sources.push_back(basis.transpose() * b);
   for (const auto& e : net.exchanges) {
-    s.small.exchanges.push_back({reduced(e.matrix), basis.transpose() * e.hall,
+    s.small.exchanges.push_back({reduced(e.matrix), basis.transpose() * e.ambient,
                                  e.offset.size() > 0 ? Eigen::VectorXd(basis.transpose() * e.offset) : Eigen::VectorXd()});
   }
   for (const auto& [name, weights] : net.means) s.small.means[name] = basis.transpose() * weights;
   s.small.outputs = basis.transpose() * net.outputs;
-  s.small.outputs_hall = net.outputs_hall;
+  s.small.outputs_ambient = net.outputs_ambient;
   for (std::size_t r = 0; r < s.placed.mesh.regions.size(); ++r) {
     Values twice = nominal;
     twice.conductivity[r] = twice.heat_capacity[r] = 2.0;

@@ -18,11 +18,11 @@ typedef struct {
   const unsigned* inputs; /* value references */
   const double* time_s;
   const double* input_rows; /* n_rows x n_inputs */
-  int hall_from_input;      /* -1: the unit has no such parameter */
-  unsigned hall_from_input_reference;
-  /* Of co-simulation: steps no longer than this, and of its first hall_rate_input, if one is not -1, the rate by that of the rows. */
+  int ambient_from_input;   /* -1: the unit has no such parameter */
+  unsigned ambient_from_input_reference;
+  /* Of co-simulation: steps no longer than this, and of its first ambient_rate_input, if one is not -1, the rate by that of the rows. */
   double step_s;
-  int hall_input;
+  int ambient_input;
   size_t rewind_at_row;  /* there the state is kept, written, read and set again after a step elsewhere; 0: nowhere */
   int tells_behind_step; /* outputs of a row are those behind the step from it on: of a unit that samples */
   /* Of model exchange. */

@@ -54,8 +54,8 @@ static int fail(unit* u, const char* what) {
 static int set_inputs(unit* u, size_t row) {
   const importer_run* const run = u->run;
   CALL(SetReal, run->inputs, run->n_inputs, run->input_rows + row * run->n_inputs);
-  if (run->is_co_simulation && run->hall_input >= 0 && row + 1 < run->n_rows) {
-    const size_t i = (size_t)run->hall_input;
+  if (run->is_co_simulation && run->ambient_input >= 0 && row + 1 < run->n_rows) {
+    const size_t i = (size_t)run->ambient_input;
     const fmi2Integer order = 1;
     const double rate = (run->input_rows[(row + 1) * run->n_inputs + i] - run->input_rows[row * run->n_inputs + i]) /
                         (run->time_s[row + 1] - run->time_s[row]);
@@ -251,7 +251,7 @@ static int go(unit* u, void* library) {
   if (u->DoStep(u->c, 0.0, 1.0, fmi2True) != fmi2Error) return fail(u, "a step before initialization was taken");
   CALL(Reset);
   CALL(SetupExperiment, fmi2False, 0.0, run->time_s[0], fmi2False, 0.0);
-  if (run->hall_from_input >= 0) CALL(SetBoolean, &run->hall_from_input_reference, 1, &run->hall_from_input);
+  if (run->ambient_from_input >= 0) CALL(SetBoolean, &run->ambient_from_input_reference, 1, &run->ambient_from_input);
   CALL(EnterInitializationMode);
   if (set_inputs(u, 0)) return 1;
   CALL(ExitInitializationMode);

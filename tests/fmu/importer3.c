@@ -57,9 +57,9 @@ static int fail(unit* u, const char* what) {
 static int set_inputs(unit* u, size_t row) {
   const importer_run* const run = u->run;
   CALL(SetFloat64, run->inputs, run->n_inputs, run->input_rows + row * run->n_inputs, run->n_inputs);
-  if (run->is_co_simulation && run->hall_input >= 0 && row + 1 < run->n_rows) {
-    const size_t i = (size_t)run->hall_input;
-    const unsigned rate_input = run->inputs[i] + 1; /* hall_temperature_rate stands behind it */
+  if (run->is_co_simulation && run->ambient_input >= 0 && row + 1 < run->n_rows) {
+    const size_t i = (size_t)run->ambient_input;
+    const unsigned rate_input = run->inputs[i] + 1; /* ambient_temperature_rate stands behind it */
     const double rate = (run->input_rows[(row + 1) * run->n_inputs + i] - run->input_rows[row * run->n_inputs + i]) /
                         (run->time_s[row + 1] - run->time_s[row]);
     CALL(SetFloat64, &rate_input, 1, &rate, 1);
@@ -263,9 +263,9 @@ static int go(unit* u, void* library) {
   if (!u->c) return fail(u, "fmi3Instantiate");
   if (u->SetTime(u->c, 1.0) != fmi3Error) return fail(u, "a time before initialization was taken");
   CALL(Reset);
-  if (run->hall_from_input >= 0) {
-    const bool value = run->hall_from_input != 0;
-    CALL(SetBoolean, &run->hall_from_input_reference, 1, &value, 1);
+  if (run->ambient_from_input >= 0) {
+    const bool value = run->ambient_from_input != 0;
+    CALL(SetBoolean, &run->ambient_from_input_reference, 1, &value, 1);
   }
   CALL(EnterInitializationMode, false, 0.0, run->time_s[0], false, 0.0);
   if (set_inputs(u, 0)) return 1;

@@ -184,34 +184,34 @@ int instance_set(instance* in, const unsigned* references, size_t n, const doubl
 }
 
 int instance_set_input_rates(instance* in, const unsigned* references, size_t n, const int* orders, const double* values) {
-  const unsigned hall = kInputReference + (unsigned)thermal.n_drive;
+  const unsigned ambient = kInputReference + (unsigned)thermal.n_drive;
   size_t k;
   for (k = 0; k < n; ++k) {
-    const unsigned rate = hall + 1;
+    const unsigned rate = ambient + 1;
     if (orders[k] != 1) return instance_tell(in, kError, "inputs are interpolated to first order at most");
-    if (references[k] == hall) {
+    if (references[k] == ambient) {
       const int status = instance_set(in, &rate, 1, &values[k]);
       if (status != kOk) return status;
     } else if (values[k] != 0.0) {
-      return instance_tell(in, kError, "only the hall's temperature has a rate; the drive is constant over a step");
+      return instance_tell(in, kError, "only the ambient temperature has a rate; the drive is constant over a step");
     }
   }
   return kOk;
 }
 
 int instance_get_flag(instance* in, unsigned reference, int* value) {
-  if (reference != kHallFromInputReference || model_kind_is_observer)
+  if (reference != kAmbientFromInputReference || model_kind_is_observer)
     return instance_tell(in, kError, "there is no such Boolean variable");
-  *value = in->saved[kHallFromInput] != 0.0;
+  *value = in->saved[kAmbientFromInput] != 0.0;
   return kOk;
 }
 
 int instance_set_flag(instance* in, unsigned reference, int value) {
-  if (reference != kHallFromInputReference || model_kind_is_observer)
+  if (reference != kAmbientFromInputReference || model_kind_is_observer)
     return instance_tell(in, kError, "there is no such Boolean variable");
   if (!(in->mode & (kInstantiated | kInitialization)))
-    return instance_tell(in, kError, "hall_from_input may be set before the start alone");
-  in->saved[kHallFromInput] = value ? 1.0 : 0.0;
+    return instance_tell(in, kError, "ambient_from_input may be set before the start alone");
+  in->saved[kAmbientFromInput] = value ? 1.0 : 0.0;
   touched(in);
   start_anew(in);
   return kOk;

@@ -12,7 +12,7 @@ enum {
   kTimeReference = 0,
   kInputReference = 1000,
   kStartWarmerReference = 2000,
-  kHallFromInputReference = 3000,
+  kAmbientFromInputReference = 3000,
   kOutputReference = 4000,
   kStateReference = 10000,
   kDerivativeReference = 20000

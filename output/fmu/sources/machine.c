@@ -6,7 +6,7 @@
 #include "symmetric_eigen.h"
 #include "thermal.h"
 
-enum { kLeastSlots = 8, kBeside = 2 }; /* of decompositions kept; hall and its rate, behind the drive among the inputs */
+enum { kLeastSlots = 8, kBeside = 2 }; /* of decompositions kept; ambient and its rate, behind the drive among the inputs */
 
 const int model_kind_is_observer = 0;
 
@@ -23,8 +23,8 @@ typedef struct {
   slot* slots;
   /* Of the drive met last. */
   int has_drive, has_matrix, in_modes; /* in_modes: index of the slot whose modes the loads are in, plus 1 */
-  double *drive, *coefficient, *power, *constant, *per_hall, *matrix;
-  double *mode_constant, *mode_per_hall;
+  double *drive, *coefficient, *power, *constant, *per_ambient, *matrix;
+  double *mode_constant, *mode_per_ambient;
   /* Room for a while. */
   double *modes, *eigen_work, *matrix_work, *slope;
 } machine;
@@ -59,10 +59,10 @@ double* model_states(double* saved) {
   return saved + kInputs + model_n_inputs();
 }
 
-static double hall_K(const double* saved, double time_s) {
-  const double* const hall = saved + kInputs + thermal.n_drive;
-  if (saved[kHallFromInput] == 0.0) return hall_by_scenario_K(time_s);
-  return hall[0] - thermal.reference_degC + hall[1] * (time_s - saved[kHallSetAt]);
+static double ambient_K(const double* saved, double time_s) {
+  const double* const ambient = saved + kInputs + thermal.n_drive;
+  if (saved[kAmbientFromInput] == 0.0) return ambient_by_scenario_K(time_s);
+  return ambient[0] - thermal.reference_degC + ambient[1] * (time_s - saved[kAmbientSetAt]);
 }
 
 /* The decomposition of these coefficients. Returns null where it fails. */
@@ -102,7 +102,7 @@ static void take_drive(machine* m, const double* saved) {
   memcpy(m->drive, drive, bytes);
   coefficients_of(drive, m->coefficient);
   for (s = 0; s < thermal.n_sources; ++s) m->power[s] = law_value(&thermal.powers[s], drive);
-  thermal_loads(m->coefficient, m->power, m->constant, m->per_hall);
+  thermal_loads(m->coefficient, m->power, m->constant, m->per_ambient);
   m->has_drive = 1;
   m->has_matrix = 0;
   m->in_modes = 0;
@@ -137,10 +137,10 @@ int model_prepare(void* scratch) {
   m->coefficient = take(&room, (size_t)thermal.n_exchanges);
   m->power = take(&room, (size_t)thermal.n_sources);
   m->constant = take(&room, n);
-  m->per_hall = take(&room, n);
+  m->per_ambient = take(&room, n);
   m->matrix = take(&room, n * n);
   m->mode_constant = take(&room, n);
-  m->mode_per_hall = take(&room, n);
+  m->mode_per_ambient = take(&room, n);
   m->modes = take(&room, n);
   m->eigen_work = take(&room, 2 * n);
   m->matrix_work = take(&room, n * n);
@@ -154,7 +154,7 @@ int model_prepare(void* scratch) {
 
 void model_reset(double* saved, void* scratch) {
   memset(saved, 0, model_n_saved() * sizeof *saved);
-  saved[kInputs + thermal.n_drive] = thermal.start_hall_K + thermal.reference_degC;
+  saved[kInputs + thermal.n_drive] = thermal.start_ambient_K + thermal.reference_degC;
   model_touched(scratch);
 }
 
@@ -166,7 +166,7 @@ const char* model_before_input(double* saved, int input, double value) {
   if (!(fabs(value) <= HUGE_VAL) || fabs(value) == HUGE_VAL) return "an input is no finite number";
   if (input < thermal.n_drive && !(value >= 0.0 && value <= thermal.most_drive[input] * (1.0 + 1e-12)))
     return "an input is outside its min and max, between which the model was reduced";
-  if (input == thermal.n_drive) saved[kHallSetAt] = saved[kTime];
+  if (input == thermal.n_drive) saved[kAmbientSetAt] = saved[kTime];
   return 0;
 }
 
@@ -175,9 +175,9 @@ void model_start(double* saved, void* scratch) {
   double warmer_K = saved[kStartWarmer];
   int i;
   (void)scratch;
-  saved[kHallSetAt] = saved[kTime];
-  if (thermal.start_follows_hall && saved[kHallFromInput] != 0.0)
-    warmer_K += hall_K(saved, saved[kTime]) - thermal.start_hall_K;
+  saved[kAmbientSetAt] = saved[kTime];
+  if (thermal.start_follows_ambient && saved[kAmbientFromInput] != 0.0)
+    warmer_K += ambient_K(saved, saved[kTime]) - thermal.start_ambient_K;
   for (i = 0; i < thermal.n; ++i) z[i] = thermal.start[i] + warmer_K * thermal.ones[i];
 }
 
@@ -194,22 +194,22 @@ const char* model_step(double* saved, void* scratch, double h_s) {
   if (!s) return "the decomposition of the conduction matrix did not converge";
   if (m->in_modes != (int)(s - m->slots) + 1) {
     multiply(n, n, s->vectors, m->constant, m->mode_constant);
-    multiply(n, n, s->vectors, m->per_hall, m->mode_per_hall);
+    multiply(n, n, s->vectors, m->per_ambient, m->mode_per_ambient);
     m->in_modes = (int)(s - m->slots) + 1;
   }
   multiply(n, n, s->vectors, z, m->modes);
   while (t_s < end_s) {
-    const double knot_s = saved[kHallFromInput] == 0.0 ? next_hall_knot_s(t_s) : HUGE_VAL;
+    const double knot_s = saved[kAmbientFromInput] == 0.0 ? next_ambient_knot_s(t_s) : HUGE_VAL;
     const double until_s = knot_s < end_s ? knot_s : end_s, piece_s = until_s - t_s;
-    const double hall = hall_K(saved, t_s), slope = (hall_K(saved, until_s) - hall) / piece_s;
+    const double ambient = ambient_K(saved, t_s), slope = (ambient_K(saved, until_s) - ambient) / piece_s;
     if (!(fabs(piece_s - s->step_s) <= 1e-12 * piece_s)) {
       for (i = 0; i < n; ++i) decay_of(s->lambda[i] * piece_s, &s->kept[i], &s->of_constant[i], &s->of_slope[i]);
       s->step_s = piece_s;
     }
     for (i = 0; i < n; ++i) {
       m->modes[i] = s->kept[i] * m->modes[i] +
-                    piece_s * s->of_constant[i] * (m->mode_constant[i] + hall * m->mode_per_hall[i]) +
-                    piece_s * piece_s * s->of_slope[i] * slope * m->mode_per_hall[i];
+                    piece_s * s->of_constant[i] * (m->mode_constant[i] + ambient * m->mode_per_ambient[i]) +
+                    piece_s * piece_s * s->of_slope[i] * slope * m->mode_per_ambient[i];
     }
     t_s = until_s;
   }
@@ -226,16 +226,16 @@ const char* model_event(double* saved, void* scratch) {
 }
 
 double model_next_event_s(const double* saved) {
-  return saved[kHallFromInput] == 0.0 ? next_hall_knot_s(saved[kTime]) : HUGE_VAL;
+  return saved[kAmbientFromInput] == 0.0 ? next_ambient_knot_s(saved[kTime]) : HUGE_VAL;
 }
 
 void model_outputs(const double* saved, void* scratch, double* outputs) {
-  const double hall = hall_K(saved, saved[kTime]);
+  const double ambient = ambient_K(saved, saved[kTime]);
   int o;
   (void)scratch;
   multiply(thermal.n_outputs, thermal.n, thermal.outputs, saved + kInputs + model_n_inputs(), outputs);
   for (o = 0; o < thermal.n_outputs; ++o)
-    outputs[o] = thermal.output_factor[o] * (outputs[o] + thermal.outputs_hall[o] * hall) + thermal.output_offset[o];
+    outputs[o] = thermal.output_factor[o] * (outputs[o] + thermal.outputs_ambient[o] * ambient) + thermal.output_offset[o];
 }
 
 static const double* matrix_of(machine* m, const double* saved) {
@@ -247,34 +247,34 @@ static const double* matrix_of(machine* m, const double* saved) {
 
 void model_derivatives(const double* saved, void* scratch, double* derivatives) {
   machine* const m = scratch;
-  const double hall = hall_K(saved, saved[kTime]);
+  const double ambient = ambient_K(saved, saved[kTime]);
   int i;
   multiply(thermal.n, thermal.n, matrix_of(m, saved), saved + kInputs + model_n_inputs(), derivatives);
-  for (i = 0; i < thermal.n; ++i) derivatives[i] = m->constant[i] + hall * m->per_hall[i] - derivatives[i];
+  for (i = 0; i < thermal.n; ++i) derivatives[i] = m->constant[i] + ambient * m->per_ambient[i] - derivatives[i];
 }
 
-static void add_hall(double seed_K, const machine* m, double* outputs, double* derivatives) {
+static void add_ambient(double seed_K, const machine* m, double* outputs, double* derivatives) {
   int i;
-  for (i = 0; i < thermal.n_outputs; ++i) outputs[i] += seed_K * thermal.output_factor[i] * thermal.outputs_hall[i];
-  for (i = 0; i < thermal.n; ++i) derivatives[i] += seed_K * m->per_hall[i];
+  for (i = 0; i < thermal.n_outputs; ++i) outputs[i] += seed_K * thermal.output_factor[i] * thermal.outputs_ambient[i];
+  for (i = 0; i < thermal.n; ++i) derivatives[i] += seed_K * m->per_ambient[i];
 }
 
 void model_add_sensitivity(const double* saved, void* scratch, int known_is_state, int known, double seed, double* outputs,
                            double* derivatives) {
   machine* const m = scratch;
   const double *const k = matrix_of(m, saved), *const z = saved + kInputs + model_n_inputs();
-  const int n = thermal.n, is_hall_input = saved[kHallFromInput] != 0.0;
+  const int n = thermal.n, is_ambient_input = saved[kAmbientFromInput] != 0.0;
   int i, j, e, s;
   if (known_is_state) {
     for (i = 0; i < thermal.n_outputs; ++i) outputs[i] += seed * thermal.output_factor[i] * thermal.outputs[i * n + known];
     for (i = 0; i < n; ++i) derivatives[i] -= seed * k[i * n + known];
   } else if (known == thermal.n_drive) {
-    if (is_hall_input) add_hall(seed, m, outputs, derivatives);
+    if (is_ambient_input) add_ambient(seed, m, outputs, derivatives);
   } else if (known == thermal.n_drive + 1) {
-    if (is_hall_input) add_hall(seed * (saved[kTime] - saved[kHallSetAt]), m, outputs, derivatives);
+    if (is_ambient_input) add_ambient(seed * (saved[kTime] - saved[kAmbientSetAt]), m, outputs, derivatives);
   } else {
     const double* const drive = saved + kInputs;
-    const double hall = hall_K(saved, saved[kTime]);
+    const double ambient = ambient_K(saved, saved[kTime]);
     for (s = 0; s < thermal.n_sources; ++s) m->slope[s] = seed * law_slope(&thermal.powers[s], drive, known);
     add_transposed(thermal.n_sources, n, thermal.loads, m->slope, derivatives);
     for (e = 0; e < thermal.n_exchanges; ++e) {
@@ -282,7 +282,7 @@ void model_add_sensitivity(const double* saved, void* scratch, int known_is_stat
       const double* const g = thermal.exchanges + (size_t)e * (size_t)n * (size_t)n;
       if (slope == 0.0) continue;
       for (i = 0; i < n; ++i) {
-        double sum = hall * thermal.to_hall[e * n + i] + thermal.offsets[e * n + i];
+        double sum = ambient * thermal.to_ambient[e * n + i] + thermal.offsets[e * n + i];
         for (j = 0; j < n; ++j) sum -= g[i * n + j] * z[j];
         derivatives[i] += slope * sum;
       }

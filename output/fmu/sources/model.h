@@ -7,11 +7,11 @@
 
 /* The array begins alike in both models. */
 enum {
-  kTime = 0,          /* s */
-  kHallSetAt = 1,     /* when the hall's input was set last */
-  kHallFromInput = 2, /* 1: the hall is the input; 0: the scenario's */
-  kStartWarmer = 3,   /* K, everywhere, than the scenario's start */
-  kInputs = 4         /* the drive, the hall [degC], its rate [K/s], then readings [degC] */
+  kTime = 0,             /* s */
+  kAmbientSetAt = 1,     /* when the ambient's input was set last */
+  kAmbientFromInput = 2, /* 1: the ambient is the input; 0: the scenario's */
+  kStartWarmer = 3,      /* K, everywhere, than the scenario's start */
+  kInputs = 4            /* the drive, the ambient [degC], its rate [K/s], then readings [degC] */
 };
 
 extern const int model_kind_is_observer;
@@ -32,7 +32,7 @@ void model_touched(void* scratch);
 const char* model_before_input(double* saved, int input, double value);
 /* The start, from parameters and inputs at the start time. */
 void model_start(double* saved, void* scratch);
-/* To time + h, inputs held, the hall going on at its rate. Returns 0, or what is wrong in words. */
+/* To time + h, inputs held, the ambient going on at its rate. Returns 0, or what is wrong in words. */
 const char* model_step(double* saved, void* scratch, double h_s);
 /* At an event. Returns 0, or what is wrong in words. */
 const char* model_event(double* saved, void* scratch);

@@ -20,30 +20,30 @@ typedef struct {
   const law_term* terms;
 } drive_law;
 
-/* dz/dt = -K z + f, M = 1: K = K0 + sum c_e G_e, f = f0 + hall h0 + sum P_s b_s + sum c_e (hall g_e + o_e). Matrices by rows. */
+/* dz/dt = -K z + f, M = 1: K = K0 + sum c_e G_e, f = f0 + ambient h0 + sum P_s b_s + sum c_e (ambient g_e + o_e). Matrices by rows. */
 typedef struct {
   int n, n_drive, n_sources, n_exchanges, n_outputs;
   const double* conduction;    /* K0 */
   const double* constant_load; /* f0 */
-  const double* hall_load;     /* h0 */
+  const double* ambient_load;  /* h0 */
   const double* loads;         /* b_s, n_sources rows */
   const drive_law* powers;
-  const double* exchanges; /* G_e, n_exchanges matrices */
-  const double* to_hall;   /* g_e, n_exchanges rows */
-  const double* offsets;   /* o_e, n_exchanges rows */
+  const double* exchanges;  /* G_e, n_exchanges matrices */
+  const double* to_ambient; /* g_e, n_exchanges rows */
+  const double* offsets;    /* o_e, n_exchanges rows */
   const drive_law* coefficients;
-  const double* outputs; /* n_outputs rows: y = outputs z + outputs_hall hall */
-  const double* outputs_hall;
+  const double* outputs; /* n_outputs rows: y = outputs z + outputs_ambient ambient */
+  const double* outputs_ambient;
   const double* output_factor; /* what is told is factor y + offset */
   const double* output_offset;
-  const double* start; /* z at the start in the hall start_hall_K */
+  const double* start; /* z at the start in the ambient start_ambient_K */
   const double* ones;  /* z of 1 K everywhere */
-  double start_hall_K;
-  int start_follows_hall; /* a start in a warmer hall is as much warmer */
-  double reference_degC;  /* hall temperatures count from here */
-  int n_hall;             /* knots of the scenario's hall, linear between them and constant outside */
-  const double* hall_time_s;
-  const double* hall_K;
+  double start_ambient_K;
+  int start_follows_ambient; /* a start in a warmer ambient is as much warmer */
+  double reference_degC;     /* ambient temperatures count from here */
+  int n_ambient;             /* knots of the scenario's ambient, linear between them and constant outside */
+  const double* ambient_time_s;
+  const double* ambient_K;
   const double* most_drive; /* of each variable of the drive, for which the model was reduced */
   const double* nominal;    /* of each state */
   int n_known;              /* sets of the drive whose decompositions are made ahead */

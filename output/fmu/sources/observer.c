@@ -13,11 +13,11 @@
 const int model_kind_is_observer = 1;
 
 /* As in observer.cpp. */
-static const double kFlag = 5.0, kOutlier = 6.0, kMemory = 0.9, kZero = 2.0, kHallJump_K = 3.0, kHallJumpIn_s = 600.0,
+static const double kFlag = 5.0, kOutlier = 6.0, kMemory = 0.9, kZero = 2.0, kAmbientJump_K = 3.0, kAmbientJumpIn_s = 600.0,
                     kStart_K = 0.1;
 enum { kRowsBack = 30, kRowsKept = kRowsBack + 2, kWarmRows = 10, kMostPieces = 32, kSteps = 12 };
 
-/* Of a row: when, the hall as told and believed, whether it is doubted, how many pieces; then readings, then pieces: length and drive. */
+/* Of a row: when, the ambient as told and believed, whether it is doubted, how many pieces; then readings, then pieces: length and drive. */
 enum { kRowTime, kRowTold, kRowBelieved, kRowDoubted, kRowPieces, kRowHead };
 
 static int n_factors(void) {
@@ -48,7 +48,7 @@ typedef struct {
   double* piece_s;   /* since when the drive is as it is */
   double* n_pieces;  /* since the last sample */
   double* n_history; /* beliefs kept, of the last rows */
-  double* start_hall_K;
+  double* start_ambient_K;
   double *pieces, *start_state, *is_live, *mean_innovation, *last_s, *rows, *history, *mean, *covariance;
 } view;
 
@@ -60,7 +60,7 @@ static view view_of(double* saved) {
   v.piece_s = take(&room, 1);
   v.n_pieces = take(&room, 1);
   v.n_history = take(&room, 1);
-  v.start_hall_K = take(&room, 1);
+  v.start_ambient_K = take(&room, 1);
   v.pieces = take(&room, (size_t)(kMostPieces * piece_size()));
   v.start_state = take(&room, (size_t)thermal.n);
   v.is_live = take(&room, (size_t)observer.n_sensors);
@@ -147,7 +147,7 @@ void model_reset(double* saved, void* scratch) {
   int k;
   memset(saved, 0, model_n_saved() * sizeof *saved);
   for (k = 0; k <= observer.n_sensors; ++k)
-    saved[kInputs + thermal.n_drive + k] = thermal.start_hall_K + thermal.reference_degC;
+    saved[kInputs + thermal.n_drive + k] = thermal.start_ambient_K + thermal.reference_degC;
   model_touched(scratch);
 }
 
@@ -260,8 +260,8 @@ static void add_product(int n, int m, int columns, const double* a, int stride, 
   }
 }
 
-/* Mean and covariance over h with this drive and hall. */
-static int step(const view* v, workshop* w, const double* drive, double hall_K, double h_s) {
+/* Mean and covariance over h with this drive and ambient. */
+static int step(const view* v, workshop* w, const double* drive, double ambient_K, double h_s) {
   const int n = thermal.n, f = n_factors(), all = n_all(), width = n + f;
   const one_step* const now = step_of(w, drive, h_s);
   const double *coefficient, *power;
@@ -284,7 +284,7 @@ static int step(const view* v, workshop* w, const double* drive, double hall_K, 
     const double c = coefficient[e], believed = factor[thermal.n_sources + e] * c;
     multiply(n, n, g, v->mean, w->outside);
     for (i = 0; i < n; ++i) {
-      const double outside = hall_K * thermal.to_hall[e * n + i] + thermal.offsets[e * n + i];
+      const double outside = ambient_K * thermal.to_ambient[e * n + i] + thermal.offsets[e * n + i];
       w->load[i] += c * outside;
       w->by_factor[i * f + thermal.n_sources + e] = c * (outside - w->outside[i]);
     }
@@ -335,8 +335,8 @@ static int advance(const view* v, workshop* w, int i) {
     while (from_s < until_s - 1e-9) {
       const double n_left = ceil((until_s - from_s) / observer.longest_step_s - 1e-9), h_s = (until_s - from_s) / n_left;
       const double share = (from_s + 0.5 * h_s - before[kRowTime]) / (row[kRowTime] - before[kRowTime]);
-      const double hall = is_doubted ? row[kRowBelieved] : before[kRowTold] + (row[kRowTold] - before[kRowTold]) * share;
-      if (!step(v, w, piece + 1, hall, h_s)) return 0;
+      const double ambient = is_doubted ? row[kRowBelieved] : before[kRowTold] + (row[kRowTold] - before[kRowTold]) * share;
+      if (!step(v, w, piece + 1, ambient, h_s)) return 0;
       from_s += h_s;
     }
     from_s = until_s;
@@ -385,7 +385,7 @@ static int take_row(const view* v, workshop* w, int i) {
     const double* const gradient = thermal.outputs + (size_t)output * (size_t)thermal.n;
     double expected, variance, innovation, spread, since_s;
     if (v->is_live[k] == 0.0 || read != read) continue;
-    expected = thermal.outputs_hall[output] * row[kRowBelieved] + thermal.reference_degC;
+    expected = thermal.outputs_ambient[output] * row[kRowBelieved] + thermal.reference_degC;
     for (j = 0; j < thermal.n; ++j) expected += gradient[j] * v->mean[j];
     since_s = v->last_s[k] < *v->start_s ? observer.period_s : t_s - v->last_s[k];
     v->last_s[k] = t_s;
@@ -441,12 +441,13 @@ static const char* sample(double* saved, void* scratch, double t_s) {
   *v.piece_s = t_s;
   if (i == 0) {
     forget_readings(&v);
-    *v.start_hall_K = told_K;
+    *v.start_ambient_K = told_K;
     for (k = 0; k < thermal.n; ++k)
-      v.start_state[k] = v.mean[k] = thermal.start[k] + (told_K - thermal.start_hall_K) * thermal.ones[k];
+      v.start_state[k] = v.mean[k] = thermal.start[k] + (told_K - thermal.start_ambient_K) * thermal.ones[k];
   } else {
     const double* const before = row_at(&v, i - 1);
-    const double longer = (t_s - before[kRowTime]) / kHallJumpIn_s, most_K = kHallJump_K * (longer > 1.0 ? longer : 1.0);
+    const double longer = (t_s - before[kRowTime]) / kAmbientJumpIn_s,
+                 most_K = kAmbientJump_K * (longer > 1.0 ? longer : 1.0);
     if (fabs(told_K - before[kRowBelieved]) > most_K) {
       row[kRowDoubted] = 1.0;
       row[kRowBelieved] = before[kRowBelieved];
@@ -504,13 +505,14 @@ void model_outputs(const double* saved, void* scratch, double* outputs) {
   const int n = thermal.n, all = n_all(), rows = (int)*v.n_rows;
   const double* const l = thermal.outputs + (size_t)observer.drift_output * (size_t)n;
   const double* const z = rows > 0 ? v.mean : thermal.start;
-  const double hall = rows > 0 ? row_at(&v, rows - 1)[kRowBelieved] : thermal.start_hall_K;
+  const double ambient = rows > 0 ? row_at(&v, rows - 1)[kRowBelieved] : thermal.start_ambient_K;
   const double scale = 1.0 + v.mean[all - 2];
   double unscaled = 0.0, variance;
   int i, j;
   for (i = 0; i < n; ++i) unscaled += rows > 0 ? l[i] * (z[i] - v.start_state[i]) : 0.0;
   outputs[0] =
-      rows > 0 ? 1e6 * (scale * unscaled + thermal.outputs_hall[observer.drift_output] * (hall - *v.start_hall_K)) : 0.0;
+      rows > 0 ? 1e6 * (scale * unscaled + thermal.outputs_ambient[observer.drift_output] * (ambient - *v.start_ambient_K))
+               : 0.0;
   for (i = 0; i < all; ++i) w->vector[i] = 0.0;
   for (i = 0; i < n; ++i) w->vector[i] = scale * l[i];
   w->vector[all - 2] = unscaled;
@@ -525,7 +527,7 @@ void model_outputs(const double* saved, void* scratch, double* outputs) {
   outputs += 2;
   multiply(thermal.n_outputs, n, thermal.outputs, z, outputs);
   for (i = 0; i < thermal.n_outputs; ++i)
-    outputs[i] = thermal.output_factor[i] * (outputs[i] + thermal.outputs_hall[i] * hall) + thermal.output_offset[i];
+    outputs[i] = thermal.output_factor[i] * (outputs[i] + thermal.outputs_ambient[i] * ambient) + thermal.output_offset[i];
   outputs += thermal.n_outputs;
   for (i = 0; i < observer.n_sensors; ++i) outputs[i] = v.is_live[i] == 0.0 ? 1.0 : 0.0;
   outputs[observer.n_sensors] = rows > 0 ? row_at(&v, rows - 1)[kRowDoubted] : 0.0;

@@ -91,20 +91,20 @@ void decay_of(double x, double* kept, double* of_constant, double* of_slope) {
   }
 }
 
-double hall_by_scenario_K(double time_s) {
-  const double *const t = thermal.hall_time_s, *const hall = thermal.hall_K;
+double ambient_by_scenario_K(double time_s) {
+  const double *const t = thermal.ambient_time_s, *const ambient = thermal.ambient_K;
   int k;
-  if (time_s <= t[0]) return hall[0];
-  for (k = 1; k < thermal.n_hall; ++k) {
-    if (time_s < t[k]) return hall[k - 1] + (hall[k] - hall[k - 1]) * ((time_s - t[k - 1]) / (t[k] - t[k - 1]));
+  if (time_s <= t[0]) return ambient[0];
+  for (k = 1; k < thermal.n_ambient; ++k) {
+    if (time_s < t[k]) return ambient[k - 1] + (ambient[k] - ambient[k - 1]) * ((time_s - t[k - 1]) / (t[k] - t[k - 1]));
   }
-  return hall[thermal.n_hall - 1];
+  return ambient[thermal.n_ambient - 1];
 }
 
-double next_hall_knot_s(double time_s) {
+double next_ambient_knot_s(double time_s) {
   int k;
-  for (k = 0; k < thermal.n_hall; ++k) {
-    if (thermal.hall_time_s[k] > time_s + 1e-9 * fabs(time_s)) return thermal.hall_time_s[k];
+  for (k = 0; k < thermal.n_ambient; ++k) {
+    if (thermal.ambient_time_s[k] > time_s + 1e-9 * fabs(time_s)) return thermal.ambient_time_s[k];
   }
   return HUGE_VAL;
 }
@@ -121,11 +121,11 @@ void thermal_matrix(const double* coefficient, double* matrix) {
   }
 }
 
-void thermal_loads(const double* coefficient, const double* power_W, double* constant_W, double* per_hall_W_K) {
+void thermal_loads(const double* coefficient, const double* power_W, double* constant_W, double* per_ambient_W_K) {
   const size_t bytes = (size_t)thermal.n * sizeof *constant_W;
   memcpy(constant_W, thermal.constant_load, bytes);
-  memcpy(per_hall_W_K, thermal.hall_load, bytes);
+  memcpy(per_ambient_W_K, thermal.ambient_load, bytes);
   add_transposed(thermal.n_sources, thermal.n, thermal.loads, power_W, constant_W);
   add_transposed(thermal.n_exchanges, thermal.n, thermal.offsets, coefficient, constant_W);
-  add_transposed(thermal.n_exchanges, thermal.n, thermal.to_hall, coefficient, per_hall_W_K);
+  add_transposed(thermal.n_exchanges, thermal.n, thermal.to_ambient, coefficient, per_ambient_W_K);
 }

@@ -19,12 +19,12 @@ double law_slope(const drive_law* law, const double* drive, int variable);
  * load, x = lambda h >= 0. */
 void decay_of(double x, double* kept, double* of_constant, double* of_slope);
 
-/* The scenario's hall over the reference [K]; the first knot behind a time, or infinity. */
-double hall_by_scenario_K(double time_s);
-double next_hall_knot_s(double time_s);
+/* The scenario's ambient over the reference [K]; the first knot behind a time, or infinity. */
+double ambient_by_scenario_K(double time_s);
+double next_ambient_knot_s(double time_s);
 
-/* K of the drive, n x n, and what loads z beside the hall and per kelvin of it. */
+/* K of the drive, n x n, and what loads z beside the ambient and per kelvin of it. */
 void thermal_matrix(const double* coefficient, double* matrix);
-void thermal_loads(const double* coefficient, const double* power_W, double* constant_W, double* per_hall_W_K);
+void thermal_loads(const double* coefficient, const double* power_W, double* constant_W, double* per_ambient_W_K);
 
 #endif

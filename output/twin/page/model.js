@@ -1,8 +1,8 @@
 // The machine's small system in time, dz/dt = -K z + f:
 //
-//     K = K0 + sum c_e G_e,   f = sum P_s b_s + sum c_e (hall g_e + o_e)
+//     K = K0 + sum c_e G_e,   f = sum P_s b_s + sum c_e (ambient g_e + o_e)
 //
-// In the eigenvectors of K a stretch of constant drive and linear hall temperature is a sum of exponentials, exact over any step. Laws that
+// In the eigenvectors of K a stretch of constant drive and linear ambient temperature is a sum of exponentials, exact over any step. Laws that
 // follow temperatures are held at their value where the stretch began; what they change beyond it enters by the exponential Runge-Kutta method of
 // second order (Cox & Matthews, J. Comput. Phys. 176 (2002) 430, ETD2RK), with steps by its error, and thermostats switch where their probe passes.
 
@@ -23,9 +23,9 @@ function addTransposed(rows, columns, a, x, y) {
     if (xi !== 0) for (let j = 0; j < columns; ++j) y[j] += a[row + j] * xi;
   }
 }
-// The hall over the reference temperature [K], linear between knots and constant outside.
-function hallAt(hall, time_s) {
-  const t = hall.time_s, v = hall.value_K;
+// The ambient over the reference temperature [K], linear between knots and constant outside.
+function ambientAt(ambient, time_s) {
+  const t = ambient.time_s, v = ambient.value_K;
   if (!(time_s > t[0])) return v[0];
   for (let k = 1; k < t.length; ++k) {
     if (time_s < t[k]) return v[k - 1] + (v[k] - v[k - 1]) * ((time_s - t[k - 1]) / (t[k] - t[k - 1]));
@@ -53,7 +53,7 @@ class Machine {
 
   nextEvent(time_s) {
     let next = Infinity;
-    for (const t of [...this.hall.time_s, ...this.change_times_s]) if (t > time_s + 1e-9 && t < next) next = t;
+    for (const t of [...this.ambient.time_s, ...this.change_times_s]) if (t > time_s + 1e-9 && t < next) next = t;
     return next;
   }
 
@@ -64,18 +64,18 @@ class Machine {
     return choices.laws[choices.of_stretch[stretch]];
   }
 
-  probes(z, hall_K) {
+  probes(z, ambient_K) {
     product(this.n_probes, this.n, this.probe_weights, z, this.probe_K);
     for (let p = 0; p < this.n_probes; ++p)
-      this.probe_K[p] += this.reference_K + this.probe_hall[p] * hall_K + this.probe_offset_K[p];
+      this.probe_K[p] += this.reference_K + this.probe_ambient[p] * ambient_K + this.probe_offset_K[p];
     return this.probe_K;
   }
 
-  outputs(z, hall_K, into) {
+  outputs(z, ambient_K, into) {
     product(this.n_outputs, this.n, this.output_state, z, into);
     for (let o = 0; o < this.n_outputs; ++o) {
       const {factor, offset} = this.outputs_told[o];
-      into[o] = factor * (into[o] + this.output_hall[o] * hall_K) + offset;
+      into[o] = factor * (into[o] + this.output_ambient[o] * ambient_K) + offset;
     }
     return into;
   }
@@ -116,7 +116,7 @@ class Machine {
     const n = this.n, {z, isOn} = now;
     const powers = this.powers.map(choices => this.under(choices, drive, time_s));
     const coefficients = this.coefficients.map(choices => this.under(choices, drive, time_s));
-    const hall_K = hallAt(this.hall, time_s), probe_K = this.probes(z, hall_K);
+    const ambient_K = ambientAt(this.ambient, time_s), probe_K = this.probes(z, ambient_K);
     const value = law => (law.thermostat >= 0 && !isOn[law.thermostat]) ? 0 : valueOfTables(law.rest, law.tables, probe_K);
     const c = now.held = coefficients.map((law, e) => {
       if (law.tables.length === 0) return Math.max(0, value(law));
@@ -125,22 +125,22 @@ class Machine {
     });
     const p = powers.map(value);
     const d = yield* this.decomposition(c);
-    const constant = new Float64Array(n), perHall = new Float64Array(n);
+    const constant = new Float64Array(n), perAmbient = new Float64Array(n);
     addTransposed(this.n_sources, n, this.loads, p, constant);
     addTransposed(this.n_exchanges, n, this.offsets, c, constant);
-    addTransposed(this.n_exchanges, n, this.to_hall, c, perHall);
+    addTransposed(this.n_exchanges, n, this.to_ambient, c, perAmbient);
     const inModes = x => product(n, n, d.vectors, x, new Float64Array(n));
-    return {d, c, p, value, constant: inModes(constant), perHall: inModes(perHall),
+    return {d, c, p, value, constant: inModes(constant), perAmbient: inModes(perAmbient),
             livePowers: powers.map((law, s) => [law, s]).filter(([law]) => law.tables.length > 0),
             liveCoefficients: coefficients.map((law, e) => [law, e]).filter(([law]) => law.tables.length > 0)};
   }
 
   // What laws of temperature add to the slopes beyond what the stretch holds them at, in the eigenvectors.
-  beyond(stretch, modes, hall_K, z, into) {
+  beyond(stretch, modes, ambient_K, z, into) {
     const n = this.n;
     z.fill(0);
     addTransposed(n, n, stretch.d.vectors, modes, z);
-    this.probes(z, hall_K);
+    this.probes(z, ambient_K);
     const heat = new Float64Array(n);
     for (const [law, s] of stretch.livePowers) {
       const more = stretch.value(law) - stretch.p[s];
@@ -149,7 +149,7 @@ class Machine {
     for (const [law, e] of stretch.liveCoefficients) {
       const more = stretch.value(law) - stretch.c[e], g = e * n * n;
       for (let i = 0; i < n; ++i) {
-        let sum = hall_K * this.to_hall[e * n + i] + this.offsets[e * n + i];
+        let sum = ambient_K * this.to_ambient[e * n + i] + this.offsets[e * n + i];
         for (let j = 0; j < n; ++j) sum -= this.exchanges[g + i * n + j] * z[j];
         heat[i] += more * sum;
       }
@@ -157,22 +157,22 @@ class Machine {
     return product(n, n, stretch.d.vectors, heat, into);
   }
 
-  // Modes after a step in which the hall is linear: of the linear system alone.
+  // Modes after a step in which the ambient is linear: of the linear system alone.
   linearStep(stretch, modes, time_s, h_s, into) {
-    const d = stretch.d, hall = hallAt(this.hall, time_s), slope = (hallAt(this.hall, time_s + h_s) - hall) / h_s;
+    const d = stretch.d, ambient = ambientAt(this.ambient, time_s), slope = (ambientAt(this.ambient, time_s + h_s) - ambient) / h_s;
     if (Math.abs(h_s - d.step_s) > 1e-12 * h_s) {
       for (let i = 0; i < this.n; ++i) [d.kept[i], d.ofConstant[i], d.ofSlope[i]] = decayOf(d.lambda[i] * h_s);
       d.step_s = h_s;
     }
     for (let i = 0; i < this.n; ++i)
-      into[i] = d.kept[i] * modes[i] + h_s * d.ofConstant[i] * (stretch.constant[i] + hall * stretch.perHall[i]) +
-          h_s * h_s * d.ofSlope[i] * slope * stretch.perHall[i];
+      into[i] = d.kept[i] * modes[i] + h_s * d.ofConstant[i] * (stretch.constant[i] + ambient * stretch.perAmbient[i]) +
+          h_s * h_s * d.ofSlope[i] * slope * stretch.perAmbient[i];
     return into;
   }
 
-  distanceToSwitch(k, z, hall_K, isOn) {
+  distanceToSwitch(k, z, ambient_K, isOn) {
     const t = this.thermostats[k];
-    return this.probes(z, hall_K)[t.probe] - (isOn[k] ? t.off_below_K : t.on_above_K);
+    return this.probes(z, ambient_K)[t.probe] - (isOn[k] ? t.off_below_K : t.on_above_K);
   }
 
   // From time_s to end_s under one drive. @param now  {z, isOn, step_s}: the state, which thermostats are on, the step tried next; changed
@@ -199,10 +199,10 @@ class Machine {
     const room = new Float64Array(n), told = new Float64Array(this.n_outputs);
     let h_s = now.step_s, tries = 0;
     const step = h => {
-      this.beyond(stretch, modes, hallAt(this.hall, time_s), z, before);
+      this.beyond(stretch, modes, ambientAt(this.ambient, time_s), z, before);
       this.linearStep(stretch, modes, time_s, h, guess);
       for (let i = 0; i < n; ++i) guess[i] += h * d.ofConstant[i] * before[i];
-      this.beyond(stretch, guess, hallAt(this.hall, time_s + h), z, after);
+      this.beyond(stretch, guess, ambientAt(this.ambient, time_s + h), z, after);
       for (let i = 0; i < n; ++i) room[i] = h * d.ofSlope[i] * (after[i] - before[i]);
       z.fill(0);
       addTransposed(n, n, d.vectors, room, z);
@@ -216,7 +216,7 @@ class Machine {
     const distanceAfter = (k, h) => {
       z.fill(0);
       addTransposed(n, n, d.vectors, guess, z);
-      return this.distanceToSwitch(k, z, hallAt(this.hall, time_s + h), isOn);
+      return this.distanceToSwitch(k, z, ambientAt(this.ambient, time_s + h), isOn);
     };
     const passes = (k, h) => (isOn[k] ? -1 : 1) * distanceAfter(k, h) > 0;
     while (time_s < until_s - 1e-9) {
@@ -250,9 +250,9 @@ class Machine {
     return until_s;
   }
 
-  thermostatsAt(z, hall_K) {
+  thermostatsAt(z, ambient_K) {
     const isOn = new Uint8Array(this.thermostats.length);
-    for (let k = 0; k < isOn.length; ++k) isOn[k] = this.distanceToSwitch(k, z, hall_K, isOn) > 0 ? 1 : 0;
+    for (let k = 0; k < isOn.length; ++k) isOn[k] = this.distanceToSwitch(k, z, ambient_K, isOn) > 0 ? 1 : 0;
     return isOn;
   }
 }

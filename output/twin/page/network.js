@@ -10,7 +10,7 @@ const svgElement = (parent, name, attributes, text = "") => {
 };
 
 class Network {
-  // @param network  {names, links: [[i, j]], temperature}: `temperature` maps a state to the nodes, the last name is the hall
+  // @param network  {names, links: [[i, j]], temperature}: `temperature` maps a state to the nodes, the last name is the ambient
   constructor(svg, network, palette) {
     Object.assign(this, {network, palette, n: network.names.length - 1});
     this.temperature = doubles(network.temperature);
@@ -32,9 +32,9 @@ class Network {
   angle(i) { return 2 * Math.PI * (i + 0.5) / this.n; }
 
   // @param range  of the colours, over the reference [K]
-  show(state, hall_K, reference_degC, range) {
+  show(state, ambient_K, reference_degC, range) {
     const values = product(this.n, state.length, this.temperature, state, new Float64Array(this.n + 1));
-    values[this.n] = hall_K;
+    values[this.n] = ambient_K;
     values.forEach((theta_K, i) => {
       const share = Math.min(1, Math.max(0, (theta_K - range[0]) / (range[1] - range[0])));
       const k = 3 * Math.round(share * (this.palette.length / 3 - 1));

@@ -90,7 +90,7 @@ class Page {
     if (data.target >= 0) channel.value = data.target;
     channel.addEventListener("change", () => this.dirty.charts = true);
     byId("left-words").textContent = `as the correction leaves it (${data.correction.name})`;
-    for (const element of document.querySelectorAll(".driven")) element.hidden = data.drive.length === 0;  // a machine that stands still in its hall
+    for (const element of document.querySelectorAll(".driven")) element.hidden = data.drive.length === 0;  // a machine that stands still in its ambient
     byId("charts").classList.toggle("still", data.drive.length === 0);
     if (data.drive.length > 1) {
       const variable = document.createElement("select");
@@ -210,7 +210,7 @@ class Page {
     if (this.network) {
       const state = twin.stateNow();
       this.reach(Array.from(this.thermometers, i => twin.told[i] - this.data.reference_degC));
-      this.network.show(state, twin.hallNow_K(), this.data.reference_degC, this.range_K);
+      this.network.show(state, twin.ambientNow_K(), this.data.reference_degC, this.range_K);
     } else if (this.scene) {
       this.drawScene();
     }

@@ -45,11 +45,11 @@ class Run {
 
   // Goes on row by row; gives way within a row where that takes long.
   * work() {
-    const m = this.machine, n = m.n, k = m.thermostats.length, hall = t => hallAt(m.hall, t);
+    const m = this.machine, n = m.n, k = m.thermostats.length, ambient = t => ambientAt(m.ambient, t);
     const now = {z: new Float64Array(n), isOn: null, step_s: 0};
     if (this.n_done === 0) {
       now.z.set(m.start);
-      now.isOn = m.thermostatsAt(now.z, hall(0));
+      now.isOn = m.thermostatsAt(now.z, ambient(0));
       this.keep(0, now);
     } else {
       const last = this.n_done - 1;
@@ -78,7 +78,7 @@ class Run {
     const m = this.machine;
     this.states.set(z, row * m.n);
     this.switches.set(isOn, row * m.thermostats.length);
-    m.outputs(z, hallAt(m.hall, this.time_s[row]), this.outputs.subarray(row * m.n_outputs, (row + 1) * m.n_outputs));
+    m.outputs(z, ambientAt(m.ambient, this.time_s[row]), this.outputs.subarray(row * m.n_outputs, (row + 1) * m.n_outputs));
     this.n_done = row + 1;
   }
 

@@ -12,7 +12,7 @@ function machineOf(m) {
     }))}));
   const numbers = Object.fromEntries(Object.entries(m.numbers).map(([name, text]) => [name, doubles(text)]));
   return new Machine({...m, ...numbers, powers: laws(m.powers), coefficients: laws(m.coefficients),
-                      hall: {time_s: doubles(m.hall.time_s), value_K: doubles(m.hall.value_K)}});
+                      ambient: {time_s: doubles(m.ambient.time_s), value_K: doubles(m.ambient.value_K)}});
 }
 // A law of the drive; a mere number where it is constant.
 const lawOf = law => typeof law === "number" ? {rest: law, terms: []} :
@@ -70,7 +70,7 @@ class Twin {
     return Object.fromEntries(this.machine.outputs_told.map((o, i) => [o.name, this.told[i]]));
   }
   stateNow() { return this.run.stateAt(this.time_s, this.state); }
-  hallNow_K() { return hallAt(this.machine.hall, this.time_s); }
+  ambientNow_K() { return ambientAt(this.machine.ambient, this.time_s); }
 
   // Whether the page says what `driftwright predict` says: the largest differences over the rows that came with it.
   check() {

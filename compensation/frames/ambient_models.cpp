@@ -1,4 +1,4 @@
-#include "compensation/frames/hall_models.hpp"
+#include "compensation/frames/ambient_models.hpp"
 
 #include <fmt/format.h>
 
@@ -69,9 +69,9 @@ double predicted_at(const Fit& fit, const std::vector<const Eigen::VectorXd*>& c
   return value;
 }
 
-HallModel judged(const std::string& name, int n_parameters, const Search& search, const Eigen::VectorXd& y,
+AmbientModel judged(const std::string& name, int n_parameters, const Search& search, const Eigen::VectorXd& y,
                  const std::function<std::string(const Fit&, double limit)>& words) {
-  HallModel model{.name = name, .n_parameters = n_parameters};
+  AmbientModel model{.name = name, .n_parameters = n_parameters};
   const auto n = static_cast<double>(y.size());
   const Fit fit = best_of(search, -1);
   model.rms = std::sqrt(fit.square / n);
@@ -105,10 +105,10 @@ std::string hours(int lag, const Range& range) {
 
 }  // namespace
 
-std::vector<double> lagged(const TimeSeries& hall, double lag, std::span<const double> time_s) {
+std::vector<double> lagged(const TimeSeries& ambient, double lag, std::span<const double> time_s) {
   std::vector<double> result;
   for (double t_s : time_s) {
-    double body = hall.value.front(), now_s = hall.time_s.front();
+    double body = ambient.value.front(), now_s = ambient.time_s.front();
     const auto follow = [&](double from, double to, double dt_s) {
       if (!(dt_s > 0.0)) return;
       if (lag == 0.0) {
@@ -118,25 +118,25 @@ std::vector<double> lagged(const TimeSeries& hall, double lag, std::span<const d
       const double slope = (to - from) / dt_s, decay = std::exp(-dt_s / lag);
       body = to - slope * lag + (body - from + slope * lag) * decay;
     };
-    for (std::size_t i = 1; i < hall.time_s.size() && now_s < t_s; ++i) {
-      const double end_s = std::min(t_s, hall.time_s[i]), span_s = hall.time_s[i] - hall.time_s[i - 1];
-      const double to = hall.value[i - 1] + (hall.value[i] - hall.value[i - 1]) * (end_s - hall.time_s[i - 1]) / span_s;
-      follow(hall.value[i - 1], to, end_s - now_s);
+    for (std::size_t i = 1; i < ambient.time_s.size() && now_s < t_s; ++i) {
+      const double end_s = std::min(t_s, ambient.time_s[i]), span_s = ambient.time_s[i] - ambient.time_s[i - 1];
+      const double to = ambient.value[i - 1] + (ambient.value[i] - ambient.value[i - 1]) * (end_s - ambient.time_s[i - 1]) / span_s;
+      follow(ambient.value[i - 1], to, end_s - now_s);
       now_s = end_s;
     }
-    follow(hall.value.back(), hall.value.back(), t_s - now_s);
+    follow(ambient.value.back(), ambient.value.back(), t_s - now_s);
     result.push_back(body);
   }
   return result;
 }
 
-std::vector<HallModel> compare_hall_models(const TimeSeries& hall, std::span<const double> time_s,
+std::vector<AmbientModel> compare_ambient_models(const TimeSeries& ambient, std::span<const double> time_s,
                                            std::span<const double> values, double table, double scale) {
   if (values.size() < 6)
-    throw InputError(fmt::format("{} readings are too few to compare models of the hall; six are wanted", values.size()));
+    throw InputError(fmt::format("{} readings are too few to compare models of the ambient; six are wanted", values.size()));
   const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   const auto column = [&](double lag) {
-    const std::vector<double> t = lagged(hall, lag, time_s);
+    const std::vector<double> t = lagged(ambient, lag, time_s);
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(t.data(), y.size()));
   };
   const Eigen::VectorXd at_once = column(0.0);

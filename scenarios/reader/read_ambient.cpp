@@ -1,4 +1,4 @@
-#include "scenarios/reader/read_hall.hpp"
+#include "scenarios/reader/read_ambient.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr double kColdestHall_K = 200.0, kHottestHall_K = 400.0;
+constexpr double kColdestAmbient_K = 200.0, kHottestAmbient_K = 400.0;
 
 TimeSeries of_record(const ConfigMap& in, double reference_K) {
   const auto path = std::filesystem::path(in.file()).parent_path() / in.text("csv");  // an absolute path stays
@@ -23,44 +23,44 @@ TimeSeries of_record(const ConfigMap& in, double reference_K) {
   if (channel.unit != "degC") in.fail("channel", fmt::format("{} is no temperature in degC", channel.header()));
   for (std::size_t i = 0; i < record.n_samples(); ++i) {
     const double T_K = channel.values[i] + kZeroCelsius_K;
-    if (!(T_K >= kColdestHall_K && T_K <= kHottestHall_K)) {
+    if (!(T_K >= kColdestAmbient_K && T_K <= kHottestAmbient_K)) {
       throw InputError(fmt::format("{}: {} is missing or outside -73 to 127 degC at {:g} s", record.source, channel.header(),
                                    record.time_s[i]));
     }
   }
-  TimeSeries hall{record.time_s, channel.values};
-  for (double& value : hall.value) value += kZeroCelsius_K - reference_K;
-  return hall;
+  TimeSeries ambient{record.time_s, channel.values};
+  for (double& value : ambient.value) value += kZeroCelsius_K - reference_K;
+  return ambient;
 }
 
 }  // namespace
 
-schema::Key hall_key() {
+schema::Key ambient_key() {
   using namespace schema;
-  const schema::Map record = {.name = "hall",
+  const schema::Map record = {.name = "ambient",
                               .keys = {compulsory("csv", text(), "a record, relative to the scenario"),
                                        compulsory("channel", text(), "its channel in degC, without the unit"),
                                        schema::optional("columns", schema::map(columns_schema()),
                                                         "how the file is written, where a logger wrote it")},
-                              .about = "The hall's temperature from a record."};
+                              .about = "The ambient temperature from a record."};
   return compulsory(
-      "hall",
-      Ways{rows({quantity("s"), temperature(kColdestHall_K, kHottestHall_K)}), temperature(kColdestHall_K, kHottestHall_K),
+      "ambient",
+      Ways{rows({quantity("s"), temperature(kColdestAmbient_K, kHottestAmbient_K)}), temperature(kColdestAmbient_K, kHottestAmbient_K),
            schema::map(record)},
-      "air of the hall: rows of [time, temperature], linear between and constant outside; one temperature; or a record "
+      "ambient air: rows of [time, temperature], linear between and constant outside; one temperature; or a record "
       "(docs/cyclograms.md)");
 }
 
-TimeSeries read_hall(const ConfigMap& in, double reference_K) {
-  if (in.is_map("hall")) return of_record(in.map("hall"), reference_K);
-  if (!in.is_list("hall")) return {{0.0}, {in.quantity("hall") - reference_K}};
-  TimeSeries hall;
-  for (const std::vector<double>& row : in.rows("hall")) {
-    if (!hall.time_s.empty() && !(row[0] > hall.time_s.back())) in.fail("hall", "times must increase from row to row");
-    hall.time_s.push_back(row[0]);
-    hall.value.push_back(row[1] - reference_K);
+TimeSeries read_ambient(const ConfigMap& in, double reference_K) {
+  if (in.is_map("ambient")) return of_record(in.map("ambient"), reference_K);
+  if (!in.is_list("ambient")) return {{0.0}, {in.quantity("ambient") - reference_K}};
+  TimeSeries ambient;
+  for (const std::vector<double>& row : in.rows("ambient")) {
+    if (!ambient.time_s.empty() && !(row[0] > ambient.time_s.back())) in.fail("ambient", "times must increase from row to row");
+    ambient.time_s.push_back(row[0]);
+    ambient.value.push_back(row[1] - reference_K);
   }
-  return hall;
+  return ambient;
 }
 
 }  // namespace driftwright::scenarios
