@@ -210,8 +210,8 @@ void add_export(CLI::App& cli, app::ExportOptions& options) {
 }
 
 void add_import(CLI::App& cli, app::ImportOptions& options) {
-  CLI::App* verb =
-      cli.add_subcommand("import", "a logger's file as a record CSV of the same name, with what was understood of it (docs/record.md)");
+  CLI::App* verb = cli.add_subcommand(
+      "import", "a logger's file as a record CSV of the same name, with what was understood of it (docs/record.md)");
   verb->add_option("file", options.scenario,
                    "of a logger or a control: text with cells, in any of the forms of docs/record.md")
       ->required();
@@ -259,7 +259,8 @@ void add_init(CLI::App& cli, app::InitOptions& options) {
   verb->add_option("folder", options.folder, "that is made; its name is that of the scenario")->required();
   verb->add_option("--from", options.from, "a drawing or mesh (.step, .msh, .inp, .vtu), which is copied, or lumped")
       ->capture_default_str();
-  verb->add_option("--units", options.units, "of a mesh: mm, cm, m or inch [by its size]");
+  verb->add_option("--units", options.units,
+                   "of a mesh, or of a drawing that says a wrong one: mm, cm, m or inch [by its size]");
   verb->footer(
       "Example:\n  driftwright init results/mill --from scenarios/parts/vertical_mill.step\n  driftwright init "
       "results/two_nodes");
@@ -377,7 +378,7 @@ int app::command_line(int argc, const char* const* argv) {
           "scenario", mesh.scenario,
           "scenario YAML, of which the mesh is looked at alone, or a mesh or drawing itself: .step, .msh, .inp, .vtu")
       ->required();
-  verb->add_option("--units", mesh.units, "of a mesh file itself: mm, cm, m or inch [by its size]");
+  verb->add_option("--units", mesh.units, "of a mesh or drawing itself: mm, cm, m or inch [by its size]");
   add_results(verb, mesh, "<name of the scenario>",
               "mesh scenarios/fp3_spindle.yaml -o results/mesh\n  driftwright mesh scenarios/parts/vertical_mill.step -o "
               "results/drawing");

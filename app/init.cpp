@@ -8,6 +8,7 @@
 #include "app/verbs.hpp"
 #include "base/config_map.hpp"
 #include "machine/runnable.hpp"
+#include "output/machine_picture.hpp"
 #include "output/results_folder.hpp"
 #include "studies/machine_draft_text.hpp"
 
@@ -46,6 +47,15 @@ class NewFolder {
   fs::path target_, work_;
 };
 
+constexpr const char* kPicture = "regions.svg";
+
+/// Each region in a colour of its own, named at its thermometer.
+std::string regions_picture(const studies::MachineDraft& draft, const mesh::Mesh& mesh) {
+  std::vector<output::PictureMark> marks;
+  for (const auto& point : draft.thermometers) marks.push_back({.name = point.region, .at_m = point.at_m});
+  return output::draw_machine({.mesh = &mesh, .by_region = true, .marks = marks});
+}
+
 /// Where the scenario would not run, in the file's final place; "" where it would.
 std::string complaint(const fs::path& file) {
   try {
@@ -81,6 +91,8 @@ void init(const InitOptions& options) {
     fs::copy_file(source, folder.work() / source.filename(), failed);
     if (failed) throw InputError(fmt::format("'{}' cannot be copied: {}", options.from, failed.message()));
     const studies::MachineDraft draft = studies::draft_of(geometry);
+    progress.begin("drawing");
+    output::write_file(folder.work() / kPicture, regions_picture(draft, geometry.mesh));
     remarks = draft.remarks;
     output::write_file(folder.work() / file, studies::scenario_text(draft, geometry, name, source.filename().string()));
   }
@@ -91,6 +103,7 @@ void init(const InitOptions& options) {
   for (const std::string& remark : remarks) fmt::print(stderr, "note: {}\n", remark);
   if (!wrong.empty())
     throw InputError(fmt::format("{} is written, and wants your hand before it runs: {}", (target / file).string(), wrong));
+  if (!is_lumped) fmt::print("{} shows which region is which.\n", (target / kPicture).string());
   fmt::print("{} is written. What it says is a guess where a comment says so.\n  driftwright run {}\n",
              (target / file).string(), (target / file).string());
 }

@@ -43,7 +43,8 @@ void place(const PlaceOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   (void)scenarios::require_machine(scenario, "place");
   const studies::PlacementOptions how = options_of(options, scenario);
-  (void)studies::with_sensors(scenario.path, {"{name: tried}"}, {});  // what cannot be edited is told before all the computing
+  (void)studies::with_sensors(scenario.path, {"{name: tried}"},
+                              {});  // what cannot be edited is told before all the computing
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   const studies::Placement placement = studies::place_thermometers(scenario, how, progress.listener());

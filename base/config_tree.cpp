@@ -158,7 +158,8 @@ ConfigNodePtr read_config_tree(const std::string& path) {
   for (const char* geometry : {".step", ".stp", ".msh", ".inp", ".vtu"}) {
     if (extension == geometry)
       throw InputError(fmt::format(
-          "{}: this is a machine's geometry, and a scenario is wanted; `driftwright init NAME --from {}` makes one of it", path, path));
+          "{}: this is a machine's geometry, and a scenario is wanted; `driftwright init NAME --from {}` makes one of it",
+          path, path));
   }
   return read_config_text(read_text_file(path), path);
 }

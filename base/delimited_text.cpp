@@ -73,7 +73,10 @@ bool is_digit(char c) {
 std::string read_text_file(const std::string& path) {
   std::string text = read_bytes(path);
   if (text.starts_with("PK\x03\x04") || text.starts_with("\xD0\xCF\x11\xE0"))  // a zip archive; Microsoft's compound file
-    throw InputError(fmt::format("{}: this is a workbook of Excel or LibreOffice, or an archive, and no text; save its sheet as CSV (comma or semicolon separated) and give that", path));
+    throw InputError(
+        fmt::format("{}: this is a workbook of Excel or LibreOffice, or an archive, and no text; save its sheet as CSV "
+                    "(comma or semicolon separated) and give that",
+                    path));
   if (text.starts_with("\xEF\xBB\xBF")) {
     text.erase(0, 3);
   } else if (text.starts_with("\xFF\xFE")) {

@@ -40,7 +40,8 @@ bool fits(const std::string& format, const std::string& zone, const std::vector<
 
 /// The formats that fit, of those that loggers write.
 std::vector<std::string> formats_of(const std::vector<std::string>& stamps, const std::string& zone, bool may_go_back) {
-  const bool with_offset = !stamps.empty() && stamps.front().find(':') != std::string::npos && offset_at_end(stamps.front()).has_value();
+  const bool with_offset =
+      !stamps.empty() && stamps.front().find(':') != std::string::npos && offset_at_end(stamps.front()).has_value();
   std::vector<std::string> found;
   for (const char* format :
        {"", "%d.%m.%y %H:%M:%S", "%d.%m.%Y %H:%M:%S", "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S", "%Y/%m/%d %H:%M:%S",
@@ -103,7 +104,8 @@ bool guess_stamps(const LoggerSheet& sheet, const GuessHints& hints, bool is_tag
 std::string stamp_like_cell(const LoggerSheet& sheet) {
   for (std::size_t c = 0; c < sheet.names.size(); ++c) {
     for (const std::string& cell : sheet.column(c)) {
-      if (!number_of(cell, sheet.decimal) && is_stamp_like(cell)) return fmt::format("'{}' holds '{}', which is no stamp that is known", sheet.names[c], cell);
+      if (!number_of(cell, sheet.decimal) && is_stamp_like(cell))
+        return fmt::format("'{}' holds '{}', which is no stamp that is known", sheet.names[c], cell);
     }
   }
   return "";
@@ -169,8 +171,8 @@ bool are_absolute_K(const std::vector<std::string>& cells, char decimal) {
 }
 
 /// A channel by what its header says. @return false where records have no room for its unit
-bool add_channel(const std::string& header, const std::string& unit_line, ColumnPlace place, const std::vector<std::string>& cells,
-                 GuessedColumns& guessed) {
+bool add_channel(const std::string& header, const std::string& unit_line, ColumnPlace place,
+                 const std::vector<std::string>& cells, GuessedColumns& guessed) {
   const HeaderWords words = words_of_header(header, unit_line);
   MappedChannel channel;
   channel.column = std::move(place);
@@ -184,9 +186,11 @@ bool add_channel(const std::string& header, const std::string& unit_line, Column
   if (channel.unit == "K" && are_absolute_K(cells, guessed.map.decimal)) {
     channel.unit = channel.written_unit = "degC";
     channel.offset = -kZeroCelsius_K;
-    guessed.guesses.push_back(fmt::format("'{}' is taken to be an absolute temperature in kelvin: 273.15 K are taken off", header));
+    guessed.guesses.push_back(
+        fmt::format("'{}' is taken to be an absolute temperature in kelvin: 273.15 K are taken off", header));
   } else if (channel.unit == "K") {
-    guessed.guesses.push_back(fmt::format("'{}' is taken to be a difference of temperatures; an absolute one wants `unit: degC, offset: -273.15 K`", header));
+    guessed.guesses.push_back(fmt::format(
+        "'{}' is taken to be a difference of temperatures; an absolute one wants `unit: degC, offset: -273.15 K`", header));
   }
   if (words.unit.empty())
     guessed.guesses.push_back(fmt::format("'{}' does not say its unit; it is taken to be {}", header,
@@ -210,8 +214,8 @@ bool add_channel(const std::string& header, const std::string& unit_line, Column
   return true;
 }
 
-void guess_tags(const LoggerSheet& sheet, std::pair<std::size_t, std::size_t> at, const GuessHints& hints, GuessedColumns& guessed,
-                std::set<std::string>& missing) {
+void guess_tags(const LoggerSheet& sheet, std::pair<std::size_t, std::size_t> at, const GuessHints& hints,
+                GuessedColumns& guessed, std::set<std::string>& missing) {
   guessed.map.tags = TagColumns{place(sheet, at.first), place(sheet, at.second),
                                 hints.every.empty() ? 0.0 : parse_quantity(hints.every, "s")};
   std::map<std::string, std::vector<std::string>> values;

@@ -106,6 +106,8 @@ double parse_quantity(const std::string& text, const std::string& unit) {
 double parse_temperature_K(const std::string& text) {
   const auto [number, given] = split(text, "degC");
   if (given.empty()) throw RangeError(fmt::format("'{}' has no unit: a temperature such as '20 degC' is wanted", text));
+  if (given == "C" || given == "F")  // coulomb and farad
+    throw RangeError(fmt::format("'{}' is no temperature; write '{:g} deg{}'", text, number, given));
   return cv_convert_double(converter(given, "K"), number);
 }
 

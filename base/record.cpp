@@ -62,11 +62,12 @@ double seconds_per_time_unit(const std::string& header, const Where& where) {
   if (header == "time_min") return 60.0;
   if (header == "time_h") return 3600.0;
   if (header.find(';') != std::string::npos || header.find('\t') != std::string::npos) {
-    throw InputError(
-        where,
-        "columns are separated by ';' or tabs; commas are wanted, with decimal points. `driftwright import` makes such a record of a "
-        "logger's file; or the scenario says how the file is written (docs/record.md): columns: {separator: ';', decimal: ',', time: {column: NAME, unit: s}, channels: "
-        "{t_housing: {column: NAME, unit: degC}}}");
+    throw InputError(where,
+                     "columns are separated by ';' or tabs; commas are wanted, with decimal points. `driftwright import` "
+                     "makes such a record of a "
+                     "logger's file; or the scenario says how the file is written (docs/record.md): columns: {separator: "
+                     "';', decimal: ',', time: {column: NAME, unit: s}, channels: "
+                     "{t_housing: {column: NAME, unit: degC}}}");
   }
   throw InputError(where, fmt::format("the first column is '{}'; time_s, time_min or time_h is wanted", header));
 }

@@ -99,7 +99,8 @@ nanoseconds TimeStamps::read(const std::string& text) {
   std::optional<StampOffset> told = has_offset_ || is_iso_ ? offset_at_end(stamp) : std::nullopt;
   if (is_iso_ && told && told->stamp.find(':') == std::string::npos) told.reset();  // 2024-03-01: a date
   if (has_offset_ && !told)
-    throw RangeError(fmt::format("'{}' has no offset to UTC at its end, which %z wants: such as +01:00, +0100, +01, Z, UTC or CET", text));
+    throw RangeError(fmt::format(
+        "'{}' has no offset to UTC at its end, which %z wants: such as +01:00, +0100, +01, Z, UTC or CET", text));
   if (told) {
     stamp = told->stamp;
     offset = told->offset;
@@ -115,10 +116,12 @@ nanoseconds TimeStamps::read(const std::string& text) {
   } else if (has_date_) {
     date::sys_time<nanoseconds> point;
     if (!fits(stamp, format_, point))
-      throw RangeError(fmt::format("'{}' is no time stamp of the format '{}'", text, has_offset_ ? format_ + "%z" : format_));
+      throw RangeError(
+          fmt::format("'{}' is no time stamp of the format '{}'", text, has_offset_ ? format_ + "%z" : format_));
     time = point.time_since_epoch();
   } else {
-    if (!fits(stamp, format_, time)) throw RangeError(fmt::format("'{}' is no time of the format '{}'", text, has_offset_ ? format_ + "%z" : format_));
+    if (!fits(stamp, format_, time))
+      throw RangeError(fmt::format("'{}' is no time of the format '{}'", text, has_offset_ ? format_ + "%z" : format_));
     if (before_) {
       time += *before_ - *before_ % kDay;
       if (*before_ - time > kHalfDay) time += kDay;

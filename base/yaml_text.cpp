@@ -172,7 +172,8 @@ bool YamlText::add_pair(const ConfigNode& map, const std::string& key, const std
   if (!length) return false;
   Replacement& r = replacements_[{first.line, first.column}];
   if (r.text.empty())
-    r = {*length, lines_[static_cast<std::size_t>(first.line) - 1].substr(static_cast<std::size_t>(first.column) - 1, *length)};
+    r = {*length,
+         lines_[static_cast<std::size_t>(first.line) - 1].substr(static_cast<std::size_t>(first.column) - 1, *length)};
   r.text = key + ": " + value + "\n" + std::string(static_cast<std::size_t>(first.column) - 1, ' ') + r.text;
   return true;
 }

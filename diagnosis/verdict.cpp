@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace driftwright::diagnosis {
 namespace {
@@ -109,7 +108,7 @@ std::string reason_of(const Diagnosis& d) {
     parts.push_back(text);
   }
   std::string text = fmt::format("{}", fmt::join(parts, "; and "));
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  if (text.starts_with("suspected")) text[0] = 'S';  // effects are written as their keys are
   switch (d.verdict) {
     case Verdict::kConsistent:
       return fmt::format(

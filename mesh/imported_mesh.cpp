@@ -112,7 +112,8 @@ const schema::Map& imported_mesh_schema() {
       .keys = {compulsory("mesh", text(),
                           "a `.msh`, `.inp`, `.vtu`, `.step` or `.stp` file, relative to the scenario (docs/meshes.md)"),
                schema::optional("units", choice({"mm", "cm", "m", "inch"}),
-                                "the lengths in the file; compulsory, save for STEP, which says its unit"),
+                                "the lengths in the file; compulsory, save for STEP, which says its unit: there, what its "
+                                "numbers are in truth"),
                schema::optional("surfaces", schema::maps(surface),
                                 "names for outer faces that the file does not name, in this order"),
                schema::optional("joints", schema::maps(joint), "parts that touch and share no nodes"),
@@ -132,12 +133,13 @@ ImportedMesh read_imported_mesh(const ConfigMap& in, const std::string& folder) 
   const Format format = format_of(recipe.path, recipe.where);
   if (!std::filesystem::is_regular_file(recipe.path)) in.fail("mesh", fmt::format("there is no file '{}'", recipe.path));
   if (format == Format::kStep) {
-    if (in.has("units")) in.fail("units", "a STEP file says its unit itself; leave this key out");
     read_step_keys(in, recipe);
   } else {
     for (const char* key : {"element_order", "mesh_size"}) {
       if (in.has(key)) in.fail(key, "the file's nodes say it; this key is for STEP files");
     }
+  }
+  if (format != Format::kStep || in.has("units")) {
     const std::string unit = in.choice("units");
     recipe.unit_m = unit == "mm" ? 1e-3 : unit == "cm" ? 1e-2 : unit == "m" ? 1.0 : 0.0254;
   }

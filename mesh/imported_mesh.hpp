@@ -46,7 +46,7 @@ struct RegionPoint {
 
 struct ImportedMesh {
   std::string path;
-  double unit_m = 0.0;  ///< of the file's lengths; STEP files say theirs
+  double unit_m = 0.0;  ///< of the file's lengths; 0: STEP files say theirs
   std::vector<SurfacePick> surfaces;
   std::vector<JointPick> joints;
   std::vector<std::string> region_sets;  ///< .inp: the ELSETs that are regions; empty: those of the *ELEMENT lines

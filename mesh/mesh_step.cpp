@@ -11,6 +11,7 @@
 #include "base/delimited_text.hpp"
 #include "mesh/gmsh_parts.hpp"
 #include "mesh/read_apart.hpp"
+#include "mesh/step_unit.hpp"
 
 namespace driftwright::mesh {
 namespace {
@@ -22,16 +23,23 @@ struct Solid {
   std::string region;
 };
 
-std::vector<Solid> import_solids(const std::string& path) {
+/// @param unit_m  of the numbers in the file; 0: as the file says
+std::vector<Solid> import_solids(const std::string& path, double unit_m) {
   gmsh::option::setString("Geometry.OCCTargetUnit", "M");
   gmsh::option::setNumber("Geometry.OCCImportLabels", 1);
   gmsh::vectorpair shapes;
   try {
     const BoundedTime bounded(most_to_read_s(path));
     occ::importShapes(path, shapes, true, "step");
+    if (unit_m > 0.0) {
+      const double times = unit_m / unit_of_step_m(path);
+      if (std::abs(times - 1.0) > 1e-12) occ::dilate(shapes, 0.0, 0.0, 0.0, times, times, times);
+    }
     occ::synchronize();
   } catch (const std::string& message) {
     throw InputError(path + ": Gmsh cannot read it: " + message);
+  } catch (const InputError&) {
+    throw;
   } catch (const std::exception& e) {
     throw InputError(fmt::format("{}: Gmsh cannot read it: {}", path, e.what()));
   } catch (...) {  // OpenCASCADE has exceptions of its own
@@ -134,7 +142,7 @@ std::vector<double> suggested_mesh_sizes_m(const std::vector<PartExtent>& parts)
 Mesh mesh_step(const ImportedMesh& recipe, bool as_it_comes) {
   const GmshSession session;
   return with_gmsh_errors([&] {
-    std::vector<Solid> solids = import_solids(recipe.path);
+    std::vector<Solid> solids = import_solids(recipe.path, recipe.unit_m);
     name_by_points(solids, recipe.region_points);
     if (as_it_comes) make_up_names(solids);
     gmsh::vectorpair all, out;

@@ -9,7 +9,8 @@ namespace driftwright::mesh {
 
 /// Each solid is a part with its own nodes; solids of one region name are one part. Where parts touch there is a joint, named as
 /// mesh_parts() does. Outer faces lie on no surface yet. Region names: of the points given, else the last part of the label
-/// that the file gives the solid. Lengths are converted from the unit in the file.
+/// that the file gives the solid. Lengths are converted from the unit that the file says,
+/// or from `unit_m` where that is given.
 /// @param as_it_comes  of a drawing that no scenario describes yet: solids without a name are solid_1, solid_2 ... in the file's order, and mesh
 ///                     sizes are suggested_mesh_sizes_m()
 /// @throws InputError  for a file that cannot be read, without solids, a solid without a name, a point in no solid

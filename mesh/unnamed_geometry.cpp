@@ -14,7 +14,8 @@
 namespace driftwright::mesh {
 namespace {
 
-constexpr double kLargestMachine_m = 20.0;  // in m; a machine in mm would have to be smaller than 20 mm
+constexpr double kLargestMachine_m = 20.0;    // in m; a machine in mm would have to be smaller than 20 mm
+constexpr double kSmallestMachine_m = 0.020;  // a drawing below this is in another unit than it says
 
 const std::map<std::string, double> kUnits_m = {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}, {"inch", 0.0254}};
 
@@ -32,6 +33,28 @@ Mesh import_in(const std::string& path, double unit_m) {
   return import_mesh(recipe);
 }
 
+double size_m(const Mesh& mesh) {
+  return (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).maxCoeff();
+}
+
+Mesh drawing_in(const std::string& path, double unit_m) {
+  ImportedMesh recipe;
+  recipe.path = path;
+  recipe.unit_m = unit_m;
+  recipe.where.file = path;
+  return read_apart(path, [&] { return mesh_step(recipe, true); });
+}
+
+UnnamedGeometry drawing(const std::string& path, const std::string& unit) {
+  if (!unit.empty()) return {drawing_in(path, kUnits_m.at(unit)), unit, false, true};
+  Mesh as_it_says = drawing_in(path, 0.0);
+  if (size_m(as_it_says) >= kSmallestMachine_m) return {std::move(as_it_says), "", false, true};
+  Mesh in_m = drawing_in(path, 1.0);
+  const double size = size_m(in_m);
+  if (size < kSmallestMachine_m || size > kLargestMachine_m) return {std::move(as_it_says), "", false, true};
+  return {std::move(in_m), "m", true, true};
+}
+
 }  // namespace
 
 bool is_drawing(const std::string& path) {
@@ -47,22 +70,13 @@ UnnamedGeometry read_unnamed_geometry(const std::string& path, const std::string
   if (!is_geometry_file(path))
     throw InputError(fmt::format("{}: no geometry that is read; .step, .stp, .msh, .inp and .vtu are", path));
   if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("there is no file '{}'", path));
-  if (is_drawing(path)) {
-    if (!unit.empty()) throw InputError(fmt::format("{}: a STEP file says its unit itself; leave --units out", path));
-    ImportedMesh recipe;
-    recipe.path = path;
-    recipe.where.file = path;
-    return {read_apart(path, [&] { return mesh_step(recipe, true); }), "", false};
-  }
-  if (!unit.empty()) {
-    const auto known = kUnits_m.find(unit);
-    if (known == kUnits_m.end()) throw InputError(fmt::format("--units {}: mm, cm, m and inch are allowed", unit));
-    return {import_in(path, known->second), unit, false};
-  }
+  if (!unit.empty() && !kUnits_m.contains(unit))
+    throw InputError(fmt::format("--units {}: mm, cm, m and inch are allowed", unit));
+  if (is_drawing(path)) return drawing(path, unit);
+  if (!unit.empty()) return {import_in(path, kUnits_m.at(unit)), unit, false};
   try {
     Mesh in_m = import_in(path, 1.0);
-    const double size_m = (in_m.coords.rowwise().maxCoeff() - in_m.coords.rowwise().minCoeff()).maxCoeff();
-    if (size_m <= kLargestMachine_m) return {std::move(in_m), "m", true};
+    if (size_m(in_m) <= kLargestMachine_m) return {std::move(in_m), "m", true};
   } catch (const InputError&) {  // too large to be in m, or damaged: then it is said in mm, too
   }
   return {import_in(path, 1e-3), "mm", true};

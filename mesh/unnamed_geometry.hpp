@@ -14,10 +14,12 @@ namespace driftwright::mesh {
 
 struct UnnamedGeometry {
   Mesh mesh;         ///< regions, surfaces and joints as the file names them; solids without a name are solid_1, solid_2 ...
-  std::string unit;  ///< of the file's lengths: mm, cm, m or inch; "" of a drawing, which says it
+  std::string unit;  ///< of the file's lengths: mm, cm, m or inch; "" of a drawing that is in the unit that it says
   bool unit_is_a_guess;
+  bool is_drawing = false;
 };
-/// @param unit  mm, cm, m or inch; empty: m where the body then is at most 20 m large, else mm
+/// @param unit  mm, cm, m or inch; empty: of a mesh m where the body then is at most 20 m large, else mm; of a drawing what it says, or m where that
+///              would be a machine below 20 mm: drawn in m, and written as if in mm
 /// @throws InputError, SolveError  as import_mesh()
 [[nodiscard]] UnnamedGeometry read_unnamed_geometry(const std::string& path, const std::string& unit);
 

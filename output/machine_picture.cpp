@@ -34,6 +34,22 @@ std::array<float, 3> colour_of(double share) {
   return inferno(0.15 + 0.85 * share);
 }
 
+/// About the width of a text in the picture, of a wide sans-serif font [units of the SVG].
+double width_of(const std::string& text) {
+  constexpr double kOfLetter = 6.8;
+  return kOfLetter * static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) {
+           return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // bytes of UTF-8 that go on with a letter are none
+         }));
+}
+
+/// Beside each view, so that the longest name has room.
+double margin_for(const std::vector<PictureMark>& marks) {
+  constexpr double kLeast = 100.0;
+  double margin = kLeast;
+  for (const PictureMark& mark : marks) margin = std::max(margin, std::ceil(width_of(mark.name)) + 12.0);
+  return margin;
+}
+
 /// Labels in a column beside a view, each with a line to its point; none covers another.
 std::string labels(const std::vector<PictureMark>& marks, const DrawnView& drawn, double left, double slack) {
   struct Label {
@@ -120,7 +136,8 @@ std::string draw_machine(const MachinePicture& picture) {
     }
   }
   double low = 0.0, high = 1.0;
-  std::set<int> shown_surfaces;
+  std::set<int> shown;  // surfaces or regions
+  const std::vector<std::string>& names = picture.by_region ? mesh.regions : mesh.surfaces;
   if (picture.field) {
     low = picture.field->value.minCoeff<Eigen::PropagateNumbers>();
     high = std::max(picture.field->value.maxCoeff<Eigen::PropagateNumbers>(), low + 0.01);  // what differs by less has one colour
@@ -129,8 +146,9 @@ std::string draw_machine(const MachinePicture& picture) {
     // Points that surfaces share would mix their colours: each triangle has points of its own.
     Eigen::Matrix3Xd own(3, 3 * static_cast<Eigen::Index>(skin.triangle.size()));
     for (std::size_t i = 0; i < skin.triangle.size(); ++i) {
-      const int name = is_joint_side(mesh, skin.surface[i]) ? -1 : skin.surface[i];
-      if (name >= 0) shown_surfaces.insert(name);
+      const int surface_name = is_joint_side(mesh, skin.surface[i]) ? -1 : skin.surface[i];
+      const int name = picture.by_region ? skin.region[i] : surface_name;
+      if (name >= 0) shown.insert(name);
       for (int k = 0; k < 3; ++k) {
         const auto to = static_cast<int>(3 * i) + k;
         own.col(to) = surface.point.col(skin.triangle[i][k]);
@@ -141,11 +159,19 @@ std::string draw_machine(const MachinePicture& picture) {
     surface.point = own;
   }
   const bool in_colours_of_names = !picture.field;
-  const int rows_of_names = in_colours_of_names ? (static_cast<int>(shown_surfaces.size()) + 4) / 4 : 0;
+  const double margin = margin_for(picture.marks), width = 2.0 * kViewWidth + 4.0 * margin;
+  std::vector<std::pair<std::string, std::string>> legend;  // colour and name
+  for (int i : shown) legend.emplace_back(hex(distinct_colour(i)), names[static_cast<std::size_t>(i)]);
+  if (!picture.by_region) legend.emplace_back("#d1d6db", "without a name");
+  double longest = 200.0;
+  for (const auto& [colour, name] : legend) longest = std::max(longest, width_of(name));
+  const int columns_of_names = std::max(1, static_cast<int>((width - 30.0) / (longest + 40.0)));
+  const int rows_of_names =
+      in_colours_of_names ? (static_cast<int>(legend.size()) + columns_of_names - 1) / columns_of_names : 0;
   const int height = kViewHeight + (in_colours_of_names ? 14 + 16 * rows_of_names : 62);
   std::string body;
   const View views[2] = {{.towards = {1.0, 1.2, 0.7}}, {.towards = {-1.0, -1.2, 0.7}}};
-  const double left_of[2] = {100.0, 600.0};
+  const double left_of[2] = {margin, kViewWidth + 3.0 * margin};
   for (int v = 0; v < 2; ++v) {
     const DrawnView drawn = draw_surface(surface, views[v], kDense * kViewWidth, kDense * kViewHeight);
     body += fmt::format("<image x=\"{}\" y=\"0\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n",
@@ -163,26 +189,24 @@ std::string draw_machine(const MachinePicture& picture) {
                         left_of[v] + kViewWidth / 2, kViewHeight + 12, v == 0 ? "from +x, +y" : "from −x, −y");
   }
   if (picture.field) {
-    body += colour_bar(*picture.field, low, high, 350.0, kViewHeight + 30.0, 300.0);
+    body += colour_bar(*picture.field, low, high, 0.5 * width - 150.0, kViewHeight + 30.0, 300.0);
     if (magnified > 0.0)
       body += fmt::format("<text x=\"30\" y=\"{}\" fill=\"#5b6670\">displacement magnified {:.0f} times</text>\n",
                           height - 6, magnified);
   } else {
-    int i = 0;
-    const auto entry = [&](const std::string& colour, const std::string& name) {
-      const int x = 30 + 242 * (i % 4), y = kViewHeight + 30 + 16 * (i / 4);
+    const int column_width = static_cast<int>(width - 30.0) / columns_of_names;
+    for (int i = 0; i < static_cast<int>(legend.size()); ++i) {
+      const auto& [colour, name] = legend[static_cast<std::size_t>(i)];
+      const int x = 30 + column_width * (i % columns_of_names), y = kViewHeight + 30 + 16 * (i / columns_of_names);
       body +=
           fmt::format("<rect x=\"{}\" y=\"{}\" width=\"10\" height=\"10\" fill=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n",
                       x, y - 9, colour, x + 15, y, escaped(name));
-      ++i;
-    };
-    for (int s : shown_surfaces) entry(hex(distinct_colour(s)), mesh.surfaces[static_cast<std::size_t>(s)]);
-    entry("#d1d6db", "without a name");
+    }
   }
   return fmt::format(
-      "<svg viewBox=\"0 0 1000 {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"the machine\" "
+      "<svg viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"the machine\" "
       "font-family=\"sans-serif\" font-size=\"11\" fill=\"#1d2329\">\n{}</svg>\n",
-      height, body);
+      width, height, body);
 }
 
 }  // namespace driftwright::output

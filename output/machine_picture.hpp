@@ -27,11 +27,12 @@ struct MachinePicture {
   const mesh::Mesh* mesh = nullptr;
   /// None: surfaces in colours of their own, with their names.
   std::optional<PictureField> field = {};
+  bool by_region = false;  ///< without a field: regions in colours of their own in place of surfaces
   Eigen::Matrix3Xd displacement_m = {};  ///< 3 x n_nodes, shown magnified; empty: none
   std::vector<PictureMark> marks = {};
 };
 
-/// The <svg> element, 1000 units wide.
+/// The <svg> element, 1000 units wide, wider where names of marks are long.
 /// @throws std::logic_error  for a mesh without cells, or a field of another size
 [[nodiscard]] std::string draw_machine(const MachinePicture& picture);
 

@@ -336,7 +336,7 @@ MachineDraft draft_of(const mesh::UnnamedGeometry& geometry) {
   std::vector<mesh::PartExtent> extents;
   for (int r = 0; r < static_cast<int>(m.regions.size()); ++r)
     extents.push_back({mesh::volume_m3(m, r), g.area_of_region_m2(r)});
-  const std::vector<double> sizes_m = geometry.unit.empty() ? mesh::suggested_mesh_sizes_m(extents) : std::vector<double>{};
+  const std::vector<double> sizes_m = geometry.is_drawing ? mesh::suggested_mesh_sizes_m(extents) : std::vector<double>{};
   for (int r = 0; r < static_cast<int>(m.regions.size()); ++r) {
     MachineDraft::Region& region = draft.regions.emplace_back();
     region.name = g.region(r);
@@ -355,6 +355,11 @@ MachineDraft draft_of(const mesh::UnnamedGeometry& geometry) {
       region.inside_m = 0.25 * (a + b + e + d);
     }
   }
+  if (geometry.is_drawing && geometry.unit_is_a_guess)
+    draft.remarks.push_back(
+        fmt::format("lengths are taken to be in {}, for in the unit that the drawing says the machine "
+                    "would be smaller than 20 mm; --units says another one",
+                    geometry.unit));
   const std::map<int, int> whole = add_joints(g, draft);
   add_feet(g, draft, whole);
   add_films(g, draft);

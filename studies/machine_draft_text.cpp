@@ -48,7 +48,13 @@ double rounded(double x) {
 
 std::string machine_block(const MachineDraft& draft, const mesh::UnnamedGeometry& geometry, const std::string& file) {
   std::string text = fmt::format("machine:\n  mesh: {}\n", quoted(file));
-  if (geometry.unit.empty()) {
+  if (!geometry.unit.empty()) {
+    const char* guess = geometry.is_drawing ? "a guess from the size, for the file says another one: its lengths"
+                                            : "a guess from the size: the lengths in the file";
+    text += fmt::format("  units: {}{}\n", geometry.unit,
+                        geometry.unit_is_a_guess ? fmt::format("                            # {}", guess) : "");
+  }
+  if (geometry.is_drawing) {
     text += "  element_order: 2                     # quadratic; linear tetrahedra are far too stiff in bending\n";
     double largest_mm = 0.0;
     for (const auto& region : draft.regions) largest_mm = std::max(largest_mm, rounded(1e3 * region.mesh_size_m));
@@ -62,14 +68,11 @@ std::string machine_block(const MachineDraft& draft, const mesh::UnnamedGeometry
         std::any_of(draft.regions.begin(), draft.regions.end(), [](const auto& r) { return r.inside_m.has_value(); });
     if (any)
       text +=
-          "  regions:                             # solids without a name in the file, by a point in each: rename them\n";
+          "  regions:                             # solids without a name in the file, by a point in each: rename them\n"
+          "                                       # (regions.svg shows which is which)\n";
     for (const auto& region : draft.regions) {
       if (region.inside_m) text += fmt::format("    {}: {}\n", quoted(region.name), at_mm(*region.inside_m));
     }
-  } else {
-    text += fmt::format(
-        "  units: {}{}\n", geometry.unit,
-        geometry.unit_is_a_guess ? "                            # a guess from the size: the lengths in the file" : "");
   }
   if (!draft.planes.empty() || !draft.remaining.empty())
     text += "  surfaces:                            # found by their geometry\n";
@@ -139,7 +142,8 @@ std::string scenario_text(const MachineDraft& draft, const mesh::UnnamedGeometry
   }
   text += fmt::format(
       "\neffects:\n{}  # Heat of the spindle: a guess, so that the whole machine would warm by about 2 K.\n"
-      "  - {{type: heat_source, region: {}, power: {:g} W, at_speed: 3000 rpm, exponent: 1.5, known_to: guess}}\n",
+      "  - {{type: heat_source, region: {}, power: {:g} W, at_speed: 3000 rpm, exponent: 1.5, "
+      "known_to: {{power: guess, exponent: 30 %}}}}\n",
       kGuess, quoted(draft.spindle), rounded(draft.heat_W));
   text += "  # Free convection and radiation of surfaces in still air: guesses of 5 to 12 W/(m^2 K).\n";
   for (const std::string& surface : draft.films)
@@ -176,7 +180,8 @@ std::string lumped_scenario_text(const std::string& name) {
   const char* rest =
       "  - {type: node, node: spindle, capacity: 5.6 kJ/K, known_to: guess}          # 12 kg of steel\n"
       "  - {type: node, node: housing, capacity: 19 kJ/K, known_to: guess}           # 41 kg of cast iron\n"
-      "  - {type: heat_source, node: spindle, power: 150 W, at_speed: 3000 rpm, exponent: 1.5, known_to: guess}\n"
+      "  - {type: heat_source, node: spindle, power: 150 W, at_speed: 3000 rpm, exponent: 1.5, "
+      "known_to: {power: guess, exponent: 30 %}}\n"
       "  - {type: link, node: spindle, to: housing, conductance: 12 W/K, known_to: guess}\n"
       "  - {type: link, node: housing, to: ambient, conductance: 5 W/K, known_to: guess}\n"
       "\nsensors:\n  - {name: t_spindle, node: spindle}\n  - {name: t_housing, node: housing}\n"

@@ -21,7 +21,9 @@ std::string with_sensors(const std::string& scenario_path, const std::vector<std
   YamlText yaml(scenario_path);
   const auto left = scenarios::give_absolute_paths(yaml, std::filesystem::absolute(scenario_path).parent_path());
   if (!left.empty())
-    throw InputError(left.front()->where(""), fmt::format("the path '{}' is an alias and cannot be edited; give it as an absolute one", left.front()->text));
+    throw InputError(
+        left.front()->where(""),
+        fmt::format("the path '{}' is an alias and cannot be edited; give it as an absolute one", left.front()->text));
   const ConfigNode* sensors = yaml.root().find("sensors");
   bool is_written = true;
   if (!sensors) {
@@ -30,7 +32,8 @@ std::string with_sensors(const std::string& scenario_path, const std::vector<std
     for (const std::string& entry : entries) is_written = is_written && yaml.append(*sensors, entry, "placed");
   }
   if (!is_written)
-    throw InputError((sensors ? *sensors : yaml.root()).where("sensors"), "this list is an alias or shared with one, and no sensors can be added where it stands; write it out");
+    throw InputError((sensors ? *sensors : yaml.root()).where("sensors"),
+                     "this list is an alias or shared with one, and no sensors can be added where it stands; write it out");
   return yaml.text(head);
 }
 

@@ -375,9 +375,10 @@ TEST(ExtendedScenario, AddsTheMeasuredRunThatAChangeHappenedIn) {
 
 TEST(ExtendedScenario, TheMeasuredRunOfALoggersFileComesWithTheColumnsThatItIsReadBy) {
   std::string text = kSpindle;
-  text += "columns:\n  separator: \";\"\n  decimal: \",\"\n  time: {column: Zeit, format: \"%d.%m.%Y %H:%M:%S\"}\n"
-          "  channels:\n    speed: {column: \"Spindel [1/min]\", unit: rpm, magnitude: true}\n"
-          "    t_shaft: {column: \"T1 (°C)\", unit: degC}\n";
+  text +=
+      "columns:\n  separator: \";\"\n  decimal: \",\"\n  time: {column: Zeit, format: \"%d.%m.%Y %H:%M:%S\"}\n"
+      "  channels:\n    speed: {column: \"Spindel [1/min]\", unit: rpm, magnitude: true}\n"
+      "    t_shaft: {column: \"T1 (°C)\", unit: degC}\n";
   const auto b = bench(write_file("raw.yaml", text));
   std::vector<MeasuredRun> runs = {b->runs[0], b->runs[0]};
   runs[1].name = "montag";
@@ -390,7 +391,8 @@ TEST(ExtendedScenario, TheMeasuredRunOfALoggersFileComesWithTheColumnsThatItIsRe
   const scenarios::Scenario read = scenarios::read_scenario(write_file("with_montag.yaml", e.text));
   EXPECT_EQ(read.cyclogram("montag").duration_s(), 120.0);
   EXPECT_EQ(read.cyclogram("montag").sections.front().drive.speed_rpm, 1000.5);
-  runs[1].path = write_file("tuesday_plain.csv", "time_s,speed_rpm\n0,1000\n60,0\n120,0\n");  // as a program may have read it, without the map
+  runs[1].path = write_file("tuesday_plain.csv",
+                            "time_s,speed_rpm\n0,1000\n60,0\n120,0\n");  // as a program may have read it, without the map
   const ExtendedScenario plain = extended_scenario(b->scenario, twin, runs, {stated}, {});
   EXPECT_EQ(scenarios::read_scenario(write_file("with_plain.yaml", plain.text)).cyclogram("montag").duration_s(), 120.0);
 }
@@ -401,7 +403,8 @@ TEST(ExtendedScenario, AFileInWhichMuchStandsInQuotesIsEditedInPlace) {
   const auto folder = fresh_folder("quoted");
   const std::string path = fixtures::write_column_and_head(folder, what);
   std::string text = what.text() + "# at the end\n";
-  for (const std::string& file : {std::string("machine.inp")}) text.replace(text.find(file), file.size(), "\"" + file + "\"");
+  for (const std::string& file : {std::string("machine.inp")})
+    text.replace(text.find(file), file.size(), "\"" + file + "\"");
   std::ofstream(path) << text;
   const auto b = bench(path);
   const ExtendedScenario e = extend(*b, [](TwinState& t) { t[2].set("conductance", 3000.0); });
@@ -444,7 +447,8 @@ sensors: [{name: t, node: a}]
 cyclograms: {cycle: [[40 min, 1000 rpm], [20 min, 0 rpm]]}
 solver: {output_interval: 2 min}
 )";
-  const std::string effects = "{type: node, node: a, capacity: 5 kJ/K}, {type: link, node: a, to: ambient, conductance: 9 W/K}";
+  const std::string effects =
+      "{type: node, node: a, capacity: 5 kJ/K}, {type: link, node: a, to: ambient, conductance: 9 W/K}";
   const std::vector<std::string> lists = {"effects: [" + effects + ",   # the last\n]\n", "effects: [" + effects + "]\n",
                                           "effects:\n  - {type: node, node: a, capacity: 5 kJ/K}\n  - {type: link, node: a, "
                                           "to: ambient, conductance: 9 W/K}\n...\n"};

@@ -12,7 +12,9 @@
 #include "mesh/gmsh_parts.hpp"
 #include "mesh/imported_mesh.hpp"
 #include "mesh/quality.hpp"
+#include "mesh/step_unit.hpp"
 #include "mesh/topology.hpp"
+#include "mesh/unnamed_geometry.hpp"
 #include "output/vtk_fields.hpp"
 #include "tests/fixtures.hpp"
 #include "tests/temporary_file.hpp"
@@ -498,9 +500,9 @@ TEST(VtuFile, ThatIsNoneIsRefused) {
 // --- STEP --------------------------------------------------------------------------------------------------------
 
 template <class Draw>
-std::string write_step(const std::string& name, Draw draw) {
+std::string write_step(const std::string& name, Draw draw, const std::string& unit = "MM") {
   const GmshSession session;
-  gmsh::option::setString("Geometry.OCCTargetUnit", "MM");
+  gmsh::option::setString("Geometry.OCCTargetUnit", unit);
   draw();
   gmsh::model::occ::synchronize();
   gmsh::write(path_of(name));
@@ -561,6 +563,27 @@ TEST(StepFile, OfACylinderInASleeveHasTheCurvedJointAndBore) {
   EXPECT_NEAR(area(m, m.joint("shaft/sleeve")->side_b), pi * 0.04 * 0.1, 2e-3 * pi * 0.004);
   EXPECT_NEAR(area(m, "outside"), pi * 0.08 * 0.1, 2e-3 * pi * 0.008);
   EXPECT_NEAR(area(m, "end"), pi * 0.0004, 2e-3 * pi * 0.0004);
+}
+
+TEST(StepFile, SaysItsUnitUnlessTheScenarioKnowsBetter) {
+  const auto box = [] { gmsh::model::occ::addBox(0, 0, 0, 0.1, 0.06, 0.04); };
+  for (const auto& [unit, metres] : {std::pair{"MM", 1e-3}, {"CM", 1e-2}, {"M", 1.0}, {"INCH", 0.0254}}) {
+    ImportedMesh r = recipe(write_step(fmt::format("box_{}.step", unit), box, unit), 0.0);
+    r.mesh_size_m = 0.04 * metres;
+    r.region_points = {{"box", {0.05 * metres, 0.03 * metres, 0.02 * metres}, {}}};
+    EXPECT_NEAR(unit_of_step_m(r.path), metres, 1e-15) << unit;
+    EXPECT_NEAR(volume(import_mesh(r), "box"), 0.1 * 0.06 * 0.04 * std::pow(metres, 3), 1e-9 * std::pow(metres, 3)) << unit;
+    r.unit_m = 1.0;
+    r.mesh_size_m = 0.04;
+    r.region_points = {{"box", {0.05, 0.03, 0.02}, {}}};
+    EXPECT_NEAR(volume(import_mesh(r), "box"), 0.1 * 0.06 * 0.04, 1e-9) << unit;
+  }
+  const UnnamedGeometry drawn_in_m = read_unnamed_geometry(path_of("box_MM.step"), "");
+  EXPECT_EQ(drawn_in_m.unit, "m");
+  EXPECT_TRUE(drawn_in_m.unit_is_a_guess);
+  EXPECT_NEAR(drawn_in_m.mesh.coords.row(0).maxCoeff(), 0.1, 1e-12);
+  EXPECT_NEAR(read_unnamed_geometry(path_of("box_MM.step"), "mm").mesh.coords.row(0).maxCoeff(), 1e-4, 1e-12);
+  EXPECT_EQ(read_unnamed_geometry(path_of("box_M.step"), "").unit, "");
 }
 
 TEST(StepFile, ThatIsNoneIsRefused) {

@@ -50,6 +50,8 @@ TEST(Init, OfADrawingRunsAtOnce) {
   expect_sane_run(folder, "mill");
   const std::string text = read_text(target + "/mill.yaml");
   EXPECT_THAT(text, HasSubstr("type: contact"));
+  EXPECT_THAT(text, HasSubstr("known_to: guess"));
+  EXPECT_THAT(read_text(target + "/regions.svg"), AllOf(HasSubstr(">solid_1</text>"), HasSubstr(">solid_5</text>")));
   EXPECT_THAT(text, ContainsRegex("supports:[^\n]*a guess"));
   const CommandOutcome again = run_program("init " + target + " --from scenarios/parts/vertical_mill.step");
   EXPECT_EQ(again.exit_code, 2);

@@ -7,10 +7,9 @@
 
 #include "studies/logger_import.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
@@ -139,17 +138,23 @@ TEST(LoggerImport, SaysWhatItCannotMakeOut) {
 
 TEST(LoggerImport, ReadsStampsWithOffsets) {
   for (const char* offset : {"+01:00", " +01:00", "+0100", " CET"}) {
-    const std::string text = fmt::format("Zeit;T1 (°C)\n02.11.2026 07:30:00{0};20,1\n02.11.2026 07:30:10{0};20,2\n02.11.2026 07:30:20{0};20,4\n", offset);
+    const std::string text = fmt::format(
+        "Zeit;T1 (°C)\n02.11.2026 07:30:00{0};20,1\n02.11.2026 07:30:10{0};20,2\n02.11.2026 07:30:20{0};20,4\n", offset);
     const Record record = studies::import_logger(write_file("log.csv", text), "", {}).read.record;
     EXPECT_THAT(record.time_s, Pointwise(DoubleNear(1e-9), std::vector<double>{0, 10, 20})) << offset;
   }
-  EXPECT_THAT([] { (void)studies::import_logger(write_file("log.csv", "Zeit;T (°C)\n02.11.2026 7h30;20,1\n02.11.2026 7h31;20,2\n02.11.2026 7h32;20,4\n"), "", {}); },
-              ThrowsMessage<InputError>(HasSubstr("'Zeit' holds '02.11.2026 7h30'")));
+  EXPECT_THAT(
+      [] {
+        (void)studies::import_logger(
+            write_file("log.csv", "Zeit;T (°C)\n02.11.2026 7h30;20,1\n02.11.2026 7h31;20,2\n02.11.2026 7h32;20,4\n"), "",
+            {});
+      },
+      ThrowsMessage<InputError>(HasSubstr("'Zeit' holds '02.11.2026 7h30'")));
 }
 
 TEST(LoggerImport, TakesAbsoluteKelvinForTemperatures) {
-  const studies::LoggerImport import =
-      studies::import_logger(write_file("log.csv", "time [s];T1 (K);dT (K)\n0;293,15;0,1\n10;293,25;0,2\n20;293,40;0,3\n"), "", {});
+  const studies::LoggerImport import = studies::import_logger(
+      write_file("log.csv", "time [s];T1 (K);dT (K)\n0;293,15;0,1\n10;293,25;0,2\n20;293,40;0,3\n"), "", {});
   expect_values(import.read.record, "t1_degC", {20.0, 20.1, 20.25});
   expect_values(import.read.record, "dt_K", {0.1, 0.2, 0.3});
   EXPECT_THAT(import.guesses, Contains(HasSubstr("'T1 (K)' is taken to be an absolute temperature in kelvin")));
@@ -158,8 +163,9 @@ TEST(LoggerImport, TakesAbsoluteKelvinForTemperatures) {
 }
 
 TEST(LoggerImport, SaysThatAWorkbookIsNoText) {
-  EXPECT_THAT([] { (void)studies::import_logger(write_file("log.xlsx", std::string("PK\x03\x04 of a zip archive")), "", {}); },
-              ThrowsMessage<InputError>(testing::AllOf(HasSubstr("log.xlsx"), HasSubstr("save its sheet as CSV"))));
+  EXPECT_THAT(
+      [] { (void)studies::import_logger(write_file("log.xlsx", std::string("PK\x03\x04 of a zip archive")), "", {}); },
+      ThrowsMessage<InputError>(testing::AllOf(HasSubstr("log.xlsx"), HasSubstr("save its sheet as CSV"))));
 }
 
 TEST(LoggerImport, NamesATagThatNeverComes) {

@@ -71,6 +71,31 @@ TEST(MachinePicture, KeepsAllNamesInside) {
   EXPECT_THAT(drawn, HasSubstr(">and 50 more<"));
 }
 
+// Names must not be cut at the picture's edge: DejaVu Sans, the widest of the usual fonts, has 6.7 of 11 units a letter in the mean of lower case.
+TEST(MachinePicture, HasRoomForLongNames) {
+  const mesh::Mesh mesh = box();
+  const std::string name = "t_headstock_bearing_front_outer_ring";
+  const std::string drawn = draw_machine({.mesh = &mesh, .marks = {{name, {0.0, 0.05, 0.1}}, {"drift", {0.1, 0.1, 0.2}}}});
+  std::smatch box;
+  ASSERT_TRUE(std::regex_search(drawn, box, std::regex("viewBox=\"0 0 ([0-9.]+) ")));
+  const double needed = 6.7 * static_cast<double>(name.size()), width = std::stod(box[1]);
+  const std::regex text("<text x=\"([^\"]*)\" y=\"[^\"]*\" text-anchor=\"(end|start)\"[^>]*>" + name);
+  int n = 0;
+  for (std::sregex_iterator t(drawn.begin(), drawn.end(), text), end; t != end; ++t, ++n) {
+    const double x = std::stod((*t)[1]);
+    EXPECT_GT((*t)[2] == "end" ? x : width - x, needed);
+  }
+  EXPECT_EQ(n, 2);
+}
+
+TEST(MachinePicture, NamesRegions) {
+  const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.1, 0.2}, .n = {2, 2, 4}});
+  const std::string drawn = draw_machine({.mesh = &mesh, .by_region = true});
+  for (const std::string& region : mesh.regions) EXPECT_THAT(drawn, HasSubstr(">" + region + "</text>"));
+  for (const std::string& surface : mesh.surfaces) EXPECT_THAT(drawn, Not(HasSubstr(">" + surface + "</text>")));
+  EXPECT_THAT(drawn, Not(HasSubstr("without a name")));
+}
+
 TEST(MachinePicture, OfAnotherMeshIsOurMistake) {
   const mesh::Mesh mesh = box();
   EXPECT_THROW((void)draw_machine({.mesh = &mesh, .field = PictureField{"x", Eigen::VectorXd::Zero(3)}}), std::logic_error);

@@ -60,7 +60,8 @@ TEST(Placement, OfTwoBodiesLeavesTheVarianceThatIsWorkedOutByHand) {
   const PlacementModel model = model_of(scenario);
   ASSERT_EQ(model.n_candidates, 2);
   ASSERT_EQ(model.spots[0].region, "head");
-  const std::vector<PlacementRun> runs = runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 0.0}}, 36);
+  const std::vector<PlacementRun> runs =
+      runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 0.0}}, 36);
   ASSERT_EQ(runs.size(), 1u);
   const double noise_K = 0.1, scatter = 0.3, row_s = 300.0;
   const std::vector<compensation::RunSensitivity> numerical = sensitivities(model, runs, factor_states(model, runs), noise_K, model.rows);
@@ -95,10 +96,13 @@ TEST(Placement, OfTwoBodiesLeavesTheVarianceThatIsWorkedOutByHand) {
 /// Twelve bodies in a row, with heat, links and sensitivities drawn at random.
 std::string chain(int seed) {
   Random random(static_cast<std::uint64_t>(seed), 77);
-  std::string text = "name: chain\nreference_temperature: 20 degC\nambient: 20 degC\nmachine: {generator: lumped}\neffects:\n", moved;
+  std::string text =
+                  "name: chain\nreference_temperature: 20 degC\nambient: 20 degC\nmachine: {generator: lumped}\neffects:\n",
+              moved;
   for (int i = 0; i < 12; ++i) {
     text += fmt::format("  - {{type: node, node: b{}, capacity: {:.3f} kJ/K}}\n", i, random.log_uniform(2.0, 40.0));
-    text += fmt::format("  - {{type: link, node: b{}, to: ambient, conductance: {:.3f} W/K}}\n", i, random.log_uniform(0.5, 4.0));
+    text += fmt::format("  - {{type: link, node: b{}, to: ambient, conductance: {:.3f} W/K}}\n", i,
+                        random.log_uniform(0.5, 4.0));
     if (i > 0) text += fmt::format("  - {{type: link, node: b{}, to: b{}, conductance: {:.3f} W/K}}\n", i, i - 1, random.log_uniform(2.0, 30.0));
     if (i % 3 == 0) text += fmt::format("  - {{type: heat_source, node: b{}, power: {:.1f} W, at_speed: 1000 rpm, exponent: {:.2f}}}\n", i, random.log_uniform(20.0, 200.0), random.uniform(0.8, 2.0));
     moved += fmt::format("{}{{node: b{}, sensitivity: {:.3f} um/K}}", i > 0 ? ", " : "", i, random.normal());
@@ -113,9 +117,11 @@ TEST(Placement, OnTwelveBodiesIsTheBestOfAllSetsOfThree) {
   for (int seed = 1; seed <= 6; ++seed) {
     const scenarios::Scenario scenario = scenario_of(chain(seed));
     const PlacementModel model = model_of(scenario);
-    const std::vector<PlacementRun> runs = runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 3.0}}, 24);
+    const std::vector<PlacementRun> runs =
+        runs_in_all_ambients(scenario, scenario.cyclograms, {scenarios::Validation::Season{"", 0.0, 3.0}}, 24);
     const compensation::ObserverLeft observer(sensitivities(model, runs, factor_states(model, runs), 0.1, model.rows), {0.1, 0.3});
-    const compensation::RegressionLeft regression(scattered_runs(model, runs, scattered_states(model, runs, {0.1, 0.3}, {1, 2}), model.rows, model.ambient), 0.1);
+    const compensation::RegressionLeft regression(
+        scattered_runs(model, runs, scattered_states(model, runs, {0.1, 0.3}, {1, 2}), model.rows, model.ambient), 0.1);
     const compensation::LeftOfBoth both(observer, regression);
     const compensation::LeftWithLoss with_loss(both);
     for (const compensation::DriftLeft* left : {static_cast<const compensation::DriftLeft*>(&observer), static_cast<const compensation::DriftLeft*>(&regression),
@@ -231,7 +237,10 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   const PlacementModel model = model_of(scenario, {.n_points = 60});
   const scenarios::Model again = scenarios::open_model(placed, {}, {}, false);
   const std::vector<scenarios::SimulatedRun> runs = scenarios::simulate_cyclograms(placed, again, {&placed.cyclogram("cycle")}, {});
-  const PlacementRun run{.cyclogram = "cycle", .ambient = "", .felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram("cycle")), .times_s = runs[0].record.time_s};
+  const PlacementRun run{.cyclogram = "cycle",
+                         .ambient = "",
+                         .felt = scenarios::felt_run(*scenario.machine, scenario.cyclogram("cycle")),
+                         .times_s = runs[0].record.time_s};
   const Eigen::MatrixXd states = states_of(model, model.system, run);
   for (std::size_t i = 0; i < 2; ++i) {
     const int node = p.spots[static_cast<std::size_t>(p.chosen.sets[1][i])].node;
@@ -243,14 +252,19 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
 
 TEST(PlacedSensors, AreWrittenIntoAFileWhosePathsStandInQuotes) {
   const auto folder = fresh_folder("placed_quoted");
-  const std::string text = "machine: {mesh: \"a machine.step\"}\nsensors:\n  - {name: t, node: 'a # b'}   # the first\ncyclograms: {c: {csv: 'run.csv'}}\n";
+  const std::string text =
+      "machine: {mesh: \"a machine.step\"}\nsensors:\n  - {name: t, node: 'a # b'}   # the first\ncyclograms: {c: {csv: "
+      "'run.csv'}}\n";
   EXPECT_EQ(with_sensors(write_file("placed_quoted/a.yaml", text), {"{name: p1, node: a}"}, {}),
-            fmt::format("machine: {{mesh: \"{0}/a machine.step\"}}\nsensors:\n  - {{name: t, node: 'a # b'}}   # the first\n  - {{name: p1, node: a}}   # placed\n"
+            fmt::format("machine: {{mesh: \"{0}/a machine.step\"}}\nsensors:\n  - {{name: t, node: 'a # b'}}   # the "
+                        "first\n  - {{name: p1, node: a}}   # placed\n"
                         "cyclograms: {{c: {{csv: \"{0}/run.csv\"}}}}\n",
                         folder.string()));
-  const std::string aliased = write_file("placed_quoted/b.yaml", "of: &x run.csv\nsensors: []\ncyclograms:\n  c: {csv: *x}\n");
+  const std::string aliased =
+      write_file("placed_quoted/b.yaml", "of: &x run.csv\nsensors: []\ncyclograms:\n  c: {csv: *x}\n");
   EXPECT_THAT([&] { (void)with_sensors(aliased, {"{name: p1, node: a}"}, {}); },
-              testing::ThrowsMessage<InputError>(testing::AllOf(testing::HasSubstr("b.yaml:1:"), testing::HasSubstr("give it as an absolute one"))));
+              testing::ThrowsMessage<InputError>(
+                  testing::AllOf(testing::HasSubstr("b.yaml:1:"), testing::HasSubstr("give it as an absolute one"))));
 }
 
 TEST(PlacementTests, OfEquallyGoodTheShortestIsEnough) {

@@ -113,6 +113,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Quantity, TemperaturesNeedAUnitOfTemperature) {
   EXPECT_THROW((void)parse_temperature_K("20"), RangeError);
   EXPECT_THROW((void)parse_temperature_K("20 m"), RangeError);
+  EXPECT_THAT([] { (void)parse_temperature_K("20.5 C"); }, ThrowsMessage<RangeError>(HasSubstr("write '20.5 degC'")));
+  EXPECT_THAT([] { (void)parse_temperature_K("70 F"); }, ThrowsMessage<RangeError>(HasSubstr("write '70 degF'")));
   EXPECT_THROW((void)parse_temperature_K("nan degC"), RangeError);
 }
 

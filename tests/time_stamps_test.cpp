@@ -27,12 +27,15 @@ TEST(TimeStamps, ReadIso8601) {
 }
 
 TEST(TimeStamps, ReadOffsetsAsTheyAreWritten) {
-  for (const char* b : {"02.11.2026 07:30:00+01:00", "02.11.2026 07:30:00 +01:00", "02.11.2026 07:30:00+0100", "02.11.2026 07:30:00 +01",
-                        "02.11.2026 07:30:00 CET", "02.11.2026 07:30:00 MEZ", "02.11.2026 06:30:00Z", "02.11.2026 01:00:00 -05:30"}) {
-    EXPECT_DOUBLE_EQ(seconds_between(TimeStamps("%d.%m.%Y %H:%M:%S%z", "Europe/Berlin"), "02.11.2026 06:29:00 UTC", b), 60.0) << b;
+  for (const char* b :
+       {"02.11.2026 07:30:00+01:00", "02.11.2026 07:30:00 +01:00", "02.11.2026 07:30:00+0100", "02.11.2026 07:30:00 +01",
+        "02.11.2026 07:30:00 CET", "02.11.2026 07:30:00 MEZ", "02.11.2026 06:30:00Z", "02.11.2026 01:00:00 -05:30"}) {
+    EXPECT_DOUBLE_EQ(seconds_between(TimeStamps("%d.%m.%Y %H:%M:%S%z", "Europe/Berlin"), "02.11.2026 06:29:00 UTC", b), 60.0)
+        << b;
     EXPECT_DOUBLE_EQ(seconds_between(TimeStamps("%d.%m.%Y %H:%M:%S %Ez", ""), "02.11.2026 06:29:00 UTC", b), 60.0) << b;
   }
-  for (const char* b : {"2026-11-02 07:30:00 +01:00", "2026-11-02T07:30:00+0100", "2026-11-02 07:30+01", "2026-11-02 07:30:00.0 CET"})
+  for (const char* b :
+       {"2026-11-02 07:30:00 +01:00", "2026-11-02T07:30:00+0100", "2026-11-02 07:30+01", "2026-11-02 07:30:00.0 CET"})
     EXPECT_DOUBLE_EQ(seconds_between(TimeStamps("", ""), "2026-11-02T06:29:00Z", b), 60.0) << b;
   EXPECT_DOUBLE_EQ(seconds_between(TimeStamps("", ""), "2026-11-02", "2026-11-03"), 86400.0);  // no offset of -02
   EXPECT_THAT([] { (void)TimeStamps("%d.%m.%Y %H:%M:%S%z", "").read("02.11.2026 07:30:00"); },

@@ -3,12 +3,14 @@
 namespace driftwright::scenarios {
 namespace {
 
-void give(YamlText& yaml, const ConfigNode& node, const std::filesystem::path& folder, std::vector<const ConfigNode*>& left) {
+void give(YamlText& yaml, const ConfigNode& node, const std::filesystem::path& folder,
+          std::vector<const ConfigNode*>& left) {
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const ConfigNode& item = *node.items[i];
     if (!node.is_map() || !item.is_scalar() || !is_path_key(node.keys[i].text)) {
       give(yaml, item, folder, left);
-    } else if (!std::filesystem::path(item.text).is_absolute() && !yaml.replace(item, absolute_path_text(item.text, folder))) {
+    } else if (!std::filesystem::path(item.text).is_absolute() &&
+               !yaml.replace(item, absolute_path_text(item.text, folder))) {
       left.push_back(&item);
     }
   }

@@ -15,6 +15,7 @@ namespace driftwright::scenarios {
 
 /// Makes all paths of a scenario absolute where they stand.
 /// @returns those that cannot be edited there (YamlText::replace): aliases
-[[nodiscard]] std::vector<const ConfigNode*> give_absolute_paths(YamlText& yaml, const std::filesystem::path& folder_of_scenario);
+[[nodiscard]] std::vector<const ConfigNode*> give_absolute_paths(YamlText& yaml,
+                                                                 const std::filesystem::path& folder_of_scenario);
 
 }  // namespace driftwright::scenarios
