@@ -15,6 +15,7 @@ namespace {
 
 using Row = LoggerSheet::Row;
 
+constexpr std::size_t kLongestNumber = 64;  // a number or a stamp has fewer letters
 constexpr std::size_t kMostLooked = 5000;           // rows that are looked at
 constexpr double kMostRows = 0.8, kSomeRows = 0.4;  // share of lines that a form must fit
 
@@ -61,6 +62,7 @@ char find_decimal(const std::vector<std::string>& lines, char separator) {
   std::size_t n_comma = 0, n_point = 0;
   for (std::size_t i = 0; i < std::min(kMostLooked, lines.size()); ++i) {
     for (const std::string& cell : cells_of(lines[i], separator)) {
+      if (cell.size() > kLongestNumber) continue;
       n_comma += std::regex_match(cell, comma) ? 1U : 0U;
       n_point += std::regex_match(cell, point) ? 1U : 0U;
     }
@@ -104,7 +106,7 @@ double share_of_numbers(const std::vector<std::string>& cells, char decimal) {
 
 bool is_stamp_like(const std::string& cell) {
   static const std::regex stamp(".*[0-9]{1,2}:[0-9]{2}.*|[0-9]{1,4}[-./][0-9]{1,2}[-./][0-9]{1,4}.*");
-  return std::regex_match(cell, stamp);
+  return cell.size() <= kLongestNumber && std::regex_match(cell, stamp);  // a regular expression of the library goes as deep as its text is long
 }
 
 std::vector<std::string> LoggerSheet::column(std::size_t index) const {

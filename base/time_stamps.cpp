@@ -64,6 +64,8 @@ std::optional<StampOffset> offset_at_end(const std::string& stamp) {
   static const std::regex number("(.*[0-9])[ \t]*([-+])([0-9]{2}):?([0-9]{2})?"), word("(.*[0-9])[ \t]*([A-Z]{1,4})");
   static const std::map<std::string, int> hours = {{"Z", 0},    {"UTC", 0}, {"GMT", 0},  {"WET", 0}, {"WEST", 1}, {"CET", 1},
                                                    {"CEST", 2}, {"MEZ", 1}, {"MESZ", 2}, {"EET", 2}, {"EEST", 3}};
+  constexpr std::size_t kLongest = 64;  // a regular expression of the library goes as deep as its text is long
+  if (stamp.size() > kLongest) return std::nullopt;
   std::smatch parts;
   if (std::regex_match(stamp, parts, number)) {
     const int minutes = 60 * std::stoi(parts[3]) + (parts[4].matched ? std::stoi(parts[4]) : 0);

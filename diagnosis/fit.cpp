@@ -204,12 +204,15 @@ Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
   const TwinState here = state(hypothesis, x);
   const auto beside = [&](double by) {
     Eigen::VectorXd turned = x;
-    turned[static_cast<Eigen::Index>(which)] += by;
+    double& number = turned[static_cast<Eigen::Index>(which)];
+    const double value = scatter_[which].value(number);
+    number += by;
     Prediction p;
+    if (scatter_[which].value(number) == value) return p;  // at its bound
     return has_solution([&] { p = predict_near(about, here, base, hypothesis, turned, workspace); }) ? p : Prediction{};
   };
   // From both sides: where capacities, conductances and heats change alike nothing does, and the bends of one-sided slopes, which do not cancel, would say that
-  // this is known to a hundredth of what it is.
+  // this is known far better than it is.
   for (double share : {1.0, 0.1}) {  // a machine that is about to run away has a solution on one side only
     const double step = share * scatter_[which].step;
     Prediction above = beside(step), below = beside(-step);

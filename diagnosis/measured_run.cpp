@@ -20,6 +20,7 @@ namespace {
 constexpr double kAmbientKnots_s = 600.0;      // at the most
 constexpr double kAmbientKnown_K = 0.003;      // what is left of a course matters to nobody
 constexpr double kMostNoise_K = 0.1;        // that an ambient thermometer has
+constexpr std::size_t kReadingsOfStart = 24;  // that say how warm the air was as the record begins
 constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
 constexpr int kMostColumns = 6;             // that nobody drives the machine by; each may drive it at each body
 constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
@@ -69,6 +70,33 @@ double white_noise(const Readings& r) {
   return r.value.size() < 3 ? 0.0 : std::sqrt(sum / (6.0 * static_cast<double>(r.value.size() - 2)));
 }
 
+/// The same, of which a single door that opens and steps of an instrument know nothing: by the median.
+double usual_noise(const Readings& r) {
+  std::vector<double> bends;
+  for (std::size_t i = 2; i < r.value.size(); ++i) bends.push_back(std::abs(r.value[i] - 2.0 * r.value[i - 1] + r.value[i - 2]));
+  if (bends.empty()) return 0.0;
+  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
+  std::nth_element(bends.begin(), middle, bends.end());
+  return *middle / (0.6745 * std::sqrt(6.0));
+}
+
+/// As recorded, but for the first reading: a machine that has stood is as warm as the air was on the whole, not as its last gust.
+TimeSeries gusty(const Readings& r) {
+  TimeSeries series{r.time_s, r.value};
+  const std::size_t n_readings = std::min(r.time_s.size(), kReadingsOfStart);
+  const auto n = static_cast<double>(n_readings);
+  double t = 0.0, v = 0.0, tt = 0.0, tv = 0.0;
+  for (std::size_t i = 0; i < n_readings; ++i) {
+    const double since_s = r.time_s[i] - r.time_s.front();
+    t += since_s / n;
+    v += r.value[i] / n;
+    tt += since_s * since_s / n;
+    tv += since_s * r.value[i] / n;
+  }
+  series.value.front() = v - t * (tv - t * v) / (tt - t * t);  // of the straight line through the first readings
+  return series;
+}
+
 /// Marks the knots between two that a straight line does not meet. Source: Douglas & Peucker, Cartographica 10 (1973) 112-122.
 void keep_bends(const TimeSeries& s, std::size_t first, std::size_t last, double within, std::vector<char>& kept) {
   std::size_t farthest = first;
@@ -112,7 +140,7 @@ TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>
     r.value.push_back(value[i]);
   }
   const double noise_K = white_noise(r);
-  if (noise_K > kMostNoise_K) return {r.time_s, r.value};
+  if (usual_noise(r) > kMostNoise_K + 0.5 * quantum_of(r.value)) return gusty(r);
   const double enough_K = std::max(kAmbientKnown_K, 1.1 * noise_K), length_s = r.time_s.back() - r.time_s.front();
   const int n_readings = static_cast<int>(r.time_s.size());
   for (int n_pieces = std::max(1, static_cast<int>(length_s / kAmbientKnots_s)); 3 * n_pieces <= n_readings; n_pieces *= 2) {

@@ -350,6 +350,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
 
   // Prune, and look for others in each one's place.
   listener.begin(best.empty() ? "nothing to add" : "looking for other explanations");
+  bool is_pruned = false;
   for (std::size_t i = 0; i < best.size();) {
     const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
     Fit fit = fit_all(fitter, {{others, x}}).front();
@@ -360,6 +361,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       best = others;
       best_fit = fit;
       best_value = without_value;
+      is_pruned = true;
       i = 0;
       result.findings.clear();
       continue;
@@ -398,7 +400,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     ++i;
   }
   if (best.empty() && options.most_effects > 0 && !listener.wants_end()) {
-    if (is_bent) {
+    if (is_bent || is_pruned) {
       settle_well(fitter, {}, best_fit);
       columns = signatures(fitter, candidates, laws_of(candidates), {}, best_fit, listener);
       result.scores = scores(fitter, candidates, columns, {}, best_fit);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/errors.hpp"
+#include "diagnosis/no_solution.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -16,7 +17,9 @@ constexpr double kTimesBetter = 3.0;  // than with the times as recorded
 
 MeasuredRun with_times(MeasuredRun run, double factor) {
   for (double& t : run.time_s) t *= factor;
-  for (double& t : run.ambient.time_s) t *= factor;
+  if (run.has_ambient) {  // else it is the scenario's, by its own clock
+    for (double& t : run.ambient.time_s) t *= factor;
+  }
   for (Cyclogram::Section& s : run.cyclogram.sections) s.duration_s *= factor;
   for (Cyclogram::Column& c : run.cyclogram.columns) {
     for (double& t : c.rows.time_s) t *= factor;
@@ -25,9 +28,11 @@ MeasuredRun with_times(MeasuredRun run, double factor) {
   return run;
 }
 
-/// What the twin leaves of the readings' course, constant offsets aside: the median over the channels.
+/// What the twin leaves of the readings' course, constant offsets aside: the median over the channels. 1 where it has no solution.
 double left_of_course(const MeasuredRun& run, const Twin& twin, Twin::Workspace& workspace) {
-  const Eigen::MatrixXd prediction = twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace));
+  Eigen::MatrixXd prediction;
+  if (!has_solution([&] { prediction = twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace)); }))
+    return 1.0;
   std::vector<double> shares;
   for (const MeasuredChannel& c : run.channels) {
     const Eigen::ArrayXd there = (c.value.array() == c.value.array()).cast<double>();
@@ -55,6 +60,11 @@ void require_plausible_times(const std::vector<MeasuredRun>& runs, const Twin& t
     for (const double factor : {1.0 / 60.0, 60.0}) {
       const double otherwise = left_of_course(with_times(run, factor), twin, workspace);
       if (!(otherwise < kMet && kTimesBetter * otherwise < as_recorded)) continue;
+      // A machine that is merely faster or slower than the scenario is met as well, or better, by a smaller factor.
+      const auto is_met_between = [&](double between) {
+        return left_of_course(with_times(run, std::pow(factor, between)), twin, workspace) < kTimesBetter * otherwise;
+      };
+      if (is_met_between(0.5) || is_met_between(0.75)) continue;
       throw InputError(fmt::format(
           "{}: the times look {} times too {}: with the times as recorded the scenario leaves {:.0f} % of the course of the readings, "
           "with times {} as long {:.0f} %; does the time's header (time_s, time_min, time_h) say what its numbers are?",

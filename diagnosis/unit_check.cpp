@@ -55,12 +55,27 @@ std::optional<std::string> temperature_finding(const MeasuredChannel& c, const P
   return std::nullopt;
 }
 
-std::optional<std::string> displacement_finding(const MeasuredChannel& c, const Pairs& p) {
+/// Whether the temperatures follow the twin: a machine that was warm at the start cools where the twin warms, and its displacements go back without
+/// being turned.
+bool temperatures_follow(const MeasuredRun& run, const Eigen::MatrixXd& prediction) {
+  int n_following = 0, n_other = 0;
+  for (const MeasuredChannel& c : run.channels) {
+    if (c.unit != "K") continue;
+    const Pairs p = pairs_of(c, prediction);
+    if (p.read.size() < 3) continue;
+    const Eigen::ArrayXd read = p.read - p.read.mean(), model = p.model - p.model.mean();
+    ++((read * model).mean() > kFollows * rms(read) * rms(model) ? n_following : n_other);
+  }
+  return n_following > n_other;
+}
+
+/// @param may_be_turned  whether a course that runs against the twin's can be no other thing
+std::optional<std::string> displacement_finding(const MeasuredChannel& c, const Pairs& p, bool may_be_turned) {
   const Eigen::ArrayXd read = p.read - p.read.mean(), model = p.model - p.model.mean();
   const double read_m = rms(read), model_m = rms(model);
   if (!(model_m > kLeastMoved_m && read_m > 0.0)) return std::nullopt;
   if (!(std::abs((read * model).mean()) > kFollows * read_m * model_m)) return std::nullopt;
-  if (rms(read + model) < kTurned * read_m) {
+  if (may_be_turned && rms(read + model) < kTurned * read_m) {
     return fmt::format(
         "{}_{} looks turned in sign: it runs against what the scenario says, and minus its readings would meet that to "
         "{:.0f} %; it is left out until its sign, or the scenario's, is mended",
@@ -90,11 +105,12 @@ void leave_out_foreign_units(std::vector<MeasuredRun>& runs, const Twin& twin) {
   Twin::Workspace workspace(twin);
   for (MeasuredRun& run : runs) {
     const Eigen::MatrixXd prediction = twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace));
+    const bool may_be_turned = temperatures_follow(run, prediction);
     std::string why;
     std::erase_if(run.channels, [&](const MeasuredChannel& c) {
       const Pairs p = pairs_of(c, prediction);
       if (p.read.size() < 3) return false;
-      const auto what = c.unit == "K" ? temperature_finding(c, p, reference_C) : displacement_finding(c, p);
+      const auto what = c.unit == "K" ? temperature_finding(c, p, reference_C) : displacement_finding(c, p, may_be_turned);
       if (!what) return false;
       run.findings.push_back({c.name, *what, true});
       why += "; " + *what;

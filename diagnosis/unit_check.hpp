@@ -9,7 +9,8 @@ namespace driftwright::diagnosis {
 
 /// Takes channels out of the runs whose numbers are in another unit than their header says, each with a finding, by the twin as it is
 /// written. Temperatures: as foreign_temperature() (base/), against the twin's own course. Displacements: a thousand times as much as the twin
-/// has or a thousandth, within a factor of 5, and following it (|correlation| > 0.6); or minus the twin's course to three tenths of their own.
+/// has or a thousandth, within a factor of 5, and following it (|correlation| > 0.6); or minus the twin's course to three tenths of their own, where
+/// the temperatures follow the twin.
 /// @throws InputError  where no channel of a run is left
 void leave_out_foreign_units(std::vector<MeasuredRun>& runs, const Twin& twin);
 

@@ -141,7 +141,8 @@ std::string reason_of(const Diagnosis& d) {
 bool is_size_open(const Cause& cause) {
   if (cause.parameters.empty()) return false;
   const Estimate& size = cause.parameters.front();
-  return size.low > 0.0 && size.high > kOpen * size.low;
+  const double least = std::min(std::abs(size.low), std::abs(size.high));
+  return size.low * size.high > 0.0 && std::max(std::abs(size.low), std::abs(size.high)) > kOpen * least;
 }
 
 void give_standing(Diagnosis& d, const HeldOut& held) {

@@ -5,7 +5,9 @@
 #include <time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <set>
 
 #include "base/config_map.hpp"
 #include "base/errors.hpp"
@@ -14,6 +16,7 @@ namespace driftwright::follow {
 namespace {
 
 constexpr double kLongestAnswer_s = 2.0;
+constexpr double kClockAhead_s = 60.0;  // of an observation before the agent's own time: no more than clocks of its adapters differ
 constexpr int kMostAnswers = 100;  // to one question, before rows are handed on
 
 void require_items(const HeardValues& values, const MtconnectStreams& told) {
@@ -25,6 +28,13 @@ void require_items(const HeardValues& values, const MtconnectStreams& told) {
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
   for (const ChannelOrigin& c : values.origins()) {
+    std::set<std::string> ids;
+    for (const Observation& o : told.observations) {
+      if (o.id == c.from || o.name == c.from) ids.insert(o.id);
+    }
+    if (ids.size() > 1)
+      throw InputError(fmt::format("--topic {}={}: several data items have that name, {}; say which by its id", c.header,
+                                   c.from, fmt::join(ids, ", ")));
     if (!std::binary_search(known.begin(), known.end(), c.from))
       throw InputError(fmt::format("--topic {}={}: the agent has no data item of this id or name; it has {}.{}", c.header,
                                    c.from, fmt::join(known, ", "), did_you_mean(c.from, known)));
@@ -100,7 +110,9 @@ void SampleRows::ask() {
   try {
     const double most_s = std::max(every_s_, kLongestAnswer_s);
     if (!instance_) begin(agent_.current(most_s));
-    for (int answers = 0; answers < kMostAnswers; ++answers) {
+    using Clock = std::chrono::steady_clock;
+    const auto until = Clock::now() + std::chrono::duration<double>(most_s);  // the rest at the next question
+    for (int answers = 0; answers < kMostAnswers && Clock::now() < until; ++answers) {
       const MtconnectStreams streams = agent_.sample(next_, most_s);
       if (!streams.instance.empty() && streams.instance != *instance_) {
         say_(fmt::format("it has been started anew (instanceId {} in place of {}); its observations begin anew",
@@ -115,6 +127,8 @@ void SampleRows::ask() {
         begin(agent_.current(most_s));
         continue;
       }
+      if (streams.next < next_ || (streams.next == next_ && next_ <= streams.last) || streams.next == 0)
+        throw RangeError(fmt::format("its answer does not go on behind observation {} (nextSequence {})", next_, streams.next));
       take(streams);
       if (next_ > streams.last) break;
     }
@@ -144,6 +158,10 @@ void SampleRows::take(const MtconnectStreams& streams) {
     const bool is_followed = std::any_of(values_.origins().begin(), values_.origins().end(),
                                          [&](const ChannelOrigin& c) { return c.from == o.id || c.from == o.name; });
     if (is_followed) list.push_back(o);
+  }
+  if (streams.created_s > 0.0 && streams.created_s < last_s_ - kClockAhead_s) last_s_ = streams.created_s;  // its clock was set
+  for (Observation& o : list) {
+    if (streams.created_s > 0.0 && o.time_s > streams.created_s + kClockAhead_s) o.time_s = streams.created_s;
   }
   std::sort(list.begin(), list.end(), [](const Observation& a, const Observation& b) { return a.sequence < b.sequence; });
   for (std::size_t i = 0; i < list.size(); ++i) {

@@ -142,7 +142,7 @@ MtconnectStreams MtconnectAgent::ask(const std::string& request, double most_s) 
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
   curl_easy_setopt(curl, CURLOPT_FAILONERROR, 0L);  // an agent says what is wrong in the answer
-  curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, static_cast<long>(1e3 * most_s));
+  curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, std::max(100L, static_cast<long>(1e3 * most_s)));
   curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, connection_->error);
   curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, &append);
   curl_easy_setopt(curl, CURLOPT_WRITEDATA, &answer);

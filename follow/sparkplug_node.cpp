@@ -112,7 +112,7 @@ std::string SparkplugNode::take(const std::string& topic, const std::string& byt
   };
 
   if (type == "NDEATH") {
-    if (birth_number_of(payload) != birth_number_) return "it is the death of a birth before";
+    if (!wants_birth_ && birth_number_of(payload) != birth_number_) return "it is the death of a birth before";
     is_alive_ = false;
     nobody();
     return "";
@@ -122,9 +122,6 @@ std::string SparkplugNode::take(const std::string& topic, const std::string& byt
     next_seq_ = (payload.seq() + 1) % kNumbers;
     is_alive_ = true;
     wants_birth_ = false;
-    metrics_.clear();
-    datatype_.clear();
-    aliases_.clear();
   } else {
     if (!is_alive_ && !wants_birth_) wants_birth_ = true;  // it speaks behind its death
     if (wants_birth_) return "its node's birth has not been heard";
@@ -140,13 +137,18 @@ std::string SparkplugNode::take(const std::string& topic, const std::string& byt
     return "";
   }
   const bool is_birth = type.ends_with("BIRTH");
+  if (is_birth) {
+    metrics_.clear();
+    datatype_.clear();
+    aliases_.clear();
+  }
   for (const Metric& m : payload.metrics()) {
     if (m.is_historical()) continue;  // it was so once
     Known known{m.name(), m.datatype()};
     if (m.has_alias()) {
       if (is_birth) {
         aliases_[m.alias()] = known;
-      } else if (!m.has_name()) {
+      } else if (m.name().empty()) {
         const auto at = aliases_.find(m.alias());
         if (at == aliases_.end()) {
           wants_birth_ = true;
@@ -154,6 +156,10 @@ std::string SparkplugNode::take(const std::string& topic, const std::string& byt
         }
         known.name = at->second.name;
       }
+    }
+    if (!is_birth && !datatype_.contains(known.name)) {
+      wants_birth_ = true;
+      return fmt::format("metric '{}' is of no birth", known.name);
     }
     if (is_birth) datatype_[known.name] = known.datatype;
     if (known.datatype == 0) known.datatype = datatype_[known.name];

@@ -67,7 +67,7 @@ RowSource::Got SparkplugRows::next(std::string& line, double wait_s) {
     }
   }
   if (!ticks_.is_due()) return Got::kNothingYet;
-  if (link_.is_linked()) hear();  // else what was heard last holds until it is stale
+  if (link_.is_linked() && !node_.wants_birth()) hear();  // else what was heard last holds until it is stale
   if (!has_birth_) return Got::kNothingYet;
   line = values_.row(now_s());
   return Got::kLine;

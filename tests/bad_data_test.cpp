@@ -174,7 +174,7 @@ TEST(ForeignTimes, SecondsUnderMinutesAndMinutesUnderSecondsAreTold) {
 
 TEST(ForeignTimes, AModelThatIsFarOffHasItsTimes) {
   for (const double factor : {-1.0, 0.0, 0.1, 0.4, 3.0, 10.0}) {
-    for (const double slower : {0.25, 1.0, 4.0}) {  // every capacity of the scenario is wrong by that
+    for (const double slower : {0.05, 0.08, 0.16, 0.25, 1.0, 4.0, 6.0, 12.0, 20.0}) {  // every capacity of the scenario is wrong by that
       Bench b;
       MeasuredRun& run = b.runs[0];
       const std::vector<double> times_s = run.time_s;

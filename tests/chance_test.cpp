@@ -139,7 +139,7 @@ TEST(Chance, IsMetByMachinesWithoutFault) {
   // half of them, within 2.6 standard deviations of a fair coin
   EXPECT_GE(n_above_median, 12);
   EXPECT_LE(n_above_median, 28);
-  EXPECT_LE(n_suspected, 2);  // one in a hundred is what was asked for: three of forty have a probability of 0.8 %
+  EXPECT_LE(n_suspected, 2);  // three in two hundred is what was asked for: three of forty have a probability of 2.3 %
 }
 
 }  // namespace

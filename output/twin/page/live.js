@@ -18,7 +18,7 @@ class LivePage {
     addEventListener("resize", () => Object.assign(this.dirty, {charts: true, picture: true}));
     setInterval(() => this.tellAge(), 500);
     this.connect();
-    const frame = () => { this.draw(); requestAnimationFrame(frame); };
+    const frame = () => { requestAnimationFrame(frame); this.draw(); };
     requestAnimationFrame(frame);
   }
 
@@ -53,6 +53,7 @@ class LivePage {
   connect() {
     const query = new URLSearchParams(location.search);
     query.set("since", this.last);
+    this.heard_ms = performance.now();  // as long again for the first answer; lost it stays until then
     const source = this.source = new EventSource(`events?${query}`);
     source.addEventListener("row", event => {
       this.last = event.lastEventId;
@@ -74,6 +75,7 @@ class LivePage {
 
   hear(message) {
     this.heard();
+    if (message.head && this.head) return location.reload();  // another run, which may be of another machine
     if (message.head) this.begin(message);
     for (const point of message.points) this.points.push(Float64Array.from(point, x => x ?? NaN));
     const end_s = message.run_s, begin = this.points.findIndex(p => p[0] >= end_s - WINDOW_s);
