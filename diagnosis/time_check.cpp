@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kMet = 0.3;          // of the course of the readings: what the twin leaves of them where it is about right
 constexpr double kTimesBetter = 3.0;  // than with the times as recorded
+constexpr double kAsWell = 1.5;       // of a smaller factor: what a machine does that is merely slower
 
 MeasuredRun with_times(MeasuredRun run, double factor) {
   for (double& t : run.time_s) t *= factor;
@@ -62,7 +63,7 @@ void require_plausible_times(const std::vector<MeasuredRun>& runs, const Twin& t
       if (!(otherwise < kMet && kTimesBetter * otherwise < as_recorded)) continue;
       // A machine that is merely faster or slower than the scenario is met as well, or better, by a smaller factor.
       const auto is_met_between = [&](double between) {
-        return left_of_course(with_times(run, std::pow(factor, between)), twin, workspace) < kTimesBetter * otherwise;
+        return left_of_course(with_times(run, std::pow(factor, between)), twin, workspace) < kAsWell * otherwise;
       };
       if (is_met_between(0.5) || is_met_between(0.75)) continue;
       throw InputError(fmt::format(

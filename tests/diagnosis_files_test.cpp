@@ -30,7 +30,7 @@ diagnosis::Candidate candidate(const std::string& effect, const std::string& whe
   return c;
 }
 diagnosis::Score score(std::size_t of, std::size_t variant, double gain, double power_W) {
-  return {of, variant, gain, Eigen::VectorXd::Constant(1, power_W)};
+  return {.candidate = of, .variant = variant, .gain = gain, .start = Eigen::VectorXd::Constant(1, power_W)};
 }
 
 TEST(MissingHeat, IsTheBestLawOfEachBodyThatBringsEvidence) {
