@@ -42,7 +42,7 @@ double rarity(double gain, double usual) {
 
 Chances chances_of(const Fitter& fitter, const std::vector<Candidate>& candidates, const std::vector<Signature>& columns,
                    const Fit& at) {
-  Chances chances{.best = {}, .usual = std::vector<double>(candidates.size(), kNever), .rarest = {}, .rarest_seen = kNever};
+  Chances chances{.best = {}, .usual = std::vector<double>(candidates.size(), kNever), .rarest = {}};
   if (columns.empty()) return chances;
   const Eigen::Index n = fitter.comparison().n_condensed();
   const Eigen::MatrixXd slopes = fitter.comparison().condensed(fitter.nuisance_slopes());
@@ -95,7 +95,6 @@ Chances chances_of(const Fitter& fitter, const std::vector<Candidate>& candidate
     for (Eigen::Index d = 0; d < kDraws; ++d) rarest[d] = std::max(rarest[d], rarity(each(c, d), usual));
   }
   chances.rarest = gumbel_of(rarest);
-  chances.rarest_seen = rarest.maxCoeff();
   return chances;
 }
 

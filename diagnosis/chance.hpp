@@ -12,7 +12,6 @@ struct Chances {
   /// whose times were read off the readings have no part in it.
   std::vector<double> usual;
   Chance rarest;  ///< rarity() of the rarest candidate
-  double rarest_seen = 0.0;  ///< the largest of the simulated ones: one in 200, whatever their distribution
 };
 
 /// How rare it is that a candidate has as much evidence where nothing is wrong: -log of the share of faultless machines. Beyond what is usual the share falls by e a nat, as that of a

@@ -61,7 +61,7 @@ bool is_borne_out(const NothingFound& s, Faint& f) {
 
 std::optional<FaintCause> faint_cause(const NothingFound& s, double wrongly_suspected) {
   std::vector<Faint> list = rarest_of(s);
-  const double bar = std::max(s.chances.rarest.gain_at(wrongly_suspected), s.chances.rarest_seen);
+  const double bar = s.chances.rarest.gain_at(wrongly_suspected);
   if (list.empty() || !(list.front().rarity > bar)) return std::nullopt;
   const double rarest = list.front().rarity;
   std::erase_if(list, [&](const Faint& f) { return f.rarity < rarest - kNear; });

@@ -47,12 +47,23 @@ Mesh drawing_in(const std::string& path, double unit_m) {
 
 UnnamedGeometry drawing(const std::string& path, const std::string& unit) {
   if (!unit.empty()) return {drawing_in(path, kUnits_m.at(unit)), unit, false, true};
-  Mesh as_it_says = drawing_in(path, 0.0);
+  const auto is_tried_in_m = [&](Mesh& in_m) {
+    in_m = drawing_in(path, 1.0);
+    return size_m(in_m) >= kSmallestMachine_m && size_m(in_m) <= kLargestMachine_m;
+  };
+  Mesh as_it_says, in_m;
+  try {
+    as_it_says = drawing_in(path, 0.0);
+  } catch (const InputError&) {  // a machine of a millimetre may be too small for the mesher's tolerances
+    try {
+      if (is_tried_in_m(in_m)) return {std::move(in_m), "m", true, true};
+    } catch (const InputError&) {  // told as it is below
+    }
+    throw;
+  }
   if (size_m(as_it_says) >= kSmallestMachine_m) return {std::move(as_it_says), "", false, true};
-  Mesh in_m = drawing_in(path, 1.0);
-  const double size = size_m(in_m);
-  if (size < kSmallestMachine_m || size > kLargestMachine_m) return {std::move(as_it_says), "", false, true};
-  return {std::move(in_m), "m", true, true};
+  if (is_tried_in_m(in_m)) return {std::move(in_m), "m", true, true};
+  return {std::move(as_it_says), "", false, true};
 }
 
 }  // namespace

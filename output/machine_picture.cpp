@@ -168,7 +168,7 @@ std::string draw_machine(const MachinePicture& picture) {
   const int columns_of_names = std::max(1, static_cast<int>((width - 30.0) / (longest + 40.0)));
   const int rows_of_names =
       in_colours_of_names ? (static_cast<int>(legend.size()) + columns_of_names - 1) / columns_of_names : 0;
-  const int height = kViewHeight + (in_colours_of_names ? 14 + 16 * rows_of_names : 62);
+  const int height = kViewHeight + (in_colours_of_names ? 20 + 16 * rows_of_names : 62);
   std::string body;
   const View views[2] = {{.towards = {1.0, 1.2, 0.7}}, {.towards = {-1.0, -1.2, 0.7}}};
   const double left_of[2] = {margin, kViewWidth + 3.0 * margin};

@@ -472,7 +472,7 @@ TEST(ExportReduced, IsWhatNumPyIntegratesToTheSameRecord) {
 import sys; sys.path.insert(0, 'exported')
 from reduced_model import *
 right = np.load('exported/right.npy')
-assert [o for o in model['outputs']['name']] == ['t_head', 't_column', 'ambient', 'z'], model['outputs']
+assert [o for o in model['outputs']['name']] == ['t_head', 't_column', 't_ambient', 'z'], model['outputs']
 assert [x['name'] for x in model['sources']], model['sources']
 assert len(model['drives']) == 3 and model['drives'][0]['speed_rpm'] == 1000
 def expm(a):

@@ -85,7 +85,7 @@ TEST(MappedRecord, BenchLinkInUtf16) {
 time: {column: Time, format: "%m/%d/%Y %H:%M:%S"}
 channels:
   bearing: {column: "101 <bearing> (C)", unit: degC}
-  ambient: {column: "102 <ambient> (°C)", unit: "°C"}
+  ambient: {column: "102 <hall> (°C)", unit: "°C"}
 )yaml");
   expect_times(read.record, {0.0, 10.002, 20.0});
   expect_values(read.record, "bearing_degC", {23.5, 23.75, 24.0});

@@ -109,7 +109,7 @@ TEST(WarmUp, IsRestWhereNoSpeedIsEnough) {
 // An ambient that turns warm after an hour and a half: what is enough earlier is not later, and minutes against micrometres say the same as the plan.
 TEST(WarmUp, IsNoLongerThanAnyThatIsShownToBeEnough) {
   std::string text = kOneBody;
-  text.replace(text.find("ambient: 20 degC"), 13, "ambient: [[0 min, 20 degC], [90 min, 20 degC], [100 min, 24 degC]]");
+  text.replace(text.find("ambient: 20 degC"), 16, "ambient: [[0 min, 20 degC], [90 min, 20 degC], [100 min, 24 degC]]");
   for (double tolerance_um : {0.5, 4.0}) {
     const WarmUpPlan plan = planned(text, {.tolerance_um = tolerance_um});
     bool is_shown = false;
