@@ -31,7 +31,7 @@ solver: {output_interval: 60 s}
 )";
 // Heat that is missing whatever the speed, and heat that comes and goes as nobody could tell.
 constexpr const char* kTruth =
-    "{type: heat_source, node: heater, power: 15 W, exponent: 0}\n"
+    "{type: heat_source, node: heater, power: 20 W, exponent: 0}\n"
     "  - {type: heat_window, node: wall, power: 7 W, windows: [[10 min, 47 min]]}\n"
     "  - {type: heat_window, node: wall, power: -6 W, windows: [[81 min, 102 min]]}\n"
     "  - {type: heat_window, node: wall, power: 9 W, windows: [[131 min, 158 min]]}\n"
@@ -52,7 +52,7 @@ TEST(CausesAlone, AreWrittenWhereTheyHoldAndNothingElseIs) {
   const Cause& first = d.causes.at(d.written.causes.front());
   EXPECT_EQ(first.effect, "heat_source");
   EXPECT_EQ(first.where, "heater");
-  EXPECT_NEAR(first.parameters.front().value, 15.0, 3.0);
+  EXPECT_NEAR(first.parameters.front().value, 20.0, 3.0);
   // what is printed of a written cause is what is written, and nothing else is said to be
   const Claim& claim = d.written.hypothesis.front();
   const Eigen::VectorXd x = d.written.fit.x.head(static_cast<Eigen::Index>(claim.knobs.size()));
