@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/file_bytes.hpp"
 #include "base/errors.hpp"
 #include "mesh/gmsh_parts.hpp"
 #include "mesh/imported_mesh.hpp"
@@ -567,8 +568,13 @@ TEST(StepFile, OfACylinderInASleeveHasTheCurvedJointAndBore) {
 
 TEST(StepFile, SaysItsUnitUnlessTheScenarioKnowsBetter) {
   const auto box = [] { gmsh::model::occ::addBox(0, 0, 0, 0.1, 0.06, 0.04); };
-  for (const auto& [unit, metres] : {std::pair{"MM", 1e-3}, {"M", 1.0}, {"INCH", 0.0254}}) {
-    ImportedMesh r = recipe(write_step(fmt::format("box_{}.step", unit), box, unit), 0.0);
+  // Gmsh writes millimetres; the same numbers under other units.
+  const std::string in_mm = read_bytes(write_step("box_MM.step", box)), milli = "SI_UNIT(.MILLI.,.METRE.)";
+  for (const auto& [unit, word, metres] : {std::tuple{"MM", ".MILLI.", 1e-3}, {"CM", ".CENTI.", 1e-2}, {"M", "$", 1.0}}) {
+    std::string text = in_mm;
+    for (std::size_t at = 0; (at = text.find(milli, at)) != std::string::npos; ++at)
+      text.replace(at, milli.size(), fmt::format("SI_UNIT({},.METRE.)", word));
+    ImportedMesh r = recipe(write_file(fmt::format("box_{}.step", unit), text), 0.0);
     r.mesh_size_m = 0.04 * metres;
     r.region_points = {{"box", {0.05 * metres, 0.03 * metres, 0.02 * metres}, {}}};
     EXPECT_NEAR(unit_of_step_m(r.path), metres, 1e-15) << unit;
