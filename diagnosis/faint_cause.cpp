@@ -25,11 +25,6 @@ double laws_price(const Candidate& candidate) {
   return std::log(static_cast<double>(candidate.variants.size()));
 }
 
-Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
-  const Variant& v = candidates[score.candidate].variants[score.variant];
-  return {score.candidate, score.variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens};
-}
-
 /// The best law of each candidate, the rarest first.
 std::vector<Faint> rarest_of(const NothingFound& s) {
   std::vector<Faint> list;

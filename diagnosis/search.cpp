@@ -36,11 +36,6 @@ constexpr std::size_t kMostKnown = 64;
 
 constexpr double kRareOrChosen = 5.0;  // nats of a claim's price: several windows that were chosen to make it
 
-Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
-  const Variant& v = candidates[score.candidate].variants[score.variant];
-  return {score.candidate, score.variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens};
-}
-
 /// Fits some hypotheses side by side.
 std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses) {
   std::vector<Fit> fits(hypotheses.size());

@@ -19,6 +19,11 @@ Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 
 }  // namespace
 
+Claim claim_of(const std::vector<Candidate>& candidates, const Score& score) {
+  const Variant& v = candidates[score.candidate].variants[score.variant];
+  return {score.candidate, score.variant, v.knobs, v.all_or_nothing, v.price_nats, v.happens};
+}
+
 Hypothesis with(Hypothesis hypothesis, Claim claim) {
   hypothesis.push_back(std::move(claim));
   return hypothesis;

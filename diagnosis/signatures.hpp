@@ -31,6 +31,9 @@ struct Score {
   Eigen::VectorXd start;  ///< x of the claim's knobs
 };
 
+/// What a score is of, as a hypothesis has it.
+[[nodiscard]] Claim claim_of(const std::vector<Candidate>& candidates, const Score& score);
+
 /// A hypothesis and one claim more.
 [[nodiscard]] Hypothesis with(Hypothesis hypothesis, Claim claim);
 /// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x. Readings are condensed.

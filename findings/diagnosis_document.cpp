@@ -176,7 +176,7 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
   if (u.one_cause) {
     using Quantity = diagnosis::Unnamed::Quantity;
     put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat      ? "heat"
-                              : u.one_cause->quantity == Quantity::kAmbient ? "ambient temperature"
+                              : u.one_cause->quantity == Quantity::kAmbient ? "hall temperature"
                                                                             : "reading");
     put("one_cause.where", effects::where_in_files(u.one_cause->where));
     put("one_cause.follows", u.one_cause->follows);

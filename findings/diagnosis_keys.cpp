@@ -110,7 +110,7 @@ void add_unexplained(std::vector<ResultKey>& keys) {
                number("unexplained.correlation", "with that"),
                sometimes(text("unexplained.heat_would_sit_in", "region of which missing heat would explain most of it")),
                sometimes(object("unexplained.one_cause", "one unknown quantity that explains more than the causes named")),
-               words("unexplained.one_cause.quantity", {"heat", "ambient temperature", "reading"}, ""),
+               words("unexplained.one_cause.quantity", {"heat", "hall temperature", "reading"}, ""),
                text("unexplained.one_cause.where", ""),
                text("unexplained.one_cause.follows", "what it follows; empty: nothing that is recorded"),
                count("unexplained.one_cause.instead_of[]", "indices of the causes that it would replace"),
