@@ -79,6 +79,9 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
       if (exchange_window(twin, body(b), body(other))) places.push_back({b, other});
     }
   }
+  const bool turns_heat = std::any_of(
+      runs.begin(), runs.end(), [](const SeenRun& r) { return (r.linear.turning_W.array() != 0.0).any(); });
+  if (turns_heat) places.push_back({.is_speed = true});
   const Edges coarse = coarse_edges(fitter.runs());
   std::vector<std::vector<Happening>> of_place(places.size());
   for_each_index(
@@ -87,11 +90,11 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
         const WindowPlace& place = places[p];
         const auto asked = [&](const Edges& edges) {
           WindowEvidence e = evidence_of(fitter, projection, runs, place, bodies.size(), edges);
-          e.prior_sd = (place.other ? kUnknownExchange : 1.0) * scene.unknown_heat_W();
+          e.prior_sd = place.is_speed ? kUnknownSpeed : (place.other ? kUnknownExchange : 1.0) * scene.unknown_heat_W();
           e.is_positive = place.other.has_value();
           return e;
         };
-        Happening h{.body = body(place.body)};
+        Happening h{.body = body(place.body), .is_speed = place.is_speed};
         if (place.other) h.other = body(*place.other);
         const WindowEvidence first = asked(coarse);
         if (const auto turns = find_turns(first); turns && turns->gain > kWorthTrying) {

@@ -12,7 +12,7 @@ namespace driftwright::diagnosis {
 
 struct Event {
   effects::Doubt
-      doubt;  ///< windows of heat or of an exchange; its numbers: the size, and how much longer, or when they come again
+      doubt;  ///< windows of heat, of an exchange or of another speed; its numbers: the size, and how much longer, or when they come again
   double price_nats = 0.0;  ///< of their times, which were read off the data
   struct Window {
     std::string in;  ///< run
@@ -22,14 +22,14 @@ struct Event {
 };
 
 /// Keys of effects that events may have.
-inline constexpr const char* kEventKeys[] = {"exchange_window", "heat_window"};
+inline constexpr const char* kEventKeys[] = {"exchange_window", "heat_window", "speed_override"};
 
 /// Where the waveform of a body, missing in the twin as written, has windows, in all runs together; each of their times at the price of all rows that it could
 /// have been at.
 [[nodiscard]] std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>& runs,
                                              const Listener& listener = {});
 
-/// Those that the whitened readings ask for beside a fit, by linear theory, in any body and between any two, what is known roughly taken off first
+/// Those that the whitened readings ask for beside a fit, by linear theory, in any body, between any two and of the spindle's speed, what is known roughly taken off first
 /// (window_search.hpp).
 /// @param projection  of the fit, its readings condensed
 /// @throws SolveError  where the fit's state has no solution

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kShortest_s = 1.0;  // of a window that another length has shortened
 constexpr double kTurnsGoOn = 2.0;   // of the longest run: how long turns are written for
+// Of the speed, by which the heat of bearings and motors usually grows: where a fit of another speed begins.
+constexpr double kUsualExponent = 1.5;
 
 /// Whether the twin's reduced machine holds for such an exchange.
 bool holds(const Twin& twin, const effects::Effect& window) {
@@ -70,12 +72,48 @@ std::optional<Event> one_event(const effects::DoubtScene& scene, const Happening
   const auto [begin_s, end_s] = windows.front();
   if (!(end_s - begin_s > kShortest_s)) return std::nullopt;
   const auto of_run = std::find_if(scene.runs.begin(), scene.runs.end(), [&](const auto& r) { return r.name == run->name; });
-  const std::string what = h.other ? effects::kLid : "heat for a while";
+  const std::string what = h.is_speed ? "another speed for a while" : h.other ? effects::kLid : "heat for a while";
   Event event{.doubt = effects::one_window(*of_run, window, size, h.size, what),
               .once = Event::Window{run->name, begin_s, end_s}};
   const std::vector<effects::DoubtedNumber>& n = event.doubt.numbers;
   event.doubt.grid = {{begin_s - n[1].nominal, (end_s - begin_s) / 60.0 - n[2].nominal}};
   return event;
+}
+
+/// What is doubted of a happening: the effect, but for its times, and its size.
+struct Asked {
+  effects::Effect window;
+  effects::DoubtedNumber size;
+  std::string where, to;  ///< the other end in words, where there is one
+  double trial = 0.0;     ///< of the size, from its nominal value
+};
+
+Asked another_speed(const Happening& h) {
+  Asked a{.window = effects::make_effect("speed_override", effects::Place::kSpindle, "spindle", {{"factor", 1.0}}),
+          .size = effects::doubted("factor", "1", kUnknownSpeed, 0.05, 1.0),
+          .where = "spindle"};
+  a.size.low = 0.0;
+  a.trial = std::pow(std::max(0.01, 1.0 + h.size), 1.0 / kUsualExponent) - 1.0;
+  return a;
+}
+
+/// @returns  nothing where the twin has no place for it, or it has no size that is allowed
+std::optional<Asked> asked_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& h) {
+  if (h.is_speed) return another_speed(h);
+  Asked a{.window = effects::make_effect("heat_window", h.body)};
+  if (h.other) {
+    const auto between = exchange_window(twin, h.body, *h.other);
+    if (!between) return std::nullopt;
+    a.window = *between;
+    a.to = ", to " + h.other->name;
+  }
+  const double sd = (h.other ? kUnknownExchange : 1.0) * scene.unknown_heat_W();
+  a.size = effects::doubted(h.other ? "conductance" : "power", h.other ? "W/K" : "W", sd, 0.05 * sd);
+  if (h.other || h.size > 0.0) a.size.low = 0.0;
+  a.where = h.other && !(*h.other == effects::ambient_node()) ? h.body.name + "," + h.other->name : h.body.name;
+  a.trial = std::clamp(h.size, -sd, sd);
+  if (a.trial == 0.0 || a.trial < a.size.low) return std::nullopt;
+  return a;
 }
 
 }  // namespace
@@ -97,19 +135,9 @@ double row_s(const MeasuredRun& run) {
 }
 
 std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& h) {
-  effects::Effect window = effects::make_effect("heat_window", h.body);
-  if (h.other) {
-    const auto between = exchange_window(twin, h.body, *h.other);
-    if (!between) return std::nullopt;
-    window = *between;
-  }
-  const double sd = (h.other ? kUnknownExchange : 1.0) * scene.unknown_heat_W();
-  effects::DoubtedNumber size = effects::doubted(h.other ? "conductance" : "power", h.other ? "W/K" : "W", sd, 0.05 * sd);
-  if (h.other || h.size > 0.0) size.low = 0.0;
-  const std::string where =
-      h.other && !(*h.other == effects::ambient_node()) ? h.body.name + "," + h.other->name : h.body.name;
-  const double trial = std::clamp(h.size, -sd, sd);
-  if (trial == 0.0 || trial < size.low) return std::nullopt;
+  auto asked = asked_of(twin, scene, h);
+  if (!asked) return std::nullopt;
+  auto& [window, size, where, to, trial] = *asked;
   if (h.every_s == 0.0 && h.in.size() == 1 && h.in.front().second.size() == 1) {
     auto event = one_event(scene, h, window, size);
     if (event) {
@@ -152,7 +180,6 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   }
   d.finding = window.kind->key;
   d.where = where;
-  const std::string to = h.other ? ", to " + h.other->name : std::string();
   d.law =
       h.every_s > 0.0
           ? fmt::format("windows that repeat every {:.1f} min{}: {} min of each turn", h.every_s / 60.0, to, times.front())

@@ -1,5 +1,5 @@
 #pragma once
-// Windows of one size, wherever they are, and the doubt that they make: heat in a body or an exchange with another one.
+// Windows of one size, wherever they are, and the doubt that they make: heat in a body, an exchange with another one, or another speed of the spindle.
 
 #include "diagnosis/event_candidates.hpp"
 
@@ -11,15 +11,18 @@ using Times = std::vector<std::pair<double, double>>;  ///< beginnings and ends 
 struct Happening {
   effects::Body body;
   std::optional<effects::Body> other = {};  ///< an exchange with it; else heat
+  bool is_speed = false;                    ///< of the spindle, whatever the body: the size is what heat of turning grows by, over itself
   std::vector<std::pair<const MeasuredRun*, Times>> in =
       {};                ///< each run that has some; no run: all of them, one window in each turn
   double every_s = 0.0;  ///< of windows that repeat
-  double size = 0.0;     ///< W or W/K
+  double size = 0.0;     ///< W, W/K or 1
   double price_nats = 0.0;
 };
 
 /// 1 sigma of a conductance that nobody knows of, per W of heat that nobody knows of [W/K].
 inline constexpr double kUnknownExchange = 0.2;
+/// 1 sigma of what the heat of turning grows by, over itself, where another speed is doubted.
+inline constexpr double kUnknownSpeed = 0.7;
 
 /// The window of an exchange between two bodies, either end of which may be the one that stands first. None between two regions, or where the twin has no
 /// place for it.

@@ -48,17 +48,13 @@ struct Run {
   Eigen::VectorXd residual;
 };
 
-Eigen::VectorXd only(Eigen::Index body, std::size_t n_bodies) {
-  Eigen::VectorXd one = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_bodies));
-  one[body] = 1.0;
-  return one;
-}
-
 /// What 1 W about a knot does to a run's channels, n_channels x n_times.
 Eigen::MatrixXd readings_of(const SeenRun& seen, Eigen::Index body, std::size_t n_bodies, const Eigen::VectorXd& hat) {
   Eigen::Index from = 0;
   while (from + 1 < hat.size() && hat[from] == 0.0) ++from;
-  return response(seen.linear, modal_gain(seen.linear, only(body, n_bodies), hat), from, hat.size());
+  Eigen::MatrixXd heat_W = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n_bodies), hat.size());
+  heat_W.row(body) = hat.transpose();
+  return response(seen.linear, modal_gain(seen.linear, heat_W), from, hat.size());
 }
 
 struct Fitted {

@@ -1,5 +1,6 @@
 #include "diagnosis/linear_run.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/dense.hpp"
@@ -10,27 +11,42 @@ namespace {
 constexpr double kStart_K = 0.3;     // to which the start of a body is known
 constexpr double kSameModes = 0.03;  // relative change of a coefficient below which modes are kept
 
-/// Coefficients of a system's exchanges at a state.
-Eigen::VectorXd coefficients(const solver::ReducedSystem& system, effects::Inputs u, const Eigen::VectorXd& z) {
-  Eigen::VectorXd c(static_cast<Eigen::Index>(system.exchanges.size()));
-  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
-    const solver::BoundLaw& law = system.exchanges[e].coefficient;
-    const auto i = static_cast<Eigen::Index>(e);
-    if (!law.looks_at_state()) {
-      c[i] = law(u);
-    } else {
-      effects::Inputs with_probes = u;
-      for (int p : law.probes)
-        with_probes.probe_K.push_back(system.reference_K +
-                                      system.probes[static_cast<std::size_t>(p)].theta_K(z, u.ambient_K));
-      c[i] = law.law(with_probes);
-    }
-    if (law.thermostat < 0) continue;
+/// A law's value at a state; zero while its thermostat is off.
+double value_of(const solver::BoundLaw& law, const solver::ReducedSystem& system, const effects::Inputs& u,
+                const Eigen::VectorXd& z) {
+  if (law.thermostat >= 0) {
     const solver::Thermostat& t = system.thermostats[static_cast<std::size_t>(law.thermostat)];
     const double at_K = system.reference_K + system.probes[static_cast<std::size_t>(t.probe)].theta_K(z, u.ambient_K);
-    if (at_K < 0.5 * (t.on_above_K + t.off_below_K)) c[i] = 0.0;
+    if (at_K < 0.5 * (t.on_above_K + t.off_below_K)) return 0.0;
   }
+  if (!law.looks_at_state()) return law(u);
+  effects::Inputs with_probes = u;
+  for (int p : law.probes)
+    with_probes.probe_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(z, u.ambient_K));
+  return law.law(with_probes);
+}
+
+/// Coefficients of a system's exchanges at a state.
+Eigen::VectorXd coefficients(const solver::ReducedSystem& system, const effects::Inputs& u, const Eigen::VectorXd& z) {
+  Eigen::VectorXd c(static_cast<Eigen::Index>(system.exchanges.size()));
+  for (std::size_t e = 0; e < system.exchanges.size(); ++e)
+    c[static_cast<Eigen::Index>(e)] = value_of(system.exchanges[e].coefficient, system, u, z);
   return c;
+}
+
+/// Heat of each body that is there because the spindle turns [W].
+Eigen::VectorXd turning_heat_W(const solver::ReducedSystem& system, const std::vector<effects::Body>& bodies,
+                               const effects::Inputs& u, const Eigen::VectorXd& z) {
+  Eigen::VectorXd heat_W = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bodies.size()));
+  if (u.drive.speed_rpm == 0.0) return heat_W;
+  effects::Inputs standing = u;
+  standing.drive.speed_rpm = 0.0;
+  for (const solver::HeatSource& s : system.sources) {
+    const auto body = std::find(bodies.begin(), bodies.end(), s.body);
+    if (body != bodies.end())
+      heat_W[body - bodies.begin()] += value_of(s.power_W, system, u, z) - value_of(s.power_W, system, standing, z);
+  }
+  return heat_W;
 }
 
 }  // namespace
@@ -69,6 +85,7 @@ LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& 
   }
   l.temperature_K.resize(n_rows, n_bodies);
   l.ambient_K.resize(n_rows);
+  l.turning_W.resize(n_bodies, n_rows - 1);
   Eigen::VectorXd held;  // coefficients that the modes at hand were made with
   Eigen::MatrixXd vectors;
   const Eigen::MatrixXd warmer = kStart_K * twin.warmer_bodies();
@@ -82,12 +99,12 @@ LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& 
     if (i + 1 == n_rows) break;
     const double next_s = run.time_s[static_cast<std::size_t>(rows[static_cast<std::size_t>(i + 1)])];
     const double middle_s = 0.5 * (t_s + next_s);
-    const Eigen::VectorXd now = coefficients(system,
-                                             {.drive = bound.cyclogram.drive(middle_s),
-                                              .ambient_K = bound.ambient.at(middle_s),
-                                              .time_s = middle_s,
-                                              .run = run.name},
-                                             at);
+    const effects::Inputs inputs{.drive = bound.cyclogram.drive(middle_s),
+                                 .ambient_K = bound.ambient.at(middle_s),
+                                 .time_s = middle_s,
+                                 .run = run.name};
+    const Eigen::VectorXd now = coefficients(system, inputs, at);
+    l.turning_W.col(i) = turning_heat_W(system, bodies, inputs, at);
     const double tiny = 1e-9 * std::max(1e-300, now.cwiseAbs().maxCoeff());
     const bool is_same = held.size() > 0 && ((now - held).array().abs() <= kSameModes * held.array().abs() + tiny).all();
     if (!is_same) {
@@ -118,16 +135,16 @@ LinearRun linear_run(const Twin& twin, const MeasuredRun& run, const TwinState& 
   return l;
 }
 
-Eigen::MatrixXd modal_gain(const LinearRun& run, const Eigen::VectorXd& bodies, const Eigen::VectorXd& carrier) {
+Eigen::MatrixXd modal_gain(const LinearRun& run, const Eigen::MatrixXd& heat_W) {
   Eigen::MatrixXd gain(run.decay.rows(), run.decay.cols());
   for (Eigen::Index k = 0; k < gain.cols(); ++k) {
     const auto i = static_cast<std::size_t>(k);
     const ModalCourse::Modes& m = run.course.modes[run.course.of_interval[i]];
     const double dt_s = run.course.time_s[i + 1] - run.course.time_s[i];
-    const Eigen::VectorXd load = m.load * bodies;
+    const Eigen::VectorXd load = m.load * heat_W.col(k);
     for (Eigen::Index j = 0; j < gain.rows(); ++j) {
       const double x = dt_s * m.rate_1_s[j];
-      gain(j, k) = carrier[k] * load[j] * (std::abs(x) < 1e-9 ? dt_s : (1.0 - run.decay(j, k)) / m.rate_1_s[j]);
+      gain(j, k) = load[j] * (std::abs(x) < 1e-9 ? dt_s : (1.0 - run.decay(j, k)) / m.rate_1_s[j]);
     }
   }
   return gain;

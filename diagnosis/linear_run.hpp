@@ -10,6 +10,7 @@ struct LinearRun {
   ModalCourse course;             ///< loads: 1 W in each body; its start: each body known to 0.3 K
   Eigen::MatrixXd temperature_K;  ///< predicted mean of each body over the reference, rows x bodies
   Eigen::VectorXd ambient_K;      ///< over the reference
+  Eigen::MatrixXd turning_W;      ///< heat of each body that would be missing from row to row if the spindle stood, bodies x rows - 1
   Eigen::MatrixXd decay;          ///< of each mode from row to row, modes x rows - 1
 };
 
@@ -23,10 +24,9 @@ struct LinearRun {
                                    const std::vector<effects::Body>& bodies, const std::vector<Eigen::Index>& rows,
                                    const Eigen::VectorXd& scale, Twin::Workspace& workspace);
 
-/// What each mode gains from row to row by heat in bodies. @param bodies  W in each where the carrier is 1; as many as linear_run() was given
-/// @param carrier  from each row to the next. @return  modes x rows - 1
-[[nodiscard]] Eigen::MatrixXd modal_gain(const LinearRun& run, const Eigen::VectorXd& bodies,
-                                         const Eigen::VectorXd& carrier);
+/// What each mode gains from row to row by heat in bodies. @param heat_W  of each body that linear_run() was given, bodies x rows - 1
+/// @return  modes x rows - 1
+[[nodiscard]] Eigen::MatrixXd modal_gain(const LinearRun& run, const Eigen::MatrixXd& heat_W);
 
 /// What gains of the modes from one row to another do to the channels, over their scale. @return n_channels x n_rows
 [[nodiscard]] Eigen::MatrixXd response(const LinearRun& run, const Eigen::MatrixXd& gain, Eigen::Index from,

@@ -12,6 +12,9 @@ namespace {
 constexpr double kShortestPeriod_s = 2400.0;
 constexpr int kMostCosines = 24;
 constexpr int kMostJumps = 3;
+constexpr std::size_t kStretches = 25;  // of a series, each of which must speak for noise that follows itself
+constexpr double kLoudStretches = 0.04;  // share of them that may not outweigh the others
+constexpr double kOfCorrelation = 2.0;   // nats that its two numbers must earn
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -73,6 +76,40 @@ Likelihood likelihood(const std::vector<NoiseSeries>& series, const NoiseModel& 
   return l;
 }
 
+/// What a noise brings in each of some stretches of the series, up to a constant: its log-likelihood about the best smooth curves [nats].
+std::vector<double> stretches(const std::vector<NoiseSeries>& series, const NoiseModel& shape, double variance) {
+  std::vector<double> nats;
+  for (const NoiseSeries& s : series) {
+    const Whitener whitener(shape, s.time_s, present(s.residual));
+    if (whitener.n() == 0) continue;
+    Eigen::VectorXd r(whitener.n());
+    whitener.apply(s.residual, r);
+    Eigen::MatrixXd x(whitener.n(), s.smooth.cols());
+    for (Eigen::Index c = 0; c < x.cols(); ++c) whitener.apply(s.smooth.col(c), x.col(c));
+    r -= x * x.completeOrthogonalDecomposition().solve(r);
+    const auto n = static_cast<std::size_t>(r.size());
+    const std::size_t n_stretches = std::min(n, kStretches), first = nats.size();
+    nats.resize(first + n_stretches, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double e = r[static_cast<Eigen::Index>(i)];
+      nats[first + i * n_stretches / n] -= 0.5 * (e * e / variance + std::log(variance) + whitener.log_variance(i));
+    }
+  }
+  return nats;
+}
+
+/// Whether one noise is likelier than another though the few stretches that speak loudest for it weigh no more than the loudest of the others: what happens once,
+/// such as a stop of a minute, moves a channel for some rows and is no noise.
+bool is_likelier_throughout(const std::vector<double>& nats, const std::vector<double>& other_nats) {
+  std::vector<double> more;
+  for (std::size_t i = 0; i < nats.size(); ++i) more.push_back(nats[i] - other_nats[i]);
+  std::sort(more.rbegin(), more.rend());
+  const auto n_loud = static_cast<std::size_t>(std::ceil(kLoudStretches * static_cast<double>(more.size())));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < more.size(); ++i) sum += std::min(more[i], more[std::min(n_loud, more.size() - 1)]);
+  return sum > kOfCorrelation;
+}
+
 }  // namespace
 
 std::vector<char> present(const Eigen::VectorXd& series) {
@@ -97,10 +134,14 @@ Whitener::Whitener(const NoiseModel& noise, const std::vector<double>& time_s, c
     carry_.push_back(phi);
     gain_.push_back(gain);
     scale_.push_back(1.0 / std::sqrt(innovation));
-    log_determinant_ += std::log(innovation);
+    log_variance_.push_back(std::log(innovation));
     variance *= 1.0 - gain;
     last_s = time_s[i];
   }
+}
+
+double Whitener::log_determinant() const {
+  return std::accumulate(log_variance_.begin(), log_variance_.end(), 0.0);
 }
 
 void Whitener::apply(const Eigen::Ref<const Eigen::VectorXd>& series, Eigen::Ref<Eigen::VectorXd> out) const {
@@ -123,20 +164,25 @@ NoiseModel estimate_noise(const std::vector<NoiseSeries>& given, double floor) {
     for (std::size_t i = 1; i < s.time_s.size(); ++i) steps_s.push_back(s.time_s[i] - s.time_s[i - 1]);
   }
   const double step_s = median(steps_s);
-  NoiseModel best{1.0, 0.0, 0.0};
-  Likelihood l = likelihood(series, best);
-  double best_value = l.log_value + 2.0;  // correlation must earn its two numbers
-  double scale = std::sqrt(l.variance);
+  const NoiseModel white{1.0, 0.0, 0.0};
+  NoiseModel best = white;
+  const Likelihood of_white = likelihood(series, white);
+  Likelihood of_best = of_white;
   for (double time_s : {1.0 * step_s, 2.0 * step_s, 4.0 * step_s, 7.0 * step_s}) {
     for (double share : {0.1, 0.2, 0.35, 0.5, 0.7, 0.9}) {
       const NoiseModel shape{std::sqrt(1.0 - share), std::sqrt(share), time_s};
-      l = likelihood(series, shape);
-      if (!(l.log_value > best_value)) continue;
-      best_value = l.log_value;
+      const Likelihood l = likelihood(series, shape);
+      if (!(l.log_value > std::max(of_best.log_value, of_white.log_value + kOfCorrelation))) continue;
+      of_best = l;
       best = shape;
-      scale = std::sqrt(l.variance);
     }
   }
+  if (best.correlated > 0.0 && !is_likelier_throughout(stretches(series, best, of_best.variance),
+                                                       stretches(series, white, of_white.variance))) {
+    best = white;
+    of_best = of_white;
+  }
+  const double scale = std::sqrt(of_best.variance);
   return {std::max(floor, scale * best.white), scale * best.correlated, best.time_s};
 }
 

@@ -13,28 +13,29 @@ namespace {
 constexpr Eigen::Index kCells = 60;  // of a run, in which windows are looked for first
 constexpr Eigen::Index kFiner = 12;  // parts of two of them about an edge
 
-/// What drives heat through a place from row to row: 1, or a difference of temperatures [K].
-Eigen::VectorXd carrier_of(const SeenRun& run, const WindowPlace& place, std::size_t n_bodies) {
+/// Heat of the bodies from row to row by a unit of what acts at a place: 1 W, 1 W/K, or all that turning makes [W], n_bodies x n_rows - 1.
+Eigen::MatrixXd heat_of_unit(const SeenRun& run, const WindowPlace& place, std::size_t n_bodies) {
+  if (place.is_speed) return run.linear.turning_W;
   const Eigen::Index n = run.linear.decay.cols();
-  Eigen::VectorXd carrier = Eigen::VectorXd::Ones(n);
-  if (!place.other) return carrier;
+  const auto body = static_cast<Eigen::Index>(place.body);
+  Eigen::MatrixXd heat_W = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n_bodies), n);
+  heat_W.row(body).setOnes();
+  if (!place.other) return heat_W;
   const Eigen::MatrixXd& warm_K = run.linear.temperature_K;
+  const bool is_ambient = *place.other == n_bodies;
+  const auto other = static_cast<Eigen::Index>(*place.other);
   const auto at = [&](Eigen::Index row) {
-    const double other_K =
-        *place.other == n_bodies ? run.linear.ambient_K[row] : warm_K(row, static_cast<Eigen::Index>(*place.other));
-    return other_K - warm_K(row, static_cast<Eigen::Index>(place.body));
+    return (is_ambient ? run.linear.ambient_K[row] : warm_K(row, other)) - warm_K(row, body);
   };
-  for (Eigen::Index k = 0; k < n; ++k) carrier[k] = mean_difference(at(k), at(k + 1));
-  return carrier;
+  for (Eigen::Index k = 0; k < n; ++k) heat_W(body, k) = mean_difference(at(k), at(k + 1));
+  if (!is_ambient) heat_W.row(other) = -heat_W.row(body);
+  return heat_W;
 }
 
 /// Whitened readings, condensed, of a unit through a place in each cell of a run, n_rows x n_cells. @param edges  rows between the cells
 Eigen::MatrixXd columns_of(const Comparison& comparison, const SeenRun& run, const WindowPlace& place, std::size_t n_bodies,
                            const std::vector<Eigen::Index>& edges) {
-  Eigen::VectorXd bodies = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_bodies));
-  bodies[static_cast<Eigen::Index>(place.body)] = 1.0;
-  if (place.other && *place.other < n_bodies) bodies[static_cast<Eigen::Index>(*place.other)] = -1.0;
-  const Eigen::MatrixXd gain = modal_gain(run.linear, bodies, carrier_of(run, place, n_bodies));
+  const Eigen::MatrixXd gain = modal_gain(run.linear, heat_of_unit(run, place, n_bodies));
   const auto n_cells = static_cast<Eigen::Index>(edges.size()) - 1;
   Eigen::MatrixXd columns(run.n_rows, n_cells);
   Eigen::VectorXd whitened(comparison.n_of(run.number));

@@ -8,10 +8,12 @@
 
 namespace driftwright::diagnosis {
 
-/// Where something may act for a while: heat in a body, or an exchange of two. Bodies are numbered as those that the runs were seen with.
+/// Where something may act for a while: heat in a body, an exchange of two, or the speed of the spindle. Bodies are numbered as those that the runs were
+/// seen with.
 struct WindowPlace {
   std::size_t body = 0;
   std::optional<std::size_t> other = {};  ///< n_bodies: the ambient
+  bool is_speed = false;                  ///< all heat that turning makes, and no body: the size is a share of it, -1 where the spindle stands
 };
 
 /// A run as linear theory sees it.

@@ -9,8 +9,8 @@ constexpr double kMostWindows = 10000.0;
 
 }  // namespace
 
-Table windows_table() {
-  return {kWindows, "s", "s", 0.0, 1e9, true, "rows of [begin, end]"};
+Table windows_table(bool compulsory) {
+  return {kWindows, "s", "s", 0.0, 1e9, compulsory, "rows of [begin, end]"};
 }
 
 std::vector<Parameter> repeating(std::vector<Parameter> parameters) {

@@ -9,7 +9,7 @@ inline constexpr const char* kWindows = "windows";
 inline constexpr const char* kLid = "a lid or door that opens for a while";  ///< an exchange's law in words
 
 /// The table, and the parameters `every` and `until_time` by which it repeats.
-[[nodiscard]] Table windows_table();
+[[nodiscard]] Table windows_table(bool compulsory = true);
 [[nodiscard]] std::vector<Parameter> repeating(std::vector<Parameter> parameters);
 
 /// Beginnings and ends [s], repeated where they repeat.

@@ -48,6 +48,20 @@ TEST(TrueCyclogram, OverrideScalesTheSpindleAlone) {
   EXPECT_EQ(true_cyclogram(change_of("{type: speed_override, factor: 1.25}"), kRecorded).sections, expected.sections);
 }
 
+TEST(TrueCyclogram, AnOverrideInWindowsHoldsInTheseAlone) {
+  const Cyclogram felt =
+      true_cyclogram(change_of("{type: speed_override, factor: 0.5, windows: [[8 min, 13 min], [20 min, 30 min]]}"), kRecorded);
+  EXPECT_THAT(durations_s(felt), ElementsAre(480, 120, 180, 420, 300));
+  EXPECT_THAT(speeds_rpm(felt), ElementsAre(1000, 500, 1500, 3000, 0));  // the spindle stands in the second one
+}
+
+TEST(TrueCyclogram, AnOverrideComesAgain) {
+  const Cyclogram felt = true_cyclogram(
+      change_of("{type: speed_override, factor: 2, windows: [[1 min, 2 min]], every: 8 min, until_time: 15 min}"), kRecorded);
+  EXPECT_THAT(durations_s(felt), ElementsAre(60, 60, 420, 60, 600, 300));
+  EXPECT_THAT(speeds_rpm(felt), ElementsAre(1000, 2000, 1000, 2000, 3000, 0));
+}
+
 TEST(TrueCyclogram, OverridesMultiply) {
   const DriveChange twice =
       drive_change({read("{type: speed_override, factor: 1.25}"), read("{type: speed_override, factor: 2}")}, "shift");
@@ -140,6 +154,8 @@ INSTANTIATE_TEST_SUITE_P(Each, BadDriveEffect,
                                            Bad{"{type: ambient, offset: 1 K/h}", "wrong unit"},
                                            Bad{"{type: speed_override}", "key 'factor' is missing"},
                                            Bad{"{type: speed_override, factor: -1}", "outside what is allowed"},
+                                           Bad{"{type: speed_override, factor: 2, every: 8 min, until_time: 1 h}", "has none"},
+                                           Bad{"{type: speed_override, factor: 2, windows: [[2 min, 1 min]]}", "behind its beginning"},
                                            Bad{"{type: missing_stop, start: 1 min}", "key 'length' is missing"},
                                            Bad{"{type: missing_stop, start: 1 min, length: 0 min}",
                                                "outside what is allowed"}));

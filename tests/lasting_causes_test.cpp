@@ -207,5 +207,26 @@ TEST(AShortStop,
   EXPECT_NEAR(d.causes[0].parameters[1].value, 216.0, 0.5);
 }
 
+TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {  // heat in one body would not do
+  const std::string machine = with_effect(kMachine, "{type: heat_source, node: column, power: 80 W, at_speed: 1000 rpm}");
+  const std::string truth =
+      with_effect(machine, "{type: speed_override, factor: 0.55, windows: [[20 min, 45 min], [180 min, 210 min]], in: monday}");
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "speed_", 60.0, 0.03, 0.2);
+  const Beside beside(write_file("plain.yaml", machine), records);
+  const Diagnosis d = beside.diagnosed();
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, "speed_override");
+  EXPECT_EQ(d.causes[0].standing, Standing::kNamed);
+  EXPECT_THAT(d.causes[0].law, HasSubstr("2 windows of one size"));
+  EXPECT_NEAR(d.causes[0].parameters[0].value, 0.55, 0.03);
+  const Claim& claim = d.search.hypothesis[0];
+  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
+  const ExtendedScenario extended =
+      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
+  EXPECT_THAT(extended.not_written, IsEmpty());
+  const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
+  EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+}
+
 }  // namespace
 }  // namespace driftwright::diagnosis
