@@ -83,8 +83,8 @@ std::optional<Event> one_event(const effects::DoubtScene& scene, const Happening
 /// What is doubted of a happening: the effect, but for its times, and its size.
 struct Asked {
   effects::Effect window;
-  effects::DoubtedNumber size;
-  std::string where, to;  ///< the other end in words, where there is one
+  effects::DoubtedNumber size = {};
+  std::string where = {}, to = {};  ///< the other end in words, where there is one
   double trial = 0.0;     ///< of the size, from its nominal value
 };
 

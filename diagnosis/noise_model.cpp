@@ -46,6 +46,25 @@ Eigen::MatrixXd jumps(const Eigen::VectorXd& residual) {
   return steps;
 }
 
+/// A series of a noise made white, and the curves that are free in it.
+struct Whitened {
+  Whitener whitener;
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd curves;
+  Eigen::LLT<Eigen::MatrixXd> normal;  ///< of the curves, hardly ridged: some are nearly alike
+
+  Whitened(const NoiseSeries& s, const NoiseModel& shape)
+      : whitener(shape, s.time_s, present(s.residual)), residual(whitener.n()), curves(whitener.n(), s.smooth.cols()) {
+    whitener.apply(s.residual, residual);
+    for (Eigen::Index c = 0; c < curves.cols(); ++c) whitener.apply(s.smooth.col(c), curves.col(c));
+    Eigen::MatrixXd products = curves.transpose() * curves;
+    products.diagonal().array() +=
+        1e-9 * (products.trace() / std::max<double>(1.0, static_cast<double>(products.rows())) + 1e-300);
+    normal.compute(products);
+  }
+  [[nodiscard]] Eigen::VectorXd curves_in_residual() const { return normal.solve(curves.transpose() * residual); }
+};
+
 struct Likelihood {
   double log_value = 0.0, variance = 0.0;
 };
@@ -54,20 +73,11 @@ struct Likelihood {
 Likelihood likelihood(const std::vector<NoiseSeries>& series, const NoiseModel& shape) {
   double squares = 0.0, log_determinants = 0.0, n_free = 0.0;
   for (const NoiseSeries& s : series) {
-    const Whitener whitener(shape, s.time_s, present(s.residual));
-    if (whitener.n() == 0) continue;
-    Eigen::VectorXd r(whitener.n());
-    whitener.apply(s.residual, r);
-    Eigen::MatrixXd x(whitener.n(), s.smooth.cols());
-    for (Eigen::Index c = 0; c < x.cols(); ++c) whitener.apply(s.smooth.col(c), x.col(c));
-    Eigen::MatrixXd normal = x.transpose() * x;
-    normal.diagonal().array() +=
-        1e-9 * (normal.trace() / std::max<double>(1.0, static_cast<double>(normal.rows())) + 1e-300);
-    const Eigen::LLT<Eigen::MatrixXd> factor(normal);
-    const Eigen::VectorXd xr = x.transpose() * r;
-    squares += r.squaredNorm() - xr.dot(factor.solve(xr));
-    log_determinants += whitener.log_determinant() + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-    n_free += static_cast<double>(r.size() - x.cols());
+    const Whitened w(s, shape);
+    if (w.residual.size() == 0) continue;
+    squares += w.residual.squaredNorm() - (w.curves.transpose() * w.residual).dot(w.curves_in_residual());
+    log_determinants += w.whitener.log_determinant() + 2.0 * w.normal.matrixLLT().diagonal().array().log().sum();
+    n_free += static_cast<double>(w.residual.size() - w.curves.cols());
   }
   Likelihood l;
   if (n_free < 1.0) return {-1e300, 0.0};
@@ -80,34 +90,31 @@ Likelihood likelihood(const std::vector<NoiseSeries>& series, const NoiseModel& 
 std::vector<double> stretches(const std::vector<NoiseSeries>& series, const NoiseModel& shape, double variance) {
   std::vector<double> nats;
   for (const NoiseSeries& s : series) {
-    const Whitener whitener(shape, s.time_s, present(s.residual));
-    if (whitener.n() == 0) continue;
-    Eigen::VectorXd r(whitener.n());
-    whitener.apply(s.residual, r);
-    Eigen::MatrixXd x(whitener.n(), s.smooth.cols());
-    for (Eigen::Index c = 0; c < x.cols(); ++c) whitener.apply(s.smooth.col(c), x.col(c));
-    r -= x * x.completeOrthogonalDecomposition().solve(r);
-    const auto n = static_cast<std::size_t>(r.size());
+    const Whitened w(s, shape);
+    const Eigen::VectorXd left = w.residual - w.curves * w.curves_in_residual();
+    const auto n = static_cast<std::size_t>(left.size());
     const std::size_t n_stretches = std::min(n, kStretches), first = nats.size();
     nats.resize(first + n_stretches, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
-      const double e = r[static_cast<Eigen::Index>(i)];
-      nats[first + i * n_stretches / n] -= 0.5 * (e * e / variance + std::log(variance) + whitener.log_variance(i));
+      const double e = left[static_cast<Eigen::Index>(i)];
+      nats[first + i * n_stretches / n] -= 0.5 * (e * e / variance + std::log(variance) + w.whitener.log_variance(i));
     }
   }
   return nats;
 }
 
-/// Whether one noise is likelier than another though the few stretches that speak loudest for it weigh no more than the loudest of the others: what happens once,
-/// such as a stop of a minute, moves a channel for some rows and is no noise.
-bool is_likelier_throughout(const std::vector<double>& nats, const std::vector<double>& other_nats) {
+/// How much of what one noise brings more than another comes from the few stretches that speak loudest, for it or against it: by how much the sum falls if these
+/// say no more than the loudest of the others [nats]. What happens once, such as a stop of a minute, moves a channel for some rows and is no noise.
+double of_loud_stretches(const std::vector<double>& nats, const std::vector<double>& other_nats) {
   std::vector<double> more;
   for (std::size_t i = 0; i < nats.size(); ++i) more.push_back(nats[i] - other_nats[i]);
-  std::sort(more.rbegin(), more.rend());
-  const auto n_loud = static_cast<std::size_t>(std::ceil(kLoudStretches * static_cast<double>(more.size())));
-  double sum = 0.0;
-  for (std::size_t i = 0; i < more.size(); ++i) sum += std::min(more[i], more[std::min(n_loud, more.size() - 1)]);
-  return sum > kOfCorrelation;
+  std::sort(more.begin(), more.end());
+  const std::size_t n = more.size();
+  const auto n_loud =
+      std::min(static_cast<std::size_t>(std::ceil(kLoudStretches * static_cast<double>(n))), n > 0 ? (n - 1) / 2 : 0);
+  double fall = 0.0;
+  for (double m : more) fall += m - std::clamp(m, more[n_loud], more[n - 1 - n_loud]);
+  return fall;
 }
 
 }  // namespace
@@ -177,10 +184,13 @@ NoiseModel estimate_noise(const std::vector<NoiseSeries>& given, double floor) {
       best = shape;
     }
   }
-  if (best.correlated > 0.0 && !is_likelier_throughout(stretches(series, best, of_best.variance),
-                                                       stretches(series, white, of_white.variance))) {
-    best = white;
-    of_best = of_white;
+  if (best.correlated > 0.0) {
+    const double loud =
+        of_loud_stretches(stretches(series, best, of_best.variance), stretches(series, white, of_white.variance));
+    if (!(of_best.log_value - of_white.log_value - loud > kOfCorrelation)) {
+      best = white;
+      of_best = of_white;
+    }
   }
   const double scale = std::sqrt(of_best.variance);
   return {std::max(floor, scale * best.white), scale * best.correlated, best.time_s};
