@@ -12,9 +12,6 @@ namespace {
 constexpr double kShortestPeriod_s = 2400.0;
 constexpr int kMostCosines = 24;
 constexpr int kMostJumps = 3;
-constexpr std::size_t kStretches = 25;  // of a series, each of which must speak for noise that follows itself
-constexpr double kLoudStretches = 0.04;  // share of them that may not outweigh the others
-constexpr double kOfCorrelation = 2.0;   // nats that its two numbers must earn
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
@@ -46,25 +43,6 @@ Eigen::MatrixXd jumps(const Eigen::VectorXd& residual) {
   return steps;
 }
 
-/// A series of a noise made white, and the curves that are free in it.
-struct Whitened {
-  Whitener whitener;
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd curves;
-  Eigen::LLT<Eigen::MatrixXd> normal;  ///< of the curves, hardly ridged: some are nearly alike
-
-  Whitened(const NoiseSeries& s, const NoiseModel& shape)
-      : whitener(shape, s.time_s, present(s.residual)), residual(whitener.n()), curves(whitener.n(), s.smooth.cols()) {
-    whitener.apply(s.residual, residual);
-    for (Eigen::Index c = 0; c < curves.cols(); ++c) whitener.apply(s.smooth.col(c), curves.col(c));
-    Eigen::MatrixXd products = curves.transpose() * curves;
-    products.diagonal().array() +=
-        1e-9 * (products.trace() / std::max<double>(1.0, static_cast<double>(products.rows())) + 1e-300);
-    normal.compute(products);
-  }
-  [[nodiscard]] Eigen::VectorXd curves_in_residual() const { return normal.solve(curves.transpose() * residual); }
-};
-
 struct Likelihood {
   double log_value = 0.0, variance = 0.0;
 };
@@ -73,48 +51,26 @@ struct Likelihood {
 Likelihood likelihood(const std::vector<NoiseSeries>& series, const NoiseModel& shape) {
   double squares = 0.0, log_determinants = 0.0, n_free = 0.0;
   for (const NoiseSeries& s : series) {
-    const Whitened w(s, shape);
-    if (w.residual.size() == 0) continue;
-    squares += w.residual.squaredNorm() - (w.curves.transpose() * w.residual).dot(w.curves_in_residual());
-    log_determinants += w.whitener.log_determinant() + 2.0 * w.normal.matrixLLT().diagonal().array().log().sum();
-    n_free += static_cast<double>(w.residual.size() - w.curves.cols());
+    const Whitener whitener(shape, s.time_s, present(s.residual));
+    if (whitener.n() == 0) continue;
+    Eigen::VectorXd r(whitener.n());
+    whitener.apply(s.residual, r);
+    Eigen::MatrixXd x(whitener.n(), s.smooth.cols());
+    for (Eigen::Index c = 0; c < x.cols(); ++c) whitener.apply(s.smooth.col(c), x.col(c));
+    Eigen::MatrixXd normal = x.transpose() * x;
+    normal.diagonal().array() +=
+        1e-9 * (normal.trace() / std::max<double>(1.0, static_cast<double>(normal.rows())) + 1e-300);
+    const Eigen::LLT<Eigen::MatrixXd> factor(normal);
+    const Eigen::VectorXd xr = x.transpose() * r;
+    squares += r.squaredNorm() - xr.dot(factor.solve(xr));
+    log_determinants += whitener.log_determinant() + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+    n_free += static_cast<double>(r.size() - x.cols());
   }
   Likelihood l;
   if (n_free < 1.0) return {-1e300, 0.0};
   l.variance = std::max(squares / n_free, 1e-300);
   l.log_value = -0.5 * (n_free * std::log(l.variance) + log_determinants + n_free);
   return l;
-}
-
-/// What a noise brings in each of some stretches of the series, up to a constant: its log-likelihood about the best smooth curves [nats].
-std::vector<double> stretches(const std::vector<NoiseSeries>& series, const NoiseModel& shape, double variance) {
-  std::vector<double> nats;
-  for (const NoiseSeries& s : series) {
-    const Whitened w(s, shape);
-    const Eigen::VectorXd left = w.residual - w.curves * w.curves_in_residual();
-    const auto n = static_cast<std::size_t>(left.size());
-    const std::size_t n_stretches = std::min(n, kStretches), first = nats.size();
-    nats.resize(first + n_stretches, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double e = left[static_cast<Eigen::Index>(i)];
-      nats[first + i * n_stretches / n] -= 0.5 * (e * e / variance + std::log(variance) + w.whitener.log_variance(i));
-    }
-  }
-  return nats;
-}
-
-/// How much of what one noise brings more than another comes from the few stretches that speak loudest, for it or against it: by how much the sum falls if these
-/// say no more than the loudest of the others [nats]. What happens once, such as a stop of a minute, moves a channel for some rows and is no noise.
-double of_loud_stretches(const std::vector<double>& nats, const std::vector<double>& other_nats) {
-  std::vector<double> more;
-  for (std::size_t i = 0; i < nats.size(); ++i) more.push_back(nats[i] - other_nats[i]);
-  std::sort(more.begin(), more.end());
-  const std::size_t n = more.size();
-  const auto n_loud =
-      std::min(static_cast<std::size_t>(std::ceil(kLoudStretches * static_cast<double>(n))), n > 0 ? (n - 1) / 2 : 0);
-  double fall = 0.0;
-  for (double m : more) fall += m - std::clamp(m, more[n_loud], more[n - 1 - n_loud]);
-  return fall;
 }
 
 }  // namespace
@@ -141,14 +97,10 @@ Whitener::Whitener(const NoiseModel& noise, const std::vector<double>& time_s, c
     carry_.push_back(phi);
     gain_.push_back(gain);
     scale_.push_back(1.0 / std::sqrt(innovation));
-    log_variance_.push_back(std::log(innovation));
+    log_determinant_ += std::log(innovation);
     variance *= 1.0 - gain;
     last_s = time_s[i];
   }
-}
-
-double Whitener::log_determinant() const {
-  return std::accumulate(log_variance_.begin(), log_variance_.end(), 0.0);
 }
 
 void Whitener::apply(const Eigen::Ref<const Eigen::VectorXd>& series, Eigen::Ref<Eigen::VectorXd> out) const {
@@ -171,28 +123,20 @@ NoiseModel estimate_noise(const std::vector<NoiseSeries>& given, double floor) {
     for (std::size_t i = 1; i < s.time_s.size(); ++i) steps_s.push_back(s.time_s[i] - s.time_s[i - 1]);
   }
   const double step_s = median(steps_s);
-  const NoiseModel white{1.0, 0.0, 0.0};
-  NoiseModel best = white;
-  const Likelihood of_white = likelihood(series, white);
-  Likelihood of_best = of_white;
+  NoiseModel best{1.0, 0.0, 0.0};
+  Likelihood l = likelihood(series, best);
+  double best_value = l.log_value + 2.0;  // correlation must earn its two numbers
+  double scale = std::sqrt(l.variance);
   for (double time_s : {1.0 * step_s, 2.0 * step_s, 4.0 * step_s, 7.0 * step_s}) {
     for (double share : {0.1, 0.2, 0.35, 0.5, 0.7, 0.9}) {
       const NoiseModel shape{std::sqrt(1.0 - share), std::sqrt(share), time_s};
-      const Likelihood l = likelihood(series, shape);
-      if (!(l.log_value > std::max(of_best.log_value, of_white.log_value + kOfCorrelation))) continue;
-      of_best = l;
+      l = likelihood(series, shape);
+      if (!(l.log_value > best_value)) continue;
+      best_value = l.log_value;
       best = shape;
+      scale = std::sqrt(l.variance);
     }
   }
-  if (best.correlated > 0.0) {
-    const double loud =
-        of_loud_stretches(stretches(series, best, of_best.variance), stretches(series, white, of_white.variance));
-    if (!(of_best.log_value - of_white.log_value - loud > kOfCorrelation)) {
-      best = white;
-      of_best = of_white;
-    }
-  }
-  const double scale = std::sqrt(of_best.variance);
   return {std::max(floor, scale * best.white), scale * best.correlated, best.time_s};
 }
 

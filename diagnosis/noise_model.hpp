@@ -25,13 +25,12 @@ class Whitener {
   [[nodiscard]] Eigen::Index n() const { return static_cast<Eigen::Index>(rows_.size()); }
   /// @param series  one value a time; those without reading are not looked at. @param out  n() values
   void apply(const Eigen::Ref<const Eigen::VectorXd>& series, Eigen::Ref<Eigen::VectorXd> out) const;
-  [[nodiscard]] double log_determinant() const;  ///< of the covariance
-  /// Of the innovation of the i-th reading: its log variance.
-  [[nodiscard]] double log_variance(std::size_t i) const { return log_variance_[i]; }
+  [[nodiscard]] double log_determinant() const { return log_determinant_; }  ///< of the covariance
 
  private:
   std::vector<Eigen::Index> rows_;
-  std::vector<double> carry_, gain_, scale_, log_variance_;
+  std::vector<double> carry_, gain_, scale_;
+  double log_determinant_ = 0.0;
 };
 
 /// One series of a channel in one record, and smooth curves that are not noise.
@@ -41,8 +40,7 @@ struct NoiseSeries {
   Eigen::MatrixXd smooth;    ///< one column a curve
 };
 
-/// Restricted maximum likelihood of one noise for several series, whose smooth curves are free. Noise follows itself only where that is likelier throughout the
-/// series, not in one stretch of them alone.
+/// Restricted maximum likelihood of one noise for several series, whose smooth curves are free.
 /// @param floor  least standard deviation of the white part
 /// Source: Patterson & Thompson, Biometrika 58 (1971) 545-554.
 [[nodiscard]] NoiseModel estimate_noise(const std::vector<NoiseSeries>& series, double floor);

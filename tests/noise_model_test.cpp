@@ -151,29 +151,6 @@ TEST(EstimateNoise, CallsWhiteNoiseWhiteAndAStepNoNoise) {
   EXPECT_LT(found.correlated, 0.1);
 }
 
-TEST(EstimateNoise, CallsNoNoiseWhatHappensOnceAndFallsAwayAgain) {  // a stop of a minute, in one record of several
-  const std::vector<double> t = minutes(300);
-  for (unsigned seed = 1; seed <= 10; ++seed) {
-    Eigen::VectorXd r = noise({0.2, 0.0, 0.0}, t, seed);
-    for (Eigen::Index i = 100; i < 130; ++i) r[i] -= 0.8 * std::exp(-static_cast<double>(i - 100) / 6.0);
-    const NoiseModel found = estimate_noise({{t, r, smooth_curves(t, speed_of(t))}}, 1e-3);
-    EXPECT_EQ(found.correlated, 0.0) << seed;
-    EXPECT_NEAR(found.total(), 0.2, 0.03) << seed;
-  }
-}
-
-TEST(EstimateNoise, FindsFaintNoiseThatFollowsItselfThroughout) {
-  const NoiseModel truth{0.1, 0.05, 240.0};
-  const std::vector<double> t = minutes(400);
-  int n_found = 0;
-  for (unsigned seed = 1; seed <= 10; ++seed) {
-    const NoiseModel found = estimate_noise({{t, noise(truth, t, seed), Eigen::MatrixXd::Ones(400, 1)}}, 1e-3);
-    n_found += found.correlated > 0.0 ? 1 : 0;
-    EXPECT_NEAR(found.total(), truth.total(), 0.2 * truth.total()) << seed;
-  }
-  EXPECT_GE(n_found, 9);
-}
-
 TEST(EstimateNoise, IsNeverBelowItsFloor) {
   const std::vector<double> t = minutes(100);
   EXPECT_EQ(estimate_noise({{t, Eigen::VectorXd::Zero(100), Eigen::MatrixXd::Ones(100, 1)}}, 0.03).white, 0.03);
