@@ -66,7 +66,8 @@ HeaderWords words_of_header(const std::string& header, const std::string& unit_l
   static const std::regex in_brackets("^(.*?)[ _]*[\\[(]([^\\])]*)[\\])](.*)$");
   std::smatch parts;
   std::string rest = text;
-  if (std::regex_match(text, parts, in_brackets)) {
+  constexpr std::size_t kLongest = 1000;  // a regular expression of the library goes as deep as its text is long
+  if (text.size() <= kLongest && std::regex_match(text, parts, in_brackets)) {
     const std::string unit = unit_of_words(parts[2].str()), name = trimmed(parts[1].str() + parts[3].str());
     if (!unit.empty()) return {name, unit};
   }

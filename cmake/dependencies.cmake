@@ -13,7 +13,6 @@ find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML IOImag
 # HDF5 also comes as a parallel library; this is the plain one.
 pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial>=1.10)
 pkg_check_modules(mosquitto REQUIRED IMPORTED_TARGET libmosquitto>=2.0)
-pkg_check_modules(httplib REQUIRED IMPORTED_TARGET cpp-httplib>=0.11)
 pkg_check_modules(curl REQUIRED IMPORTED_TARGET libcurl>=7.85)
 pkg_check_modules(xml2 REQUIRED IMPORTED_TARGET libxml-2.0)
 pkg_check_modules(minizip REQUIRED IMPORTED_TARGET minizip)

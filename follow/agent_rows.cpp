@@ -159,9 +159,13 @@ void SampleRows::take(const MtconnectStreams& streams) {
                                          [&](const ChannelOrigin& c) { return c.from == o.id || c.from == o.name; });
     if (is_followed) list.push_back(o);
   }
-  if (streams.created_s > 0.0 && streams.created_s < last_s_ - kClockAhead_s) last_s_ = streams.created_s;  // its clock was set
   for (Observation& o : list) {
     if (streams.created_s > 0.0 && o.time_s > streams.created_s + kClockAhead_s) o.time_s = streams.created_s;
+  }
+  if (streams.created_s > 0.0 && streams.created_s < last_s_ - kClockAhead_s) {  // its clock was set: rows go on in front of all that is told by it
+    last_s_ = streams.created_s;
+    for (const Observation& o : list) last_s_ = std::min(last_s_, o.time_s);
+    last_s_ -= 1e-3;
   }
   std::sort(list.begin(), list.end(), [](const Observation& a, const Observation& b) { return a.sequence < b.sequence; });
   for (std::size_t i = 0; i < list.size(); ++i) {

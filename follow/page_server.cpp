@@ -2,33 +2,29 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
-#include <httplib.h>
 #include <pthread.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
-#include <cstring>
-#include <semaphore>
+#include <mutex>
 #include <thread>
 
 #include "base/errors.hpp"
+#include "follow/bounded_server.hpp"
 #include "follow/page_history.hpp"
 
 namespace driftwright::follow {
 namespace {
 
-constexpr int kMostReaders = 8;  // of events, each of which holds a thread
-constexpr int kThreads = kMostReaders + 4;
-constexpr int kMostConnections = 32;  // behind which others wait in the system's queue
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostReaders = 32;  // of events; half of all places
 constexpr auto kGather = std::chrono::milliseconds(100);
 constexpr auto kBeat = std::chrono::seconds(2);
-constexpr int kPatience_s = 5;  // with one who does not read or does not write
 constexpr std::size_t kLeastToken = 16;
 constexpr int kNicer = 10;
 
@@ -45,24 +41,7 @@ bool is_own_name(const std::string& host_and_port) {
   return host == "[::1]" || is_loopback(host);
 }
 
-/// httplib's threads with a bound to what waits for them.
-class BoundedTasks final : public httplib::TaskQueue {
- public:
-  void enqueue(std::function<void()> task) override {
-    room_.acquire();
-    pool_.enqueue([this, task = std::move(task)] {
-      task();
-      room_.release();
-    });
-  }
-  void shutdown() override { pool_.shutdown(); }
-
- private:
-  std::counting_semaphore<kMostConnections> room_{kMostConnections};
-  httplib::ThreadPool pool_{kThreads};
-};
-
-/// What this thread and those it begins do comes behind the stream, whatever priority that has.
+/// What this thread does comes behind the stream, whatever priority that has.
 void step_back() {
   const sched_param usual{};
   (void)pthread_setschedparam(pthread_self(), SCHED_OTHER, &usual);
@@ -107,101 +86,64 @@ bool is_same_token(const std::string& given, const std::string& token) {
 }
 
 struct PageServer::Running {
-  Running(const PageAddress& where, std::string text)
-      : address(where),
-        html(std::move(text)),
-        history(fmt::format("{:x}{:x}", std::chrono::system_clock::now().time_since_epoch().count(), getpid())) {}
+  Running(PageAddress where, std::string text)
+      : address(std::move(where)),
+        html(std::make_shared<const std::string>(std::move(text))),
+        history(fmt::format("{:x}{:x}", std::chrono::system_clock::now().time_since_epoch().count(), getpid())),
+        server(address.host, address.port, [this](const HttpRequest& request) { return answer(request); }) {}
 
   PageAddress address;
-  std::string html;
+  std::shared_ptr<const std::string> html;
   PageFeed feed;
-  std::mutex mutex;  // of what follows; threads of the server alone
-  std::condition_variable came, ended;
+  std::mutex mutex;  // of the history
   PageHistory history;
-  bool is_over = false;
-  std::atomic<int> n_readers = 0;
-  std::atomic<bool> has_stopped = false;
-  httplib::Server server;
-  std::thread listening, gathering;
+  BoundedServer server;
+  std::atomic<bool> is_over = false;
+  std::thread serving;
 
-  void set_up() {
-    server.new_task_queue = [] { return new BoundedTasks; };  // NOLINT: httplib deletes it
-    server.set_socket_options([](socket_t socket) {  // a port that is taken is one; one who does not read is not waited for
-      const int yes = 1;
-      const timeval patience{.tv_sec = kPatience_s, .tv_usec = 0};
-      (void)setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-      (void)setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
-    });
-    server.set_tcp_nodelay(true);
-    server.set_keep_alive_timeout(1);
-    server.set_read_timeout(kPatience_s);
-    server.set_write_timeout(kPatience_s);
-    server.set_payload_max_length(1024);
-    server.set_default_headers(
-        {{"Cache-Control", "no-store"}, {"Referrer-Policy", "no-referrer"}, {"X-Content-Type-Options", "nosniff"}});
-    server.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-      if (is_allowed(request)) return httplib::Server::HandlerResponse::Unhandled;
-      response.status = address.token.empty() ? 403 : 401;
-      response.set_content(address.token.empty() ? "This page is asked for as localhost or 127.0.0.1.\n"
-                                                 : "This page wants the token that it is served with: ?token=...\n",
-                           "text/plain");
-      return httplib::Server::HandlerResponse::Handled;
-    });
-    server.Get("/", [this](const httplib::Request&, httplib::Response& response) {
-      response.set_content_provider(html.size(), "text/html; charset=utf-8",  // as it is: to compress it would take seconds
-                                    [this](std::size_t from, std::size_t length, httplib::DataSink& sink) {
-                                      return sink.write(html.data() + from, std::min<std::size_t>(length, 65536));
-                                    });
-    });
-    server.Get("/events",
-               [this](const httplib::Request& request, httplib::Response& response) { send_events(request, response); });
-  }
-
-  [[nodiscard]] bool is_allowed(const httplib::Request& request) const {
-    if (address.token.empty()) return is_own_name(request.get_header_value("Host"));
+  [[nodiscard]] bool is_allowed(const HttpRequest& request) const {
+    if (address.token.empty()) return is_own_name(value_of(request.headers, "host"));
     constexpr std::string_view kBearer = "Bearer ";
-    const std::string header = request.get_header_value("Authorization");
-    return is_same_token(header.starts_with(kBearer) ? header.substr(kBearer.size()) : request.get_param_value("token"),
+    const std::string header = value_of(request.headers, "authorization");
+    return is_same_token(header.starts_with(kBearer) ? header.substr(kBearer.size()) : value_of(request.query, "token"),
                          address.token);
   }
 
-  void send_events(const httplib::Request& request, httplib::Response& response) {
-    if (n_readers.fetch_add(1) >= kMostReaders) {
-      --n_readers;
-      response.status = 503;
-      response.set_content("So many pages are open already that this one has to wait.\n", "text/plain");
-      return;
-    }
-    auto seen = std::make_shared<std::uint64_t>(0);
-    {
-      const std::lock_guard lock(mutex);
-      *seen = history.number_of(request.get_param_value("since"));
-    }
-    response.set_chunked_content_provider(
-        "text/event-stream",
-        [this, seen](std::size_t, httplib::DataSink& sink) {
-          std::string text = "event: beat\ndata: \n\n";
-          {
-            std::unique_lock lock(mutex);
-            came.wait_for(lock, kBeat, [&] { return is_over || history.n_rows() > *seen; });
-            if (is_over) return false;
-            if (history.n_rows() > *seen) {
-              text = history.news(*seen);
-              *seen = history.n_rows();
-            }
-          }
-          return sink.write(text.data(), text.size());
-        },
-        [this](bool) { --n_readers; });
+  HttpAnswer answer(const HttpRequest& request) {
+    if (!is_allowed(request))
+      return address.token.empty() ? plain_answer(403, "This page is asked for as localhost or 127.0.0.1.\n")
+                                   : plain_answer(401, "This page wants the token that it is served with: ?token=...\n");
+    if (request.path == "/") return {.type = "text/html; charset=utf-8", .body = html, .next = {}};
+    if (request.path == "/events") return events(request);
+    return plain_answer(404, "The page is at /.\n");
   }
 
-  void gather() {
-    std::unique_lock lock(mutex);
-    while (!is_over) {
-      std::deque<PageRow> rows = feed.taken();
-      for (PageRow& row : rows) history.add(std::move(row));
-      if (!rows.empty()) came.notify_all();
-      ended.wait_for(lock, kGather, [&] { return is_over; });
+  HttpAnswer events(const HttpRequest& request) {
+    if (server.n_streams() >= kMostReaders)
+      return plain_answer(503, "So many pages are open already that this one has to wait.\n");
+    const std::lock_guard lock(mutex);
+    return {.type = "text/event-stream",
+            .body = nullptr,
+            .next = [this, seen = history.number_of(value_of(request.query, "since")), told = Clock::now()]() mutable {
+              const std::lock_guard next_lock(mutex);
+              const bool has_news = history.n_rows() > seen;
+              if (!has_news && Clock::now() < told + kBeat) return std::string();
+              told = Clock::now();
+              if (!has_news) return std::string("event: beat\ndata: \n\n");
+              std::string news = history.news(seen);
+              seen = history.n_rows();
+              return news;
+            }};
+  }
+
+  void serve() {
+    for (Clock::time_point gathers = Clock::now(); !is_over;) {
+      if (Clock::now() >= gathers) {
+        const std::lock_guard lock(mutex);
+        for (PageRow& row : feed.taken()) history.add(std::move(row));
+        gathers = Clock::now() + kGather;
+      }
+      server.turn(std::chrono::ceil<std::chrono::milliseconds>(std::max(gathers - Clock::now(), Clock::duration::zero())));
     }
   }
 };
@@ -210,33 +152,13 @@ PageServer::PageServer(const PageAddress& address, std::string html) {
   require_safe(address);
   running_ = std::make_unique<Running>(address, std::move(html));
   Running& r = *running_;
-  r.set_up();
-  errno = 0;
-  if (address.port == 0) r.address.port = r.server.bind_to_any_port(address.host);
-  if (address.port == 0 ? r.address.port <= 0 : !r.server.bind_to_port(address.host, address.port))
-    throw InputError(fmt::format("--serve {}: nobody can listen at {}: {}", address.port, address.host,
-                                 errno != 0 ? std::strerror(errno) : "it is no address of this computer"));
-  r.listening = quiet_thread([&r] {
-    (void)r.server.listen_after_bind();
-    r.has_stopped = true;
-  });
-  r.gathering = quiet_thread([&r] { r.gather(); });
+  r.address.port = r.server.port();
+  r.serving = quiet_thread([&r] { r.serve(); });
 }
 
 PageServer::~PageServer() {
-  Running& r = *running_;
-  {
-    const std::lock_guard lock(r.mutex);
-    r.is_over = true;
-  }
-  r.came.notify_all();
-  r.ended.notify_all();
-  if (r.gathering.joinable()) r.gathering.join();
-  if (!r.listening.joinable()) return;
-  while (!r.server.is_running() && !r.has_stopped)  // stop() of one that does not listen yet is lost
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  r.server.stop();
-  r.listening.join();
+  running_->is_over = true;
+  if (running_->serving.joinable()) running_->serving.join();
 }
 
 void PageServer::begin(const std::vector<Channel>& channels) {

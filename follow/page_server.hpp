@@ -1,5 +1,5 @@
 #pragma once
-// The page of a stream over HTTP: `/` the page, `/events` what it shows as Server-Sent Events. In threads of its own, below those of the stream.
+// The page of a stream over HTTP: `/` the page, `/events` what it shows as Server-Sent Events. In a thread of its own, below that of the stream.
 
 #include <memory>
 #include <string>

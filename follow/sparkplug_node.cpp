@@ -122,6 +122,7 @@ std::string SparkplugNode::take(const std::string& topic, const std::string& byt
     next_seq_ = (payload.seq() + 1) % kNumbers;
     is_alive_ = true;
     wants_birth_ = false;
+    nobody();  // a device of the node says all of its values anew
   } else {
     if (!is_alive_ && !wants_birth_) wants_birth_ = true;  // it speaks behind its death
     if (wants_birth_) return "its node's birth has not been heard";

@@ -9,7 +9,6 @@ import pathlib
 import random
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -17,24 +16,10 @@ import threading
 import time
 
 from one_head import HEAD
+from waiting import broker, free_port, need_mosquitto
 
 SLEW_UM_S = 0.05
 KILLS = 5
-
-
-def broker(folder, port):
-    (folder / "broker.conf").write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
-    started = subprocess.Popen([program_of("mosquitto"), "-c", folder / "broker.conf"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    for _ in range(200):
-        with socket.socket() as s:
-            if s.connect_ex(("127.0.0.1", port)) == 0:
-                return started
-        time.sleep(0.05)
-    sys.exit("mosquitto does not listen")
-
-
-def program_of(name):
-    return shutil.which(name) or shutil.which(name, path="/usr/sbin:/usr/bin")
 
 
 def publish(port, topic, text):
@@ -43,15 +28,11 @@ def publish(port, topic, text):
 
 def main():
     program = sys.argv[1]
-    if not program_of("mosquitto") or not shutil.which("mosquitto_pub"):
-        print("no mosquitto here; Debian's mosquitto and mosquitto-clients have it")
-        sys.exit(77)
+    need_mosquitto()
     folder = pathlib.Path(tempfile.mkdtemp(prefix="driftwright_mqtt-"))
     os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
     (folder / "head.yaml").write_text(HEAD)
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        port = s.getsockname()[1]
+    port = free_port()
     draw = random.Random(23)
     follow = subprocess.Popen([program, "follow", "head.yaml", "--mqtt", f"127.0.0.1:{port}", "--from", "mill/row", "--to", "mill/correction", "--slew",
                                f"{SLEW_UM_S} um/s"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=folder, text=True)  # before there is a broker

@@ -1,16 +1,17 @@
 #!/usr/bin/python3
 """`driftwright follow` at an agent of MTConnect: a server of HTTP that answers as the standard says, is away, lacks an item. follow_mtconnect_test.py PROGRAM"""
+import functools
 import http.server
 import json
+import os
 import pathlib
 import signal
 import subprocess
 import sys
 import tempfile
 import threading
-import time
-import os
 
+import waiting
 from one_head import HEAD as SLOW_HEAD
 
 HEAD = SLOW_HEAD.replace("60 kJ/K", "12 J/K")  # it is warm at once
@@ -72,13 +73,7 @@ def follow(program, folder, address, *topics):
 
 
 lines = []
-
-
-def wait_for(what, is_so, seconds=60.0):
-    end = time.monotonic() + seconds
-    while not is_so():
-        assert time.monotonic() < end, f"no {what}: {lines[-3:]}"
-        time.sleep(0.05)
+wait_for = functools.partial(waiting.wait_for, told=lambda: lines[-3:])
 
 
 def main():

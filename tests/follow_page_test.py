@@ -11,6 +11,16 @@ import sys
 import tempfile
 
 
+def end_daemons(folder):
+    """The broker has left the group of its shell; it has its environment."""
+    for entry in pathlib.Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if f"XDG_CACHE_HOME={folder}/cache".encode() in entry.read_bytes().split(b"\0"):
+                os.kill(int(entry.parent.name), signal.SIGTERM)
+        except OSError:  # another user's, or gone
+            continue
+
+
 def main():
     program, project = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     os.environ["PATH"] += ":/usr/sbin"
@@ -25,13 +35,12 @@ def main():
         work = pathlib.Path(folder)
         (work / "scenarios").symlink_to(project / "scenarios")
         env = dict(os.environ, XDG_CACHE_HOME=str(work / "cache"), PATH=f"{program.parent}:{os.environ['PATH']}")
-        # daemons leave the group of their shell, so the broker is ended by the port it listens on
         shell = subprocess.Popen(["bash", "-ec", commands], cwd=work, env=env, stdout=subprocess.PIPE, text=True, start_new_session=True)
         try:
             heard = [json.loads(line) for line in iter(shell.stdout.readline, "") if line.strip()][:3] if shell.wait(240) == 0 else []
         finally:
             os.killpg(shell.pid, signal.SIGTERM)
-            subprocess.run(["pkill", "-f", "mosquitto -p 1883 -d"])
+            end_daemons(work)
     assert len(heard) == 3, heard
     for line in heard:
         assert "drift_y" in line["axes"] and abs(line["axes"]["drift_y"]["correction_um"]) < 5.0, line

@@ -16,6 +16,7 @@ import time
 import urllib.parse
 
 from one_head import HEAD
+from waiting import wait_for
 
 PLACE = {"speed": ("Rotary", "RotaryVelocity", "s1", 'name="S1speed"'), "ambient": ("Environmental", "Temperature", "e2", ""), "load": ("Rotary", "Load", "l1", "")}
 
@@ -92,13 +93,6 @@ class Agent:
                     f'{self.buffer[0][0]}</Error></Errors></MTConnectError>')
         found = [o for o in self.buffer if o[0] >= first][:count]
         return self.streams(found, found[-1][0] + 1 if found else first)
-
-
-def wait_for(what, is_so, seconds=60.0):
-    end = time.monotonic() + seconds
-    while not is_so():
-        assert time.monotonic() < end, f"no {what}"
-        time.sleep(0.05)
 
 
 def main():

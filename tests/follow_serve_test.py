@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The page of `driftwright follow --serve` in a real browser: its numbers against the lines, a connection that breaks, a program that starts anew, tokens,
-ports, readers who do not read. follow_serve_test.py PROGRAM PROJECT"""
+ports, connections that mean no good. follow_serve_test.py PROGRAM PROJECT"""
 import csv
 import json
 import os
@@ -17,15 +17,10 @@ import urllib.request
 
 import browser
 from one_head import HEAD
+from waiting import free_port
 
 NETWORK = HEAD.replace("solver: {model: reduced}\n", "")  # nodes as they are
 TOKEN = "fx27-Kq9_vTz-40bw"
-
-
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 class Follow:
@@ -178,6 +173,7 @@ def at_the_browser(program, folder, chromium):
     # the connection breaks: it says so, and comes back with what it has missed
     between.cut()
     page.wait("document.getElementById('state').textContent === 'no connection'", 15)
+    time.sleep(8)  # longer than the page waits for a word: it asks again all the same
     for k in range(32, 42):
         follow.say(f"{60 * k},1000,21")
     between.is_closed = False
@@ -186,7 +182,15 @@ def at_the_browser(program, folder, chromium):
     curves(page, follow, 1, "predicted_um")
     entries = page.value("Array.from(document.getElementById('journal').children, e => e.textContent)")
     assert len(set(entries)) == len(entries) and entries[-1].endswith("on"), entries  # nothing is told twice
-    # the program ends and another begins at the same place: its curves alone
+    # the program ends and another begins at the same place, of another machine: that machine and its curves alone
+    follow.end()
+    page.wait("document.getElementById('state').textContent === 'no connection'", 15)
+    pathlib.Path(folder, "tail.yaml").write_text(NETWORK.replace("name: nose_z", "name: tail_z").replace("name: head\n", "name: other\n", 1))
+    follow = Follow(program, "tail.yaml", "--serve", port, folder=folder)
+    follow.header("time_s,speed_rpm,ambient_degC")
+    follow.say("40,1500,20")
+    page.wait("document.getElementById('name').textContent.includes('tail.yaml') && live.now", 20)
+    assert [row[0] for row in page.value(NUMBERS)] == ["tail_z"], page.value(NUMBERS)
     follow.end()
     page.wait("document.getElementById('state').textContent === 'no connection'", 15)
     follow = Follow(program, "head.yaml", "--serve", port, folder=folder)
@@ -213,6 +217,80 @@ def at_the_browser(program, folder, chromium):
     took_s = follow.end()
     assert took_s < 15.0, took_s
     return slowest
+
+
+def silent_crowd(program, folder):
+    """100 connections that send nothing, a byte at a time, or never read what they asked for: rows are answered as without them, and so is who asks
+    for the page. @return times [s] from a row to its line, sorted, and how long the page took"""
+    follow = Follow(program, "head.yaml", "--serve", 0, folder=folder)
+    port = int(follow.process.stderr.readline().rsplit(":", 1)[1].strip("/\n "))
+    follow.header("time_s,speed_rpm,ambient_degC")
+    follow.say("0,2000,20")
+    crowd, is_over = [], threading.Event()
+
+    def come(kind):
+        s = socket.socket()
+        s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
+        s.connect(("127.0.0.1", port))
+        if kind == 2:
+            s.sendall(b"GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        return s, kind
+
+    def drip():
+        while not is_over.wait(0.05):
+            for k, (s, kind) in enumerate(crowd):
+                try:
+                    if kind == 1:
+                        s.send(b"G")
+                except OSError:  # was put out, and comes again
+                    s.close()
+                    crowd[k] = come(kind)
+
+    for k in range(100):
+        crowd.append(come(k % 3))
+    dripping = threading.Thread(target=drip)
+    dripping.start()
+    took_s = []
+    for k in range(1, 2001):
+        row = f"{k},{2000 * (k // 60 % 2)},20"
+        began = time.perf_counter()
+        follow.say(row)
+        took_s.append(time.perf_counter() - began)
+        time.sleep(0.002)
+    began = time.perf_counter()
+    assert status_of(f"http://127.0.0.1:{port}/") == 200
+    page_s = time.perf_counter() - began
+    is_over.set()
+    dripping.join()
+    for s, _ in crowd:
+        s.close()
+    follow.end()
+    return sorted(took_s), page_s
+
+
+def undisturbed(program, folder):
+    for _ in range(3):  # a row waits for a processor, too, where other programs are many
+        took_s, page_s = silent_crowd(program, folder)
+        if took_s[-len(took_s) // 100] < 0.01 and page_s < 2.0:
+            break
+    else:
+        raise AssertionError((took_s[len(took_s) // 2], took_s[-20:], page_s))
+    return f"beside 100 silent, dripping and deaf connections 99 % of lines come within {1e3 * took_s[-len(took_s) // 100]:.2f} ms, the page in {1e3 * page_s:.0f} ms"
+
+
+def half_closed(program, folder):
+    """A client that has said all, and closes its half (`nc` at the end of its input), is answered; a head of megabytes is not read."""
+    follow = Follow(program, "head.yaml", "--serve", 0, folder=folder)
+    port = int(follow.process.stderr.readline().rsplit(":", 1)[1].strip("/\n "))
+    with socket.create_connection(("127.0.0.1", port), timeout=10) as s:
+        s.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        s.shutdown(socket.SHUT_WR)
+        answer = b"".join(iter(lambda: s.recv(65536), b""))
+    assert answer.startswith(b"HTTP/1.1 200 ") and answer.rstrip().endswith(b"</html>"), answer[:200]
+    with socket.create_connection(("127.0.0.1", port), timeout=10) as s:
+        s.sendall(b"GET / HTTP/1.1\r\nX: " + b"x" * 20000)
+        assert s.recv(1000).startswith(b"HTTP/1.1 431 ")
+    follow.end()
 
 
 def with_token(program, folder, chromium):
@@ -274,6 +352,8 @@ def main():
         os.environ["XDG_CACHE_HOME"] = folder + "/cache"
         pathlib.Path(folder, "head.yaml").write_text(NETWORK)
         refusals(program, folder)
+        half_closed(program, folder)
+        told = undisturbed(program, folder)
         if not browser.found():
             print("no chromium here; Debian's chromium shows the page")
             sys.exit(77)
@@ -284,6 +364,7 @@ def main():
             far_K = on_a_mesh(program, project, folder, chromium)
         finally:
             chromium.close()
+        print(told)
         print(f"slowest line beside 60 readers who do not read: {1e3 * slowest_s:.1f} ms; colours next to thermometers within {far_K:.2f} K of predict")
 
 

@@ -1,30 +1,25 @@
 #!/usr/bin/python3
 """`driftwright follow --sparkplug` at a real mosquitto, with payloads of another program: births with aliases, data by alias and by name, signed numbers, null,
 history, messages that are missing, deaths. follow_sparkplug_test.py PROGRAM"""
+import functools
 import json
 import os
 import pathlib
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
 import threading
 import time
 
+import waiting
 from one_head import HEAD as SLOW_HEAD
 
 HEAD = SLOW_HEAD.replace("60 kJ/K", "12 J/K")  # it is warm at once
 INT16, INT32, FLOAT, DOUBLE, BOOLEAN, STRING, DATASET = 2, 3, 9, 10, 11, 12, 16
 lines, words = [], []
-
-
-def wait_for(what, is_so, seconds=60.0):
-    end = time.monotonic() + seconds
-    while not is_so():
-        assert time.monotonic() < end, f"no {what}: {lines[-2:]} {words}"
-        time.sleep(0.05)
+wait_for = functools.partial(waiting.wait_for, told=lambda: (lines[-2:], words))
 
 
 def main():
@@ -33,23 +28,12 @@ def main():
     except ImportError:
         print("no google.protobuf here; Debian's python3-protobuf has it")
         sys.exit(77)
-    mosquitto = shutil.which("mosquitto", path=os.environ["PATH"] + ":/usr/sbin")
-    if not mosquitto or not shutil.which("mosquitto_pub"):
-        print("no mosquitto here; Debian's mosquitto and mosquitto-clients have it")
-        sys.exit(77)
+    waiting.need_mosquitto()
     program = str(pathlib.Path(sys.argv[1]).resolve())
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        port = s.getsockname()[1]
+    port = waiting.free_port()
     folder = tempfile.mkdtemp(prefix="driftwright_sparkplug-")
     os.environ["XDG_CACHE_HOME"] = folder + "/cache"
     pathlib.Path(folder, "head.yaml").write_text(HEAD)
-    pathlib.Path(folder, "broker.conf").write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
-
-    def broker():
-        started = subprocess.Popen([mosquitto, "-c", folder + "/broker.conf"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        wait_for("broker", lambda: socket.socket().connect_ex(("127.0.0.1", port)) == 0)
-        return started
 
     def publish(kind, data, device="/spindle"):
         subprocess.run(["mosquitto_pub", "-h", "127.0.0.1", "-p", str(port), "-t", f"spBv1.0/shop/{kind}/mill{'' if kind[0] == 'N' else device}", "-q", "1", "-s"],
@@ -78,7 +62,7 @@ def main():
         um = (speed * 0.15 / 20 + ambient - 20) * 4
         return bool(lines) and abs(lines[-1]["axes"]["nose_z"]["predicted_um"] - um) < 0.05 and lines[-1]["state"] == "on"
 
-    server = broker()
+    server = waiting.broker(folder, port)
     heard = listen_to_commands()
     time.sleep(0.5)
     running = follow("speed_rpm=Spindle/Speed", "ambient_degC=Ambient")
@@ -120,7 +104,7 @@ def main():
         server.kill()
         server.wait()
         heard.kill()
-        server = broker()
+        server = waiting.broker(folder, port)
         heard = listen_to_commands()
         wait_for("request for a birth behind a new link", lambda: len(commands) > n)
         birth(8, speed=1000, ambient=20)

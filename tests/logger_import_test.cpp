@@ -177,6 +177,19 @@ TEST(LoggerImport, NamesATagThatNeverComes) {
               ThrowsMessage<InputError>(HasSubstr("no tag 'Temp_Lager_vorm'")));
 }
 
+TEST(LoggerImport, CellsAndHeadersOfAMegabyteAreNoneOfNumbersStampsAndUnits) {  // std::regex goes as deep as its text is long
+  const std::string digits(1'000'000, '1'), letters(1'000'000, 'x');
+  for (const std::string& first : {digits + ",5", digits + ":59", letters + " [K] " + letters, digits + " CET"}) {
+    std::string text = "time;" + first + "\n";
+    for (int i = 0; i < 20; ++i) text += std::to_string(i) + ";" + first + "\n";
+    try {
+      (void)studies::import_logger(write_file("long.csv", text), "", {});
+    } catch (const InputError&) {  // it may say that it is no record
+    }
+  }
+  EXPECT_EQ(words_of_header(letters.substr(0, 500) + " [K]", "").unit, "K");
+}
+
 TEST(GuessNames, TakesUnitsOutOfHeaders) {
   const auto expect = [](const char* header, const char* name, const char* unit) {
     const HeaderWords words = words_of_header(header, "");

@@ -42,6 +42,14 @@ TEST(TimeStamps, ReadOffsetsAsTheyAreWritten) {
               ThrowsMessage<RangeError>(HasSubstr("has no offset to UTC at its end")));
 }
 
+TEST(TimeStamps, RefuseAMegabyteThatEndsAsAnOffsetDoes) {  // std::regex goes as deep as its text is long
+  for (const std::string end : {"1+01:00", "1 CET", "1"}) {
+    const std::string cell = std::string(1'000'000, '1') + end;
+    EXPECT_THROW((void)TimeStamps("", "").read(cell), RangeError);
+    EXPECT_THROW((void)TimeStamps("%d.%m.%Y %H:%M:%S%z", "").read(cell), RangeError);
+  }
+}
+
 TEST(TimeStamps, ReadFractionsBehindPointCommaAndColon) {
   const TimeStamps german("%d.%m.%Y %H:%M:%S", "");
   for (const char* b : {"01.03.2024 10:00:01.237", "01.03.2024 10:00:01,237", "01.03.2024 10:00:01:237"})
