@@ -28,6 +28,7 @@ class Machine:
     def __init__(self, family):
         self.family, self.bodies, self.links, self.circuits, self.heats = family, [], [], [], []
         self.sensors, self.displacements, self.numbers, self.air, self.start, self.t_ref = [], [], {}, set(), "hall", 20.0
+        self.longest_step_s = LONGEST_STEP_s
         self.stated = {}     # label -> how much wider or narrower than 10 % (3 %) the scenario says that a number is known
 
     def body(self, name, capacity):
@@ -117,11 +118,11 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
     index = {b: i for i, b in enumerate(bodies)}
     n = len(bodies)
 
-    # --- steps: rows, events, and for heat that follows temperature no step longer than LONGEST_STEP_s -------------------
+    # --- steps: rows, events, and for heat that follows temperature no step longer than the machine's own -------------------
     marks = [t_rows] + [np.clip(np.concatenate([np.atleast_1d(e) for e in f.events(record)]), 0, t_rows[-1]) for f in faults if f.events(record)]
     t = np.unique(np.round(np.concatenate(marks), 6))
     if any(h["has_decay"] for h in machine.heats) or any(f.key == "friction_law" and f.data.get("decay") for f in faults):
-        t = np.unique(np.concatenate([np.linspace(a, b, int(np.ceil((b - a) / LONGEST_STEP_s)) + 1)[:-1] for a, b in zip(t[:-1], t[1:])] + [t[-1:]]))
+        t = np.unique(np.concatenate([np.linspace(a, b, int(np.ceil((b - a) / machine.longest_step_s)) + 1)[:-1] for a, b in zip(t[:-1], t[1:])] + [t[-1:]]))
     t0, h = t[:-1], np.diff(t)
     row = np.clip(np.searchsorted(t_rows, t0 + 1e-7, side="right") - 1, 0, len(t_rows) - 1)
     n_steps = len(h)

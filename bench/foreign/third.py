@@ -55,16 +55,17 @@ def priors(rng, machine):
     if r < 0.40:
         return {}, None
     group = str(rng.choice(["C ", "G ", "P "]))
+    air = {"C " + b for b in machine.air}      # the grammar has no word for how well the capacity of air is known
     of_group = [k for k in labels if k.startswith(group)]
     if r < 0.60:      # not said
         factor = float(rng.choice([0.5, 2.0]))
         return {k: factor for k in of_group}, dict(kind="scatter unlike the prior, unsaid", group=group.strip(), factor=factor)
     if r < 0.80:
         factor = float(rng.choice([0.5, 2.0]))
-        machine.stated = {k: factor for k in of_group}
+        machine.stated = {k: factor for k in of_group if k not in air}
         return {}, dict(kind="said to be known to 20 %" if factor > 1 else "said to be known to 5 %", group=group.strip(), factor=factor)
     shares = {f"P {i}" for i, h in enumerate(machine.heats) if h["kind"] == "cutting_heat"}
-    able = [k for k in labels if k[:2] in ("C ", "G ", "P ") and k not in shares]
+    able = [k for k in labels if k[:2] in ("C ", "G ", "P ") and k not in shares | air]
     chosen = [str(x) for x in rng.choice(able, min(len(able), int(rng.integers(2, 5))), replace=False)]
     machine.stated = {k: GUESS for k in chosen}
     return {}, dict(kind="guess", numbers=chosen)
@@ -141,10 +142,11 @@ def attempt(index, number, cls, kinds):
     dt = steps[int(rng.integers(len(steps)))]
     records = []
     for r in range(n_records + 1):
-        n_rows = int(np.clip(round(rng.uniform(*plan["hours"]) * 3600 / dt), 200, 700))
+        n_rows = int(np.clip(round(rng.uniform(*plan["hours"]) * 3600 / dt), 200, 500))
         records.append(families.record(rng, f"measured_{r + 1}" if r < n_records else "holdout_1", plan, n_rows, dt, style, column))
     if column and any(not np.any(r.columns[column[0]][1]) for r in records):
         raise Impossible
+    machine.longest_step_s = float(np.clip(dt / 2, 20, 60))
     z = scattered(rng, machine, wide)
     numbers = {k: np.array([moved(v, kind, z[k], machine.stated.get(k, 1.0))]) for k, (v, kind) in machine.numbers.items()}
     if any(h["kind"] == "cutting_heat" and numbers[f"P {i}"][0] > 0.98 for i, h in enumerate(machine.heats)):
@@ -193,7 +195,8 @@ def held_to(program):
             rng = np.random.default_rng([79, i, repeat])
             machine, plan = family(rng, families.Draw(rng))
             machine.sensors = [("t_" + b, b) for b in machine.bodies]
-            machine.stated = {k: (GUESS, 2.0, 0.5, 1.0)[j % 4] for j, k in enumerate(machine.numbers) if not k.startswith("S ")}
+            machine.stated = {k: (GUESS, 2.0, 0.5, 1.0)[j % 4] for j, k in enumerate(machine.numbers) if not k.startswith("S ") and k not in {"C " + b for b in machine.air}}
+            machine.longest_step_s = float(np.clip(plan["dt"][1] / 2, 20, 60))
             if repeat and not isinstance(machine.start, float):
                 machine.start = "steady"
             record = families.record(rng, "measured_1", plan, 300, plan["dt"][1], style, ("loop", "degC"))

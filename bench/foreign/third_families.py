@@ -173,7 +173,7 @@ def boring_mill(rng, v):
     m.displacement("tip_z", "z", {"quill": v(5.0), "sleeve": v(1.5)})
     m.displacement("tip_y", "y", {"column": v(9.0), "headstock": v(2.6), "bed": -v(1.5)})
     m.displacement("tip_x", "x", {"column": v(2.5), "bed": -v(1.9)})
-    return m, dict(hours=(12, 40), dt=(120, 300), drive="speed", top=2000, feeds={"y": 8000})
+    return m, dict(hours=(12, 24), dt=(120, 300), drive="speed", top=2000, feeds={"y": 8000})
 
 
 def battery_cycler(rng, v):

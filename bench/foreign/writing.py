@@ -36,7 +36,7 @@ def scenario(machine, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="
            f"start: {body(machine.start) if isinstance(machine.start, str) else g(machine.start) + ' degC'}", "machine: {generator: lumped}", "effects:"]
     for b in machine.bodies:
         if b in machine.air:
-            out.append(f"  - {{type: air_node, node: {b}, capacity: {g(v['C ' + b])} J/K, exchange: {g(v[f'G {b} hall'])} W/K{known_to(machine, {'capacity': 'C ' + b, 'exchange': f'G {b} hall'})}}}")
+            out.append(f"  - {{type: air_node, node: {b}, capacity: {g(v['C ' + b])} J/K, exchange: {g(v[f'G {b} hall'])} W/K{known_to(machine, {'exchange': f'G {b} hall'})}}}")
         else:
             out.append(f"  - {{type: node, node: {b}, capacity: {g(v['C ' + b])} J/K{known_to(machine, {'capacity': 'C ' + b})}}}")
     for a, b in machine.links:
