@@ -79,6 +79,9 @@ class Refit:
                 b[:, :n], b[:, n + r:], b[:, n + i] = ((m[1:n + 1] - m[0]) / STEP).T, ((m[n + 1:-1] - m[0]) / STEP).T, (m[-1] - m[0]) / STEP
                 normal += b.T @ b
                 slope += b.T @ (self.y[i] - m[0])
+            for k, fault in enumerate(faults):      # two thermometers that are swapped: no size
+                if fault.low == fault.high:
+                    normal[n + r + k, n + r + k] = 1.0
             gained = None
             for _ in range(6):
                 step = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)

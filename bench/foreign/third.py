@@ -210,7 +210,7 @@ def held_to(program):
         F = faults.Fault
         for fault, size, line in [
                 (F("recorded_drive", dict(node=body, column="loop", unit="degC", mode="conductance")), 6.0, f"{{type: recorded_drive, node: {body}, conductance: 6 W/K, column: loop}}"),
-                (F("recorded_drive", dict(node=body, column="valve", unit="percent", mode="opening")), 0.2, f"{{type: recorded_drive, node: {body}, opening: 0.2 W/K, column: valve}}"),
+                (F("recorded_drive", dict(node=body, column="valve", unit="percent", mode="opening")), 0.2, f"{{type: recorded_drive, node: {body}, opening: 0.2, column: valve}}"),
                 (F("recorded_drive", dict(node=body, column="valve", unit="percent", mode="gain")), 1.5, f"{{type: recorded_drive, node: {body}, gain: 1.5, column: valve}}"),
                 (F("friction_law", dict(heat=0, node="hob_bearing", decay=True)), 0.02, "{type: changed_law, law: heat_source hob_bearing, decay: 0.02 1/K}"),
                 (F("forced_convection", dict(link=(body, "hall"), at=top / 4)), 0.6, f"{{type: changed_law, law: link {body} - ambient, exponent: 0.6, at_speed: {top / 4:g} rpm}}"),
