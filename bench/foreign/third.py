@@ -82,8 +82,9 @@ def scattered(rng, machine, wide):
     return z
 
 
-def fits(cls, value):
-    return ALLOWED[cls][0] <= value <= ALLOWED[cls][1]
+def fits(cls, value, fault):
+    """Thermometers that are swapped have no size: they are worth what they are."""
+    return ALLOWED[cls][0] <= value and (value <= ALLOWED[cls][1] or fault.low == fault.high)
 
 
 def sized(rng, cls, drawn, machine, records, noise, z, offsets):
@@ -105,9 +106,9 @@ def sized(rng, cls, drawn, machine, records, noise, z, offsets):
         hidden = [f.with_size(s) for f, s in zip(drawn, sizes)]
         refit = Refit(machine, records, noise, z, offsets, hidden)
         got = [refit.nats(i if len(hidden) > 1 else None) for i in range(len(hidden))]
-        if all(fits(cls, n) and (0.67 < n / t < 1.5 or f.low == f.high) for n, t, f in zip(got, target, drawn)):
+        if all(fits(cls, n, f) and (0.67 < n / t < 1.5 or f.low == f.high) for n, t, f in zip(got, target, drawn)):
             got = [refit.nats(i if len(hidden) > 1 else None, thorough=True) for i in range(len(hidden))]
-            if all(fits(cls, n) for n in got):
+            if all(fits(cls, n, f) for n, f in zip(got, drawn)):
                 line = [float(judge.nats(judge.deviation([f], 1))[0]) for f in hidden]
                 return hidden, [float(n) for n in got], line
         if all(f.low == f.high for f in drawn):
