@@ -21,10 +21,11 @@ def whiten(y, sigma, dt, coloured):
     y = y / sigma
     if coloured["share"] <= 0:
         return y
-    phi = np.exp(-dt / (60 * coloured["minutes"]))
+    phis = np.exp(-dt / (60 * coloured["minutes"]))     # dt: one, or that to the next row
     q = coloured["share"] ** 2
     out, state, p = np.empty_like(y), np.zeros_like(y[:, 0]), q
     for k in range(y.shape[1]):
+        phi = phis if np.ndim(phis) == 0 else phis[k]
         s = p + 1.0
         e = y[:, k] - state
         out[:, k] = e / np.sqrt(s)

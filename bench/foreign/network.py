@@ -28,6 +28,8 @@ class Machine:
     def __init__(self, family):
         self.family, self.bodies, self.links, self.circuits, self.heats = family, [], [], [], []
         self.sensors, self.displacements, self.numbers, self.air, self.start, self.t_ref = [], [], {}, set(), "hall", 20.0
+        self.longest_step_s = LONGEST_STEP_s
+        self.stated = {}     # label -> how much wider or narrower than 10 % (3 %) the scenario says that a number is known
 
     def body(self, name, capacity):
         self.bodies.append(name)
@@ -65,7 +67,7 @@ class Machine:
         """One variant for each uncertain number, moved by `step` of its prior sigma; the first variant is nominal."""
         p = self.nominal(len(self.numbers) + 1)
         for i, (k, (v, kind)) in enumerate(self.numbers.items()):
-            p[k][i + 1] = moved(v, kind, step)
+            p[k][i + 1] = moved(v, kind, step, self.stated.get(k, 1.0))
         return p
 
 
@@ -108,14 +110,19 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
         if f.key == "hidden_body":
             bodies.append("hidden")
             capacity["hidden"] = np.maximum(f.size * f.data["capacity"], 1e-3)
+        elif f.key == "mass_change":
+            bodies.append("load")
+            capacity["load"] = np.maximum(f.size * f.data["capacity"], 1e-3)
+        elif f.key == "heat_capacity":
+            capacity[f.data["node"]] = capacity[f.data["node"]] * np.exp(f.size)
     index = {b: i for i, b in enumerate(bodies)}
     n = len(bodies)
 
-    # --- steps: rows, events, and for heat that follows temperature no step longer than LONGEST_STEP_s -------------------
+    # --- steps: rows, events, and for heat that follows temperature no step longer than the machine's own -------------------
     marks = [t_rows] + [np.clip(np.concatenate([np.atleast_1d(e) for e in f.events(record)]), 0, t_rows[-1]) for f in faults if f.events(record)]
     t = np.unique(np.round(np.concatenate(marks), 6))
-    if any(h["has_decay"] for h in machine.heats):
-        t = np.unique(np.concatenate([np.linspace(a, b, int(np.ceil((b - a) / LONGEST_STEP_s)) + 1)[:-1] for a, b in zip(t[:-1], t[1:])] + [t[-1:]]))
+    if any(h["has_decay"] for h in machine.heats) or any(f.key == "friction_law" and f.data.get("decay") for f in faults):
+        t = np.unique(np.concatenate([np.linspace(a, b, int(np.ceil((b - a) / machine.longest_step_s)) + 1)[:-1] for a, b in zip(t[:-1], t[1:])] + [t[-1:]]))
     t0, h = t[:-1], np.diff(t)
     row = np.clip(np.searchsorted(t_rows, t0 + 1e-7, side="right") - 1, 0, len(t_rows) - 1)
     n_steps = len(h)
@@ -127,6 +134,9 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
     all_heat = np.ones((n_var, n_steps))
     for f in faults:
         if f.key == "ambient":
+            if f.data.get("ramp"):
+                hall0, hall1 = hall0 + f.size[:, None] * t0 / 3600, hall1 + f.size[:, None] * t[1:] / 3600
+                continue
             on = t0 >= f.data["from_s"] - 1e-7
             hall0, hall1 = hall0 + f.size[:, None] * on, hall1 + f.size[:, None] * on
         elif f.key == "speed_override":
@@ -147,7 +157,11 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
         power = numbers[f"P {i}"][:, None]
         exponent = numbers[f"e {i}"] if law["has_exponent"] else zero
         factor = all_heat.copy()
+        decay = numbers[f"decay {i}"] if law["has_decay"] else None
         for f in faults:
+            if f.key == "friction_law" and f.data["heat"] == i and f.data.get("decay"):
+                decay = (zero if decay is None else decay) + f.size
+                continue
             if f.key == "friction_law" and f.data["heat"] == i:
                 exponent = exponent + f.size
             if f.key == "recorded_drive" and f.data.get("heat") == i:
@@ -166,8 +180,8 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
             turning = speed > 0
             q = np.where(turning, idle[:, None] + power * (np.where(turning, speed, law["at"]) / law["at"]) ** exponent[:, None], 0.0)
         q = q * factor
-        if law["has_decay"]:
-            decaying.append((index[law["node"]], q, numbers[f"decay {i}"], machine.t_ref))
+        if decay is not None:
+            decaying.append((index[law["node"]], q, decay, machine.t_ref))
         else:
             heat[:, :, index[law["node"]]] += q
     for f in faults:
@@ -183,19 +197,36 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
         elif f.key == "heat_window" and f.data["what"] == "heat":
             heat[:, :, index[f.data["node"]]] += f.size[:, None] * in_windows(t0 + 1e-6, f.windows(record))
         elif f.key == "recorded_drive" and "column" in f.data:
-            heat[:, :, index[f.data["node"]]] += f.size[:, None] * record.columns[f.data["column"]][1][row]
+            if f.data.get("mode", "gain") == "gain":
+                heat[:, :, index[f.data["node"]]] += f.size[:, None] * record.columns[f.data["column"]][1][row]
+            elif f.data["mode"] == "conductance":      # to a body as warm as the column says
+                heat[:, :, index[f.data["node"]]] += f.size[:, None] * record.columns[f.data["column"]][1][row]
+                heat_still[:, index[f.data["node"]]] += f.size * record.columns[f.data["column"]][1][0]
 
-    # --- conductances: (a, b, G, mask over steps or None) ------------------------------------------------------------------
+    # --- conductances: (a, b, G, levels over steps or None); with levels G has one row for each, the first of them holds at standstill ---
     links = []
     for a, b in machine.links:
-        g = numbers[f"G {a} {b}"]
+        g, level = numbers[f"G {a} {b}"], None
         for f in faults:
             if f.key in ("convection", "contact") and f.data["link"] == (a, b):
                 g = g * np.exp(f.size)
             if f.key == "run_state" and f.data["what"] == "exchange" and b == "hall":
                 g = g * np.exp(f.size)
-        links.append((a, b, g, None))
+            if f.key == "forced_convection" and f.data["link"] == (a, b):     # (n / at)^size while it turns, as `changed_law` has it
+                values, level = np.unique(np.append(0.0, record.speed[row]), return_inverse=True)
+                g, level = np.stack([g if x <= 0 else g * (x / f.data["at"]) ** f.size for x in values]), level[1:]
+        links.append((a, b, g, level))
     for f in faults:
+        if f.key == "mass_change":
+            inside = in_windows(t0 + 1e-6, f.windows(record)).astype(int)
+            joined, apart = f.size * f.data["conductance"], f.size * f.data["capacity"] / 60
+            links.append(("load", f.data["node"], np.stack([0 * joined, joined]), inside))
+            links.append(("load", "hall", np.stack([apart, 0 * apart]), inside))
+        elif f.key == "recorded_drive" and f.data.get("mode") == "conductance":
+            links.append((f.data["node"], "nothing", f.size, None))
+        elif f.key == "recorded_drive" and f.data.get("mode") == "opening":
+            values, level = np.unique(np.append(0.0, record.columns[f.data["column"]][1][row]), return_inverse=True)
+            links.append((f.data["node"], "hall", values[:, None] * f.size, level[1:]))
         if f.key == "hidden_body":
             links.append(("hidden", f.data["node"], f.size * f.data["conductance"], None))
             if f.data["to_hall"] > 0:
@@ -203,29 +234,35 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
         elif f.key == "link":
             links.append((f.data["a"], f.data["b"], f.size, None))
         elif f.key == "exchange_window":
-            links.append((f.data["a"], f.data["b"], f.size, in_windows(t0 + 1e-6, f.windows(record))))
+            links.append((f.data["a"], f.data["b"], np.stack([0 * f.size, f.size]), in_windows(t0 + 1e-6, f.windows(record)).astype(int)))
     fixed = []
     for node, set_point in machine.circuits:
-        stream = numbers["flow " + node] / 60 * 3800.0
+        flow = numbers["flow " + node]
+        for f in faults:
+            if f.key == "coolant" and f.data["node"] == node:
+                if f.data["what"] == "flow":
+                    flow = flow * np.exp(f.size)
+                else:
+                    set_point = set_point + f.size
+        stream = flow / 60 * 3800.0
         fixed.append((node, stream * (1 - np.exp(-numbers["passage " + node] / stream)), set_point))
 
-    masks = [m for *_, m in links if m is not None]
-    state = sum((m.astype(int) << i for i, m in enumerate(masks)), np.zeros(n_steps, int))
+    levels = [m for *_, m in links if m is not None]
+    radix = np.cumprod([1] + [int(g.shape[0]) for _, _, g, m in links if m is not None])
+    state = sum((m * int(x) for x, m in zip(radix, levels)), np.zeros(n_steps, int))
     c = np.stack([capacity[b] for b in bodies], 1)
 
     def matrices(s):
         a_matrix, to_hall, constant = np.zeros((n_var, n, n)), np.zeros((n_var, n)), np.zeros((n_var, n))
-        bit = 0
-        for a, b, g, mask in links:
-            if mask is not None:
-                bit += 1
-                if not (s >> (bit - 1)) & 1:
-                    continue
+        for a, b, g, level in links:
+            if level is not None:
+                s, one = divmod(s, g.shape[0])
+                g = g[one]
             i = index[a]
             a_matrix[:, i, i] -= g
             if b == "hall":
                 to_hall[:, i] += g
-            else:
+            elif b != "nothing":
                 j = index[b]
                 a_matrix[:, i, j] += g
                 a_matrix[:, j, i] += g
@@ -329,7 +366,10 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
             if f.data.get("channel") != name:
                 continue
             if f.key == "displacement_path":
-                d = of(f.data["node"]) - machine.t_ref
+                if "column" in f.data:
+                    d = np.broadcast_to(record.columns[f.data["column"]][1] - machine.t_ref, (n_var, len(t_rows)))
+                else:
+                    d = of(f.data["node"]) - machine.t_ref
                 if f.data["lag_min"] > 0:
                     d = first_order(t_rows, d, np.full(n_var, 60 * f.data["lag_min"]), d[:, 0])
                 u += f.size[:, None] * d
@@ -340,9 +380,18 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
                     e = np.exp(-(t_rows[k] - t_rows[k - 1]) / (60 * f.data["lag_min"]))
                     y[:, k] = y[:, k - 1] * e + drive[:, k - 1] * (1 - e)
                 u += f.size[:, None] * y
+            elif f.key == "centrifugal":
+                u += f.size[:, None] * (np.append(speed_rows, speed_rows[:, -1:], 1) / f.data["at"]) ** 2
+            elif f.key == "scale_expansion":
+                u = first_order(t_rows, u, 60 * f.size, u[:, 0]) if f.data["what"] == "lag" else u * np.exp(f.size)[:, None]
             elif f.key == "mount_shift":
                 u += f.size[:, None] * (t_rows >= f.data["from_s"] - 1e-7)
         displacements[:, :, i] = u
+    names = [n for n, _ in machine.sensors]
+    for f in faults:
+        if f.key == "sensor_swap":
+            a, b = names.index(f.data["sensor"]), names.index(f.data["other"])
+            temperatures[:, :, [a, b]] = temperatures[:, :, [b, a]]
     for f in faults:
         if f.key == "clock_offset":
             for v in range(n_var):

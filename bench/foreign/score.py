@@ -61,6 +61,42 @@ def place_right(cause, effect, n_records):
     return False
 
 
+TIMES = re.compile(r"^(begin|start|from|end|until|length|time)(_?\d+)?$")
+
+
+def told_windows(cause, last_min):
+    """[begin, end] in minutes of all windows that a cause tells, whatever it calls them; one without an end lasts."""
+    out, begin = [], None
+    for p in cause.get("parameters") or []:
+        name = TIMES.match(str(p.get("name")))
+        values = p.get("value") if isinstance(p.get("value"), list) else [p.get("value")]
+        if not name or p.get("unit", "min") not in MINUTES or any(not isinstance(v, (int, float, list)) for v in values):
+            continue
+        if any(isinstance(v, list) for v in values):
+            out += [[x * MINUTES[p.get("unit", "min")] for x in v] for v in values if isinstance(v, list) and len(v) == 2]
+            continue
+        for v in values:
+            v *= MINUTES[p.get("unit", "min")]
+            if name[1] in ("begin", "start", "from", "time"):
+                if begin is not None:
+                    out.append([begin, last_min])
+                begin = v
+            elif begin is not None:
+                out.append([begin, begin + v if name[1] == "length" else v])
+                begin = None
+    return out + ([[begin, last_min]] if begin is not None else [])
+
+
+def times_right(causes, effect, last_min):
+    """Do the windows of all causes of the right kind together overlap those of the truth by half of what both cover? Told by one cause or by several."""
+    grid = [last_min * (i + 0.5) / 2000 for i in range(2000)]
+    told = [w for c in causes if kind_right(c, effect) for w in told_windows(c, last_min)]
+    inside = lambda t, windows: any(a <= t < b for a, b in windows)
+    both = sum(inside(t, told) and inside(t, effect["windows_min"]) for t in grid)
+    either = sum(inside(t, told) or inside(t, effect["windows_min"]) for t in grid)
+    return either > 0 and both >= 0.5 * either
+
+
 def value_in(unit, value):
     if unit in MINUTES:
         return "min", value * MINUTES[unit]
@@ -142,6 +178,9 @@ def main():
             note(f"{cls} kind right in any standing, or what cannot be told from it", some)
             note(f"{cls} kind and place right in any standing, or what cannot be told from it", some_place)
             note(f"{cls} verdict consistent though something is hidden", d["verdict"] == "consistent")
+            if e.get("windows_min") and "ways" in truth:
+                last = truth["interval_s"] * max(truth["rows"].values()) / 60
+                note(f"{cls} windows: times right (of those with windows, any number of causes)", times_right(named, e, last))
             if cls == "C8":
                 note("C8 named or suspected rightly", any(kind_right(c, e) for c in said))
                 note("C8 named or suspected wrongly", any(not kind_right(c, e) for c in said))

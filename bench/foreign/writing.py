@@ -2,12 +2,13 @@
 import numpy as np
 
 import further_families
+import third_families
 
 TITLES = dict(lathe_headstock="headstock of a lathe", grinding_spindle="grinding spindle with coolant", motor_spindle="motor spindle with a chiller",
               printer="printer with a heated bed in a chamber; the bed's electric power is recorded", incubator="heated box with a fan; the heater's electric power is recorded",
               house="room of a house; heaters' power and outdoor temperature are recorded", gantry="gantry with two screws", heater_plate="test bench with a heater plate",
               gearbox="gearbox with an oil sump", rotary_table="rotary table with a torque motor", hydraulic_unit="hydraulic unit with pump and manifold",
-              **further_families.TITLES)
+              **further_families.TITLES, **third_families.TITLES)
 
 
 def g(x):
@@ -19,33 +20,44 @@ def body(b):
     return "ambient" if b == "hall" else b
 
 
+def known_to(machine, keys):
+    """How well the scenario says that numbers of an effect are known; keys: key of the grammar -> label."""
+    words = {}
+    for key, label in keys.items():
+        factor = machine.stated.get(label, 1.0)
+        if factor != 1.0:
+            words[key] = "guess" if factor > 3 else f"{g(10 * factor)} %"
+    return ", known_to: {%s}" % ", ".join(f"{k}: {w}" for k, w in words.items()) if words else ""
+
+
 def scenario(machine, dt, hall="{csv: measured_1.csv, channel: ambient}", plan="measured_1.csv", name=None):
     v = {k: x for k, (x, _) in machine.numbers.items()}
     out = [f"# {TITLES[machine.family].capitalize()}. Nominal numbers are estimates.", f"name: {name or machine.family}", f"reference_temperature: {g(machine.t_ref)} degC",
            f"start: {body(machine.start) if isinstance(machine.start, str) else g(machine.start) + ' degC'}", "machine: {generator: lumped}", "effects:"]
     for b in machine.bodies:
         if b in machine.air:
-            out.append(f"  - {{type: air_node, node: {b}, capacity: {g(v['C ' + b])} J/K, exchange: {g(v[f'G {b} hall'])} W/K}}")
+            out.append(f"  - {{type: air_node, node: {b}, capacity: {g(v['C ' + b])} J/K, exchange: {g(v[f'G {b} hall'])} W/K{known_to(machine, {'exchange': f'G {b} hall'})}}}")
         else:
-            out.append(f"  - {{type: node, node: {b}, capacity: {g(v['C ' + b])} J/K}}")
+            out.append(f"  - {{type: node, node: {b}, capacity: {g(v['C ' + b])} J/K{known_to(machine, {'capacity': 'C ' + b})}}}")
     for a, b in machine.links:
         if not (a in machine.air and b == "hall"):
-            out.append(f"  - {{type: link, node: {a}, to: {body(b)}, conductance: {g(v[f'G {a} {b}'])} W/K}}")
+            out.append(f"  - {{type: link, node: {a}, to: {body(b)}, conductance: {g(v[f'G {a} {b}'])} W/K{known_to(machine, {'conductance': f'G {a} {b}'})}}}")
     for node, set_point in machine.circuits:
         out.append(f"  - {{type: coolant, node: {node}, flow: {g(v['flow ' + node])} L/min, passage_conductance: {g(v['passage ' + node])} W/K, set_point: {g(set_point)} degC}}")
     for i, law in enumerate(machine.heats):
+        known = known_to(machine, {"share" if law["kind"] == "cutting_heat" else "power": f"P {i}", "exponent": f"e {i}", "idle": f"idle {i}", "decay": f"decay {i}"})
         p, e = v[f"P {i}"], f", exponent: {g(v[f'e {i}'])}" if law["has_exponent"] else ""
         idle = f", idle: {g(v[f'idle {i}'])} W" if law["has_idle"] else ""
         head = f"  - {{type: {law['kind']}, node: {law['node']}"
         if law["kind"] == "cutting_heat":
-            out.append(f"{head}, share: {g(p)}}}")
+            out.append(f"{head}, share: {g(p)}{known}}}")
         elif law["kind"] == "servo_loss":
-            out.append(f"{head}, power: {g(p)} W, at_feed: {g(law['at'] * 60)} m/min{e or ', exponent: 1'}{idle}, axis: {law['axis']}}}")
+            out.append(f"{head}, power: {g(p)} W, at_feed: {g(law['at'] * 60)} m/min{e or ', exponent: 1'}{idle}, axis: {law['axis']}{known}}}")
         elif law["kind"] == "heat_source" and not law["has_exponent"]:
-            out.append(f"{head}, power: {g(p)} W{', runs: while_spindle_turns' if law['turning'] else ''}}}")
+            out.append(f"{head}, power: {g(p)} W{', runs: while_spindle_turns' if law['turning'] else ''}{known}}}")
         else:
             decay = f", decay: {g(v[f'decay {i}'])} 1/K, at_temperature: {g(machine.t_ref)} degC" if law["has_decay"] else ""
-            out.append(f"{head}, power: {g(p)} W, at_speed: {g(law['at'])} rpm{e}{idle}{decay}}}")
+            out.append(f"{head}, power: {g(p)} W, at_speed: {g(law['at'])} rpm{e}{idle}{decay}{known}}}")
     out.append(f"ambient: {hall}")
     if machine.sensors:
         out.append("sensors:")
