@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# docs/sweep.sbatch as a job array on a Slurm of one node, started here for the purpose: four shards give the bytes of one run.
+# docs/array.sbatch as a job array on a Slurm of two nodes, started here on one machine for the purpose: shards of a sweep and of `place` give the bytes of
+# one run, also when a task is cancelled and submitted again.
 #
 #     tests/slurm_test.sh PROGRAM      ends with 77, which CTest shows as skipped, where Slurm is not installed
 set -eu
@@ -53,7 +54,7 @@ SlurmctldHost=localhost
 SlurmUser=$(id -un)
 SlurmdUser=$(id -un)
 SlurmctldPort=$port
-SlurmdPort=$((port + 1))
+SlurmParameters=allow_multiple_slurmd
 AuthType=auth/munge
 AuthInfo=socket=$work/munge/socket
 CryptoType=crypto/munge
@@ -70,7 +71,8 @@ SchedulerParameters=sched_interval=1
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 ReturnToService=2
-NodeName=localhost NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
+NodeName=first NodeHostname=localhost NodeAddr=127.0.0.1 Port=$((port + 1)) CPUs=1 State=UNKNOWN
+NodeName=second NodeHostname=localhost NodeAddr=127.0.0.1 Port=$((port + 2)) CPUs=1 State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES State=UP
 END
 export SLURM_CONF=$work/slurm.conf
