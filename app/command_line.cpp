@@ -49,6 +49,12 @@ CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& wh
   return verb;
 }
 
+/// What verbs take whose work several processes may share. @param parts  that the work has, in words
+void add_shards(CLI::App* verb, app::ShardOptions& options, const std::string& parts) {
+  verb->add_option("--shard", options.shard, "i/n: do the i-th of n parts of " + parts + " alone, as a task of a job array does");
+  verb->add_flag("--merge", options.merge, "put together what all shards have done");
+}
+
 /// @param judges  it also tests, and does without records where the scenario has a programme
 void add_records(CLI::App* verb, app::RecordOptions& options, bool judges) {
   verb->add_option("--train", options.train, "record to fit on, or a part of it: run.csv:0h..20h; may be repeated")
@@ -432,6 +438,7 @@ int app::command_line(int argc, const char* const* argv) {
       ->allow_extra_args(false);
   verb->add_option("--noise", place.noise, "of a reading, 1 sigma, such as '0.1 K' [that of `validation`, else 0.1 K]");
   verb->add_option("--points", place.points, "of a mesh that are tried, 50 to 3000 [400]");
+  add_shards(verb, place, "the work");
   verb->callback([&] { app::place(place); });
   verb = add_verb(cli, "plan-test",
                   "before anything is measured: the test behind which most faults would be named (docs/test_planning.md)",
@@ -445,6 +452,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->add_option("--programmes", plan_test.n_programmes, "how many are tried [10000, fewer for large machines]")
       ->check(CLI::Range(10, 10000000));
   verb->add_option("--seed", plan_test.seed, "of the search [1]");
+  add_shards(verb, plan_test, "the work");
   verb->callback([&] { app::plan_test(plan_test); });
   verb = add_verb(cli, "schedule", "corrections of the drift that an NC program will cause, written into the program",
                   "schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc -o results/part", schedule);
@@ -525,8 +533,7 @@ int app::command_line(int argc, const char* const* argv) {
       "driftwright sweep scenarios/lumped_sweep.yaml --shard 2/2 -o results/shards\n  "
       "driftwright sweep scenarios/lumped_sweep.yaml --merge -o results/shards",
       sweep, "study");
-  verb->add_option("--shard", sweep.shard, "i/n: simulate the i-th of n parts alone, as a task of a job array does");
-  verb->add_flag("--merge", sweep.merge, "put together what all shards have simulated");
+  add_shards(verb, sweep, "the members");
   verb->callback([&] { app::sweep(sweep); });
   app::CompareOptions compared;
   add_compare(cli, compared);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/kept_pieces.hpp"
 #include "app/results.hpp"
 #include "base/option_quantity.hpp"
 #include "findings/placement_document.hpp"
@@ -37,6 +38,16 @@ studies::PlacementOptions options_of(const PlaceOptions& options, const scenario
   return how;
 }
 
+/// Every option that decides what comes out.
+std::vector<std::string> words_of(const PlaceOptions& options) {
+  std::vector<std::string> words = {"place", options.placed_for, options.noise, fmt::format("{} {} {}", options.count.value_or(0), options.points.value_or(0), options.none_fails)};
+  for (const auto* list : {&options.regions, &options.excluded, &options.mounted, &options.channels, &options.train, &options.test}) {
+    words.emplace_back("-");
+    words.insert(words.end(), list->begin(), list->end());
+  }
+  return words;
+}
+
 }  // namespace
 
 void place(const PlaceOptions& options) {
@@ -45,9 +56,17 @@ void place(const PlaceOptions& options) {
   const studies::PlacementOptions how = options_of(options, scenario);
   (void)studies::with_sensors(scenario.path, {"{name: tried}"},
                               {});  // what cannot be edited is told before all the computing
-  output::ResultsFolder folder = open_results(options, scenario.name);
+  KeptPieces kept(checked_results(options, scenario.name), options, options.scenario, words_of(options));
   Progress progress(options.quiet);
-  const studies::Placement placement = studies::place_thermometers(scenario, how, progress.listener());
+  const std::optional<studies::Placement> placed = studies::place_thermometers(scenario, how, progress.listener(), kept.pieces());
+  progress.end();
+  if (!placed) {
+    const std::string said = kept.finish_shard("the same command with");
+    if (!options.quiet && !options.json) fmt::print("{}: {}", scenario.name, said);
+    return;
+  }
+  const studies::Placement& placement = *placed;
+  output::ResultsFolder folder = open_results(options, scenario.name);
   const std::vector<int>& set = placement.chosen.sets[static_cast<std::size_t>(placement.options.n) - 1];
   std::vector<std::string> entries;
   for (std::size_t i = 0; i < placement.names.size(); ++i)
@@ -58,6 +77,7 @@ void place(const PlaceOptions& options) {
   folder.write_text("sensors.yaml", sensors + fmt::format("sensors:\n  - {}\n", fmt::join(entries, "\n  - ")));
   folder.write_text("placed.yaml", studies::with_sensors(scenario.path, entries, head));
   finish(findings::document_of(placement, scenario, entries, folder.made_by()), folder, progress, options, "", "place.json");
+  kept.remove();
 }
 
 }  // namespace driftwright::app

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/kept_pieces.hpp"
 #include "app/results.hpp"
 #include "base/errors.hpp"
 #include "base/option_quantity.hpp"
@@ -41,9 +42,19 @@ void plan_test(const PlanTestOptions& options) {
   if (!options.noise_K.empty()) how.noise.temperature_K = quantity("--noise-temperature", options.noise_K, "K", 1e-4, 10.0);
   if (!options.noise_um.empty())
     how.noise.displacement_um = quantity("--noise-displacement", options.noise_um, "um", 1e-3, 1e3);
-  output::ResultsFolder folder = open_results(options, scenario.name);
+  KeptPieces kept(checked_results(options, scenario.name), options, options.scenario,
+                  {"plan-test", options.time, options.speed_limit, options.interval, options.noise_K, options.noise_um,
+                   fmt::format("{} {}", options.n_programmes, options.seed)});
   Progress progress(options.quiet);
-  const studies::TestPlan plan = studies::plan_test(scenario, how, progress.listener());
+  const std::optional<studies::TestPlan> planned = studies::plan_test(scenario, how, progress.listener(), kept.pieces());
+  progress.end();
+  if (!planned) {
+    const std::string said = kept.finish_shard("the same command with");
+    if (!options.quiet && !options.json) fmt::print("{}: {}", scenario.name, said);
+    return;
+  }
+  const studies::TestPlan& plan = *planned;
+  output::ResultsFolder folder = open_results(options, scenario.name);
   const std::string what = fmt::format("test programme of {}", scenario.name);
   const std::string rows = fmt::format("cyclograms:\n  planned: {}\n", scenarios::rows_yaml(plan.planned.cyclogram));
   folder.write_text("plan_test.yaml", fmt::format("# {}\n{}", what, rows));
@@ -55,6 +66,7 @@ void plan_test(const PlanTestOptions& options) {
                  provenance_lines(folder.made_by(),
                                   fmt::format("what {} would read as it is written, in its {}", scenario.name, what))));
   finish(findings::document_of(plan, scenario, rows, folder.made_by()), folder, progress, options);
+  kept.remove();
 }
 
 }  // namespace driftwright::app

@@ -30,6 +30,10 @@ output::ResultsFolder open_results(const CommonOptions& options, const std::stri
   return {target, options.force, output::Provenance{kVersion, clean_name(options.scenario)}};
 }
 
+std::filesystem::path checked_results(const CommonOptions& options, const std::string& scenario_name) {
+  return output::check_results_folder(options.out.empty() ? "results/" + scenario_name : options.out, options.force);
+}
+
 namespace {
 
 /// "fields.pvd, record.csv, report.html, tables/": files, then folders.

@@ -16,6 +16,9 @@ namespace driftwright::app {
 /// The folder of results of a command on a scenario.
 [[nodiscard]] output::ResultsFolder open_results(const CommonOptions& options, const std::string& scenario_name);
 
+/// Where that folder will be, for work that keeps pieces beside it. @throws InputError  where it may not be
+[[nodiscard]] std::filesystem::path checked_results(const CommonOptions& options, const std::string& scenario_name);
+
 /// Writes a document's renderings (report.html, tables and its JSON) into the folder, puts that in place, and shows the document.
 /// @param also  lines for the terminal alone, such as what was known from disk
 /// @param json_file  another name of the JSON, beside summary.json

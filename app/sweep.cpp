@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/results.hpp"
+#include "base/pieces.hpp"
 #include "base/version.hpp"
 #include "findings/sweep_document.hpp"
 #include "output/rows_under_way.hpp"
@@ -15,25 +16,8 @@ namespace fs = std::filesystem;
 using output::NumberedRows;
 using scenarios::SweepPlan;
 
-struct Part {
-  std::size_t number = 1, of = 1;  ///< from 1
-
-  [[nodiscard]] std::string file() const { return of == 1 ? "sweep.csv" : fmt::format("sweep.{}of{}.csv", number, of); }
-};
-
-/// "3/8". @throws InputError
-Part read_part(const std::string& text) {
-  if (text.empty()) return {};
-  const std::size_t slash = text.find('/');
-  const std::string first = text.substr(0, slash), second = slash == std::string::npos ? "" : text.substr(slash + 1);
-  const auto is_count = [](const std::string& word) {
-    return !word.empty() && word.size() <= 7 && word.find_first_not_of("0123456789") == std::string::npos;
-  };
-  if (is_count(first) && is_count(second)) {
-    const Part part{std::stoul(first), std::stoul(second)};
-    if (part.number >= 1 && part.number <= part.of) return part;
-  }
-  throw InputError(fmt::format("--shard '{}': i/n with 1 <= i <= n is wanted, such as 3/8", text));
+std::string file_of(const Shard& shard) {
+  return shard.is_all() ? "sweep.csv" : fmt::format("sweep.{}of{}.csv", shard.number, shard.of);
 }
 
 /// Simulates what is missing of `members` and adds it to `rows`.
@@ -113,12 +97,12 @@ void fail_where_members_failed(const NumberedRows& rows, const fs::path& table) 
 }  // namespace
 
 void sweep(const SweepOptions& options) {
-  const Part part = read_part(options.shard);
+  const Shard part = read_shard(options.shard);
   if (options.merge && !options.shard.empty())
     throw InputError("--merge joins what all shards have written; leave out --shard");
   const SweepPlan plan = scenarios::read_sweep_plan(options.scenario);
   const fs::path target =
-      output::check_results_folder(options.out.empty() ? "results/" + plan.name : options.out, options.force);
+      checked_results(options, plan.name);
   const fs::path parts = target.string() + ".parts";
   const output::RowsIdentity identity{scenarios::content_key(plan, kVersion), plan.table_header()};
   Progress progress(options.quiet);
@@ -131,7 +115,7 @@ void sweep(const SweepOptions& options) {
     return;
   }
   const std::vector<std::size_t> members = scenarios::members_of_part(plan, part.number - 1, part.of);
-  std::optional<output::RowsUnderWay> file(std::in_place, parts, part.file(), identity);
+  std::optional<output::RowsUnderWay> file(std::in_place, parts, file_of(part), identity);
   if (file->dropped_stale())
     fmt::print(stderr, "note: rows of an earlier version of this study or its scenario are dropped\n");
   NumberedRows rows = rows_of(members, found_rows(parts, identity));
@@ -140,8 +124,8 @@ void sweep(const SweepOptions& options) {
     file->finish(rows);
     if (!options.quiet && !options.json)
       fmt::print("{}: shard {} of {}, {} members in {}; when all shards are done: driftwright sweep {} --merge\n", plan.name,
-                 part.number, part.of, rows.size(), shown_path(parts / part.file()), options.scenario);
-    fail_where_members_failed(rows, parts / part.file());
+                 part.number, part.of, rows.size(), shown_path(parts / file_of(part)), options.scenario);
+    fail_where_members_failed(rows, parts / file_of(part));
     return;
   }
   write_table(options, plan, rows, progress);

@@ -20,6 +20,12 @@ struct CommonOptions {
   bool details = false;  ///< print all tables
 };
 
+/// What verbs take whose work several processes may share.
+struct ShardOptions {
+  std::string shard;   ///< "i/n", or empty for all
+  bool merge = false;  ///< only put together what shards have done
+};
+
 void run(const CommonOptions& options);
 void check(const CommonOptions& options);
 
@@ -63,7 +69,7 @@ struct WarmUpVerbOptions : CommonOptions {
 /// The shortest warm-up behind which a job stays within a tolerance.
 void warmup(const WarmUpVerbOptions& options);
 
-struct PlaceOptions : CommonOptions {
+struct PlaceOptions : CommonOptions, ShardOptions {
   std::optional<int> count;            ///< thermometers to place; none: the study's, else 4
   std::optional<int> points;           ///< of a mesh that are tried; none: 400
   std::vector<std::string> regions;    ///< that may carry them; empty: all
@@ -78,7 +84,7 @@ struct PlaceOptions : CommonOptions {
 /// Where thermometers tell most of the drift.
 void place(const PlaceOptions& options);
 
-struct PlanTestOptions : CommonOptions {
+struct PlanTestOptions : CommonOptions, ShardOptions {
   std::string time;         ///< such as "8 h"; empty: that
   std::string speed_limit;  ///< such as "3000 rpm"; empty: the fastest of the scenario
   std::string interval;     ///< of rows, such as "30 s"; empty: the scenario's
@@ -197,10 +203,7 @@ struct ViewOptions {
 /// A machine in one page.
 void view(const ViewOptions& options);
 
-struct SweepOptions : CommonOptions {  ///< `scenario` is the study
-  std::string shard;                   ///< "i/n", or empty for all members
-  bool merge = false;                  ///< only put together what shards have simulated
-};
+struct SweepOptions : CommonOptions, ShardOptions {};  ///< `scenario` is the study
 void sweep(const SweepOptions& options);
 
 }  // namespace driftwright::app

@@ -1,19 +1,26 @@
 #!/usr/bin/env bash
-# Makes blind cases (tests/blind), diagnoses each, and scores: bench/blind.sh [-n CASES] [-o DIR] [-j JOBS] [-t SECONDS]
+# Makes blind cases (tests/blind), diagnoses each, and scores: bench/blind.sh [-n CASES] [-o DIR] [-j JOBS] [-t SECONDS] [-s i/n]
 # An ambiguous case gets one more record with the cyclogram proposed (further.csv) and is diagnosed again (resolved/).
+# -s i/n does the i-th of n parts alone, on this machine or another that shares the folder, and does not score; run without -s when all have ended.
 # 400 cases into /tmp/driftwright_blind, one process a core, at most 300 s a case. What is there is kept: a run that was cut short goes
 # on, and a case with a diagnosis.json is not diagnosed again. A diagnosis that fails or takes too long is a miss; diagnosis.log says why.
 set -eu
-n=400 out=/tmp/driftwright_blind jobs=$(nproc) cap=300
-while getopts n:o:j:t: option; do
+n=400 out=/tmp/driftwright_blind jobs=$(nproc) cap=300 shard=1/1
+while getopts n:o:j:t:s: option; do
   case $option in
     n) n=$OPTARG ;;
     o) out=$OPTARG ;;
     j) jobs=$OPTARG ;;
     t) cap=$OPTARG ;;
+    s) shard=$OPTARG ;;
     *) exit 2 ;;
   esac
 done
+if ! [[ $shard =~ ^([1-9][0-9]*)/([1-9][0-9]*)$ ]] || ((BASH_REMATCH[1] > BASH_REMATCH[2])); then
+  echo "-s $shard: i/n with 1 <= i <= n is wanted, such as 3/8" >&2
+  exit 2
+fi
+part=$((BASH_REMATCH[1] - 1)) parts=${BASH_REMATCH[2]}
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -25,7 +32,7 @@ export program=$PWD/build/release/app/driftwright cases=$PWD/build/release/tests
 
 pids=()
 for ((job = 0; job < jobs; ++job)); do
-  "$cases" --from 0 --to $((n - 1)) --every "$jobs" --offset "$job" -o "$out" 2>>"$out/cases_$job.log" &
+  "$cases" --from 0 --to $((n - 1)) --every $((jobs * parts)) --offset $((job * parts + part)) -o "$out" 2>>"$out/cases_${part}_$job.log" &
   pids+=($!)
 done
 for pid in "${pids[@]}"; do wait "$pid"; done
@@ -56,5 +63,9 @@ diagnose() {
   [ ! -f "$1/further.csv" ] || diagnose_into "$1" resolved "$1"/measured_*.csv "$1/further.csv"
 }
 export -f diagnose diagnose_into
-seq -f "$out/case_%04g" 0 $((n - 1)) | xargs -P "$jobs" -I{} bash -c 'diagnose {}'
-python3 bench/blind/score.py "$out"
+seq -f "$out/case_%04g" "$part" "$parts" $((n - 1)) | xargs -P "$jobs" -I{} bash -c 'diagnose {}'
+if ((parts == 1)); then
+  python3 bench/blind/score.py "$out"
+else
+  echo "part $shard is done; bench/blind.sh without -s scores when all are"
+fi

@@ -30,7 +30,7 @@ std::string opening(const RowsIdentity& identity) {
 
 bool is_rows_file(const fs::path& path) {
   const std::string name = path.filename().string();
-  return name.starts_with("sweep") && (name.ends_with(".csv") || name.ends_with(".csv.partial"));
+  return (name.starts_with("sweep") || name.starts_with("pieces")) && (name.ends_with(".csv") || name.ends_with(".csv.partial"));
 }
 
 std::vector<fs::path> rows_files(const fs::path& folder) {

@@ -22,7 +22,7 @@ struct RowsIdentity {
   std::string header;   ///< of the table
 };
 
-/// All rows of that identity in the files `sweep*.csv` and `sweep*.csv.partial` of a folder; none when it does not exist.
+/// All rows of that identity in the files `sweep*.csv` and `pieces*.csv`, whole or `.partial`, of a folder; none when it does not exist.
 /// @param n_damaged  where given: how many lines were left out because they are not as they were written
 [[nodiscard]] NumberedRows find_rows(const std::filesystem::path& folder, const RowsIdentity& identity,
                                      std::size_t* n_damaged = nullptr);
@@ -35,7 +35,7 @@ void remove_rows(const std::filesystem::path& folder);
 class RowsUnderWay {
  public:
   /// Opens or creates it, drops what is stale in it, and locks it.
-  /// @param name  "sweep.csv", or "sweep.3of8.csv" of a part
+  /// @param name  "sweep.csv" or "pieces.csv", "sweep.3of8.csv" of a part
   /// @throws InputError  when another process works on it, or it cannot be written
   RowsUnderWay(const std::filesystem::path& folder, const std::string& name, RowsIdentity identity);
   ~RowsUnderWay();

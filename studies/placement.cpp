@@ -21,9 +21,11 @@ using Sets = std::vector<std::vector<int>>;
 constexpr int kUsual = 4, kMostUnasked = 8;        // thermometers, where nobody says how many
 constexpr int kRows = 36;                          // of each run that is chosen on
 constexpr double kJudgedRow_s = 300.0;
-constexpr int kBlock = 250;                        // nodes of the picture at once
+constexpr std::size_t kBlock = 250;                // nodes of the picture at once
 const std::vector<int> kDesignSeeds = {1, 2, 3};   // machines that regressions are chosen on, of each scatter
 const std::vector<int> kJudgedSeeds = {1001, 1002};
+/// Numbers of pieces: where those of each stage begin.
+constexpr std::size_t kSearch = 0, kChosen = 1'000'000, kRivals = 1'000'001, kJudged = 2'000'000, kTests = 3'000'000, kPicture = 4'000'000;
 
 /// Runs that are chosen on, as all candidates need them.
 struct DesignRuns {
@@ -85,15 +87,12 @@ void fill_mid_sides(Eigen::VectorXd& told_um, const mesh::MachineSkin& skin, con
   }
 }
 
-/// What one thermometer at each node leaves; NaN at nodes inside, and of regions that may carry none.
-Eigen::VectorXd told_everywhere(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how,
-                                const Listener& listener) {
-  const scenarios::ReducedMachine& machine = *model.opened.reduced();
-  const mesh::MachineSkin skin = mesh::skin_of(machine.mesh);
-  const std::vector<bool> is_corner = corners_of(machine.mesh);
+/// Nodes of the outside that may carry a thermometer, corners of cells.
+std::vector<int> nodes_to_draw(const PlacementModel& model, const mesh::MachineSkin& skin, const std::vector<bool>& is_corner) {
+  const mesh::Mesh& mesh = model.opened.reduced()->mesh;
   std::vector<int> nodes;
   for (std::size_t i = 0; i < skin.triangle.size(); ++i) {
-    const std::string& region = machine.mesh.regions[static_cast<std::size_t>(skin.region[i])];
+    const std::string& region = mesh.regions[static_cast<std::size_t>(skin.region[i])];
     if (std::find(model.regions.begin(), model.regions.end(), region) == model.regions.end()) continue;
     for (int node : skin.triangle[i]) {
       if (is_corner[static_cast<std::size_t>(node)]) nodes.push_back(node);
@@ -101,23 +100,42 @@ Eigen::VectorXd told_everywhere(const PlacementModel& model, const DesignRuns& d
   }
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  Eigen::VectorXd told = Eigen::VectorXd::Constant(machine.mesh.n_nodes(), std::numeric_limits<double>::quiet_NaN());
+  return nodes;
+}
+
+/// What one thermometer at each of these nodes leaves.
+Pieces::Numbers told_at(const PlacementModel& model, const DesignRuns& design, const PlacementOptions& how, std::span<const int> nodes) {
+  const scenarios::ReducedMachine& machine = *model.opened.reduced();
   const std::vector<int> mounted = model.mounted();
-  const auto n_mounted = static_cast<Eigen::Index>(mounted.size());
+  const auto n_mounted = static_cast<Eigen::Index>(mounted.size()), n = static_cast<Eigen::Index>(nodes.size());
   std::vector<int> beside(mounted.size());
   std::iota(beside.begin(), beside.end(), 0);
-  for (std::size_t first = 0; first < nodes.size() && !listener.wants_end(); first += kBlock) {
-    const auto n = static_cast<Eigen::Index>(std::min<std::size_t>(kBlock, nodes.size() - first));
-    Eigen::MatrixXd rows(n_mounted + n, model.rows.cols());
-    Eigen::VectorXd ambient = Eigen::VectorXd::Zero(n_mounted + n);
-    rows.topRows(n_mounted) = model.rows(mounted, Eigen::all);
-    ambient.head(n_mounted) = model.ambient(mounted);
-    for (Eigen::Index i = 0; i < n; ++i)
-      rows.row(n_mounted + i) = machine.temperature.row(nodes[first + static_cast<std::size_t>(i)]).cast<double>();
-    const Criteria criteria(model, design, how, rows, ambient);
-    const std::vector<double> left = criteria.of(how.placed_for).with_each(beside);
-    for (Eigen::Index i = 0; i < n; ++i) told[nodes[first + static_cast<std::size_t>(i)]] = left[static_cast<std::size_t>(n_mounted + i)];
-    listener.share(static_cast<double>(first) / static_cast<double>(nodes.size()));
+  Eigen::MatrixXd rows(n_mounted + n, model.rows.cols());
+  Eigen::VectorXd ambient = Eigen::VectorXd::Zero(n_mounted + n);
+  rows.topRows(n_mounted) = model.rows(mounted, Eigen::all);
+  ambient.head(n_mounted) = model.ambient(mounted);
+  for (Eigen::Index i = 0; i < n; ++i)
+    rows.row(n_mounted + i) = machine.temperature.row(nodes[static_cast<std::size_t>(i)]).cast<double>();
+  const Criteria criteria(model, design, how, rows, ambient);
+  const std::vector<double> left = criteria.of(how.placed_for).with_each(beside);
+  return {left.begin() + n_mounted, left.end()};
+}
+
+/// What one thermometer at each node leaves; NaN at nodes inside, and of regions that may carry none.
+Eigen::VectorXd told_everywhere(const PlacementModel& model, const std::function<const DesignRuns&()>& design, const PlacementOptions& how,
+                                const Pieces& pieces, const Listener& listener) {
+  const mesh::Mesh& mesh = model.opened.reduced()->mesh;
+  const mesh::MachineSkin skin = mesh::skin_of(mesh);
+  const std::vector<bool> is_corner = corners_of(mesh);
+  const std::vector<int> nodes = nodes_to_draw(model, skin, is_corner);
+  Eigen::VectorXd told = Eigen::VectorXd::Constant(mesh.n_nodes(), std::numeric_limits<double>::quiet_NaN());
+  const std::size_t n_blocks = (nodes.size() + kBlock - 1) / kBlock;
+  for (std::size_t block = 0; block < n_blocks && !listener.wants_end(); ++block) {  // each has all cores
+    if (!pieces.shard.has(block)) continue;
+    const std::span<const int> of_block = std::span(nodes).subspan(block * kBlock, std::min(kBlock, nodes.size() - block * kBlock));
+    const Pieces::Numbers left = pieces.of(block, [&] { return told_at(model, design(), how, of_block); });
+    for (std::size_t i = 0; i < of_block.size(); ++i) told[of_block[i]] = left[i];
+    listener.share(static_cast<double>(block) / static_cast<double>(n_blocks));
   }
   fill_mid_sides(told, skin, is_corner);
   return told;
@@ -137,38 +155,44 @@ std::vector<std::string> new_names(const scenarios::Scenario& scenario, std::siz
   return names;
 }
 
-/// Residuals of all sets, each judged once.
-class JudgedOnce {
- public:
-  explicit JudgedOnce(const PlacementJudge& judge) : judge_(judge) {}
-  std::vector<Residual> of(const Sets& sets) {
-    Sets unknown;
-    for (std::vector<int> set : sets) {
-      std::sort(set.begin(), set.end());
-      if (!known_.contains(set) && std::find(unknown.begin(), unknown.end(), set) == unknown.end()) unknown.push_back(set);
-    }
-    const std::vector<Residual> left = judge_.of(unknown);
-    for (std::size_t i = 0; i < unknown.size(); ++i) known_[unknown[i]] = left[i];
-    std::vector<Residual> all;
-    for (std::vector<int> set : sets) {
-      std::sort(set.begin(), set.end());
-      all.push_back(known_.at(set));
-    }
-    return all;
-  }
+std::vector<int> sorted(std::vector<int> set) {
+  std::sort(set.begin(), set.end());
+  return set;
+}
 
- private:
-  const PlacementJudge& judge_;
-  std::map<std::vector<int>, Residual> known_;
-};
-
-LossOfOne loss_of_one(JudgedOnce& judge, const std::string& way, const std::vector<int>& set, std::size_t n_mounted) {
+/// A set, and the set without each that is not mounted.
+Sets with_losses(const std::vector<int>& set, std::size_t n_mounted) {
   Sets sets = {set};
   for (std::size_t i = n_mounted; i < set.size(); ++i) {
     sets.push_back(set);
     sets.back().erase(sets.back().begin() + static_cast<std::ptrdiff_t>(i));
   }
-  const std::vector<Residual> left = judge.of(sets);
+  return sets;
+}
+
+/// Residuals of all sets, each judged once, whatever its order.
+class JudgedOnce {
+ public:
+  void want(const Sets& sets) {
+    for (const std::vector<int>& set : sets) {
+      if (known_.emplace(sorted(set), Residual{}).second) wanted_.push_back(sorted(set));
+    }
+  }
+  [[nodiscard]] const Sets& wanted() const { return wanted_; }
+  void set(std::size_t wanted, const Residual& left) { known_.at(wanted_[wanted]) = left; }
+  [[nodiscard]] std::vector<Residual> of(const Sets& sets) const {
+    std::vector<Residual> all;
+    for (const std::vector<int>& set : sets) all.push_back(known_.at(sorted(set)));
+    return all;
+  }
+
+ private:
+  Sets wanted_;
+  std::map<std::vector<int>, Residual> known_;
+};
+
+LossOfOne loss_of_one(const JudgedOnce& judged, const std::string& way, const std::vector<int>& set, std::size_t n_mounted) {
+  const std::vector<Residual> left = judged.of(with_losses(set, n_mounted));
   LossOfOne loss{.way = way, .all = left.front(), .worst = {}};
   for (std::size_t i = 1; i < left.size(); ++i) {
     const int lost = set[n_mounted + i - 1];
@@ -183,6 +207,29 @@ LossOfOne loss_of_one(JudgedOnce& judge, const std::string& way, const std::vect
   }
   return loss;
 }
+
+/// Sets as a piece: of each its size and its members.
+void add(Pieces::Numbers& numbers, const std::vector<int>& set) {
+  numbers.push_back(static_cast<double>(set.size()));
+  numbers.insert(numbers.end(), set.begin(), set.end());
+}
+
+/// Reads a piece from its beginning on.
+class PieceReader {
+ public:
+  explicit PieceReader(const Pieces::Numbers& numbers) : numbers_(numbers) {}
+  [[nodiscard]] bool is_at_end() const { return at_ >= numbers_.size(); }
+  double number() { return numbers_.at(at_++); }
+  std::vector<int> set() {
+    std::vector<int> members;
+    for (auto n = static_cast<std::size_t>(number()); n > 0; --n) members.push_back(static_cast<int>(number()));
+    return members;
+  }
+
+ private:
+  const Pieces::Numbers& numbers_;
+  std::size_t at_ = 0;
+};
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -205,9 +252,26 @@ ChosenBy of_random(const std::vector<Residual>& left, int n_most) {
   return by;
 }
 
+/// What the judge said of the sets, into what is shown. @param own  all of the scenario's sensors
+void add_judged(Placement& placement, const JudgedOnce& judged, const Sets& random, const std::vector<int>& own) {
+  const std::size_t n_mounted = placement.mounted.size(), at_n = static_cast<std::size_t>(placement.options.n) - 1;
+  placement.without = judged.of({placement.mounted}).front();
+  placement.chosen.left = judged.of(placement.chosen.sets);
+  placement.losses.push_back(loss_of_one(judged, "chosen", placement.chosen.sets[at_n], n_mounted));
+  for (const std::vector<int>& set : placement.chosen.sets)
+    placement.chosen_lost.push_back(loss_of_one(judged, "chosen", set, n_mounted).worst);
+  for (ChosenBy& other : placement.others) {
+    other.left = judged.of(other.sets);
+    if (!other.sets[at_n].empty()) placement.losses.push_back(loss_of_one(judged, other.way, other.sets[at_n], n_mounted));
+  }
+  placement.others.push_back(of_random(judged.of(random), placement.options.n_most));
+  if (own.size() > n_mounted) placement.own = ChosenBy{.way = "the scenario's own", .sets = {own}, .left = judged.of({own})};
+}
+
 }  // namespace
 
-Placement place_thermometers(const scenarios::Scenario& scenario, const PlacementOptions& asked, const Listener& listener) {
+std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario, const PlacementOptions& asked, const Listener& listener,
+                                            const Pieces& pieces) {
   PlacementOptions how = asked;
   const PlacementFamilies families = placement_families(scenario, how.train, how.test);
   std::vector<const Cyclogram*> cyclograms;
@@ -221,12 +285,14 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
   how.n_most = std::min(std::max(how.n, how.n_most), model.n_free());
   const std::vector<int> mounted = model.mounted();
   const std::vector<PlacementRun> chosen_on = runs_in_all_ambients(scenario, families.chosen_on, families.ambients, kRows);
-  listener.begin(fmt::format("{} places in {} runs", model.n_free(), chosen_on.size()));
-  const DesignRuns design{chosen_on, factor_states(model, chosen_on), scattered_states(model, chosen_on, how.scatter, kDesignSeeds)};
-  const Criteria criteria(model, design, how, model.rows.topRows(model.n_candidates), model.ambient.head(model.n_candidates));
-  const DriftLeft& whole = criteria.of(how.placed_for);
-  const compensation::LeftWithLoss with_loss(whole, mounted);
-  const DriftLeft& objective = how.any_may_fail ? static_cast<const DriftLeft&>(with_loss) : whole;
+  std::optional<DesignRuns> made;
+  const auto design = [&]() -> const DesignRuns& {
+    if (!made) {
+      listener.begin(fmt::format("{} places in {} runs", model.n_free(), chosen_on.size()));
+      made.emplace(DesignRuns{chosen_on, factor_states(model, chosen_on), scattered_states(model, chosen_on, how.scatter, kDesignSeeds)});
+    }
+    return *made;
+  };
   Placement placement{.options = how,
                       .channels = model.channels,
                       .regions = model.regions,
@@ -253,15 +319,39 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
                       .is_linearised = model.is_linearised,
                       .mesh = {}};
   for (const auto& ambient : families.ambients) placement.ambients.push_back(ambient.name);
-  listener.begin("choosing");
-  for (const compensation::ThermometerSet& set : compensation::best_sets(objective, how.n_most, mounted, listener)) {
-    placement.chosen.sets.push_back(set.members);
-    placement.objective_um.push_back(set.left_um);
-    placement.observer_um.push_back(criteria.observer.of(set.members));
-    placement.regression_um.push_back(criteria.regression.of(set.members));
+  const Pieces::Numbers chosen = pieces.of(kChosen, [&] {
+    const Criteria criteria(model, design(), how, model.rows.topRows(model.n_candidates), model.ambient.head(model.n_candidates));
+    const DriftLeft& whole = criteria.of(how.placed_for);
+    const compensation::LeftWithLoss with_loss(whole, mounted);
+    const DriftLeft& objective = how.any_may_fail ? static_cast<const DriftLeft&>(with_loss) : whole;
+    listener.begin("choosing");
+    Pieces::Numbers numbers = {whole.of(mounted)};
+    for (const compensation::ThermometerSet& set : compensation::best_sets(objective, how.n_most, mounted, listener, pieces.from(kSearch))) {
+      add(numbers, set.members);
+      numbers.insert(numbers.end(), {set.left_um, criteria.observer.of(set.members), criteria.regression.of(set.members)});
+    }
+    return numbers;
+  });
+  PieceReader reader(chosen);
+  placement.told_nothing_um = reader.number();
+  while (!reader.is_at_end()) {
+    placement.chosen.sets.push_back(reader.set());
+    placement.objective_um.push_back(reader.number());
+    placement.observer_um.push_back(reader.number());
+    placement.regression_um.push_back(reader.number());
   }
-  placement.told_nothing_um = whole.of(mounted);
-  placement.others = rival_places(model, chosen_on, how.n_most, how.noise_K);
+  const Pieces::Numbers rivals = pieces.of(kRivals, [&] {
+    Pieces::Numbers numbers;
+    for (const auto& sets : rival_places(model, chosen_on, how.n_most, how.noise_K)) {
+      for (const std::vector<int>& set : sets) add(numbers, set);
+    }
+    return numbers;
+  });
+  PieceReader theirs(rivals);
+  for (const std::string& way : kRivalWays) {
+    placement.others.push_back({.way = way, .sets = {}, .left = {}});
+    for (int n = 1; n <= how.n_most; ++n) placement.others.back().sets.push_back(theirs.set());
+  }
   const Sets random = random_places(model, how.n_most);
   std::vector<int> own = mounted;
   for (int i = model.n_candidates; i < static_cast<int>(model.spots.size()); ++i) own.push_back(i);
@@ -276,31 +366,46 @@ Placement place_thermometers(const scenarios::Scenario& scenario, const Placemen
   use(random);
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  const PlacementJudge judge(model, chosen_on, runs_in_turn(scenario, families.judged_on, families.ambients, kJudgedRow_s), used, how.scatter,
-                             kJudgedSeeds, how.noise_K);
-  placement.drift_um = judge.drift_um();
-  JudgedOnce judged(judge);
-  placement.without = judged.of({mounted}).front();
-  placement.chosen.left = judged.of(placement.chosen.sets);
+  std::optional<PlacementJudge> made_judge;
+  const auto judge = [&]() -> const PlacementJudge& {
+    if (!made_judge)
+      made_judge.emplace(model, chosen_on, runs_in_turn(scenario, families.judged_on, families.ambients, kJudgedRow_s), used, how.scatter,
+                         kJudgedSeeds, how.noise_K);
+    return *made_judge;
+  };
   const auto at_n = static_cast<std::size_t>(how.n) - 1;
-  placement.losses.push_back(loss_of_one(judged, "chosen", placement.chosen.sets[at_n], mounted.size()));
-  for (const std::vector<int>& set : placement.chosen.sets)
-    placement.chosen_lost.push_back(loss_of_one(judged, "chosen", set, mounted.size()).worst);
-  for (ChosenBy& other : placement.others) {
-    other.left = judged.of(other.sets);
-    if (!other.sets[at_n].empty()) placement.losses.push_back(loss_of_one(judged, other.way, other.sets[at_n], mounted.size()));
+  JudgedOnce judged;
+  judged.want({mounted});
+  for (const std::vector<int>& set : placement.chosen.sets) judged.want(with_losses(set, mounted.size()));
+  for (const ChosenBy& other : placement.others) {
+    judged.want(other.sets);
+    if (!other.sets[at_n].empty()) judged.want(with_losses(other.sets[at_n], mounted.size()));
   }
-  placement.others.push_back(of_random(judged.of(random), how.n_most));
-  if (own.size() > mounted.size()) placement.own = ChosenBy{.way = "the scenario's own", .sets = {own}, .left = judged.of({own})};
+  judged.want(random);
+  if (own.size() > mounted.size()) judged.want({own});
+  const std::vector<Pieces::Numbers> residuals = pieces.of_shard(
+      kJudged, judged.wanted().size() + 1, [&] { (void)judge(); },
+      [&](std::size_t i) {
+        if (i == 0) return Pieces::Numbers{judge().drift_um()};
+        const Residual left = judge().of({judged.wanted()[i - 1]}).front();
+        return Pieces::Numbers{left.observer_um, left.regression_um};
+      },
+      listener);
+  if (pieces.shard.is_all()) {
+    placement.drift_um = residuals.front().front();
+    for (std::size_t i = 0; i < judged.wanted().size(); ++i) judged.set(i, {residuals[i + 1][0], residuals[i + 1][1]});
+    add_judged(placement, judged, random, own);
+  }
 
   listener.begin("tests of it");
-  placement.tests = tried_tests(scenario, judge, placement.chosen.sets[at_n], listener);
+  placement.tests = tried_tests(scenario, judge, placement.chosen.sets[at_n], pieces.from(kTests), listener);
   const scenarios::ReducedMachine& machine = *model.opened.reduced();
   if (machine.mesh.n_nodes() > 0) {
     listener.begin("the picture");
-    placement.told_um = told_everywhere(model, design, how, listener);
+    placement.told_um = told_everywhere(model, design, how, pieces.from(kPicture), listener);
     placement.mesh = machine.mesh;
   }
+  if (!pieces.shard.is_all()) return std::nullopt;
   return placement;
 }
 

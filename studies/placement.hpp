@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/pieces.hpp"
 #include "studies/placement_judge.hpp"
 
 namespace driftwright::studies {
@@ -72,7 +73,11 @@ struct Placement {
 
 /// The sets are chosen by ObserverLeft and RegressionLeft over the families, on the model and machines scattered by options.scatter, and judged by PlacementJudge on
 /// other cyclograms and machines.
+/// @param pieces  what is looked for, judged and drawn, piece by piece. Each shard of several works out what all the others need too, unless it is kept
+///                already: the runs that are chosen on, and the sets
+/// @returns nothing where this is one shard of several
 /// @throws InputError  as placement_model() and placement_families(), for more thermometers than places
-[[nodiscard]] Placement place_thermometers(const scenarios::Scenario& scenario, const PlacementOptions& options, const Listener& listener);
+[[nodiscard]] std::optional<Placement> place_thermometers(const scenarios::Scenario& scenario, const PlacementOptions& options,
+                                                          const Listener& listener, const Pieces& pieces = {});
 
 }  // namespace driftwright::studies

@@ -34,7 +34,7 @@ Record record_of(const PlacementModel& model, const PlacementRun& run, double no
 
 }  // namespace
 
-std::vector<ChosenBy> rival_places(const PlacementModel& model, const std::vector<PlacementRun>& runs, int n_most, double noise_K) {
+std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& model, const std::vector<PlacementRun>& runs, int n_most, double noise_K) {
   std::vector<Record> records;
   for (const PlacementRun& run : runs) records.push_back(record_of(model, run, noise_K, kSeed + records.size()));
   std::vector<std::string> candidates;
@@ -43,11 +43,10 @@ std::vector<ChosenBy> rival_places(const PlacementModel& model, const std::vecto
   const Select by_grade = [](std::span<const Record> r, const std::vector<std::string>& c, const std::string& t, int n) {
     return compensation::select_by_grey_grade(r, c, t, n);
   };
-  const std::pair<const char*, Select> ways[] = {
-      {"grey grade", by_grade}, {"correlation", compensation::select_by_correlation}, {"clusters", compensation::select_by_clusters}};
-  std::vector<ChosenBy> rivals;
-  for (const auto& [way, select] : ways) {
-    ChosenBy by{.way = way, .sets = {}, .left = {}};
+  const Select ways[] = {by_grade, compensation::select_by_correlation, compensation::select_by_clusters};  // as kRivalWays
+  std::vector<std::vector<std::vector<int>>> rivals;
+  for (const Select select : ways) {
+    std::vector<std::vector<int>> sets;
     for (int n = 1; n <= n_most; ++n) {
       std::vector<int> set = model.mounted();
       for (const std::string& name : select(records, candidates, "drift", n).sensors) {
@@ -56,9 +55,9 @@ std::vector<ChosenBy> rival_places(const PlacementModel& model, const std::vecto
         set.push_back(candidate);
       }
       if (set.size() != static_cast<std::size_t>(n + model.n_mounted)) set.clear();  // fewer clusters, or candidates that move
-      by.sets.push_back(std::move(set));
+      sets.push_back(std::move(set));
     }
-    rivals.push_back(std::move(by));
+    rivals.push_back(std::move(sets));
   }
   return rivals;
 }

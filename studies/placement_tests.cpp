@@ -5,8 +5,6 @@
 
 #include <algorithm>
 
-#include "base/parallel.hpp"
-
 namespace driftwright::studies {
 namespace {
 
@@ -56,14 +54,21 @@ std::vector<Cyclogram> possible_tests(const std::vector<Drive>& drives) {
   return tests;
 }
 
-std::vector<TriedTest> tried_tests(const scenarios::Scenario& scenario, const PlacementJudge& judge, const std::vector<int>& set,
-                                   const Listener& listener) {
+std::vector<TriedTest> tried_tests(const scenarios::Scenario& scenario, const std::function<const PlacementJudge&()>& judge,
+                                   const std::vector<int>& set, const Pieces& pieces, const Listener& listener) {
   const std::vector<Cyclogram> programmes = possible_tests(drives_of(scenario));
   const std::vector<PlacementRun> runs = runs_in_turn(scenario, programmes, {scenarios::Validation::Season{"as it is", 0.0, 0.0}}, kRow_s);
-  std::vector<TriedTest> tests(runs.size());
-  parallel_for(runs.size(), [&](std::size_t i) {
-    tests[i] = {runs[i].cyclogram, programmes[i].duration_s(), judge.behind_test(set, runs[i])};
-  }, listener);
+  const std::vector<Pieces::Numbers> left = pieces.of_shard(
+      0, runs.size(), [&] { (void)judge(); },
+      [&](std::size_t i) {
+        const Residual r = judge().behind_test(set, runs[i]);
+        return Pieces::Numbers{r.observer_um, r.regression_um};
+      },
+      listener);
+  std::vector<TriedTest> tests;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!left[i].empty()) tests.push_back({runs[i].cyclogram, programmes[i].duration_s(), {left[i][0], left[i][1]}});
+  }
   return tests;
 }
 

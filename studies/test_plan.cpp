@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 #include <set>
 
@@ -16,12 +15,16 @@ namespace {
 
 constexpr int kRowsPerSlot = 3;
 constexpr std::size_t kBatch = 250, kBest = 20;
+constexpr std::size_t kTogether = 10;    // programmes of a piece
 constexpr int kAsked = 4;                // programmes asked for, for each one that shall be tried: some come twice
 constexpr double kRandom = 0.5;          // share of all that is tried
 constexpr std::size_t kMostOfAKind = 8;  // laws that the search looks at
 constexpr int kMostProgrammes = 10000, kFewestProgrammes = 300;
 constexpr double kWork = 1.5e11;         // multiplications, some ten seconds of two cores
 constexpr double kWorthASection = 0.01;  // of the best
+
+/// Numbers of pieces: where those of each stage begin.
+constexpr std::size_t kSearch = 0, kFound = 10'000'000, kJudged = 10'000'001;
 
 struct Tried {
   TestProgramme programme;
@@ -31,8 +34,8 @@ struct Tried {
 /// All that were tried, the best first.
 class Search {
  public:
-  Search(const diagnosis::LevelMachine& machine, const diagnosis::Question& question)
-      : machine_(machine), question_(question) {}
+  Search(const diagnosis::LevelMachine& machine, const diagnosis::Question& question, const Pieces& pieces)
+      : machine_(machine), question_(question), pieces_(pieces) {}
 
   [[nodiscard]] double share(const TestProgramme& programme) const {
     std::vector<int> steps;
@@ -41,9 +44,17 @@ class Search {
   }
   void attempt(std::vector<TestProgramme> programmes) {
     std::erase_if(programmes, [&](const TestProgramme& p) { return !seen_.insert(p).second; });
-    std::vector<double> shares(programmes.size());
-    parallel_for(programmes.size(), [&](std::size_t i) { shares[i] = share(programmes[i]); });
-    for (std::size_t i = 0; i < programmes.size(); ++i) best_.push_back({programmes[i], shares[i]});
+    const std::size_t n_pieces = (programmes.size() + kTogether - 1) / kTogether;
+    const std::vector<Pieces::Numbers> shares = pieces_.of_all(
+        n_pieces_, n_pieces, [] {},
+        [&](std::size_t piece) {
+          Pieces::Numbers of_piece;
+          for (std::size_t i = piece * kTogether; i < std::min(programmes.size(), (piece + 1) * kTogether); ++i)
+            of_piece.push_back(share(programmes[i]));
+          return of_piece;
+        });
+    n_pieces_ += n_pieces;
+    for (std::size_t i = 0; i < programmes.size(); ++i) best_.push_back({programmes[i], shares[i / kTogether][i % kTogether]});
     std::stable_sort(best_.begin(), best_.end(), [](const Tried& a, const Tried& b) { return a.share > b.share; });
     if (best_.size() > kBest) best_.resize(kBest);
   }
@@ -53,6 +64,8 @@ class Search {
  private:
   const diagnosis::LevelMachine& machine_;
   const diagnosis::Question& question_;
+  const Pieces& pieces_;
+  std::size_t n_pieces_ = 0;
   std::set<TestProgramme> seen_;
   std::vector<Tried> best_;
 };
@@ -63,9 +76,11 @@ Tried simplified(const Search& search, const Tried& best) {
   for (bool goes_on = true; goes_on;) {
     goes_on = false;
     Tried next;
-    for (TestProgramme& less : with_one_section_less(simple.programme)) {
-      const double share = search.share(less);
-      if (share > next.share) next = {std::move(less), share};
+    const std::vector<TestProgramme> less = with_one_section_less(simple.programme);
+    std::vector<double> shares(less.size());
+    parallel_for(less.size(), [&](std::size_t i) { shares[i] = search.share(less[i]); });
+    for (std::size_t i = 0; i < less.size(); ++i) {
+      if (shares[i] > next.share) next = {less[i], shares[i]};
     }
     if (next.share >= (1.0 - kWorthASection) * best.share) {
       simple = std::move(next);
@@ -76,8 +91,8 @@ Tried simplified(const Search& search, const Tried& best) {
 }
 
 Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& question, const TestLevels& levels,
-            int n_programmes, unsigned seed, int& n_tried, const Listener& listener) {
-  Search search(machine, question);
+            int n_programmes, unsigned seed, int& n_tried, const Listener& listener, const Pieces& pieces) {
+  Search search(machine, question, pieces);
   search.attempt({usual_test(levels), stepped_test(levels)});
   std::mt19937_64 random(seed);
   const int most_asked = kAsked * n_programmes;  // a small machine has fewer programmes than that
@@ -100,6 +115,61 @@ Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& q
   }
   n_tried = search.n_tried();
   return simplified(search, search.best().front());
+}
+
+void add(Pieces::Numbers& numbers, const auto& matrix) {
+  numbers.insert(numbers.end(), matrix.data(), matrix.data() + matrix.size());
+}
+
+/// What a test would tell, and the shares by channel, as a piece.
+Pieces::Numbers numbers_of(const diagnosis::Prospect& p, const std::vector<double>& by_channel) {
+  Pieces::Numbers numbers = {p.share_named};
+  for (const Eigen::VectorXd* v : {&p.seen, &p.named, &p.nats, &p.number_sigma}) add(numbers, *v);
+  for (const Eigen::MatrixXd* m : {&p.d, &p.taken}) add(numbers, *m);
+  numbers.insert(numbers.end(), by_channel.begin(), by_channel.end());
+  return numbers;
+}
+
+diagnosis::Prospect prospect_of(const Pieces::Numbers& numbers, const diagnosis::Question& question, std::vector<double>& by_channel) {
+  const auto n_laws = static_cast<Eigen::Index>(question.laws.size());
+  const double* at = numbers.data();
+  diagnosis::Prospect p;
+  p.share_named = *at++;
+  const auto vector = [&](Eigen::VectorXd& v, Eigen::Index n) {
+    v = Eigen::Map<const Eigen::VectorXd>(at, n);
+    at += n;
+  };
+  for (Eigen::VectorXd* v : {&p.seen, &p.named, &p.nats}) vector(*v, n_laws);
+  vector(p.number_sigma, question.number_sd.size());
+  for (Eigen::MatrixXd* m : {&p.d, &p.taken}) {
+    *m = Eigen::Map<const Eigen::MatrixXd>(at, n_laws, n_laws);
+    at += n_laws * n_laws;
+  }
+  by_channel.assign(at, numbers.data() + numbers.size());
+  return p;
+}
+
+/// What tests would tell, each with what it tells without each channel of the machine's own, and with each further one.
+std::vector<Pieces::Numbers> judge(const PlannedTwin& p, const diagnosis::Doubts& doubts, std::size_t n_tests, const Pieces& pieces,
+                                   const Listener& listener, const std::function<diagnosis::MeasuredRun(std::size_t)>& run_of) {
+  std::vector<Pieces::Numbers> told(n_tests);
+  const auto n_own = static_cast<std::ptrdiff_t>(p.channels.size());
+  for (std::size_t t = 0; t < n_tests; ++t) {  // each has all cores
+    if (!pieces.shard.has(t)) continue;
+    told[t] = pieces.of(kJudged + t, [&] {
+      const std::vector<Eigen::MatrixXd> of_channels = diagnosis::information_by_channel(*p.twin, doubts, run_of(t), p.noise);
+      const Eigen::MatrixXd total = std::accumulate(of_channels.begin() + 1, of_channels.begin() + n_own, of_channels.front());
+      std::vector<double> by_channel(of_channels.size());
+      parallel_for(of_channels.size(), [&](std::size_t c) {
+        const bool is_own = c < p.channels.size();
+        by_channel[c] = diagnosis::share_named(
+            doubts.question, is_own ? Eigen::MatrixXd(total - of_channels[c]) : Eigen::MatrixXd(total + of_channels[c]));
+      });
+      return numbers_of(diagnosis::prospect(doubts.question, total), by_channel);
+    });
+    listener.share(static_cast<double>(t + 1) / static_cast<double>(n_tests));
+  }
+  return told;
 }
 
 /// A programme's cost: every doubt from row to row, and the products of its columns.
@@ -130,7 +200,8 @@ Record record_of(const PlannedTwin& p, const diagnosis::MeasuredRun& run) {
 
 }  // namespace
 
-TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options, const Listener& listener) {
+std::optional<TestPlan> plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options, const Listener& listener,
+                                  const Pieces& pieces) {
   const TestLevels levels = test_levels(scenario, options.most_speed_rpm);
   const auto cyclogram = [&](const TestProgramme& p) { return cyclogram_of(p, levels, options.duration_s, "planned"); };
   std::vector<Cyclogram> like = {cyclogram(usual_test(levels)), cyclogram(stepped_test(levels))};
@@ -150,44 +221,54 @@ TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& o
                 .numbers = doubts.numbers,
                 .question = doubts.question};
   for (const diagnosis::MeasuredChannel& c : p.channels) plan.channels.push_back(c.name);
-  const diagnosis::Doubts searched = diagnosis::thinned(*p.twin, doubts, usual, kMostOfAKind);
-  const int n_programmes = options.n_programmes > 0 ? options.n_programmes : programmes_of(p, searched);
-  listener.begin(fmt::format("{} doubts at {} levels", searched.question.n(), levels.drives.size()));
-  const double row_s = options.duration_s / (kTestSlots * kRowsPerSlot);
-  const diagnosis::LevelMachine machine(*p.twin, searched, levels.drives, usual, row_s, options.interval_s, p.noise);
-  listener.begin(fmt::format("trying {} programmes", n_programmes));
-  const auto begin = std::chrono::steady_clock::now();
-  const Tried best = found(machine, searched.question, levels, n_programmes, options.seed, plan.n_tried, listener);
-  plan.search_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  plan.search_share = best.share;
+  const Pieces::Numbers found_numbers = pieces.of(kFound, [&] {
+    const diagnosis::Doubts searched = diagnosis::thinned(*p.twin, doubts, usual, kMostOfAKind);
+    const int n_programmes = options.n_programmes > 0 ? options.n_programmes : programmes_of(p, searched);
+    listener.begin(fmt::format("{} doubts at {} levels", searched.question.n(), levels.drives.size()));
+    const double row_s = options.duration_s / (kTestSlots * kRowsPerSlot);
+    const diagnosis::LevelMachine machine(*p.twin, searched, levels.drives, usual, row_s, options.interval_s, p.noise);
+    listener.begin(fmt::format("trying {} programmes", n_programmes));
+    int n_tried = 0;
+    const Tried best = found(machine, searched.question, levels, n_programmes, options.seed, n_tried, listener, pieces.from(kSearch));
+    Pieces::Numbers numbers = {best.share, static_cast<double>(n_tried)};
+    numbers.insert(numbers.end(), best.programme.begin(), best.programme.end());
+    return numbers;
+  });
+  plan.search_share = found_numbers[0];
+  plan.n_tried = static_cast<int>(found_numbers[1]);
+  TestProgramme best;
+  for (std::size_t i = 2; i < found_numbers.size(); ++i) best.push_back(static_cast<int>(found_numbers[i]));
 
   listener.begin("judging the best");
   std::vector<diagnosis::MeasuredChannel> all = p.channels;
   all.insert(all.end(), p.further.begin(), p.further.end());
-  const auto n_own = static_cast<std::ptrdiff_t>(p.channels.size());
-  const auto judge = [&](const std::string& name, const TestProgramme& programme,
-                         std::vector<Eigen::MatrixXd>& of_channels) {
-    of_channels = diagnosis::information_by_channel(*p.twin, doubts, run_of(cyclogram(programme), all), p.noise);
-    const Eigen::MatrixXd total = std::accumulate(of_channels.begin() + 1, of_channels.begin() + n_own, of_channels.front());
-    return JudgedTest{name, cyclogram(programme), diagnosis::prospect(doubts.question, total)};
-  };
-  std::vector<Eigen::MatrixXd> of_usual, of_stepped, of_channels;
-  plan.usual = judge("usual", usual_test(levels), of_usual);
-  plan.stepped = judge("stepped", stepped_test(levels), of_stepped);
-  plan.planned = judge("planned", best.programme, of_channels);
-  for (const auto& [other, theirs] : {std::pair(&plan.usual, &of_usual), std::pair(&plan.stepped, &of_stepped)}) {
-    if (other->prospect.share_named <= plan.planned.prospect.share_named) continue;
-    plan.planned = *other;
-    of_channels = *theirs;
+  const std::size_t n_own = p.channels.size();
+  const std::vector<std::pair<std::string, TestProgramme>> judged = {
+      {"usual", usual_test(levels)}, {"stepped", stepped_test(levels)}, {"planned", best}};
+  const std::vector<Pieces::Numbers> told = judge(p, doubts, judged.size(), pieces, listener, [&](std::size_t i) {
+    return run_of(cyclogram(judged[i].second), all);
+  });
+  if (!pieces.shard.is_all()) return std::nullopt;
+  std::vector<double> by_channel;
+  for (std::size_t i = 0; JudgedTest* test : {&plan.usual, &plan.stepped, &plan.planned}) {
+    std::vector<double> of_test;
+    JudgedTest next{judged[i].first, cyclogram(judged[i].second), prospect_of(told[i], doubts.question, of_test)};
+    *test = std::move(next);
+    if (test == &plan.planned) by_channel = of_test;
+    ++i;
+  }
+  for (std::size_t i = 0; const JudgedTest* other : {&plan.usual, &plan.stepped}) {
+    if (other->prospect.share_named > plan.planned.prospect.share_named) {
+      plan.planned = *other;
+      (void)prospect_of(told[i], doubts.question, by_channel);
+    }
+    ++i;
   }
   plan.planned.name = "planned";
-  const Eigen::MatrixXd total = std::accumulate(of_channels.begin() + 1, of_channels.begin() + n_own, of_channels.front());
-  for (std::size_t c = 0; c < of_channels.size(); ++c) {
-    const bool is_own = c < p.channels.size();
-    const Eigen::MatrixXd with = is_own ? Eigen::MatrixXd(total - of_channels[c]) : Eigen::MatrixXd(total + of_channels[c]);
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    const bool is_own = c < n_own;
     (is_own ? plan.without : plan.with)
-        .push_back({is_own ? all[c].name : all[c].name.substr(std::string("mean of ").size()),
-                    diagnosis::share_named(doubts.question, with)});
+        .push_back({is_own ? all[c].name : all[c].name.substr(std::string("mean of ").size()), by_channel[c]});
   }
   std::stable_sort(plan.without.begin(), plan.without.end(),
                    [](const auto& a, const auto& b) { return a.share_named < b.share_named; });

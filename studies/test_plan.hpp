@@ -1,6 +1,7 @@
 #pragma once
 // Before any measurement: the test programme behind which most effects of the catalogue would be named, in a given time.
 
+#include "base/pieces.hpp"
 #include "diagnosis/prospect.hpp"
 #include "studies/planned_twin.hpp"
 #include "studies/test_programme.hpp"
@@ -37,7 +38,6 @@ struct TestPlan {
   JudgedTest usual = {}, stepped = {}, planned = {};
   double search_share = 0.0;  ///< expected of the planned one by the machine that the search ran on
   int n_tried = 0;
-  double search_s = 0.0;                              ///< what trying them took
   std::vector<ChannelWorth> without = {}, with = {};  ///< each channel; each part without a thermometer, best first
   std::vector<std::string> channels = {};
   Record usual_record = {}, planned_record = {};  ///< of the machine as written, without noise
@@ -45,8 +45,10 @@ struct TestPlan {
 
 /// Tries programmes on a linear machine (diagnosis/level_machine.hpp) by up to eight laws of each kind of effect: half of them random, the others one change off the best so far; takes away sections that
 /// are worth less than 1 % of the best; judges the best by the signatures that `diagnose` itself takes. Where the usual or the stepped test is as good, it is that.
+/// @param pieces  programmes tried, ten a piece, and tests judged. Every shard needs what all have tried
+/// @returns nothing where this is one shard of several
 /// @throws InputError  as open_planned_twin(), test_levels()
-[[nodiscard]] TestPlan plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options,
-                                 const Listener& listener);
+[[nodiscard]] std::optional<TestPlan> plan_test(const scenarios::Scenario& scenario, const TestPlanOptions& options,
+                                                const Listener& listener, const Pieces& pieces = {});
 
 }  // namespace driftwright::studies

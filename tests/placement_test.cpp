@@ -15,6 +15,7 @@
 #include "studies/placement_tests.hpp"
 #include "studies/placement_yaml.hpp"
 #include "tests/column_and_head.hpp"
+#include "tests/kept_in_memory.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::studies {
@@ -137,7 +138,7 @@ TEST(Placement, OnTwelveBodiesIsTheBestOfAllSetsOfThree) {
 }
 
 TEST(Placement, JudgedOnWhatItHasNotSeenIsBetterThanRandomAndByGrade) {
-  const Placement p = place_thermometers(scenario_of(chain(1)), {.n = 3, .n_most = 4}, {});
+  const Placement p = *place_thermometers(scenario_of(chain(1)), {.n = 3, .n_most = 4}, {});
   ASSERT_EQ(p.others.size(), 4u);
   ASSERT_EQ(p.chosen.left.size(), 4u);
   for (const ChosenBy& other : p.others) {
@@ -150,15 +151,41 @@ TEST(Placement, JudgedOnWhatItHasNotSeenIsBetterThanRandomAndByGrade) {
   EXPECT_GE(p.losses.front().worst.observer_um, p.losses.front().all.observer_um);
   // Cyclograms that were not chosen on; the same numbers once more.
   for (const std::string& name : p.judged_on) EXPECT_EQ(std::count(p.chosen_on.begin(), p.chosen_on.end(), name), 0) << name;
-  EXPECT_EQ(place_thermometers(scenario_of(chain(1)), {.n = 3, .n_most = 4}, {}).chosen.left[2].observer_um, p.chosen.left[2].observer_um);
+  EXPECT_EQ(place_thermometers(scenario_of(chain(1)), {.n = 3, .n_most = 4}, {})->chosen.left[2].observer_um, p.chosen.left[2].observer_um);
   // What the observer may expect by its design, and what it does on machines that were drawn: alike within a factor of two.
   EXPECT_NEAR(std::log(p.chosen.left[2].observer_um / p.observer_um[2]), 0.0, std::log(2.0));
+}
+
+// Three shards and what puts them together: the same to the last bit, and nothing that is kept is worked out again.
+TEST(Placement, OfShardsIsThatOfOneRun) {
+  const scenarios::Scenario scenario = scenario_of(chain(1));
+  const PlacementOptions how{.n = 2, .n_most = 3};
+  const Placement whole = *place_thermometers(scenario, how, {});
+  KeptInMemory kept;
+  for (const char* shard : {"1/3", "2/3", "3/3"}) EXPECT_FALSE(place_thermometers(scenario, how, {}, kept.of(shard))) << shard;
+  const int n_worked = kept.n_worked;
+  const Placement merged = *place_thermometers(scenario, how, {}, kept.of(""));
+  EXPECT_EQ(kept.n_worked, n_worked);
+  EXPECT_EQ(merged.chosen.sets, whole.chosen.sets);
+  EXPECT_EQ(merged.objective_um, whole.objective_um);
+  EXPECT_EQ(merged.drift_um, whole.drift_um);
+  ASSERT_EQ(merged.others.size(), whole.others.size());
+  for (std::size_t w = 0; w < whole.others.size(); ++w) {
+    EXPECT_EQ(merged.others[w].sets, whole.others[w].sets);
+    for (std::size_t n = 0; n < whole.others[w].left.size(); ++n) EXPECT_EQ(merged.others[w].left[n].observer_um, whole.others[w].left[n].observer_um);
+  }
+  ASSERT_EQ(merged.tests.size(), whole.tests.size());
+  for (std::size_t t = 0; t < whole.tests.size(); ++t) EXPECT_EQ(merged.tests[t].left.regression_um, whole.tests[t].left.regression_um);
+  // One piece is lost: it alone is worked out again.
+  kept.kept.erase(std::prev(kept.kept.end()));
+  EXPECT_EQ(place_thermometers(scenario, how, {}, kept.of(""))->tests.back().left.observer_um, whole.tests.back().left.observer_um);
+  EXPECT_EQ(kept.n_worked, n_worked + 1);
 }
 
 // Where one body tells all there is, a thermometer that is mounted there leaves nothing for others to tell.
 TEST(Placement, CountsThermometersThatAreThere) {
   const scenarios::Scenario scenario = scenario_of(kTwoBodies);
-  const Placement p = place_thermometers(scenario, {.n = 1, .n_most = 1, .mounted = {"t_head"}}, {});
+  const Placement p = *place_thermometers(scenario, {.n = 1, .n_most = 1, .mounted = {"t_head"}}, {});
   const std::vector<int>& set = p.chosen.sets.front();
   ASSERT_EQ(set.size(), 2u);
   EXPECT_EQ(p.spots[static_cast<std::size_t>(set[0])].sensor, "t_head");
@@ -211,8 +238,8 @@ TEST(Placement, OnAMeshIsWrittenAsSensorsThatReadWhatWasForetold) {
   machine.cyclograms = "{cycle: [[40 min, 1000 rpm], [20 min, 0 rpm], [30 min, 600 rpm]], slow: [[90 min, 400 rpm]]}";
   const std::string path = fixtures::write_column_and_head(folder, machine);
   const scenarios::Scenario scenario = scenarios::read_scenario(path);
-  const Placement anywhere = place_thermometers(scenario, {.n = 2, .n_most = 2, .where = {.n_points = 60}}, {});
-  const Placement p = place_thermometers(scenario, {.n = 2, .n_most = 2, .where = {.excluded = {"head"}, .n_points = 60}}, {});
+  const Placement anywhere = *place_thermometers(scenario, {.n = 2, .n_most = 2, .where = {.n_points = 60}}, {});
+  const Placement p = *place_thermometers(scenario, {.n = 2, .n_most = 2, .where = {.excluded = {"head"}, .n_points = 60}}, {});
   EXPECT_THAT(anywhere.regions, UnorderedElementsAre("column", "head"));
   EXPECT_LE(anywhere.objective_um[1], p.objective_um[1] * (1.0 + 1e-9));
   std::vector<std::string> entries;

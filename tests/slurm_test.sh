@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# docs/sweep.sbatch as a job array on a Slurm of one node, started here for the purpose: four shards give the bytes of one run.
+# docs/array.sbatch as a job array on a Slurm of two nodes, started here on one machine for the purpose: shards of a sweep and of `place` give the bytes of
+# one run, also when a task is cancelled and submitted again.
 #
 #     tests/slurm_test.sh PROGRAM      ends with 77, which CTest shows as skipped, where Slurm is not installed
 set -eu
@@ -53,14 +54,13 @@ SlurmctldHost=localhost
 SlurmUser=$(id -un)
 SlurmdUser=$(id -un)
 SlurmctldPort=$port
-SlurmdPort=$((port + 1))
 AuthType=auth/munge
 AuthInfo=socket=$work/munge/socket
 CryptoType=crypto/munge
 StateSaveLocation=$work/state
-SlurmdSpoolDir=$work/spool
+SlurmdSpoolDir=$work/spool/%n
 SlurmctldPidFile=$work/slurmctld.pid
-SlurmdPidFile=$work/slurmd.pid
+SlurmdPidFile=$work/slurmd-%n.pid
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 JobAcctGatherType=jobacct_gather/none
@@ -70,27 +70,59 @@ SchedulerParameters=sched_interval=1
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 ReturnToService=2
-NodeName=localhost NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
+NodeName=first NodeHostname=localhost NodeAddr=127.0.0.1 Port=$((port + 1)) CPUs=1 State=UNKNOWN
+NodeName=second NodeHostname=localhost NodeAddr=127.0.0.1 Port=$((port + 2)) CPUs=1 State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES State=UP
 END
 export SLURM_CONF=$work/slurm.conf
 slurmctld -D -i -L "$work/slurmctld.log" > /dev/null 2>&1 &
 started+=($!)
-slurmd -D -N localhost -L "$work/slurmd.log" > /dev/null 2>&1 &
-started+=($!)
-node_is_idle() { [[ $(sinfo --noheader --format=%t) == idle ]]; }
-wait_for 60 "the node" node_is_idle
+for node in first second; do
+  mkdir -m 700 "$work/spool/$node"
+  slurmd -D -N "$node" -L "$work/slurmd-$node.log" > /dev/null 2>&1 &
+  started+=($!)
+done
+nodes_are_idle() { [[ $(sinfo --noheader --Node --format=%t | sort -u) == idle && $(sinfo --noheader --Node | wc -l) == 2 ]]; }
+wait_for 60 "two nodes" nodes_are_idle
 
 export DRIFTWRIGHT=$program
-study=scenarios/lumped_sweep.yaml
-"$program" sweep "$study" -o "$work/whole" > "$work/whole.log" || fail "the whole run"
-id=$(sbatch --parsable --array=1-4 --output="$work/task-%a.log" docs/sweep.sbatch 4 "$study" -o "$work/shards")
-merge=$(sbatch --parsable --dependency="afterany:$id" --output="$work/merge.log" \
-  --wrap "'$program' sweep '$study' -o '$work/shards' --merge")
 queue_is_empty() { [[ -z $(squeue --noheader) ]]; }
-wait_for 120 "the end of jobs $id and $merge" queue_is_empty
-for shard in 1 2 3 4; do
-  grep -q "shard $shard of 4, 12 members" "$work/task-$shard.log" || fail "task $shard did not simulate its 12 members"
+same() {  # same NAME: the merged folder has the files of the whole one, byte for byte
+  diff -r "$work/$1-whole" "$work/$1" > "$work/$1-diff.log" || fail "$1: merged, it differs from one run"
+}
+submit() { sbatch --parsable --array="$2" --output="$work/$1-%a.log" docs/array.sbatch "${@:3}" -o "$work/$1"; }
+merge_behind() { sbatch --parsable --dependency="afterany:$1" --output="$work/$2-merge.log" --wrap "'$program' ${*:3} -o '$work/$2' --merge"; }
+
+# A sweep and thermometers, each as an array and a merge behind it.
+sweep=(sweep scenarios/lumped_sweep.yaml)
+place=(place scenarios/first_machine.yaml --count 1)
+for name in sweep place; do
+  declare -n command=$name
+  "$program" "${command[@]}" -o "$work/$name-whole" > "$work/$name-whole.log" || fail "$name in one run"
+  id=$(submit "$name" 1-4 4 "${command[@]}")
+  merge_behind "$id" "$name" "${command[@]}" > /dev/null
 done
-cmp "$work/whole/sweep.csv" "$work/shards/sweep.csv" || fail "the merged table differs from that of one run"
-echo "four tasks of a Slurm job array gave the table of one run, byte for byte"
+wait_for 240 "the end of the jobs" queue_is_empty
+same sweep
+same place
+for shard in 1 2 3 4; do
+  grep -q "shard $shard of 4, 12 members" "$work/sweep-$shard.log" || fail "task $shard did not simulate its 12 members"
+done
+
+# A test to plan, of which one task is cancelled on its way and submitted again.
+plan=(plan-test scenarios/lumped_spindle.yaml --programmes 1500)
+"$program" "${plan[@]}" -o "$work/plan-whole" > "$work/plan-whole.log" || fail "plan-test in one run"
+id=$(submit plan 1-2 2 "${plan[@]}")
+partial=$work/plan.parts/pieces.2of2.csv.partial
+is_on_its_way() { [[ -f $partial && $(wc -l < "$partial") -ge 6 ]]; }
+wait_for 60 "the first pieces of task 2" is_on_its_way
+scancel "${id}_2"
+wait_for 240 "the end of job $id" queue_is_empty
+[[ -f $partial ]] || fail "task 2 ended before it was cancelled"
+n_kept=$(($(wc -l < "$partial") - 2))
+"$program" "${plan[@]}" -o "$work/plan" --merge > "$work/plan-early.log" 2>&1 && fail "a merge before all shards have ended is not refused"
+id=$(submit plan 2 2 "${plan[@]}")
+merge_behind "$id" plan "${plan[@]}" > /dev/null
+wait_for 240 "the end of job $id" queue_is_empty
+same plan
+echo "job arrays on two nodes of a Slurm gave the bytes of one run: a sweep, places, and a planned test of which a task was cancelled behind $n_kept pieces"

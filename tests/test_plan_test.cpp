@@ -9,6 +9,7 @@
 
 #include "diagnosis/discrimination.hpp"
 #include "diagnosis/level_machine.hpp"
+#include "tests/kept_in_memory.hpp"
 #include "tests/temporary_file.hpp"
 
 namespace driftwright::studies {
@@ -244,8 +245,8 @@ TEST(TestProgramme, OfAnyKindLastsAsLongAndStaysWithinTheLevels) {
 
 TEST(TestPlan, IsTheSameEachTimeAndNoWorseThanTheUsualAndTheSteppedTest) {
   const TestPlanOptions options{.duration_s = 4.0 * 3600.0, .n_programmes = 400};
-  const TestPlan plan = plan_test(scenario_of(kTwoBodies), options, {});
-  const TestPlan again = plan_test(scenario_of(kTwoBodies), options, {});
+  const TestPlan plan = *plan_test(scenario_of(kTwoBodies), options, {});
+  const TestPlan again = *plan_test(scenario_of(kTwoBodies), options, {});
   EXPECT_EQ(plan.planned.cyclogram.sections, again.planned.cyclogram.sections);
   EXPECT_EQ(plan.planned.prospect.share_named, again.planned.prospect.share_named);
   EXPECT_GT(plan.planned.prospect.share_named, plan.usual.prospect.share_named + 0.02);
@@ -258,6 +259,27 @@ TEST(TestPlan, IsTheSameEachTimeAndNoWorseThanTheUsualAndTheSteppedTest) {
   ASSERT_EQ(plan.with.size(), 1u);  // the housing has one
   EXPECT_EQ(plan.with.front().name, "spindle");
   EXPECT_GE(plan.with.front().share_named, plan.planned.prospect.share_named);
+}
+
+TEST(TestPlan, OfShardsIsThatOfOneRun) {
+  const TestPlanOptions options{.duration_s = 4.0 * 3600.0, .n_programmes = 300};
+  const TestPlan whole = *plan_test(scenario_of(kTwoBodies), options, {});
+  KeptInMemory kept;
+  for (const char* shard : {"2/2", "1/2"}) EXPECT_FALSE(plan_test(scenario_of(kTwoBodies), options, {}, kept.of(shard))) << shard;
+  const int n_worked = kept.n_worked;
+  const TestPlan merged = *plan_test(scenario_of(kTwoBodies), options, {}, kept.of(""));
+  EXPECT_EQ(kept.n_worked, n_worked);
+  EXPECT_EQ(merged.planned.cyclogram.sections, whole.planned.cyclogram.sections);
+  EXPECT_EQ(merged.n_tried, whole.n_tried);
+  for (const auto& [a, b] : {std::pair(&merged.usual, &whole.usual), std::pair(&merged.stepped, &whole.stepped), std::pair(&merged.planned, &whole.planned)}) {
+    EXPECT_EQ(a->prospect.share_named, b->prospect.share_named);
+    EXPECT_EQ(a->prospect.d, b->prospect.d);
+    EXPECT_EQ(a->prospect.taken, b->prospect.taken);
+    EXPECT_EQ(a->prospect.named, b->prospect.named);
+    EXPECT_EQ(a->prospect.number_sigma, b->prospect.number_sigma);
+  }
+  ASSERT_EQ(merged.without.size(), whole.without.size());
+  for (std::size_t c = 0; c < whole.without.size(); ++c) EXPECT_EQ(merged.without[c].share_named, whole.without[c].share_named);
 }
 
 TEST(TestPlan, IsRefusedWhereNothingDrivesOrNothingIsRead) {

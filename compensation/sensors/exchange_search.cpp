@@ -50,24 +50,64 @@ ThermometerSet exchanged(const DriftLeft& left, std::vector<int> members, std::s
   return {members, left.of(members)};
 }
 
-}  // namespace
-
-std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed, const Listener& listener) {
-  const int n_free = left.n_candidates() - static_cast<int>(fixed.size());
-  const int n_random = std::clamp(kTriedAtRandom / left.n_candidates(), 1, kMostBeginnings);
+/// Sets drawn at random, from those of two on, one number after another.
+std::vector<std::vector<int>> random_beginnings(int n_candidates, int most, int n_free, const std::vector<int>& fixed) {
+  const int n_random = std::clamp(kTriedAtRandom / n_candidates, 1, kMostBeginnings);
   Random random(kSeed);
-  std::vector<ThermometerSet> best;
-  std::vector<int> members = fixed;
-  for (int n = 1; n <= std::min(n_most, n_free) && !listener.wants_end(); ++n) {
-    members.push_back(best_beside(members, left.with_each(members)));
-    ThermometerSet found = exchanged(left, members, fixed.size(), listener);
-    for (int r = 0; r < n_random && n < n_free && n > 1; ++r) {
+  std::vector<std::vector<int>> all;
+  for (int n = 2; n <= most && n < n_free; ++n) {
+    for (int r = 0; r < n_random; ++r) {
       std::vector<int> drawn = fixed;
-      while (drawn.size() < members.size()) {
-        const int c = random.below(left.n_candidates());
+      while (drawn.size() < fixed.size() + static_cast<std::size_t>(n)) {
+        const int c = random.below(n_candidates);
         if (!holds(drawn, c)) drawn.push_back(c);
       }
-      const ThermometerSet other = exchanged(left, drawn, fixed.size(), listener);
+      all.push_back(std::move(drawn));
+    }
+  }
+  return all;
+}
+
+/// As a piece: members, and what they leave.
+Pieces::Numbers numbers_of(const ThermometerSet& set) {
+  Pieces::Numbers numbers(set.members.begin(), set.members.end());
+  numbers.push_back(set.left_um);
+  return numbers;
+}
+
+ThermometerSet set_of(const Pieces::Numbers& numbers) {
+  ThermometerSet set{{}, numbers.back()};
+  for (std::size_t i = 0; i + 1 < numbers.size(); ++i) set.members.push_back(static_cast<int>(numbers[i]));
+  return set;
+}
+
+}  // namespace
+
+std::vector<ThermometerSet> best_sets(const DriftLeft& left, int n_most, const std::vector<int>& fixed, const Listener& listener,
+                                      const Pieces& pieces) {
+  const int n_free = left.n_candidates() - static_cast<int>(fixed.size());
+  const int most = std::min(n_most, n_free);
+  const std::vector<std::vector<int>> drawn = random_beginnings(left.n_candidates(), most, n_free, fixed);
+  const auto from_drawn = [&](std::size_t b) {
+    return pieces.of(b, [&] { return numbers_of(exchanged(left, drawn[b], fixed.size(), listener)); }, listener);
+  };
+  if (!pieces.shard.is_all()) {
+    for (std::size_t b = 0; b < drawn.size(); ++b) {
+      if (pieces.shard.has(b)) (void)from_drawn(b);
+    }
+  }
+  std::vector<ThermometerSet> best;
+  std::vector<int> members = fixed;
+  std::size_t b = 0;
+  for (int n = 1; n <= most && !listener.wants_end(); ++n) {
+    const auto from_fewer = [&] {
+      std::vector<int> begin = members;
+      begin.push_back(best_beside(begin, left.with_each(begin)));
+      return numbers_of(exchanged(left, begin, fixed.size(), listener));
+    };
+    ThermometerSet found = set_of(pieces.of(drawn.size() + static_cast<std::size_t>(n), from_fewer, listener));
+    for (; b < drawn.size() && drawn[b].size() == found.members.size(); ++b) {
+      const ThermometerSet other = set_of(from_drawn(b));
       if (other.left_um < (1.0 - kHelps) * found.left_um) found = other;
     }
     members = found.members;

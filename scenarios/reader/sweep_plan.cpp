@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 
 #include "base/designs.hpp"
 #include "base/quantity.hpp"
+#include "scenarios/reader/content_key.hpp"
 
 namespace driftwright::scenarios {
 
@@ -139,34 +139,8 @@ std::vector<std::size_t> members_of_part(const SweepPlan& plan, std::size_t part
   return members;
 }
 
-namespace {
-
-/// FNV-1a over bytes: short, and strong enough to tell one's own files apart.
-void add_to_hash(std::uint64_t& hash, std::string_view bytes) {
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  hash = (hash ^ 0xffu) * 1099511628211ull;  // so that "ab", "c" differs from "a", "bc"
-}
-
-void add_tree_to_hash(std::uint64_t& hash, const ConfigNode& node, const std::filesystem::path& folder) {
-  for (const ConfigNodePtr& item : node.items) add_tree_to_hash(hash, *item, folder);
-  if (!node.is_scalar() || node.text.empty()) return;
-  std::error_code ignored;  // most values are no paths
-  if (!std::filesystem::is_regular_file(folder / node.text, ignored)) return;
-  std::ifstream file(folder / node.text, std::ios::binary);
-  add_to_hash(hash, std::string(std::istreambuf_iterator<char>(file), {}));
-}
-
-}  // namespace
-
 std::string content_key(const SweepPlan& plan, const std::string& version) {
-  std::uint64_t hash = 14695981039346656037ull;
-  add_to_hash(hash, version);
-  const std::filesystem::path folder = std::filesystem::path(plan.scenario->source->path).parent_path();
-  for (const ConfigNodePtr& root : {plan.study, plan.scenario}) {
-    for (const std::string& line : root->source->lines) add_to_hash(hash, line);
-    add_tree_to_hash(hash, *root, folder);
-  }
-  return fmt::format("{:016x}", hash);
+  return content_key({plan.study, plan.scenario}, std::filesystem::path(plan.scenario->source->path).parent_path(), {version});
 }
 
 }  // namespace driftwright::scenarios
