@@ -299,9 +299,6 @@ class Following {
 
 namespace {
 
-constexpr int kTrialMachines = 10;
-constexpr double kTrialDays = 10.0;  // of each
-
 /// Writes the limits of an observer's watch.
 void calibrate_watch(const FollowVerbOptions& options) {
   const std::optional<double> top_rpm = quantity("--top-speed", options.top_speed, "rpm");
@@ -319,11 +316,11 @@ void calibrate_watch(const FollowVerbOptions& options) {
   const std::vector<std::string> sensors = follow::watchable_sensors(*observer, {});
   Progress progress;
   const follow::WatchLimits limits =
-      follow::simulated_limits(*observer, sensors, {.top_rpm = *top_rpm}, kTrialMachines, kTrialDays, progress.listener());
+      follow::simulated_limits(*observer, sensors, {.top_rpm = *top_rpm}, follow::kTrialMachines, follow::kTrialDays, progress.listener());
   progress.end();
   write_bytes(options.calibrate_watch, follow::watch_json(limits, content_hash(read_bytes(path))).dump(1) + "\n");
   fmt::print("{}: {} thermometers ({}), {} machines, {:.0f} machine-days, {} daily maxima above their thresholds\n",
-             options.calibrate_watch, sensors.size(), fmt::join(sensors, ", "), kTrialMachines, limits.machine_days,
+             options.calibrate_watch, sensors.size(), fmt::join(sensors, ", "), follow::kTrialMachines, limits.machine_days,
              limits.n_alarms);
 }
 

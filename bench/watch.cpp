@@ -2,7 +2,7 @@
 //
 //   watch MODEL.json TOP_RPM [MACHINES DAYS CASES]
 //
-// MODEL.json is an observer of `validate`. Thresholds are simulated on ten machines of ten days. Then MACHINES others (10) work for DAYS (30) with
+// MODEL.json is an observer of `validate`. Thresholds are simulated as `follow --calibrate-watch` does. Then MACHINES others (100) work for DAYS (16) with
 // nothing wrong, and CASES faults (60) of five sorts begin in machines of their own at hours that nobody tells.
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 
 #include "base/random.hpp"
 #include "follow/watch_trial.hpp"
@@ -22,7 +23,7 @@ using follow::TrialFault;
 using follow::TrialMachine;
 using Kind = TrialFault::Kind;
 
-constexpr double kDay_s = 86400.0;
+constexpr double kDay_s = 86400.0, kMonth_days = 30.0;
 
 /// Times at which alarms were raised.
 std::vector<double> alarms(const TrialMachine& machine, const follow::WatchLimits& limits,
@@ -39,6 +40,21 @@ std::vector<double> alarms(const TrialMachine& machine, const follow::WatchLimit
     if (watch.alarm() && !was_raised) raised.push_back(t_s);
   }
   return raised;
+}
+
+/// 95 % interval of alarms a month: of machines drawn with replacement, since alarms of one machine are no independent ones.
+std::pair<double, double> rate_interval(const std::vector<std::size_t>& alarms_of_machine, double days) {
+  constexpr int kDraws = 10000;
+  Random random(77, 10);
+  std::vector<double> rates;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i < alarms_of_machine.size(); ++i)
+      sum += alarms_of_machine[static_cast<std::size_t>(random.below(static_cast<int>(alarms_of_machine.size())))];
+    rates.push_back(kMonth_days * static_cast<double>(sum) / (days * static_cast<double>(alarms_of_machine.size())));
+  }
+  std::sort(rates.begin(), rates.end());
+  return {rates[kDraws / 40], rates[kDraws - 1 - kDraws / 40]};
 }
 
 TrialFault drawn(Kind kind, const TrialMachine& machine, Random& random) {
@@ -70,10 +86,11 @@ int main(int argc, char** argv) {
   const output::PredictorFile file = output::read_predictor(argv[1]);
   const auto& observer = dynamic_cast<const compensation::Observer&>(*file.predictor.predictor);
   const follow::TrialSettings settings{.top_rpm = number(2, 0.0)};
-  const int n_machines = static_cast<int>(number(3, 10)), n_cases = static_cast<int>(number(5, 60));
-  const double days = number(4, 30);
+  const int n_machines = static_cast<int>(number(3, 100)), n_cases = static_cast<int>(number(5, 60));
+  const double days = number(4, 16);
   const std::vector<std::string> sensors = follow::watchable_sensors(observer, {});
-  const follow::WatchLimits limits = follow::simulated_limits(observer, sensors, settings, 10, 10.0, {});
+  const follow::WatchLimits limits =
+      follow::simulated_limits(observer, sensors, settings, follow::kTrialMachines, follow::kTrialDays, {});
   fmt::print("{} thermometers; thresholds", sensors.size());
   for (std::size_t j = 0; j < limits.scales.size(); ++j)
     fmt::print(" {:.1f} over {:.0f} min,", limits.scales[j].threshold, follow::kWatchedOver_s[j] / 60.0);
@@ -87,10 +104,11 @@ int main(int argc, char** argv) {
     const TrialMachine machine(observer, sensors, settings, 20000 + i);
     false_alarms[i] = alarms(machine, limits, machine.work(days * kDay_s, {}, 30000 + i), &highest[i]).size();
   }
-  std::size_t n_false = 0;
-  for (std::size_t n : false_alarms) n_false += n;
-  fmt::print("nothing wrong: {} alarms in {:.0f} machine-days, {:.2f} a month; highest level {:.2f}\n", n_false,
-             n_machines * days, 30.0 * static_cast<double>(n_false) / (n_machines * days),
+  const auto [low, high] = rate_interval(false_alarms, days);
+  const std::size_t n_false = std::accumulate(false_alarms.begin(), false_alarms.end(), std::size_t{0});
+  const auto n_alarming = std::count_if(false_alarms.begin(), false_alarms.end(), [](std::size_t n) { return n > 0; });
+  fmt::print("nothing wrong: {} alarms of {} machines in {:.0f} machine-days, {:.2f} a month (95 %: {:.2f} to {:.2f}); highest level {:.2f}\n",
+             n_false, n_alarming, n_machines * days, kMonth_days * static_cast<double>(n_false) / (n_machines * days), low, high,
              *std::max_element(highest.begin(), highest.end()));
 
   constexpr std::array<Kind, 5> kKinds = {Kind::kFilm, Kind::kFanStops, Kind::kPreload, Kind::kSensorFallsOff,

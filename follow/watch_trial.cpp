@@ -28,7 +28,8 @@ constexpr double kFallsFor_s = 120.0;                // time constant of a therm
 constexpr double kDoor_K = -3.0;                     // air that comes in
 constexpr double kBlock_s = 1800.0;
 constexpr double kAlarmsADay = 1.0 / 300.0;  // of one scale
-constexpr double kEuler = 0.57721566490153286;
+constexpr double kTail = 0.1;                 // of daily maxima, whose shape tells how seldom larger ones are
+constexpr int kMachinesOfCovariance = 30;     // beside those of the thresholds
 
 /// Sections from 6 in the morning on.
 Cyclogram shop_days(double duration_s, double top_rpm, Random& random) {
@@ -76,16 +77,16 @@ solver::ReducedSystem broken(const solver::ReducedSystem& machine, const TrialFa
   return solver::with_factors(machine, f);
 }
 
-/// The level that maxima with such values exceed with a probability.
-double gumbel_level(const std::vector<double>& maxima, double probability) {
-  const auto n = static_cast<double>(maxima.size());
-  double sum = 0.0, squares = 0.0;
-  for (double x : maxima) {
-    sum += std::log(x);
-    squares += std::log(x) * std::log(x);
-  }
-  const double mean = sum / n, scale = std::sqrt(6.0 * std::max(0.0, squares / n - mean * mean)) / std::numbers::pi;
-  return std::exp(mean - kEuler * scale - scale * std::log(-std::log1p(-probability)));
+/// The level that daily maxima like these exceed with a probability. Most of what makes them large is that of the machine (its numbers are off in ways
+/// that an observer cannot learn), and it is there each day: their tail is that of squares of normally distributed numbers, which is exponential. The
+/// mean excess over their 90 % quantile is its scale.
+double tail_level(std::vector<double> maxima, double probability) {
+  std::sort(maxima.begin(), maxima.end());
+  const auto n_below = static_cast<std::size_t>((1.0 - kTail) * static_cast<double>(maxima.size()));
+  const double from = maxima.at(n_below == 0 ? 0 : n_below - 1), n_above = static_cast<double>(maxima.size() - n_below);
+  double excess = 0.0;
+  for (std::size_t i = n_below; i < maxima.size(); ++i) excess += (maxima[i] - from) / n_above;
+  return from + excess * std::log(n_above / static_cast<double>(maxima.size()) / probability);
 }
 
 }  // namespace
@@ -240,52 +241,82 @@ std::vector<std::string> watchable_sensors(const Observer& observer, const std::
   return names;
 }
 
+namespace {
+
+using OfScales = std::array<Eigen::MatrixXd, kWatchedOver_s.size()>;
+
+/// Means of the residuals of a machine that nothing is wrong with, row by row.
+/// @param take  is told the row's number and the means
+template <class Take>
+void follow_at_work(const Observer& model, const std::vector<std::string>& sensors, const TrialSettings& settings, int seed,
+                    double days, Take take) {
+  const TrialMachine trial(model, sensors, settings, 1000 + static_cast<std::uint64_t>(seed));
+  const ObservedRun run = trial.work(days * kDay_s, {}, 5000 + static_cast<std::uint64_t>(seed));
+  const std::unique_ptr<compensation::ObserverFollower> follower = trial.observer().watch();
+  ResidualMeans means(sensors.size());
+  const std::vector<double>& t = run.readings.time_s;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    (void)follower->next(run);
+    means.take(follower->innovation_K(), i > 0 ? t[i] - t[i - 1] : 0.0);
+    take(i, means);
+  }
+}
+
+}  // namespace
+
 WatchLimits simulated_limits(const Observer& model, const std::vector<std::string>& sensors, const TrialSettings& settings,
                              int n_machines, double days_each, const Listener& listener) {
   const auto n = static_cast<Eigen::Index>(sensors.size());
-  WatchLimits limits{.sensors = sensors, .scales = {}, .machine_days = n_machines * days_each};
-  std::vector<std::array<Eigen::MatrixXd, kWatchedOver_s.size()>> courses(static_cast<std::size_t>(n_machines));
-  listener.begin(fmt::format("simulating {} machines for {:g} days", n_machines, days_each));
+  const auto n_days = static_cast<std::size_t>(days_each);
+  if (n_machines < 1 || n_days < 1) throw std::logic_error("thresholds of a watch want a machine for a day");
+  WatchLimits limits{.sensors = sensors, .scales = {}, .machine_days = static_cast<double>(n_days) * n_machines};
+  listener.begin(fmt::format("simulating {} machines for {} days", n_machines + kMachinesOfCovariance, n_days));
   int n_done = 0;
+  const auto told = [&] {
+#pragma omp critical(told_of_trials)
+    listener.share(static_cast<double>(++n_done) / (n_machines + kMachinesOfCovariance));
+  };
+
+  // What is usual comes from machines of its own: those whose T² is looked at next shall not have had a part in what it is measured by.
+  std::vector<OfScales> squares(kMachinesOfCovariance);
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int m = 0; m < kMachinesOfCovariance; ++m) {
+    OfScales& of_machine = squares[static_cast<std::size_t>(m)];
+    of_machine.fill(Eigen::MatrixXd::Zero(n, n));
+    double rows = 0.0;
+    follow_at_work(model, sensors, settings, 100000 + m, days_each, [&](std::size_t, const ResidualMeans& means) {
+      for (std::size_t j = 0; j < kWatchedOver_s.size(); ++j) of_machine[j] += means.mean(j) * means.mean(j).transpose();
+      rows += 1.0;
+    });
+    for (Eigen::MatrixXd& c : of_machine) c /= rows;
+    told();
+  }
+  OfScales inverse;
+  for (std::size_t j = 0; j < kWatchedOver_s.size(); ++j) {
+    limits.scales[j].covariance = Eigen::MatrixXd::Zero(n, n);
+    for (const auto& of_machine : squares) limits.scales[j].covariance += of_machine[j] / kMachinesOfCovariance;
+    inverse[j] = inverse_of(limits.scales[j].covariance);
+  }
+
+  const auto rows_a_day = static_cast<std::size_t>(kDay_s / settings.period_s);
+  std::array<std::vector<double>, kWatchedOver_s.size()> maxima;
+  for (std::vector<double>& of_scale : maxima) of_scale.assign(n_days * static_cast<std::size_t>(n_machines), 0.0);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int m = 0; m < n_machines; ++m) {
-    const TrialMachine trial(model, sensors, settings, 1000 + static_cast<std::uint64_t>(m));
-    const ObservedRun run = trial.work(days_each * kDay_s, {}, 5000 + static_cast<std::uint64_t>(m));
-    const std::unique_ptr<compensation::ObserverFollower> follower = trial.observer().watch();
-    ResidualMeans means(sensors.size());
-    auto& course = courses[static_cast<std::size_t>(m)];
-    const std::vector<double>& t = run.readings.time_s;
-    for (Eigen::MatrixXd& c : course) c.resize(n, static_cast<Eigen::Index>(t.size()));
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      (void)follower->next(run);
-      means.take(follower->innovation_K(), i > 0 ? t[i] - t[i - 1] : 0.0);
-      for (std::size_t j = 0; j < course.size(); ++j) course[j].col(static_cast<Eigen::Index>(i)) = means.mean(j);
-    }
-#pragma omp critical(told_of_trials)
-    listener.share(static_cast<double>(++n_done) / n_machines);
+    follow_at_work(model, sensors, settings, m, days_each, [&](std::size_t row, const ResidualMeans& means) {
+      const std::size_t day = row / rows_a_day;
+      if (day >= n_days) return;
+      for (std::size_t j = 0; j < kWatchedOver_s.size(); ++j) {
+        double& most = maxima[j][static_cast<std::size_t>(m) * n_days + day];
+        most = std::max(most, size_of(inverse[j], means.mean(j)));
+      }
+    });
+    told();
   }
   for (std::size_t j = 0; j < kWatchedOver_s.size(); ++j) {
-    WatchLimits::Scale& scale = limits.scales[j];
-    scale.covariance = Eigen::MatrixXd::Zero(n, n);
-    double rows = 0.0;
-    for (const auto& course : courses) {
-      scale.covariance += course[j] * course[j].transpose();
-      rows += static_cast<double>(course[j].cols());
-    }
-    scale.covariance /= rows;
-    const Eigen::MatrixXd inverse = inverse_of(scale.covariance);
-    std::vector<double> maxima;
-    const auto a_day = static_cast<Eigen::Index>(kDay_s / settings.period_s);
-    for (const auto& course : courses) {
-      for (Eigen::Index from = 0; from + a_day <= course[j].cols(); from += a_day) {
-        double most = 1e-12;
-        for (Eigen::Index i = from; i < from + a_day; ++i) most = std::max(most, size_of(inverse, course[j].col(i)));
-        maxima.push_back(most);
-      }
-    }
-    scale.threshold = gumbel_level(maxima, kAlarmsADay);
+    double& threshold = limits.scales[j].threshold = tail_level(maxima[j], kAlarmsADay);
     limits.n_alarms +=
-        static_cast<int>(std::count_if(maxima.begin(), maxima.end(), [&](double x) { return x > scale.threshold; }));
+        static_cast<int>(std::count_if(maxima[j].begin(), maxima[j].end(), [&](double x) { return x > threshold; }));
   }
   return limits;
 }

@@ -64,8 +64,12 @@ class TrialMachine {
 [[nodiscard]] std::vector<std::string> watchable_sensors(const compensation::Observer& observer,
                                                          const std::vector<Channel>& channels);
 
-/// Thresholds by simulation: so high that each scale alone raises an alarm in one of 300 days, by the distribution of daily maxima (Gumbel, of the
-/// logarithm) over all machines.
+inline constexpr int kTrialMachines = 100;  ///< so many that the few whose numbers are furthest off are among them
+inline constexpr double kTrialDays = 7.0;   ///< of each, a week-end among them
+
+/// Thresholds by simulation: so high that each scale alone raises an alarm in one of 300 days, by the tail of daily maxima over all machines.
+/// @param n_machines  for the thresholds; 30 more tell what is usual
+/// @throws std::logic_error  for none of them, or less than a day
 [[nodiscard]] WatchLimits simulated_limits(const compensation::Observer& model, const std::vector<std::string>& sensors,
                                            const TrialSettings& settings, int n_machines, double days_each,
                                            const Listener& listener);

@@ -35,7 +35,9 @@ struct Observer::Step {
 
 class Observer::Run final : public ObserverFollower {
  public:
-  Run(const Observer& observer, bool with_drift) : o_(observer), s_(observer.system_), with_drift_(with_drift) {
+  /// @param gives_up  sensors that keep away from what the rest expects
+  Run(const Observer& observer, bool with_drift, bool gives_up = true)
+      : o_(observer), s_(observer.system_), with_drift_(with_drift), gives_up_(gives_up) {
     n_ = s_.size();
     n_sources_ = static_cast<Eigen::Index>(s_.sources.size());
     n_exchanges_ = static_cast<Eigen::Index>(s_.exchanges.size());
@@ -57,10 +59,11 @@ class Observer::Run final : public ObserverFollower {
   double next(const ObservedRun& run) override {
     if (!has_channels_) find_channels(run);
     if (row_ == 0) begin(run);
-    history_.push_back({row_, belief_});
+    if (gives_up_) history_.push_back({row_, belief_});
     if (history_.size() > kReturn) history_.pop_front();
     judge_ambient(run, row_);
     take_row(run, row_);
+    if (!gives_up_) return 1e6 * drift_m(row_++);
     if (const int suspect = worst_suspect(row_); suspect >= 0) drop(run, static_cast<std::size_t>(suspect));
     return 1e6 * drift_m(row_++);
   }
@@ -351,7 +354,7 @@ class Observer::Run final : public ObserverFollower {
 
   const Observer& o_;
   const solver::ReducedSystem& s_;
-  bool with_drift_;
+  bool with_drift_, gives_up_;
   Eigen::Index n_ = 0, n_sources_ = 0, n_exchanges_ = 0;
   Eigen::Index scale_ = 0, zero_ = 0;  // of the drift: its factor, and what the indicator showed at the start of the run
   Belief belief_;
@@ -432,11 +435,11 @@ std::vector<Input> Observer::inputs() const {
 }
 
 std::unique_ptr<Follower> Observer::follow() const {
-  return watch();
+  return std::make_unique<Run>(*this, false);
 }
 
 std::unique_ptr<ObserverFollower> Observer::watch() const {
-  return std::make_unique<Run>(*this, false);
+  return std::make_unique<Run>(*this, false, false);
 }
 
 Observer::State Observer::state() const {

@@ -38,7 +38,7 @@ class ObserverFollower : public Follower {
   [[nodiscard]] virtual double deviation_um() const = 0;
   /// All outputs of the model in the state believed, in K, m, rad.
   [[nodiscard]] virtual Eigen::VectorXd outputs() const = 0;
-  /// Reading minus what was expected of it, of each sensor [K]; NaN where it has none or is given up.
+  /// Reading minus what was expected of it, of each sensor [K]; NaN where it has none.
   [[nodiscard]] virtual const std::vector<double>& innovation_K() const = 0;
 };
 
@@ -70,7 +70,7 @@ class Observer final : public Predictor {
   [[nodiscard]] std::vector<Input> inputs() const override;
   /// Row by row what observe() gives of the whole run.
   [[nodiscard]] std::unique_ptr<Follower> follow() const override;
-  /// The same follower, which also tells what it sees on its way. It outlives no observer.
+  /// A follower that gives up no sensor and tells what it sees on its way: one that is wrong shows in its innovations. It outlives no observer.
   [[nodiscard]] std::unique_ptr<ObserverFollower> watch() const;
 
   /// The same, with what it has learned, reading other sensors.
