@@ -5,6 +5,7 @@
     third.py --check [--program driftwright]      the nominal machines against `driftwright simulate`
 """
 import argparse
+import dataclasses
 import json
 import os
 import pathlib
@@ -19,7 +20,7 @@ import third_faults as faults
 from third_faults import Impossible
 from generate import log_uniform, noisy
 from nats import HALL_SIGMA_K, Judge
-from network import moved, simulate
+from network import Machine, moved, simulate
 from refitted import Refit
 from writing import record_csv, scenario
 
@@ -120,7 +121,24 @@ def sized(rng, cls, drawn, machine, records, noise, z, offsets):
     raise Impossible
 
 
+@dataclasses.dataclass
+class Case:
+    """A case with all that its files do not say."""
+    machine: Machine
+    plan: dict
+    noise: dict
+    numbers: dict       # the true ones, each an array of one
+    hidden: list        # faults, sized
+    offsets: dict       # of the true ambient from the recorded one [K], by record
+    records: list       # the holdout last
+    column: tuple       # (name, unit) of the further column, or None
+    interval_s: float
+    missing: float      # share of readings
+    files: dict         # name -> text
+
+
 def attempt(index, number, cls, kinds):
+    """The case of this number of the table, at this try."""
     rng = np.random.default_rng([SEED, index, number])
     make = families.FAMILIES[(index + number) % len(families.FAMILIES)]
     machine, plan = make(rng, families.Draw(rng))
@@ -180,7 +198,7 @@ def attempt(index, number, cls, kinds):
                  looked_at_by=looked, effects=effects, channels=channels, coloured_noise=noise["coloured"], priors=said, hall_offset_K=offsets, extra_column=column[0] if column else None, missing=missing,
                  numbers={k: [float(f"{x:.6g}"), float(f"{numbers[k][0]:.6g}")] for k, (x, _) in machine.numbers.items()})
     files["truth.json"] = json.dumps(truth, indent=1) + "\n"
-    return files
+    return Case(machine, plan, noise, numbers, hidden, offsets, records, column, dt, missing, files)
 
 
 def held_to(program):
@@ -244,7 +262,7 @@ def main():
         cls, kinds = plan[index]
         for number in range(150):
             try:
-                files = attempt(index, number, cls, kinds)
+                files = attempt(index, number, cls, kinds).files
                 break
             except Impossible:
                 continue
