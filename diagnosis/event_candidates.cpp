@@ -14,6 +14,8 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kWorthRefining = -8.0, kWorthTrying = 0.0;  // nats by linear theory
+// Of a run, in which windows are looked for first. A spindle may stop for a minute of a day; what else acts for a while does so for longer, and at many places.
+constexpr Eigen::Index kCells = 60, kCellsOfSpeed = 240;
 
 }  // namespace
 
@@ -82,12 +84,13 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
   const bool turns_heat = std::any_of(
       runs.begin(), runs.end(), [](const SeenRun& r) { return (r.linear.turning_W.array() != 0.0).any(); });
   if (turns_heat) places.push_back({.is_speed = true});
-  const Edges coarse = coarse_edges(fitter.runs());
+  const Edges few = coarse_edges(fitter.runs(), kCells), many = coarse_edges(fitter.runs(), kCellsOfSpeed);
   std::vector<std::vector<Happening>> of_place(places.size());
   for_each_index(
       places.size(), [] { return 0; },
       [&](std::size_t p, int) {
         const WindowPlace& place = places[p];
+        const Edges& coarse = place.is_speed ? many : few;
         const auto asked = [&](const Edges& edges) {
           WindowEvidence e = evidence_of(fitter, projection, runs, place, bodies.size(), edges);
           e.prior_sd = place.is_speed ? kUnknownSpeed : (place.other ? kUnknownExchange : 1.0) * scene.unknown_heat_W();

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/event_candidates.hpp"
 #include "diagnosis/no_solution.hpp"
+#include "diagnosis/signatures.hpp"
 #include "diagnosis/unexplained.hpp"
 #include "diagnosis/warm_start.hpp"
 
@@ -11,6 +13,9 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kSharper = 0.9;         // noise without what the causes explain, over that with it: it is estimated anew
+constexpr double kLessSlow = 0.5;        // and its slow part: causes that come and go had been taken for noise that follows itself
+constexpr double kSeenSlow = 0.2;        // of the white part: a slow part below changes nothing
+constexpr double kLikelier = 3.0;        // nats by which causes beside white noise must be likelier than slow noise alone
 constexpr double kAmbientFault_K = 2.0;  // 1 sigma of an ambient that was recorded wrongly
 constexpr double kTooFar = 3.5;          // sigmas of its prior: a number beyond is a cause
 
@@ -28,6 +33,55 @@ std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::
   SearchResult same = of.search;
   same.fit = again.fit(of.search.hypothesis, of.search.fit.claim_x(fitter.n_nuisance()), workspace);
   return unexplained_of(again, same, of.noise);
+}
+
+/// Logarithm of how likely the readings are by a search's end, its noise and prices counted, up to a constant that all noises share.
+double log_likelihood(const Inquiry& of) {
+  const Comparison& comparison = of.fitter->comparison();
+  double value = of.search.fit.log_evidence;
+  for (std::size_t b = 0; b < comparison.blocks().size(); ++b) value -= 0.5 * comparison.whitener(b).log_determinant();
+  for (const Claim& c : of.search.hypothesis) value -= price_of_times(c) + c.price_nats;
+  return value;
+}
+
+/// What happens for minutes, a stop or a window, looks like noise that follows itself, by which it is then weighed and not found. So where nothing was found beside
+/// such noise, and readings weighed by white noise ask for a window of time, causes are looked for with that noise, which is estimated anew beside them; they are
+/// found where they and it are likelier than the noise that follows itself is alone.
+void look_behind_slow_noise(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const SearchOptions& how,
+                            Inquiry& of, const Listener& listener) {
+  Inquiry other;
+  other.noise = of.noise;
+  bool is_other = false;
+  for (auto& [name, noise] : other.noise) {
+    if (!(noise.correlated > kSeenSlow * noise.white)) continue;
+    noise = {.white = noise.total()};
+    is_other = true;
+  }
+  if (!is_other) return;
+  listener.begin("looking for what slow noise may hide");
+  {
+    Fitter white(ground.fresh, runs);
+    white.set_noise(other.noise);
+    bool happens = false;
+    (void)has_solution([&] {
+      Twin::Workspace workspace(ground.twin);
+      const Fit fit = white.fit({}, Eigen::VectorXd(0), workspace);
+      white.settle({}, fit);
+      happens = !events_beside(white, {}, fit, projection_of(white, {}, fit)).empty();
+    });
+    if (!happens) return;
+  }
+  for (int pass = 0; pass < 2 && !listener.wants_end(); ++pass) {
+    other.fitter = std::make_unique<Fitter>(ground.fresh, runs);
+    other.fitter->set_noise(other.noise);
+    other.search = search(*other.fitter, told_of_by(runs, ground.candidates), how, listener);
+    if (other.search.hypothesis.empty()) return;
+    if (pass == 0) other.noise = estimate_noise(runs, other.search.fit.prediction, ground.options.floor);
+  }
+  if (listener.wants_end() || !(log_likelihood(other) > log_likelihood(of) + kLikelier)) return;
+  of.noise = std::move(other.noise);
+  of.fitter = std::move(other.fitter);
+  of.search = std::move(other.search);
 }
 
 /// Searches again by what the model misses: as heat that comes and goes in its bodies, or as slow noise of its channels.
@@ -104,13 +158,17 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
     of.search = search(*of.fitter, told_of_by(runs, ground.candidates), how, listener);
     const auto sharper = estimate_noise(runs, of.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(), [&](const auto& s) {
-      return s.second.total() < kSharper * of.noise.at(s.first).total();
+      const NoiseModel& before = of.noise.at(s.first);
+      if (s.second.total() < kSharper * before.total()) return true;
+      return !of.search.hypothesis.empty() && s.second.total() < before.total() &&
+             s.second.correlated < kLessSlow * before.correlated && before.correlated > kSeenSlow * before.white;
     });
     if (!is_sharper || pass == 1 || listener.wants_end()) break;
     for (const auto& [name, noise] : sharper) {
       if (noise.total() < of.noise.at(name).total()) of.noise[name] = noise;
     }
   }
+  if (of.search.hypothesis.empty() && !listener.wants_end()) look_behind_slow_noise(ground, runs, how, of, listener);
   Twin::Workspace workspace(ground.twin);
   const bool is_rough = !listener.wants_end() && models_own_error(runs, of.search.fit.prediction, of.noise).has_value();
   if (of_all || is_rough) {

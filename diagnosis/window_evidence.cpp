@@ -10,7 +10,6 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr Eigen::Index kCells = 60;  // of a run, in which windows are looked for first
 constexpr Eigen::Index kFiner = 12;  // parts of two of them about an edge
 
 /// Heat of the bodies from row to row by a unit of what acts at a place: 1 W, 1 W/K, or all that turning makes [W], n_bodies x n_rows - 1.
@@ -86,11 +85,11 @@ WindowEvidence evidence_of(const Fitter& fitter, const Projection& projection, c
   return e;
 }
 
-Edges coarse_edges(const std::vector<MeasuredRun>& runs) {
+Edges coarse_edges(const std::vector<MeasuredRun>& runs, Eigen::Index most_cells) {
   Edges edges;
   for (const MeasuredRun& run : runs) {
     const auto n_steps = static_cast<Eigen::Index>(run.time_s.size()) - 1;
-    const Eigen::Index n_cells = std::min(n_steps, kCells);
+    const Eigen::Index n_cells = std::min(n_steps, most_cells);
     std::vector<Eigen::Index>& of_run = edges.emplace_back();
     for (Eigen::Index c = 0; c <= n_cells; ++c) of_run.push_back(c * n_steps / n_cells);
   }

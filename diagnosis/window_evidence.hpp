@@ -29,8 +29,8 @@ struct SeenRun {
                                const std::vector<effects::Body>& bodies, Twin::Workspace& workspace);
 
 using Edges = std::vector<std::vector<Eigen::Index>>;  ///< rows between the cells of each run
-/// Some sixty cells a run.
-[[nodiscard]] Edges coarse_edges(const std::vector<MeasuredRun>& runs);
+/// @param most_cells  of a run
+[[nodiscard]] Edges coarse_edges(const std::vector<MeasuredRun>& runs, Eigen::Index most_cells);
 /// Finer cells about the edges of windows, and the windows in these.
 [[nodiscard]] Edges finer_edges(const Edges& coarse, std::vector<FoundWindows::Window>& windows);
 

@@ -97,6 +97,33 @@ class Searcher {
     return best;
   }
 
+  /// The set with one of its windows in two parts that goes best, a gap of at least a cell between them.
+  struct Split {
+    Window before, after;
+    double nats = -1e300;
+  };
+  [[nodiscard]] Split best_split(const std::vector<Window>& set, std::size_t k) const {
+    const Sums now = sums(set);
+    Eigen::VectorXd cross = Eigen::VectorXd::Zero(e_.slope.size() + 1);
+    for (const Window& w : set) {
+      const auto [i, j] = cells(w);
+      cross += square_.col(j) - square_.col(i);
+    }
+    const Window& whole = set[k];
+    const Eigen::Index first = e_.runs[whole.run].first;
+    Split best;
+    for (Eigen::Index i = whole.first + 1; i + 1 < whole.last; ++i) {
+      for (Eigen::Index j = i + 1; j < whole.last; ++j) {
+        const Window before{whole.run, whole.first, i}, after{whole.run, j, whole.last};
+        const Eigen::Index a = first + i, b = first + j;
+        const Sums without{now.slope - slope_[b] + slope_[a],
+                           now.curvature - 2.0 * (cross[b] - cross[a]) + square_(b, b) - 2.0 * square_(a, b) + square_(a, a)};
+        if (const double value = nats(without); value > best.nats) best = {before, after, value};
+      }
+    }
+    return best;
+  }
+
   /// Whether a window is too long to be one of several.
   [[nodiscard]] bool is_long(const Window& w) const {
     const std::vector<double>& edge_s = e_.runs[w.run].edge_s;
@@ -200,6 +227,15 @@ std::optional<FoundWindows> grow(const Searcher& searcher, std::vector<Window> s
         value = with;
         changed = true;
       }
+    }
+    for (std::size_t k = 0; k < set.size() && set.size() < most; ++k) {  // one that was two
+      const Searcher::Split split = searcher.best_split(set, k);
+      const double with = split.nats - kOfAWindow * static_cast<double>(set.size() + 1);
+      if (!(with > value + 1e-6)) continue;
+      set[k] = split.before;
+      set.push_back(split.after);
+      value = with;
+      changed = true;
     }
     for (std::size_t k = 0; k < set.size(); ++k) {  // each elsewhere, or not at all
       std::vector<Window> others = set;

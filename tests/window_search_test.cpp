@@ -77,6 +77,19 @@ TEST(WindowSearch, FindsOneAndSeveralOfOneSize) {
   EXPECT_NEAR(found->price_nats, 6.0 * std::log(60.0) - std::log(6.0), 6.0);
 }
 
+TEST(WindowSearch, FindsSeveralThatLieSoNearThatOneLongWindowIsTheBestOfOne) {
+  Eigen::VectorXd windows = Eigen::VectorXd::Zero(kCells);
+  for (const auto& [first, n] : {std::pair{6, 6}, {15, 6}, {24, 6}, {33, 6}}) windows.segment(first, n).setOnes();
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const auto found = find_windows(evidence(windows, 2.5, seed));
+    ASSERT_TRUE(found);
+    ASSERT_THAT(found->windows, SizeIs(4)) << seed;
+    EXPECT_NEAR(static_cast<double>(found->windows[1].first), 15.0, 1.0);
+    EXPECT_NEAR(static_cast<double>(found->windows[3].last), 39.0, 1.0);
+    EXPECT_NEAR(found->size, 2.5, 0.5);
+  }
+}
+
 TEST(WindowSearch, FindsTurnsThatRepeat) {
   Eigen::VectorXd windows = Eigen::VectorXd::Zero(2 * kCells);
   for (Eigen::Index r = 0; r < 2; ++r) {
