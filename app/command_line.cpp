@@ -131,7 +131,9 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
   verb->add_option("model", options.models,
                    "a file models/NAME.json that `validate` has written, or a scenario; several for several axes")
       ->required();
-  verb->add_option("--columns", options.columns, "scenario whose key `columns` says how the rows are written [as records]");
+  verb->add_option(
+      "--columns", options.columns,
+      "scenario whose key `columns` says how the rows are written [as records], or `topics` where they come from");
   CLI::Option* replay = verb->add_option("--replay", options.replay, "rows from a file in place of standard input");
   verb->add_option("--pace", options.pace, "so many times as fast as its rows say [as fast as it goes]")->needs(replay);
   CLI::Option* mqtt =
@@ -154,7 +156,7 @@ void add_follow(CLI::App& cli, app::FollowVerbOptions& options) {
       ->needs(agent);
   verb->add_option("--topic", options.topics,
                    "channel and its topic, such as t01_degC=shop/mill/t01, whose messages are numbers, the id or name of "
-                   "the agent's data item, or the metric of the node; may be repeated")
+                   "the agent's data item, or the metric of the node; may be repeated [the scenario's key `topics`]")
       ->excludes(from)
       ->allow_extra_args(false);
   verb->add_option("--every", options.every, "time from row to row that is made of --topic")->capture_default_str();

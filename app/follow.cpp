@@ -82,10 +82,25 @@ std::vector<follow::Session::Model> models_of(const FollowVerbOptions& options, 
 std::optional<ColumnMap> columns_of(const std::string& path) {
   if (path.empty()) return std::nullopt;
   const scenarios::Scenario scenario = scenarios::read_scenario(path);
-  if (!scenario.columns)
-    throw InputError(
-        fmt::format("--columns {}: it has no key `columns` (docs/record.md), which says what the columns are", path));
+  if (!scenario.columns && scenario.topics.empty())
+    throw InputError(fmt::format(
+        "--columns {}: it has neither a key `columns` (docs/record.md), which says what the columns are, nor `topics`",
+        path));
   return scenario.columns;
+}
+
+/// Of the options; else of the scenario that says how rows are written, or the first that is followed and has them.
+std::vector<follow::ChannelOrigin> origins_of(const FollowVerbOptions& options) {
+  if (!options.topics.empty() || !options.from.empty()) return follow::read_origins(options.topics);
+  std::vector<std::string> paths = options.models;
+  if (!options.columns.empty()) paths.insert(paths.begin(), options.columns);
+  for (const std::string& path : paths) {
+    if (!path.ends_with(".yaml") && !path.ends_with(".yml")) continue;
+    std::vector<follow::ChannelOrigin> origins;
+    for (const auto& [channel, from] : scenarios::read_scenario(path).topics) origins.push_back({channel, from});
+    if (!origins.empty()) return origins;
+  }
+  return {};
 }
 
 /// One run of the verb.
@@ -133,10 +148,13 @@ class Following {
 
   std::unique_ptr<follow::RowSource> open_source() {
     const double every_s = *quantity("--every", options_.every, "s"), stale_s = std::max(kStale_s, 5.0 * every_s);
-    std::vector<follow::ChannelOrigin> origins = follow::read_origins(options_.topics);
+    std::vector<follow::ChannelOrigin> origins = origins_of(options_);
     const bool makes_rows = !origins.empty();
     if (!options_.mtconnect.empty()) {
-      if (!makes_rows) throw InputError("--mtconnect wants --topic CHANNEL=ITEM for each channel, a data item's id or name");
+      if (!makes_rows)
+        throw InputError(
+            "--mtconnect wants --topic CHANNEL=ITEM for each channel, a data item's id or name, or `topics` in the "
+            "scenario");
       const auto say = [where = options_.mtconnect](const std::string& words) {
         (void)std::fputs(fmt::format("{}: {}\n", where, words).c_str(), stderr);
       };
@@ -153,7 +171,7 @@ class Following {
     if (node ? !makes_rows : makes_rows != options_.from.empty())
       throw InputError(
           "--mqtt wants --from TOPIC, whose messages are rows, or --topic CHANNEL=TOPIC for each channel, or --sparkplug "
-          "GROUP/NODE with --topic CHANNEL=METRIC for each channel");
+          "GROUP/NODE with --topic CHANNEL=METRIC for each channel; a scenario's key `topics` says the same");
     std::vector<std::string> topics;
     for (const follow::ChannelOrigin& o : origins) topics.push_back(o.from);
     constexpr const char* kWill = R"({"state":"off","why":"follow has ended without a word","axes":{}})";
@@ -315,8 +333,8 @@ void calibrate_watch(const FollowVerbOptions& options) {
         path, file.predictor.name));
   const std::vector<std::string> sensors = follow::watchable_sensors(*observer, {});
   Progress progress;
-  const follow::WatchLimits limits =
-      follow::simulated_limits(*observer, sensors, {.top_rpm = *top_rpm}, follow::kTrialMachines, follow::kTrialDays, progress.listener());
+  const follow::WatchLimits limits = follow::simulated_limits(
+      *observer, sensors, {.top_rpm = *top_rpm}, follow::kTrialMachines, follow::kTrialDays, progress.listener());
   progress.end();
   write_bytes(options.calibrate_watch, follow::watch_json(limits, content_hash(read_bytes(path))).dump(1) + "\n");
   fmt::print("{}: {} thermometers ({}), {} machines, {:.0f} machine-days, {} daily maxima above their thresholds\n",

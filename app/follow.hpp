@@ -9,7 +9,7 @@ namespace driftwright::app {
 
 struct FollowVerbOptions {
   std::vector<std::string> models;  ///< files of `validate`, or a scenario
-  std::string columns;              ///< a scenario whose `columns` say how rows are written; empty: as records
+  std::string columns;              ///< a scenario whose `columns` say how rows are written, or `topics` where from; empty: as records
   std::string replay;               ///< a file in place of standard input
   double pace = 0.0;                ///< of the replay: times its own; 0: as fast as it goes
   std::string mqtt;                 ///< broker HOST:PORT in place of standard input; empty: none
@@ -17,7 +17,7 @@ struct FollowVerbOptions {
   bool sample = false;              ///< of the agent all observations, not what it tells now
   std::string sparkplug;            ///< node of Sparkplug B at the broker, GROUP/NODE or GROUP/NODE/DEVICE; empty: none
   std::string from;                 ///< topic whose messages are rows
-  std::vector<std::string> topics;  ///< or one a channel: "t01_degC=shop/mill/t01"; of an agent its data item
+  std::vector<std::string> topics;  ///< or one a channel: "t01_degC=shop/mill/t01"; of an agent its data item; empty: the scenario's key `topics`
   std::string every = "1 s";        ///< of the rows that are made of those
   std::string to;                   ///< topic that lines go to, too; empty: none
   std::string state, record;        ///< files; empty: none

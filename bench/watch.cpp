@@ -107,9 +107,11 @@ int main(int argc, char** argv) {
   const auto [low, high] = rate_interval(false_alarms, days);
   const std::size_t n_false = std::accumulate(false_alarms.begin(), false_alarms.end(), std::size_t{0});
   const auto n_alarming = std::count_if(false_alarms.begin(), false_alarms.end(), [](std::size_t n) { return n > 0; });
-  fmt::print("nothing wrong: {} alarms of {} machines in {:.0f} machine-days, {:.2f} a month (95 %: {:.2f} to {:.2f}); highest level {:.2f}\n",
-             n_false, n_alarming, n_machines * days, kMonth_days * static_cast<double>(n_false) / (n_machines * days), low, high,
-             *std::max_element(highest.begin(), highest.end()));
+  fmt::print(
+      "nothing wrong: {} alarms of {} machines in {:.0f} machine-days, {:.2f} a month (95 %: {:.2f} to {:.2f}); highest "
+      "level {:.2f}\n",
+      n_false, n_alarming, n_machines * days, kMonth_days * static_cast<double>(n_false) / (n_machines * days), low, high,
+      *std::max_element(highest.begin(), highest.end()));
 
   constexpr std::array<Kind, 5> kKinds = {Kind::kFilm, Kind::kFanStops, Kind::kPreload, Kind::kSensorFallsOff,
                                           Kind::kDoorOpens};

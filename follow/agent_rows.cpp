@@ -162,7 +162,8 @@ void SampleRows::take(const MtconnectStreams& streams) {
   for (Observation& o : list) {
     if (streams.created_s > 0.0 && o.time_s > streams.created_s + kClockAhead_s) o.time_s = streams.created_s;
   }
-  if (streams.created_s > 0.0 && streams.created_s < last_s_ - kClockAhead_s) {  // its clock was set: rows go on in front of all that is told by it
+  if (streams.created_s > 0.0 &&
+      streams.created_s < last_s_ - kClockAhead_s) {  // its clock was set: rows go on in front of all that is told by it
     last_s_ = streams.created_s;
     for (const Observation& o : list) last_s_ = std::min(last_s_, o.time_s);
     last_s_ -= 1e-3;

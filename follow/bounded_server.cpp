@@ -21,9 +21,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kBacklog = 64;
-constexpr int kSystemHolds = 1 << 18;                      // bytes on their way to one client
-constexpr std::size_t kAtOnce = 1 << 18;                   // bytes said to one client before the next one's turn
-constexpr std::size_t kPassedOver = 1 << 18;               // bytes behind a request that are read away, so that the answer is not lost with them
+constexpr int kSystemHolds = 1 << 18;     // bytes on their way to one client
+constexpr std::size_t kAtOnce = 1 << 18;  // bytes said to one client before the next one's turn
+constexpr std::size_t kPassedOver =
+    1 << 18;  // bytes behind a request that are read away, so that the answer is not lost with them
 constexpr auto kLinger = std::chrono::milliseconds(2000);  // for the client to close
 constexpr auto kRest = std::chrono::milliseconds(1000);    // where no connection can be taken
 
@@ -109,7 +110,8 @@ BoundedServer::BoundedServer(const std::string& host, int port, Answer answer, S
     }
     auto socket = std::make_unique<Socket>(fd);
     const int yes = 1, no = 0;
-    (void)setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);  // what is still being closed of a run before does not hold the port
+    (void)setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes,
+                     sizeof yes);  // what is still being closed of a run before does not hold the port
     if (a->ai_family == AF_INET6) (void)setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &no, sizeof no);
     if (::bind(fd, a->ai_addr, a->ai_addrlen) != 0 || ::listen(fd, kBacklog) != 0) {
       why = std::strerror(errno);
@@ -129,9 +131,8 @@ BoundedServer::BoundedServer(const std::string& host, int port, Answer answer, S
 BoundedServer::~BoundedServer() = default;
 
 std::size_t BoundedServer::n_streams() const {
-  return static_cast<std::size_t>(std::count_if(connections_.begin(), connections_.end(), [](const auto& c) {
-    return c->state == Connection::State::kStream;
-  }));
+  return static_cast<std::size_t>(std::count_if(connections_.begin(), connections_.end(),
+                                                [](const auto& c) { return c->state == Connection::State::kStream; }));
 }
 
 void BoundedServer::turn(std::chrono::milliseconds at_most) {
@@ -214,7 +215,8 @@ void BoundedServer::hear(Connection& c) {
 void BoundedServer::begin_answer(Connection& c, const HttpAnswer& answer, bool with_body) {
   std::string().swap(c.head);
   c.text = fmt::format(
-      "HTTP/1.1 {} {}\r\nContent-Type: {}\r\n{}{}Connection: close\r\nCache-Control: no-store\r\nReferrer-Policy: no-referrer\r\n"
+      "HTTP/1.1 {} {}\r\nContent-Type: {}\r\n{}{}Connection: close\r\nCache-Control: no-store\r\nReferrer-Policy: "
+      "no-referrer\r\n"
       "X-Content-Type-Options: nosniff\r\n\r\n",
       answer.status, reason(answer.status), answer.type,
       answer.next ? "" : fmt::format("Content-Length: {}\r\n", answer.body ? answer.body->size() : 0),

@@ -28,7 +28,8 @@ struct HttpAnswer {
   int status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::shared_ptr<const std::string> body;  ///< shared by all who read it: a page may be megabytes
-  std::function<std::string()> next;        ///< of a stream, in place of the body: what has come since it was asked last; "" for nothing
+  std::function<std::string()>
+      next;  ///< of a stream, in place of the body: what has come since it was asked last; "" for nothing
 };
 [[nodiscard]] HttpAnswer plain_answer(int status, std::string words);
 

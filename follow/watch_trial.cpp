@@ -28,8 +28,8 @@ constexpr double kFallsFor_s = 120.0;                // time constant of a therm
 constexpr double kDoor_K = -3.0;                     // air that comes in
 constexpr double kBlock_s = 1800.0;
 constexpr double kAlarmsADay = 1.0 / 300.0;  // of one scale
-constexpr double kTail = 0.1;                 // of daily maxima, whose shape tells how seldom larger ones are
-constexpr int kMachinesOfCovariance = 30;     // beside those of the thresholds
+constexpr double kTail = 0.1;                // of daily maxima, whose shape tells how seldom larger ones are
+constexpr int kMachinesOfCovariance = 30;    // beside those of the thresholds
 
 /// Sections from 6 in the morning on.
 Cyclogram shop_days(double duration_s, double top_rpm, Random& random) {

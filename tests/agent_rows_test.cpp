@@ -36,8 +36,9 @@ struct Observed {
 std::string streams(int created_s, int next, int last, const std::vector<Observed>& observations) {
   std::string samples;
   for (const Observed& o : observations)
-    samples += fmt::format(R"(<RotaryVelocity dataItemId="s1" name="speed" sequence="{}" timestamp="{}">{}</RotaryVelocity>)",
-                           o.sequence, stamp(o.at_s), o.rpm);
+    samples +=
+        fmt::format(R"(<RotaryVelocity dataItemId="s1" name="speed" sequence="{}" timestamp="{}">{}</RotaryVelocity>)",
+                    o.sequence, stamp(o.at_s), o.rpm);
   return fmt::format(R"(<MTConnectStreams><Header creationTime="{}" instanceId="1" nextSequence="{}" lastSequence="{}"/>)"
                      R"(<Streams><Samples>{}</Samples></Streams></MTConnectStreams>)",
                      stamp(created_s), next, last, samples);
@@ -84,7 +85,8 @@ std::vector<std::pair<double, double>> rows(RowSource& source, std::size_t n, st
   std::vector<std::pair<double, double>> list;
   std::string line;
   (void)source.next(line, 0.0);
-  for (const auto until = std::chrono::steady_clock::now() + within; list.size() < n && std::chrono::steady_clock::now() < until;) {
+  for (const auto until = std::chrono::steady_clock::now() + within;
+       list.size() < n && std::chrono::steady_clock::now() < until;) {
     if (source.next(line, 0.05) != RowSource::Got::kLine) continue;
     const std::size_t comma = line.find(',');
     list.emplace_back(std::stod(line.substr(0, comma)) - kNoon_s, std::stod(line.substr(comma + 1)));
@@ -130,7 +132,8 @@ TEST(CurrentRows, AskWhichOfTwoItemsOfOneNameIsMeant) {
   two.at(two.rfind("\"s1\"") + 2) = '2';
   Agent agent(two, {two});
   CurrentRows source(agent.url(), speed(), 0.05, [](const std::string&) {});
-  EXPECT_THAT([&] { (void)rows(source, 1); }, ThrowsMessage<InputError>(HasSubstr("several data items have that name, s1, s2")));
+  EXPECT_THAT([&] { (void)rows(source, 1); },
+              ThrowsMessage<InputError>(HasSubstr("several data items have that name, s1, s2")));
 }
 
 }  // namespace

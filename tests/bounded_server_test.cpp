@@ -70,7 +70,8 @@ class Serving {
  public:
   explicit Serving(ServerBounds bounds = {})
       : page_(std::make_shared<const std::string>(8'000'000, 'x')),
-        server_("127.0.0.1", 0, [this](const HttpRequest& r) { return answer(r); }, bounds),
+        server_(
+            "127.0.0.1", 0, [this](const HttpRequest& r) { return answer(r); }, bounds),
         thread_([this] {
           while (!is_over_) {
             server_.turn(10ms);
@@ -121,22 +122,25 @@ std::string body_of(const std::string& answer) {
 constexpr const char* kGet = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 TEST(HttpRequest, IsReadWithItsQueryAndHeaders) {
-  const auto r = read_request("GET /ev%65nts?since=run-3&token=a+b%2Bc&flag HTTP/1.1\r\nHOST:  localhost:80 \r\nX: \r\n\r\n");
+  const auto r =
+      read_request("GET /ev%65nts?since=run-3&token=a+b%2Bc&flag HTTP/1.1\r\nHOST:  localhost:80 \r\nX: \r\n\r\n");
   ASSERT_TRUE(r);
   EXPECT_EQ(r->method, "GET");
   EXPECT_EQ(r->path, "/events");
   EXPECT_THAT(r->query, ElementsAre(Pair("since", "run-3"), Pair("token", "a b+c"), Pair("flag", "")));
   EXPECT_THAT(r->headers, ElementsAre(Pair("host", "localhost:80"), Pair("x", "")));
   EXPECT_EQ(value_of(r->query, "none"), "");
-  for (const char* none : {"", "GET", "GET / HTTP/2", "GET http://a/ HTTP/1.1", "GET / HTTP/1.1\r\nHost : a", "GET / HTTP/1.1\r\n: a",
-                           "GET / HTTP/1.1\r\nHost: a\r\nhost: b", " / HTTP/1.1", "GET /a b HTTP/1.1"})
+  for (const char* none :
+       {"", "GET", "GET / HTTP/2", "GET http://a/ HTTP/1.1", "GET / HTTP/1.1\r\nHost : a", "GET / HTTP/1.1\r\n: a",
+        "GET / HTTP/1.1\r\nHost: a\r\nhost: b", " / HTTP/1.1", "GET /a b HTTP/1.1"})
     EXPECT_FALSE(read_request(none)) << none;
   EXPECT_EQ(read_request("GET /%zz% HTTP/1.0")->path, "/%zz%");
 }
 
 TEST(BoundedServer, AnswersWholeAlsoOneWhoSaysNoMoreAndOneWhoSaysTooMuch) {
   const Serving serving;
-  const Client plain(serving.port()), half(serving.port()), head(serving.port()), posts(serving.port()), strange(serving.port());
+  const Client plain(serving.port()), half(serving.port()), head(serving.port()), posts(serving.port()),
+      strange(serving.port());
   ASSERT_TRUE(plain.say(kGet));
   EXPECT_EQ(body_of(plain.all()), serving.page());
   ASSERT_TRUE(half.say(kGet));
@@ -147,7 +151,8 @@ TEST(BoundedServer, AnswersWholeAlsoOneWhoSaysNoMoreAndOneWhoSaysTooMuch) {
   EXPECT_EQ(body_of(answer), serving.page());
   ASSERT_TRUE(head.say("HEAD / HTTP/1.1\r\n\r\n"));
   EXPECT_THAT(head.all(), AllOf(HasSubstr("Content-Length: 8000000\r\n"), EndsWith("\r\n\r\n")));
-  ASSERT_TRUE(posts.say("POST / HTTP/1.1\r\nContent-Length: 200000\r\n\r\n" + std::string(200000, 'z')));  // is told so before all is read
+  ASSERT_TRUE(posts.say("POST / HTTP/1.1\r\nContent-Length: 200000\r\n\r\n" +
+                        std::string(200000, 'z')));  // is told so before all is read
   EXPECT_THAT(posts.all(), AllOf(StartsWith("HTTP/1.1 405"), HasSubstr("Allow: GET, HEAD")));
   ASSERT_TRUE(strange.say("\x16\x03\x01 TLS?\r\n\r\n"));
   EXPECT_THAT(strange.all(), StartsWith("HTTP/1.1 400"));
@@ -241,7 +246,8 @@ TEST(BoundedServer, DropsOneWhoDoesNotReadAndOneWhoIsGone) {
 
 TEST(BoundedServer, SaysWhereNobodyCanListen) {
   const Serving serving;
-  for (const auto& [host, port] : {std::pair("127.0.0.1", serving.port()), std::pair("203.0.113.9", 0), std::pair("no such host", 0)}) {
+  for (const auto& [host, port] :
+       {std::pair("127.0.0.1", serving.port()), std::pair("203.0.113.9", 0), std::pair("no such host", 0)}) {
     try {
       const BoundedServer second(host, port, [](const HttpRequest&) { return HttpAnswer(); });
       ADD_FAILURE() << host;

@@ -112,6 +112,17 @@ def main():
             assert wrong.wait(60) == code, (where, wrong.stderr.read())
             text = wrong.stderr.read()
             assert said in text, text
+        # the map in the scenario that is followed, and in one that a model's file is followed with; --topic takes its place
+        pathlib.Path(folder, "mapped.yaml").write_text(HEAD + "topics: {speed_rpm: S1speed, ambient_degC: e2}\n")
+        for words in (["mapped.yaml"], ["head.yaml", "--columns", "mapped.yaml"]):
+            mapped = subprocess.Popen([program, "follow", *words, "--mtconnect", address, "--every", "0.2 s"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=folder, text=True)
+            line = json.loads(mapped.stdout.readline())
+            assert line["state"] == "on" and not line.get("faults"), line
+            mapped.send_signal(signal.SIGTERM)
+            assert mapped.wait(30) == 0
+        for words, said in ((["mapped.yaml", "--topic", "speed_rpm=none", "--topic", "ambient_degC=e2"], "no data item of this id"), (["head.yaml"], "`topics` in the scenario")):
+            done = subprocess.run([program, "follow", *words, "--mtconnect", address], capture_output=True, text=True, cwd=folder)
+            assert done.returncode == 2 and said in done.stderr, done
         nobody = follow(program, folder, address + "/turn", "speed_rpm=c3", "ambient_degC=e2")
         assert "Could not find the device turn" in nobody.stderr.readline()
         nobody.send_signal(signal.SIGTERM)

@@ -21,7 +21,8 @@ using Kind = TrialFault::Kind;
 constexpr double kDay_s = 86400.0;
 
 const compensation::Observer& observer() {
-  static const compensation::Observer o(fixtures::three_parts(), Eigen::Vector3d::Zero(), 0.0, {"T1", "T2", "T3"}, "drift_y");
+  static const compensation::Observer o(fixtures::three_parts(), Eigen::Vector3d::Zero(), 0.0, {"T1", "T2", "T3"},
+                                        "drift_y");
   return o;
 }
 const std::vector<std::string> kSensors = {"T1", "T2", "T3"};
@@ -53,7 +54,8 @@ Raised alarms(const TrialMachine& machine, const compensation::ObservedRun& run)
   return raised;
 }
 
-// Stated: one of 300 days for each of three scales, 7 alarms of 700 days. Those of one machine come together, so twice as many are let pass. There are 9; with thresholds of ten machines, as they were, 22.
+// Stated: one of 300 days for each of three scales, 7 alarms of 700 days. Those of one machine come together, so twice as many are let pass. There are 9;
+// with thresholds of ten machines, as they were, 22.
 TEST(Watch, RaisesNoMoreAlarmsOnOtherMachinesThanItStates) {
   EXPECT_EQ(limits().machine_days, 700.0);
   std::size_t n = 0;

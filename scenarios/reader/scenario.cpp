@@ -269,6 +269,17 @@ schema::Key columns_key() {
                           "how the records that verbs are given are written where a logger wrote them (docs/record.md)");
 }
 
+schema::Map topics_schema() {
+  return {.name = "topics",
+          .others = {schema::compulsory("channel", schema::text(),
+                                        "an MQTT topic, a metric of Sparkplug B, or an MTConnect data item's id or name")},
+          .about = "Channels as records name them (`speed_rpm: mill/speed`); `--topic` takes the place of all of them."};
+}
+schema::Key topics_key() {
+  return schema::optional("topics", schema::map(topics_schema()),
+                          "where `follow` takes each channel's numbers from (docs/follow.md)");
+}
+
 schema::Map machine_scenario_schema() {
   using namespace schema;
   return {
@@ -296,6 +307,7 @@ schema::Map machine_scenario_schema() {
            schema::optional("solver", schema::map(solver_schema()), "model, tolerances, times that are written"),
            schema::optional("study", schema::map(study_schema(true)), "what is fitted and what it is judged by"),
            columns_key(),
+           topics_key(),
            schema::optional("validation", schema::map(validation_schema()), "what strategies are judged on by `validate`"),
            schema::optional("programme", schema::map(programme_schema()),
                             "what predictors of drift are judged on by `validate`"),
@@ -312,7 +324,7 @@ schema::Map records_scenario_schema() {
   return {.name = "scenario (of records alone)",
           .keys = {name_key(),
                    schema::compulsory("study", schema::map(study_schema(false)), "what is fitted and what it is judged by"),
-                   columns_key()},
+                   columns_key(), topics_key()},
           .about = "A scenario without `machine` is about measured records alone (see `scenarios/spindle_22.yaml`)."};
 }
 
@@ -425,6 +437,10 @@ Scenario read_scenario(const ConfigMap& top) {
   if (const auto columns = in.optional_map("columns")) {
     scenario.columns = read_columns(*columns);
     if (scenario.study) check_columns(columns->map("channels"), *scenario.columns, *scenario.study);
+  }
+  if (const auto topics = in.optional_map("topics")) {
+    for (const std::string& channel : topics->keys()) scenario.topics[channel] = topics->text(channel);
+    topics->reject_unknown_keys();
   }
   if (!has_machine) {
     in.reject_unknown_keys();
