@@ -190,16 +190,17 @@ def answered(question, cause, before, after, truth):
     effects, n = truth["effects"], truth["n_records"]
     asked = [e for e in effects if any(kind_right(c, e) for c in claims(cause))]
     stood = bool(asked)
-    if not asked:      # then what is wanted is an effect that the first diagnosis had not named
-        asked = [e for e in effects if not any(kind_right(c, e) for c in named_in(before))]
+    if not asked:      # then what is wanted is an effect that stood in no cause's place
+        asked = [e for e in effects if not any(kind_right(x, e) for c in before["causes"] for x in claims(c))]
     if after is None:
         return "no end", stood, ""
     named = named_in(after)
     wrong = [c for c in named if not any(kind_right(c, e) for e in effects)]
     if wrong:
         return "wrongly", stood, "named: " + ", ".join(f"{c['effect']} {c['where']}" for c in wrong)
-    if not asked:      # nothing is hidden but what is named already: the answer is that there is nothing in its place
-        return ("still open" if questions(after) else "rightly"), stood, ""
+    if not asked:      # all that is hidden has its cause elsewhere: the answer is that there is nothing in this one's place
+        there = any((c["effect"], c["where"]) == (x["effect"], x["where"]) for c in after["causes"] for x in claims(cause))
+        return ("still open" if there else "rightly"), stood, ""
     right = [(c, e) for c in named for e in asked if kind_right(c, e)]
     if question == "place":
         told = [(c, e) for c, e in right if place_right(c, e, n)]
