@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/errors.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/exponential_run.hpp"
@@ -253,24 +254,59 @@ void Twin::set_laws(effects::HeatBalance balance, Workspace& workspace) const {
   workspace.propagator_.reset();
 }
 
+namespace {
+
+constexpr int kMostSteps = 100;     // to a state of rest, where laws follow temperatures
+constexpr double kAtRest_K = 1e-7;  // a step this small ends there
+
+/// A law as it stands at a state.
+void hold(solver::BoundLaw& law, const solver::ReducedSystem& system, const Eigen::VectorXd& z, double ambient_K) {
+  if (!law.looks_at_state()) return;
+  law.frozen_K.clear();
+  for (int p : law.probes)
+    law.frozen_K.push_back(system.reference_K + system.probes[static_cast<std::size_t>(p)].theta_K(z, ambient_K));
+  law.probes.clear();
+}
+
+/// State at standstill in an ambient. Laws that follow temperatures are held where the last step led to, until they lead there again.
+/// @param guess  where to begin, where some do. @throws SolveError  where the steps do not end
+Eigen::VectorXd at_rest(const solver::ReducedSystem& system, const effects::Inputs& standstill, Eigen::Index n_added,
+                        const Eigen::VectorXd& guess) {
+  Eigen::VectorXd z = guess;
+  for (int step = 0; step < kMostSteps; ++step) {
+    solver::ReducedSystem held = system;
+    for (auto& s : held.sources) hold(s.power_W, system, z, standstill.ambient_K);
+    for (auto& e : held.exchanges) hold(e.coefficient, system, z, standstill.ambient_K);
+    Eigen::MatrixXd k = held.conduction;
+    for (const auto& e : held.exchanges) k += e.coefficient(standstill) * e.matrix;
+    k.diagonal().tail(n_added).array() += kNoWayOut_1_s;
+    const Eigen::VectorXd next = k.llt().solve(held.load(standstill));
+    const double moved_K = (next - z).cwiseAbs().maxCoeff();
+    if (!std::isfinite(moved_K)) break;
+    z = step < kMostSteps / 4 ? next : Eigen::VectorXd(0.5 * (z + next));  // there and back again: half as far
+    if (moved_K < kAtRest_K || !system.looks_at_state()) return z;
+  }
+  throw SolveError("the machine has no state of rest to start from");
+}
+
+}  // namespace
+
 Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& ambient, const Workspace& workspace) const {
   const solver::ReducedSystem& system = workspace.system_;
   Eigen::VectorXd start = machine_.start;
   const double ambient_at_start_K = ambient.at(0.0);
-  const bool is_steady = augmented_.model.start == scenarios::Start::kSteady && system.is_linear();
+  const bool is_steady = augmented_.model.start == scenarios::Start::kSteady && system.thermostats.empty();
   if (augmented_.model.start == scenarios::Start::kAmbient) start = ambient_at_start_K * machine_.system.ones;
-  if (augmented_.model.start == scenarios::Start::kSteady && !is_steady)  // as written, moved with the ambient
+  if (augmented_.model.start == scenarios::Start::kSteady)  // with thermostats as written, moved with the ambient
     start += (ambient_at_start_K - scenarios::felt_ambient_at_start_K(augmented_.model)) * machine_.system.ones;
   Eigen::VectorXd warmer = Eigen::VectorXd::Zero(start.size());
   if (run.start_K.size() > 0) warmer = warmer_bodies() * run.start_K;
   if (!is_steady) return solver::with_places(start + warmer, machine_.system, workspace.added_);
   const effects::Inputs standstill{.drive = {},
                                    .ambient_K = ambient_at_start_K};  // before the run: what happened in it acts not yet
-  Eigen::MatrixXd k = system.conduction;
-  for (const auto& e : system.exchanges) k += e.coefficient(standstill) * e.matrix;
-  const auto n_added = static_cast<Eigen::Index>(workspace.added_.nodes.size());
-  k.diagonal().tail(n_added).array() += kNoWayOut_1_s;
-  return k.llt().solve(system.load(standstill)) + solver::with_places(warmer, machine_.system, workspace.added_);
+  return at_rest(system, standstill, static_cast<Eigen::Index>(workspace.added_.nodes.size()),
+                 solver::with_places(start, machine_.system, workspace.added_)) +
+         solver::with_places(warmer, machine_.system, workspace.added_);
 }
 
 Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
