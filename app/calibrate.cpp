@@ -2,6 +2,7 @@
 
 #include "app/diagnosis_files.hpp"
 #include "app/results.hpp"
+#include "base/delimited_text.hpp"
 #include "findings/diagnosis_document.hpp"
 
 namespace driftwright::app {
@@ -18,8 +19,8 @@ void calibrate(const CalibrateOptions& options) {
   progress.begin("writing");
   const std::string warning = findings::calibration_warning(d, d.search.candidates);
   std::vector<std::string> head = {
-      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", options.scenario)};
-  for (const std::string& path : options.measured) head.push_back("  measured: " + path);
+      fmt::format("{} with its numbers as `driftwright calibrate` fitted them", clean_name(options.scenario))};
+  for (const std::string& path : options.measured) head.push_back("  measured: " + clean_name(path));
   if (!warning.empty()) head.push_back("WARNING: " + warning);
   head.emplace_back("");
   std::string difference;

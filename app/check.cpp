@@ -1,4 +1,5 @@
 #include "app/results.hpp"
+#include "base/delimited_text.hpp"
 #include "base/version.hpp"
 #include "findings/scenario_document.hpp"
 #include "machine/runnable.hpp"
@@ -15,7 +16,7 @@ void check(const CommonOptions& options) {
     scenarios::require_runnable(scenario, *placed);
   }
   progress.end();
-  show(findings::scenario_document(scenario, placed ? &*placed : nullptr, {kVersion, options.scenario}), options);
+  show(findings::scenario_document(scenario, placed ? &*placed : nullptr, {kVersion, clean_name(options.scenario)}), options);
 }
 
 }  // namespace driftwright::app

@@ -14,6 +14,7 @@
 #include "app/follow.hpp"
 #include "app/verbs.hpp"
 #include "base/config_map.hpp"
+#include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "base/version.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
@@ -287,6 +288,15 @@ void add_list(CLI::App& cli, app::ListOptions& options) {
   verb->callback([&] { app::list(options); });
 }
 
+/// Names of files are written into results and messages, where a line break would begin a line of somebody else's.
+void refuse_control_characters(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (has_control_character(argv[i]))
+      throw InputError(
+          fmt::format("argument {} holds a line break or another control character: '{}'; rename the file", i, clean_name(argv[i])));
+  }
+}
+
 /// CLI11 would only say that a subcommand is required.
 void reject_unknown_verb(const CLI::App& cli, const std::string& word) {
   std::vector<std::string> verbs;
@@ -558,6 +568,7 @@ int app::command_line(int argc, const char* const* argv) {
   verb->callback([&] { app::schema(schema); });
 
   try {
+    refuse_control_characters(argc, argv);
     reject_unknown_verb(cli, argc > 1 ? argv[1] : "");
     try {
       cli.parse(argc, argv);

@@ -8,6 +8,7 @@
 #include "app/diagnosis_files.hpp"
 #include "app/end_request.hpp"
 #include "app/results.hpp"
+#include "base/delimited_text.hpp"
 #include "diagnosis/event_candidates.hpp"
 #include "findings/diagnosis_document.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 
 std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOptions& options) {
   std::vector<std::string> head = {fmt::format("{} with what `driftwright diagnose` found written in; verdict: {}",
-                                               options.scenario, diagnosis::word(d.verdict))};
+                                               clean_name(options.scenario), diagnosis::word(d.verdict))};
   for (const diagnosis::Cause& c : d.causes) {
     head.push_back(fmt::format("  {}{}: {} at {} ({}){}{}", diagnosis::word(c.standing),
                                c.is_written ? "" : ", not written in", c.effect, c.where, c.law,
@@ -26,7 +27,7 @@ std::vector<std::string> head_of(const diagnosis::Diagnosis& d, const DiagnoseOp
   }
   if (!d.written.keeps_numbers) head.push_back(fmt::format("  nothing is written in: {}", d.written.why_nothing));
   if (const std::string taken_up = findings::taken_up_text(d); !taken_up.empty()) head.push_back("  " + taken_up);
-  for (const std::string& path : options.measured) head.push_back("  measured: " + path);
+  for (const std::string& path : options.measured) head.push_back("  measured: " + clean_name(path));
   if (d.written.keeps_numbers)
     head.emplace_back(options.causes_only || d.written.causes_alone
                           ? "  the scenario's own numbers are as they were"

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/config_text.hpp"
+#include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
 #include "base/line_diff.hpp"
@@ -78,7 +79,7 @@ diagnosis::ExtendedScenario write_scenario(const std::string& stem, const studie
     return extended;
   }
   folder.write_text(file, extended.text);
-  const std::string diff = unified_diff(read_bytes(m.scenario.path), extended.text, m.scenario.path, stem + ".yaml");
+  const std::string diff = unified_diff(read_bytes(m.scenario.path), extended.text, clean_name(m.scenario.path), stem + ".yaml");
   folder.write_text(stem + ".diff", diff);
   if (difference) *difference = diff;
   return extended;

@@ -15,10 +15,15 @@
 namespace driftwright::app {
 namespace {
 
-/// Without memory of its own, and also where standard error is full.
+/// Without memory of its own, and also where standard error is full. What a file says of itself commands no terminal: of control characters,
+/// line breaks and tabs alone are said.
 void say(const char* words, const char* what = "") noexcept {
   std::fputs(words, stderr);
-  std::fputs(what, stderr);
+  for (; *what != '\0'; ++what) {
+    const auto byte = static_cast<unsigned char>(*what);
+    const bool is_read = (byte >= 0x20U && byte != 0x7FU) || byte == '\n' || byte == '\t';
+    std::fputc(is_read ? byte : ' ', stderr);
+  }
   std::fputs("\n", stderr);
 }
 

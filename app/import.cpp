@@ -4,6 +4,7 @@
 
 #include "app/results.hpp"
 #include "base/delimited_text.hpp"
+#include "base/file_name.hpp"
 #include "findings/import_document.hpp"
 
 namespace driftwright::app {
@@ -12,10 +13,10 @@ void import_file(const ImportOptions& options) {
   const studies::LoggerImport import =
       studies::import_logger(options.scenario, options.by, {options.zone, options.interval, options.every});
   const std::string stem = clean_name(std::filesystem::path(options.scenario).stem().string());
-  output::ResultsFolder folder = open_results(options, stem);
+  output::ResultsFolder folder = open_results(options, file_name(stem, ""));
   Progress progress(options.quiet);
   // Named after the logger's file, so that several imports can be told apart where each record goes by its name.
-  folder.write_text(stem + ".csv", record_csv(import.read.record, provenance_lines(folder.made_by(), "import")));
+  folder.write_text(file_name(stem, ".csv"), record_csv(import.read.record, provenance_lines(folder.made_by(), "import")));
   folder.write_text(
       "columns.yaml",
       fmt::format("# How {} was read; the same key in a scenario makes every verb read such files (docs/record.md).\n{}",

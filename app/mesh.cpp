@@ -4,6 +4,7 @@
 
 #include "app/results.hpp"
 #include "base/delimited_text.hpp"
+#include "base/file_name.hpp"
 #include "findings/scenario_document.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/unnamed_geometry.hpp"
@@ -38,7 +39,7 @@ scenarios::Geometry geometry_of(const MeshOptions& options, bool is_file) {
 void mesh(const MeshOptions& options) {
   const bool is_file = mesh::is_geometry_file(options.scenario);
   const scenarios::Geometry geometry = geometry_of(options, is_file);
-  output::ResultsFolder folder = open_results(options, geometry.name);
+  output::ResultsFolder folder = open_results(options, file_name(geometry.name, ""));
   Progress progress(options.quiet);
   progress.begin("meshing");
   const mesh::Mesh mesh = is_file ? read_file(options) : scenarios::build_mesh(geometry.machine.mesh);

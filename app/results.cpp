@@ -56,7 +56,7 @@ std::string contents(const output::ResultsFolder& folder) {
 void show(const output::Document& document, const CommonOptions& options) {
   if (options.quiet) return;
   fmt::print("{}", options.json ? output::json_text(output::document_json(document))
-                                : output::document_text(document, {.details = options.details}));
+                                : utf8_text(output::document_text(document, {.details = options.details})));
 }
 
 void finish(const output::Document& document, output::ResultsFolder& folder, Progress& progress,
@@ -67,9 +67,9 @@ void finish(const output::Document& document, output::ResultsFolder& folder, Pro
   if (json_file != "summary.json") folder.write_text(json_file, json);
   for (const output::CsvFile& csv : output::document_csv(document)) folder.write_text(csv.path, csv.text);
   const output::html::Rendered rendered = output::document_html(document);
-  folder.write_text("report.html", rendered.page);
+  folder.write_text("report.html", utf8_text(rendered.page));
   for (const output::html::Figure& figure : rendered.figures)
-    folder.write_text("figures/" + figure.name + ".svg", figure.svg);
+    folder.write_text("figures/" + figure.name + ".svg", utf8_text(figure.svg));
   folder.commit();
   progress.end();
   show(document, options);
@@ -78,7 +78,7 @@ void finish(const output::Document& document, output::ResultsFolder& folder, Pro
 }
 
 std::vector<std::string> provenance_lines(const output::Provenance& made_by, const std::string& what) {
-  return {fmt::format("{}; Driftwright {}, scenario {}", what, made_by.version, made_by.scenario)};
+  return {fmt::format("{}; Driftwright {}, scenario {}", clean_name(what), made_by.version, made_by.scenario)};
 }
 
 std::string heat_flows_csv(const solver::Trajectory& run, const std::string& cyclogram, const output::Provenance& made_by) {
@@ -91,7 +91,7 @@ std::string heat_flows_csv(const solver::Trajectory& run, const std::string& cyc
 
 std::string shown_path(const std::filesystem::path& path) {
   const std::string relative = std::filesystem::relative(path).string();
-  return relative.starts_with("..") ? path.string() : relative;
+  return clean_name(relative.starts_with("..") ? path.string() : relative);
 }
 
 std::string fields_note(const output::FieldSeries& fields) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/results.hpp"
+#include "base/file_name.hpp"
 #include "findings/machine_study_document.hpp"
 #include "machine/ways_out.hpp"
 #include "studies/table_study.hpp"
@@ -31,7 +32,7 @@ void run(const CommonOptions& options) {
       "record.csv",
       record_csv(study.judged.record, provenance_lines(folder.made_by(), "judged cyclogram " + scenario.study->judge)));
   for (const scenarios::SimulatedRun& run : study.train) {
-    folder.write_text("records/" + run.record.source + ".csv",
+    folder.write_text("records/" + file_name(run.record.source, ".csv"),
                       record_csv(run.record, provenance_lines(folder.made_by(), "training cyclogram " + run.record.source)));
   }
   folder.write_text("heat_flows.csv", heat_flows_csv(study.judged.trajectory, scenario.study->judge, folder.made_by()));

@@ -6,7 +6,9 @@
 
 #include "app/results.hpp"
 #include "app/schedule_files.hpp"
+#include "base/delimited_text.hpp"
 #include "base/file_bytes.hpp"
+#include "base/file_name.hpp"
 #include "findings/schedule_document.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 #include "studies/planner.hpp"
@@ -90,13 +92,15 @@ void correct(CorrectedSeries& series, const std::string& bytes) {
 void schedule(const ScheduleVerbOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   (void)scenarios::require_machine(scenario, "schedule");
-  CorrectedSeries series{.file = std::filesystem::path(options.program).filename().string(),
+  const std::filesystem::path given = options.program;
+  CorrectedSeries series{.file = file_name(given.stem().string(), given.extension().string()),
                          .settings = require_schedule(scenario),
                          .split = options.split};
-  if (const std::set<std::string> ours = {"schedule.txt", "schedule.csv", "record.csv", "report.html", "summary.json"};
+  if (const std::set<std::string> ours = {"schedule.txt", "schedule.csv", "record.csv",         "report.html",
+                                             "summary.json", "figures",      "tables",             output::kManifestName};
       ours.contains(series.file))
     throw InputError(
-        fmt::format("{}: `schedule` writes a file of this name of its own; rename the program", options.program));
+        fmt::format("{}: `schedule` writes a file or folder of this name of its own; rename the program", options.program));
   if (!options.policy.empty()) series.settings.policy = options.policy;
   if (!options.dialect.empty()) series.settings.nc.control = scenarios::control_of(options.dialect);
   const scenarios::ScheduleSettings& settings = series.settings;
@@ -125,7 +129,7 @@ void schedule(const ScheduleVerbOptions& options) {
   series.iso = studies::iso_figures(prediction);
   progress.begin("planning corrections");
   correct(series, bytes);
-  const std::string what = fmt::format("predicted by the {} for {}{}{}", prediction.predicted_by, options.program,
+  const std::string what = fmt::format("predicted by the {} for {}{}{}", prediction.predicted_by, clean_name(options.program),
                                        series.is_series() ? fmt::format(", {} parts", prediction.parts.size()) : "",
                                        prediction.started_from.empty() ? "" : ", after " + prediction.started_from);
   for (const CorrectedProgram& program : series.programs) folder.write_text(program.file, program.corrected.text);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/results.hpp"
+#include "base/file_name.hpp"
 #include "findings/simulation_document.hpp"
 #include "machine/reduced_files.hpp"
 #include "studies/prediction.hpp"
@@ -52,9 +53,9 @@ void simulate(const SimulateOptions& options) {
     const scenarios::SimulatedRun& run = runs[i];
     const std::string& name = cyclograms[i]->name;
     const bool is_only = runs.size() == 1;
-    folder.write_text(is_only ? "record.csv" : "records/" + name + ".csv",
+    folder.write_text(is_only ? "record.csv" : "records/" + file_name(name, ".csv"),
                       record_csv(run.record, provenance_lines(folder.made_by(), "cyclogram " + name)));
-    folder.write_text(is_only ? "heat_flows.csv" : "heat_flows/" + name + ".csv",
+    folder.write_text(is_only ? "heat_flows.csv" : "heat_flows/" + file_name(name, ".csv"),
                       heat_flows_csv(run.trajectory, name, folder.made_by()));
   }
   if (const scenarios::ReducedMachine* reduced = machine.reduced(); reduced && machine.is_linear()) {

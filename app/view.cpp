@@ -8,6 +8,7 @@
 #include "app/results.hpp"
 #include "app/twin_network.hpp"
 #include "app/verbs.hpp"
+#include "base/delimited_text.hpp"
 #include "base/file_bytes.hpp"
 #include "base/version.hpp"
 #include "findings/machine_section.hpp"
@@ -116,7 +117,7 @@ void view(const ViewOptions& options) {
     page.tolerance_um = scenario.study->tolerance_um;
   }
   progress.listener().begin("writing the page");
-  const std::string text = output::twin_html(page, {kVersion, options.scenario});
+  const std::string text = output::twin_html(page, {kVersion, clean_name(options.scenario)});
   write_whole(target, text);
   progress.end();
   fmt::print("{}: {:.1f} MB, opens in any browser with WebGL 2, offline\n{}\n", shown_path(fs::absolute(target)),

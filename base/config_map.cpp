@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/delimited_text.hpp"
 #include "base/quantity.hpp"
 
 namespace driftwright {
@@ -222,6 +223,7 @@ std::string ConfigMap::text(const std::string& key) const {
   if (node.kind == ConfigNode::Kind::kNull) fail(key, "the value is empty");
   std::string value = scalar(node, key);
   if (value.empty()) fail(key, "the value is empty");
+  if (has_control_character(value)) fail(key, fmt::format("{:?} holds a line break or another control character", value));
   return value;
 }
 
@@ -282,6 +284,8 @@ std::vector<std::string> ConfigMap::texts(const std::string& key) const {
   const std::vector<std::string>& allowed = as.items.front().options;
   for (const ConfigNodePtr& item : node.items) {
     values.push_back(scalar(*item, key));
+    if (has_control_character(values.back()))
+      throw InputError(item->where(path_of(key)), fmt::format("{:?} holds a line break or another control character", values.back()));
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), values.back()) == allowed.end())
       throw InputError(item->where(path_of(key)), not_known(values.back(), allowed));
   }

@@ -89,10 +89,46 @@ std::string read_text_file(const std::string& path) {
   return text;
 }
 
+namespace {
+
+/// Bytes of the control character that stands at a place of a text in UTF-8; 0 where none does. U+0080 to U+009F command terminals, too.
+std::size_t control_at(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0x20U; };
+  if (byte(at) < 0x20U || byte(at) == 0x7FU) return 1;
+  return byte(at) == 0xC2U && byte(at + 1) >= 0x80U && byte(at + 1) <= 0x9FU ? 2 : 0;
+}
+
+}  // namespace
+
+bool has_control_character(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\t' && control_at(text, i) > 0) return true;
+  }
+  return false;
+}
+
+std::string utf8_text(std::string text) {
+  if (is_utf8(text)) return text;
+  std::string letters;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t n = 4;
+    while (n > 0 && (at + n > text.size() || !is_utf8(text.substr(at, n)))) --n;
+    if (n > 0) {
+      letters.append(text, at, n);
+    } else {  // Latin-1 has every byte, from 0x80 on as letters of two
+      const auto c = static_cast<unsigned char>(text[at]);
+      letters += {static_cast<char>(0xC0U | c >> 6U), static_cast<char>(0x80U | (c & 0x3FU))};
+    }
+    at += std::max<std::size_t>(n, 1);
+  }
+  return letters;
+}
+
 std::string clean_name(std::string name) {
-  if (!is_utf8(name)) name = as_utf8(name, name, "ISO-8859-1");  // which has every byte
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }, ' ');
+  name = utf8_text(std::move(name));
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (const std::size_t n = control_at(name, i)) name.replace(i, n, " ");
+  }
   return name;
 }
 

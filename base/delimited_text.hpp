@@ -11,9 +11,15 @@ namespace driftwright {
 /// @throws InputError  for a file that cannot be opened or holds bytes that are no text
 [[nodiscard]] std::string read_text_file(const std::string& path);
 
+/// A text that may hold names of files, in any encoding, as UTF-8: bytes that are none are taken as Latin-1, the rest stays as it is.
+[[nodiscard]] std::string utf8_text(std::string text);
+
 /// A name from elsewhere (another format of files, an argument) as text that all our outputs can carry: what is no UTF-8 is
 /// taken as Latin-1, control characters become blanks.
 [[nodiscard]] std::string clean_name(std::string name);
+
+/// Whether a text in UTF-8 holds a line break or another character, but for tabs, that is none to be read.
+[[nodiscard]] bool has_control_character(const std::string& text);
 
 /// The lines of a text file without their line breaks (LF, CR LF). @throws InputError  as read_text_file()
 [[nodiscard]] std::vector<std::string> read_text_lines(const std::string& path);

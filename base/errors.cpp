@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "base/delimited_text.hpp"
+
 namespace driftwright {
 namespace {
 
 std::string render(const Where& where, const std::string& message) {
-  std::string text = where.file;
+  std::string text = clean_name(where.file);
   if (where.line > 0) text += fmt::format(":{}:{}", where.line, where.column);
   text += ": " + message;
   if (!where.key.empty()) text += fmt::format(" [{}]", where.key);

@@ -152,11 +152,7 @@ Record read_record_csv(const std::string& path) {
 std::string record_csv(const Record& record, const std::vector<std::string>& comments) {
   fmt::memory_buffer text;
   auto out = std::back_inserter(text);
-  for (std::string comment : comments) {
-    std::replace_if(
-        comment.begin(), comment.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    fmt::format_to(out, "# {}\n", comment);
-  }
+  for (const std::string& comment : comments) fmt::format_to(out, "# {}\n", clean_name(comment));
   fmt::format_to(out, "time_s");
   for (const Channel& c : record.channels) fmt::format_to(out, ",{}", c.header());
   fmt::format_to(out, "\n");

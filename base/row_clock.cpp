@@ -43,7 +43,7 @@ double RowClock::time_s(const std::vector<Cell>& cells, int line, std::size_t n_
     std::chrono::nanoseconds time = stamps_.read(text);
     if (milliseconds_) {
       const std::string& ms = cell_of(path_, cells, *milliseconds_, line, "time").text;
-      time += std::chrono::nanoseconds(static_cast<std::int64_t>(std::llround(1e6 * parse_number(ms, map_.decimal))));
+      time += milliseconds(parse_number(ms, map_.decimal));
     }
     if (!first_) first_ = time;
     return static_cast<double>((time - *first_).count()) / 1e9;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -56,6 +57,16 @@ std::optional<nanoseconds> iso_8601(std::string text) {
     if (fits(text, format, time)) return time.time_since_epoch();
   }
   return std::nullopt;
+}
+
+/// Nanoseconds since 1970 in 64 bits reach from 1677 to 2262; clocks that were never set tell the year 1 or 9999.
+void require_countable_year(const std::string& stamp, const std::string& format) {
+  std::istringstream in(stamp);
+  date::year_month_day day;
+  in >> date::parse(format, day);
+  if (in.fail()) return;  // a format without a whole date
+  const int year = static_cast<int>(day.year());
+  if (year < 1700 || year > 2200) throw RangeError(fmt::format("'{}' is of the year {}; 1700 to 2200 are allowed", stamp, year));
 }
 
 }  // namespace
@@ -129,10 +140,17 @@ nanoseconds TimeStamps::read(const std::string& text) {
       if (*before_ - time > kHalfDay) time += kDay;
     }
   }
+  if (has_date_ && (!before_ || std::chrono::abs(time - *before_) > kDay)) require_countable_year(stamp, is_iso_ ? "%F" : format_);
   if (zone_ && !told) time = in_zone(time, text);
   time -= offset;
   before_ = time;
   return time;
+}
+
+nanoseconds milliseconds(double count) {
+  constexpr double kMost = 1e9;  // eleven days; 64 bits of nanoseconds are far from full
+  if (!(std::abs(count) <= kMost)) throw RangeError(fmt::format("{:g} is no number of milliseconds; at most {:g} are allowed", count, kMost));
+  return nanoseconds(std::llround(1e6 * count));
 }
 
 nanoseconds TimeStamps::in_zone(nanoseconds local, const std::string& text) const {

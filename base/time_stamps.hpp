@@ -15,6 +15,9 @@ struct StampOffset {
 };
 [[nodiscard]] std::optional<StampOffset> offset_at_end(const std::string& stamp);
 
+/// A column of milliseconds beside a stamp. @throws RangeError  for NaN and for more than eleven days
+[[nodiscard]] std::chrono::nanoseconds milliseconds(double count);
+
 /// Reads the stamps of a file one after another.
 ///
 /// Seconds may have a fraction behind a point, a comma or a colon ("08:07:12:237"). In a zone, an hour that comes twice a year is told by the order
@@ -28,7 +31,8 @@ class TimeStamps {
   TimeStamps(std::string format, const std::string& zone);
 
   /// Time since an epoch that is the same for all stamps.
-  /// @throws RangeError  for a text that the format does not fit, and for a time that a clock in the zone skips
+  /// @throws RangeError  for a text that the format does not fit, for a time that a clock in the zone skips, and for years before 1700 or
+  /// after 2200, which clocks tell that were never set
   [[nodiscard]] std::chrono::nanoseconds read(const std::string& text);
 
   [[nodiscard]] bool has_date() const { return has_date_; }

@@ -184,6 +184,8 @@ class InpReader {
     if (name == "*element") add_to_element(words);
     if (name == "*nset") add_to_set(words, node_sets_[keyword_.at("nset")], node_sets_);
     if (name == "*elset") add_to_set(words, element_sets_[keyword_.at("elset")], element_sets_);
+    if (name == "*surface" && (words.empty() || words[0].empty()))
+      fail("a line of a *SURFACE is: an element or a set of them, its face S1 to S6; or a node or a set of them");
     if (name == "*surface") surface_lines_.push_back({keyword_.at("name"), keyword_.at("type"), words, line_});
     if (name == "*instance") fail("an *INSTANCE that is shifted or turned is not followed; export a flat input file");
   }
@@ -317,36 +319,35 @@ class InpReader {
 
   using Sets = std::map<std::string, std::vector<long>>;
   void add_to_set(const std::vector<std::string>& words, std::vector<long>& set, const Sets& sets) {
+    const bool of_nodes = &sets == &node_sets_;
     if (keyword_.has("generate")) {
       if (words.size() < 2) fail("GENERATE wants: first, last, step");
       const long first = integer(words[0]), last = integer(words[1]), step = words.size() > 2 ? integer(words[2]) : 1;
-      constexpr long kMost = 100000000;
-      if (step > 0 && (last - first) / step > kMost) fail(fmt::format("GENERATE of more than {} numbers", kMost));
-      if (step <= 0 || last < first) fail("GENERATE wants first <= last and a step above 0");
-      for (long n = first; n <= last; n += step) set.push_back(n);
-      check_members(set, &sets == &node_sets_);
-      return;
+      if (step <= 0 || last < first || first < 0) fail("GENERATE wants 0 <= first <= last and a step above 0");
+      for (long n = first;; n += step) {
+        add_member(n, of_nodes, set);
+        if (last - n < step) return;
+      }
     }
     for (const std::string& word : words) {
       if (word.empty()) continue;
       if (std::isdigit(static_cast<unsigned char>(word[0]))) {
-        set.push_back(integer(word));
+        add_member(integer(word), of_nodes, set);
       } else {
         const auto other = sets.find(lower(word));
         if (other == sets.end()) fail(fmt::format("there is no set '{}' above this line", word));
         const std::vector<long> members = other->second;  // a copy: it may be the set itself
+        if (set.size() + members.size() > kMostMembers)
+          fail(fmt::format("with the set '{}' the set has {} members; {} are the most", word, set.size() + members.size(), kMostMembers));
         set.insert(set.end(), members.begin(), members.end());
       }
     }
-    check_members(set, &sets == &node_sets_);
   }
-  void check_members(const std::vector<long>& set, bool of_nodes) const {
-    for (long n : set) {
-      if (of_nodes && !node_.contains(n)) fail(fmt::format("there is no node {} above this line", n));
-      if (!of_nodes && !element_.contains(n) && !left_out_.contains(n)) {
-        fail(fmt::format("there is no element {} above this line", n));
-      }
-    }
+  void add_member(long n, bool of_nodes, std::vector<long>& set) const {
+    if (of_nodes && !node_.contains(n)) fail(fmt::format("there is no node {} above this line", n));
+    if (!of_nodes && !element_.contains(n) && !left_out_.contains(n))
+      fail(fmt::format("there is no element {} above this line", n));
+    set.push_back(n);
   }
 
   void begin_surface() {
@@ -440,6 +441,7 @@ class InpReader {
     }
   }
 
+  static constexpr std::size_t kMostMembers = 20'000'000;  // of a set, counted as often as they are listed: sets of sets double with each line
   RawMesh raw_;
   Keyword keyword_;
   std::string more_;

@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "base/csv_row.hpp"
+#include "base/delimited_text.hpp"
+#include "base/file_name.hpp"
 
 namespace driftwright::output {
 namespace {
@@ -63,7 +65,7 @@ class Sheets {
       if (!column.key.empty()) headers.push_back(column.key);
     }
     const std::string name = at.keys + (at.keys.empty() ? "" : "_") + table.key;
-    Sheet& s = sheet(table.file.empty() ? "tables/" + name + ".csv" : table.file, line_of(headers));
+    Sheet& s = sheet(table.file.empty() ? "tables/" + file_name(name, ".csv") : table.file, line_of(headers));
     for (const std::vector<Datum>& row : table.rows) {
       std::vector<std::string> cells = items;
       for (std::size_t c = 0; c < row.size(); ++c) {
@@ -96,8 +98,8 @@ std::vector<CsvFile> document_csv(const Document& document) {
   sheets.add_section(document.body, {});
   std::vector<CsvFile> files;
   for (const Sheet& s : sheets.all()) {
-    files.push_back({s.path, fmt::format("# {}; Driftwright {}, scenario {}\n{}{}", document.title, document.made_by.version,
-                                         document.made_by.scenario, s.header, s.rows)});
+    files.push_back({s.path, utf8_text(fmt::format("# {}; Driftwright {}, scenario {}\n{}{}", clean_name(document.title),
+                                                   document.made_by.version, document.made_by.scenario, s.header, s.rows))});
   }
   return files;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/file_name.hpp"
+
 namespace driftwright::studies {
 
 using compensation::ProgramSchedule;
@@ -17,7 +19,7 @@ std::string corrected_file(const std::string& file, const SharedPlan& shared, st
   const std::string first = fmt::format("{:0{}}", shared.first_part + 1, digits);
   const std::string last =
       shared.last_part > shared.first_part ? fmt::format("_to_{:0{}}", shared.last_part + 1, digits) : "";
-  return fmt::format("{}_{}{}{}", path.stem().string(), first, last, path.extension().string());
+  return file_name(path.stem().string(), fmt::format("_{}{}{}", first, last, path.extension().string()));
 }
 
 int n_changes(const ProgramSchedule& plan, int axis) {

@@ -89,6 +89,26 @@ TEST(TimeStamps, SkipTheMissingHour) {
               ThrowsMessage<RangeError>(HasSubstr("does not exist in Europe/Berlin")));
 }
 
+TEST(TimeStamps, RefuseYearsOfClocksThatWereNeverSet) {
+  // 64 bits of nanoseconds end in 1677 and 2262: what lies beyond came out as a time of some other year.
+  for (const char* stamp : {"0001-01-01T00:00:00", "1600-01-01T00:00:00", "2300-06-01T12:00:00.5", "9999-12-31T23:59:59Z"}) {
+    TimeStamps iso("", "");
+    EXPECT_THAT([&] { (void)iso.read(stamp); }, ThrowsMessage<RangeError>(HasSubstr("1700 to 2200"))) << stamp;
+    (void)iso.read("2024-03-01T10:00:00");
+    EXPECT_THAT([&] { (void)iso.read(stamp); }, ThrowsMessage<RangeError>(HasSubstr("1700 to 2200"))) << stamp;
+  }
+  TimeStamps german("%d.%m.%Y %H:%M:%S", "Europe/Berlin");
+  EXPECT_THAT([&] { (void)german.read("31.12.9999 23:59:59"); }, ThrowsMessage<RangeError>(HasSubstr("9999")));
+  EXPECT_NO_THROW((void)german.read("01.01.1970 00:00:00"));
+}
+
+TEST(Milliseconds, AreOfAStamp) {
+  EXPECT_EQ(milliseconds(1.5), std::chrono::microseconds(1500));
+  EXPECT_EQ(milliseconds(-2.0), std::chrono::milliseconds(-2));
+  for (double count : {1e18, -1e300, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_THROW((void)milliseconds(count), RangeError) << count;
+}
+
 TEST(TimeStamps, RefuseWhatTheFormatDoesNotFit) {
   for (const char* text : {"2024-03-01", "1.3.2024 10:00:00 Uhr", "32.01.2024 10:00:00", "01.03.2024 25:00:00", ""})
     EXPECT_THROW((void)TimeStamps("%d.%m.%Y %H:%M:%S", "").read(text), RangeError) << text;
