@@ -45,6 +45,16 @@ void add_size(output::Section& section, const mesh::Mesh& mesh) {
                      .digits = output::decimals(4)});
 }
 
+void add_demand(output::Section& section, const scenarios::MeshDemand& demand) {
+  add(section, Value{.key = "solved_by", .words = "solved by", .datum = demand.method});
+  add(section, Value{.key = "memory_MB", .words = "memory that it will take, about", .datum = 1e-6 * demand.memory_bytes, .unit = "MB", .digits = output::decimals(0)});
+  add(section, Value{.key = "time_s",
+                     .words = "time of one processor, very roughly, while the machine is not known from disk",
+                     .datum = demand.time_s,
+                     .unit = "s",
+                     .digits = output::decimals(0)});
+}
+
 /// Area in contact of each joint, and how far its sides are apart.
 Table joints_table(const mesh::Mesh& m) {
   Table joints{
@@ -74,7 +84,7 @@ double density_kg_m3(const scenarios::MachineModel& machine, const std::string& 
 }  // namespace
 
 output::Document scenario_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine* placed,
-                                   const output::Provenance& made_by) {
+                                   const scenarios::MeshDemand* demand, const output::Provenance& made_by) {
   output::Document document{.made_by = made_by, .title = made_by.scenario + ": fine"};
   output::Section& body = document.body;
   add(body, Value{.key = "name", .datum = scenario.name});
@@ -82,7 +92,10 @@ output::Document scenario_document(const scenarios::Scenario& scenario, const sc
     document.subtitle = "a study of measured records";
     add(body, Value{.key = "target", .words = "target", .datum = scenario.study->target});
   } else {
-    if (placed->mesh.n_nodes() > 0) add_size(body, placed->mesh);
+    if (placed->mesh.n_nodes() > 0) {
+      add_size(body, placed->mesh);
+      if (demand) add_demand(body, *demand);
+    }
     add(body, Value{.key = "lumped_nodes", .words = "lumped nodes", .datum = placed->balance.nodes.size()});
     add(body, Value{.key = "effects", .words = "effects", .datum = scenario.machine->effects.size()});
     add(body, Value{.key = "sensors", .words = "sensors", .datum = scenario.machine->sensors.size()});

@@ -2,13 +2,15 @@
 // A scenario as `check` and its mesh as `mesh` show it, as documents.
 
 #include "machine/machine.hpp"
+#include "machine/mesh_demand.hpp"
 #include "output/document.hpp"
 #include "scenarios/reader/scenario.hpp"
 
 namespace driftwright::findings {
 
-/// What is in a scenario that can be run. @param placed  null: a study of measured records
+/// What is in a scenario that can be run, and what it will take. @param placed, demand  null: a study of measured records
 [[nodiscard]] output::Document scenario_document(const scenarios::Scenario& scenario, const scenarios::PlacedMachine* placed,
+                                                 const scenarios::MeshDemand* demand,
                                                  const output::Provenance& made_by);
 
 /// Size and quality of a mesh, its regions, surfaces and joints. @param machine  marks and masses come from it, as far as it has them

@@ -15,22 +15,19 @@ namespace driftwright::scenarios {
 
 namespace {
 
-constexpr int kStates = 50;  // that a reduced model will about have: as many displacement fields
-
-/// How many fields are written of the longest cyclogram.
-int n_fields(const scenarios::Scenario& scenario) {
-  if (!scenario.solver.fields_at_s.empty()) return static_cast<int>(scenario.solver.fields_at_s.size()) + 2;
-  double longest_s = 0.0;
-  for (const Cyclogram& c : scenario.cyclograms) longest_s = std::max(longest_s, c.duration_s());
-  return static_cast<int>(std::min(1e6, longest_s / scenario.solver.fields_every_s)) + 2;
-}
-
 /// What other sources, or another build of them, have reduced may be something else. Program and library of one build know each other's machines.
 std::string build_name() {
   return fmt::format("{} {}", kVersion, kSourcesOfMachines);
 }
 
 }  // namespace
+
+int n_fields(const Scenario& scenario) {
+  if (!scenario.solver.fields_at_s.empty()) return static_cast<int>(scenario.solver.fields_at_s.size()) + 2;
+  double longest_s = 0.0;
+  for (const Cyclogram& c : scenario.cyclograms) longest_s = std::max(longest_s, c.duration_s());
+  return static_cast<int>(std::min(1e6, longest_s / scenario.solver.fields_every_s)) + 2;
+}
 
 std::string Model::words() const {
   if (full()) return fmt::format("full model of {} temperature unknowns", n_unknowns());

@@ -32,6 +32,11 @@ struct Model {
 [[nodiscard]] compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenario, const Model& model,
                                                              int n_modes, const Drive& typical);
 
+/// States that a reduced model will about have: as many displacement fields.
+inline constexpr int kStates = 50;
+/// How many fields are written of the longest cyclogram.
+[[nodiscard]] int n_fields(const Scenario& scenario);
+
 /// Meshes, places and factorises, saying so.
 /// @param n_fields  about how many whole fields are to be written, which takes displacements everywhere
 [[nodiscard]] scenarios::Machine build_machine(const scenarios::MachineModel& model, const Listener& listener, int n_fields);

@@ -41,22 +41,6 @@ void cell_stiffness(const Mesh& mesh, int cell, double lame_Pa, double shear_Pa,
   }
 }
 
-NodeMatrix empty_matrix(const Mesh& mesh, const std::vector<SpringLayer>& layers) {
-  Cliques cliques;
-  for (int cell = 0; cell < mesh.cells.size(); ++cell) cliques.add(mesh.cells.nodes(cell));
-  for (const SpringLayer& layer : layers) {
-    for (const SpringPoint& point : layer) cliques.add(point.node);
-  }
-  const SparseRow of_nodes = pattern(mesh.n_nodes(), cliques);
-  const int n = mesh.n_nodes();
-  NodeMatrix k;
-  k.take({n,
-          n,
-          {of_nodes.outerIndexPtr(), of_nodes.outerIndexPtr() + n + 1},
-          {of_nodes.innerIndexPtr(), of_nodes.innerIndexPtr() + of_nodes.nonZeros()}});
-  return k;
-}
-
 void add_cells(const Mesh& mesh, const RegionMaterials& materials, NodeMatrix& k) {
   constexpr int kCells = 8192;  // at a time
   std::vector<std::ptrdiff_t> start(kCells + 1, 0);
@@ -125,9 +109,24 @@ void hold(const std::vector<char>& held, NodeMatrix& k) {
 
 }  // namespace
 
+BlockPattern stiffness_pattern(const Mesh& mesh, const std::vector<SpringLayer>& layers) {
+  Cliques cliques;
+  for (int cell = 0; cell < mesh.cells.size(); ++cell) cliques.add(mesh.cells.nodes(cell));
+  for (const SpringLayer& layer : layers) {
+    for (const SpringPoint& point : layer) cliques.add(point.node);
+  }
+  const SparseRow of_nodes = pattern(mesh.n_nodes(), cliques);
+  const int n = mesh.n_nodes();
+  return {n,
+          n,
+          {of_nodes.outerIndexPtr(), of_nodes.outerIndexPtr() + n + 1},
+          {of_nodes.innerIndexPtr(), of_nodes.innerIndexPtr() + of_nodes.nonZeros()}};
+}
+
 NodeMatrix assemble_stiffness(const Mesh& mesh, const RegionMaterials& materials, const std::vector<SpringLayer>& layers,
                               const std::vector<char>& held) {
-  NodeMatrix k = empty_matrix(mesh, layers);
+  NodeMatrix k;
+  k.take(stiffness_pattern(mesh, layers));
   add_cells(mesh, materials, k);
   add_springs(layers, k);
   hold(held, k);

@@ -14,4 +14,7 @@ namespace driftwright::solver {
 [[nodiscard]] NodeMatrix assemble_stiffness(const mesh::Mesh& mesh, const RegionMaterials& materials,
                                             const std::vector<SpringLayer>& layers, const std::vector<char>& held);
 
+/// Which nodes it couples.
+[[nodiscard]] BlockPattern stiffness_pattern(const mesh::Mesh& mesh, const std::vector<SpringLayer>& layers);
+
 }  // namespace driftwright::solver

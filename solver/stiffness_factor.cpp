@@ -3,6 +3,8 @@
 #include <cholmod.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/c_random.hpp"
 #include "base/errors.hpp"
 #include "solver/one_thread.hpp"
@@ -39,8 +41,8 @@ struct StiffnessFactor::Parts {
     cholmod_l_finish(&common);
   }
 
-  /// METIS's order of the nodes.
-  std::vector<Index> order_of_nodes(const BlockPattern& nodes) {
+  /// Lower triangle of a pattern.
+  cholmod_sparse* graph_of(const BlockPattern& nodes) {
     cholmod_sparse* graph = lower_triangle(nodes.n_rows, nodes.column.size() / 2 + nodes.n_rows, CHOLMOD_PATTERN, common);
     auto* start = static_cast<Index*>(graph->p);
     auto* row = static_cast<Index*>(graph->i);
@@ -52,6 +54,12 @@ struct StiffnessFactor::Parts {
       }
     }
     start[nodes.n_rows] = slot;
+    return graph;
+  }
+
+  /// METIS's order of the nodes.
+  std::vector<Index> order_of_nodes(const BlockPattern& nodes) {
+    cholmod_sparse* graph = graph_of(nodes);
     std::vector<Index> order(nodes.n_rows);
     const bool ordered = [&] {
       const auto alone = alone_with_c_random();
@@ -62,6 +70,23 @@ struct StiffnessFactor::Parts {
     return order;
   }
 };
+
+FactorSize factor_size(const BlockPattern& nodes, int n_unknowns) {
+  StiffnessFactor::Parts p;
+  std::vector<Index> order = p.order_of_nodes(nodes);
+  cholmod_sparse* graph = p.graph_of(nodes);
+  p.common.nmethods = 1;
+  p.common.method[0].ordering = CHOLMOD_GIVEN;
+  p.common.postorder = 1;
+  for (std::size_t& columns : p.common.nrelax) columns = std::max<std::size_t>(1, columns / static_cast<std::size_t>(n_unknowns));
+  p.factor = cholmod_l_analyze_p(graph, order.data(), nullptr, 0, &p.common);
+  cholmod_l_free_sparse(&graph, &p.common);
+  if (!p.factor) throw SolveError(fmt::format("not enough memory for {} nodes; take a coarser mesh", nodes.n_rows));
+  const double u = n_unknowns;
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  return {8.0 * (u * u * count(p.factor->xsize) + u * count(p.factor->ssize)), 8.0 * u * u * count(p.factor->maxcsize),
+          u * u * u * p.common.fl};
+}
 
 StiffnessFactor::StiffnessFactor(const NodeMatrix& a) : parts_(std::make_unique<Parts>()) {
   Parts& p = *parts_;

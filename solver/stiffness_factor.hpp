@@ -8,6 +8,14 @@
 
 namespace driftwright::solver {
 
+/// What a Cholesky factor in METIS's order takes.
+struct FactorSize {
+  double bytes = 0.0, bytes_while_made = 0.0;  ///< the latter beside it
+  double work = 0.0;                           ///< multiplications
+};
+/// From the pattern alone, of so many unknowns a node. @throws SolveError  when memory runs out
+[[nodiscard]] FactorSize factor_size(const BlockPattern& nodes, int n_unknowns);
+
 class StiffnessFactor {
  public:
   /// Finds the order and counts; factorises nothing yet.
@@ -24,6 +32,7 @@ class StiffnessFactor {
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& force) const;
 
  private:
+  friend FactorSize factor_size(const BlockPattern& nodes, int n_unknowns);
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
