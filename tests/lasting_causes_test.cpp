@@ -228,5 +228,19 @@ TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {
   EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
 }
 
+// The state of rest that a machine starts from follows its numbers, also where a law follows temperature: a weaker path to the ambient, with heat that is always
+// there, is a warmer start and nothing that happened.
+TEST(ASteadyStart, FollowsTheNumbersOfAMachineWhoseFrictionFollowsTemperature) {
+  std::string nominal = with_effect(kMachine, "{type: heat_source, node: column, power: 60 W}");
+  nominal = with_effect(nominal, "{type: friction_law, node: head, power: 50 W, at_speed: 1000 rpm, exponent: 1.3, decay: 0.0125 1/K, at_temperature: 20 degC}");
+  nominal.insert(nominal.find("machine:"), "start: steady\n");
+  std::string truth = nominal;
+  const std::string path = "to: ambient, conductance: 14 W/K";
+  truth.replace(truth.find(path), path.size(), "to: ambient, conductance: 12 W/K");
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "rest_", 60.0, 0.03, 0.2);
+  const Diagnosis d = Beside(write_file("plain.yaml", nominal), records).diagnosed();
+  EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
+}
+
 }  // namespace
 }  // namespace driftwright::diagnosis
