@@ -29,8 +29,8 @@ inline constexpr const char* kEventKeys[] = {"exchange_window", "heat_window", "
 [[nodiscard]] std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>& runs,
                                              const Listener& listener = {});
 
-/// Those that the whitened readings ask for beside a fit, by linear theory, in any body, between any two and of the spindle's speed, what is known roughly taken off first
-/// (window_search.hpp).
+/// Those that the whitened readings ask for beside a fit, by linear theory, in any body, between any two and of the spindle's speed, what is known roughly taken
+/// off first (window_search.hpp).
 /// @param projection  of the fit, its readings condensed
 /// @throws SolveError  where the fit's state has no solution
 [[nodiscard]] std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit,

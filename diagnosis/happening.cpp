@@ -85,7 +85,7 @@ struct Asked {
   effects::Effect window;
   effects::DoubtedNumber size = {};
   std::string where = {}, to = {};  ///< the other end in words, where there is one
-  double trial = 0.0;     ///< of the size, from its nominal value
+  double trial = 0.0;               ///< of the size, from its nominal value
 };
 
 Asked another_speed(const Happening& h) {
