@@ -114,7 +114,8 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
       }
     }
   }
-  if (turning_s > 0.0) {  // a round number near the mean speed: where laws of speed are stated
+  s.turns = turning_s > 0.0;
+  if (s.turns) {  // a round number near the mean speed: where laws of speed are stated
     const double mean_rpm = turned / turning_s, decade = std::pow(10.0, std::floor(std::log10(mean_rpm)));
     s.typical_rpm = std::max(1.0, std::round(mean_rpm / decade)) * decade;
   }

@@ -17,7 +17,7 @@ struct DoubtScene {
   double reference_K = 293.15;
   double typical_rpm = 1.0;  ///< laws of speed are stated there
   double heat_W = 1.0;       ///< of all sources at the highest speed
-  bool moves_axes = false;
+  bool moves_axes = false, turns = false;  ///< in some record
   struct Run {
     std::string name;
     double length_s = 0.0;
