@@ -56,10 +56,7 @@ std::vector<effects::DoubtScene::Column> columns_of(const std::vector<MeasuredRu
       values.insert(of_run.begin(), of_run.end());
     }
     if (values.size() < 2) return;
-    effects::DoubtScene::Column c{.header = name + "_" + unit,
-                                  .unit = unit,
-                                  .span = *values.rbegin() - *values.begin(),
-                                  .n_levels = static_cast<int>(values.size())};
+    effects::DoubtScene::Column c{.header = name + "_" + unit, .unit = unit, .span = *values.rbegin() - *values.begin()};
     c.drives = std::any_of(own.begin(), own.end(), [&](const effects::Effect& e) {
       const auto word = e.words.find("column");
       const bool cuts = name == "cutting_power" && e.kind->key == "cutting_heat";

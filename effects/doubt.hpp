@@ -48,7 +48,6 @@ struct DoubtScene {
   struct Column {
     std::string header, unit;
     double span = 1.0;    ///< largest minus smallest value, > 0
-    int n_levels = 0;     ///< different values
     bool drives = false;  ///< an effect of the scenario is driven by it already
     [[nodiscard]] bool is_temperature() const { return unit == "degC"; }
   };
