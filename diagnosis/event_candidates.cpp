@@ -22,7 +22,12 @@ constexpr Eigen::Index kCells = 60, kCellsOfSpeed = 240;
 void add_events_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& happening,
                    std::vector<Event>& list) {
   if (auto event = event_of(twin, scene, happening)) list.push_back(*std::move(event));
-  for (Event& visit : visits_of(scene, happening)) list.push_back(std::move(visit));
+  for (Event& visit : visits_of(scene, happening)) {
+    const bool is_known = std::any_of(list.begin(), list.end(), [&](const Event& e) {  // seen as heat and as an exchange
+      return e.doubt.finding == visit.doubt.finding && e.doubt.where == visit.doubt.where && e.doubt.law == visit.doubt.law;
+    });
+    if (!is_known) list.push_back(std::move(visit));
+  }
 }
 
 }  // namespace
