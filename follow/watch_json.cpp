@@ -1,5 +1,6 @@
 #include "follow/watch_json.hpp"
 
+#include "base/bounded_json.hpp"
 #include "base/file_bytes.hpp"
 
 namespace driftwright::follow {
@@ -55,7 +56,7 @@ Json watch_json(const WatchLimits& limits, const std::string& model_hash) {
 
 WatchLimits read_watch(const std::string& path, const std::string& model_hash) {
   try {
-    return limits_of(Json::parse(read_bytes(path)), model_hash);
+    return limits_of(parse_json(read_bytes(path)), model_hash);
   } catch (const nlohmann::json::exception& e) {
     throw InputError(fmt::format("--watch {}: {}", path, e.what()));
   } catch (const InputError& e) {
