@@ -6,7 +6,7 @@
 
 namespace driftwright {
 
-/// Lists and objects within one another; what the program writes nests 8 deep at most.
+/// Lists and objects within one another; what the program writes nests 6 deep.
 constexpr int kDeepestJson = 100;
 
 /// @throws InputError  for text that is no JSON, saying where, or that nests deeper; the caller says of what file or row
