@@ -241,7 +241,12 @@ class Following {
     }
     if (!session_.has_channels() && !text_.channels().empty()) begin();
     if (!session_.has_channels()) {
-      if (!why.empty()) throw InputError(fmt::format("{}: {}; a header or a JSON row comes first", source_name_, why));
+      if (!why.empty() && !link_)
+        throw InputError(fmt::format("{}: {}; a header or a JSON row comes first", source_name_, why));
+      if (!why.empty()) {  // whoever may write to the topic has written it, and the source of the rows may write yet
+        (void)std::fputs(fmt::format("{}: {}; a header or a JSON row is waited for\n", options_.from, why).c_str(), stderr);
+        ++n_before_header_;
+      }
       return false;
     }
     if (!row && why.empty()) return false;
@@ -291,6 +296,9 @@ class Following {
                                  fmt::join(faults, ", "))
                          .c_str(),
                      stderr);
+    if (n_before_header_ > 0)
+      (void)std::fputs(fmt::format("follow: {} lines before the header could not be read\n", n_before_header_).c_str(),
+                       stderr);
     if (n_unheard_ > 0) (void)std::fputs(fmt::format("follow: {} lines found no broker\n", n_unheard_).c_str(), stderr);
     if (link_ && link_->n_lost() > 0)
       (void)std::fputs(fmt::format("follow: {} messages came faster than they could be taken\n", link_->n_lost()).c_str(),
@@ -308,7 +316,7 @@ class Following {
   std::int64_t n_rows_ = 0, n_taken_ = 0;
   bool is_read_ = true;  // somebody reads what is written
   bool is_silent_ = false;
-  std::int64_t n_unheard_ = 0;
+  std::int64_t n_unheard_ = 0, n_before_header_ = 0;
   std::unique_ptr<follow::MqttLink> link_;
   std::unique_ptr<follow::PageServer> page_;
 };

@@ -1,6 +1,7 @@
 #include "base/config_tree.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
@@ -22,6 +23,10 @@ Where where_in(const ConfigSource& source, int line, int column, const std::stri
 }
 
 constexpr std::size_t kMostNodes = 1000000, kDeepest = 200;
+
+std::string too_deep() {
+  return fmt::format("lists and maps are nested more than {} deep, which is the most", kDeepest);
+}
 
 /// Of a node, with what its aliases stand for.
 struct Extent {
@@ -95,9 +100,7 @@ class TreeBuilder : public YAML::EventHandler {
       throw InputError(
           where_in(*source_, node.line, node.column, ""),
           fmt::format("with what its aliases stand for, this holds more than {} values, which is the most", kMostNodes));
-    if (extent.depth > kDeepest)
-      throw InputError(where_in(*source_, node.line, node.column, ""),
-                       fmt::format("lists and maps are nested more than {} deep, which is the most", kDeepest));
+    if (extent.depth > kDeepest) throw InputError(where_in(*source_, node.line, node.column, ""), too_deep());
   }
 
   void add(ConfigNodePtr node, YAML::anchor_t anchor, const Extent& extent = {}) {
@@ -177,6 +180,8 @@ ConfigNodePtr read_config_text(const std::string& whole, const std::string& path
   try {
     std::istringstream in(text);
     YAML::Parser(in).HandleNextDocument(builder);
+  } catch (const YAML::DeepRecursion& e) {  // of yaml-cpp's own bound, which it meets before the tree is closed
+    throw InputError(where_in(*source, e.mark.line + 1, e.mark.column + 1, ""), too_deep());
   } catch (const YAML::ParserException& e) {
     for (int n = std::min(e.mark.line, static_cast<int>(source->lines.size()) - 1); n >= 0; --n) {
       const std::string& at = source->lines[static_cast<std::size_t>(n)];

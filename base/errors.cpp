@@ -2,19 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/delimited_text.hpp"
 
 namespace driftwright {
 namespace {
+
+constexpr std::size_t kShown = 160, kShownBefore = 100;  // bytes of a source line, and of them in front of the column
+
+/// A source line with a caret below the column; of a long one what stands around it.
+std::string excerpt_of(const Where& where) {
+  const std::string& line = where.excerpt;
+  const auto is_inside = [&](std::size_t at) {
+    return at < line.size() && (static_cast<unsigned char>(line[at]) & 0xC0u) == 0x80u;
+  };
+  const std::size_t at = std::min(static_cast<std::size_t>(std::max(where.column, 1)) - 1, line.size());
+  std::size_t from = line.size() > kShown && at > kShownBefore ? at - kShownBefore : 0;
+  while (is_inside(from)) ++from;
+  std::size_t until = std::min(from + kShown, line.size());
+  while (is_inside(until)) --until;
+  const std::string before = from > 0 ? "..." : "", behind = until < line.size() ? "..." : "";
+  return fmt::format("\n{:5} | {}{}{}\n      | {:>{}}", where.line, before, line.substr(from, until - from), behind, '^',
+                     before.size() + at - from + 1);
+}
 
 std::string render(const Where& where, const std::string& message) {
   std::string text = clean_name(where.file);
   if (where.line > 0) text += fmt::format(":{}:{}", where.line, where.column);
   text += ": " + message;
   if (!where.key.empty()) text += fmt::format(" [{}]", where.key);
-  if (where.line > 0 && !where.excerpt.empty()) {
-    text += fmt::format("\n{:5} | {}\n      | {:>{}}", where.line, where.excerpt, '^', where.column);
-  }
+  if (where.line > 0 && !where.excerpt.empty()) text += excerpt_of(where);
   return text;
 }
 

@@ -7,6 +7,10 @@ namespace driftwright::follow {
 RowSource::Got MessageRows::next(std::string& line, double wait_s) {
   MqttLink::Message message;
   if (lines_.empty() && link_.next(message, wait_s)) {
+    if (message.is_cut) {  // no row, though lines of it may look like some
+      line = std::move(message.payload);
+      return Got::kLine;
+    }
     for (std::size_t begin = 0; begin < message.payload.size();) {
       const std::size_t end = std::min(message.payload.find('\n', begin), message.payload.size());
       lines_.push_back(message.payload.substr(begin, end - begin));
@@ -26,7 +30,8 @@ RowSource::Got TopicRows::next(std::string& line, double wait_s) {
     return Got::kLine;
   }
   MqttLink::Message message;
-  if (link_.next(message, std::min(wait_s, ticks_.until_next_s()))) values_.hear(message.topic, message.payload);
+  if (link_.next(message, std::min(wait_s, ticks_.until_next_s())))
+    values_.hear(message.topic, message.is_cut ? "too large for a number" : message.payload);
   if (!ticks_.is_due()) return Got::kNothingYet;
   line = values_.row(now_s());
   return Got::kLine;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/bounded_json.hpp"
 #include "base/config_map.hpp"
 #include "base/config_text.hpp"
 #include "base/file_bytes.hpp"
@@ -39,7 +40,7 @@ std::string why_not(const effects::Effect& e) {
 
 /// @throws InputError  for an observer whose laws no stream tells enough of
 void require_laws_of_streams(const std::string& path) {
-  const Json file = Json::parse(read_bytes(path));
+  const Json file = parse_json(read_bytes(path));
   if (output::value<std::string>(file, "predictor") != "observer") return;
   std::string yaml = "effects:\n";
   const Json laws = output::list(output::value<Json>(file, "observer"), "effects");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <mosquitto.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr int kKeepAlive_s = 10;
 constexpr unsigned kFirstDelay_s = 1, kLongestDelay_s = 10;
-constexpr std::size_t kMostWaiting = 10'000;
+constexpr std::size_t kMostWaiting = 10'000, kMostWaitingBytes = 64'000'000;
 
 }  // namespace
 
@@ -80,13 +81,15 @@ void MqttLink::disconnected(mosquitto*, void* self, int) {
 
 void MqttLink::heard(mosquitto*, void* self, const mosquitto_message* message) {
   auto& link = *static_cast<MqttLink*>(self);
+  const auto size = static_cast<std::size_t>(message->payloadlen), n_kept = std::min(size, kLargestPayload);
   const std::lock_guard lock(link.mutex_);
-  if (link.waiting_.size() >= kMostWaiting) {
+  link.waiting_.push_back({message->topic, std::string(static_cast<const char*>(message->payload), n_kept), n_kept < size});
+  link.waiting_bytes_ += n_kept;
+  while (link.waiting_.size() > kMostWaiting || link.waiting_bytes_ > kMostWaitingBytes) {
+    link.waiting_bytes_ -= link.waiting_.front().payload.size();
     link.waiting_.pop_front();
     ++link.n_lost_;
   }
-  link.waiting_.push_back({message->topic, std::string(static_cast<const char*>(message->payload),
-                                                       static_cast<std::size_t>(message->payloadlen))});
   link.came_.notify_one();
 }
 
@@ -94,6 +97,7 @@ bool MqttLink::next(Message& message, double wait_s) {
   std::unique_lock lock(mutex_);
   if (!came_.wait_for(lock, std::chrono::duration<double>(wait_s), [&] { return !waiting_.empty(); })) return false;
   message = std::move(waiting_.front());
+  waiting_bytes_ -= message.payload.size();
   waiting_.pop_front();
   return true;
 }

@@ -22,10 +22,14 @@ struct MqttAddress {
 /// "localhost", "10.0.0.5:1884". @throws InputError
 [[nodiscard]] MqttAddress read_mqtt_address(const std::string& text);
 
+/// Of a payload, as of a line of standard input.
+constexpr std::size_t kLargestPayload = 1'000'000;  // bytes
+
 class MqttLink {
  public:
   struct Message {
     std::string topic, payload;
+    bool is_cut = false;  ///< it was larger than that, and only its beginning is here
   };
   /// Connects in the background, now and whenever the link is lost (again after 1 s, later after up to 10 s).
   /// @param topics   that are listened to
@@ -44,7 +48,7 @@ class MqttLink {
   /// How many times the broker was reached.
   [[nodiscard]] int n_links() const { return n_links_; }
   [[nodiscard]] bool is_linked() const { return is_linked_; }
-  /// Messages that came faster than they were taken, of which the oldest are lost.
+  /// Messages that came faster than they were taken, of which the oldest are lost: more than 10 000 of them or 64 MB wait nowhere.
   [[nodiscard]] std::int64_t n_lost();
 
  private:
@@ -59,6 +63,7 @@ class MqttLink {
   std::mutex mutex_;
   std::condition_variable came_;
   std::deque<Message> waiting_;
+  std::size_t waiting_bytes_ = 0;  // of their payloads
   std::int64_t n_lost_ = 0;
   std::atomic<int> n_links_ = 0;
   std::atomic<bool> is_linked_ = false;

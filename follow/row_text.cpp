@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/bounded_json.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
 #include "base/quantity.hpp"
@@ -271,16 +272,17 @@ std::optional<StreamRow> RowText::take(const std::string& given) {
   std::string line = given;
   if (!line.empty() && line.back() == '\r') line.pop_back();
   if (s.n_lines == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
-  if (line.size() > kLongestLine) throw RangeError(fmt::format("a line of {} characters", line.size()));
+  if (line.size() > kLongestLine)
+    throw RangeError(fmt::format("a line of more than {} characters, which is the most", kLongestLine));
   const std::size_t begin = line.find_first_not_of(" \t");
   if (begin == std::string::npos || line[begin] == '#') return std::nullopt;
   const bool is_json = line[begin] == '{';
   if (is_json && (s.is_json || !s.has_layout)) {
     Json object;
     try {
-      object = Json::parse(line);
-    } catch (const nlohmann::json::exception&) {
-      throw RangeError(fmt::format("'{}' is no JSON", shown(line)));
+      object = parse_json(line);
+    } catch (const InputError& e) {
+      throw RangeError(fmt::format("'{}': {}", shown(line), e.what()));
     }
     if (!s.has_layout) s.lay_out_json(object);
     return s.of_json(object);

@@ -58,7 +58,9 @@ RowSource::Got SparkplugRows::next(std::string& line, double wait_s) {
   if (node_.wants_birth()) ask_for_birth();
   MqttLink::Message message;
   if (link_.next(message, std::min(wait_s, ticks_.until_next_s()))) {
-    const std::string why = node_.take(message.topic, message.payload);
+    const std::string why = message.is_cut
+                                ? fmt::format("its payload has more than {} bytes, which is the most", kLargestPayload)
+                                : node_.take(message.topic, message.payload);
     if (!why.empty() && why != said_) say_(fmt::format("{}: {}", message.topic, why));
     said_ = why;
     if (node_.is_alive() != was_alive_) {

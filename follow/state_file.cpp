@@ -7,22 +7,15 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/bounded_json.hpp"
 #include "base/file_bytes.hpp"
+#include "base/hashed_json.hpp"
 #include "follow/state_json.hpp"
 
 namespace driftwright::follow {
-namespace {
-
-std::string compact(const Json& j) {
-  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-}  // namespace
 
 void write_state(const std::filesystem::path& file, const Session& session) {
-  Json j = session.state();
-  j["hash"] = content_hash(compact(j));
-  const std::string text = compact(j) + "\n", partial = file.string() + ".partial";
+  const std::string text = compact_text(with_hash(session.state())) + "\n", partial = file.string() + ".partial";
   const auto fail = [&] {
     const int why = errno;
     (void)::unlink(partial.c_str());
@@ -53,12 +46,11 @@ void write_state(const std::filesystem::path& file, const Session& session) {
 bool resume_from(const std::filesystem::path& file, Session& session) {
   if (!std::filesystem::exists(file)) return false;
   if (!std::filesystem::is_regular_file(file))  // which the rename of write_state() would do away with
-    throw InputError(fmt::format("--state {}: a folder, device or pipe of this name is there; a file is wanted", file.string()));
+    throw InputError(
+        fmt::format("--state {}: a folder, device or pipe of this name is there; a file is wanted", file.string()));
   try {
-    Json j = Json::parse(read_bytes(file));
-    const auto hash = output::value<std::string>(j, "hash");
-    j.erase("hash");
-    if (hash != content_hash(compact(j))) throw InputError("key `hash` does not fit what the file holds: it is damaged");
+    const Json j = parse_json(read_bytes(file));
+    if (!is_whole(j)) throw InputError("key `hash` does not fit what the file holds: it is damaged");
     session.recall(j);
   } catch (const nlohmann::json::exception& e) {
     throw InputError(fmt::format("--state {}: {}", file.string(), e.what()));

@@ -1,6 +1,8 @@
 #include "follow/watch_json.hpp"
 
+#include "base/bounded_json.hpp"
 #include "base/file_bytes.hpp"
+#include "base/hashed_json.hpp"
 
 namespace driftwright::follow {
 namespace {
@@ -13,6 +15,10 @@ WatchLimits limits_of(const Json& j, const std::string& model_hash) {
   if (!j.is_object() || output::value<std::string>(j, "format") != kFormat)
     throw InputError(
         fmt::format("no limits of a watch (key `format` must be \"{}\"); `follow --calibrate-watch` writes them", kFormat));
+  if (!is_whole(j))
+    throw InputError(
+        "key `hash` does not fit what the file holds: it was damaged or changed, or is of a version that wrote none; "
+        "`follow --calibrate-watch` writes it anew");
   if (output::value<std::string>(j, "model_hash") != model_hash)
     throw InputError("they are those of another model file; `follow --calibrate-watch` writes them anew");
   WatchLimits limits{.sensors = output::value<std::vector<std::string>>(j, "sensors"),
@@ -45,17 +51,17 @@ Json watch_json(const WatchLimits& limits, const std::string& model_hash) {
                       {"threshold", limits.scales[k].threshold},
                       {"covariance_K2", std::vector<double>(c.data(), c.data() + c.size())}});
   }
-  return {{"format", kFormat},
-          {"model_hash", model_hash},
-          {"machine_days", limits.machine_days},
-          {"alarms_simulated", limits.n_alarms},
-          {"sensors", limits.sensors},
-          {"scales", std::move(scales)}};
+  return with_hash({{"format", kFormat},
+                    {"model_hash", model_hash},
+                    {"machine_days", limits.machine_days},
+                    {"alarms_simulated", limits.n_alarms},
+                    {"sensors", limits.sensors},
+                    {"scales", std::move(scales)}});
 }
 
 WatchLimits read_watch(const std::string& path, const std::string& model_hash) {
   try {
-    return limits_of(Json::parse(read_bytes(path)), model_hash);
+    return limits_of(parse_json(read_bytes(path)), model_hash);
   } catch (const nlohmann::json::exception& e) {
     throw InputError(fmt::format("--watch {}: {}", path, e.what()));
   } catch (const InputError& e) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "base/bounded_json.hpp"
 #include "base/file_bytes.hpp"
 #include "base/npy_file.hpp"
 #include "machine/reduced_files.hpp"
@@ -96,8 +97,12 @@ void write_machine(const std::filesystem::path& work, const std::string& key, co
 
 /// @throws InputError  naming the first file that is not as it was written; a JSON exception where the list of hashes holds something else
 void require_whole(const std::filesystem::path& folder) {
-  const Json hashes = Json::parse(read_bytes(folder / kHashes), nullptr, false);
-  if (hashes.is_discarded()) throw InputError(fmt::format("{}: is not as it was written", (folder / kHashes).string()));
+  Json hashes;
+  try {
+    hashes = parse_json(read_bytes(folder / kHashes));
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}", (folder / kHashes).string(), e.what()));
+  }
   for (const auto& [name, hash] : hashes.items()) {
     if (content_hash(read_bytes(folder / name)) != hash.get<std::string>())
       throw InputError(fmt::format("{}: is not as it was written", (folder / name).string()));
@@ -128,7 +133,7 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
     if (read_bytes(folder / "key.txt") != key)
       throw InputError(fmt::format("{}: is of another machine", (folder / "key.txt").string()));
     require_whole(folder);
-    const Json json = Json::parse(read_bytes(folder / "model.json"));
+    const Json json = parse_json(read_bytes(folder / "model.json"));
     ReducedMachine machine;
     machine.n_unknowns = json.at("n_unknowns");
     machine.mesh = read_mesh(json.at("regions"), in_folder(folder));

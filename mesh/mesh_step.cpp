@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "base/delimited_text.hpp"
@@ -143,6 +144,8 @@ Mesh mesh_step(const ImportedMesh& recipe, bool as_it_comes) {
   const GmshSession session;
   return with_gmsh_errors([&] {
     std::vector<Solid> solids = import_solids(recipe.path, recipe.unit_m);
+    std::optional<BoundedTime> bounded(std::in_place,
+                                       most_to_compare_s(recipe.path, solids.size(), recipe.region_points.size()));
     name_by_points(solids, recipe.region_points);
     if (as_it_comes) make_up_names(solids);
     gmsh::vectorpair all, out;
@@ -187,6 +190,7 @@ Mesh mesh_step(const ImportedMesh& recipe, bool as_it_comes) {
       }
     }
     if (as_it_comes) make_up_sizes(parts);
+    bounded.reset();  // meshing has a time of its own
     const std::string outer = "outer";
     Mesh mesh = mesh_parts(parts, recipe.element_order, [&](const OuterFace&) { return outer; });
     // Outer faces get their names by picking; until then they are on no surface.

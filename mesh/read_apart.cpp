@@ -111,7 +111,8 @@ InputError of_death(const std::string& path, int status) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU)
     return InputError(fmt::format(
-        "{}: reading it takes longer than {} s of processor time and {} s more for each megabyte, or meshing it longer "
+        "{}: reading it takes longer than {} s of processor time and {} s more for each megabyte, comparing one of its "
+        "solids with others or with a point that names it as long again, or meshing it longer "
         "than {} s and 1 s more for each {} expected cells; the file is damaged, or holds what the library that reads "
         "it cannot take. Write it anew, or as another format",
         path, kLeastToRead_s, kPerMegabyte_s, kLeastToMesh_s, kCellsPerSecond));
@@ -198,6 +199,10 @@ double most_to_read_s(const std::string& path) {
   std::error_code unknown;
   const auto size = std::filesystem::file_size(path, unknown);
   return kLeastToRead_s + (unknown ? 0.0 : kPerMegabyte_s * 1e-6 * static_cast<double>(size));
+}
+
+double most_to_compare_s(const std::string& path, std::size_t n_solids, std::size_t n_points) {
+  return most_to_read_s(path) * static_cast<double>(n_solids * (1 + n_points));
 }
 
 double most_to_mesh_s(double n_cells) {

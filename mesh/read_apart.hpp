@@ -41,6 +41,8 @@ class BoundedTime {
 
 /// What reading a file may take: 5 s of processor time and 60 s more a megabyte.
 [[nodiscard]] double most_to_read_s(const std::string& path);
+/// What naming the solids of a drawing by points and joining them may take: as long as reading it, for each solid and for each pair of one and a point.
+[[nodiscard]] double most_to_compare_s(const std::string& path, std::size_t n_solids, std::size_t n_points);
 /// What meshing may take: 10 s of processor time and a second more for each 200 cells that are expected. Gmsh makes thousands in a second.
 [[nodiscard]] double most_to_mesh_s(double n_cells);
 

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "base/bounded_json.hpp"
 #include "base/file_bytes.hpp"
+#include "base/hashed_json.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/past_drift.hpp"
 #include "output/formula_json.hpp"
@@ -20,15 +22,9 @@ using namespace compensation;
 
 constexpr const char* kFormat = "driftwright predictor 1";
 
-std::string compact(const Json& j) {
-  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 /// A predictor is what was judged, or none.
-void require_whole(Json file) {
-  const auto hash = value<std::string>(file, "hash");
-  file.erase("hash");
-  if (hash != content_hash(compact(file)))
+void require_whole(const Json& file) {
+  if (!is_whole(file))
     throw InputError(
         "key `hash` does not fit what the file holds: it was damaged or changed, and is not what was judged; `validate` "
         "writes it anew");
@@ -147,9 +143,7 @@ Json predictor_json(const PredictorFile& file, const std::vector<effects::Effect
             {"fail_safe", d.fail_safe ? fail_safe_json(*d.fail_safe) : Json(nullptr)},
             {"predictor", kind}};
   j[kind] = std::move(made);
-  j = Json::parse(compact(j));  // texts that are none become so
-  j["hash"] = content_hash(compact(j));
-  return j;
+  return with_hash(std::move(j));
 }
 
 PredictorFile read_predictor(const std::string& path) {
@@ -157,7 +151,7 @@ PredictorFile read_predictor(const std::string& path) {
     throw InputError(fmt::format("{}: no such file; a predictor of `validate` is wanted, models/NAME.json", path));
   const std::string text = read_bytes(path);
   try {
-    return file_of(Json::parse(text));
+    return file_of(parse_json(text));
   } catch (const nlohmann::json::exception& e) {
     throw InputError(fmt::format("{}: {}", path, e.what()));
   } catch (const InputError& e) {

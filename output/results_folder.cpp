@@ -15,6 +15,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/bounded_json.hpp"
 #include "base/errors.hpp"
 
 namespace driftwright::output {
@@ -40,10 +41,15 @@ fs::path plain_path(const fs::path& target) {
 /// The files that a folder's manifest lists, the manifest among them; none when it has no manifest of ours.
 std::set<std::string> listed_files(const fs::path& folder) {
   std::ifstream in(folder / kManifestName);
-  const auto manifest = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
-  if (!manifest.is_object() || manifest.value("program", nlohmann::json()) != "driftwright") return {};
+  nlohmann::ordered_json manifest;
+  try {
+    manifest = parse_json(std::string(std::istreambuf_iterator<char>(in), {}));
+  } catch (const InputError&) {
+    return {};
+  }
+  if (!manifest.is_object() || manifest.value("program", nlohmann::ordered_json()) != "driftwright") return {};
   std::set<std::string> listed = {kManifestName};
-  for (const auto& file : manifest.value("files", nlohmann::json::array())) {
+  for (const auto& file : manifest.value("files", nlohmann::ordered_json::array())) {
     if (file.is_string()) listed.insert(file.get<std::string>());
   }
   return listed;

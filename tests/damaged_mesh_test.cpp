@@ -225,5 +225,21 @@ TEST(DamagedStep, IsRefusedOrRead) {
   EXPECT_GT(n_refused, 1);
 }
 
+TEST(DamagedStep, ACornerAtInfinityIsRefusedInTime) {  // OpenCASCADE compares its solid with a point for ever
+  all_threads_are_ours();
+  std::string text = read_text("tests/fuzz/corpus/meshes/box.step");
+  const std::string corner = "#34 = CARTESIAN_POINT('',(0.,";
+  ASSERT_NE(text.find(corner), std::string::npos);
+  text.replace(text.find(corner), corner.size(), "#34 = CARTESIAN_POINT('',(1e99999,");
+  ImportedMesh recipe;
+  recipe.path = write_file("endless.step", text);
+  recipe.unit_m = 1e-3;
+  recipe.mesh_size_m = 0.03;
+  recipe.element_order = 1;
+  recipe.region_points = {{"body", {0.05, 0.01, 0.01}, {}}};
+  EXPECT_THAT([&] { (void)import_mesh(recipe); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("endless.step"), HasSubstr("longer than 5 s"))));
+}
+
 }  // namespace
 }  // namespace driftwright::mesh

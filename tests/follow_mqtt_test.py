@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""`driftwright follow` at a real mosquitto on loopback that is killed again and again, with rows that are late, doubled, swapped, missing or none.
+"""`driftwright follow` at a real mosquitto on loopback that is killed again and again, with rows that are late, doubled, swapped, missing or none, that nest
+without end or are of megabytes.
 
     follow_mqtt_test.py PROGRAM
 """
@@ -16,6 +17,7 @@ import threading
 import time
 
 from one_head import HEAD
+import waiting
 from waiting import broker, free_port, need_mosquitto
 
 SLEW_UM_S = 0.05
@@ -23,7 +25,7 @@ KILLS = 5
 
 
 def publish(port, topic, text):
-    return subprocess.run(["mosquitto_pub", "-h", "127.0.0.1", "-p", str(port), "-t", topic, "-m", text], capture_output=True).returncode == 0
+    return subprocess.run(["mosquitto_pub", "-h", "127.0.0.1", "-p", str(port), "-t", topic, "-s"], input=text.encode(), capture_output=True).returncode == 0
 
 
 def main():
@@ -40,12 +42,24 @@ def main():
     threading.Thread(target=lambda: lines.extend(json.loads(line) for line in iter(follow.stdout.readline, "")), daemon=True).start()
     server = broker(folder, port)
     try:
+        nested = '{"time_s":' + "[" * 45000 + "]" * 45000 + "}"
+        large = (json.dumps({"time_s": 1, "speed_rpm": 9000, "ambient_degC": 20}) + "\n") * 40000  # 2 MB; a row, were it read
+        words, n_waited = [], 0
+        threading.Thread(target=lambda: words.extend(iter(follow.stderr.readline, "")), daemon=True).start()
+        while not any("a header or a JSON row is waited for" in w for w in words):  # nothing that somebody publishes first ends it
+            n_waited += 1
+            assert n_waited < 100 and follow.poll() is None, words
+            publish(port, "mill/row", nested)
+            time.sleep(0.2)
         for _ in range(100):  # until the link is there
             publish(port, "mill/row", json.dumps({"time_s": 0, "speed_rpm": 2000, "ambient_degC": 20}))
             if lines:
                 break
             time.sleep(0.2)
         assert lines, "no line came"
+        for text, why in ((nested, "more than 100 deep"), (large, "more than 100000 characters")):
+            publish(port, "mill/row", text)
+            waiting.wait_for(why, lambda: any(why in line.get("why", "") for line in lines), told=lambda: words)
         late, row, n_heard = [], 0, []
         for part in range(KILLS + 1):
             before = len(lines)
@@ -85,7 +99,9 @@ def main():
         correction = json.loads(heard.communicate()[0])
         assert "nose_z" in correction["axes"], correction
         follow.send_signal(signal.SIGTERM)
-        words = follow.communicate(timeout=30)[1]
+        follow.wait(timeout=30)
+        waiting.wait_for("last words", lambda: any("rows," in w for w in words))
+        words = "".join(words)
         assert follow.returncode == 0, (follow.returncode, words)
         assert min(n_heard) >= 8, (n_heard, words)
         last_um, last_s = 0.0, 0.0

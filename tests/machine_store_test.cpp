@@ -23,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using fixtures::ColumnAndHead;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr const char* kUpwards = "{type: natural_convection, surface: front, orientation: vertical, length: 100 mm}";
@@ -355,6 +356,17 @@ TEST(MachineStore, TakesADamagedFolderForNone) {
       EXPECT_EQ(run(s, *found).outputs, right.outputs);
     }
   }
+}
+
+TEST(MachineStore, TakesAListOfFilesThatNestsWithoutEndForDamage) {
+  const Scenario s = read(with_effects({kUpwards}));
+  const fs::path store = fresh_folder("store_nested");
+  save_machine(store, key_of(s), reduced(s));
+  std::ofstream(only_folder(store) / "hashes.json")
+      << "{\"model.json\":" << std::string(300000, '[') << std::string(300000, ']') << "}";
+  std::string damage;
+  EXPECT_FALSE(load_machine(store, key_of(s), balance_of(s), &damage));
+  EXPECT_THAT(damage, AllOf(HasSubstr("hashes.json"), HasSubstr("more than 100 deep")));
 }
 
 TEST(MachineStore, TakesArraysOfAnotherMachineForDamage) {

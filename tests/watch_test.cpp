@@ -14,6 +14,7 @@
 namespace driftwright::follow {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 using Kind = TrialFault::Kind;
@@ -109,6 +110,17 @@ TEST(Watch, LimitsAreReadAsTheyWereWrittenAndNotForAnotherModel) {
     EXPECT_EQ(read.scales[j].covariance, limits().scales[j].covariance);
   }
   EXPECT_THAT([&] { (void)read_watch(path, "two"); }, ThrowsMessage<InputError>(HasSubstr("another model file")));
+}
+
+TEST(Watch, LimitsThatAreNotAsTheyWereWrittenAreRefused) {
+  output::Json json = watch_json(limits(), "one");
+  const auto read = [](const output::Json& j) { (void)read_watch(write_file("changed.watch", j.dump(1)), "one"); };
+  EXPECT_NO_THROW(read(json));  // the layout is nobody's business
+  json["scales"][0]["threshold"] = 2.0 * json["scales"][0]["threshold"].get<double>();
+  EXPECT_THAT([&] { read(json); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("changed.watch"), HasSubstr("damaged or changed"))));
+  json.erase("hash");  // as versions before wrote them
+  EXPECT_THAT([&] { read(json); }, ThrowsMessage<InputError>(HasSubstr("`follow --calibrate-watch` writes it anew")));
 }
 
 TEST(Watch, ThresholdsWantAMachineForADay) {

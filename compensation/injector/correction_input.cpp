@@ -16,6 +16,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/bounded_json.hpp"
 #include "base/csv_row.hpp"
 #include "base/delimited_text.hpp"
 #include "base/errors.hpp"
@@ -57,7 +58,12 @@ constexpr std::size_t kShown = 60;  // of a line in messages
 
 /// The correction [um] of an axis in a line of `follow`; of the only one where none is named. None where it says none.
 std::optional<double> followed_um(std::string_view line, const std::string& axis) {
-  const nlohmann::json j = nlohmann::json::parse(line, nullptr, false);
+  nlohmann::ordered_json j;
+  try {
+    j = parse_json(line);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
   const auto axes = j.is_object() ? j.find("axes") : j.end();
   if (!j.is_object() || axes == j.end() || !axes->is_object() || (axis.empty() && axes->size() != 1)) return std::nullopt;
   const auto wanted = axis.empty() ? axes->begin() : axes->find(axis);

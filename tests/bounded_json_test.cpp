@@ -1,0 +1,69 @@
+// JSON from outside: how deep it may nest, where it stops to be JSON, and whether it is still what was written.
+
+#include "base/bounded_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.hpp"
+#include "base/hashed_json.hpp"
+
+namespace driftwright {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+using Json = nlohmann::ordered_json;
+
+std::string lists(std::size_t n) {
+  return std::string(n, '[') + std::string(n, ']');
+}
+std::string objects(std::size_t n) {
+  std::string text;
+  for (std::size_t i = 0; i < n; ++i) text += "{\"a\":";
+  return text + "1" + std::string(n, '}');
+}
+
+TEST(BoundedJson, NestsAHundredDeepAndNoDeeper) {
+  EXPECT_EQ(parse_json(lists(100)).dump(), lists(100));
+  EXPECT_EQ(parse_json(objects(100)).dump(), objects(100));
+  for (const std::string& text :
+       {lists(101), objects(101), lists(300000), objects(300000), std::string(300000, '['), "{\"a\":" + lists(100) + "}"})
+    EXPECT_THAT([&] { (void)parse_json(text); }, ThrowsMessage<InputError>(HasSubstr("more than 100 deep")));
+}
+
+TEST(BoundedJson, BracketsInATextAndBesideOneAnotherNestNothing) {
+  const std::string text = "[\"" + std::string(1000, '[') + "\\\"" + std::string(1000, '{') + "\"]";
+  EXPECT_EQ(parse_json(text).dump(), text);
+  std::string beside = "[[]";
+  for (int i = 0; i < 1000; ++i) beside += ",[]";
+  EXPECT_EQ(parse_json(beside + "]").size(), 1001u);
+}
+
+TEST(BoundedJson, SaysFromWhereOnATextIsNoJson) {
+  EXPECT_THAT([] { (void)parse_json("{\n \"a\": 1,\n \"b\" 2}"); },
+              ThrowsMessage<InputError>(HasSubstr("no JSON from line 3, column 6 on")));
+  EXPECT_THAT([] { (void)parse_json("[1, 2"); }, ThrowsMessage<InputError>(HasSubstr("line 1, column 6")));
+  EXPECT_THAT([] { (void)parse_json(""); }, ThrowsMessage<InputError>(HasSubstr("line 1, column 1")));
+  EXPECT_THAT([] { (void)parse_json("[1e999]"); }, ThrowsMessage<InputError>(HasSubstr("beyond 1.8e308")));
+}
+
+TEST(HashedJson, IsWholeUntilAValueIsAnother) {
+  const Json json = with_hash({{"a", {1, 2.5}}, {"b", "Geh\xE4use"}, {"c", NAN}});
+  EXPECT_TRUE(is_whole(json));
+  EXPECT_TRUE(is_whole(parse_json(json.dump(3))));  // the layout is nobody's business
+  for (const char* key : {"a", "b", "c", "hash"}) {
+    Json other = json;
+    other[key] = 3;
+    EXPECT_FALSE(is_whole(other)) << key;
+    other.erase(key);
+    EXPECT_FALSE(is_whole(other)) << key;
+  }
+  EXPECT_FALSE(is_whole(Json::array({"hash"})));
+}
+
+}  // namespace
+}  // namespace driftwright
