@@ -13,18 +13,24 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr int kRowsPerSlot = 3;
-constexpr std::size_t kBatch = 250, kBest = 20;
+/// A search: how finely programmes are run, and by how many laws of each kind they are judged.
+struct Fineness {
+  int rows_per_slot;
+  std::size_t most_of_a_kind;
+};
+constexpr Fineness kCoarse = {1, 3}, kFine = {3, 8};  // all are tried coarsely, the best of them finely
+constexpr std::size_t kBatch = 250;
+constexpr std::size_t kParents = 20;        // the best so far, which others are changes of
+constexpr std::size_t kTriedFinely = 200;
 constexpr std::size_t kTogether = 10;    // programmes of a piece
 constexpr int kAsked = 4;                // programmes asked for, for each one that shall be tried: some come twice
 constexpr double kRandom = 0.5;          // share of all that is tried
-constexpr std::size_t kMostOfAKind = 8;  // laws that the search looks at
 constexpr int kMostProgrammes = 10000, kFewestProgrammes = 300;
 constexpr double kWork = 1.5e11;         // multiplications, some ten seconds of two cores
 constexpr double kWorthASection = 0.01;  // of the best
 
 /// Numbers of pieces: where those of each stage begin.
-constexpr std::size_t kSearch = 0, kFound = 10'000'000, kJudged = 10'000'001;
+constexpr std::size_t kSearch = 0, kFineSearch = 5'000'000, kFound = 10'000'000, kJudged = 10'000'001;
 
 struct Tried {
   TestProgramme programme;
@@ -34,12 +40,14 @@ struct Tried {
 /// All that were tried, the best first.
 class Search {
  public:
-  Search(const diagnosis::LevelMachine& machine, const diagnosis::Question& question, const Pieces& pieces)
-      : machine_(machine), question_(question), pieces_(pieces) {}
+  /// @param n_kept  of the best
+  Search(const diagnosis::LevelMachine& machine, const diagnosis::Question& question, int rows_per_slot, std::size_t n_kept,
+         Pieces pieces)
+      : machine_(machine), question_(question), rows_per_slot_(rows_per_slot), n_kept_(n_kept), pieces_(std::move(pieces)) {}
 
   [[nodiscard]] double share(const TestProgramme& programme) const {
     std::vector<int> steps;
-    for (int level : programme) steps.insert(steps.end(), kRowsPerSlot, level);
+    for (int level : programme) steps.insert(steps.end(), static_cast<std::size_t>(rows_per_slot_), level);
     return diagnosis::share_named(question_, machine_.information(steps));
   }
   void attempt(std::vector<TestProgramme> programmes) {
@@ -56,7 +64,7 @@ class Search {
     n_pieces_ += n_pieces;
     for (std::size_t i = 0; i < programmes.size(); ++i) best_.push_back({programmes[i], shares[i / kTogether][i % kTogether]});
     std::stable_sort(best_.begin(), best_.end(), [](const Tried& a, const Tried& b) { return a.share > b.share; });
-    if (best_.size() > kBest) best_.resize(kBest);
+    if (best_.size() > n_kept_) best_.resize(n_kept_);
   }
   [[nodiscard]] const std::vector<Tried>& best() const { return best_; }
   [[nodiscard]] int n_tried() const { return static_cast<int>(seen_.size()); }
@@ -64,7 +72,9 @@ class Search {
  private:
   const diagnosis::LevelMachine& machine_;
   const diagnosis::Question& question_;
-  const Pieces& pieces_;
+  int rows_per_slot_;
+  std::size_t n_kept_;
+  Pieces pieces_;
   std::size_t n_pieces_ = 0;
   std::set<TestProgramme> seen_;
   std::vector<Tried> best_;
@@ -90,9 +100,8 @@ Tried simplified(const Search& search, const Tried& best) {
   return simple;
 }
 
-Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& question, const TestLevels& levels,
-            int n_programmes, unsigned seed, int& n_tried, const Listener& listener, const Pieces& pieces) {
-  Search search(machine, question, pieces);
+/// Tries programmes, the usual and the stepped one first.
+void look_for(Search& search, const TestLevels& levels, int n_programmes, unsigned seed, const Listener& listener) {
   search.attempt({usual_test(levels), stepped_test(levels)});
   std::mt19937_64 random(seed);
   const int most_asked = kAsked * n_programmes;  // a small machine has fewer programmes than that
@@ -104,7 +113,7 @@ Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& q
         programmes.push_back(random_test(levels, random));
         continue;
       }
-      TestProgramme changed = search.best()[random() % search.best().size()].programme;
+      TestProgramme changed = search.best()[random() % std::min(kParents, search.best().size())].programme;
       for (std::size_t changes = 1 + random() % 3; changes > 0; --changes)
         changed = changed_test(std::move(changed), levels, random);
       programmes.push_back(std::move(changed));
@@ -113,8 +122,6 @@ Tried found(const diagnosis::LevelMachine& machine, const diagnosis::Question& q
     search.attempt(std::move(programmes));
     listener.share(static_cast<double>(search.n_tried()) / n_programmes);
   }
-  n_tried = search.n_tried();
-  return simplified(search, search.best().front());
 }
 
 void add(Pieces::Numbers& numbers, const auto& matrix) {
@@ -175,7 +182,7 @@ std::vector<Pieces::Numbers> judge(const PlannedTwin& p, const diagnosis::Doubts
 /// A programme's cost: every doubt from row to row, and the products of its columns.
 int programmes_of(const PlannedTwin& p, const diagnosis::Doubts& doubts) {
   const double size = p.twin->machine().system.size(), n_doubts = static_cast<double>(doubts.question.n());
-  const double n_rows = kTestSlots * kRowsPerSlot, n_readings = n_rows * static_cast<double>(p.channels.size());
+  const double n_rows = kTestSlots * kCoarse.rows_per_slot, n_readings = n_rows * static_cast<double>(p.channels.size());
   const double each = n_doubts * n_rows * size * (size + static_cast<double>(p.twin->outputs().name.size())) +
                       0.5 * n_doubts * n_doubts * n_readings;
   return std::clamp(static_cast<int>(kWork / each), kFewestProgrammes, kMostProgrammes);
@@ -222,14 +229,25 @@ std::optional<TestPlan> plan_test(const scenarios::Scenario& scenario, const Tes
                 .question = doubts.question};
   for (const diagnosis::MeasuredChannel& c : p.channels) plan.channels.push_back(c.name);
   const Pieces::Numbers found_numbers = pieces.of(kFound, [&] {
-    const diagnosis::Doubts searched = diagnosis::thinned(*p.twin, doubts, usual, kMostOfAKind);
-    const int n_programmes = options.n_programmes > 0 ? options.n_programmes : programmes_of(p, searched);
-    listener.begin(fmt::format("{} doubts at {} levels", searched.question.n(), levels.drives.size()));
-    const double row_s = options.duration_s / (kTestSlots * kRowsPerSlot);
-    const diagnosis::LevelMachine machine(*p.twin, searched, levels.drives, usual, row_s, options.interval_s, p.noise);
+    const auto doubts_of = [&](const Fineness& how) { return diagnosis::thinned(*p.twin, doubts, usual, how.most_of_a_kind); };
+    const auto machine_of = [&](const Fineness& how, const diagnosis::Doubts& searched) {
+      listener.begin(fmt::format("{} doubts at {} levels", searched.question.n(), levels.drives.size()));
+      return diagnosis::LevelMachine(*p.twin, searched, levels.drives, usual, options.duration_s / (kTestSlots * how.rows_per_slot),
+                                     options.interval_s, p.noise);
+    };
+    const diagnosis::Doubts few = doubts_of(kCoarse), more = doubts_of(kFine);
+    const diagnosis::LevelMachine coarse_machine = machine_of(kCoarse, few);
+    const int n_programmes = options.n_programmes > 0 ? options.n_programmes : programmes_of(p, few);
     listener.begin(fmt::format("trying {} programmes", n_programmes));
-    int n_tried = 0;
-    const Tried best = found(machine, searched.question, levels, n_programmes, options.seed, n_tried, listener, pieces.from(kSearch));
+    Search coarse(coarse_machine, few.question, kCoarse.rows_per_slot, kTriedFinely, pieces.from(kSearch));
+    look_for(coarse, levels, n_programmes, options.seed, listener);
+    const diagnosis::LevelMachine fine_machine = machine_of(kFine, more);
+    Search fine(fine_machine, more.question, kFine.rows_per_slot, 1, pieces.from(kFineSearch));
+    std::vector<TestProgramme> promising = {usual_test(levels), stepped_test(levels)};
+    for (const Tried& tried : coarse.best()) promising.push_back(tried.programme);
+    fine.attempt(std::move(promising));
+    const Tried best = simplified(fine, fine.best().front());
+    const int n_tried = coarse.n_tried();
     Pieces::Numbers numbers = {best.share, static_cast<double>(n_tried)};
     numbers.insert(numbers.end(), best.programme.begin(), best.programme.end());
     return numbers;

@@ -43,8 +43,8 @@ struct TestPlan {
   Record usual_record = {}, planned_record = {};  ///< of the machine as written, without noise
 };
 
-/// Tries programmes on a linear machine (diagnosis/level_machine.hpp) by up to eight laws of each kind of effect: half of them random, the others one change off the best so far; takes away sections that
-/// are worth less than 1 % of the best; judges the best by the signatures that `diagnose` itself takes. Where the usual or the stepped test is as good, it is that.
+/// Tries programmes on a linear machine (diagnosis/level_machine.hpp), half of them random, the others a few changes off the best so far: all of them in steps of a slot by up to three laws
+/// of each kind of effect, the best 200 of these in thirds of a slot by up to eight; takes away sections that are worth less than 1 % of the best; judges the best by the signatures that `diagnose` itself takes. Where the usual or the stepped test is as good, it is that.
 /// @param pieces  programmes tried, ten a piece, and tests judged. Every shard needs what all have tried
 /// @returns nothing where this is one shard of several
 /// @throws InputError  as open_planned_twin(), test_levels()

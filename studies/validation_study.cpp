@@ -195,64 +195,70 @@ std::optional<Record> as_judged(const Validation& v, const std::string& cyclogra
   return std::nullopt;
 }
 
-compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const scenarios::Model& model,
-                                                 const Listener& listener) {
+Record read_in_validation(const Validation& v, Record exact, std::size_t run) {
+  return as_read(std::move(exact), instrument_of(v), seed_of(v, run));
+}
+
+StrategyTraining strategy_training(const Scenario& scenario, const scenarios::Model& model) {
   const Validation& v = *scenario.validation;
   const scenarios::Study& study = *scenario.study;
   if (effects::has_reading_effects(scenario.machine->effects)) {
     throw InputError(v.where,
                      "strategies are judged by the true drift; leave out the effects that change what instruments read");
   }
-  std::vector<Job> jobs;
-  for (const Cyclogram& c : v.train) jobs.push_back({&c, &v.seasons.front()});
-  std::vector<std::pair<std::string, std::string>> family_and_season;
-  for (const Validation::Family& family : v.families) {
-    for (const Validation::Season& season : v.seasons) {
-      for (const Cyclogram& c : family.cyclograms) {
-        jobs.push_back({&c, &season});
-        family_and_season.emplace_back(family.name, season.name);
-      }
-    }
-  }
-  listener.begin(fmt::format("simulating {} runs", jobs.size()));
-  std::vector<compensation::ObservedRun> runs(jobs.size());
-  parallel_for(jobs.size(), [&](std::size_t i) { runs[i] = simulate(scenario, model, jobs[i]); },
-               {.on_begin = {}, .on_share = listener.on_share, .wants_end_now = {}});
+  std::vector<compensation::ObservedRun> runs(v.train.size());
+  parallel_for(runs.size(), [&](std::size_t i) { runs[i] = simulate(scenario, model, {&v.train[i], &v.seasons.front()}); });
   const std::vector<std::string> candidates = candidate_sensors(study, runs.front().readings);
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    runs[i].readings = as_read(std::move(runs[i].readings), instrument_of(v), seed_of(v, i));
-    if (i >= v.train.size()) continue;
+    runs[i].readings = read_in_validation(v, std::move(runs[i].readings), i);
     Random random(seed_of(v, i), 99);
     const auto target = static_cast<std::size_t>(&runs[i].readings.at(study.target) - runs[i].readings.channels.data());
     for (double& um : runs[i].readings.channels[target].values) um += v.drift_noise_um * random.normal();
   }
-  const std::string ambient = ambient_channel(scenario, runs.front().readings);
-  compensation::MatrixSettings settings;
-  compensation::StrategySettings& how = settings.strategies;
+  compensation::StrategySettings how;
   how.target = study.target;
   how.candidates = candidates;
   how.n_sensors = study.sensors_to_choose;
   how.count_from_start = true;
   how.image = study.image;
   how.speed = speed_channel(runs.front().readings);
-  how.ambient = ambient;
+  how.ambient = ambient_channel(scenario, runs.front().readings);
   how.reading_K = std::max(1e-3, std::hypot(v.noise_K, kRounding * v.resolution_K));
   how.drift_um = std::max(0.1, v.drift_noise_um);
   how.physics = physics_of(scenario, model, v.model_scatter, v.seed);
+  return {std::move(runs), std::move(how)};
+}
+
+compensation::StrategyMatrix validate_strategies(const Scenario& scenario, const scenarios::Model& model,
+                                                 const Listener& listener) {
+  const Validation& v = *scenario.validation;
+  StrategyTraining training = strategy_training(scenario, model);
+  std::vector<Job> jobs;
+  std::vector<compensation::JudgedRunOfMachine> judged;
+  for (const Validation::Family& family : v.families) {
+    for (const Validation::Season& season : v.seasons) {
+      for (const Cyclogram& c : family.cyclograms) {
+        jobs.push_back({&c, &season});
+        judged.push_back({family.name, season.name, c.name, {}});
+      }
+    }
+  }
+  listener.begin(fmt::format("simulating {} runs", jobs.size()));
+  parallel_for(
+      jobs.size(),
+      [&](std::size_t i) {
+        judged[i].run = simulate(scenario, model, jobs[i]);
+        judged[i].run.readings = read_in_validation(v, std::move(judged[i].run.readings), v.train.size() + i);
+      },
+      {.on_begin = {}, .on_share = listener.on_share, .wants_end_now = {}});
+  compensation::MatrixSettings settings;
+  settings.strategies = std::move(training.settings);
   settings.tolerance_um = v.tolerance_um;
   settings.fails_at = v.fails_at;
   settings.fails_in = v.seasons.front().name;
-  settings.elsewhere = ambient;
-  std::vector<compensation::ObservedRun> training(
-      std::make_move_iterator(runs.begin()),
-      std::make_move_iterator(runs.begin() + static_cast<std::ptrdiff_t>(v.train.size())));
-  std::vector<compensation::JudgedRunOfMachine> judged;
-  for (std::size_t k = 0; k < family_and_season.size(); ++k) {
-    compensation::ObservedRun& run = runs[v.train.size() + k];
-    judged.push_back({family_and_season[k].first, family_and_season[k].second, run.cyclogram.name, std::move(run)});
-  }
+  settings.elsewhere = settings.strategies.ambient;
   listener.begin(fmt::format("fitting and judging strategies on {} runs", judged.size()));
-  return compensation::judge_strategies(settings, std::move(training), std::move(judged));
+  return compensation::judge_strategies(settings, std::move(training.runs), std::move(judged));
 }
 
 compensation::StrategyMatrix validate_on_records(const Scenario& scenario, StudyRecords records, const Listener& listener) {

@@ -14,6 +14,16 @@ namespace driftwright::studies {
 [[nodiscard]] compensation::StrategyMatrix validate_strategies(const scenarios::Scenario& scenario,
                                                                const scenarios::Model& model, const Listener& listener);
 
+/// What strategies are fitted on: the training cyclograms in the first season, as instruments read them, and what is known of the machine.
+struct StrategyTraining {
+  std::vector<compensation::ObservedRun> runs;
+  compensation::StrategySettings settings;
+};
+/// As validate_strategies() fits them. @throws InputError  the same
+[[nodiscard]] StrategyTraining strategy_training(const scenarios::Scenario& scenario, const scenarios::Model& model);
+/// A simulated record as those instruments read it. @param run  index among training runs and, behind them, those judged: which noise
+[[nodiscard]] Record read_in_validation(const scenarios::Validation& validation, Record exact, std::size_t run);
+
 /// The readings of a cyclogram in the scenario's own ambient as validate_strategies() gives them to strategies, with the noise of that very run;
 /// none where it judges no such run. @param exact  as simulated
 [[nodiscard]] std::optional<Record> as_judged(const scenarios::Validation& validation, const std::string& cyclogram,
