@@ -420,10 +420,15 @@ int app::command_line(int argc, const char* const* argv) {
                   "warmup scenarios/fp3_spindle.yaml --then chaotic --tolerance '12 um' -o results/warmup", warmup);
   verb->add_option("--then", warmup.then, "the job: a cyclogram of the scenario, a record CSV or an NC program")->required();
   verb->add_option("--tolerance", warmup.tolerance, "of the job's drift, such as '10 um' [the study's, else 10 um]");
-  verb->add_option("--margin", warmup.margin,
-                   "share of the tolerance that is kept free for what the model does not know, such as '20 %' [none]");
+  CLI::Option* margin = verb->add_option(
+      "--margin", warmup.margin, "share of the tolerance that is kept free for what the model does not know, such as '20 %' [none]");
+  verb->add_option("--model-error", warmup.model_error,
+                   "of each source, film, joint and link, such as '20 %': the margin is then so large that 95 of 100 such machines keep the tolerance")
+      ->excludes(margin);
   verb->add_option("--speed-limit", warmup.speed_limit,
                    "of the warm-up, such as '3000 rpm' [the fastest of the scenario and the job]");
+  verb->add_option("--power-limit", warmup.power_limit,
+                   "of the heat that a speed of the warm-up brings into the machine, such as '150 W' [none]");
   verb->add_option("--time-limit", warmup.time_limit, "of the warm-up, such as '2 h' [4 h]");
   verb->add_option("--channel", warmup.channels, "displacement that counts; may be repeated [all]")->allow_extra_args(false);
   add_warm_start(verb, warmup.start, warmup.after_pause, warmup.model);

@@ -59,6 +59,8 @@ struct WarmUpVerbOptions : CommonOptions {
   std::string then;                   ///< the job: a cyclogram of the scenario, a record CSV or an NC program
   std::string tolerance;              ///< such as "10 um"; empty: the study's, else 10 um
   std::string margin;                 ///< share of it that is kept free, such as "20 %"; empty: none
+  std::string model_error;            ///< such as "20 %", of which the margin then follows; empty: none
+  std::string power_limit;            ///< of the heat that a speed brings, such as "150 W"; empty: none
   std::string speed_limit;            ///< such as "3000 rpm"; empty: the fastest of the scenario and the job
   std::string time_limit;             ///< such as "2 h"; empty: 4 h
   std::vector<std::string> channels;  ///< displacements; empty: all

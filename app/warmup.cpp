@@ -48,6 +48,8 @@ void warmup(const WarmUpVerbOptions& options) {
                              .tolerance_um = scenario.study ? scenario.study->tolerance_um : 10.0};
   if (!options.tolerance.empty()) how.tolerance_um = quantity("--tolerance", options.tolerance, "um", 1e-3, 1e4);
   if (!options.margin.empty()) how.kept_free = quantity("--margin", options.margin, "1", 0.0, 0.95);
+  if (!options.model_error.empty()) how.model_error = quantity("--model-error", options.model_error, "1", 0.001, 1.0);
+  if (!options.power_limit.empty()) how.most_power_W = quantity("--power-limit", options.power_limit, "W", 0.1, 1e6);
   if (!options.speed_limit.empty()) how.most_speed_rpm = quantity("--speed-limit", options.speed_limit, "rpm", 10.0, 1e6);
   if (!options.time_limit.empty()) how.most_s = quantity("--time-limit", options.time_limit, "s", 60.0, 7.0 * 86400.0);
   const Cyclogram job = job_of(scenario, options.then);
@@ -55,10 +57,10 @@ void warmup(const WarmUpVerbOptions& options) {
   Progress progress(options.quiet);
   const studies::WarmUpPlan plan = studies::plan_warm_up(scenario, job, how, progress.listener());
   const std::string what = fmt::format("warm-up of {} before {}", scenario.name, job.name);
-  if (plan.staged.is_enough && !plan.staged.sections.empty()) {
-    folder.write_text("warmup.ngc", studies::warm_up_program(plan.staged.sections, what));
+  if (plan.best().is_enough && !plan.best().sections.empty()) {
+    folder.write_text("warmup.ngc", studies::warm_up_program(plan.best().sections, what));
     Record rows{.source = "warmup", .time_s = {0.0}, .channels = {{"speed", "rpm", {}}}};
-    for (const Cyclogram::Section& section : plan.staged.sections) {
+    for (const Cyclogram::Section& section : plan.best().sections) {
       rows.channels.front().values.push_back(section.drive.speed_rpm);
       rows.time_s.push_back(rows.time_s.back() + section.duration_s);
     }

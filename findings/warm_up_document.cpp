@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "findings/run_section.hpp"
 
@@ -40,7 +41,9 @@ Table ways_table(const WarmUpPlan& plan, const Cyclogram& job) {
                           {.key = "peak_um", .title = "peak of the job", .unit = "um", .digits = output::decimals(2)},
                           {.key = "channel", .title = "of"},
                           {.key = "programme", .title = "programme"}}};
-  for (const WarmUp* way : {&plan.at_once, &plan.at_rest, &plan.by_jobs, &plan.constant, &plan.staged}) {
+  std::vector<const WarmUp*> ways = {&plan.at_once, &plan.at_rest, &plan.by_jobs, &plan.constant, &plan.staged};
+  if (plan.finest) ways.push_back(&*plan.finest);
+  for (const WarmUp* way : ways) {
     const bool is_tried = way != &plan.by_jobs || !way->sections.empty() || job.duration_s() <= plan.most_s;
     table.rows.push_back({way->way, way->is_enough, way->duration_s() / 60.0, way->peak_um, way->peak_channel,
                           !is_tried               ? "not tried: one part is longer than the time limit"
@@ -66,11 +69,11 @@ Verdict verdict_of(const WarmUpPlan& plan, const Cyclogram& job) {
             .title = "No warm-up is needed",
             .text = fmt::format("{} drifts by {:.2f} µm at most when it begins at once, within {}.", job.name,
                                 plan.at_once.peak_um, tolerance)};
-  if (!plan.staged.is_enough) {
+  const WarmUp& best = plan.best();
+  if (!best.is_enough) {
     std::string text = fmt::format("Of warm-ups up to {:.0f} min and {:.0f} rpm none was found behind which {} drifts by less than {:.2f} µm ({}); "
                                    "allowed are {}.",
-                                   plan.most_s / 60.0, plan.most_speed_rpm, job.name, plan.staged.peak_um,
-                                   plan.staged.peak_channel, tolerance);
+                                   plan.most_s / 60.0, plan.most_speed_rpm, job.name, best.peak_um, best.peak_channel, tolerance);
     if (plan.by_jobs.is_enough)
       text += fmt::format(" Behind {:.0f} min of the job itself it drifts by {:.2f} µm: the parts before are the warm-up.",
                           plan.by_jobs.duration_s() / 60.0, plan.by_jobs.peak_um);
@@ -78,21 +81,22 @@ Verdict verdict_of(const WarmUpPlan& plan, const Cyclogram& job) {
             .title = "No warm-up was found that is enough",
             .text = text + " Allow more time or speed, or correct the drift (`schedule`, `compensate`)."};
   }
-  std::string text = fmt::format("{}; then {} drifts by {:.2f} µm at most, within {}.", speeds_words(plan.staged.sections),
-                                 job.name, plan.staged.peak_um, tolerance);
+  std::string text = fmt::format("{}; then {} drifts by {:.2f} µm at most, within {}.", speeds_words(best.sections), job.name,
+                                 best.peak_um, tolerance);
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  if (plan.staged.sections.size() == 1) {
-    text += " No programme of two speeds was found that is shorter.";
+  if (best.sections.size() == 1) {
+    text += " No programme of more speeds was found that is shorter.";
   } else if (!plan.constant.is_enough) {
     text += " No single speed was found that is enough.";
   } else {
-    const double saved = 1.0 - plan.staged.duration_s() / plan.constant.duration_s();
-    text += fmt::format(" The best single speed takes {:.1f} min; the second saves {:.0f} % of that.",
+    const double saved = 1.0 - best.duration_s() / plan.constant.duration_s();
+    text += fmt::format(" The best single speed takes {:.1f} min; the others save {:.0f} % of that.",
                         plan.constant.duration_s() / 60.0, 100.0 * saved);
   }
-  return {.kind = Verdict::Kind::kGood,
-          .title = fmt::format("Warm up for {:.1f} min", plan.staged.duration_s() / 60.0),
-          .text = text};
+  if (plan.held)
+    text += fmt::format(" Of {} machines off by {:.0f} % it keeps {:g} µm on {}, of {} others on {}.", plan.held->n, 100.0 * plan.model_error,
+                        plan.tolerance_um, plan.held->n_kept, plan.held->n_fresh, plan.held->n_fresh_kept);
+  return {.kind = Verdict::Kind::kGood, .title = fmt::format("Warm up for {:.1f} min", best.duration_s() / 60.0), .text = text};
 }
 
 Plot levels_plot(const WarmUpPlan& plan) {
@@ -119,7 +123,9 @@ Plot programme_plot(const WarmUpPlan& plan) {
             .bands = {},
             .marks = {},
             .half_width = true};
-  for (const WarmUp* way : {&plan.constant, &plan.staged}) {
+  std::vector<const WarmUp*> ways = {&plan.constant, &plan.staged};
+  if (plan.finest) ways.push_back(&*plan.finest);
+  for (const WarmUp* way : ways) {
     Series series{.label = way->way, .style = Series::Style::kSteps};
     double time_s = -way->duration_s();
     series.x.push_back(time_s / 60.0);  // from rest
@@ -152,6 +158,65 @@ Plot job_plot(const WarmUpPlan& plan, const Cyclogram& job) {
   return plot;
 }
 
+/// One strategy of each sort, so that lines can be told apart.
+constexpr std::array<const char*, 6> kDrawn = {"no correction",         "one thermometer",
+                                               "ridge, all sensors",    "thermal modes of the model",
+                                               "thermometers and memories", "observer"};
+
+std::string corrected_words(const studies::CorrectedWarmUps& corrected, const WarmUpPlan& plan) {
+  return fmt::format("Warm-up of {} min at {:.0f} rpm, then the job, {} corrected by strategies that were fitted on the scenario's training runs, with a "
+                     "model that is off by {:.0f} % where they have one, and readings with noise. Enough: within {}.",
+                     fmt::format("0 to {:.0f}", corrected.times_s.back() / 60.0), corrected.speed_rpm, corrected.target,
+                     100.0 * corrected.model_scatter, tolerance_words(plan));
+}
+
+Plot corrected_plot(const studies::CorrectedWarmUps& corrected, const WarmUpPlan& plan) {
+  Plot plot{.title = "Warm-up beside correction",
+            .x_label = fmt::format("warm-up at {:.0f} rpm [min]", corrected.speed_rpm),
+            .y_label = fmt::format("peak of what is left of {} [µm]", corrected.target),
+            .series = {},
+            .bands = {{.label = "allowed", .low = 0.0, .high = kept_um(plan)}},
+            .marks = {}};
+  for (const studies::CorrectedWarmUp& strategy : corrected.strategies) {
+    if (std::find(kDrawn.begin(), kDrawn.end(), strategy.strategy) == kDrawn.end()) continue;
+    Series series{.label = strategy.strategy, .y = strategy.left_um};
+    for (double time_s : corrected.times_s) series.x.push_back(time_s / 60.0);
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+Table corrected_table(const studies::CorrectedWarmUps& corrected, const WarmUpPlan& plan) {
+  Table table{.key = "corrected",
+              .title = "Warm-up beside correction",
+              .caption = corrected_words(corrected, plan),
+              .columns = {{.key = "strategy", .title = "strategy"},
+                          {.key = "is_enough", .title = "enough"},
+                          {.key = "least_min", .title = "warm-up", .unit = "min", .digits = output::decimals(1)},
+                          {.key = "at_once_um", .title = "left at once", .unit = "um", .digits = output::decimals(2)},
+                          {.key = "least_um", .title = "least left", .unit = "um", .digits = output::decimals(2)}}};
+  for (const studies::CorrectedWarmUp& strategy : corrected.strategies)
+    table.rows.push_back({strategy.strategy, strategy.is_enough,
+                          strategy.is_enough ? output::Datum(strategy.least_s / 60.0) : output::Datum(), strategy.left_um.front(),
+                          *std::min_element(strategy.left_um.begin(), strategy.left_um.end())});
+  return table;
+}
+
+Table corrected_times_table(const studies::CorrectedWarmUps& corrected) {
+  Table table{.key = "corrected_times",
+              .title = "Warm-up beside correction, minute by minute",
+              .columns = {{.key = "strategy", .title = "strategy"},
+                          {.key = "duration_min", .title = "warm-up", .unit = "min", .digits = output::decimals(1)},
+                          {.key = "left_um", .title = "left", .unit = "um", .digits = output::decimals(2)}},
+              .rows = {},
+              .detail = true};
+  for (const studies::CorrectedWarmUp& strategy : corrected.strategies) {
+    for (std::size_t i = 0; i < corrected.times_s.size(); ++i)
+      table.rows.push_back({strategy.strategy, corrected.times_s[i] / 60.0, strategy.left_um[i]});
+  }
+  return table;
+}
+
 }  // namespace
 
 output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::Scenario& scenario, const Cyclogram& job,
@@ -166,7 +231,17 @@ output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::S
   add(body, Value{.key = "tolerance_um", .words = "tolerance", .datum = plan.tolerance_um, .unit = "um", .digits = output::significant(4)});
   add(body, Value{.key = "kept_free", .words = "of it kept free for what the model does not know", .datum = plan.kept_free, .digits = output::percent(0)});
   add(body, Value{.key = "speed_limit_rpm", .words = "speed limit", .datum = plan.most_speed_rpm, .unit = "rpm", .digits = output::decimals(0)});
+  if (plan.most_power_W > 0.0)
+    add(body, Value{.key = "power_limit_W", .words = "limit of a speed's heat", .datum = plan.most_power_W, .unit = "W", .digits = output::decimals(0)});
+  add(body, Value{.key = "power_at_limit_W", .words = "heat of the fastest speed that is allowed", .datum = plan.power_at_most_W, .unit = "W", .digits = output::decimals(0)});
   add(body, Value{.key = "time_limit_min", .words = "time limit", .datum = plan.most_s / 60.0, .unit = "min", .digits = output::decimals(0)});
+  if (plan.held) {
+    add(body, Value{.key = "model_error", .words = "machines are off by", .datum = plan.model_error, .digits = output::percent(0)});
+    add(body, Value{.key = "machines", .words = "machines that the free share was chosen by", .datum = plan.held->n});
+    add(body, Value{.key = "machines_kept", .words = "of them within the tolerance", .datum = plan.held->n_kept});
+    add(body, Value{.key = "fresh_machines", .words = "other machines", .datum = plan.held->n_fresh});
+    add(body, Value{.key = "fresh_machines_kept", .words = "of them within the tolerance", .datum = plan.held->n_fresh_kept});
+  }
   add(body, Value{.key = "predicted_by", .datum = plan.predicted_by});
   add(body, Value{.key = "started_from", .datum = plan.started_from.empty() ? output::Datum() : output::Datum(plan.started_from)});
   add(body, ways_table(plan, job));
@@ -174,6 +249,11 @@ output::Document document_of(const studies::WarmUpPlan& plan, const scenarios::S
   add(body, levels_plot(plan));
   add(body, programme_plot(plan));
   add(body, job_plot(plan, job));
+  if (plan.corrected) {
+    add(body, corrected_table(*plan.corrected, plan));
+    add(body, corrected_plot(*plan.corrected, plan));
+    add(body, corrected_times_table(*plan.corrected));
+  }
   Table levels{.key = "levels",
                .title = "Minutes against micrometres",
                .columns = {{.key = "duration_min", .title = "warm-up", .unit = "min", .digits = output::decimals(1)},

@@ -1,8 +1,13 @@
 #include "studies/warm_up.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "studies/warm_up_corrected.hpp"
+#include "studies/warm_up_error.hpp"
+#include "studies/warm_up_heat.hpp"
 #include "studies/warm_up_search.hpp"
 
 namespace driftwright::studies {
@@ -57,17 +62,35 @@ double WarmUp::duration_s() const {
 WarmUpPlan plan_warm_up(const scenarios::Scenario& scenario, const Cyclogram& job, const WarmUpOptions& options,
                         const Listener& listener) {
   const double asked_rpm = options.most_speed_rpm > 0.0 ? options.most_speed_rpm : fastest_rpm(scenario, job);
-  const double most_rpm = kWarmUpStep_rpm * std::floor(asked_rpm / kWarmUpStep_rpm);
+  double most_rpm = kWarmUpStep_rpm * std::floor(asked_rpm / kWarmUpStep_rpm);
   if (!(most_rpm >= kWarmUpStep_rpm))
     throw InputError("no cyclogram of the scenario turns the spindle; say with --speed-limit how fast a warm-up may");
   const WarmUpTrials trials(scenario, job, options, most_rpm, listener);
-  const double tolerance_um = options.tolerance_um * (1.0 - options.kept_free);
+  if (options.most_power_W > 0.0) most_rpm = fastest_within_rpm(trials, most_rpm, options.most_power_W);
+  double kept_free = options.kept_free;
+  std::optional<DrawnMachines> drawn;
+  if (options.model_error > 0.0) {
+    listener.begin(fmt::format("{} machines off by {:.0f} %", kDraws, 100.0 * options.model_error));
+    drawn.emplace(trials, options.model_error, 1, kDraws);
+    const WarmUp fast = WarmUpSearch(trials, options.tolerance_um, most_rpm, options.most_s, listener).constant();
+    const double speed_rpm = fast.sections.empty() ? most_rpm : fast.sections.front().drive.speed_rpm;
+    const std::optional<double> share = free_share(trials, *drawn, speed_rpm, options.most_s, options.tolerance_um, listener);
+    if (!share)
+      throw InputError(fmt::format("--model-error: no warm-up of up to {:.0f} min at {:.0f} rpm keeps the job within {:g} um on 95 of 100 machines; "
+                                   "allow more drift or time, or correct it (`schedule`, `compensate`)",
+                                   options.most_s / 60.0, speed_rpm, options.tolerance_um));
+    kept_free = *share;
+  }
+  const double tolerance_um = options.tolerance_um * (1.0 - kept_free);
   const WarmUpSearch search(trials, tolerance_um, most_rpm, options.most_s, listener);
   WarmUpPlan plan{.channels = trials.channels(),
                   .tolerance_um = options.tolerance_um,
                   .most_speed_rpm = most_rpm,
                   .most_s = options.most_s,
-                  .kept_free = options.kept_free,
+                  .kept_free = kept_free,
+                  .most_power_W = options.most_power_W,
+                  .power_at_most_W = heat_of_speed_W(trials, most_rpm),
+                  .model_error = options.model_error,
                   .predicted_by = trials.ahead().model->words(),
                   .started_from = trials.ahead().started_from};
   listener.begin("at once, at rest and by jobs");
@@ -103,8 +126,24 @@ WarmUpPlan plan_warm_up(const scenarios::Scenario& scenario, const Cyclogram& jo
   plan.at_once.way = "at once";
   plan.constant.way = "one speed";
   plan.staged.way = "two speeds";
+  if (WarmUp finest = search.refined(plan.staged); finest.sections.size() > 2) {
+    finest.way = finest.sections.size() == 3 ? "three speeds" : "four speeds";
+    plan.finest = std::move(finest);
+  }
+  if (drawn && plan.best().is_enough) {
+    const auto n_kept = [&](const DrawnMachines& machines) { return machines.n_kept(plan.best().sections, options.tolerance_um, listener); };
+    const DrawnMachines fresh(trials, options.model_error, 1 + kDraws, kDraws);
+    plan.held = {.n = kDraws, .n_kept = n_kept(*drawn), .n_fresh = kDraws, .n_fresh_kept = n_kept(fresh)};
+  }
+  const auto& counted = plan.channels;
+  if (scenario.study && std::find(counted.begin(), counted.end(), scenario.study->target) != counted.end()) {
+    const bool turns = !plan.constant.sections.empty();
+    plan.corrected = corrected_warm_ups(scenario, trials, turns ? plan.constant.sections.front().drive.speed_rpm : most_rpm,
+                                        plan.best().is_enough ? std::min(std::max(1.5 * plan.best().duration_s(), 600.0), options.most_s) : options.most_s,
+                                        tolerance_um, listener);
+  }
   plan.job_at_once = trials.job_rows({});
-  plan.job_warm = trials.job_rows(plan.staged.sections);
+  plan.job_warm = trials.job_rows(plan.best().sections);
   plan.n_tried = trials.n_tried();
   return plan;
 }

@@ -1,7 +1,10 @@
 #include "studies/warm_up_search.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.hpp"
 
@@ -14,10 +17,18 @@ constexpr int kTimes = 16;               // at which one speed is tried before t
 constexpr int kSpeeds = 25;              // up to the limit, of one speed
 constexpr double kBeyond = 1.2;          // of the best time so far: the least of a peak shows between times alone
 constexpr int kStages = 7, kShares = 7;  // of two: speeds from rest to the limit, and shares of the first in the time
+constexpr std::size_t kMostSections = 4;
+constexpr int kEnds = 10;                // parts of the time, at whose ends one of three sections may end
+constexpr int kImproved = 3;             // of programmes with another section, the best ones
+constexpr double kFirstGain = 0.02;      // of its time, by another section
 constexpr int kScanned = 8;              // times at which two are tried where one is never enough
 
 bool has_less_drift(const WarmUp& a, const WarmUp& b) {
   return a.peak_um < b.peak_um;
+}
+
+std::size_t n_sections(const WarmUpSearch::Shape& shape) {
+  return (shape.size() + 1) / 2;
 }
 
 /// Whole seconds and tens of rpm, so that what is written is what was judged.
@@ -25,24 +36,53 @@ std::vector<Cyclogram::Section> staged(double time_s, const WarmUpSearch::Shape&
   const auto rpm = [&](double share) {
     return std::min(most_rpm, kWarmUpStep_rpm * std::round(std::clamp(share, 0.0, 1.0) * most_rpm / kWarmUpStep_rpm));
   };
-  const double first_s = std::round(std::clamp(shape[2], 0.0, 1.0) * time_s), second_s = std::round(time_s) - first_s;
   std::vector<Cyclogram::Section> sections;
-  if (first_s >= kLeast_s) sections.push_back({first_s, {.speed_rpm = rpm(shape[0])}});
-  if (second_s >= kLeast_s) {
-    const double second_rpm = rpm(shape[1]);
-    if (!sections.empty() && sections.back().drive.speed_rpm == second_rpm) {
-      sections.back().duration_s += second_s;
+  const std::size_t n = n_sections(shape);
+  double from_s = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double end_s = i + 1 < n ? std::round(std::clamp(shape[n + i], 0.0, 1.0) * time_s) : std::round(time_s);
+    if (end_s - from_s < kLeast_s) continue;
+    const double speed_rpm = rpm(shape[i]);
+    if (!sections.empty() && sections.back().drive.speed_rpm == speed_rpm) {
+      sections.back().duration_s += end_s - from_s;
     } else {
-      sections.push_back({second_s, {.speed_rpm = second_rpm}});
+      sections.push_back({end_s - from_s, {.speed_rpm = speed_rpm}});
     }
+    from_s = end_s;
   }
   return sections;
+}
+
+WarmUpSearch::Shape shape_of(const WarmUp& way, double most_rpm) {
+  WarmUpSearch::Shape speeds, ends;
+  double time_s = 0.0;
+  for (const Cyclogram::Section& section : way.sections) {
+    speeds.push_back(section.drive.speed_rpm / most_rpm);
+    ends.push_back((time_s += section.duration_s) / way.duration_s());
+  }
+  speeds.insert(speeds.end(), ends.begin(), ends.end() - 1);
+  return speeds;
+}
+
+/// Another section of a tenth of the time in front of section `at`, or behind all.
+WarmUpSearch::Shape with_section(const WarmUpSearch::Shape& shape, std::size_t at, double share) {
+  constexpr double kTenth = 0.1;
+  const std::size_t n = n_sections(shape);
+  WarmUpSearch::Shape longer(shape.begin(), shape.begin() + static_cast<std::ptrdiff_t>(n));
+  longer.insert(longer.begin() + static_cast<std::ptrdiff_t>(at), share);
+  const double begins = (1.0 - kTenth) * (at == 0 ? 0.0 : at == n ? 1.0 : shape[n + at - 1]);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i == at) longer.push_back(begins + kTenth);
+    if (i + 1 < n) longer.push_back((1.0 - kTenth) * shape[n + i] + (i >= at ? kTenth : 0.0));
+    if (i + 1 == at && at == n) longer.push_back(begins);
+  }
+  return longer;
 }
 
 }  // namespace
 
 WarmUp WarmUpSearch::constant(double time_s, double share) const {
-  return trials_.tried(staged(time_s, {share, share, 1.0}, most_rpm_), tolerance_um_);
+  return trials_.tried(staged(time_s, {share}, most_rpm_), tolerance_um_);
 }
 
 WarmUp WarmUpSearch::of(double time_s, const Shape& shape) const {
@@ -151,6 +191,61 @@ WarmUp WarmUpSearch::staged_best(const WarmUp& known) const {
       low_s = time_s;
     }
     listener_.share(1.0 - (best.duration_s() - low_s) / first_s);
+  }
+  return best;
+}
+
+WarmUp WarmUpSearch::with_one_more(const WarmUp& known, double time_s) const {
+  const Shape shape = shape_of(known, most_rpm_);
+  std::vector<Shape> longer;
+  for (std::size_t at = 0; at <= n_sections(shape); ++at) {
+    for (double share : {0.0, 0.25, 0.5, 0.75, 1.0}) longer.push_back(with_section(shape, at, share));
+  }
+  if (n_sections(shape) == 2) {  // all or nothing, which is soonest where heat follows the drive and the machine is linear
+    for (int speeds = 0; speeds < 8; ++speeds) {
+      for (int i = 1; i < kEnds; ++i) {
+        for (int j = i + 1; j < kEnds; ++j)
+          longer.push_back({static_cast<double>(speeds & 1), static_cast<double>((speeds >> 1) & 1), static_cast<double>(speeds >> 2),
+                            static_cast<double>(i) / kEnds, static_cast<double>(j) / kEnds});
+      }
+    }
+  }
+  std::vector<WarmUp> tried(longer.size());
+  parallel_for(longer.size(), [&](std::size_t i) { tried[i] = of(time_s, longer[i]); });
+  WarmUp best;
+  for (int i = 0; i < kImproved && !best.is_enough; ++i) {
+    const auto least = std::min_element(tried.begin(), tried.end(), has_less_drift);
+    const WarmUp next = improved(*least, time_s, longer[static_cast<std::size_t>(least - tried.begin())]);
+    if (i == 0 || next.peak_um < best.peak_um) best = next;
+    least->peak_um = std::numeric_limits<double>::max();
+  }
+  return best;
+}
+
+WarmUp WarmUpSearch::refined(const WarmUp& known) const {
+  WarmUp best = known;
+  for (bool helped = !best.sections.empty(); helped && best.sections.size() < kMostSections;) {
+    listener_.begin(fmt::format("{} speeds", best.sections.size() + 1));
+    if (!best.is_enough) {
+      const WarmUp next = with_one_more(best, best.duration_s());
+      helped = next.is_enough || next.peak_um < kWorthTelling * best.peak_um;
+      if (helped) best = next;
+      continue;
+    }
+    const double known_s = best.duration_s();
+    double least_s = 0.0;  // at which none was found
+    for (double gain = kFirstGain; best.duration_s() - least_s > std::max(1.0, kExact * best.duration_s());) {
+      if (listener_.wants_end()) break;
+      const double time_s = std::round(std::max(best.duration_s() * (1.0 - gain), 0.5 * (least_s + best.duration_s())));
+      const WarmUp next = with_one_more(best, time_s);
+      gain = next.is_enough ? 2.0 * gain : 0.5 * gain;
+      if (next.is_enough && next.duration_s() < best.duration_s()) {
+        best = next;
+      } else {
+        least_s = time_s;
+      }
+    }
+    helped = best.duration_s() < known_s;
   }
   return best;
 }

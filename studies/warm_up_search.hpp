@@ -1,7 +1,6 @@
 #pragma once
-// The shortest of programmes at one speed and at two.
+// The shortest of programmes at one speed, at two and at up to four.
 
-#include <array>
 #include <vector>
 
 #include "studies/warm_up_trials.hpp"
@@ -14,8 +13,8 @@ inline constexpr double kWorthTelling = 0.99;
 
 class WarmUpSearch {
  public:
-  /// Two speeds as shares of the limit, and the share of the first in the time.
-  using Shape = std::array<double, 3>;
+  /// Of n sections: n speeds as shares of the limit, then where n - 1 of them end as shares of the time.
+  using Shape = std::vector<double>;
 
   /// @param trials, listener  outlive this
   WarmUpSearch(const WarmUpTrials& trials, double tolerance_um, double most_rpm, double most_s, const Listener& listener)
@@ -33,6 +32,9 @@ class WarmUpSearch {
   [[nodiscard]] WarmUp staged_in(double time_s, Shape& shape) const;
   /// The shortest of two speeds. @param known  the shortest that is known, or what comes nearest
   [[nodiscard]] WarmUp staged_best(const WarmUp& known) const;
+  /// Shorter than what is known, by sections put into it until there are four; where none is enough, of less drift in its time. What is known, where
+  /// nothing better is found.
+  [[nodiscard]] WarmUp refined(const WarmUp& known) const;
 
  private:
   [[nodiscard]] WarmUp constant(double time_s, double share) const;
@@ -42,7 +44,9 @@ class WarmUpSearch {
   /// The least time at one speed that is enough, by halves. @param low_s  at which it is not
   [[nodiscard]] WarmUp shortened(WarmUp best, double low_s, double share) const;
   [[nodiscard]] WarmUp best_of(const std::vector<double>& shares, double most_s) const;
-  /// Steps along each of the three numbers, halved where none helps, until the tolerance is kept.
+  /// The best in a given time of what is known with one section more, which has a tenth of it.
+  [[nodiscard]] WarmUp with_one_more(const WarmUp& known, double time_s) const;
+  /// Steps along each of its numbers, halved where none helps, until the tolerance is kept.
   [[nodiscard]] WarmUp improved(WarmUp best, double time_s, Shape& shape) const;
 
   const WarmUpTrials& trials_;

@@ -71,6 +71,11 @@ def main():
         done = call("warmup", fp3, "--then", "chaotic", "--tolerance", "12 um", "-o", "cold")
         summary = json.loads((folder / "cold/summary.json").read_text())
         told = way(summary, "two speeds")["peak_um"]
+        corrected = {row["strategy"]: row for row in summary["corrected"]}
+        expect(abs(corrected["no correction"]["at_once_um"] - way(summary, "at once")["peak_um"]) < 0.01, "without correction the job at once is the job at once")
+        one = way(summary, "one speed")["duration_min"]
+        expect(one <= corrected["no correction"]["least_min"] < 1.02 * one, f"without correction as long as one speed: {corrected['no correction']}")
+        expect(corrected["observer"]["least_um"] < corrected["one thermometer"]["least_um"] < corrected["no correction"]["least_um"], "an observer leaves less than a thermometer")
         done = call("predict", fp3, "--cyclogram", "chaotic", "--start", "cold/warmup.csv", "-o", "again")
         expect(done.returncode == 0, f"predict behind warmup.csv: {done.stderr.strip()[-300:]}")
         expect(abs(peak_um(folder / "again/record.csv") - told) < 0.01, f"peak told {told:.4f} um, of predict {peak_um(folder / 'again/record.csv'):.4f} um")
@@ -92,7 +97,9 @@ def main():
                    f"rs274 dwells for {dwelt_s:.0f} s")
 
         for words, says in [(["--then", "nothing"], "no cyclogram 'nothing'"), (["--then", "chaotic", "--tolerance", "12"], "--tolerance '12'"),
-                            (["--then", "chaotic", "--margin", "120 %"], "--margin '120 %'"), (["--then", "chaotic", "--channel", "t05"], "--channel 't05'"),
+                            (["--then", "chaotic", "--margin", "120 %"], "--margin '120 %'"),
+                            (["--then", "chaotic", "--power-limit", "150"], "--power-limit '150'"), (["--then", "chaotic", "--model-error", "0 %"], "--model-error '0 %'"),
+                            (["--then", "chaotic", "--margin", "10 %", "--model-error", "10 %"], "--margin"), (["--then", "chaotic", "--channel", "t05"], "--channel 't05'"),
                             (["--then", "chaotic", "--after-pause", "1 h"], "--start"), (["--then", "chaotic", "--time-limit", "1 s"], "--time-limit '1 s'")]:
             done = call("warmup", fp3, *words, "-o", "refused")
             expect(done.returncode == 2 and says in done.stderr, f"{words}: exit {done.returncode}, {done.stderr.strip()[:160]}")
