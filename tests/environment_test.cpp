@@ -94,6 +94,12 @@ TEST(Environment, TooLittleMemoryForTheLibrariesEndsInTime) {
   EXPECT_GT(n_refused, 0);
 }
 
+TEST(Environment, AMachineWithoutAMeshFitsWhereTheProgramDoes) {  // which has its own memory already when it looks
+  const CommandOutcome outcome = run_program(std::string("--version >/dev/null; ulimit -v 307200; ") + DRIFTWRIGHT_PROGRAM +
+                                             " check scenarios/first_machine.yaml");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+}
+
 TEST(Environment, MoreThreadsThanTheMemoryHasRoomForAreNotBegun) {
   const std::string sweep = fmt::format("{} sweep scenarios/lumped_sweep.yaml --quiet -o {}", DRIFTWRIGHT_PROGRAM,
                                         (temporary_folder() / "many_threads").string());
