@@ -1,5 +1,7 @@
 #include "app/library_settings.hpp"
 
+#include <omp.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -34,6 +36,15 @@ void restart_with_library_settings(char** argv) {
     is_new = set_missing("OPENBLAS_CORETYPE", "SKYLAKEX") || is_new;
 #endif
   if (is_new) execv("/proc/self/exe", argv);  // comes back where it cannot
+}
+
+void take_threads_that_fit() {
+  constexpr rlim_t kOfAThread = rlim_t(256)
+                                << 20;  // its stack, what the allocator sets aside for it, and something to compute with
+  rlimit space = {};
+  if (getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY) return;
+  const auto n_fitting = std::max<rlim_t>(1, space.rlim_cur / kOfAThread);
+  if (n_fitting < static_cast<rlim_t>(omp_get_max_threads())) omp_set_num_threads(static_cast<int>(n_fitting));
 }
 
 }  // namespace driftwright::app

@@ -12,4 +12,8 @@ namespace driftwright::app {
 /// - OPENBLAS_CORETYPE: OpenBLAS of Debian 12 takes processors younger than itself for old ones; SKYLAKEX it knows, and its kernels are as wide.
 void restart_with_library_settings(char** argv);
 
+/// Where the address space is limited (`ulimit -v`), no more threads than one for each 256 MB; `--threads` has the last word. OpenMP's library ends the
+/// program, as if by a bug of ours, where the system has no room for a thread's stack.
+void take_threads_that_fit();
+
 }  // namespace driftwright::app

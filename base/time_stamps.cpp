@@ -49,24 +49,26 @@ bool fits(const std::string& text, const std::string& format, Time& time) {
   return !in.fail() && (in >> std::ws).eof();
 }
 
+/// Since 1970, of a stamp with its date. Nanoseconds in 64 bits reach from 1677 to 2262; clocks that were never set tell the year 1 or 9999.
+std::optional<nanoseconds> dated(const std::string& stamp, const std::string& format) {
+  std::istringstream in(stamp);
+  date::fields<nanoseconds> told;
+  told.has_tod = true;
+  date::from_stream(in, format.c_str(), told);
+  if (in.fail() || !(in >> std::ws).eof() || !told.ymd.ok() || !told.tod.in_conventional_range()) return std::nullopt;
+  const int year = static_cast<int>(told.ymd.year());
+  if (year < 1700 || year > 2200)
+    throw RangeError(fmt::format("'{}' is of the year {}; 1700 to 2200 are allowed", stamp, year));
+  return date::sys_days(told.ymd).time_since_epoch() + told.tod.to_duration();
+}
+
 /// A stamp of ISO 8601 without its offset: date, T or a blank, time.
 std::optional<nanoseconds> iso_8601(std::string text) {
   if (text.size() > 10 && text[10] == ' ') text[10] = 'T';
-  date::sys_time<nanoseconds> time;
   for (const char* format : {"%FT%T", "%FT%H:%M", "%F"}) {
-    if (fits(text, format, time)) return time.time_since_epoch();
+    if (const auto time = dated(text, format)) return time;
   }
   return std::nullopt;
-}
-
-/// Nanoseconds since 1970 in 64 bits reach from 1677 to 2262; clocks that were never set tell the year 1 or 9999.
-void require_countable_year(const std::string& stamp, const std::string& format) {
-  std::istringstream in(stamp);
-  date::year_month_day day;
-  in >> date::parse(format, day);
-  if (in.fail()) return;  // a format without a whole date
-  const int year = static_cast<int>(day.year());
-  if (year < 1700 || year > 2200) throw RangeError(fmt::format("'{}' is of the year {}; 1700 to 2200 are allowed", stamp, year));
 }
 
 }  // namespace
@@ -127,11 +129,11 @@ nanoseconds TimeStamps::read(const std::string& text) {
                       text));
     time = *iso;
   } else if (has_date_) {
-    date::sys_time<nanoseconds> point;
-    if (!fits(stamp, format_, point))
+    const auto point = dated(stamp, format_);
+    if (!point)
       throw RangeError(
           fmt::format("'{}' is no time stamp of the format '{}'", text, has_offset_ ? format_ + "%z" : format_));
-    time = point.time_since_epoch();
+    time = *point;
   } else {
     if (!fits(stamp, format_, time))
       throw RangeError(fmt::format("'{}' is no time of the format '{}'", text, has_offset_ ? format_ + "%z" : format_));
@@ -140,7 +142,6 @@ nanoseconds TimeStamps::read(const std::string& text) {
       if (*before_ - time > kHalfDay) time += kDay;
     }
   }
-  if (has_date_ && (!before_ || std::chrono::abs(time - *before_) > kDay)) require_countable_year(stamp, is_iso_ ? "%F" : format_);
   if (zone_ && !told) time = in_zone(time, text);
   time -= offset;
   before_ = time;
@@ -149,7 +150,8 @@ nanoseconds TimeStamps::read(const std::string& text) {
 
 nanoseconds milliseconds(double count) {
   constexpr double kMost = 1e9;  // eleven days; 64 bits of nanoseconds are far from full
-  if (!(std::abs(count) <= kMost)) throw RangeError(fmt::format("{:g} is no number of milliseconds; at most {:g} are allowed", count, kMost));
+  if (!(std::abs(count) <= kMost))
+    throw RangeError(fmt::format("{:g} is no number of milliseconds; at most {:g} are allowed", count, kMost));
   return nanoseconds(std::llround(1e6 * count));
 }
 

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Every verb under faults of the environment; prints the table of docs/verification.md.
 
-    bench/faults.py [PROGRAM] [--kills N] [--verbs simulate,diagnose,...]
+    bench/faults.py [PROGRAM] [--meshed] [--kills N] [--verbs simulate,diagnose,...]
+
+On a lumped machine; with --meshed on one that `init` makes of a drawing, a box of 100 mm.
 
 Faults: address space of 300 to 1500 MB, files of 20 kB at most (RLIMIT_FSIZE), a disk that is full after 400 kB, standard output that is full, TMPDIR
 that is missing or takes no file, an empty PATH (no gnuplot, no C compiler), a current folder that is gone, an -o of 300 characters, Ctrl-C and SIGKILL after
@@ -18,34 +20,55 @@ TOP = Path(__file__).resolve().parent.parent
 LONGEST_S = 300
 
 
-def small_scenario(work):
-    """The smallest shipped machine with what `run`, `validate` and `schedule` want of a scenario."""
-    text = (TOP / "scenarios/first_machine.yaml").read_text()
-    assert "\ncyclograms:" in text
-    path = work / "small.yaml"
-    path.write_text(text[:text.index("\ncyclograms:")] + """
+STUDIED = """
 cyclograms:
   shift: [[120 min, 6000 rpm], [30 min, 0 rpm], [90 min, 3000 rpm]]
   climb: [[40 min, 1500 rpm], [40 min, 3000 rpm], [40 min, 6000 rpm], [60 min, 0 rpm]]
   other: [[30 min, 5000 rpm], [20 min, 0 rpm], [60 min, 2000 rpm]]
 study: {target: nose_z, train: [shift, climb], judge: other, sensors_to_choose: 1, tolerance: 5 um}
 schedule: {tolerance: 10 um, rapid: 15 m/min, tool_change: 8 s, axes: {z: {displacement: nose_z, sign: -1}}}
-""")
+"""
+
+
+def small_scenario(work):
+    """The smallest shipped machine with what `run`, `validate` and `schedule` want of a scenario."""
+    text = (TOP / "scenarios/first_machine.yaml").read_text()
+    assert "\ncyclograms:" in text
+    path = work / "small.yaml"
+    path.write_text(text[:text.index("\ncyclograms:")] + STUDIED)
     return path
 
 
-def verbs(small, record, others):
+def meshed_scenario(program, work):
+    """The same of a box from a drawing, in which 20 W warm the spindle."""
+    subprocess.run([program, "init", "box", "--from", TOP / "tests/fuzz/corpus/meshes/box.step"], check=True, cwd=work, capture_output=True)
+    path = work / "box/box.yaml"
+    text = path.read_text().replace("drift_z", "nose_z")
+    assert "power: 0.5 W, at_speed: 3000 rpm" in text
+    text = text.replace("power: 0.5 W, at_speed: 3000 rpm", "power: 20 W, at_speed: 6000 rpm")
+    path.write_text(text[:text.index("\ncyclograms:")] + "\nsolver: {model: reduced}" + STUDIED)
+    return path
+
+
+def meshed_sweep(scenario, work):
+    path = work / "box_sweep.yaml"
+    path.write_text(f"name: box_sweep\nscenario: {scenario}\ncyclograms: [other]\ndesign: grid\nvary:\n  - {{name: power, key: 'effects[heat_source].power', "
+                    "values: [10 W, 20 W, 40 W]}\ncollect: [nose_z]\n")
+    return path
+
+
+def verbs(small, first, drawn, sweep, record, others):
     """Words behind the program: OUT is a folder or file of results; without it, what counts is on standard output."""
-    first, shift, climb, other = TOP / "scenarios/first_machine.yaml", record, *others
+    shift, climb, other = record, *others
     return {
         "list": ["list", "effects"],
         "schema": ["schema", "scenario"],
         "help": ["help", "diagnose"],
-        "check": ["check", TOP / "scenarios/lumped_spindle.yaml"],
+        "check": ["check", small],
         "init": ["init", "OUT"],
         "import": ["import", TOP / "scenarios/records/logger_file.csv", "-o", "OUT"],
         "compare": ["compare", shift, climb, "-o", "OUT"],
-        "mesh": ["mesh", TOP / "scenarios/c_frame.yaml", "-o", "OUT"],
+        "mesh": ["mesh", drawn, "-o", "OUT"],
         "simulate": ["simulate", small, "-o", "OUT"],
         "predict": ["predict", small, "--cyclogram", "other", "-o", "OUT"],
         "warmup": ["warmup", small, "--then", "other", "--time-limit", "30 min", "--tolerance", "20 um", "-o", "OUT"],
@@ -56,7 +79,7 @@ def verbs(small, record, others):
         "compensate": ["compensate", "STUDY", "--model", "MODEL", "--through", "none", "--measured", other, "-o", "OUT"],
         "calibrate": ["calibrate", first, "--measured", shift, "-o", "OUT"],
         "diagnose": ["diagnose", first, "--measured", shift, "-o", "OUT"],
-        "sweep": ["sweep", TOP / "scenarios/lumped_sweep.yaml", "-o", "OUT"],
+        "sweep": ["sweep", sweep, "-o", "OUT"],
         "schedule": ["schedule", small, "--program", TOP / "scenarios/parts/pocket.ngc", "-o", "OUT"],
         "run": ["run", small, "-o", "OUT"],
         "view": ["view", small, "-o", "OUT.html"],
@@ -207,6 +230,7 @@ def row_of(verb, command, stdin, work, env, tiny, n_kills):
 def main():
     args = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     args.add_argument("program", nargs="?", default=str(TOP / "build/release/app/driftwright"))
+    args.add_argument("--meshed", action="store_true")
     args.add_argument("--kills", type=int, default=5)
     args.add_argument("--verbs", default="")
     args.add_argument("--seed", type=int, default=1)
@@ -220,7 +244,7 @@ def main():
     tiny.mkdir()
     has_tiny = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "none", tiny], capture_output=True).returncode == 0
     try:
-        small = small_scenario(work)
+        small = meshed_scenario(program, work) if args.meshed else small_scenario(work)
         subprocess.run([program, "simulate", small, "-o", work / "simulated"], check=True, env=env, capture_output=True)
         records = [work / "simulated/records" / f"{name}.csv" for name in ("shift", "climb", "other")]
         study = work / "study.yaml"
@@ -229,7 +253,10 @@ def main():
         correction.write_text("time_s,drift_um\n0,0\n1,4\n")
         rows_in = work / "rows.txt"
         rows_in.write_text("0 0\n1 0\n1 1\n0 1\n" * 20000)
-        commands = verbs(small, records[0], records[1:])
+        first = small if args.meshed else TOP / "scenarios/first_machine.yaml"
+        drawn = small if args.meshed else TOP / "scenarios/c_frame.yaml"
+        sweep = meshed_sweep(small, work) if args.meshed else TOP / "scenarios/lumped_sweep.yaml"
+        commands = verbs(small, first, drawn, sweep, records[0], records[1:])
         names = {"STUDY": study, "CORRECTION": correction}
         of_models = [program] + [names.get(str(w), w) for w in commands["validate"]]
         run(of_models, work / "models", work, env)

@@ -119,7 +119,7 @@ double room_bytes() {
 }
 
 void require_room(const Scenario& scenario, const PlacedMachine& placed, const MeshDemand& demand, double room_bytes) {
-  if (demand.memory_bytes <= room_bytes) return;
+  if (demand.memory_bytes - kProgram <= room_bytes) return;  // the program itself is there already
   std::string change = "a coarser mesh, or a machine with more memory";
   if (scenario.solver.model == ModelKind::kReduced) {
     const double full = mesh_demand(scenario, placed, true).memory_bytes;

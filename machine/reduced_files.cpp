@@ -168,8 +168,8 @@ ReducedSystem read_system(const Json& json, const effects::HeatBalance& balance,
   };
   const auto array = [&](const char* name, Eigen::Index columns) { return sized(name, r, columns); };
   system.reference_K = json.at("reference_K");
-  system.mass = Eigen::MatrixXd::Identity(r, r);
   system.conduction = array("conduction", r);
+  system.mass = Eigen::MatrixXd::Identity(r, r);  // of a size that an array has
   const Eigen::Index n_exchanges = n_of("exchanges");
   const Eigen::MatrixXd matrices = sized("exchanges", r * n_exchanges, r), to_ambient = array("to_hall", n_exchanges),
                         flow = array("flow", n_exchanges), offset = array("offset", n_exchanges),

@@ -76,7 +76,8 @@ TEST(Environment, TooLittleMemoryForTheLibrariesEndsInTime) {
   std::string scenario = read_text("scenarios/first_machine.yaml");
   scenario.resize(scenario.find("cyclograms:"));
   scenario +=
-      "cyclograms: {shift: [[60 min, 6000 rpm]], climb: [[40 min, 1500 rpm], [40 min, 3000 rpm]], other: [[60 min, 2000 rpm]]}\n"
+      "cyclograms: {shift: [[60 min, 6000 rpm]], climb: [[40 min, 1500 rpm], [40 min, 3000 rpm]], other: [[60 min, 2000 "
+      "rpm]]}\n"
       "study: {target: nose_z, train: [shift, climb], judge: other, sensors_to_choose: 1, tolerance: 5 um}\n";
   const std::string run = std::string(DRIFTWRIGHT_PROGRAM) + " run " + write_file("tight.yaml", scenario) + " --quiet -o " +
                           (temporary_folder() / "tight").string();
@@ -93,6 +94,22 @@ TEST(Environment, TooLittleMemoryForTheLibrariesEndsInTime) {
   EXPECT_GT(n_refused, 0);
 }
 
+TEST(Environment, AMachineWithoutAMeshFitsWhereTheProgramDoes) {  // which has its own memory already when it looks
+  const CommandOutcome outcome = run_program(std::string("--version >/dev/null; ulimit -v 307200; ") + DRIFTWRIGHT_PROGRAM +
+                                             " check scenarios/first_machine.yaml");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+}
+
+TEST(Environment, MoreThreadsThanTheMemoryHasRoomForAreNotBegun) {
+  const std::string sweep = fmt::format("{} sweep scenarios/lumped_sweep.yaml --quiet -o {}", DRIFTWRIGHT_PROGRAM,
+                                        (temporary_folder() / "many_threads").string());
+  for (const int limit_MB : {300, 600}) {
+    const CommandOutcome outcome = run_program(fmt::format(
+        "--version >/dev/null; export OMP_NUM_THREADS=64; ulimit -v {}; timeout -s KILL 60 {}", limit_MB * 1024, sweep));
+    EXPECT_THAT(outcome.exit_code, AnyOf(0, 2)) << limit_MB << " MB: " << outcome.output;
+  }
+}
+
 TEST(Environment, ANameThatNoFileMayHaveIsRefusedWhereItStands) {
   const std::string scenario = read_text("scenarios/first_machine.yaml");
   for (const char* name : {"first_machine\n", "shift:"}) {  // of the scenario, of a cyclogram
@@ -106,13 +123,15 @@ TEST(Environment, ANameThatNoFileMayHaveIsRefusedWhereItStands) {
     EXPECT_EQ(check(200).exit_code, 0) << name;
     const CommandOutcome outcome = check(201);
     EXPECT_EQ(outcome.exit_code, 2) << name;
-    EXPECT_THAT(outcome.output, AllOf(HasSubstr("long_name.yaml:"), HasSubstr("is no name"), HasSubstr("200 at most"))) << name;
+    EXPECT_THAT(outcome.output, AllOf(HasSubstr("long_name.yaml:"), HasSubstr("is no name"), HasSubstr("200 at most")))
+        << name;
   }
 }
 
 TEST(Environment, ResultsOfANameThatNoFileMayHaveAreRefusedBeforeTheRun) {
   const std::string out = (temporary_folder() / std::string(300, 'x')).string();
-  const CommandOutcome outcome = run_program("simulate scenarios/fp3_spindle.yaml -o " + out);  // two seconds and more where it runs
+  const CommandOutcome outcome =
+      run_program("simulate scenarios/fp3_spindle.yaml -o " + out);  // two seconds and more where it runs
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("File name too long"), Not(HasSubstr("reduc")), Not(HasSubstr("internal"))));
   for (const std::string& verb : {"view scenarios/first_machine.yaml -o " + out + ".html",

@@ -11,6 +11,7 @@ from pathlib import Path
 from result_schema import errors
 
 TOP = Path(__file__).resolve().parent.parent
+UNJUDGED = {"lumped_spindle": "warm_up", "first_machine": "shift"}  # scenarios that `run` has nothing to judge in, and a cyclogram of theirs
 failures = []
 
 
@@ -59,9 +60,7 @@ def judge(diagnosis):
 def try_scenario(program, name, work):
     scenario = scenario_of(name, work)
     written = []
-    for verb in (["simulate"], ["run"] if name != "lumped_spindle" else None, ["predict", "--cyclogram", "warm_up"] if name == "lumped_spindle" else None):
-        if not verb:
-            continue
+    for verb in (["simulate"], ["predict", "--cyclogram", UNJUDGED[name]] if name in UNJUDGED else ["run"]):
         out = work / f"{name}-{verb[0]}"
         if run(program, work, verb[0], scenario, *verb[1:], "-o", out) == 0:
             written += records_in(out)
@@ -69,7 +68,7 @@ def try_scenario(program, name, work):
     if not written:
         failures.append(("no records", [name], ""))
         return
-    out = work / "out"
+    out = work / f"{name}-out"
     a, b, c = written[0], written[len(written) // 2], written[-1]
     # A single speed or one and the same run may be refused (2); nothing else.
     for i, record in enumerate(written):

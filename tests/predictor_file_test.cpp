@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "base/errors.hpp"
+#include "base/file_bytes.hpp"
 #include "compensation/predictors/formula_predictor.hpp"
 #include "compensation/predictors/past_drift.hpp"
 #include "tests/deployed_model.hpp"
@@ -209,6 +210,15 @@ TEST(PredictorFile, WhatIsNotWhatWasJudgedIsRefused) {
   refused([](Json& o) { o["fail_safe"]["highest_um"] = 1e3; }, "not what was judged");
   refused([](Json& o) { o["judged"]["verdict"] = "safe to deploy"; }, "not what was judged");
   refused([](Json& o) { o.erase("hash"); }, "`hash`");
+}
+
+TEST(PredictorFile, AnObserverOfASizeThatNoneHasIsRefused) {  // with assertions a negative one ended the program
+  Json j = Json::parse(read_bytes("tests/fuzz/corpus/predictors/observer.json"));
+  for (const std::int64_t size : {std::int64_t(-1), std::int64_t(0), std::int64_t(1) << 40}) {
+    j["observer"]["system"]["size"] = size;
+    EXPECT_THAT([&] { (void)read_predictor(driftwright::write_file("sized.json", j.dump())); },
+                ThrowsMessage<InputError>(AllOf(HasSubstr("sized.json"), HasSubstr("array 'conduction'"))));
+  }
 }
 
 TEST(PredictorFile, NamesOfAnyBytesComeBack) {

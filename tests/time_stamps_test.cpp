@@ -97,6 +97,10 @@ TEST(TimeStamps, RefuseYearsOfClocksThatWereNeverSet) {
     (void)iso.read("2024-03-01T10:00:00");
     EXPECT_THAT([&] { (void)iso.read(stamp); }, ThrowsMessage<RangeError>(HasSubstr("1700 to 2200"))) << stamp;
   }
+  TimeStamps wrapped("", "");
+  (void)wrapped.read("2024-03-01T10:00:00");
+  EXPECT_THAT([&] { (void)wrapped.read("1439-08-12T10:00:00"); },  // 2^64 ns before, within a day
+              ThrowsMessage<RangeError>(HasSubstr("1439")));
   TimeStamps german("%d.%m.%Y %H:%M:%S", "Europe/Berlin");
   EXPECT_THAT([&] { (void)german.read("31.12.9999 23:59:59"); }, ThrowsMessage<RangeError>(HasSubstr("9999")));
   EXPECT_NO_THROW((void)german.read("01.01.1970 00:00:00"));
