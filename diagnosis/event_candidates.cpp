@@ -7,6 +7,7 @@
 #include "diagnosis/happening.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/scene.hpp"
+#include "diagnosis/visit.hpp"
 #include "diagnosis/waveform.hpp"
 #include "diagnosis/window_evidence.hpp"
 
@@ -16,6 +17,18 @@ namespace {
 constexpr double kWorthRefining = -8.0, kWorthTrying = 0.0;  // nats by linear theory
 // Of a run, in which windows are looked for first. A spindle may stop for a minute of a day; what else acts for a while does so for longer, and at many places.
 constexpr Eigen::Index kCells = 60, kCellsOfSpeed = 240;
+
+/// The events that a happening may be.
+void add_events_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& happening,
+                   std::vector<Event>& list) {
+  if (auto event = event_of(twin, scene, happening)) list.push_back(*std::move(event));
+  for (Event& visit : visits_of(scene, happening)) {
+    const bool is_known = std::any_of(list.begin(), list.end(), [&](const Event& e) {  // seen as heat and as an exchange
+      return e.doubt.finding == visit.doubt.finding && e.doubt.where == visit.doubt.where && e.doubt.law == visit.doubt.law;
+    });
+    if (!is_known) list.push_back(std::move(visit));
+  }
+}
 
 }  // namespace
 
@@ -57,7 +70,7 @@ std::vector<Event> events_seen(const Twin& twin, const std::vector<MeasuredRun>&
     for (const auto& [run, windows] : s.happening.in) n_windows += windows.size();
     s.happening.size /= static_cast<double>(n_windows);
     s.happening.price_nats -= std::lgamma(static_cast<double>(n_windows) + 1.0);  // in whatever order
-    if (auto event = event_of(twin, scene, s.happening)) found.push_back(*std::move(event));
+    add_events_of(twin, scene, s.happening, found);
   }
   return found;
 }
@@ -81,8 +94,8 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
       if (exchange_window(twin, body(b), body(other))) places.push_back({b, other});
     }
   }
-  const bool turns_heat = std::any_of(
-      runs.begin(), runs.end(), [](const SeenRun& r) { return (r.linear.turning_W.array() != 0.0).any(); });
+  const bool turns_heat =
+      std::any_of(runs.begin(), runs.end(), [](const SeenRun& r) { return (r.linear.turning_W.array() != 0.0).any(); });
   if (turns_heat) places.push_back({.is_speed = true});
   const Edges few = coarse_edges(fitter.runs(), kCells), many = coarse_edges(fitter.runs(), kCellsOfSpeed);
   std::vector<std::vector<Happening>> of_place(places.size());
@@ -120,6 +133,7 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
           const std::vector<double>& edge_s = second.runs[w.run].edge_s;
           h.in.back().second.emplace_back(edge_s[static_cast<std::size_t>(w.first)],
                                           edge_s[static_cast<std::size_t>(w.last)]);
+          h.wide_s.emplace_back(w.begin_wide_s, w.end_wide_s);
         }
         h.size = found->size;
         h.price_nats = found->price_nats;
@@ -128,9 +142,7 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
       listener);
   std::vector<Event> events;
   for (const std::vector<Happening>& list : of_place) {
-    for (const Happening& h : list) {
-      if (auto event = event_of(twin, scene, h)) events.push_back(*std::move(event));
-    }
+    for (const Happening& h : list) add_events_of(twin, scene, h, events);
   }
   return events;
 }

@@ -22,7 +22,7 @@ struct Event {
 };
 
 /// Keys of effects that events may have.
-inline constexpr const char* kEventKeys[] = {"exchange_window", "heat_window", "speed_override"};
+inline constexpr const char* kEventKeys[] = {"exchange_window", "heat_window", "speed_override", "hidden_body"};
 
 /// Where the waveform of a body, missing in the twin as written, has windows, in all runs together; each of their times at the price of all rows that it could
 /// have been at.

@@ -5,14 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "effects/time_windows.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kShortest_s = 1.0;  // of a window that another length has shortened
-constexpr double kTurnsGoOn = 2.0;   // of the longest run: how long turns are written for
+constexpr double kShortest_s = 1.0;     // of a window that another length has shortened
+constexpr std::size_t kFewWindows = 5;  // whose times are fitted one by one
+constexpr double kTurnsGoOn = 2.0;      // of the longest run: how long turns are written for
 // Of the speed, by which the heat of bearings and motors usually grows: where a fit of another speed begins.
 constexpr double kUsualExponent = 1.5;
 
@@ -28,8 +30,8 @@ effects::DoubtedNumber longer_by(double sd_min, const std::vector<effects::Effec
   effects::DoubtedNumber longer = effects::doubted("longer", "min", sd_min, 0.1 * sd_min);
   longer.set = [before](std::span<effects::Effect> added, double value) {
     for (std::size_t i = 0; i < added.size(); ++i) {
-      const TimeSeries& seen_rows = before[i].tables.at("windows");
-      TimeSeries& rows = added[i].tables.at("windows");
+      const TimeSeries& seen_rows = before[i].tables.at(effects::kWindows);
+      TimeSeries& rows = added[i].tables.at(effects::kWindows);
       for (std::size_t k = 0; k < rows.value.size(); ++k) {
         const double next_s = k + 1 < rows.time_s.size() ? rows.time_s[k + 1] : 1e9;
         rows.value[k] = std::clamp(seen_rows.value[k] + 60.0 * value, rows.time_s[k] + kShortest_s, next_s);
@@ -39,6 +41,40 @@ effects::DoubtedNumber longer_by(double sd_min, const std::vector<effects::Effec
   return longer;
 }
 
+/// Beginnings and ends of windows, each known to about as much as would do as well: from there on they are fitted.
+/// @param wide_s  of them all, in the order of the effects and their rows
+std::vector<effects::DoubtedNumber> times_of_windows(const std::vector<effects::Effect>& windows, const Times& wide_s,
+                                                     double row_min) {
+  std::vector<effects::DoubtedNumber> numbers;
+  for (std::size_t e = 0; e < windows.size(); ++e) {
+    const TimeSeries& seen = windows[e].tables.at(effects::kWindows);
+    for (std::size_t k = 0; k < seen.time_s.size(); ++k) {
+      const std::size_t of = numbers.size() / 2;
+      const double before_s = k > 0 ? seen.value[k - 1] : 0.0;
+      const double after_s = k + 1 < seen.time_s.size() ? seen.time_s[k + 1] : 1e9;
+      effects::DoubtedNumber begin = effects::doubted(fmt::format("begin_{}", of + 1), "min", wide_s[of].first / 60.0,
+                                                      0.2 * row_min, seen.time_s[k] / 60.0);
+      begin.low = before_s / 60.0;
+      begin.high = (seen.value[k] - kShortest_s) / 60.0;
+      begin.set = [e, k](std::span<effects::Effect> added, double value) {
+        TimeSeries& rows = added[e].tables.at(effects::kWindows);
+        rows.time_s[k] = std::max(60.0 * value, k > 0 ? rows.value[k - 1] : 0.0);
+      };
+      effects::DoubtedNumber end = effects::doubted(fmt::format("end_{}", of + 1), "min", wide_s[of].second / 60.0,
+                                                    0.2 * row_min, seen.value[k] / 60.0);
+      end.low = begin.low;
+      end.high = after_s / 60.0;
+      end.set = [e, k](std::span<effects::Effect> added, double value) {
+        TimeSeries& rows = added[e].tables.at(effects::kWindows);
+        rows.value[k] = std::max(60.0 * value, rows.time_s[k] + kShortest_s);
+      };
+      numbers.push_back(std::move(begin));
+      numbers.push_back(std::move(end));
+    }
+  }
+  return numbers;
+}
+
 /// Begin, length and period of windows that repeat, each known to about a row.
 std::vector<effects::DoubtedNumber> times_of_turns(const Happening& h, double row_min) {
   const double begin_min = h.in.front().second.front().first / 60.0,
@@ -46,20 +82,20 @@ std::vector<effects::DoubtedNumber> times_of_turns(const Happening& h, double ro
   effects::DoubtedNumber begin = effects::doubted("begin", "min", 2.0 * row_min, 0.2 * row_min, begin_min);
   begin.low = 0.0;
   begin.set = [](std::span<effects::Effect> added, double value) {
-    TimeSeries& rows = added[0].tables.at("windows");
+    TimeSeries& rows = added[0].tables.at(effects::kWindows);
     rows = {{60.0 * value}, {60.0 * value + rows.value[0] - rows.time_s[0]}};
   };
   effects::DoubtedNumber length = effects::doubted("length", "min", 2.0 * row_min, 0.2 * row_min, length_min);
   length.low = kShortest_s / 60.0;
   length.high = h.every_s / 60.0;
   length.set = [](std::span<effects::Effect> added, double value) {
-    TimeSeries& rows = added[0].tables.at("windows");
+    TimeSeries& rows = added[0].tables.at(effects::kWindows);
     rows.value[0] = rows.time_s[0] + 60.0 * value;
   };
   effects::DoubtedNumber every = effects::doubted("every", "min", row_min, 0.1 * row_min, h.every_s / 60.0);
   every.low = length_min;
   every.set = [](std::span<effects::Effect> added, double value) {
-    const TimeSeries& rows = added[0].tables.at("windows");
+    const TimeSeries& rows = added[0].tables.at(effects::kWindows);
     added[0].set("every", std::max(60.0 * value, rows.value[0] - rows.time_s[0]));
   };
   return {begin, length, every};
@@ -124,7 +160,7 @@ std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::
   effects::Effect window = effects::make_effect("exchange_window", is_turned ? b : a);
   window.set("conductance", 0.0);
   window.references["surrounding"] = is_turned ? a : b;
-  window.tables["windows"] = {{0.0}, {1.0}};
+  window.tables[effects::kWindows] = {{0.0}, {1.0}};
   const bool joins_nodes = a.kind == effects::BodyKind::kNode && b.kind == effects::BodyKind::kNode;
   if (!joins_nodes && !holds(twin, window)) return std::nullopt;
   return window;
@@ -154,7 +190,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   for (const auto& [run, windows] : h.in) {
     effects::Effect in_run = window;
     if (h.every_s == 0.0) in_run.in = run->name;
-    TimeSeries& rows = in_run.tables["windows"];
+    TimeSeries& rows = in_run.tables[effects::kWindows];
     rows = {};
     for (const auto& [begin_s, end_s] : windows) {
       if (!(end_s - begin_s > kShortest_s)) continue;
@@ -172,20 +208,30 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
     d.added.push_back(std::move(in_run));
   }
   if (n_windows == 0) return std::nullopt;
+  const bool is_fitted = h.every_s == 0.0 && n_windows <= kFewWindows && n_windows == h.wide_s.size();
   d.numbers = {size};
   if (h.every_s > 0.0) {
     for (effects::DoubtedNumber& n : times_of_turns(h, longest_row_s / 60.0)) d.numbers.push_back(std::move(n));
+  } else if (is_fitted) {
+    for (effects::DoubtedNumber& n : times_of_windows(d.added, h.wide_s, longest_row_s / 60.0))
+      d.numbers.push_back(std::move(n));
+    // the prior of each is as wide as what would do as well: this far the choice among all rows is paid already
+    event.price_nats -= static_cast<double>(n_windows) * std::log(2.0 * std::numbers::pi);
   } else {
     d.numbers.push_back(longer_by(longest_row_s / 60.0, d.added));
   }
   d.finding = window.kind->key;
   d.where = where;
-  d.law =
-      h.every_s > 0.0
-          ? fmt::format("windows that repeat every {:.1f} min{}: {} min of each turn", h.every_s / 60.0, to, times.front())
-          : fmt::format("{}, seen in the waveform{}: {} min",
-                        n_windows == 1 ? std::string("a window") : fmt::format("{} windows of one size", n_windows), to,
-                        fmt::join(times, ", "));
+  const std::string how_many = n_windows == 1 ? std::string("a window") : fmt::format("{} windows of one size", n_windows);
+  if (h.every_s > 0.0) {
+    d.law = fmt::format("windows that repeat every {:.1f} min{}: {} min of each turn", h.every_s / 60.0, to, times.front());
+  } else if (is_fitted) {
+    std::vector<std::string> in;
+    for (const effects::Effect& e : d.added) in.push_back(e.in);
+    d.law = fmt::format("{}{}, in {}", how_many, to, fmt::join(in, " and "));
+  } else {
+    d.law = fmt::format("{}{}: {} min", how_many, to, fmt::join(times, ", "));
+  }
   d.trial = trial;
   return event;
 }

@@ -14,6 +14,8 @@ struct Happening {
   bool is_speed = false;                    ///< of the spindle, whatever the body: the size is what heat of turning grows by, over itself
   std::vector<std::pair<const MeasuredRun*, Times>> in =
       {};                ///< each run that has some; no run: all of them, one window in each turn
+  /// How much of the record would do as well as each beginning and end [s], in the order of all windows; empty: not known.
+  Times wide_s = {};
   double every_s = 0.0;  ///< of windows that repeat
   double size = 0.0;     ///< W, W/K or 1
   double price_nats = 0.0;

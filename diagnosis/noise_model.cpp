@@ -11,6 +11,9 @@ namespace {
 
 constexpr double kShortestPeriod_s = 2400.0;
 constexpr int kMostCosines = 24;
+// Time constants of noise that follows itself, in rows, as far as it is faster than what a machine does: a radian of the shortest cosine, with room.
+constexpr double kRowsAlike[] = {1.0, 2.0, 4.0, 7.0, 12.0, 20.0, 35.0};
+constexpr double kLongestAlike_s = 480.0;
 constexpr int kMostJumps = 3;
 
 double median(std::vector<double> values) {
@@ -127,8 +130,10 @@ NoiseModel estimate_noise(const std::vector<NoiseSeries>& given, double floor) {
   Likelihood l = likelihood(series, best);
   double best_value = l.log_value + 2.0;  // correlation must earn its two numbers
   double scale = std::sqrt(l.variance);
-  for (double time_s : {1.0 * step_s, 2.0 * step_s, 4.0 * step_s, 7.0 * step_s}) {
-    for (double share : {0.1, 0.2, 0.35, 0.5, 0.7, 0.9}) {
+  for (double rows : kRowsAlike) {
+    const double time_s = rows * step_s;
+    if (rows > kRowsAlike[0] && time_s > kLongestAlike_s) break;
+    for (double share : {0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9}) {
       const NoiseModel shape{std::sqrt(1.0 - share), std::sqrt(share), time_s};
       l = likelihood(series, shape);
       if (!(l.log_value > best_value)) continue;

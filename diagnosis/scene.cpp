@@ -56,10 +56,7 @@ std::vector<effects::DoubtScene::Column> columns_of(const std::vector<MeasuredRu
       values.insert(of_run.begin(), of_run.end());
     }
     if (values.size() < 2) return;
-    effects::DoubtScene::Column c{.header = name + "_" + unit,
-                                  .unit = unit,
-                                  .span = *values.rbegin() - *values.begin(),
-                                  .n_levels = static_cast<int>(values.size())};
+    effects::DoubtScene::Column c{.header = name + "_" + unit, .unit = unit, .span = *values.rbegin() - *values.begin()};
     c.drives = std::any_of(own.begin(), own.end(), [&](const effects::Effect& e) {
       const auto word = e.words.find("column");
       const bool cuts = name == "cutting_power" && e.kind->key == "cutting_heat";
@@ -114,7 +111,8 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
       }
     }
   }
-  if (turning_s > 0.0) {  // a round number near the mean speed: where laws of speed are stated
+  s.turns = turning_s > 0.0;
+  if (s.turns) {  // a round number near the mean speed: where laws of speed are stated
     const double mean_rpm = turned / turning_s, decade = std::pow(10.0, std::floor(std::log10(mean_rpm)));
     s.typical_rpm = std::max(1.0, std::round(mean_rpm / decade)) * decade;
   }

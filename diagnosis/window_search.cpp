@@ -116,8 +116,8 @@ class Searcher {
       for (Eigen::Index j = i + 1; j < whole.last; ++j) {
         const Window before{whole.run, whole.first, i}, after{whole.run, j, whole.last};
         const Eigen::Index a = first + i, b = first + j;
-        const Sums without{now.slope - slope_[b] + slope_[a],
-                           now.curvature - 2.0 * (cross[b] - cross[a]) + square_(b, b) - 2.0 * square_(a, b) + square_(a, a)};
+        const Sums without{now.slope - slope_[b] + slope_[a], now.curvature - 2.0 * (cross[b] - cross[a]) + square_(b, b) -
+                                                                  2.0 * square_(a, b) + square_(a, a)};
         if (const double value = nats(without); value > best.nats) best = {before, after, value};
       }
     }
@@ -132,7 +132,8 @@ class Searcher {
   }
 
   /// Price of the times of a set: each of them could have been anywhere, and some places would do as well as this one.
-  [[nodiscard]] double price(const std::vector<Window>& set) const {
+  /// @param set  is told how wide its times are
+  [[nodiscard]] double price(std::vector<Window>& set) const {
     const double value = nats(sums(set));
     double price = 0.0;
     for (std::size_t k = 0; k < set.size(); ++k) {
@@ -150,7 +151,9 @@ class Searcher {
           if (meets_another(other, k)) continue;
           wide_s += 0.5 * (to_s - from_s) * std::exp(std::min(0.0, nats(sums(other)) - value));
         }
-        price += std::log(length_s / std::clamp(wide_s, run.row_s, length_s));
+        wide_s = std::clamp(wide_s, run.row_s, length_s);
+        (is_end ? set[k].end_wide_s : set[k].begin_wide_s) = wide_s;
+        price += std::log(length_s / wide_s);
       }
       price -= std::log(static_cast<double>(k + 1));  // in whatever order
     }

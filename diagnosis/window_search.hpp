@@ -31,6 +31,10 @@ struct FoundWindows {
   struct Window {
     std::size_t run = 0;
     Eigen::Index first = 0, last = 0;  ///< edges of the run
+    double
+        begin_wide_s = 0.0,
+        end_wide_s =
+            0.0;  ///< how much of the run would do as well as each, a row at least: the integral of likelihood over the best
   };
   std::vector<Window> windows;
   double size = 0.0;

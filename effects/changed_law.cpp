@@ -10,10 +10,12 @@ namespace {
 
 constexpr double kOfSolids =
     2.0;  // nats: a joint of solid bodies does not change in the middle of a record, unless somebody works on it
+constexpr double kStirred = 0.75;  // of the speed: a film on what turns, between laminar 0.5 and turbulent 0.8
 constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // of speed, of all laws together
 
 void change(const Effect& e, const Body& body, Law& law) {
   const double factor = e["factor"], exponent = e["exponent"], n0_rpm = e["at_speed"];
+  const double growth = e["growth"], growth_exponent = e["growth_exponent"];
   const double decay_1_K = e["decay"], t0_K = e["at_temperature"];
   const bool thins = decay_1_K != 0.0;
   if (thins) law.probes.push_back(body);
@@ -28,8 +30,9 @@ void change(const Effect& e, const Body& body, Law& law) {
     const double as_written = value(*inputs);
     if (u.time_s < from_s || u.time_s >= until_s || !(in.empty() || u.run == in)) return as_written;
     const double n = u.drive.speed_rpm / n0_rpm;
-    const double growth = n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0;
-    return factor * growth * as_written * (thins ? std::exp(-decay_1_K * (u.probe_K.back() - t0_K)) : 1.0);
+    const double by_speed = (n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0) +
+                            (growth != 0.0 ? growth * std::pow(n, growth_exponent) : 0.0);
+    return factor * by_speed * as_written * (thins ? std::exp(-decay_1_K * (u.probe_K.back() - t0_K)) : 1.0);
   };
 }
 
@@ -160,40 +163,77 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
   }
 }
 
+/// Air that a turning part stirs: an exchange with it that grows with speed where it is written as constant, beside what it is at standstill, or by a power of
+/// the speed while it turns. Films of surfaces have `forced_convection`.
+void doubt_stirred_air(const DoubtScene& s, const Exchange& exchange, std::vector<Doubt>& list) {
+  if (!s.turns || !is_of_air(s, exchange) || exchange.body.kind == BodyKind::kSurface || exchange.per == Per::kArea ||
+      !exchange.coefficient.probes.empty() ||
+      exchange.coefficient(Inputs{.drive = {.speed_rpm = s.typical_rpm}}) != exchange.coefficient(Inputs{})) {
+    return;
+  }
+  Doubt grows{.finding = "forced_convection",
+              .where = where_of(exchange),
+              .law = fmt::format("a conductance that grows with speed, by so much of itself at {:.0f} rpm", s.typical_rpm),
+              .added = {changed(exchange.name)},
+              .numbers = {doubted("growth", "1", 1.0, 0.1), doubted("exponent", "1", 0.5, 0.05, kStirred)},
+              .trial = 0.2,
+              .grid = {{0.0}, {kStirred}},
+              .at_speed_rpm = s.typical_rpm};
+  grows.added[0].set("at_speed", s.typical_rpm);
+  grows.numbers[0].low = 0.0;
+  grows.numbers[1].low = 0.3;
+  grows.numbers[1].high = 3.0;
+  grows.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("growth_exponent", value); };
+  list.push_back(grows);
+  grows.law =
+      fmt::format("a conductance that follows a power of the speed while it turns, the same but for a factor at {:.0f} rpm",
+                  s.typical_rpm);
+  grows.numbers = {doubted("exponent", "1", 0.5, 0.05), doubted_factor()};
+  grows.numbers[0].low = kLowestExponent;
+  grows.numbers[0].high = kHighestExponent;
+  grows.grid = {{0.0}, {0.4}, {-0.4}};
+  list.push_back(std::move(grows));
+}
+
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const Body& body : s.bodies) doubt_heat(s, body, list);
   for (const Effect& e : s.own) {
     if (e.kind->exchange_finding.empty()) continue;
-    for (const Exchange& x : heat_balance({e}).exchanges) doubt_exchange(s, e.kind->exchange_finding, x, list);
+    for (const Exchange& x : heat_balance({e}).exchanges) {
+      doubt_exchange(s, e.kind->exchange_finding, x, list);
+      doubt_stirred_air(s, x, list);
+    }
   }
   return list;
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["decay"] == 0.0)
-    in.fail("factor", "nothing is changed; one of `factor`, `exponent`, `decay` is wanted");
+  if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0)
+    in.fail("factor", "nothing is changed; one of `factor`, `exponent`, `growth`, `decay` is wanted");
 }
 
 }  // namespace
 
 EffectKind changed_law() {
-  return {
-      .key = "changed_law",
-      .title = "another size, growth with speed or decay of what another effect does",
-      .law =
-          "c' = factor (n / at_speed)^exponent exp(-decay (T - at_temperature)) c, c: a power or a coefficient of another "
-          "effect, T of its own body; at standstill the exponent does nothing",
-      .places = {Place::kLaw},
-      .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
-                     {"exponent", "1", -5.0, 5.0, 0.0, "further growth with speed, beside the law's own"},
-                     {"at_speed", "rpm", 1.0, 1e6, 1000.0, "where that growth changes nothing"},
-                     {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
-                     {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"}},
-      .timing = Timing::kInTime,
-      .change_laws = change_laws,
-      .check = check,
-      .doubts = doubts};
+  return {.key = "changed_law",
+          .title = "another size, growth with speed or decay of what another effect does",
+          .law =
+              "c' = factor ((n / at_speed)^exponent + growth (n / at_speed)^growth_exponent) exp(-decay (T - "
+              "at_temperature)) c, "
+              "c: a power or a coefficient of another effect, T of its own body; at standstill the exponent does nothing",
+          .places = {Place::kLaw},
+          .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
+                         {"exponent", "1", -5.0, 5.0, 0.0, "further growth with speed, beside the law's own"},
+                         {"growth", "1", 0.0, 1e4, 0.0, "added at the stated speed, as a share of the law itself"},
+                         {"growth_exponent", "1", 0.1, 5.0, 2.0 / 3.0, "of the speed, by which that grows"},
+                         {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed; there the exponent changes nothing"},
+                         {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
+                         {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"}},
+          .timing = Timing::kInTime,
+          .change_laws = change_laws,
+          .check = check,
+          .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -17,7 +17,7 @@ struct DoubtScene {
   double reference_K = 293.15;
   double typical_rpm = 1.0;  ///< laws of speed are stated there
   double heat_W = 1.0;       ///< of all sources at the highest speed
-  bool moves_axes = false;
+  bool moves_axes = false, turns = false;  ///< in some record
   struct Run {
     std::string name;
     double length_s = 0.0;
@@ -48,7 +48,6 @@ struct DoubtScene {
   struct Column {
     std::string header, unit;
     double span = 1.0;    ///< largest minus smallest value, > 0
-    int n_levels = 0;     ///< different values
     bool drives = false;  ///< an effect of the scenario is driven by it already
     [[nodiscard]] bool is_temperature() const { return unit == "degC"; }
   };

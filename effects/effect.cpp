@@ -238,7 +238,7 @@ HeatBalance heat_balance(const std::vector<Effect>& effects) {
     if (!effect.kind->contribute) continue;
     HeatBalance own;
     effect.kind->contribute(effect, own);
-    keep_time(effect, own);
+    if (!effect.kind->keeps_time_itself) keep_time(effect, own);
     balance.append(std::move(own));
   }
   for (const Effect& effect : effects) {

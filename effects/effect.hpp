@@ -104,6 +104,7 @@ struct EffectKind {
   std::vector<Place> places;
   std::vector<Parameter> parameters;
   Timing timing = Timing::kAlways;
+  bool keeps_time_itself = false;  ///< its laws look at `in` themselves: something goes on outside of it as well
   /// Adds what the effect does to heat, as if it acted at all times. The Effect outlives no call: copy what a Law needs.
   void (*contribute)(const Effect&, HeatBalance&) = nullptr;
   /// Or changes what all others do to heat, once their laws are there.

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "effects/doubt.hpp"
+#include "effects/time_windows.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -16,16 +16,36 @@ constexpr double kFollowTrial = 0.1, kLeast = 1e-4;     // of the capacity of it
 constexpr double kTimeSd = 2.0;                         // of the logarithm
 constexpr double kTypicalTime = 0.1;                    // of the longest record
 constexpr double kFollowTimes[] = {0.01, 0.04, 0.15, 0.6};
+constexpr double kTakesTheAmbient_s = 60.0;  // time constant of a body that is away: it comes as warm as the ambient
 
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double link_W_K = e["conductance"], to_ambient_W_K = e["hall_conductance"];
+  const double link_W_K = e["conductance"];
+  const double to_ambient_W_K = e.has("hall_conductance") ? e["hall_conductance"] : 0.0;
   const std::string own = e.place + kSuffix;
   balance.nodes.push_back({own, e["capacity"]});
-  balance.exchanges.push_back(make_link(
-      e.name() + " - " + own, e.body(), [=](const Inputs&) { return link_W_K; }, own));
-  if (e.has("hall_conductance"))
-    balance.exchanges.push_back(
-        make_link(e.name() + " - ambient", node(own), [=](const Inputs&) { return to_ambient_W_K; }));
+  Law to_body = [=](const Inputs&) { return link_W_K; }, to_ambient = [=](const Inputs&) { return to_ambient_W_K; };
+  const bool comes_and_goes = e.tables.contains(kWindows);
+  if (comes_and_goes) {
+    const auto windows = windows_of(e);
+    const auto is_there = [in = e.in, inside = within(windows, 1.0)](const Inputs& u) {
+      return (in.empty() || u.run == in) && inside(u) > 0.0;
+    };
+    const double away_W_K = e["capacity"] / kTakesTheAmbient_s;
+    to_body = [=](const Inputs& u) { return is_there(u) ? link_W_K : 0.0; };
+    to_ambient = [=](const Inputs& u) { return is_there(u) ? to_ambient_W_K : away_W_K; };
+    add_change_times(windows, balance);
+  }
+  balance.exchanges.push_back(make_link(e.name() + " - " + own, e.body(), to_body, own));
+  if (comes_and_goes || e.has("hall_conductance"))
+    balance.exchanges.push_back(make_link(e.name() + " - ambient", node(own), to_ambient));
+}
+
+void check(const Effect& e, const ConfigMap& in) {
+  if (e.tables.contains(kWindows)) {
+    check_windows(e, in);
+  } else if (!e.in.empty() || e.has("every") || e.has("until_time")) {
+    in.fail(kWindows, "`in`, `every` and `until_time` are of a body that comes and goes: they want `windows`");
+  }
 }
 
 /// One that is as warm as its body, or that hardly notices it: how much it stores and how fast it follows is what readings tell, and a conductance, which the
@@ -100,13 +120,18 @@ EffectKind hidden_body() {
       .title = "body behind another: a cover, a tank, a clamped part, which no node or region of the machine is",
       .law =
           "capacity dT_hidden/dt = conductance (T - T_hidden) - hall_conductance (T_hidden - T_ambient); it makes the node "
-          "<its body>_hidden, and takes its heat evenly from the region",
+          "<its body>_hidden, and takes its heat evenly from the region; with windows it is there within them, and as warm "
+          "as the ambient else",
       .places = {Place::kRegion, Place::kNode},
-      .parameters = {{"capacity", "J/K", 1e-6, 1e12, {}, "heat capacity of the hidden body"},
-                     {"conductance", "W/K", 0.0, 1e9, {}, "between the two", 0.1, "hidden_body", Doubted::kFactor},
-                     {"hall_conductance", "W/K", 0.0, 1e9, kNotGiven, "from the hidden body to the ambient", 0.1,
-                      "hidden_body", Doubted::kFactor}},
+      .parameters = repeating({{"capacity", "J/K", 1e-6, 1e12, {}, "heat capacity of the hidden body"},
+                               {"conductance", "W/K", 0.0, 1e9, {}, "between the two", 0.1, "hidden_body", Doubted::kFactor},
+                               {"hall_conductance", "W/K", 0.0, 1e9, kNotGiven, "from the hidden body to the ambient", 0.1,
+                                "hidden_body", Doubted::kFactor}}),
+      .timing = Timing::kInRecord,
+      .keeps_time_itself = true,
       .contribute = contribute,
+      .tables = {windows_table(false)},
+      .check = check,
       .doubts = doubts};
 }
 

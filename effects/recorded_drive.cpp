@@ -9,8 +9,7 @@ namespace driftwright::effects {
 namespace {
 
 constexpr double kMedium_K =
-    kZeroCelsius_K + 20.0;     // of an exchange with a recorded temperature: heat makes up for the rest
-constexpr int kFewLevels = 4;  // of what opens and shuts an exchange: more are no valve and no lid
+    kZeroCelsius_K + 20.0;  // of an exchange with a recorded temperature: heat makes up for the rest
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const auto signal = signal_of(e.words.at("column"), e["lag"] * 60.0);
@@ -84,7 +83,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       }
       list.push_back(doubt(body, column, "heat in proportion to {}", "gain", "W per " + column.unit, gain_sd(s, column)));
       if (column.unit == "K") list.back().numbers[0].low = -1e300;  // of a difference
-      if (column.unit == "W" || column.n_levels > kFewLevels || body.kind != BodyKind::kNode) continue;
+      if (column.unit == "W" || column.unit == "K" || body.kind != BodyKind::kNode) continue;
       list.push_back(doubt(body, column, "exchange with the ambient that {} opens", "opening", "W/K per " + column.unit,
                            0.2 * s.unknown_heat_W() / column.span));
     }
