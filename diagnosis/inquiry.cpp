@@ -155,7 +155,7 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
   of.noise = estimate_noise(runs, ground.as_written, options.floor);
   for (int pass = 0; pass < 2; ++pass) {
     of.fitter->set_noise(of.noise);
-    of.search = search(*of.fitter, told_of_by(runs, ground.candidates), how, listener);
+    of.search = search(*of.fitter, told_of_by(runs, ground.candidates), how, listener, &of.search);
     const auto sharper = estimate_noise(runs, of.search.fit.prediction, options.floor);
     const bool is_sharper = std::any_of(sharper.begin(), sharper.end(), [&](const auto& s) {
       const NoiseModel& before = of.noise.at(s.first);

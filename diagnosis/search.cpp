@@ -223,6 +223,26 @@ double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hy
   return price;
 }
 
+/// A hypothesis by the candidates of another list, to which the laws that it does not have are added.
+Hypothesis carried_over(const SearchResult& from, std::vector<Candidate>& to) {
+  Hypothesis hypothesis;
+  for (Claim claim : from.hypothesis) {
+    const Candidate& known = from.candidates[claim.candidate];
+    const Variant& law = known.variants[claim.variant];
+    auto same = std::find_if(to.begin(), to.end(),
+                             [&](const Candidate& c) { return c.effect == known.effect && c.where == known.where; });
+    if (same == to.end()) same = to.insert(to.end(), {.effect = known.effect, .where = known.where, .variants = {}});
+    auto variant = std::find_if(same->variants.begin(), same->variants.end(), [&](const Variant& v) {
+      return v.law == law.law && v.in == law.in && !v.seen && !law.seen;  // times that were seen are of their own law
+    });
+    if (variant == same->variants.end()) variant = same->variants.insert(same->variants.end(), law);
+    claim.candidate = static_cast<std::size_t>(same - to.begin());
+    claim.variant = static_cast<std::size_t>(variant - same->variants.begin());
+    hypothesis.push_back(std::move(claim));
+  }
+  return hypothesis;
+}
+
 }  // namespace
 
 Bars bars_of(const Chance& chance, const SearchOptions& options) {
@@ -235,7 +255,7 @@ Bars bars_of(const Chance& chance, const SearchOptions& options) {
 }
 
 SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
-                    const Listener& listener) {
+                    const Listener& listener, const SearchResult* before) {
   SearchResult result;
   double price = 0.0;
   const auto add = [&](const std::vector<Event>& events) {
@@ -269,6 +289,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   listener.begin("looking for windows of time");
   add(events_seen(fitter.twin(), fitter.runs(), listener));
   add(events_beside(fitter, {}, weighed_at, projection_of(fitter, {}, weighed_at), listener));
+  const Hypothesis begun = is_bent && before ? carried_over(*before, candidates) : Hypothesis{};
   listener.begin(fmt::format("signatures of {} candidates", candidates.size()));
   std::vector<Signature> columns = signatures(fitter, candidates, laws_of(candidates), {}, weighed_at, listener);
   result.scores = scores(fitter, candidates, columns, {}, weighed_at);
@@ -316,12 +337,26 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       std::stable_sort(additions.begin(), additions.end(),
                        [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
     }
-    if (additions.empty()) break;
-    const Hypothesis tried = with(best, additions.front().claim);
-    const double value = evidence(additions.front().fit, tried) - laws_price(candidates, best);
+    Hypothesis tried;
+    Fit tried_fit;
+    double value = -1e300;
+    if (!additions.empty()) {
+      tried = with(best, additions.front().claim);
+      tried_fit = std::move(additions.front().fit);
+      value = evidence(tried_fit, tried) - laws_price(candidates, best);
+    }
+    if (round == 0 && !begun.empty()) {
+      Fit fit = fit_all(fitter, {{begun, before->fit.claim_x(fitter.n_nuisance())}}).front();
+      const double begun_value = evidence(fit, begun) - laws_price(candidates, begun);
+      if (!fit.prediction.empty() && begun_value > value) {
+        tried = begun;
+        tried_fit = std::move(fit);
+        value = begun_value;
+      }
+    }
     if (!(value > best_value + must_gain(best.size()))) break;
-    best = tried;
-    best_fit = additions.front().fit;
+    best = std::move(tried);
+    best_fit = std::move(tried_fit);
     best_value = value;
     settle_well(fitter, best, best_fit);  // what comes next starts from here
     best_value = evidence(best_fit, best) - laws_price(candidates, best);

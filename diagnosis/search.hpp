@@ -73,7 +73,9 @@ struct SearchResult {
 
 /// @param candidates  windows that the readings ask for are added
 /// @param listener    once it wants an end, what has stood up so far is the result
+/// @param before      null, or what a search of the same runs by another noise found: where a loud cause has bent the scenario's numbers, from which nothing can be
+///                    weighed well, it is tried as well
 [[nodiscard]] SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const SearchOptions& options,
-                                  const Listener& listener);
+                                  const Listener& listener, const SearchResult* before = nullptr);
 
 }  // namespace driftwright::diagnosis
