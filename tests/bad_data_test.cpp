@@ -237,6 +237,19 @@ TEST(WarmStart, IsNotTakenForABiasOrAnAmbientThatIsOff) {
   EXPECT_EQ(b.runs[0].start_K.size(), 0);
 }
 
+TEST(WarmStart, IsAlwaysReadWhereARunBeginsWithinItsRecord) {  // one thermometer of two is warm, as that of a rotor whose housing is cooled
+  Bench b;
+  b.measure({7.0, 0.0});
+  find_warm_starts(b.runs, *b.twin);
+  EXPECT_EQ(b.runs[0].start_K.size(), 0);
+  b.runs[0].begins_within = true;
+  find_warm_starts(b.runs, *b.twin);
+  ASSERT_EQ(b.runs[0].start_K.size(), 2);
+  EXPECT_NEAR(b.runs[0].start_K[0], 7.0, 0.3);
+  EXPECT_NEAR(b.runs[0].start_K[1], 0.0, 0.3);
+  EXPECT_THAT(b.told(), HasSubstr("starts from its first readings"));
+}
+
 TEST(MissingData, NamesNothingAndWritesNothing) {  // 60 readings, of which one thermometer is plainly off
   Bench b;
   MeasuredRun& run = b.runs[0];

@@ -196,6 +196,25 @@ TEST(HiddenBody, HasAWayToTheAmbientWhereGiven) {
   EXPECT_EQ(b.exchanges[1].coefficient({}), 2.0);
 }
 
+TEST(HiddenBody, IsJoinedWithinItsWindowsAndOtherwiseAsWarmAsTheAmbient) {
+  const HeatBalance b = balance_of(
+      "{type: hidden_body, node: head, capacity: 6 kJ/K, conductance: 9 W/K, hall_conductance: 2 W/K, windows: [[10 min, 20 "
+      "min]], in: monday}");
+  ASSERT_EQ(b.nodes.size(), 1u);
+  ASSERT_EQ(b.exchanges.size(), 2u);
+  const Law &to_body = b.exchanges[0].coefficient, &to_ambient = b.exchanges[1].coefficient;
+  EXPECT_EQ(b.exchanges[0].surrounding, "head_hidden");
+  EXPECT_EQ(b.exchanges[1].body, node("head_hidden"));
+  EXPECT_EQ(b.exchanges[1].surrounding, kAmbientName);
+  EXPECT_EQ(to_body(at(0.0, 900.0, "monday")), 9.0);
+  EXPECT_EQ(to_ambient(at(0.0, 900.0, "monday")), 2.0);
+  for (const Inputs& away : {at(0.0, 599.0, "monday"), at(0.0, 1201.0, "monday"), at(0.0, 900.0, "tuesday")}) {
+    EXPECT_EQ(to_body(away), 0.0);
+    EXPECT_EQ(to_ambient(away), 100.0);  // 6 kJ/K in a minute
+  }
+  EXPECT_EQ(b.change_times_s, (std::vector<double>{600.0, 1200.0}));
+}
+
 // --- axes and cutting -------------------------------------------------------------------------------------------
 
 TEST(Axes, ServoHoldsAndGrowsWithItsOwnFeed) {
@@ -338,6 +357,18 @@ TEST(ChangedLaw, MultipliesByAFactorAPowerOfSpeedAndADecay) {
   // 1000 rpm: 120 W x 1.5 x (1000/500)^2 x exp(-0.02 x 10)
   EXPECT_NEAR(law(at(1000.0, 0.0, "", {303.15})), 120.0 * 1.5 * 4.0 * std::exp(-0.2), 1e-9);
   EXPECT_EQ(law(at(0.0, 0.0, "", {303.15})), 0.0);
+}
+
+TEST(ChangedLaw, AddsAGrowthWithSpeedToWhatIsThereAtStandstill) {
+  const Law law = law_of({"{type: link, node: a, to: ambient, conductance: 10 W/K}",
+                          "{type: changed_law, law: link a - ambient, growth: 0.6, growth_exponent: 0.5, at_speed: 2000 rpm}"});
+  EXPECT_EQ(law(at(0.0)), 10.0);
+  EXPECT_NEAR(law(at(2000.0)), 16.0, 1e-12);
+  EXPECT_NEAR(law(at(500.0)), 13.0, 1e-12);  // 10 (1 + 0.6 (500/2000)^0.5)
+  const Law twice = law_of({"{type: link, node: a, to: ambient, conductance: 10 W/K}",
+                            "{type: changed_law, law: link a - ambient, factor: 2, growth: 0.6, growth_exponent: 0.5, "
+                            "at_speed: 2000 rpm}"});
+  EXPECT_NEAR(twice(at(2000.0)), 32.0, 1e-12);  // of the law as changed
 }
 
 TEST(ChangedLaw, LeavesALawThatLooksAtTemperaturesItsOwnProbes) {
@@ -515,6 +546,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: link, node: n, conductance: 1 W/K, to: n}", "joins two bodies"},
         Bad{"{type: link, node: n, conductance: -1 W/K, to: ambient}", "outside what is allowed"},
         Bad{"{type: hidden_body, node: n, conductance: 1 W/K}", "key 'capacity' is missing"},
+        Bad{"{type: hidden_body, node: n, capacity: 1 J/K, conductance: 1 W/K, in: monday}", "they want `windows`"},
         Bad{"{type: hidden_body, node: n, capacity: 0 J/K, conductance: 1 W/K}", "outside what is allowed"},
         Bad{"{type: hidden_body, surface: s, capacity: 1 J/K, conductance: 1 W/K}", "wants one place: region or node"},
         Bad{"{type: coolant, region: r, tank: ambient, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L}",

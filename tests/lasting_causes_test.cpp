@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/extended_scenario.hpp"
@@ -139,6 +140,20 @@ INSTANTIATE_TEST_SUITE_P(
               "windows of one size",
               60.0,
               6.0},
+        Cause{"a_cold_workpiece_that_stays",
+              {"{type: hidden_body, node: head, capacity: 3 kJ/K, conductance: 5 W/K, windows: [[150 min, 301 min]], in: monday}"},
+              "hidden_body",
+              "head",
+              "comes and stays",
+              3000.0,
+              450.0},
+        Cause{"air_that_a_turning_part_stirs",
+              {"{type: changed_law, law: link head - ambient, growth: 1.5, growth_exponent: 0.75, at_speed: 1000 rpm}"},
+              "forced_convection",
+              "head,ambient",
+              "grows with speed",
+              1.5,
+              0.4},
         Cause{"another_oil",
               {"{type: run_state, factor: 1.6, in: monday}", "{type: run_state, factor: 1.6, in: friday}"},
               "run_state",
@@ -218,7 +233,10 @@ TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {
   EXPECT_EQ(d.causes[0].effect, "speed_override");
   EXPECT_EQ(d.causes[0].standing, Standing::kNamed);
   EXPECT_THAT(d.causes[0].law, HasSubstr("2 windows of one size"));
+  ASSERT_THAT(d.causes[0].parameters, SizeIs(5));  // the factor, and when each window begins and ends
   EXPECT_NEAR(d.causes[0].parameters[0].value, 0.55, 0.03);
+  const double times_min[] = {20.0, 45.0, 180.0, 210.0};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(d.causes[0].parameters[i + 1].value, times_min[i], 1.0);
   const Claim& claim = d.search.hypothesis[0];
   const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
   const ExtendedScenario extended =
@@ -226,6 +244,23 @@ TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {
   EXPECT_THAT(extended.not_written, IsEmpty());
   const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
   EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+}
+
+// What is taken of a record behind a hole begins with a machine that had been running.
+TEST(ARecordWithAHole, StartsFromItsFirstReadingsBehindIt) {
+  const std::vector<std::string> records =
+      noisy_records(write_file("plain.yaml", kMachine), "hole_", 60.0, 0.03, 0.2);
+  std::ifstream whole(records.front());
+  std::string kept, row;
+  for (int i = -1; std::getline(whole, row); ++i) {  // a row a minute behind the header; the speed changes at 60 min
+    if (i < 50 || i > 70) kept += row + "\n";
+  }
+  const std::vector<std::string> with_hole = {write_file("hole.csv", kept), records[1]};
+  const Beside beside(write_file("plain.yaml", kMachine), with_hole);
+  EXPECT_TRUE(beside.runs[0].begins_within);
+  EXPECT_FALSE(beside.runs[1].begins_within);
+  const Diagnosis d = beside.diagnosed();
+  EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
 }
 
 // The state of rest that a machine starts from follows its numbers, also where a law follows temperature: a weaker path to the ambient, with heat that is always

@@ -141,6 +141,27 @@ TEST(EstimateNoise, FindsWhiteAndCorrelatedPartBeneathADriftOfManyTimesTheirSize
   EXPECT_GT(found.correlated, 0.5 * truth.correlated);
 }
 
+TEST(EstimateNoise, FindsNoiseOfMinutesAtShortRows) {  // 6 min at rows of 15 s: 24 rows
+  const NoiseModel truth{0.05, 0.05, 360.0};
+  std::vector<NoiseSeries> series;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    std::vector<double> t;
+    for (int i = 0; i < 1200; ++i) t.push_back(15.0 * i);
+    series.push_back({t, noise(truth, t, seed), smooth_curves(t, speed_of(t))});
+  }
+  const NoiseModel found = estimate_noise(series, 1e-3);
+  EXPECT_NEAR(found.white, truth.white, 0.05 * truth.white);
+  EXPECT_NEAR(found.correlated, truth.correlated, 0.25 * truth.correlated);
+  EXPECT_GT(found.time_s, 150.0);  // it had been 105 s at most
+}
+
+TEST(EstimateNoise, LeavesToTheMachineWhatItCouldFollowAtLongRows) {  // slow noise of 70 min at rows of 10 min
+  std::vector<double> t;
+  for (int i = 0; i < 600; ++i) t.push_back(600.0 * i);
+  const NoiseModel found = estimate_noise({{t, noise({0.05, 0.1, 4200.0}, t, 3), smooth_curves(t, speed_of(t))}}, 1e-3);
+  EXPECT_LE(found.time_s, 600.0);
+}
+
 TEST(EstimateNoise, CallsWhiteNoiseWhiteAndAStepNoNoise) {
   const NoiseModel truth{0.2, 0.0, 0.0};
   const std::vector<double> t = minutes(300);
