@@ -10,6 +10,7 @@
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/extended_scenario.hpp"
+#include "diagnosis/warm_start.hpp"
 #include "tests/lumped_records.hpp"
 
 namespace driftwright::diagnosis {
@@ -256,7 +257,8 @@ TEST(ARecordWithAHole, StartsFromItsFirstReadingsBehindIt) {
     if (i < 50 || i > 70) kept += row + "\n";
   }
   const std::vector<std::string> with_hole = {write_file("hole.csv", kept), records[1]};
-  const Beside beside(write_file("plain.yaml", kMachine), with_hole);
+  Beside beside(write_file("plain.yaml", kMachine), with_hole);
+  find_warm_starts(beside.runs, *beside.twin);
   EXPECT_TRUE(beside.runs[0].begins_within);
   EXPECT_FALSE(beside.runs[1].begins_within);
   const Diagnosis d = beside.diagnosed();
