@@ -324,7 +324,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     }
     return any;
   };
-  for (int round = 0; round < options.most_effects && !listener.wants_end(); ++round) {
+  for (int round = 0; static_cast<int>(best.size()) < options.most_effects && !listener.wants_end(); ++round) {
     listener.begin(
         fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
     std::vector<Fitted> additions = best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit,
