@@ -16,6 +16,7 @@ constexpr double kFollowTrial = 0.1, kLeast = 1e-4;     // of the capacity of it
 constexpr double kTimeSd = 2.0;                         // of the logarithm
 constexpr double kTypicalTime = 0.1;                    // of the longest record
 constexpr double kFollowTimes[] = {0.01, 0.04, 0.15, 0.6};
+constexpr double kTrace = 1e-6;                  // of that exchange
 constexpr double kTakesTheAmbient_s = 60.0;  // time constant of a body that is away: it comes as warm as the ambient
 
 void contribute(const Effect& e, HeatBalance& balance) {
@@ -23,21 +24,28 @@ void contribute(const Effect& e, HeatBalance& balance) {
   const double to_ambient_W_K = e.has("hall_conductance") ? e["hall_conductance"] : 0.0;
   const std::string own = e.place + kSuffix;
   balance.nodes.push_back({own, e["capacity"]});
-  Law to_body = [=](const Inputs&) { return link_W_K; }, to_ambient = [=](const Inputs&) { return to_ambient_W_K; };
-  const bool comes_and_goes = e.tables.contains(kWindows);
-  if (comes_and_goes) {
+  if (!e.tables.contains(kWindows)) {
+    balance.exchanges.push_back(make_link(
+        e.name() + " - " + own, e.body(), [=](const Inputs&) { return link_W_K; }, own));
+    if (e.has("hall_conductance"))
+      balance.exchanges.push_back(
+          make_link(e.name() + " - ambient", node(own), [=](const Inputs&) { return to_ambient_W_K; }));
+  } else {
     const auto windows = windows_of(e);
     const auto is_there = [in = e.in, inside = within(windows, 1.0)](const Inputs& u) {
       return (in.empty() || u.run == in) && inside(u) > 0.0;
     };
     const double away_W_K = e["capacity"] / kTakesTheAmbient_s;
-    to_body = [=](const Inputs& u) { return is_there(u) ? link_W_K : 0.0; };
-    to_ambient = [=](const Inputs& u) { return is_there(u) ? to_ambient_W_K : away_W_K; };
+    // a way out that is always there: what is left of a machine without exchanges that come and go must settle somewhere
+    const double always_W_K = std::max(to_ambient_W_K, kTrace * away_W_K);
+    balance.exchanges.push_back(make_link(
+        e.name() + " - " + own, e.body(), [=](const Inputs& u) { return is_there(u) ? link_W_K : 0.0; }, own));
+    balance.exchanges.push_back(
+        make_link(e.name() + " - ambient", node(own), [=](const Inputs&) { return always_W_K; }));
+    balance.exchanges.push_back(make_link(e.name() + " - ambient while it is away", node(own),
+                                          [=](const Inputs& u) { return is_there(u) ? 0.0 : away_W_K; }));
     add_change_times(windows, balance);
   }
-  balance.exchanges.push_back(make_link(e.name() + " - " + own, e.body(), to_body, own));
-  if (comes_and_goes || e.has("hall_conductance"))
-    balance.exchanges.push_back(make_link(e.name() + " - ambient", node(own), to_ambient));
 }
 
 void check(const Effect& e, const ConfigMap& in) {

@@ -378,16 +378,19 @@ TEST(HiddenBody, IsJoinedWithinItsWindowsAndOtherwiseAsWarmAsTheAmbient) {
       "{type: hidden_body, node: head, capacity: 6 kJ/K, conductance: 9 W/K, hall_conductance: 2 W/K, windows: [[10 min, 20 "
       "min]], in: monday}");
   ASSERT_EQ(b.nodes.size(), 1u);
-  ASSERT_EQ(b.exchanges.size(), 2u);
-  const Law &to_body = b.exchanges[0].coefficient, &to_ambient = b.exchanges[1].coefficient;
+  ASSERT_EQ(b.exchanges.size(), 3u);
+  const Law &to_body = b.exchanges[0].coefficient, &always = b.exchanges[1].coefficient, &away = b.exchanges[2].coefficient;
   EXPECT_EQ(b.exchanges[0].surrounding, "head_hidden");
   EXPECT_EQ(b.exchanges[1].body, node("head_hidden"));
   EXPECT_EQ(b.exchanges[1].surrounding, kAmbientName);
+  EXPECT_EQ(b.exchanges[2].body, node("head_hidden"));
+  EXPECT_EQ(b.exchanges[2].surrounding, kAmbientName);
   EXPECT_EQ(to_body(at(0.0, 900.0, "monday")), 9.0);
-  EXPECT_EQ(to_ambient(at(0.0, 900.0, "monday")), 2.0);
-  for (const Inputs& away : {at(0.0, 599.0, "monday"), at(0.0, 1201.0, "monday"), at(0.0, 900.0, "tuesday")}) {
-    EXPECT_EQ(to_body(away), 0.0);
-    EXPECT_EQ(to_ambient(away), 100.0);  // 6 kJ/K in a minute
+  EXPECT_EQ(always(at(0.0, 900.0, "monday")), 2.0);
+  EXPECT_EQ(away(at(0.0, 900.0, "monday")), 0.0);
+  for (const Inputs& elsewhere : {at(0.0, 599.0, "monday"), at(0.0, 1201.0, "monday"), at(0.0, 900.0, "tuesday")}) {
+    EXPECT_EQ(to_body(elsewhere), 0.0);
+    EXPECT_EQ(away(elsewhere), 100.0);  // 6 kJ/K in a minute
   }
   EXPECT_EQ(b.change_times_s, (std::vector<double>{600.0, 1200.0}));
 }
