@@ -32,13 +32,13 @@ solver: {output_interval: 60 s}
 // Heat that is missing whatever the speed, and heat that comes and goes as nobody could tell.
 constexpr const char* kTruth =
     "{type: heat_source, node: heater, power: 20 W, exponent: 0}\n"
-    "  - {type: heat_window, node: wall, power: 7 W, windows: [[10 min, 47 min]]}\n"
-    "  - {type: heat_window, node: wall, power: -6 W, windows: [[81 min, 102 min]]}\n"
-    "  - {type: heat_window, node: wall, power: 9 W, windows: [[131 min, 158 min]]}\n"
-    "  - {type: heat_window, node: wall, power: -8 W, windows: [[195 min, 231 min]]}\n"
-    "  - {type: heat_window, node: wall, power: 5 W, windows: [[262 min, 301 min]]}\n"
-    "  - {type: heat_window, node: wall, power: -7 W, windows: [[322 min, 352 min]]}\n"
-    "  - {type: heat_window, node: wall, power: 8 W, windows: [[377 min, 399 min]]}";
+    "  - {type: heat_window, node: wall, power: 14 W, windows: [[10 min, 47 min]]}\n"
+    "  - {type: heat_window, node: wall, power: -12 W, windows: [[81 min, 102 min]]}\n"
+    "  - {type: heat_window, node: wall, power: 18 W, windows: [[131 min, 158 min]]}\n"
+    "  - {type: heat_window, node: wall, power: -16 W, windows: [[195 min, 231 min]]}\n"
+    "  - {type: heat_window, node: wall, power: 10 W, windows: [[262 min, 301 min]]}\n"
+    "  - {type: heat_window, node: wall, power: -14 W, windows: [[322 min, 352 min]]}\n"
+    "  - {type: heat_window, node: wall, power: 16 W, windows: [[377 min, 399 min]]}";
 
 TEST(CausesAlone, AreWrittenWhereTheyHoldAndNothingElseIs) {
   const Beside beside(write_file("plain.yaml", kBox),
