@@ -33,10 +33,10 @@ struct MeasuredRun {
   Cyclogram cyclogram;       ///< recorded
   TimeSeries ambient;        ///< recorded, smoothed to knots; minus the reference [K]
   bool has_ambient = false;  ///< else the ambient is the scenario's
+  bool begins_within = false;  ///< its first rows were left out: the machine had been running by then
   /// Of a run that begins warm or within its record (warm_start.hpp), else empty: how much warmer than the scenario's start each part of the machine is, and
   /// directions of what that is not known to.
   Eigen::VectorXd start_K;
-  bool begins_within = false;  ///< its first rows were left out: the machine had been running by then
   Eigen::MatrixXd start_doubt_K;
   std::vector<MeasuredChannel> channels;
   std::vector<DataFinding> findings;

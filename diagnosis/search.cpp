@@ -325,8 +325,8 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     return any;
   };
   for (int round = 0; static_cast<int>(best.size()) < options.most_effects && !listener.wants_end(); ++round) {
-    listener.begin(
-        fmt::format("weighing {} candidates{}", candidates.size(), round == 0 ? "" : fmt::format(" beside {}", round)));
+    listener.begin(fmt::format("weighing {} candidates{}", candidates.size(),
+                               best.empty() ? "" : fmt::format(" beside {}", best.size())));
     std::vector<Fitted> additions = best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit,
                                                    options.refits, &known, listener);
     if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself

@@ -49,7 +49,7 @@ void find_warm_starts(std::vector<MeasuredRun>& runs, const Twin& twin) {
     const First first =
         first_readings(run, twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace)));
     const bool is_warm = first.n_warm > 0 && first.n_warm >= std::min<int>(2, static_cast<int>(first.outputs.size()));
-    if (!is_warm && !(run.begins_within && first.outputs.size() > 0)) continue;
+    if (!is_warm && !(run.begins_within && !first.outputs.empty())) continue;
     const Eigen::MatrixXd bodies = twin.warmer_bodies();
     Eigen::MatrixXd seen(first.beside_K.size(), bodies.cols());
     for (Eigen::Index o = 0; o < seen.rows(); ++o)

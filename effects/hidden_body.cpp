@@ -16,8 +16,8 @@ constexpr double kFollowTrial = 0.1, kLeast = 1e-4;     // of the capacity of it
 constexpr double kTimeSd = 2.0;                         // of the logarithm
 constexpr double kTypicalTime = 0.1;                    // of the longest record
 constexpr double kFollowTimes[] = {0.01, 0.04, 0.15, 0.6};
-constexpr double kTrace = 1e-6;                  // of that exchange
 constexpr double kTakesTheAmbient_s = 60.0;  // time constant of a body that is away: it comes as warm as the ambient
+constexpr double kTrace = 1e-6;              // of that exchange with the ambient, while the body is there
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double link_W_K = e["conductance"];
@@ -40,8 +40,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
     const double always_W_K = std::max(to_ambient_W_K, kTrace * away_W_K);
     balance.exchanges.push_back(make_link(
         e.name() + " - " + own, e.body(), [=](const Inputs& u) { return is_there(u) ? link_W_K : 0.0; }, own));
-    balance.exchanges.push_back(
-        make_link(e.name() + " - ambient", node(own), [=](const Inputs&) { return always_W_K; }));
+    balance.exchanges.push_back(make_link(e.name() + " - ambient", node(own), [=](const Inputs&) { return always_W_K; }));
     balance.exchanges.push_back(make_link(e.name() + " - ambient while it is away", node(own),
                                           [=](const Inputs& u) { return is_there(u) ? 0.0 : away_W_K; }));
     add_change_times(windows, balance);
