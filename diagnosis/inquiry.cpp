@@ -7,6 +7,7 @@
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/signatures.hpp"
 #include "diagnosis/unexplained.hpp"
+#include "diagnosis/unseen_drive.hpp"
 #include "diagnosis/warm_start.hpp"
 
 namespace driftwright::diagnosis {
@@ -123,6 +124,7 @@ void widen_moved(Inquiry& of, Twin::Workspace& workspace) {
 std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double mesh_error_share,
                                         const std::vector<MeasuredRun>& runs, const TwinState& state) {
   std::vector<Prediction> columns = start_columns(twin, runs);
+  for (Prediction& c : hole_columns(twin, runs)) columns.push_back(std::move(c));
   if (!coarse) return columns;
   Twin::Workspace fine_space(twin), coarse_space(*coarse);
   Prediction difference;

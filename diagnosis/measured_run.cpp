@@ -286,8 +286,8 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   MeasuredRun run;
   run.path = path;
   for (const std::string& note : read.notes) run.findings.push_back({"", note, false});
-  const Record record = without_spikes(without_holes(whole, run.findings), run.findings);
-  run.begins_within = record.time_s.front() > whole.time_s.front();
+  run.holes = holes_in(whole, run.findings);
+  const Record record = without_spikes(whole, run.findings);
   std::vector<std::string> on_ambient;  // an ambient thermometer does as well
   for (std::size_t o = 0; o < outputs.name.size(); ++o) {
     if (outputs.ambient[static_cast<Eigen::Index>(o)] == 1.0) on_ambient.push_back(outputs.name[o]);

@@ -23,6 +23,11 @@ struct MeasuredChannel {
 
 using scenarios::DataFinding;
 
+/// A stretch of a record in which nobody saw what drove the machine; the drive before it is held in the run's cyclogram.
+struct Hole {
+  double begin_s = 0.0, end_s = 0.0;
+};
+
 struct MeasuredRun {
   std::string name;  ///< of the file, without folder and ending
   std::string path;
@@ -33,8 +38,8 @@ struct MeasuredRun {
   Cyclogram cyclogram;       ///< recorded
   TimeSeries ambient;        ///< recorded, smoothed to knots; minus the reference [K]
   bool has_ambient = false;  ///< else the ambient is the scenario's
-  bool begins_within = false;  ///< its first rows were left out: the machine had been running by then
-  /// Of a run that begins warm or within its record (warm_start.hpp), else empty: how much warmer than the scenario's start each part of the machine is, and
+  std::vector<Hole> holes;     ///< in order of time
+  /// Of a run that begins warm (warm_start.hpp), else empty: how much warmer than the scenario's start each part of the machine is, and
   /// directions of what that is not known to.
   Eigen::VectorXd start_K;
   Eigen::MatrixXd start_doubt_K;

@@ -11,7 +11,6 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kHole = 5.0;         // usual steps
-constexpr double kOtherSpeed = 0.02;  // of the higher one
 constexpr double kLeap = 40.0;        // usual changes from reading to reading
 constexpr double kLeapOfRange = 0.3;  // of what all other readings span
 
@@ -21,54 +20,29 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-Record rows_of(const Record& record, std::size_t from, std::size_t until) {
-  Record part{record.source, {}, {}};
-  part.time_s.assign(record.time_s.begin() + static_cast<std::ptrdiff_t>(from),
-                     record.time_s.begin() + static_cast<std::ptrdiff_t>(until));
-  for (const Channel& c : record.channels) {
-    part.channels.push_back(
-        {c.name,
-         c.unit,
-         {c.values.begin() + static_cast<std::ptrdiff_t>(from), c.values.begin() + static_cast<std::ptrdiff_t>(until)}});
-  }
-  return part;
-}
-
 }  // namespace
 
-Record without_holes(const Record& record, std::vector<DataFinding>& findings) {
+std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findings) {
   const Channel* speed = record.find("speed");
-  if (!speed || record.n_samples() < 3) return record;
+  if (!speed || record.n_samples() < 3) return {};
   std::vector<double> steps;
   for (std::size_t i = 1; i < record.n_samples(); ++i) steps.push_back(record.time_s[i] - record.time_s[i - 1]);
   const double usual_s = median(steps), start_s = record.time_s.front();
-  std::size_t from = 0;  // of the stretch so far
-  std::size_t best_from = 0, best_until = 0;
+  std::vector<Hole> holes;
   std::size_t last = record.n_samples();  // row with a speed
   for (std::size_t i = 0; i < record.n_samples(); ++i) {
     if (std::isnan(speed->values[i])) continue;
     if (last < record.n_samples() && record.time_s[i] - record.time_s[last] > kHole * usual_s) {
-      const double a_rpm = speed->values[last], b_rpm = speed->values[i];
-      const bool changed = std::abs(a_rpm - b_rpm) > kOtherSpeed * std::max(std::abs(a_rpm), std::abs(b_rpm));
-      const std::string hole = fmt::format("from {:g} to {:g} min there is no speed", (record.time_s[last] - start_s) / 60.0,
-                                           (record.time_s[i] - start_s) / 60.0);
-      if (changed) {
-        findings.push_back({"speed",
-                            fmt::format("{}, {:g} rpm before and {:g} rpm after: when it changed is not known; the "
-                                        "longer side of the hole is taken alone",
-                                        hole, a_rpm, b_rpm),
-                            false});
-        if (last + 1 - from > best_until - best_from) best_from = from, best_until = last + 1;
-        from = i;
-      } else {
-        findings.push_back(
-            {"speed", fmt::format("{}; {:g} rpm before and after is taken to have been held", hole, a_rpm), false});
-      }
+      holes.push_back({record.time_s[last] - start_s, record.time_s[i] - start_s});
+      findings.push_back({"speed",
+                          fmt::format("from {:g} to {:g} min there is no speed, {:g} rpm before and {:g} rpm after: what drove the "
+                                      "machine meanwhile is not known, and what is read later counts by what that leaves open",
+                                      holes.back().begin_s / 60.0, holes.back().end_s / 60.0, speed->values[last], speed->values[i]),
+                          false});
     }
     last = i;
   }
-  if (record.n_samples() - from > best_until - best_from) best_from = from, best_until = record.n_samples();
-  return best_until - best_from == record.n_samples() ? record : rows_of(record, best_from, best_until);
+  return holes;
 }
 
 Record without_spikes(Record record, std::vector<DataFinding>& findings) {

@@ -49,7 +49,7 @@ void find_warm_starts(std::vector<MeasuredRun>& runs, const Twin& twin) {
     const First first =
         first_readings(run, twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace)));
     const bool is_warm = first.n_warm > 0 && first.n_warm >= std::min<int>(2, static_cast<int>(first.outputs.size()));
-    if (!is_warm && !(run.begins_within && !first.outputs.empty())) continue;
+    if (!is_warm) continue;
     const Eigen::MatrixXd bodies = twin.warmer_bodies();
     Eigen::MatrixXd seen(first.beside_K.size(), bodies.cols());
     for (Eigen::Index o = 0; o < seen.rows(); ++o)
@@ -70,13 +70,6 @@ void find_warm_starts(std::vector<MeasuredRun>& runs, const Twin& twin) {
       if (columns.col(k).norm() < kKnown_K) continue;
       run.start_doubt_K.conservativeResize(Eigen::NoChange, run.start_doubt_K.cols() + 1);
       run.start_doubt_K.rightCols<1>() = columns.col(k);
-    }
-    if (run.begins_within) {
-      run.findings.push_back({"",
-                              "what comes behind the hole begins with a machine that had been running: the run starts from "
-                              "its first readings, and bodies without a thermometer are fitted",
-                              false});
-      continue;
     }
     run.findings.push_back(
         {first.farthest->name,

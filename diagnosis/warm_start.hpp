@@ -6,7 +6,7 @@
 
 namespace driftwright::diagnosis {
 
-/// Where thermometers read more than 4 K beside the twin at a record's start (two of them, or the only one), and always where a run begins within its record, the
+/// Where thermometers read more than 4 K beside the twin at a record's start (two of them, or the only one), the
 /// run gets a start of its own and a finding: of every region and node the most probable offset a of its start, and what it is not known to,
 ///
 ///     a = C H' (H C H' + R)^-1 r,   P = C - C H' (H C H' + R)^-1 H C,   C = s^2 (0.7 + 0.3 I)

@@ -59,7 +59,9 @@ Doubt doubt(const std::string& law, const std::string& run, DoubtedNumber size, 
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const auto offset = [] { return doubted("offset", "K", 2.0, 0.3); };
   const auto ramp = [] { return doubted("ramp", "K/h", 0.7, 0.1); };
-  std::vector<Doubt> list = {doubt("offset", "", offset(), 0.5), doubt("ramp", "", ramp(), 0.2)};
+  // what grew during the only record there is need not grow in the next one
+  const std::string ramped = s.runs.size() == 1 ? s.runs.front().name : "";
+  std::vector<Doubt> list = {doubt("offset", "", offset(), 0.5), doubt("ramp", ramped, ramp(), 0.2)};
   const bool is_recorded = std::all_of(s.runs.begin(), s.runs.end(), [](const auto& run) { return run.has_ambient; });
   if (is_recorded && !s.runs.empty()) list.back().rarity = kSeenByItsThermometer;
   for (std::size_t r = 0; r < s.runs.size(); ++r) {

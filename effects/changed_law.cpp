@@ -131,7 +131,7 @@ bool is_of_air(const DoubtScene& s, const Exchange& exchange) {
   });
 }
 
-/// Another coefficient of an exchange, in all records or in one from a time on.
+/// Another coefficient of an exchange: in all records, in one or from one on, or in one from a time on.
 void doubt_exchange(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
   const bool is_growth = finding == "forced_convection";
   const std::string what = is_growth                                  ? "another growth of the film"
@@ -147,8 +147,11 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
               .law = what,
               .added = {changed(exchange.name)},
               .numbers = {doubted_factor()}};
-  list.push_back(other);
-  if (is_growth) return;
+  if (is_growth) {
+    list.push_back(other);
+    return;
+  }
+  add_in_some_runs(s, other, list);  // changed between two records
   for (std::size_t r = 0; r < s.runs.size(); ++r) {
     const DoubtScene::Run& run = s.runs[r];
     Doubt late = other;

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "effects/displacement_amount.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 constexpr double kFeed_mm_min = 1000.0;  // that lags are stated at where nobody says
+constexpr double kNoProbe = 2.0;         // nats: a displacement that no scenario says is probed is read by an indicator, more often than not
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kScale, [channel = e.place, by_m = e["lag"] * e["feed"]](Readings& r) {
@@ -15,6 +18,7 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
+  const bool probes = std::any_of(s.own.begin(), s.own.end(), [](const Effect& e) { return e.kind->key == "probe_lag"; });
   for (const DoubtScene::Displacement& d : s.displacements) {
     if (d.is_tilt) continue;
     const double ms_um = 60.0 / kFeed_mm_min;  // lag for 1 um: ms
@@ -25,7 +29,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                     .law = fmt::format("a touch probe that triggers late, at {:.0f} mm/min", kFeed_mm_min),
                     .added = {make_effect("probe_lag", Place::kDisplacement, d.name, {{"feed", kFeed_mm_min / 60e3}})},
                     .numbers = {lag},
-                    .trial = 3.0 * ms_um});
+                    .trial = 3.0 * ms_um,
+                    .rarity = probes ? 0.0 : kNoProbe});
   }
   return list;
 }

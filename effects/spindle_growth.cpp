@@ -22,14 +22,17 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     DoubtedNumber lag = doubted("lag", "min", 8.0, 0.5, 8.0);
     lag.low = 0.3;
     lag.high = 120.0;
+    DoubtedNumber exponent = doubted("exponent", "1", 0.7, 0.05, 1.0);
+    exponent.low = 0.1;
+    exponent.high = 4.0;
     list.push_back({.finding = "spindle_growth",
                     .where = d.name,
                     .law = fmt::format("follows speed with one lag, at {:.0f} rpm", s.typical_rpm),
                     .added = {make_effect("spindle_growth", Place::kDisplacement, d.name,
                                           {{amount_key(d, "growth"), 0.0}, {"at_speed", s.typical_rpm}, {"lag", 8.0}})},
-                    .numbers = {doubted_amount(d, "growth"), lag},
+                    .numbers = {doubted_amount(d, "growth"), lag, exponent},
                     .trial = 3.0,
-                    .grid = {{-5.0}, {0.0}, {12.0}},
+                    .grid = {{-5.0, 0.0}, {0.0, 0.0}, {12.0, 0.0}, {0.0, -0.5}, {0.0, 1.0}},
                     .at_speed_rpm = s.typical_rpm});
   }
   return list;

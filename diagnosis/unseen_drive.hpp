@@ -1,0 +1,18 @@
+#pragma once
+// Records with holes, in which nobody saw what drove the machine.
+
+#include "diagnosis/comparison.hpp"
+#include "diagnosis/twin.hpp"
+
+namespace driftwright::diagnosis {
+
+/// What the drive of the holes leaves open in the readings: for the Fitter, columns whose amplitudes have a standard deviation of 1. A hole is parted the
+/// finer the nearer to its end (1/2, 1/4, 1/8, 1/16, 1/16 of it); of each part
+///
+///     column = 1/2 (readings with all that the record shows of speed, feeds, cutting power and columns that drive the machine at its most there
+///                   - readings with all of it at its least)
+///
+/// Least: at rest, columns at their smallest value. The run's own cyclogram holds the drive before the hole.
+[[nodiscard]] std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<MeasuredRun>& runs);
+
+}  // namespace driftwright::diagnosis
