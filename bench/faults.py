@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Every verb under faults of the environment; prints the table of docs/verification.md.
 
-    bench/faults.py [PROGRAM] [--meshed] [--kills N] [--verbs simulate,diagnose,...]
+    bench/faults.py [PROGRAM] [--meshed [--cell MM]] [--kills N] [--verbs simulate,diagnose,...]
+    bench/faults.py build/asan/app/driftwright --sanitized      each verb once, undisturbed, by a program with sanitizers in it, and what they report
 
-On a lumped machine; with --meshed on one that `init` makes of a drawing, a box of 100 mm.
+On a lumped machine; with --meshed on one that `init` makes of a drawing, a box of 100 mm, in cells of `init`'s own size or of another one.
 
 Faults: address space of 300 to 1500 MB, files of 20 kB at most (RLIMIT_FSIZE), a disk that is full after 400 kB, standard output that is full, TMPDIR
 that is missing or takes no file, an empty PATH (no gnuplot, no C compiler), a current folder that is gone, an -o of 300 characters, Ctrl-C and SIGKILL after
@@ -13,7 +14,7 @@ A verb passes where it ends with 0, 2 or 3 (130 behind Ctrl-C) and words, in tim
 after a kill give the same bytes as the undisturbed one; exit code 1 where one does not. Full disks want root (a small tmpfs is mounted); without, they
 are left out.
 """
-import argparse, os, random, resource, shutil, signal, subprocess, sys, tempfile, time
+import argparse, os, random, re, resource, shutil, signal, subprocess, sys, tempfile, time
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
@@ -39,12 +40,15 @@ def small_scenario(work):
     return path
 
 
-def meshed_scenario(program, work):
-    """The same of a box from a drawing, in which 20 W warm the spindle."""
+def meshed_scenario(program, work, cell_mm):
+    """The same of a box from a drawing, in which 20 W warm the spindle. @param cell_mm  None: as `init` has it"""
     subprocess.run([program, "init", "box", "--from", TOP / "tests/fuzz/corpus/meshes/box.step"], check=True, cwd=work, capture_output=True)
     path = work / "box/box.yaml"
     text = path.read_text().replace("drift_z", "nose_z")
     assert "power: 0.5 W, at_speed: 3000 rpm" in text
+    if cell_mm:
+        text, n = re.subn(r"(size: )[\d.]+ mm", rf"\g<1>{cell_mm:g} mm", text)
+        assert n == 1, text
     text = text.replace("power: 0.5 W, at_speed: 3000 rpm", "power: 20 W, at_speed: 6000 rpm")
     path.write_text(text[:text.index("\ncyclograms:")] + "\nsolver: {model: reduced}" + STUDIED)
     return path
@@ -96,7 +100,7 @@ class Trial:
         self.code, self.err, self.time_s, self.said = code, err, time_s, said
 
 
-def run(command, out, cwd, env=None, limit_mb=None, file_limit=None, stdout=None, stdin=None, kill_after=None, with_signal=signal.SIGKILL):
+def run(command, out, cwd, env=None, limit_mb=None, file_limit=None, stdout=None, stdin=None, kill_after=None, with_signal=signal.SIGKILL, longest_s=LONGEST_S):
     def before():
         if limit_mb:
             resource.setrlimit(resource.RLIMIT_AS, (limit_mb << 20, limit_mb << 20))
@@ -109,7 +113,7 @@ def run(command, out, cwd, env=None, limit_mb=None, file_limit=None, stdout=None
         process = subprocess.Popen(words, cwd=cwd, env=env, stdout=stdout or said, stderr=err, preexec_fn=before, stdin=rows)
         code = None
         try:
-            code = process.wait(timeout=kill_after if kill_after else LONGEST_S)
+            code = process.wait(timeout=kill_after or longest_s)
         except subprocess.TimeoutExpired:
             process.send_signal(with_signal if kill_after else signal.SIGKILL)
             try:
@@ -227,10 +231,28 @@ def row_of(verb, command, stdin, work, env, tiny, n_kills):
     return cells
 
 
+def sanitized_row(verb, command, stdin, work, env):
+    """Exit code, seconds and how many reports sanitizers write, of the program and of all processes that it starts; the first one in words."""
+    logs = work / "reports" / verb
+    logs.mkdir(parents=True)
+    usual = {name: f"{env.get(name, '')}:log_path={logs}/{name[:4].lower()}" for name in ("ASAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS")}
+    usual["UBSAN_OPTIONS"] += ":print_stacktrace=1"
+    end = run(command, work / "out" / verb, work, dict(env, **usual), stdin=stdin, longest_s=5 * LONGEST_S)
+    reports = [p.read_text(errors="replace") for p in sorted(logs.iterdir())]
+    kept = Path(tempfile.gettempdir()) / "driftwright-reports"
+    if reports:
+        kept.mkdir(exist_ok=True)
+        (kept / f"{verb}.txt").write_text("\n".join(reports))
+    n = sum(r.count("ERROR: ") + r.count("runtime error:") + r.count("WARNING: ThreadSanitizer") for r in reports)
+    return [judged(end), f"{end.time_s:.0f}", f"{n}: {kept / verb}.txt" if reports else "0"]
+
+
 def main():
     args = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     args.add_argument("program", nargs="?", default=str(TOP / "build/release/app/driftwright"))
     args.add_argument("--meshed", action="store_true")
+    args.add_argument("--cell", type=float, metavar="MM")
+    args.add_argument("--sanitized", action="store_true")
     args.add_argument("--kills", type=int, default=5)
     args.add_argument("--verbs", default="")
     args.add_argument("--seed", type=int, default=1)
@@ -244,7 +266,7 @@ def main():
     tiny.mkdir()
     has_tiny = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "none", tiny], capture_output=True).returncode == 0
     try:
-        small = meshed_scenario(program, work) if args.meshed else small_scenario(work)
+        small = meshed_scenario(program, work, args.cell) if args.meshed else small_scenario(work)
         subprocess.run([program, "simulate", small, "-o", work / "simulated"], check=True, env=env, capture_output=True)
         records = [work / "simulated/records" / f"{name}.csv" for name in ("shift", "climb", "other")]
         study = work / "study.yaml"
@@ -261,10 +283,18 @@ def main():
         of_models = [program] + [names.get(str(w), w) for w in commands["validate"]]
         run(of_models, work / "models", work, env)
         names["MODEL"] = next(iter(sorted((work / "models/models").glob("*.json"))), "none.json")
-        print("| verb | " + " | ".join(FAULTS).replace("kills", f"{args.kills} kills") + " |")
-        print("|---" * (len(FAULTS) + 1) + "|")
+        if args.sanitized:
+            print("| verb | exit code | seconds | reports |\n|---|---|---|---|")
+        else:
+            print("| verb | " + " | ".join(FAULTS).replace("kills", f"{args.kills} kills") + " |")
+            print("|---" * (len(FAULTS) + 1) + "|")
         for verb in args.verbs.split(",") if args.verbs else commands:
             command = [program] + [names.get(str(w), w) for w in commands[verb]]
+            if args.sanitized:
+                cells = sanitized_row(verb, command, rows_in if verb == "inject" else None, work, env)
+                is_kept = is_kept and cells[0] == "0" and cells[2] == "0"
+                print(f"| {verb} | " + " | ".join(cells) + " |", flush=True)
+                continue
             cells = row_of(verb, command, rows_in if verb == "inject" else None, work, env, tiny if has_tiny else None, args.kills)
             is_kept = is_kept and not any("**" in cell for cell in cells)
             print(f"| {verb} | " + " | ".join(cells) + " |", flush=True)

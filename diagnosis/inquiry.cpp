@@ -45,7 +45,7 @@ double log_likelihood(const Inquiry& of) {
   return value;
 }
 
-/// What happens for minutes, a stop or a window, looks like noise that follows itself, by which it is then weighed and not found. So where nothing was found beside
+/// What happens for minutes, a stop or a window, looks like noise that follows itself, by which it is then weighed and not found. So where nothing sure was found beside
 /// such noise, and readings weighed by white noise ask for a window of time, causes are looked for with that noise, which is estimated anew beside them; they are
 /// found where they and it are likelier than the noise that follows itself is alone.
 void look_behind_slow_noise(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const SearchOptions& how,
@@ -170,7 +170,9 @@ Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& run
       if (noise.total() < of.noise.at(name).total()) of.noise[name] = noise;
     }
   }
-  if (of.search.hypothesis.empty() && !listener.wants_end()) look_behind_slow_noise(ground, runs, how, of, listener);
+  const bool is_sure =
+      std::any_of(of.search.findings.begin(), of.search.findings.end(), [](const Finding& f) { return f.is_named; });
+  if (!is_sure && !listener.wants_end()) look_behind_slow_noise(ground, runs, how, of, listener);
   Twin::Workspace workspace(ground.twin);
   const bool is_rough = !listener.wants_end() && models_own_error(runs, of.search.fit.prediction, of.noise).has_value();
   if (of_all || is_rough) {
