@@ -34,11 +34,12 @@ std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findi
     if (std::isnan(speed->values[i])) continue;
     if (last < record.n_samples() && record.time_s[i] - record.time_s[last] > kHole * usual_s) {
       holes.push_back({record.time_s[last] - start_s, record.time_s[i] - start_s});
-      findings.push_back({"speed",
-                          fmt::format("from {:g} to {:g} min there is no speed, {:g} rpm before and {:g} rpm after: what drove the "
-                                      "machine meanwhile is not known, and what is read later counts by what that leaves open",
-                                      holes.back().begin_s / 60.0, holes.back().end_s / 60.0, speed->values[last], speed->values[i]),
-                          false});
+      findings.push_back(
+          {"speed",
+           fmt::format("from {:g} to {:g} min there is no speed, {:g} rpm before and {:g} rpm after: what drove the "
+                       "machine meanwhile is not known, and what is read later counts by what that leaves open",
+                       holes.back().begin_s / 60.0, holes.back().end_s / 60.0, speed->values[last], speed->values[i]),
+           false});
     }
     last = i;
   }

@@ -38,7 +38,8 @@ Cyclogram driven_otherwise(const Cyclogram& cyclogram, const Hole& part, bool is
       rows.time_s.push_back(time_s);
       rows.value.push_back(value);
     };
-    for (std::size_t i = 0; i < c.rows.time_s.size() && c.rows.time_s[i] < part.begin_s; ++i) add(c.rows.time_s[i], c.rows.value[i]);
+    for (std::size_t i = 0; i < c.rows.time_s.size() && c.rows.time_s[i] < part.begin_s; ++i)
+      add(c.rows.time_s[i], c.rows.value[i]);
     add(part.begin_s, there);
     add(part.end_s, after);
     for (std::size_t i = 0; i < c.rows.time_s.size(); ++i) {
@@ -66,8 +67,8 @@ std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<Measure
         part.end_s = halving < kHalvings ? 0.5 * (part.begin_s + hole.end_s) : hole.end_s;
         Prediction column;
         for (const MeasuredRun& run : runs)
-          column.push_back(
-              Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(twin.outputs().name.size()), static_cast<Eigen::Index>(run.time_s.size())));
+          column.push_back(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(twin.outputs().name.size()),
+                                                 static_cast<Eigen::Index>(run.time_s.size())));
         const bool is_solved =
             has_solution([&] { column[r] = kOpen * (readings(runs[r], part, true) - readings(runs[r], part, false)); });
         if (is_solved && !column[r].isZero(0.0)) columns.push_back(std::move(column));

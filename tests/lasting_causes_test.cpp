@@ -10,7 +10,6 @@
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/extended_scenario.hpp"
-#include "diagnosis/warm_start.hpp"
 #include "tests/lumped_records.hpp"
 
 namespace driftwright::diagnosis {
@@ -142,7 +141,8 @@ INSTANTIATE_TEST_SUITE_P(
               60.0,
               6.0},
         Cause{"a_cold_workpiece_that_stays",
-              {"{type: hidden_body, node: head, capacity: 3 kJ/K, conductance: 5 W/K, windows: [[150 min, 301 min]], in: monday}"},
+              {"{type: hidden_body, node: head, capacity: 3 kJ/K, conductance: 5 W/K, windows: [[150 min, 301 min]], in: "
+               "monday}"},
               "hidden_body",
               "head",
               "comes and stays",
@@ -217,7 +217,8 @@ TEST(AShortStop,
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "missing_stop");
   EXPECT_NE(d.causes[0].standing, Standing::kSuspected);
-  for (const auto& other : d.causes[0].alternatives) EXPECT_EQ(other.effect, "heat_window");  // less heat for as long is nearly the same
+  for (const auto& other : d.causes[0].alternatives)
+    EXPECT_EQ(other.effect, "heat_window");  // less heat for as long is nearly the same
   EXPECT_GT(d.causes[0].odds.kind, 0.8);
   EXPECT_NEAR(d.causes[0].parameters[0].value, 2.5, 0.3);
   EXPECT_NEAR(d.causes[0].parameters[1].value, 216.0, 0.5);
@@ -225,8 +226,8 @@ TEST(AShortStop,
 
 TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {  // heat in one body would not do
   const std::string machine = with_effect(kMachine, "{type: heat_source, node: column, power: 80 W, at_speed: 1000 rpm}");
-  const std::string truth =
-      with_effect(machine, "{type: speed_override, factor: 0.55, windows: [[20 min, 45 min], [180 min, 210 min]], in: monday}");
+  const std::string truth = with_effect(
+      machine, "{type: speed_override, factor: 0.55, windows: [[20 min, 45 min], [180 min, 210 min]], in: monday}");
   const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "speed_", 60.0, 0.03, 0.2);
   const Beside beside(write_file("plain.yaml", machine), records);
   const Diagnosis d = beside.diagnosed();
@@ -247,29 +248,58 @@ TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {
   EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
 }
 
-// What is taken of a record behind a hole begins with a machine that had been running.
-TEST(ARecordWithAHole, StartsFromItsFirstReadingsBehindIt) {
-  const std::vector<std::string> records =
-      noisy_records(write_file("plain.yaml", kMachine), "hole_", 60.0, 0.03, 0.2);
-  std::ifstream whole(records.front());
+/// Without its rows from `first` to `last`, a row a minute.
+std::string with_hole(const std::string& record, int first, int last, const std::string& name) {
+  std::ifstream whole(record);
   std::string kept, row;
-  for (int i = -1; std::getline(whole, row); ++i) {  // a row a minute behind the header; the speed changes at 60 min
-    if (i < 50 || i > 70) kept += row + "\n";
+  for (int i = -1; std::getline(whole, row); ++i) {
+    if (i < first || i > last) kept += row + "\n";
   }
-  const std::vector<std::string> with_hole = {write_file("hole.csv", kept), records[1]};
-  Beside beside(write_file("plain.yaml", kMachine), with_hole);
-  find_warm_starts(beside.runs, *beside.twin);
-  EXPECT_TRUE(beside.runs[0].begins_within);
-  EXPECT_FALSE(beside.runs[1].begins_within);
+  return write_file(name, kept);
+}
+
+// The rows on both sides of a hole count, and what the machine did meanwhile is no cause: a change of speed, or a stop of which nothing is recorded.
+TEST(ARecordWithAHole, CountsOnBothSidesOfIt) {
+  std::string truth = kMachine;
+  const std::string monday = "monday: [[60 min, 600 rpm], [60 min, 1900 rpm], ";
+  truth.replace(truth.find(monday), monday.size(),
+                "monday: [[60 min, 600 rpm], [15 min, 1900 rpm], [20 min, 0 rpm], [25 min, 1900 rpm], ");
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_", 60.0, 0.03, 0.2);
+  for (const auto& [first, last] :
+       {std::pair{51, 69}, {73, 97}}) {  // speed changes in the first one; 1900 rpm before and behind the second one
+    const Beside beside(write_file("plain.yaml", kMachine),
+                        {with_hole(records[0], first, last, "gap_monday.csv"), records[1]});
+    ASSERT_THAT(beside.runs[0].holes, SizeIs(1));
+    EXPECT_THAT(beside.runs[1].holes, IsEmpty());
+    EXPECT_DOUBLE_EQ(beside.runs[0].holes[0].begin_s, 60.0 * (first - 1));
+    EXPECT_DOUBLE_EQ(beside.runs[0].holes[0].end_s, 60.0 * (last + 1));
+    EXPECT_EQ(beside.runs[0].time_s.front(), 0.0);
+    EXPECT_EQ(beside.runs[0].time_s.back(), 300.0 * 60.0);
+    const Diagnosis d = beside.diagnosed();
+    EXPECT_EQ(d.verdict, Verdict::kConsistent) << first << ": " << d.reason;
+  }
+}
+
+// What is wrong in all of a record is found on both sides of its hole.
+TEST(ARecordWithAHole, HidesNoCauseThatLasts) {
+  const std::string truth = with_effect(kMachine, "{type: heat_source, node: column, power: 25 W}");
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_", 60.0, 0.03, 0.2);
+  const Beside beside(write_file("plain.yaml", kMachine), {with_hole(records[0], 51, 90, "gap_monday.csv"),
+                                                           with_hole(records[1], 100, 150, "gap_tuesday.csv")});
   const Diagnosis d = beside.diagnosed();
-  EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, "heat_source");
+  EXPECT_EQ(d.causes[0].where, "column");
+  EXPECT_NEAR(d.causes[0].parameters[0].value, 25.0, 3.0);
 }
 
 // The state of rest that a machine starts from follows its numbers, also where a law follows temperature: a weaker path to the ambient, with heat that is always
 // there, is a warmer start and nothing that happened.
 TEST(ASteadyStart, FollowsTheNumbersOfAMachineWhoseFrictionFollowsTemperature) {
   std::string nominal = with_effect(kMachine, "{type: heat_source, node: column, power: 60 W}");
-  nominal = with_effect(nominal, "{type: friction_law, node: head, power: 50 W, at_speed: 1000 rpm, exponent: 1.3, decay: 0.0125 1/K, at_temperature: 20 degC}");
+  nominal = with_effect(nominal,
+                        "{type: friction_law, node: head, power: 50 W, at_speed: 1000 rpm, exponent: 1.3, decay: 0.0125 "
+                        "1/K, at_temperature: 20 degC}");
   nominal.insert(nominal.find("machine:"), "start: steady\n");
   std::string truth = nominal;
   const std::string path = "to: ambient, conductance: 14 W/K";
