@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Writes the cases of the set `fourth` (README.md); how sizes are set is that of third.py.
 
-    fourth.py FOLDER [--only 7 12]
+    fourth.py FOLDER [--only 7 12] [--seed N]
     fourth.py --check [--program driftwright]      the nominal machines and what the grammar can say against `driftwright simulate`
 """
 import argparse
@@ -190,12 +190,15 @@ def held_to(program):
 
 
 def main():
+    global SEED
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("folder", nargs="?")
     p.add_argument("--only", type=int, nargs="*")
     p.add_argument("--check", action="store_true")
     p.add_argument("--program", default="driftwright")
+    p.add_argument("--seed", type=int, default=SEED, help="other machines, faults and sizes of the same families and kinds [%(default)s]")
     a = p.parse_args()
+    SEED = a.seed
     if a.check:
         raise SystemExit(held_to(a.program))
     if not a.folder:
