@@ -13,10 +13,10 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kSharper = 0.9;         // noise without what the causes explain, over that with it: it is estimated anew
-constexpr double kLessSlow = 0.5;        // and its slow part: causes that come and go had been taken for noise that follows itself
-constexpr double kSeenSlow = 0.2;        // of the white part: a slow part below changes nothing
-constexpr double kLikelier = 3.0;        // nats by which causes beside white noise must be likelier than slow noise alone
+constexpr double kSharper = 0.9;   // noise without what the causes explain, over that with it: it is estimated anew
+constexpr double kLessSlow = 0.5;  // and its slow part: causes that come and go had been taken for noise that follows itself
+constexpr double kSeenSlow = 0.2;  // of the white part: a slow part below changes nothing
+constexpr double kLikelier = 3.0;  // nats by which causes beside white noise must be likelier than slow noise alone
 constexpr double kAmbientFault_K = 2.0;  // 1 sigma of an ambient that was recorded wrongly
 constexpr double kTooFar = 3.5;          // sigmas of its prior: a number beyond is a cause
 
@@ -36,12 +36,15 @@ std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::
   return unexplained_of(again, same, of.noise);
 }
 
-/// Logarithm of how likely the readings are by a search's end, its noise and prices counted, up to a constant that all noises share.
+/// Logarithm of how likely the readings are by a search's end, its noise counted and what claims pay for being some of many, up to a constant that all noises share.
 double log_likelihood(const Inquiry& of) {
   const Comparison& comparison = of.fitter->comparison();
   double value = of.search.fit.log_evidence;
   for (std::size_t b = 0; b < comparison.blocks().size(); ++b) value -= 0.5 * comparison.whitener(b).log_determinant();
-  for (const Claim& c : of.search.hypothesis) value -= price_of_times(c) + c.price_nats;
+  for (const Claim& c : of.search.hypothesis) {
+    const std::vector<Candidate>& candidates = of.search.candidates;
+    value -= std::log(static_cast<double>(candidates.size()) * static_cast<double>(candidates[c.candidate].variants.size()));
+  }
   return value;
 }
 

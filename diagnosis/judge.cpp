@@ -6,6 +6,7 @@
 
 #include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
+#include "diagnosis/unseen_drive.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -21,7 +22,10 @@ constexpr double kWorse = 1.1;            // of the squares
 Judge::Judge(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise,
              std::vector<Fold> folds)
     : whole_(fitter), result_(result), noise_(noise), folds_(std::move(folds)) {
-  for (const Fold& fold : folds_) fitters_.push_back(std::make_unique<Fitter>(fitter, fold.fitted));
+  for (Fold& fold : folds_) {
+    fitters_.push_back(std::make_unique<Fitter>(fitter, fold.fitted));
+    leave_out_what_is_open(fitter.twin(), noise, fold.kept_out);
+  }
   Twin::Workspace workspace(fitter.twin());
   written_ = fitter.predict({}, Eigen::VectorXd::Zero(fitter.n_nuisance()), workspace);
 }

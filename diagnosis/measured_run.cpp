@@ -17,13 +17,13 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kAmbientKnots_s = 600.0;      // at the most
-constexpr double kAmbientKnown_K = 0.003;      // what is left of a course matters to nobody
-constexpr double kMostNoise_K = 0.1;        // that an ambient thermometer has
+constexpr double kAmbientKnots_s = 600.0;     // at the most
+constexpr double kAmbientKnown_K = 0.003;     // what is left of a course matters to nobody
+constexpr double kMostNoise_K = 0.1;          // that an ambient thermometer has
 constexpr std::size_t kReadingsOfStart = 24;  // that say how warm the air was as the record begins
-constexpr int kSaturatedRows = 10;          // at the largest or smallest value of all
-constexpr int kMostColumns = 6;             // that nobody drives the machine by; each may drive it at each body
-constexpr std::ptrdiff_t kFewestLeft = 20;  // readings of a channel that was stuck for a while
+constexpr int kSaturatedRows = 10;            // at the largest or smallest value of all
+constexpr int kMostColumns = 6;               // that nobody drives the machine by; each may drive it at each body
+constexpr std::ptrdiff_t kFewestLeft = 20;    // readings of a channel that was stuck for a while
 
 /// Readings that are there.
 struct Readings {
@@ -73,7 +73,8 @@ double white_noise(const Readings& r) {
 /// The same, of which a single door that opens and steps of an instrument know nothing: by the median.
 double usual_noise(const Readings& r) {
   std::vector<double> bends;
-  for (std::size_t i = 2; i < r.value.size(); ++i) bends.push_back(std::abs(r.value[i] - 2.0 * r.value[i - 1] + r.value[i - 2]));
+  for (std::size_t i = 2; i < r.value.size(); ++i)
+    bends.push_back(std::abs(r.value[i] - 2.0 * r.value[i - 1] + r.value[i - 2]));
   if (bends.empty()) return 0.0;
   const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
   std::nth_element(bends.begin(), middle, bends.end());
@@ -300,7 +301,8 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
   run.has_ambient = recorded_run.has_ambient();
   if (run.has_ambient) {
     std::vector<double> ambient_K;
-    for (double v : record.at(recorded_run.ambient_channel).values) ambient_K.push_back(v + kZeroCelsius_K - model.reference_K);
+    for (double v : record.at(recorded_run.ambient_channel).values)
+      ambient_K.push_back(v + kZeroCelsius_K - model.reference_K);
     run.ambient = smoothed(run.time_s, ambient_K);
   }
   std::move(recorded_run.findings.begin(), recorded_run.findings.end(), std::back_inserter(run.findings));
@@ -337,6 +339,12 @@ MeasuredRun measured_run(const ReadRecord& read, const scenarios::MachineModel& 
       const double before_rpm = i == 0 ? 0.0 : run.cyclogram.speed_rpm(run.time_s[i - 1]);
       if (run.cyclogram.speed_rpm(run.time_s[i]) == before_rpm) continue;
       measured.value[static_cast<Eigen::Index>(i)] = std::nan("");
+    }
+    for (const Hole& hole : run.holes) {
+      for (std::size_t i = 0; i < run.time_s.size(); ++i) {
+        if (run.time_s[i] > hole.begin_s && run.time_s[i] < hole.end_s)
+          measured.value[static_cast<Eigen::Index>(i)] = std::nan("");
+      }
     }
     measured.quantum = scale * quantum_of(recorded->values);
     run.channels.push_back(std::move(measured));

@@ -23,7 +23,7 @@ struct MeasuredChannel {
 
 using scenarios::DataFinding;
 
-/// A stretch of a record in which nobody saw what drove the machine; the drive before it is held in the run's cyclogram.
+/// A stretch of a record in which nobody saw what drove the machine: the drive before it is held in the run's cyclogram, and nothing that was read within counts.
 struct Hole {
   double begin_s = 0.0, end_s = 0.0;
 };

@@ -10,9 +10,10 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHole = 5.0;         // usual steps
-constexpr double kLeap = 40.0;        // usual changes from reading to reading
-constexpr double kLeapOfRange = 0.3;  // of what all other readings span
+constexpr double kHole = 5.0;            // usual steps
+constexpr std::size_t kStepsOfPace = 5;  // whose median is the pace before, and behind
+constexpr double kLeap = 40.0;           // usual changes from reading to reading
+constexpr double kLeapOfRange = 0.3;     // of what all other readings span
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -20,29 +21,53 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// The usual step about the one that ends at a row: a logger may change its pace. @param usual_s  of the whole record
+double usual_about(const std::vector<double>& times_s, std::size_t row, double usual_s) {
+  const auto of = [&](std::size_t first, std::size_t last) {  // steps that end at rows first to last
+    std::vector<double> steps;
+    for (std::size_t i = first; i <= last; ++i) steps.push_back(times_s[i] - times_s[i - 1]);
+    return median(steps);
+  };
+  double usual = usual_s;
+  if (row > kStepsOfPace) usual = std::max(usual, of(row - kStepsOfPace, row - 1));
+  if (row + kStepsOfPace < times_s.size()) usual = std::max(usual, of(row + 1, row + kStepsOfPace));
+  return usual;
+}
+
 }  // namespace
 
 std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findings) {
   const Channel* speed = record.find("speed");
   if (!speed || record.n_samples() < 3) return {};
+  const double start_s = record.time_s.front();
   std::vector<double> steps;
   for (std::size_t i = 1; i < record.n_samples(); ++i) steps.push_back(record.time_s[i] - record.time_s[i - 1]);
-  const double usual_s = median(steps), start_s = record.time_s.front();
-  std::vector<Hole> holes;
-  std::size_t last = record.n_samples();  // row with a speed
+  const double usual_s = median(steps);
+  std::vector<double> times_s, rpm;  // of rows with a speed
   for (std::size_t i = 0; i < record.n_samples(); ++i) {
     if (std::isnan(speed->values[i])) continue;
-    if (last < record.n_samples() && record.time_s[i] - record.time_s[last] > kHole * usual_s) {
-      holes.push_back({record.time_s[last] - start_s, record.time_s[i] - start_s});
-      findings.push_back(
-          {"speed",
-           fmt::format("from {:g} to {:g} min there is no speed, {:g} rpm before and {:g} rpm after: what drove the "
-                       "machine meanwhile is not known, and what is read later counts by what that leaves open",
-                       holes.back().begin_s / 60.0, holes.back().end_s / 60.0, speed->values[last], speed->values[i]),
-           false});
-    }
-    last = i;
+    times_s.push_back(record.time_s[i] - start_s);
+    rpm.push_back(speed->values[i]);
   }
+  if (times_s.empty()) return {};
+  std::vector<Hole> holes;
+  const auto add = [&](double begin_s, double end_s, const std::string& beside) {
+    holes.push_back({begin_s, end_s});
+    findings.push_back(
+        {"speed",
+         fmt::format("from {:g} to {:g} min no row says a speed{}: what drove the machine meanwhile is not known, and what "
+                     "is read later counts by what that leaves open",
+                     begin_s / 60.0, end_s / 60.0, beside),
+         false});
+  };
+  const double last_s = record.time_s.back() - start_s;
+  if (times_s.front() > kHole * usual_s) add(0.0, times_s.front(), fmt::format(", {:g} rpm after", rpm.front()));
+  for (std::size_t i = 1; i < times_s.size(); ++i) {
+    if (times_s[i] - times_s[i - 1] > kHole * usual_about(times_s, i, usual_s))
+      add(times_s[i - 1], times_s[i], fmt::format(", {:g} rpm before and {:g} rpm after", rpm[i - 1], rpm[i]));
+  }
+  if (last_s - times_s.back() > kHole * usual_s)
+    add(times_s.back(), last_s + usual_s, fmt::format(", {:g} rpm before", rpm.back()));
   return holes;
 }
 

@@ -6,8 +6,8 @@
 
 namespace driftwright::diagnosis {
 
-/// Holes of a record: more than five usual steps without a row, or without a speed. What drove the machine in one is not known (unseen_drive.hpp).
-/// @returns  from the last row with a speed to the next one, from the record's start
+/// Holes of a record: more than five usual steps without a row, or without a speed; usual in the whole record, and in the five steps before or behind. What drove the machine in one is not known (unseen_drive.hpp).
+/// @returns  from the last row with a speed to the next one, since the record's start; from the start on, or a step beyond the end, where there is none
 [[nodiscard]] std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findings);
 
 /// Readings that leap away from both neighbours and back become missing: -999, 85.0 of a broken wire.

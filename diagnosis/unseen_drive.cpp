@@ -1,6 +1,7 @@
 #include "diagnosis/unseen_drive.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "diagnosis/no_solution.hpp"
 
@@ -21,31 +22,47 @@ Drive most_of(const Cyclogram& cyclogram) {
   return most;
 }
 
-Cyclogram driven_otherwise(const Cyclogram& cyclogram, const Hole& part, bool is_most) {
+/// A column that has another value in a part of a run.
+void set_column(Cyclogram::Column& c, const Hole& part, double value) {
+  TimeSeries rows;
+  const auto add = [&](double time_s, double v) {
+    rows.time_s.push_back(time_s);
+    rows.value.push_back(v);
+  };
+  const auto copy = [&](const auto& where) {
+    for (std::size_t i = 0; i < c.rows.time_s.size(); ++i) {
+      if (where(c.rows.time_s[i])) add(c.rows.time_s[i], c.rows.value[i]);
+    }
+  };
+  copy([&](double t_s) { return t_s < part.begin_s; });
+  add(part.begin_s, value);
+  add(part.end_s, c.at(part.end_s));
+  copy([&](double t_s) { return t_s > part.end_s; });
+  c.rows = std::move(rows);
+}
+
+/// The cyclogram with what nobody saw in a part of a hole at its most, or at its least.
+Cyclogram driven_otherwise(const MeasuredRun& run, const Hole& part, bool is_most) {
+  const Cyclogram& cyclogram = run.cyclogram;
+  // where rows go on without a speed, they say all else
+  const bool speed_alone =
+      std::any_of(run.time_s.begin(), run.time_s.end(), [&](double t_s) { return t_s > part.begin_s && t_s < part.end_s; });
   const Drive drive = is_most ? most_of(cyclogram) : Drive{};
   Cyclogram other = split_at(cyclogram, {part.begin_s, part.end_s});
   double at_s = 0.0;
   for (Cyclogram::Section& s : other.sections) {
     const double middle_s = at_s + 0.5 * s.duration_s;
-    if (middle_s > part.begin_s && middle_s < part.end_s) s.drive = drive;
     at_s += s.duration_s;
+    if (!(middle_s > part.begin_s && middle_s < part.end_s)) continue;
+    if (speed_alone)
+      s.drive.speed_rpm = drive.speed_rpm;
+    else
+      s.drive = drive;
   }
   for (Cyclogram::Column& c : other.columns) {
+    if (speed_alone) break;
     const auto [least, most] = std::minmax_element(c.rows.value.begin(), c.rows.value.end());
-    const double there = is_most ? *most : *least, after = c.at(part.end_s);
-    TimeSeries rows;
-    const auto add = [&](double time_s, double value) {
-      rows.time_s.push_back(time_s);
-      rows.value.push_back(value);
-    };
-    for (std::size_t i = 0; i < c.rows.time_s.size() && c.rows.time_s[i] < part.begin_s; ++i)
-      add(c.rows.time_s[i], c.rows.value[i]);
-    add(part.begin_s, there);
-    add(part.end_s, after);
-    for (std::size_t i = 0; i < c.rows.time_s.size(); ++i) {
-      if (c.rows.time_s[i] > part.end_s) add(c.rows.time_s[i], c.rows.value[i]);
-    }
-    c.rows = std::move(rows);
+    set_column(c, part, is_most ? *most : *least);
   }
   return other;
 }
@@ -57,7 +74,7 @@ std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<Measure
   Twin::Workspace workspace(twin);
   const auto readings = [&](const MeasuredRun& run, const Hole& part, bool is_most) {
     MeasuredRun other = run;
-    other.cyclogram = driven_otherwise(run.cyclogram, part, is_most);
+    other.cyclogram = driven_otherwise(run, part, is_most);
     return twin.read(twin.as_written(), other, twin.respond(twin.as_written(), other, workspace));
   };
   for (std::size_t r = 0; r < runs.size(); ++r) {
@@ -77,6 +94,20 @@ std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<Measure
     }
   }
   return columns;
+}
+
+void leave_out_what_is_open(const Twin& twin, const std::map<std::string, NoiseModel>& noise,
+                            std::vector<MeasuredRun>& runs) {
+  const std::vector<Prediction> columns = hole_columns(twin, runs);
+  for (std::size_t r = 0; r < runs.size() && !columns.empty(); ++r) {
+    for (MeasuredChannel& c : runs[r].channels) {
+      for (Eigen::Index i = 0; i < c.value.size(); ++i) {
+        double variance = 0.0;
+        for (const Prediction& column : columns) variance += std::pow(column[r](c.output, i), 2);
+        if (variance > std::pow(noise.at(c.name).total(), 2)) c.value[i] = std::nan("");
+      }
+    }
+  }
 }
 
 }  // namespace driftwright::diagnosis

@@ -1,6 +1,8 @@
 #pragma once
 // Records with holes, in which nobody saw what drove the machine.
 
+#include <map>
+
 #include "diagnosis/comparison.hpp"
 #include "diagnosis/twin.hpp"
 
@@ -12,7 +14,11 @@ namespace driftwright::diagnosis {
 ///     column = 1/2 (readings with all that the record shows of speed, feeds, cutting power and columns that drive the machine at its most there
 ///                   - readings with all of it at its least)
 ///
-/// Least: at rest, columns at their smallest value. The run's own cyclogram holds the drive before the hole.
+/// Least: at rest, columns at their smallest value. The run's own cyclogram holds the drive before the hole. Where rows go on and the speed alone is missing, the speed alone is
+/// another one.
 [[nodiscard]] std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<MeasuredRun>& runs);
+
+/// Readings that holes leave open by more than noise become missing: a file, which holds the drive, says nothing of them.
+void leave_out_what_is_open(const Twin& twin, const std::map<std::string, NoiseModel>& noise, std::vector<MeasuredRun>& runs);
 
 }  // namespace driftwright::diagnosis

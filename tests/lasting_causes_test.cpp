@@ -284,13 +284,50 @@ TEST(ARecordWithAHole, CountsOnBothSidesOfIt) {
 TEST(ARecordWithAHole, HidesNoCauseThatLasts) {
   const std::string truth = with_effect(kMachine, "{type: heat_source, node: column, power: 25 W}");
   const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_", 60.0, 0.03, 0.2);
-  const Beside beside(write_file("plain.yaml", kMachine), {with_hole(records[0], 51, 90, "gap_monday.csv"),
-                                                           with_hole(records[1], 100, 150, "gap_tuesday.csv")});
+  const Beside beside(write_file("plain.yaml", kMachine),
+                      {with_hole(records[0], 51, 90, "gap_monday.csv"), with_hole(records[1], 100, 150, "gap_tuesday.csv")});
   const Diagnosis d = beside.diagnosed();
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "heat_source");
   EXPECT_EQ(d.causes[0].where, "column");
   EXPECT_NEAR(d.causes[0].parameters[0].value, 25.0, 3.0);
+  EXPECT_TRUE(d.causes[0].is_written) << d.causes[0].why_not_written;  // what the holes leave open does not speak against it
+}
+
+/// Without the speed in rows `first` to `last`, all else as it was.
+std::string without_speed(const std::string& record, int first, int last, const std::string& name) {
+  std::ifstream whole(record);
+  std::string kept, row;
+  for (int i = -1; std::getline(whole, row); ++i) {
+    const std::size_t comma = row.find(',');
+    const bool is_blank = i >= first && i <= last;
+    kept += (is_blank ? row.substr(0, comma + 1) + row.substr(row.find(',', comma + 1)) : row) + "\n";
+  }
+  return write_file(name, kept);
+}
+
+// What is read while nobody knows the speed says nothing: within a record, at its beginning and at its end.
+TEST(ARecordWithAHole, IsNotReadWhereTheSpeedIsMissing) {
+  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kMachine), "hole_", 60.0, 0.03, 0.2);
+  for (const auto& [first, last] : {std::pair{61, 130}, {0, 79}, {226, 300}}) {
+    const Beside beside(write_file("plain.yaml", kMachine),
+                        {without_speed(records[0], first, last, "gap_monday.csv"), records[1]});
+    ASSERT_THAT(beside.runs[0].holes, SizeIs(1)) << first;
+    const Diagnosis d = beside.diagnosed();
+    EXPECT_EQ(d.verdict, Verdict::kConsistent) << first << ": " << d.reason;
+  }
+}
+
+// A logger that writes less often from a time on leaves no holes.
+TEST(ARecordWithAHole, IsNoneOfRowsThatAreFurtherApartFromATimeOn) {
+  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kMachine), "hole_", 60.0, 0.03, 0.2);
+  std::ifstream whole(records[0]);
+  std::string kept, row;
+  for (int i = -1; std::getline(whole, row); ++i) {
+    if (i <= 170 || i % 6 == 0) kept += row + "\n";
+  }
+  const Beside beside(write_file("plain.yaml", kMachine), {write_file("gap_monday.csv", kept), records[1]});
+  EXPECT_THAT(beside.runs[0].holes, IsEmpty());
 }
 
 // The state of rest that a machine starts from follows its numbers, also where a law follows temperature: a weaker path to the ambient, with heat that is always
