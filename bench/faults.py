@@ -47,7 +47,7 @@ def meshed_scenario(program, work, cell_mm):
     text = path.read_text().replace("drift_z", "nose_z")
     assert "power: 0.5 W, at_speed: 3000 rpm" in text
     if cell_mm:
-        text, n = re.subn(r"(size: )[\d.]+ mm", rf"\g<1>{cell_mm:g} mm", text)
+        text, n = re.subn(r"(default: )[\d.]+ mm", rf"\g<1>{cell_mm:g} mm", text)
         assert n == 1, text
     text = text.replace("power: 0.5 W, at_speed: 3000 rpm", "power: 20 W, at_speed: 6000 rpm")
     path.write_text(text[:text.index("\ncyclograms:")] + "\nsolver: {model: reduced}" + STUDIED)
