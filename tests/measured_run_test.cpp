@@ -312,29 +312,35 @@ TEST_F(MeasuredRunTest, RefusesAnAmbientInFahrenheitOrKelvin) {
   for (const double honest_C : {-15.0, 5.0, 38.0, 44.0}) EXPECT_EQ(refusal(record(honest_C)), "") << honest_C;
 }
 
-TEST_F(MeasuredRunTest, TakesTheLongerSideOfAHoleAcrossWhichTheSpeedChanged) {
+TEST_F(MeasuredRunTest, KeepsBothSidesOfAHoleAndReadsNothingWithinIt) {
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 100; ++i) {  // rows 20 to 39 have no speed, and when it fell nobody knows
     const std::string speed = i < 20 ? "500" : i < 40 ? "" : "0";
     text += fmt::format("{},{},{:.3f}\n", 60 * i, speed, 20.0 + 0.013 * i);
   }
   const MeasuredRun run = read(text);
-  EXPECT_EQ(run.time_s.size(), 60u);
-  EXPECT_EQ(run.cyclogram.speed_rpm(0.0), 0.0);
+  EXPECT_EQ(run.time_s.size(), 100u);
+  ASSERT_EQ(run.holes.size(), 1u);
+  EXPECT_EQ(run.holes[0].begin_s, 19 * 60.0);
+  EXPECT_EQ(run.holes[0].end_s, 40 * 60.0);
+  const Eigen::VectorXd& value = run.find("t_front")->value;
+  for (Eigen::Index i = 0; i < 100; ++i) EXPECT_EQ(std::isnan(value[i]), i > 19 && i < 40) << i;
+  EXPECT_EQ(run.cyclogram.speed_rpm(30 * 60.0), 500.0);
   ASSERT_FALSE(run.findings.empty());
   EXPECT_THAT(run.findings.front().what,
-              AllOf(HasSubstr("from 19 to 40 min there is no speed"), HasSubstr("500 rpm before and 0 rpm after")));
+              AllOf(HasSubstr("from 19 to 40 min no row says a speed"), HasSubstr("500 rpm before and 0 rpm after")));
 }
 
-TEST_F(MeasuredRunTest, KeepsAHoleAcrossWhichTheSpeedIsTheSameAndSaysSo) {
+TEST_F(MeasuredRunTest, SaysThatAHoleOfRowsIsOneWhateverTheSpeedBeforeAndAfter) {
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 100; ++i) {
     if (i < 20 || i >= 40) text += fmt::format("{},500,{:.3f}\n", 60 * i, 20.0 + 0.013 * i);
   }
   const MeasuredRun run = read(text);
   EXPECT_EQ(run.time_s.size(), 80u);
+  EXPECT_EQ(run.holes.size(), 1u);
   ASSERT_FALSE(run.findings.empty());
-  EXPECT_THAT(run.findings.front().what, HasSubstr("500 rpm before and after is taken to have been held"));
+  EXPECT_THAT(run.findings.front().what, HasSubstr("500 rpm before and 500 rpm after"));
 }
 
 TEST_F(MeasuredRunTest, LeavesOutAReadingThatLeapsAwayAndBack) {
