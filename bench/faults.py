@@ -233,7 +233,7 @@ def row_of(verb, command, stdin, work, env, tiny, n_kills):
 
 
 def sanitized_row(verb, command, stdin, work, env):
-    """Exit code, seconds and how many reports sanitizers write, of the program and of all processes that it starts; the first one in words."""
+    """Exit code, seconds and how many reports sanitizers write, of the program and of all processes that it starts, with the file that keeps them."""
     logs = work / "reports" / verb
     logs.mkdir(parents=True)
     usual = {name: f"{env.get(name, '')}:log_path={logs}/{name[:4].lower()}" for name in ("ASAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS")}

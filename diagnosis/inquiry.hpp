@@ -32,7 +32,7 @@ struct Inquiry {
 [[nodiscard]] Inquiry inquire(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, bool of_all,
                               const Listener& listener);
 
-/// What a warm start and another mesh change (one column a channel): the amplitude of each is unknown.
+/// What a warm start, the unseen drive of a hole and another mesh (one column a channel) change: the amplitude of each is unknown.
 [[nodiscard]] std::vector<Prediction> unknown_columns(const Twin& twin, const Twin* coarse, double mesh_error_share,
                                                       const std::vector<MeasuredRun>& runs, const TwinState& state);
 
