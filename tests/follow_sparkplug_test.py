@@ -90,7 +90,7 @@ def main():
         n = len(commands)
         publish("DDATA", payload(8, {"alias": 5, "int_value": 9000}))
         wait_for("request for a birth", lambda: len(commands) > n)
-        assert any("message 7 of its node is missing" in w for w in words), words
+        wait_for("word of what is missing", lambda: any("message 7 of its node is missing" in w for w in words))
         birth(7, speed=2000, ambient=21)
         wait_for("drift of the second birth", lambda: is_at(2000, 21))
         # deaths: of a birth before, of the device, of the node
