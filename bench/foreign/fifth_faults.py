@@ -3,7 +3,6 @@ import copy
 
 import numpy as np
 
-import faults
 import fourth_faults
 import third_faults
 from faults import Fault, Impossible, largest_heat, pick, typical_link
