@@ -27,11 +27,19 @@ LevelMachine::LevelMachine(const Twin& twin, const Doubts& doubts, const std::ve
   run_.grid_s = run_.time_s;
   for (std::size_t i = 0; i < run_.grid_s.size(); ++i) run_.row_in_grid[i] = static_cast<Eigen::Index>(i);
   run_.row_in_grid.resize(run_.grid_s.size());
-  for (const MeasuredChannel& c : run_.channels) {
+  for (Eigen::ArrayXXd* a : {&carry_, &gain_, &scale_})
+    a->resize(static_cast<Eigen::Index>(run_.channels.size()), static_cast<Eigen::Index>(n_steps_) + 1);
+  for (Eigen::Index channel = 0; const MeasuredChannel& c : run_.channels) {
     outputs_.push_back(c.output);
     NoiseModel of_row = noise.at(c.name);
     of_row.white *= std::sqrt(std::min(1.0, interval_s / row_s));
-    whiteners_.emplace_back(of_row, run_.time_s, std::vector<char>(run_.time_s.size(), 1));
+    const Whitener whitener(of_row, run_.time_s, std::vector<char>(run_.time_s.size(), 1));
+    const auto row = [](const std::vector<double>& v) {
+      return Eigen::Map<const Eigen::ArrayXd>(v.data(), static_cast<Eigen::Index>(v.size())).transpose();
+    };
+    carry_.row(channel) = row(whitener.carry());
+    gain_.row(channel) = row(whitener.gain());
+    scale_.row(channel++) = row(whitener.scale());
   }
   turned_.push_back({.state = twin.as_written()});
   for (const Knob& k : doubts.numbers) turned_.push_back({.state = with_number(twin, k), .by = k.step});
@@ -54,37 +62,37 @@ LevelMachine::Course LevelMachine::course_of(const TwinState& state, const std::
   const Twin::Bound bound = twin_.bound(state, run_, workspace);
   const solver::ReducedSystem& system = bound.system;
   Course course;
-  course.start = bound.start;
+  course.start = bound.start.cast<float>();
   course.ambient_K.resize(static_cast<Eigen::Index>(n_steps_) + 1);
   for (std::size_t i = 0; i <= n_steps_; ++i)
-    course.ambient_K[static_cast<Eigen::Index>(i)] = bound.ambient.at(run_.time_s[i]);
-  course.observe = Eigen::MatrixXd::Zero(twin_.outputs().state.cols(), system.size());
-  course.observe.leftCols(bound.outputs.rows()) = bound.outputs.transpose();
+    course.ambient_K[static_cast<Eigen::Index>(i)] = static_cast<float>(bound.ambient.at(run_.time_s[i]));
+  course.observe = Eigen::MatrixXf::Zero(twin_.outputs().state.cols(), system.size());
+  course.observe.leftCols(bound.outputs.rows()) = bound.outputs.transpose().cast<float>();
   const effects::DriveChange change = effects::drive_change(state, run_.name);
   for (const Drive& level : levels) {
     effects::Inputs at{.drive = felt(change, level, run_.cyclogram.duration_s(), run_.name),
-                       .ambient_K = course.ambient_K.mean(),
+                       .ambient_K = static_cast<double>(course.ambient_K.mean()),
                        .time_s = 0.5 * run_.cyclogram.duration_s()};
     at.run = run_.name;
-    course.steps.push_back(linear_step(linear_system(system, at, course.start), system.mass, row_s_));
+    const LinearStep step = linear_step(linear_system(system, at, bound.start), system.mass, row_s_);
+    course.steps.push_back({step.phi.cast<float>(), step.constant.cast<float>(), step.of_ambient.cast<float>(), step.of_rise.cast<float>()});
   }
   return course;
 }
 
 Eigen::MatrixXd LevelMachine::response(const Course& course, const std::vector<int>& level_of_step) const {
-  Eigen::MatrixXd states(course.start.size(), static_cast<Eigen::Index>(n_steps_) + 1);
+  Eigen::MatrixXf states(course.start.size(), static_cast<Eigen::Index>(n_steps_) + 1);
   states.col(0) = course.start;
   for (std::size_t i = 0; i < n_steps_; ++i) {
-    const LinearStep& step = course.steps[static_cast<std::size_t>(level_of_step[i])];
+    const Step& step = course.steps[static_cast<std::size_t>(level_of_step[i])];
     const auto k = static_cast<Eigen::Index>(i);
-    const double ambient_K = course.ambient_K[k];
+    const float ambient_K = course.ambient_K[k];
     states.col(k + 1) = step.constant + ambient_K * step.of_ambient + (course.ambient_K[k + 1] - ambient_K) * step.of_rise;
     states.col(k + 1).noalias() += step.phi * states.col(k);
   }
-  Eigen::MatrixXd outputs(course.observe.rows(), states.cols());
-  outputs.noalias() = course.observe * states;
+  Eigen::MatrixXd outputs = (course.observe * states).cast<double>();
   if ((twin_.outputs().ambient.array() != 0.0).any())
-    outputs.noalias() += twin_.outputs().ambient * course.ambient_K.transpose();
+    outputs.noalias() += twin_.outputs().ambient * course.ambient_K.cast<double>().transpose();
   return outputs;
 }
 
@@ -109,16 +117,19 @@ Eigen::MatrixXd LevelMachine::information(const std::vector<int>& level_of_step)
   const auto n_rows = static_cast<Eigen::Index>(n_steps_) + 1;
   const auto n_channels = static_cast<Eigen::Index>(outputs_.size());
   Eigen::MatrixXd columns(n_rows * n_channels, static_cast<Eigen::Index>(turned_.size()) - 1);
-  Eigen::VectorXd difference(n_rows);
+  Eigen::ArrayXd estimate(n_channels), innovation(n_channels);
   for (std::size_t i = 1; i < turned_.size(); ++i) {
     const Turned& t = turned_[i];
     Eigen::MatrixXd readings = t.course == 0 ? machine : response(courses_[i], level_of_step);
     if (t.reads) readings = twin_.read(t.state, run, std::move(readings));
-    const auto column = static_cast<Eigen::Index>(i) - 1;
-    for (Eigen::Index c = 0; c < n_channels; ++c) {
-      const int output = outputs_[static_cast<std::size_t>(c)];
-      difference = (readings.row(output) - as_written.row(output)).transpose() / t.by;
-      whiteners_[static_cast<std::size_t>(c)].apply(difference, columns.col(column).segment(c * n_rows, n_rows));
+    Eigen::Map<Eigen::ArrayXXd> whitened(columns.col(static_cast<Eigen::Index>(i) - 1).data(), n_channels, n_rows);
+    whitened = (readings(outputs_, Eigen::all) - as_written(outputs_, Eigen::all)).array() / t.by;
+    estimate.setZero();
+    for (Eigen::Index row = 0; row < n_rows; ++row) {  // Whitener::apply for all channels at once
+      estimate *= carry_.col(row);
+      innovation = whitened.col(row) - estimate;
+      estimate += gain_.col(row) * innovation;
+      whitened.col(row) = scale_.col(row) * innovation;
     }
   }
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());

@@ -26,6 +26,11 @@ class Whitener {
   /// @param series  one value a time; those without reading are not looked at. @param out  n() values
   void apply(const Eigen::Ref<const Eigen::VectorXd>& series, Eigen::Ref<Eigen::VectorXd> out) const;
   [[nodiscard]] double log_determinant() const { return log_determinant_; }  ///< of the covariance
+  /// The filter's numbers, n() of each: estimate = carry estimate; innovation = reading - estimate; estimate += gain innovation; scale innovation is
+  /// the reading whitened.
+  [[nodiscard]] const std::vector<double>& carry() const { return carry_; }
+  [[nodiscard]] const std::vector<double>& gain() const { return gain_; }
+  [[nodiscard]] const std::vector<double>& scale() const { return scale_; }
 
  private:
   std::vector<Eigen::Index> rows_;

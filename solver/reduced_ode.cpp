@@ -11,6 +11,7 @@ namespace driftwright::solver {
 namespace {
 
 constexpr int kMostIterations = 12;
+constexpr double kServes = 0.3;              // an exchange within so much of its value in the diagonal leaves it as it is
 constexpr double kShareOfTolerance = 0.02;  // errors of Newton's iterations do not steer the steps
 
 }  // namespace
@@ -34,7 +35,11 @@ ReducedOde::ReducedOde(const ReducedSystem& system, const TimeSeries& ambient)
     if (system.sources[s].power_W.looks_at_state()) live_sources_.push_back({s, 0.0, {}});
   }
   for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
-    if (system.exchanges[e].coefficient.looks_at_state()) live_exchanges_.push_back({e, 0.0, 0.0, {}, {}, {}, {}});
+    if (!system.exchanges[e].coefficient.looks_at_state()) continue;
+    const Eigen::MatrixXd& g = system.exchanges[e].matrix;
+    const auto same = std::find_if(matrices_.begin(), matrices_.end(), [&](const auto& m) { return *m.of_system == g; });
+    live_exchanges_.push_back({.index = e, .matrix = static_cast<std::size_t>(same - matrices_.begin())});
+    if (same == matrices_.end()) matrices_.push_back({&g});
   }
 }
 
@@ -110,16 +115,26 @@ bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
   };
   weights_of_probes(Eigen::MatrixXd::Identity(n_, n_));
   const std::vector<double> t_K = probe_K(z, inputs_.ambient_K);
-  for (LiveExchange& live : live_exchanges_) {
-    live.in_diagonal = std::max(0.0, value(system_.exchanges[live.index].coefficient, t_K));
-    coefficient[static_cast<Eigen::Index>(live.index)] = live.in_diagonal;
+  bool serves = !is_first_;  // the diagonal that there is
+  for (const LiveExchange& live : live_exchanges_) {
+    double& c = coefficient[static_cast<Eigen::Index>(live.index)];
+    c = std::max(0.0, value(system_.exchanges[live.index].coefficient, t_K));
+    serves = serves && std::abs(c - live.in_diagonal) <= kServes * live.in_diagonal;
   }
+  for (const LiveExchange& live : live_exchanges_) {
+    if (serves) coefficient[static_cast<Eigen::Index>(live.index)] = live.in_diagonal;
+  }
+  if (serves && coefficient == now_.coefficient) {
+    weights_of_probes(now_.vectors);
+    return true;
+  }
+  for (LiveExchange& live : live_exchanges_) live.in_diagonal = coefficient[static_cast<Eigen::Index>(live.index)];
   now_ = decompositions_.at(coefficient);
   const Eigen::MatrixXd& v = now_.vectors;
   weights_of_probes(v);
+  for (ExchangeMatrix& m : matrices_) m.now.noalias() = v.transpose() * (*m.of_system * v);
   for (LiveExchange& live : live_exchanges_) {
     const auto& e = system_.exchanges[live.index];
-    live.matrix.noalias() = v.transpose() * (e.matrix * v);
     live.to_ambient.noalias() = v.transpose() * e.to_ambient;
     live.offset = e.offset.size() > 0 ? Eigen::VectorXd(v.transpose() * e.offset) : Eigen::VectorXd::Zero(n_);
     live.flow.noalias() = v.transpose() * e.flow;
@@ -150,12 +165,14 @@ void ReducedOde::evaluate(double t_s, const Eigen::VectorXd& w, Eigen::VectorXd&
   }
   heat = now_.offset + ambient_K * now_.to_ambient - now_.lambda_1_s.cwiseProduct(w);
   heat.noalias() += now_.loads * power_W_;
+  for (ExchangeMatrix& m : matrices_) m.beyond = 0.0;
   for (LiveExchange& live : live_exchanges_) {
     live.coefficient = value(system_.exchanges[live.index].coefficient, t_K);
     const double beyond = live.coefficient - live.in_diagonal;
-    heat.noalias() -= beyond * (live.matrix * w);
+    matrices_[live.matrix].beyond += beyond;
     heat += beyond * (ambient_K * live.to_ambient + live.offset);
   }
+  for (const ExchangeMatrix& m : matrices_) heat.noalias() -= m.beyond * (m.now * w);
   const Eigen::Index n_sources = power_W_.size(), n_exchanges = now_.ambient_W_K.size();
   flow_W.head(n_sources) = power_W_;
   flow_W.tail(n_exchanges).noalias() = now_.flows * w;

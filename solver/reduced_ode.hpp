@@ -2,7 +2,8 @@
 // The reduced model as integrate() sees it, where laws look at temperatures or thermostats switch.
 //
 // In each stretch the unknowns are those of the eigenvectors of K, with exchanges that look at temperatures at their value where the
-// stretch began, so that I + γ K is diagonal. What laws of temperature do to heat is a correction of few terms:
+// stretch began or, where that is close, where an earlier one did, so that I + γ K is diagonal. What laws of temperature do to heat is a
+// correction of few terms:
 //
 //     dw/dt = f + θ_ambient h - Λ w + Σ_s P_s(w) b_s - Σ_e (c_e(w) - c_e0) (G_e w - θ_ambient g_e - o_e)
 //
@@ -55,8 +56,8 @@ class ReducedOde : public StageOde {
   struct LiveExchange {
     std::size_t index;
     double coefficient = 0.0, in_diagonal = 0.0;  ///< now, and within Λ
-    Eigen::MatrixXd matrix;                       ///< V'G V
-    Eigen::VectorXd to_ambient, offset, flow;
+    std::size_t matrix = 0;                       ///< of matrices_
+    Eigen::VectorXd to_ambient = {}, offset = {}, flow = {};
   };
   [[nodiscard]] Map unknowns(const double* y) const { return {y, n_}; }
   /// Value of a law at the probes' temperatures.
@@ -77,6 +78,13 @@ class ReducedOde : public StageOde {
   Eigen::VectorXd power_W_;  ///< of sources that do not look at temperatures
   std::vector<LiveSource> live_sources_;
   std::vector<LiveExchange> live_exchanges_;
+  /// V'G V of live exchanges; those of one surface (free convection and radiation) have one G.
+  struct ExchangeMatrix {
+    const Eigen::MatrixXd* of_system;
+    Eigen::MatrixXd now = {};
+    double beyond = 0.0;  ///< sum of coefficients beyond those in Λ
+  };
+  std::vector<ExchangeMatrix> matrices_;
   Eigen::MatrixXd probes_;  ///< size x n_probes, in the present eigenvectors
   bool is_first_ = true;
   bool has_jumped_ = false, is_rough_ = false;  ///< since the last step; before the present one

@@ -18,7 +18,7 @@ struct Fineness {
   int rows_per_slot;
   std::size_t most_of_a_kind;
 };
-constexpr Fineness kCoarse = {1, 3}, kFine = {3, 8};  // all are tried coarsely, the best of them finely
+constexpr Fineness kCoarse = {1, 2}, kFine = {3, 8};  // all are tried coarsely, the best of them finely
 constexpr std::size_t kBatch = 250;
 constexpr std::size_t kParents = 20;        // the best so far, which others are changes of
 constexpr std::size_t kTriedFinely = 200;
@@ -26,7 +26,7 @@ constexpr std::size_t kTogether = 10;    // programmes of a piece
 constexpr int kAsked = 4;                // programmes asked for, for each one that shall be tried: some come twice
 constexpr double kRandom = 0.5;          // share of all that is tried
 constexpr int kMostProgrammes = 10000, kFewestProgrammes = 300;
-constexpr double kWork = 1.5e11;         // multiplications, some ten seconds of two cores
+constexpr double kWork = 1.8e11;         // multiplications, some ten seconds of two cores
 constexpr double kWorthASection = 0.01;  // of the best
 
 /// Numbers of pieces: where those of each stage begin.
