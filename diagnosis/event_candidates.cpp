@@ -21,6 +21,7 @@ constexpr Eigen::Index kCells = 60, kCellsOfSpeed = 240;
 /// The events that a happening may be.
 void add_events_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& happening,
                    std::vector<Event>& list) {
+  if (is_unseen(happening)) return;
   if (auto event = event_of(twin, scene, happening)) list.push_back(*std::move(event));
   for (Event& visit : visits_of(scene, happening)) {
     const bool is_known = std::any_of(list.begin(), list.end(), [&](const Event& e) {  // seen as heat and as an exchange

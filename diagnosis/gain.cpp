@@ -103,7 +103,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     kept = best;
   }
   held.fails = all != 0 && (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier ||
-                            judge.is_worse(all, 0));
+                            judge.is_much_worse(all, 0));
   if (held.fails) held.fails_at = worst_channel(judge, noise, judge.judged(all).predicted, judge.judged(0).predicted);
   Subset named = 0;
   for (std::size_t c = 0; c < n_claims; ++c) {
@@ -112,14 +112,18 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     held.claim_nats.push_back(nats);
     const bool stands_in_each_part =
         judge.least_evidence(with, with & ~one) - price_of(result, c) >= result.bars.suspected.front();
-    held.doubt.emplace_back((kept & one) == 0 ? "rows that were kept out are predicted worse with it"
+    const bool is_out = (kept & one) == 0;
+    const bool speaks_against = is_out && (nats < -kAlike || judge.is_much_worse(with, with & ~one));
+    held.doubt.emplace_back(speaks_against ? "rows that were kept out are predicted worse with it"
                             : nats <= 0.0 && !stands_in_each_part
                                 ? "rows that were kept out are predicted no better with it, and without some of them nobody "
                                   "would have suspected it"
                                 : "");
+    held.why_not_written.push_back(
+        is_out && !speaks_against ? "rows that were kept out are missed a little more with it, which does not speak against it"
+                                  : held.doubt.back());
     if (result.findings[c].is_named && held.doubt[c].empty()) named |= one;
   }
-  held.why_not_written = held.doubt;
   for (std::size_t c = 0; c < n_claims; ++c) {
     if (result.findings[c].faint_chance && held.doubt[c].empty())
       held.doubt[c] = held.why_not_written[c] = "its evidence is too little for more than a suspicion";

@@ -170,6 +170,18 @@ double row_s(const MeasuredRun& run) {
   return run.time_s.back() / static_cast<double>(run.time_s.size() - 1);
 }
 
+bool is_unseen(const Happening& happening) {
+  double all_s = 0.0, unseen_s = 0.0;
+  for (const auto& [run, windows] : happening.in) {
+    for (const auto& [begin_s, end_s] : windows) {
+      all_s += end_s - begin_s;
+      for (const Hole& hole : run->holes)
+        unseen_s += std::max(0.0, std::min(end_s, hole.end_s) - std::max(begin_s, hole.begin_s));
+    }
+  }
+  return all_s > 0.0 && unseen_s >= 0.5 * all_s;
+}
+
 std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& h) {
   auto asked = asked_of(twin, scene, h);
   if (!asked) return std::nullopt;

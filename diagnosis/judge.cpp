@@ -16,6 +16,9 @@ constexpr double kNoSolution = -1e6;       // nats of a fold that no numbers fit
 // What a kept-out record has of its own, such as its ambient, is in the misses and says nothing of a claim: they count where likelihood is not clear.
 constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorse = 1.1;            // of the squares
+constexpr double kMuchWorse = 1.25;       // where the likelihood is on the claims' side
+constexpr int kMostAgain = 6;             // climbs from where the last one ended
+constexpr double kStoppedShort = 0.3;     // nats that another climb gains
 
 }  // namespace
 
@@ -45,8 +48,20 @@ const Judge::Judged& Judge::judged(Subset claims) {
       fits.size(), [&] { return Twin::Workspace(whole_.twin()); },
       [&](std::size_t f, Twin::Workspace& workspace) {
         const Fitter& fitter = f < folds_.size() ? *fitters_[f] : whole_;
-        if (!has_solution([&] { fits[f] = fitter.fit(rest.hypothesis, x.tail(x.size() - n_n), workspace); }))
+        if (!has_solution([&] { fits[f] = fitter.fit(rest.hypothesis, x.tail(x.size() - n_n), workspace); })) {
           fits[f] = Fit{};
+          return;
+        }
+        // What stops short in one fold is a difference of evidence that the rows do not hold.
+        for (int again = 0; again < kMostAgain; ++again) {
+          Fit next;
+          const bool is_solved =
+              has_solution([&] { next = fitter.fit_others(rest.hypothesis, fits[f].x, kNothingHeld, workspace); });
+          if (!is_solved || !(next.misfit < fits[f].misfit)) break;
+          const double gained = fits[f].misfit - next.misfit;
+          fits[f] = std::move(next);
+          if (gained < kStoppedShort) break;
+        }
       });
   // Fewer readings are never missed by more than all of them: a fit to them that is has stopped short, and goes on from where the fit to all ended.
   const Fit& all = fits.back();
@@ -129,6 +144,13 @@ std::vector<Prediction> Judge::regressed(Regressors regressors) const {
 bool Judge::is_worse(Subset claims, Subset fewer) {
   return judged(fewer).log_predictive - judged(claims).log_predictive > -kSurelyLikelier &&
          squares_over_noise(judged(claims).predicted) > kWorse * squares_over_noise(judged(fewer).predicted);
+}
+
+bool Judge::is_much_worse(Subset claims, Subset fewer) {
+  return judged(fewer).log_predictive > judged(claims).log_predictive
+             ? is_worse(claims, fewer)
+             : is_worse(claims, fewer) &&
+                   squares_over_noise(judged(claims).predicted) > kMuchWorse * squares_over_noise(judged(fewer).predicted);
 }
 
 double Judge::over_noise(const std::vector<Prediction>& predicted) const {

@@ -41,12 +41,16 @@ void set_column(Cyclogram::Column& c, const Hole& part, double value) {
   c.rows = std::move(rows);
 }
 
+/// Whether rows go on in a part of a hole, in which the speed alone is missing.
+bool has_rows(const MeasuredRun& run, const Hole& part) {
+  return std::any_of(run.time_s.begin(), run.time_s.end(),
+                     [&](double t_s) { return t_s > part.begin_s && t_s < part.end_s; });
+}
+
 /// The cyclogram with what nobody saw in a part of a hole at its most, or at its least.
 Cyclogram driven_otherwise(const MeasuredRun& run, const Hole& part, bool is_most) {
   const Cyclogram& cyclogram = run.cyclogram;
-  // where rows go on without a speed, they say all else
-  const bool speed_alone =
-      std::any_of(run.time_s.begin(), run.time_s.end(), [&](double t_s) { return t_s > part.begin_s && t_s < part.end_s; });
+  const bool speed_alone = has_rows(run, part);  // they say all else
   const Drive drive = is_most ? most_of(cyclogram) : Drive{};
   Cyclogram other = split_at(cyclogram, {part.begin_s, part.end_s});
   double at_s = 0.0;
@@ -67,28 +71,79 @@ Cyclogram driven_otherwise(const MeasuredRun& run, const Hole& part, bool is_mos
   return other;
 }
 
+/// Root mean square of how far the recorded ambient goes, halfway through stretches as long as a hole, from the line between their ends [K]: what an ambient that nobody
+/// read is not known by.
+double unseen_ambient_K(const TimeSeries& ambient, const Hole& hole) {
+  const double length_s = hole.end_s - hole.begin_s, last_s = ambient.time_s.back() - length_s;
+  double squares = 0.0;
+  int n = 0;
+  if (!(length_s > 0.0)) return 0.0;
+  for (double t_s = ambient.time_s.front(); t_s <= last_s; t_s += length_s / 8.0) {
+    if (t_s < hole.end_s && t_s + length_s > hole.begin_s) continue;
+    squares += std::pow(ambient.at(t_s + 0.5 * length_s) - 0.5 * (ambient.at(t_s) + ambient.at(t_s + length_s)), 2);
+    ++n;
+  }
+  return n == 0 ? 0.0 : std::sqrt(squares / n);
+}
+
+/// The ambient, by so much higher in a part of a hole.
+TimeSeries warmer_in(const TimeSeries& ambient, const Hole& part, double by_K) {
+  const double edge_s = 0.01 * (part.end_s - part.begin_s);
+  TimeSeries other;
+  const auto add = [&](double t_s, double value) {
+    other.time_s.push_back(t_s);
+    other.value.push_back(value);
+  };
+  const auto copy = [&](double from_s, double to_s, double more_K) {
+    for (std::size_t i = 0; i < ambient.time_s.size(); ++i) {
+      if (ambient.time_s[i] > from_s && ambient.time_s[i] < to_s) add(ambient.time_s[i], ambient.value[i] + more_K);
+    }
+  };
+  copy(-1e300, part.begin_s, 0.0);
+  add(part.begin_s, ambient.at(part.begin_s));
+  add(part.begin_s + edge_s, ambient.at(part.begin_s + edge_s) + by_K);
+  copy(part.begin_s + edge_s, part.end_s - edge_s, by_K);
+  add(part.end_s - edge_s, ambient.at(part.end_s - edge_s) + by_K);
+  add(part.end_s, ambient.at(part.end_s));
+  copy(part.end_s, 1e300, 0.0);
+  return other;
+}
+
 }  // namespace
 
 std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<MeasuredRun>& runs) {
   std::vector<Prediction> columns;
   Twin::Workspace workspace(twin);
-  const auto readings = [&](const MeasuredRun& run, const Hole& part, bool is_most) {
+  const auto readings = [&](const MeasuredRun& run) {
+    return twin.read(twin.as_written(), run, twin.respond(twin.as_written(), run, workspace));
+  };
+  const auto driven = [&](const MeasuredRun& run, const Hole& part, bool is_most) {
     MeasuredRun other = run;
     other.cyclogram = driven_otherwise(run, part, is_most);
-    return twin.read(twin.as_written(), other, twin.respond(twin.as_written(), other, workspace));
+    return readings(other);
+  };
+  const auto add = [&](std::size_t r, const auto& of_run) {
+    Prediction column;
+    for (const MeasuredRun& run : runs)
+      column.push_back(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(twin.outputs().name.size()),
+                                             static_cast<Eigen::Index>(run.time_s.size())));
+    const bool is_solved = has_solution([&] { column[r] = of_run(); });
+    if (is_solved && !column[r].isZero(0.0)) columns.push_back(std::move(column));
   };
   for (std::size_t r = 0; r < runs.size(); ++r) {
     for (const Hole& hole : runs[r].holes) {
       Hole part = hole;
+      const double ambient_K = runs[r].has_ambient && !has_rows(runs[r], hole) ? unseen_ambient_K(runs[r].ambient, hole) : 0.0;
       for (int halving = 0; halving <= kHalvings; ++halving) {
         part.end_s = halving < kHalvings ? 0.5 * (part.begin_s + hole.end_s) : hole.end_s;
-        Prediction column;
-        for (const MeasuredRun& run : runs)
-          column.push_back(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(twin.outputs().name.size()),
-                                                 static_cast<Eigen::Index>(run.time_s.size())));
-        const bool is_solved =
-            has_solution([&] { column[r] = kOpen * (readings(runs[r], part, true) - readings(runs[r], part, false)); });
-        if (is_solved && !column[r].isZero(0.0)) columns.push_back(std::move(column));
+        add(r, [&] { return Eigen::MatrixXd(kOpen * (driven(runs[r], part, true) - driven(runs[r], part, false))); });
+        if (ambient_K > 0.0) {
+          add(r, [&] {
+            MeasuredRun warmer = runs[r];
+            warmer.ambient = warmer_in(warmer.ambient, part, ambient_K);
+            return Eigen::MatrixXd(readings(warmer) - readings(runs[r]));
+          });
+        }
         part.begin_s = part.end_s;
       }
     }

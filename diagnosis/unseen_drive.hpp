@@ -15,7 +15,8 @@ namespace driftwright::diagnosis {
 ///                   - readings with all of it at its least)
 ///
 /// Least: at rest, columns at their smallest value. The run's own cyclogram holds the drive before the hole. Where rows go on and the speed alone is missing, the speed alone is
-/// another one.
+/// another one. Where the ambient was recorded, each part without rows has a column for it as well: warmer by as much as the ambient strays elsewhere in the record
+/// from the line between the ends of stretches as long as the hole.
 [[nodiscard]] std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<MeasuredRun>& runs);
 
 /// Readings that holes leave open by more than noise become missing: a file, which holds the drive, says nothing of them.

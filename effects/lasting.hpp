@@ -7,15 +7,22 @@
 
 namespace driftwright::effects {
 
-/// The effect in a run and in each later one, an entry each; numbers that a doubt sets by name are set in all of them.
-[[nodiscard]] inline std::vector<Effect> in_this_and_later_runs(const DoubtScene& scene, std::size_t run,
-                                                                const Effect& effect) {
+/// The effect in each of some runs, an entry each; numbers that a doubt sets by name are set in all of them.
+/// @param end  behind the last one
+[[nodiscard]] inline std::vector<Effect> in_runs(const DoubtScene& scene, std::size_t first, std::size_t end,
+                                                 const Effect& effect) {
   std::vector<Effect> list;
-  for (std::size_t r = run; r < scene.runs.size(); ++r) {
+  for (std::size_t r = first; r < end; ++r) {
     list.push_back(effect);
     list.back().in = scene.runs[r].name;
   }
   return list;
+}
+
+/// In a run and in each later one.
+[[nodiscard]] inline std::vector<Effect> in_this_and_later_runs(const DoubtScene& scene, std::size_t run,
+                                                                const Effect& effect) {
+  return in_runs(scene, run, scene.runs.size(), effect);
 }
 
 /// A doubt that begins at a time in one run, and the same for all later runs from their start on where there are any: one variant more.
@@ -29,7 +36,8 @@ inline void add_with_lasting(const DoubtScene& scene, std::size_t run, const Dou
   list.push_back(std::move(lasting));
 }
 
-/// A doubt that holds in all runs, and the same in each of several alone and from each but the first one on: what was changed between two records.
+/// A doubt that holds in all runs, and the same in each of several alone, from each but the first one on and up to each but the last one: what was
+/// changed between two records, or mended.
 /// @param doubt  with a single effect whose numbers are set by name
 inline void add_in_some_runs(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list) {
   list.push_back(doubt);
@@ -44,6 +52,10 @@ inline void add_in_some_runs(const DoubtScene& scene, const Doubt& doubt, std::v
     lasting.law += fmt::format(", from {} on", scene.runs[run].name);
     lasting.added = in_this_and_later_runs(scene, run, doubt.added.front());
     list.push_back(std::move(lasting));
+    Doubt mended = doubt;
+    mended.law += fmt::format(", up to {}", scene.runs[run].name);
+    mended.added = in_runs(scene, 0, run + 1, doubt.added.front());
+    list.push_back(std::move(mended));
   }
 }
 

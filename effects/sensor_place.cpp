@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
@@ -20,7 +20,7 @@ void change_readings(const Effect& e, ReadingChain& chain) {
   });
 }
 
-/// Each other body has a law of its own; the ambient has one, too: a thermometer that never touched well.
+/// Each other body has a law of its own, in all records or from one of them on; the ambient has one, too: a thermometer that never touched well.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const std::string& sensor : s.sensors) {
@@ -34,15 +34,22 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       DoubtedNumber share = doubted("share", "1", 0.4, 0.05);
       share.low = 0.0;
       share.high = 1.0;
-      list.push_back({.finding = "sensor_place",
-                      .where = sensor,
-                      .law = fmt::format("sits between its place and {}", body.name),
-                      .added = {place},
-                      .numbers = {share},
-                      .trial = 0.3});
       const auto at = s.sensor_bodies.find(sensor);
       const bool may_touch = body == ambient_node() || at == s.sensor_bodies.end() || are_joined(s, at->second, body);
-      list.back().rarity = may_touch ? 0.0 : kTouchWithoutPath;
+      const Doubt always{.finding = "sensor_place",
+                         .where = sensor,
+                         .law = fmt::format("sits between its place and {}", body.name),
+                         .added = {place},
+                         .numbers = {share},
+                         .trial = 0.3,
+                         .rarity = may_touch ? 0.0 : kTouchWithoutPath};
+      list.push_back(always);
+      for (std::size_t run = 1; run < s.runs.size(); ++run) {  // mounted anew between two records
+        Doubt moved = always;
+        moved.law += fmt::format(", from {} on", s.runs[run].name);
+        moved.added = in_this_and_later_runs(s, run, place);
+        list.push_back(std::move(moved));
+      }
     }
   }
   return list;
