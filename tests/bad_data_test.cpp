@@ -5,6 +5,7 @@
 
 #include "base/foreign_temperature.hpp"
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis/happening.hpp"
 #include "diagnosis/missing_data.hpp"
 #include "diagnosis/time_check.hpp"
 #include "diagnosis/unit_check.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
@@ -272,6 +274,68 @@ solver: {output_interval: 1 min}
     }
     begin_s += length_s;
   }
+}
+
+// Nobody turns; the ambient was read, and goes to and fro by 1 K in steps of 10 min. It is 20 min that nobody reads: elsewhere the middle of 20 min lies
+// beside the line between the ends by 0, 1 or 2 K. With C dT/dt = -G (T - h) an ambient that is warmer by a for so long leaves a (1 - e^-t/tau).
+TEST(UnseenDrive, IsTheAmbientToo) {
+  Bench b(R"(name: body
+reference_temperature: 20 degC
+start: ambient
+machine: {generator: lumped}
+effects:
+  - {type: node, node: shaft, capacity: 1000 J/K}
+  - {type: link, node: shaft, to: ambient, conductance: 1 W/K}
+ambient: [[0 min, 20 degC]]
+sensors: [{name: t_shaft, node: shaft}]
+cyclograms:
+  cycle: [[240 min, 0 rpm]]
+solver: {output_interval: 1 min}
+)");
+  MeasuredRun& run = b.runs[0];
+  run.holes = {{6000.0, 7200.0}};
+  EXPECT_THAT(hole_columns(*b.twin, b.runs), IsEmpty());  // an ambient that was not read is known as well as anywhere
+  run.has_ambient = true;
+  run.ambient = {};
+  for (int i = 0; i < 240; ++i) {
+    run.ambient.time_s.push_back(60.0 * i);
+    run.ambient.value.push_back(i / 10 % 2 == 0 ? -1.0 : 1.0);
+  }
+  double squares = 0.0;
+  int n = 0;
+  const auto ambient = [&](double t_s) { return run.ambient.at(t_s); };
+  for (double t_s = 0.0; t_s + 1200.0 <= run.ambient.time_s.back(); t_s += 150.0) {
+    if (t_s + 1200.0 > 6000.0 && t_s < 7200.0) continue;
+    squares += std::pow(ambient(t_s + 600.0) - 0.5 * (ambient(t_s) + ambient(t_s + 1200.0)), 2);
+    ++n;
+  }
+  const double strays_K = std::sqrt(squares / n);
+  EXPECT_NEAR(strays_K, 1.9, 0.15);
+  const std::vector<Prediction> columns = hole_columns(*b.twin, b.runs);
+  ASSERT_THAT(columns, SizeIs(5));
+  double begin_s = 6000.0;
+  for (std::size_t part = 0; part < 5; ++part) {
+    const double length_s = 1200.0 / (part < 4 ? std::pow(2.0, part + 1.0) : 16.0);
+    for (const int row : {90, 130, 170, 239}) {
+      const double after_s = 60.0 * row - begin_s - length_s;
+      const double expected =
+          row < 100 ? 0.0 : strays_K * (1.0 - std::exp(-1e-3 * length_s)) * std::exp(-1e-3 * after_s);
+      EXPECT_NEAR(columns[part].front()(0, row), expected, 0.02) << part << " " << row;
+    }
+    begin_s += length_s;
+  }
+}
+
+TEST(Happening, OfWhichHalfLiesInAHoleIsUnseen) {
+  Bench b;
+  b.runs[0].holes = {{600.0, 1200.0}};
+  const auto happening = [&](double begin_s, double end_s) {
+    return Happening{.body = effects::node("column"), .in = {{&b.runs[0], {{begin_s, end_s}}}}};
+  };
+  EXPECT_TRUE(is_unseen(happening(650.0, 1100.0)));
+  EXPECT_TRUE(is_unseen(happening(700.0, 1600.0)));
+  EXPECT_FALSE(is_unseen(happening(700.0, 2000.0)));
+  EXPECT_FALSE(is_unseen(happening(1200.0, 1500.0)));
 }
 
 TEST(MissingData, NamesNothingAndWritesNothing) {  // 60 readings, of which one thermometer is plainly off
