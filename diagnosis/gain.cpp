@@ -102,6 +102,12 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     if (best == kept) break;
     kept = best;
   }
+  // What went for another's sake comes back where that one went, too.
+  for (std::size_t c = 0; c < n_claims; ++c) {
+    const Subset with = kept | (1U << c);
+    if (with != kept && judge.judged(with).log_predictive > judge.judged(kept).log_predictive && !judge.is_worse(with, kept))
+      kept = with;
+  }
   held.fails = all != 0 && (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier ||
                             judge.is_much_worse(all, 0));
   if (held.fails) held.fails_at = worst_channel(judge, noise, judge.judged(all).predicted, judge.judged(0).predicted);
@@ -120,8 +126,9 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
                                   "would have suspected it"
                                 : "");
     held.why_not_written.push_back(
-        is_out && !speaks_against ? "rows that were kept out are missed a little more with it, which does not speak against it"
-                                  : held.doubt.back());
+        is_out && held.doubt.back().empty()
+            ? "rows that were kept out are predicted no better with it, if not by so much worse that it speaks against it"
+            : held.doubt.back());
     if (result.findings[c].is_named && held.doubt[c].empty()) named |= one;
   }
   for (std::size_t c = 0; c < n_claims; ++c) {
@@ -129,7 +136,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
       held.doubt[c] = held.why_not_written[c] = "its evidence is too little for more than a suspicion";
   }
   kept = 0;
-  for (std::size_t c = 0; c < n_claims; ++c) kept |= held.doubt[c].empty() ? 1U << c : 0U;
+  for (std::size_t c = 0; c < n_claims; ++c) kept |= held.why_not_written[c].empty() ? 1U << c : 0U;
   // What comes again and again at times that nobody knows ahead is true of these records, and of no use for those to come.
   for (std::size_t c = 0; c < n_claims; ++c) {
     const Subset without = kept & ~(1U << c);

@@ -171,6 +171,7 @@ double row_s(const MeasuredRun& run) {
 }
 
 bool is_unseen(const Happening& happening) {
+  if (happening.every_s > 0.0) return false;
   double all_s = 0.0, unseen_s = 0.0;
   for (const auto& [run, windows] : happening.in) {
     for (const auto& [begin_s, end_s] : windows) {

@@ -31,7 +31,7 @@ inline constexpr double kUnknownSpeed = 0.7;
 [[nodiscard]] std::optional<effects::Effect> exchange_window(const Twin& twin, const effects::Body& a,
                                                              const effects::Body& b);
 
-/// Whether half of the windows' time or more lies in holes of their records: what goes on there nobody saw.
+/// Whether half of the windows' time or more lies in holes of their records, where nobody saw what went on. What repeats in each turn was seen in others.
 [[nodiscard]] bool is_unseen(const Happening& happening);
 
 /// From row to row [s], on average.

@@ -16,9 +16,21 @@ constexpr double kNoSolution = -1e6;       // nats of a fold that no numbers fit
 // What a kept-out record has of its own, such as its ambient, is in the misses and says nothing of a claim: they count where likelihood is not clear.
 constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorse = 1.1;            // of the squares
-constexpr double kMuchWorse = 1.25;       // where the likelihood is on the claims' side
+constexpr double kMuchWorse = 1.25;
 constexpr int kMostAgain = 6;             // climbs from where the last one ended
 constexpr double kStoppedShort = 0.3;     // nats that another climb gains
+
+/// Climbs until it stays: what stops short in one fold is a difference of evidence that the rows do not hold.
+void go_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit, Twin::Workspace& workspace) {
+  for (int again = 0; again < kMostAgain; ++again) {
+    Fit next;
+    const bool is_solved = has_solution([&] { next = fitter.fit_others(hypothesis, fit.x, kNothingHeld, workspace); });
+    if (!is_solved || !(next.misfit < fit.misfit)) return;
+    const double gained = fit.misfit - next.misfit;
+    fit = std::move(next);
+    if (gained < kStoppedShort) return;
+  }
+}
 
 }  // namespace
 
@@ -52,16 +64,7 @@ const Judge::Judged& Judge::judged(Subset claims) {
           fits[f] = Fit{};
           return;
         }
-        // What stops short in one fold is a difference of evidence that the rows do not hold.
-        for (int again = 0; again < kMostAgain; ++again) {
-          Fit next;
-          const bool is_solved =
-              has_solution([&] { next = fitter.fit_others(rest.hypothesis, fits[f].x, kNothingHeld, workspace); });
-          if (!is_solved || !(next.misfit < fits[f].misfit)) break;
-          const double gained = fits[f].misfit - next.misfit;
-          fits[f] = std::move(next);
-          if (gained < kStoppedShort) break;
-        }
+        go_on(fitter, rest.hypothesis, fits[f], workspace);
       });
   // Fewer readings are never missed by more than all of them: a fit to them that is has stopped short, and goes on from where the fit to all ended.
   const Fit& all = fits.back();
@@ -71,6 +74,7 @@ const Judge::Judged& Judge::judged(Subset claims) {
     Fit again;
     const bool is_solved =
         has_solution([&] { again = fitters_[f]->fit_others(rest.hypothesis, all.x, kNothingHeld, workspace); });
+    if (is_solved) go_on(*fitters_[f], rest.hypothesis, again, workspace);
     if (is_solved && (fits[f].prediction.empty() || again.misfit < fits[f].misfit)) fits[f] = std::move(again);
   }
   Judged j;
@@ -147,10 +151,8 @@ bool Judge::is_worse(Subset claims, Subset fewer) {
 }
 
 bool Judge::is_much_worse(Subset claims, Subset fewer) {
-  return judged(fewer).log_predictive > judged(claims).log_predictive
-             ? is_worse(claims, fewer)
-             : is_worse(claims, fewer) &&
-                   squares_over_noise(judged(claims).predicted) > kMuchWorse * squares_over_noise(judged(fewer).predicted);
+  return is_worse(claims, fewer) &&
+         squares_over_noise(judged(claims).predicted) > kMuchWorse * squares_over_noise(judged(fewer).predicted);
 }
 
 double Judge::over_noise(const std::vector<Prediction>& predicted) const {

@@ -50,8 +50,8 @@ class Judge {
 
   /// Whether some claims miss kept-out rows by more than fewer of them do, and likelihood does not clearly say otherwise.
   [[nodiscard]] bool is_worse(Subset claims, Subset fewer);
-  /// The same, by so much that it speaks against the claims and not only against writing them: where numbers beyond what is known of them do what a claim does, both
-  /// miss about as much.
+  /// The same by a quarter of the squares, which speaks against the claims and not only against writing them: where numbers beyond what is known of them do what a claim
+  /// does, both miss about as much.
   [[nodiscard]] bool is_much_worse(Subset claims, Subset fewer);
 
   /// Root mean square of kept-out misses over the noise of their channels.

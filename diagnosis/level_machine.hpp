@@ -29,7 +29,7 @@ class LevelMachine {
   [[nodiscard]] Eigen::MatrixXd information(const std::vector<int>& level_of_step) const;
 
  private:
-  /// A LinearStep in single precision, which rounds outputs to 10⁻⁶ K and halves the time: noise of readings is 10⁴ times as large.
+  /// A LinearStep in single precision, which halves the time: outputs are rounded to 10⁻⁶ K, and what a doubt makes of them, by its half or tenth, to 10⁻⁵ K.
   struct Step {
     Eigen::MatrixXf phi;
     Eigen::VectorXf constant, of_ambient, of_rise;

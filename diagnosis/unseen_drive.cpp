@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kHalvings = 4;
 constexpr double kOpen = 0.5;  // of what the drive can do: one standard deviation
+constexpr double kKnown_K = 0.01;  // an ambient that strays no further is known
 
 /// Of all that a run shows, each quantity of the drive at its most.
 Drive most_of(const Cyclogram& cyclogram) {
@@ -71,19 +72,36 @@ Cyclogram driven_otherwise(const MeasuredRun& run, const Hole& part, bool is_mos
   return other;
 }
 
-/// Root mean square of how far the recorded ambient goes, halfway through stretches as long as a hole, from the line between their ends [K]: what an ambient that nobody
-/// read is not known by.
-double unseen_ambient_K(const TimeSeries& ambient, const Hole& hole) {
-  const double length_s = hole.end_s - hole.begin_s, last_s = ambient.time_s.back() - length_s;
-  double squares = 0.0;
-  int n = 0;
+/// How well the ambient of a hole is known [K]: the root mean square of how far the recorded one strays, in stretches as long as the hole, from the line between
+/// their ends; where none is as long, its standard deviation. Stretches that touch a hole do not count.
+double unseen_ambient_K(const MeasuredRun& run, const Hole& hole) {
+  constexpr int kLooks = 16;  // within a stretch
+  const TimeSeries& ambient = run.ambient;
+  const double length_s = hole.end_s - hole.begin_s, last_s = run.time_s.back();
   if (!(length_s > 0.0)) return 0.0;
-  for (double t_s = ambient.time_s.front(); t_s <= last_s; t_s += length_s / 8.0) {
-    if (t_s < hole.end_s && t_s + length_s > hole.begin_s) continue;
-    squares += std::pow(ambient.at(t_s + 0.5 * length_s) - 0.5 * (ambient.at(t_s) + ambient.at(t_s + length_s)), 2);
-    ++n;
+  const auto touches_hole = [&](double from_s, double to_s) {
+    return std::any_of(run.holes.begin(), run.holes.end(),
+                       [&](const Hole& h) { return from_s < h.end_s && to_s > h.begin_s; });
+  };
+  double squares = 0.0, n = 0.0;
+  for (double from_s = 0.0; from_s + length_s <= last_s; from_s += length_s / kLooks) {
+    if (touches_hole(from_s, from_s + length_s)) continue;
+    for (int i = 1; i < kLooks; ++i) {
+      const double share = static_cast<double>(i) / kLooks;
+      const double line_K = (1.0 - share) * ambient.at(from_s) + share * ambient.at(from_s + length_s);
+      squares += std::pow(ambient.at(from_s + share * length_s) - line_K, 2);
+      n += 1.0;
+    }
   }
-  return n == 0 ? 0.0 : std::sqrt(squares / n);
+  if (n > 0.0) return std::sqrt(squares / n);
+  double sum = 0.0;
+  for (double t_s : run.time_s) {
+    if (touches_hole(t_s, t_s)) continue;
+    sum += ambient.at(t_s);
+    squares += std::pow(ambient.at(t_s), 2);
+    n += 1.0;
+  }
+  return n > 0.0 ? std::sqrt(std::max(0.0, squares / n - std::pow(sum / n, 2))) : 0.0;
 }
 
 /// The ambient, by so much higher in a part of a hole.
@@ -131,17 +149,19 @@ std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<Measure
     if (is_solved && !column[r].isZero(0.0)) columns.push_back(std::move(column));
   };
   for (std::size_t r = 0; r < runs.size(); ++r) {
+    Eigen::MatrixXd as_it_is;
     for (const Hole& hole : runs[r].holes) {
       Hole part = hole;
-      const double ambient_K = runs[r].has_ambient && !has_rows(runs[r], hole) ? unseen_ambient_K(runs[r].ambient, hole) : 0.0;
+      const double ambient_K = runs[r].has_ambient ? unseen_ambient_K(runs[r], hole) : 0.0;
       for (int halving = 0; halving <= kHalvings; ++halving) {
         part.end_s = halving < kHalvings ? 0.5 * (part.begin_s + hole.end_s) : hole.end_s;
         add(r, [&] { return Eigen::MatrixXd(kOpen * (driven(runs[r], part, true) - driven(runs[r], part, false))); });
-        if (ambient_K > 0.0) {
+        if (ambient_K > kKnown_K && !has_rows(runs[r], part)) {
           add(r, [&] {
+            if (as_it_is.size() == 0) as_it_is = readings(runs[r]);
             MeasuredRun warmer = runs[r];
             warmer.ambient = warmer_in(warmer.ambient, part, ambient_K);
-            return Eigen::MatrixXd(readings(warmer) - readings(runs[r]));
+            return Eigen::MatrixXd(readings(warmer) - as_it_is);
           });
         }
         part.begin_s = part.end_s;

@@ -16,7 +16,7 @@ namespace driftwright::diagnosis {
 ///
 /// Least: at rest, columns at their smallest value. The run's own cyclogram holds the drive before the hole. Where rows go on and the speed alone is missing, the speed alone is
 /// another one. Where the ambient was recorded, each part without rows has a column for it as well: warmer by as much as the ambient strays elsewhere in the record
-/// from the line between the ends of stretches as long as the hole.
+/// from the line between the ends of stretches as long as the hole, or in the whole record where none is as long.
 [[nodiscard]] std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<MeasuredRun>& runs);
 
 /// Readings that holes leave open by more than noise become missing: a file, which holds the drive, says nothing of them.

@@ -1,5 +1,5 @@
 #pragma once
-// Causes that last: what begins in one record holds in all that follow it.
+// Causes of more than one record: what begins in one holds in all that follow it; what was mended behind one held in all up to it.
 
 #include <fmt/format.h>
 

@@ -276,8 +276,9 @@ solver: {output_interval: 1 min}
   }
 }
 
-// Nobody turns; the ambient was read, and goes to and fro by 1 K in steps of 10 min. It is 20 min that nobody reads: elsewhere the middle of 20 min lies
-// beside the line between the ends by 0, 1 or 2 K. With C dT/dt = -G (T - h) an ambient that is warmer by a for so long leaves a (1 - e^-t/tau).
+// Nobody turns; the ambient goes to and fro as A sin(2 pi t / P), and a hole is as long as P. From the line between the ends of a stretch of P, which is level, it
+// strays by A (sin(u + 2 pi s) - sin(u)), whose mean square over all u is A^2 (1 - cos(2 pi s)), over s = 1/16 .. 15/16 A^2 16/15. With C dT/dt = -G (T - h) an
+// ambient that is warmer by a for so long leaves a (1 - e^-t/tau).
 TEST(UnseenDrive, IsTheAmbientToo) {
   Bench b(R"(name: body
 reference_temperature: 20 degC
@@ -292,38 +293,39 @@ cyclograms:
   cycle: [[240 min, 0 rpm]]
 solver: {output_interval: 1 min}
 )");
+  constexpr double kAmplitude_K = 1.5, kPeriod_s = 2400.0;
   MeasuredRun& run = b.runs[0];
-  run.holes = {{6000.0, 7200.0}};
-  EXPECT_THAT(hole_columns(*b.twin, b.runs), IsEmpty());  // an ambient that was not read is known as well as anywhere
   run.has_ambient = true;
   run.ambient = {};
-  for (int i = 0; i < 240; ++i) {
+  for (int i = 0; i <= 240; ++i) {
     run.ambient.time_s.push_back(60.0 * i);
-    run.ambient.value.push_back(i / 10 % 2 == 0 ? -1.0 : 1.0);
+    run.ambient.value.push_back(kAmplitude_K * std::sin(2.0 * M_PI * 60.0 * i / kPeriod_s));
   }
-  double squares = 0.0;
-  int n = 0;
-  const auto ambient = [&](double t_s) { return run.ambient.at(t_s); };
-  for (double t_s = 0.0; t_s + 1200.0 <= run.ambient.time_s.back(); t_s += 150.0) {
-    if (t_s + 1200.0 > 6000.0 && t_s < 7200.0) continue;
-    squares += std::pow(ambient(t_s + 600.0) - 0.5 * (ambient(t_s) + ambient(t_s + 1200.0)), 2);
-    ++n;
-  }
-  const double strays_K = std::sqrt(squares / n);
-  EXPECT_NEAR(strays_K, 1.9, 0.15);
+  run.holes = {{6000.0, 6000.0 + kPeriod_s}};
+  EXPECT_THAT(hole_columns(*b.twin, b.runs), IsEmpty());  // rows go on, and say what the ambient was
+  std::erase_if(run.time_s, [&](double t_s) { return t_s > run.holes[0].begin_s && t_s < run.holes[0].end_s; });
+  set_grid(run);
+  run.has_ambient = false;
+  EXPECT_THAT(hole_columns(*b.twin, b.runs), IsEmpty());  // the scenario says the ambient, in holes as anywhere
+  run.has_ambient = true;
+  const double strays_K = kAmplitude_K * std::sqrt(16.0 / 15.0);
   const std::vector<Prediction> columns = hole_columns(*b.twin, b.runs);
   ASSERT_THAT(columns, SizeIs(5));
   double begin_s = 6000.0;
   for (std::size_t part = 0; part < 5; ++part) {
-    const double length_s = 1200.0 / (part < 4 ? std::pow(2.0, part + 1.0) : 16.0);
-    for (const int row : {90, 130, 170, 239}) {
-      const double after_s = 60.0 * row - begin_s - length_s;
+    const double length_s = kPeriod_s / (part < 4 ? std::pow(2.0, part + 1.0) : 16.0);
+    for (std::size_t row = 0; row < run.time_s.size(); ++row) {
+      const double after_s = run.time_s[row] - begin_s - length_s;
       const double expected =
-          row < 100 ? 0.0 : strays_K * (1.0 - std::exp(-1e-3 * length_s)) * std::exp(-1e-3 * after_s);
-      EXPECT_NEAR(columns[part].front()(0, row), expected, 0.02) << part << " " << row;
+          run.time_s[row] < 8000.0 ? 0.0 : strays_K * (1.0 - std::exp(-1e-3 * length_s)) * std::exp(-1e-3 * after_s);
+      EXPECT_NEAR(columns[part].front()(0, static_cast<Eigen::Index>(row)), expected, 0.02) << part << " " << row;
     }
     begin_s += length_s;
   }
+  run.holes = {{3000.0, 12000.0}};  // no stretch is as long: all that is left of the record says how far it strays
+  std::erase_if(run.time_s, [&](double t_s) { return t_s > 3000.0 && t_s < 12000.0; });
+  set_grid(run);
+  EXPECT_THAT(hole_columns(*b.twin, b.runs), SizeIs(5));
 }
 
 TEST(Happening, OfWhichHalfLiesInAHoleIsUnseen) {
@@ -336,6 +338,9 @@ TEST(Happening, OfWhichHalfLiesInAHoleIsUnseen) {
   EXPECT_TRUE(is_unseen(happening(700.0, 1600.0)));
   EXPECT_FALSE(is_unseen(happening(700.0, 2000.0)));
   EXPECT_FALSE(is_unseen(happening(1200.0, 1500.0)));
+  Happening in_each_turn = happening(650.0, 1100.0);
+  in_each_turn.every_s = 1800.0;
+  EXPECT_FALSE(is_unseen(in_each_turn));
 }
 
 TEST(MissingData, NamesNothingAndWritesNothing) {  // 60 readings, of which one thermometer is plainly off
