@@ -14,8 +14,8 @@ struct HeldOut {
   /// Per claim: why the kept-out rows make it a hint, a clause; "" where they do not. They are predicted worse with it; or no better, and no claim would have been
   /// suspected without some of them.
   std::vector<std::string> doubt;
-  /// Per claim: why it is not worth writing, a clause; "" where it is. It is doubted; or kept-out rows are predicted no better with it; or it happens in several records at times that nobody knows ahead, where a record
-  /// whose times are not known is predicted worse by what was fitted beside it; or a search without the kept-out rows finds what does harm to them.
+  /// Per claim: why it is not worth writing, a clause; "" where it is. It is doubted; or kept-out rows are predicted no better with it; or it happens
+  /// in several records at times that nobody knows ahead, where a record whose times are not known is predicted worse by what was fitted beside it; or a search without the kept-out rows finds what does harm to them.
   std::vector<std::string> why_not_written;
   /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place, or at one that this is not told from.
   int n_searched = 0;

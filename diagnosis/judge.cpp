@@ -16,7 +16,7 @@ constexpr double kNoSolution = -1e6;       // nats of a fold that no numbers fit
 // What a kept-out record has of its own, such as its ambient, is in the misses and says nothing of a claim: they count where likelihood is not clear.
 constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorse = 1.1;            // of the squares
-constexpr double kMuchWorse = 1.25;
+constexpr double kMuchWorse = 1.25;       // of the squares: speaks against a claim, not only against writing it
 constexpr int kMostAgain = 6;             // climbs from where the last one ended
 constexpr double kStoppedShort = 0.3;     // nats that another climb gains
 

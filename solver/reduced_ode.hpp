@@ -75,7 +75,7 @@ class ReducedOde : public StageOde {
   Decomposition now_;
   std::vector<char> is_on_;
   effects::Inputs inputs_;
-  Eigen::VectorXd power_W_;  ///< of sources that do not look at temperatures
+  Eigen::VectorXd power_W_;  ///< of sources
   std::vector<LiveSource> live_sources_;
   std::vector<LiveExchange> live_exchanges_;
   /// V'G V of live exchanges; those of one surface (free convection and radiation) have one G.

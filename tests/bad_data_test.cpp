@@ -243,10 +243,9 @@ TEST(WarmStart, IsNotTakenForABiasOrAnAmbientThatIsOff) {
   EXPECT_EQ(b.runs[0].start_K.size(), 0);
 }
 
-// One body, 1000 J/K with 1 W/K to the ambient, of which 60 W at 1000 rpm: T' = (P - T) / 1000 s. Of a hole from 100 to 164 min the first part is 32 min long: full
-// less none there is 60 (1 - e^-1.92) at its end, and half of that is one standard deviation.
-TEST(UnseenDrive, IsWhatTheDriveOfAHoleMayHaveDone) {
-  Bench b(R"(name: body
+/// 1000 s of time constant, 60 K at 1000 rpm.
+std::string shaft_alone(const std::string& cyclogram) {
+  return R"(name: body
 reference_temperature: 20 degC
 start: ambient
 machine: {generator: lumped}
@@ -257,9 +256,14 @@ effects:
 ambient: [[0 min, 20 degC]]
 sensors: [{name: t_shaft, node: shaft}]
 cyclograms:
-  cycle: [[60 min, 1000 rpm], [60 min, 0 rpm], [120 min, 500 rpm]]
-solver: {output_interval: 1 min}
-)");
+  cycle: )" + cyclogram +
+         "\nsolver: {output_interval: 1 min}\n";
+}
+
+// One body, 1000 J/K with 1 W/K to the ambient, of which 60 W at 1000 rpm: T' = (P - T) / 1000 s. Of a hole from 100 to 164 min the first part is 32 min long: full
+// less none there is 60 (1 - e^-1.92) at its end, and half of that is one standard deviation.
+TEST(UnseenDrive, IsWhatTheDriveOfAHoleMayHaveDone) {
+  Bench b(shaft_alone("[[60 min, 1000 rpm], [60 min, 0 rpm], [120 min, 500 rpm]]").c_str());
   b.runs[0].holes = {{6000.0, 9840.0}};
   const std::vector<Prediction> columns = hole_columns(*b.twin, b.runs);
   ASSERT_THAT(columns, SizeIs(5));
@@ -280,19 +284,7 @@ solver: {output_interval: 1 min}
 // strays by A (sin(u + 2 pi s) - sin(u)), whose mean square over all u is A^2 (1 - cos(2 pi s)), over s = 1/16 .. 15/16 A^2 16/15. With C dT/dt = -G (T - h) an
 // ambient that is warmer by a for so long leaves a (1 - e^-t/tau).
 TEST(UnseenDrive, IsTheAmbientToo) {
-  Bench b(R"(name: body
-reference_temperature: 20 degC
-start: ambient
-machine: {generator: lumped}
-effects:
-  - {type: node, node: shaft, capacity: 1000 J/K}
-  - {type: link, node: shaft, to: ambient, conductance: 1 W/K}
-ambient: [[0 min, 20 degC]]
-sensors: [{name: t_shaft, node: shaft}]
-cyclograms:
-  cycle: [[240 min, 0 rpm]]
-solver: {output_interval: 1 min}
-)");
+  Bench b(shaft_alone("[[240 min, 0 rpm]]").c_str());
   constexpr double kAmplitude_K = 1.5, kPeriod_s = 2400.0;
   MeasuredRun& run = b.runs[0];
   run.has_ambient = true;
