@@ -18,6 +18,10 @@ constexpr double kConverged = 0.02;  // in Φ
 constexpr double kFar = 2.0;         // sigmas that a number has gone from where scatter's slopes were taken
 constexpr double kPromised = 1.0;    // of Φ, by slopes that do not keep it
 constexpr int kMostRetakes = 3;
+constexpr double kTail = 4.0;  // degrees of freedom of a claim's prior
+
+/// -log of Student's density at u standard deviations over that at 0.
+double tail(double u) { return 0.5 * (kTail + 1.0) * std::log1p(u * u / kTail); }
 
 Eigen::Index n_knobs(const Hypothesis& hypothesis) {
   Eigen::Index n = 0;
@@ -120,6 +124,15 @@ Eigen::VectorXd Fitter::prior_sd(const Hypothesis& hypothesis) const {
   Eigen::Index k = n_nuisance();
   for (const Knob* knob : knobs_of(hypothesis)) sd[k++] = knob->prior_sd;
   return sd;
+}
+
+Eigen::VectorXd Fitter::prior_width(const Hypothesis& hypothesis, const Eigen::VectorXd& x) const {
+  Eigen::VectorXd width = prior_sd(hypothesis);
+  for (Eigen::Index k = n_nuisance(); k < width.size(); ++k) {
+    const double u = x[k] / width[k];
+    width[k] *= std::sqrt((kTail + u * u) / (kTail + 1.0));
+  }
+  return width;
 }
 
 TwinState Fitter::state(const Hypothesis& hypothesis, const Eigen::VectorXd& x) const {
@@ -298,7 +311,11 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
       x[n_n + k] = std::clamp(x[n_n + k], -8.0 * knob.prior_sd, 8.0 * knob.prior_sd);
     }
   };
-  const auto prior = [&](const Eigen::VectorXd& x) { return 0.5 * x.cwiseQuotient(sd).squaredNorm(); };
+  const auto prior = [&](const Eigen::VectorXd& x) {
+    double sum = 0.5 * x.head(n_n).cwiseQuotient(sd.head(n_n)).squaredNorm();
+    for (Eigen::Index k = n_n; k < n; ++k) sum += tail(x[k] / sd[k]);
+    return sum;
+  };
 
   Fit f;
   f.x = std::move(start);
@@ -370,12 +387,13 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   const bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
   for (int iteration = 0; iteration < kMostIterations + n_retakes; ++iteration) {
     differentiate(false);
+    const Eigen::VectorXd known = prior_width(hypothesis, f.x).cwiseAbs2().cwiseInverse();
     Eigen::MatrixXd hessian = square;
-    hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
+    hessian.diagonal() += known;
     Eigen::VectorXd gradient(n);
     gradient.head(n_n) = nuisance_slopes->transpose() * f.residual;
     gradient.tail(n_k) = f.slopes.transpose() * f.residual;
-    gradient -= f.x.cwiseQuotient(sd.cwiseProduct(sd));
+    gradient -= f.x.cwiseProduct(known);
     for (Eigen::Index k = 0; k < n_k; ++k) {
       if (!smooth[static_cast<std::size_t>(k)]) gradient[n_n + k] = 0.0;  // no slope: stays where the search has put it
     }
@@ -421,7 +439,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   }
   differentiate(true);
   Eigen::MatrixXd hessian = square;
-  hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
+  hessian.diagonal() += prior_width(hypothesis, f.x).cwiseAbs2().cwiseInverse();
   const Eigen::LLT<Eigen::MatrixXd> factor(hessian);
   f.covariance = factor.solve(Eigen::MatrixXd::Identity(n, n));
   // log det(1 + S J'J S) = log det(H) + 2 Σ log sd
@@ -432,7 +450,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     const Knob& knob = *knobs[static_cast<std::size_t>(k)];
     const bool has_slope = smooth[static_cast<std::size_t>(k)] != 0;
     // the prior of a time or of swapped cables is flat
-    if (knob.is_time || !has_slope) f.log_evidence += 0.5 * std::pow(f.x[n_n + k] / sd[n_n + k], 2);
+    if (knob.is_time || !has_slope) f.log_evidence += tail(f.x[n_n + k] / sd[n_n + k]);
   }
   return f;
 }

@@ -1,10 +1,12 @@
 #pragma once
 // The most probable numbers of a hypothesis, and its evidence.
 //
-//     Φ(x) = 1/2 |W (y - f(x))|² + 1/2 Σ (x_i / sd_i)²,    log Z ≈ -Φ(x̂) - 1/2 log det(1 + S J'J S),   S = diag(sd)
+//     Φ(x) = 1/2 |W (y - f(x))|² + Σ ρ_i(x_i / sd_i),    log Z ≈ -Φ(x̂) - 1/2 log det(S (J'J + B⁻²) S),   S = diag(sd)
 //
 // x: every uncertain number of the scenario (scatter) and those of the hypothesis. W: whitening. J: slopes of W f at x̂.
-// The second term is what more freedom costs (Laplace's approximation of the marginal likelihood).
+// ρ(u): of scatter u²/2, normal; of a claim's numbers 5/2 log(1 + u²/4), Student's t of 4 degrees of freedom: what a fault's
+// usual size is is known roughly, and a size far beyond it is not drawn back to it. B: their widths at x̂, of which
+// sd² B⁻² = ρ'(u)/u. The second term of log Z is what more freedom costs (Laplace's approximation of the marginal likelihood).
 // Source: MacKay, Neural Computation 4 (1992) 415-447; Gauss-Newton with step control.
 
 #include <memory>
@@ -86,6 +88,8 @@ class Fitter {
   [[nodiscard]] Eigen::VectorXd nuisance_sd() const;
   /// Of x of a hypothesis: the nuisance, then the knobs of each claim.
   [[nodiscard]] Eigen::VectorXd prior_sd(const Hypothesis& hypothesis) const;
+  /// Of the normal priors that draw x to zero as much as theirs do, which of claims have heavier tails.
+  [[nodiscard]] Eigen::VectorXd prior_width(const Hypothesis& hypothesis, const Eigen::VectorXd& x) const;
 
   [[nodiscard]] TwinState state(const Hypothesis& hypothesis, const Eigen::VectorXd& x) const;
   /// Readings of all runs; `responses`, unless null, keeps the machine's outputs or, where `reuse`, brings them.

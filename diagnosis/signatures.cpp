@@ -34,7 +34,7 @@ Projection projection_of(const Fitter& fitter, const Hypothesis& hypothesis, con
   slopes << fitter.nuisance_slopes(), fit.slopes;
   const Eigen::VectorXd about_zero = fit.residual + slopes * fit.x;
   const Comparison& c = fitter.comparison();
-  return {c.condensed(slopes), fitter.prior_sd(hypothesis), c.condensed(about_zero)};
+  return {c.condensed(slopes), fitter.prior_width(hypothesis, fit.x), c.condensed(about_zero)};
 }
 
 std::vector<Law> laws_of(const std::vector<Candidate>& candidates) {

@@ -238,7 +238,7 @@ std::vector<Subset> subsets_of(const Fitter& fitter, const std::vector<Candidate
                                const Fit& fit) {
   const Eigen::Index n_n = fitter.n_nuisance();
   const double price = std::log(std::max(1.0, static_cast<double>(candidates.size())));
-  const Eigen::VectorXd sd = fitter.prior_sd(hypothesis);
+  const Eigen::VectorXd sd = fitter.prior_width(hypothesis, fit.x);
   Twin::Workspace workspace(fitter.twin());
   std::vector<Subset> list;
   double log_evidence_of_all = 0.0;
