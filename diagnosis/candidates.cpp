@@ -5,6 +5,7 @@
 
 #include "base/quantity.hpp"
 #include "diagnosis/event_candidates.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
@@ -127,6 +128,19 @@ std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidat
   return added;
 }
 
+Variant law_of(const effects::Doubt& doubt) {
+  Variant v{.law = doubt.when.empty() ? doubt.law : doubt.law + ", " + doubt.when,
+            .knobs = knobs_of(doubt),
+            .trial_x = doubt.trial,
+            .grid = doubt.grid,
+            .at_speed_rpm = doubt.at_speed_rpm,
+            .all_or_nothing = doubt.all_or_nothing,
+            .price_nats = doubt.rarity,
+            .in = doubt.added.front().in};
+  if (effects::can_be_of_some_runs(doubt)) v.of_some_runs = std::make_shared<const effects::Doubt>(doubt);
+  return v;
+}
+
 std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRun>& runs,
                                   const std::set<std::string>& without) {
   const effects::DoubtScene scene = scene_of(twin, runs);
@@ -134,15 +148,7 @@ std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRu
   for (const effects::EffectKind& kind : effects::catalogue()) {
     if (!kind.doubts) continue;
     for (const effects::Doubt& d : kind.doubts(scene)) {
-      candidate(list, d.finding, d.where)
-          .variants.push_back({.law = d.law,
-                               .knobs = knobs_of(d),
-                               .trial_x = d.trial,
-                               .grid = d.grid,
-                               .at_speed_rpm = d.at_speed_rpm,
-                               .all_or_nothing = d.all_or_nothing,
-                               .price_nats = d.rarity,
-                               .in = d.added.front().in});
+      candidate(list, d.finding, d.where).variants.push_back(law_of(d));
     }
   }
   for (std::size_t i = 0; i < twin.n_own_effects(); ++i) {

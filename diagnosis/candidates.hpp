@@ -2,6 +2,7 @@
 // What could be wrong: every effect of the catalogue at every place where it can be, as knobs of the twin. What each kind may be doubted for it says
 // itself (effects/doubt.hpp); numbers of effects that are written may be others.
 
+#include <memory>
 #include <set>
 
 #include "diagnosis/scene.hpp"
@@ -23,7 +24,12 @@ struct Variant {
   bool happens = false;  ///< for a while or from a time on, not throughout
   bool seen = false;     ///< at times that were read off these very readings: simulated ones say nothing of its chances
   std::string in = {};   ///< run in which it is, or begins; "": all
+  std::shared_ptr<const effects::Doubt> of_some_runs =
+      {};  ///< that it was made of, where it can be said of some records alone
 };
+
+/// A doubt as a law of a candidate.
+[[nodiscard]] Variant law_of(const effects::Doubt& doubt);
 
 /// An effect at a place. One candidate among many, whatever laws it may follow.
 struct Candidate {

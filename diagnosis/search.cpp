@@ -14,12 +14,14 @@
 #include "diagnosis/faint_cause.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/rivals.hpp"
+#include "diagnosis/some_records.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a name
 constexpr int kMostTurns = 6;
+constexpr double kBetter = 0.5;    // nats for which one explanation is exchanged for another
 constexpr double kSettled = 0.05;  // of Φ
 constexpr int kMostTurnsOfRival = 3;
 constexpr double kNear = 12.0;             // nats: what fits on may make up for
@@ -292,13 +294,20 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   const Hypothesis begun = is_bent && before ? carried_over(*before, candidates) : Hypothesis{};
   listener.begin(fmt::format("signatures of {} candidates", candidates.size()));
   std::vector<Signature> columns = signatures(fitter, candidates, laws_of(candidates), {}, weighed_at, listener);
+  double best_value = best_fit.log_evidence;
+  const auto add_of_some_records = [&](const Hypothesis& beside, const Fit& at) {
+    if (at.prediction.empty()) return;
+    for (Signature& s : of_some_records(fitter, candidates, columns, projection_of(fitter, beside, at)))
+      columns.push_back(std::move(s));
+    if (!best.empty()) best_value = evidence(best_fit, best) - laws_price(candidates, best);
+  };
+  add_of_some_records({}, weighed_at);
   result.scores = scores(fitter, candidates, columns, {}, weighed_at);
   Chances chances = chances_of(fitter, candidates, columns, weighed_at);
   result.chance = chances.best;
   result.rarest = chances.rarest;
   result.bars = bars_of(result.chance, options);
   const auto must_gain = [&](std::size_t claim) { return result.bars.suspected.at(claim); };  // counted from 0
-  double best_value = best_fit.log_evidence;
   KnownFits known;
 
   const auto exchange = [&] {  // each for a better one, until none is; true where something changed
@@ -308,12 +317,13 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       for (std::size_t i = 0; i < best.size(); ++i) {
         const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
         const Fit fit = fit_all(fitter, {{others, x}}).front();
+        add_of_some_records(others, fit);
         const std::vector<Fitted> replacements =
             best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener, true);
         if (replacements.empty()) continue;
         const Hypothesis exchanged = with(others, replacements.front().claim);
         const double v = evidence(replacements.front().fit, exchanged) - laws_price(candidates, others);
-        if (!(v > best_value + 0.5)) continue;
+        if (!(v > best_value + kBetter)) continue;
         best = exchanged;
         best_fit = replacements.front().fit;
         best_value = v;
@@ -327,6 +337,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   for (int round = 0; static_cast<int>(best.size()) < options.most_effects && !listener.wants_end(); ++round) {
     listener.begin(fmt::format("weighing {} candidates{}", candidates.size(),
                                best.empty() ? "" : fmt::format(" beside {}", best.size())));
+    if (round > 0) add_of_some_records(best, best_fit);
     std::vector<Fitted> additions = best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit,
                                                    options.refits, &known, listener);
     if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself
@@ -366,7 +377,6 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       const std::vector<Law> more =
           add(events_beside(fitter, best, best_fit, projection_of(fitter, best, best_fit), listener));
       for (Signature& s : signatures(fitter, candidates, more, best, best_fit)) columns.push_back(std::move(s));
-      best_value = evidence(best_fit, best) - laws_price(candidates, best);
     }
     exchange();
   }

@@ -93,6 +93,20 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
   return all;
 }
 
+LinearGain linear_gain(const Variant& law, double ss, double sr) {
+  const Knob& size = law.knobs[0];
+  const double sd = size.prior_sd;
+  LinearGain g{.x = law.all_or_nothing ? law.trial_x : sr / (ss + 1.0 / (sd * sd)), .fall = 0.0, .gain = 0.0};
+  g.fall = law.all_or_nothing ? sr * g.x - 0.5 * ss * g.x * g.x : 0.5 * sr * sr / (ss + 1.0 / (sd * sd));
+  if (size.scale == Knob::Scale::kLinear && size.x(size.value(g.x)) != g.x) {  // out of range: at the bound
+    g.x = size.x(size.value(g.x));
+    g.fall = sr * g.x - 0.5 * ss * g.x * g.x;
+  }
+  g.gain = g.fall - (law.all_or_nothing ? 0.0 : 0.5 * std::log1p(sd * sd * ss)) - law.price_nats -
+           std::log(static_cast<double>(law.grid.size()));
+  return g;
+}
+
 std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
                           const std::vector<Signature>& signatures, const Hypothesis& hypothesis, const Fit& fit) {
   const Projection projection = projection_of(fitter, hypothesis, fit);
@@ -102,19 +116,12 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
     const Signature& signature = signatures[i];
     const Variant& v = candidates[signature.candidate].variants[signature.variant];
     const Eigen::VectorXd& s = signature.column;
-    const double ss = projection.square(s), sr = s.dot(projection.rest), sd = v.knobs[0].prior_sd;
+    const double ss = projection.square(s), sr = s.dot(projection.rest);
     if (!(ss > 1e-12)) continue;
-    double x = v.all_or_nothing ? v.trial_x : sr / (ss + 1.0 / (sd * sd));
-    double fall = v.all_or_nothing ? sr * x - 0.5 * ss * x * x : 0.5 * sr * sr / (ss + 1.0 / (sd * sd));
+    const LinearGain g = linear_gain(v, ss, sr);
     const Knob& size = v.knobs[0];
-    if (size.scale == Knob::Scale::kLinear && size.x(size.value(x)) != x) {  // out of range: at the bound
-      x = size.x(size.value(x));
-      fall = sr * x - 0.5 * ss * x * x;
-    }
-    const double gain = fall - (v.all_or_nothing ? 0.0 : 0.5 * std::log1p(sd * sd * ss));
-    if (size.scale == Knob::Scale::kLog) x = std::clamp(x, -2.0, 2.0);
-    of_each[i] = {signature.candidate, signature.variant, gain - v.price_nats - std::log(static_cast<double>(v.grid.size())),
-                  fall, signature.shape};
+    const double x = size.scale == Knob::Scale::kLog ? std::clamp(g.x, -2.0, 2.0) : g.x;
+    of_each[i] = {signature.candidate, signature.variant, g.gain, g.fall, signature.shape};
     of_each[i].start[0] = x;
     if (const double grown = x / v.trial_x; size.scale == Knob::Scale::kLinear && grown > kLeastGrowth) {
       for (std::size_t k = 1; k < v.knobs.size(); ++k) {

@@ -39,6 +39,15 @@ struct Score {
 /// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x. Readings are condensed.
 [[nodiscard]] Projection projection_of(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit);
 
+/// What linear theory says of one shape of a law.
+struct LinearGain {
+  double x = 0.0;     ///< its size
+  double fall = 0.0;  ///< of Φ [nats]
+  double gain = 0.0;  ///< of evidence, the law's price and that of its shapes paid [nats]
+};
+/// @param ss  squares of its signature that other numbers leave. @param sr  its product with what they leave of the readings
+[[nodiscard]] LinearGain linear_gain(const Variant& law, double ss, double sr);
+
 /// The best shape of each law of each candidate, best first.
 [[nodiscard]] std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                         const std::vector<Signature>& signatures, const Hypothesis& hypothesis,

@@ -50,7 +50,8 @@ Doubt doubt(const std::string& law, const std::string& run, DoubtedNumber size, 
   error.in = run;
   return {.finding = "ambient",
           .where = kAmbientName,
-          .law = run.empty() ? law : law + ", in " + run,
+          .law = law,
+          .when = run.empty() ? "" : "in " + run,
           .added = {error},
           .numbers = {std::move(size)},
           .trial = trial};

@@ -15,8 +15,8 @@ inline constexpr double kFactorTrial = 0.2;
 /// What a kind may look at when it is asked where it could be.
 struct DoubtScene {
   double reference_K = 293.15;
-  double typical_rpm = 1.0;  ///< laws of speed are stated there
-  double heat_W = 1.0;       ///< of all sources at the highest speed
+  double typical_rpm = 1.0;                ///< laws of speed are stated there
+  double heat_W = 1.0;                     ///< of all sources at the highest speed
   bool moves_axes = false, turns = false;  ///< in some record
   struct Run {
     std::string name;
@@ -61,7 +61,7 @@ struct DoubtScene {
   [[nodiscard]] double typical_conductance_W_K() const;
 };
 
-/// One number of a doubted effect. Its scale is that of its prior: nominal + x or nominal exp(x), x ~ N(0, prior_sd).
+/// One number of a doubted effect. Its scale is that of its prior: nominal + x or nominal exp(x), x about zero within prior_sd (diagnosis/fit.hpp).
 struct DoubtedNumber {
   std::string name, unit;  ///< as it is reported; set() is given it so. A time: in s
   double nominal = 0.0;
@@ -77,11 +77,12 @@ struct DoubtedNumber {
 
 /// One law by which the machine may differ from what is written: effects to add, and their numbers.
 struct Doubt {
-  std::string finding, where;                    ///< key of the effect and place, as diagnosis.json says them
-  std::string law;                               ///< in words
-  std::vector<Effect> added;                     ///< they do nothing while the first number is nominal
-  std::vector<DoubtedNumber> numbers;            ///< the size first, then what shapes it
-  double trial = kFactorTrial;                   ///< x of the size at which its signature is taken
+  std::string finding, where;          ///< key of the effect and place, as diagnosis.json says them
+  std::string law;                     ///< in words
+  std::string when = {};               ///< the records it holds in, in words ("in monday"); "": as `law` says, or all
+  std::vector<Effect> added;           ///< they do nothing while the first number is nominal
+  std::vector<DoubtedNumber> numbers;  ///< the size first, then what shapes it
+  double trial = kFactorTrial;         ///< x of the size at which its signature is taken
   std::vector<std::vector<double>> grid = {{}};  ///< x of numbers 1.. to try first
   double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is the trial

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "effects/doubt.hpp"
 
 namespace driftwright::effects {
@@ -44,19 +46,26 @@ inline void add_in_some_runs(const DoubtScene& scene, const Doubt& doubt, std::v
   const std::size_t n = scene.runs.size();
   for (std::size_t run = 0; run < n && n > 1; ++run) {
     Doubt once = doubt;
-    once.law += ", in " + scene.runs[run].name;
+    once.when = "in " + scene.runs[run].name;
     once.added.front().in = scene.runs[run].name;
     list.push_back(std::move(once));
     if (run == 0 || run + 1 == n) continue;
     Doubt lasting = doubt;
-    lasting.law += fmt::format(", from {} on", scene.runs[run].name);
+    lasting.when = fmt::format("from {} on", scene.runs[run].name);
     lasting.added = in_this_and_later_runs(scene, run, doubt.added.front());
     list.push_back(std::move(lasting));
     Doubt mended = doubt;
-    mended.law += fmt::format(", up to {}", scene.runs[run].name);
+    mended.when = fmt::format("up to {}", scene.runs[run].name);
     mended.added = in_runs(scene, 0, run + 1, doubt.added.front());
     list.push_back(std::move(mended));
   }
 }
+
+/// Whether a doubt can be said of some records alone: it tells of no time within one, and where it holds in some it holds alike in each.
+[[nodiscard]] bool can_be_of_some_runs(const Doubt& doubt);
+/// The records that it holds in; empty: all.
+[[nodiscard]] std::set<std::string> runs_of(const Doubt& doubt);
+/// The same doubt of other records, its numbers alike in each. @param runs  in their order; empty: all
+[[nodiscard]] Doubt of_runs(const Doubt& doubt, const std::vector<std::string>& runs);
 
 }  // namespace driftwright::effects

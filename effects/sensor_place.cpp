@@ -47,7 +47,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       for (std::size_t run = 1; run < s.runs.size(); ++run) {  // mounted anew between two records
         Doubt moved = always;
         const bool is_last = run + 1 == s.runs.size();
-        moved.law += fmt::format(fmt::runtime(is_last ? ", in {}" : ", from {} on"), s.runs[run].name);
+        moved.when = fmt::format(fmt::runtime(is_last ? "in {}" : "from {} on"), s.runs[run].name);
         moved.added = in_this_and_later_runs(s, run, place);
         list.push_back(std::move(moved));
       }

@@ -141,6 +141,22 @@ INSTANTIATE_TEST_SUITE_P(
               "up to a_fan_that_was_taken_away_tuesday",
               1.8,
               0.2},
+        Cause{"a_pump_on_two_days_of_three",
+              {"{type: heat_source, node: column, power: 40 W, in: monday}",
+               "{type: heat_source, node: column, power: 40 W, in: friday}"},
+              "heat_source",
+              "column",
+              "in a_pump_on_two_days_of_three_monday, a_pump_on_two_days_of_three_friday",
+              40.0,
+              4.0},
+        Cause{"a_scale_that_lags_from_the_second_day_on",
+              {"{type: scale_expansion, displacement: nose, lag: 6 min, in: tuesday}",
+               "{type: scale_expansion, displacement: nose, lag: 6 min, in: friday}"},
+              "scale_expansion",
+              "nose",
+              "in a_scale_that_lags_from_the_second_day_on_tuesday, a_scale_that_lags_from_the_second_day_on_friday",
+              6.0,
+              0.6},
         Cause{"a_pump_for_a_while",
               {"{type: heat_window, node: head, power: 60 W, windows: [[90 min, 130 min]], in: tuesday}"},
               "heat_window",
@@ -179,6 +195,22 @@ INSTANTIATE_TEST_SUITE_P(
               1.6,
               0.1}),
     [](const auto& one) { return one.param.name; });
+
+// A scale that more than doubles what it measures is five of the catalogue's sigmas away: the readings, not the catalogue, say by how much.
+TEST(FarBeyondTheUsual, ASizeIsNotDrawnBackToIt) {
+  std::string machine = kMachine;
+  const std::string one = "      - {node: head, sensitivity: 3 um/K}\n";
+  machine.insert(machine.find(one) + one.size(), "      - {node: column, sensitivity: 2 um/K}\n");
+  const std::string truth = with_effect(machine, "{type: scale_expansion, displacement: nose, factor: 2.5}");
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "far_", 60.0, 0.03, 0.2);
+  const Diagnosis d = Beside(write_file("plain.yaml", machine), records).diagnosed();
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, "scale_expansion");
+  const Estimate& factor = d.causes[0].parameters[0];
+  EXPECT_GT(factor.value, 2.2);
+  EXPECT_LT(factor.low, 2.5);
+  EXPECT_GT(factor.high, 2.5);
+}
 
 constexpr const char* kTwoRecords = R"(name: first_machine
 reference_temperature: 20 degC

@@ -1,0 +1,63 @@
+#include "effects/lasting.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "effects/time_windows.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+/// What it does in one of its records.
+std::vector<Effect> in_each(const Doubt& doubt) {
+  std::vector<Effect> list;
+  for (const Effect& e : doubt.added) {
+    if (e.in == doubt.added.front().in) list.push_back(e);
+  }
+  for (Effect& e : list) e.in = "";
+  return list;
+}
+
+}  // namespace
+
+std::set<std::string> runs_of(const Doubt& doubt) {
+  std::set<std::string> names;
+  for (const Effect& e : doubt.added) names.insert(e.in);
+  names.erase("");
+  return names;
+}
+
+bool can_be_of_some_runs(const Doubt& doubt) {
+  const bool has_time = std::any_of(doubt.numbers.begin(), doubt.numbers.end(), [](const auto& n) { return n.is_time; });
+  const bool is_timed = std::any_of(doubt.added.begin(), doubt.added.end(), [](const Effect& e) {
+    const auto windows = e.tables.find(kWindows);
+    const bool has_windows = windows != e.tables.end() && !windows->second.time_s.empty();
+    return e.kind->timing == Timing::kAlways || e.from_s > 0.0 || has_windows;
+  });
+  const std::size_t n_runs = std::max<std::size_t>(1, runs_of(doubt).size());
+  return !has_time && !is_timed && doubt.when.empty() == doubt.added.front().in.empty() &&
+         doubt.added.size() == n_runs * in_each(doubt).size();
+}
+
+Doubt of_runs(const Doubt& doubt, const std::vector<std::string>& runs) {
+  Doubt other = doubt;
+  const std::vector<Effect> in_one = in_each(doubt);
+  other.when = runs.empty() ? "" : fmt::format("in {}", fmt::join(runs, ", "));
+  other.added = runs.empty() ? in_one : std::vector<Effect>{};
+  for (const std::string& run : runs) {
+    for (Effect e : in_one) {
+      e.in = run;
+      other.added.push_back(std::move(e));
+    }
+  }
+  for (DoubtedNumber& number : other.numbers) {
+    if (!number.set) continue;
+    number.set = [set = number.set, n = in_one.size()](std::span<Effect> added, double value) {
+      for (std::size_t first = 0; first < added.size(); first += n) set(added.subspan(first, n), value);
+    };
+  }
+  return other;
+}
+
+}  // namespace driftwright::effects
