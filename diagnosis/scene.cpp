@@ -56,12 +56,17 @@ std::vector<effects::DoubtScene::Column> columns_of(const std::vector<MeasuredRu
       values.insert(of_run.begin(), of_run.end());
     }
     if (values.size() < 2) return;
-    effects::DoubtScene::Column c{.header = name + "_" + unit, .unit = unit, .span = *values.rbegin() - *values.begin()};
-    c.drives = std::any_of(own.begin(), own.end(), [&](const effects::Effect& e) {
+    effects::DoubtScene::Column c{.header = name + "_" + unit,
+                                  .unit = unit,
+                                  .span = *values.rbegin() - *values.begin(),
+                                  .top = std::max(std::abs(*values.rbegin()), std::abs(*values.begin())),
+                                  .drives = {}};
+    for (const effects::Effect& e : own) {
       const auto word = e.words.find("column");
       const bool cuts = name == "cutting_power" && e.kind->key == "cutting_heat";
-      return e.kind->contribute && (cuts || (word != e.words.end() && (word->second == name || word->second == c.header)));
-    });
+      if (e.kind->contribute && (cuts || (word != e.words.end() && (word->second == name || word->second == c.header))))
+        c.drives.push_back(e.body());
+    }
     columns.push_back(c);
   };
   if (runs.empty()) return columns;

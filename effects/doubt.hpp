@@ -47,8 +47,9 @@ struct DoubtScene {
   /// Something recorded beside the drive, in every record, that changes there (Cyclogram::Column), or the cutting power.
   struct Column {
     std::string header, unit;
-    double span = 1.0;    ///< largest minus smallest value, > 0
-    bool drives = false;  ///< an effect of the scenario is driven by it already
+    double span = 1.0;         ///< largest minus smallest value, > 0
+    double top = 1.0;          ///< largest absolute value
+    std::vector<Body> drives;  ///< bodies that the scenario heats or cools by it already
     [[nodiscard]] bool is_temperature() const { return unit == "degC"; }
   };
   std::vector<Column> columns;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/quantity.hpp"
 #include "effects/recorded_column.hpp"
@@ -10,13 +11,17 @@ namespace {
 
 constexpr double kMedium_K =
     kZeroCelsius_K + 20.0;  // of an exchange with a recorded temperature: heat makes up for the rest
+constexpr double kLowestExponent = 0.1, kHighestExponent = 4.0;  // of a column, that are looked for
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const auto signal = signal_of(e.words.at("column"), e["lag"] * 60.0);
   const std::string name = e.name() + " " + e.words.at("column");
   if (e.has("gain")) {
     balance.heats.push_back(
-        {name, e.body(), [=, gain = e["gain"]](const Inputs& u) { return gain * signal(u.drive).value_or(0.0); }});
+        {name, e.body(), [=, gain = e["gain"], further = e["exponent"] - 1.0, at = e["at"]](const Inputs& u) {
+           const double c = signal(u.drive).value_or(0.0);
+           return gain * c * (further != 0.0 && c != 0.0 ? std::pow(std::abs(c) / at, further) : 1.0);
+         }});
     return;
   }
   Exchange exchange{.name = name, .body = e.body(), .coefficient = {}, .per = Per::kTotal};
@@ -49,6 +54,9 @@ void check(const Effect& e, const ConfigMap& in) {
             "one of three is wanted: `gain`, W per unit of the column; `conductance`, W/K to a body as warm as the column "
             "says; `opening`, W/K per unit of the column, to `surrounding`");
   }
+  if (e["exponent"] != 1.0 && !e.has("gain")) in.fail("exponent", "it is of a `gain`");
+  if (e["exponent"] != 1.0 && !in.has("at"))
+    in.fail("at", "the value of the column at which `gain` holds is wanted beside `exponent`");
   if (e["lag"] > 0.0 && is_drive_channel(e.words.at("column")))
     in.fail("lag", "feeds and cutting power act at once; a lag is one of further columns");
 }
@@ -71,11 +79,25 @@ Doubt doubt(const Body& body, const DoubtScene::Column& column, const std::strin
   return d;
 }
 
+/// Heat by another power of a column than the first: of a motor's current the square, its copper's loss.
+Doubt power_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& column) {
+  Doubt d = doubt(body, column, "heat by a power of {}", "gain", "W per " + column.unit, gain_sd(s, column));
+  d.law += fmt::format(", its gain stated at {:.6g} {}", column.top, column.unit);
+  d.added[0].set("at", column.top);
+  d.numbers.push_back(doubted("exponent", "1", 0.5, 0.05, 2.0));
+  d.numbers[1].low = kLowestExponent;
+  d.numbers[1].high = kHighestExponent;
+  d.grid = {{0.0}};
+  return d;
+}
+
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const DoubtScene::Column& column : s.columns) {
-    if (column.drives) continue;
     for (const Body& body : s.bodies) {
+      const bool drives_it = std::find(column.drives.begin(), column.drives.end(), body) != column.drives.end();
+      if (column.unit != "K" && !column.is_temperature()) list.push_back(power_of(body, s, column));
+      if (drives_it) continue;  // another gain of what is written: Doubted::kFactor
       if (column.is_temperature()) {
         list.push_back(
             doubt(body, column, "exchange with a body as warm as {} says", "conductance", "W/K", 0.2 * s.unknown_heat_W()));
@@ -97,12 +119,15 @@ EffectKind recorded_drive() {
   return {.key = "recorded_drive",
           .title = "heat or exchange by a recorded column: a heater's power, the sun, a bed, a valve",
           .law =
-              "P = gain c; or Q = conductance (T - c), c in degC; or Q = opening c (T - T_surrounding). c: value of the "
+              "P = gain c |c / at|^(exponent - 1); or Q = conductance (T - c), c in degC; or Q = opening c (T - "
+              "T_surrounding). c: value of the "
               "column in "
               "its unit, from each row on; with a lag: lag dx/dt = c - x for c, settled at the first row",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
           .parameters = {{"gain", "1", -1e9, 1e9, kNotGiven, "W per unit of the column", 0.1, "recorded_drive",
                           Doubted::kFactor},
+                         {"exponent", "1", 0.1, 4.0, 1.0, "of the column, to which the heat grows: a motor's current, 2"},
+                         {"at", "1", 1e-12, 1e12, 1.0, "value of the column, in its unit, at which the gain holds"},
                          {"conductance", "W/K", 0.0, 1e9, kNotGiven, "or: to a body as warm as the column says", 0.1,
                           "recorded_drive", Doubted::kFactor},
                          {"opening", "1", 0.0, 1e9, kNotGiven, "or: W/K per unit of the column, to the surrounding", 0.1,

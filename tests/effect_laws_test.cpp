@@ -84,12 +84,27 @@ TEST(RecordedDrive, TakesChannelsOfTheDriveToo) {
                    30.0);
 }
 
+TEST(RecordedDrive, HeatsByAPowerOfItsColumn) {
+  // copper's loss by a current: 8 W at 4 A, a quarter of that at 2 A; a difference that turns takes heat away
+  const Law power_W =
+      balance_of("{type: recorded_drive, node: air, column: current_A, gain: 2, exponent: 2, at: 4}").heats.at(0).power_W;
+  const auto at = [](double current_A) { return Inputs{.drive = {.signals = {{"current_A", current_A}}}}; };
+  EXPECT_DOUBLE_EQ(power_W(at(4.0)), 8.0);
+  EXPECT_DOUBLE_EQ(power_W(at(2.0)), 2.0);
+  EXPECT_DOUBLE_EQ(power_W(at(-2.0)), -2.0);
+  EXPECT_EQ(power_W(at(0.0)), 0.0);
+}
+
 TEST(RecordedDrive, WantsOneLawAndAColumn) {
   const auto refused = [](const std::string& text) { return ThrowsMessage<InputError>(HasSubstr(text)); };
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W}"); }, refused("one of three"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W, gain: 1, opening: 2}"); },
               refused("one of three"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, gain: 1}"); }, refused("column"));
+  EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: heater_W, gain: 1, exponent: 2}"); },
+              refused("`gain` holds"));
+  EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: valve_1, opening: 1, exponent: 2, at: 3}"); },
+              refused("of a `gain`"));
   EXPECT_THAT([] { read("{type: recorded_drive, node: air, column: feed_x, gain: 1, lag: 3 min}"); }, refused("at once"));
 }
 
@@ -341,8 +356,9 @@ TEST(ChangedLaw, MultipliesByAFactorAPowerOfSpeedAndADecay) {
 }
 
 TEST(ChangedLaw, AddsAGrowthWithSpeedToWhatIsThereAtStandstill) {
-  const Law law = law_of({"{type: link, node: a, to: ambient, conductance: 10 W/K}",
-                          "{type: changed_law, law: link a - ambient, growth: 0.6, growth_exponent: 0.5, at_speed: 2000 rpm}"});
+  const Law law =
+      law_of({"{type: link, node: a, to: ambient, conductance: 10 W/K}",
+              "{type: changed_law, law: link a - ambient, growth: 0.6, growth_exponent: 0.5, at_speed: 2000 rpm}"});
   EXPECT_EQ(law(at(0.0)), 10.0);
   EXPECT_NEAR(law(at(2000.0)), 16.0, 1e-12);
   EXPECT_NEAR(law(at(500.0)), 13.0, 1e-12);  // 10 (1 + 0.6 (500/2000)^0.5)
