@@ -5,14 +5,18 @@
 namespace driftwright::effects {
 namespace {
 
-constexpr double kStep_s = 1e-3;  // that a jump of the ambient takes
+constexpr double kShortest_min = 0.1;  // of another ambient for a while
+constexpr double kStep_s = 1e-3;       // that a jump of the ambient takes
 // Nats: an ambient that was recorded is wrong by an offset, which the scatter of 0.3 K has; a step or a slow change its thermometer would
 // have seen, unless it hangs where the machine does not stand.
 constexpr double kSeenByItsThermometer = 2.0;
 
-/// Adds offset + ramp (t - from) from a time on.
-TimeSeries with_error(const TimeSeries& ambient, double offset_K, double ramp_K_s, double from_s, double end_s) {
+/// Adds offset + ramp (t - from) from a time on, until another one.
+TimeSeries with_error(const TimeSeries& ambient, double offset_K, double ramp_K_s, double from_s, double until_s,
+                      double end_s) {
   std::vector<double> knots = ambient.time_s;
+  const double gone_s = until_s + kStep_s;
+  if (until_s < end_s) knots.insert(knots.end(), {until_s, gone_s});
   knots.push_back(end_s);  // where a ramp ends and the ambient's own knots may have ended before
   const bool steps = from_s > 0.0;
   const double reached_s = steps ? from_s + kStep_s : 0.0;
@@ -23,7 +27,11 @@ TimeSeries with_error(const TimeSeries& ambient, double offset_K, double ramp_K_
   TimeSeries changed;
   for (double t_s : knots) {
     double error_K = 0.0;
-    if (t_s >= reached_s) {
+    if (t_s >= gone_s) {
+      error_K = 0.0;
+    } else if (t_s > until_s) {  // a knot of the ambient within the step back
+      error_K = (offset_K + ramp_K_s * (until_s - from_s)) * (gone_s - t_s) / kStep_s;
+    } else if (t_s >= reached_s) {
       error_K = offset_K + ramp_K_s * (t_s - from_s);
     } else if (t_s > from_s) {  // a knot of the ambient within the step
       error_K = (offset_K + ramp_K_s * kStep_s) * (t_s - from_s) / kStep_s;
@@ -35,14 +43,15 @@ TimeSeries with_error(const TimeSeries& ambient, double offset_K, double ramp_K_
 }
 
 void change_drive(const Effect& e, DriveChange& change) {
-  change.ambient.push_back([offset_K = e["offset"], ramp_K_s = e["ramp"] / 3600.0, from_s = e["from"] * 60.0](
-                               const TimeSeries& ambient, double duration_s) {
-    return with_error(ambient, offset_K, ramp_K_s, from_s, duration_s);
+  change.ambient.push_back([offset_K = e["offset"], ramp_K_s = e["ramp"] / 3600.0, from_s = e["from"] * 60.0,
+                            until_s = e["until"] * 60.0](const TimeSeries& ambient, double duration_s) {
+    return with_error(ambient, offset_K, ramp_K_s, from_s, until_s, duration_s);
   });
 }
 
-void check(const Effect&, const ConfigMap& in) {
+void check(const Effect& e, const ConfigMap& in) {
   if (!in.has("offset") && !in.has("ramp")) in.fail("offset", "`offset`, `ramp` or both are wanted");
+  if (!(e["until"] > e["from"])) in.fail("until", "ends before it begins `from`");
 }
 
 Doubt doubt(const std::string& law, const std::string& run, DoubtedNumber size, double trial) {
@@ -55,6 +64,24 @@ Doubt doubt(const std::string& law, const std::string& run, DoubtedNumber size, 
           .added = {error},
           .numbers = {std::move(size)},
           .trial = trial};
+}
+
+/// A gate that stands open on the machine's side of the shop, the sun on it.
+Doubt for_a_while(const DoubtScene::Run& run) {
+  Doubt d = doubt("another one for a while", run.name, doubted("offset", "K", 2.0, 0.3), 0.5);
+  d.numbers.push_back(doubted_time("begin", run.length_s,
+                                   [](std::span<Effect> added, double value) { added[0].set("from", value / 60.0); }));
+  const double usual_min = run.length_s / 60.0 / 6.0;
+  DoubtedNumber length{.name = "length", .unit = "min", .nominal = usual_min, .prior_sd = 1.0, .step = 0.05, .is_log = true};
+  length.set = [](std::span<Effect> added, double value) {
+    added[0].set("until", added[0]["from"] + std::max(kShortest_min, value));
+  };
+  d.numbers.push_back(std::move(length));
+  d.grid.clear();
+  for (const std::vector<double>& begin : time_grid(run.length_s, 12)) {
+    for (double x : {-0.7, 0.0, 0.7}) d.grid.push_back({begin.front(), x});
+  }
+  return d;
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {
@@ -78,6 +105,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     stepped.grid = time_grid(run.length_s, 10);
     stepped.rarity = run.has_ambient ? kSeenByItsThermometer : 0.0;
     add_with_lasting(s, r, stepped, list);
+    list.push_back(for_a_while(run));
+    list.back().rarity = stepped.rarity;
     if (s.runs.size() < 2) continue;
     list.push_back(doubt("offset", run.name, offset(), 0.5));
     list.push_back(doubt("ramp", run.name, ramp(), 0.2));
@@ -91,11 +120,12 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind ambient() {
   return {.key = "ambient",
           .title = "ambient that is warmer or colder than recorded",
-          .law = "T_ambient = recorded + offset + ramp (t - from) from a time on",
+          .law = "T_ambient = recorded + offset + ramp (t - from) from a time on, until another one",
           .places = {Place::kAmbient},
           .parameters = {{"offset", "K", -50.0, 50.0, 0.0, "true minus recorded"},
                          {"ramp", "K/h", -50.0, 50.0, 0.0, "its growth"},
-                         {"from", "min", 0.0, 1e7, 0.0, "when it begins; a step takes a millisecond"}},
+                         {"from", "min", 0.0, 1e7, 0.0, "when it begins; a step takes a millisecond"},
+                         {"until", "min", 0.0, 1e7, 1e7, "when it ends"}},
           .timing = Timing::kInRecord,
           .change_drive = change_drive,
           .check = check,

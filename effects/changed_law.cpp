@@ -166,15 +166,16 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
   }
 }
 
-/// Air that a turning part stirs: an exchange with it that grows with speed where it is written as constant, beside what it is at standstill, or by a power of
-/// the speed while it turns. Films of surfaces have `forced_convection`.
-void doubt_stirred_air(const DoubtScene& s, const Exchange& exchange, std::vector<Doubt>& list) {
-  if (!s.turns || !is_of_air(s, exchange) || exchange.body.kind == BodyKind::kSurface || exchange.per == Per::kArea ||
+/// Air that a turning part stirs, the film in a bearing that it runs on: an exchange that grows with speed where it is written as constant, beside what it is at
+/// standstill, or, of air, by a power of the speed while it turns. Films of surfaces have `forced_convection`.
+void doubt_stirred(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
+  const bool is_of_air_there = is_of_air(s, exchange);
+  if (!s.turns || exchange.body.kind == BodyKind::kSurface || exchange.per == Per::kArea ||
       !exchange.coefficient.probes.empty() ||
       exchange.coefficient(Inputs{.drive = {.speed_rpm = s.typical_rpm}}) != exchange.coefficient(Inputs{})) {
     return;
   }
-  Doubt grows{.finding = "forced_convection",
+  Doubt grows{.finding = is_of_air_there ? "forced_convection" : finding,
               .where = where_of(exchange),
               .law = fmt::format("a conductance that grows with speed, by so much of itself at {:.0f} rpm", s.typical_rpm),
               .added = {changed(exchange.name)},
@@ -188,6 +189,7 @@ void doubt_stirred_air(const DoubtScene& s, const Exchange& exchange, std::vecto
   grows.numbers[1].high = 3.0;
   grows.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("growth_exponent", value); };
   list.push_back(grows);
+  if (!is_of_air_there) return;
   grows.law =
       fmt::format("a conductance that follows a power of the speed while it turns, the same but for a factor at {:.0f} rpm",
                   s.typical_rpm);
@@ -205,7 +207,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     if (e.kind->exchange_finding.empty()) continue;
     for (const Exchange& x : heat_balance({e}).exchanges) {
       doubt_exchange(s, e.kind->exchange_finding, x, list);
-      doubt_stirred_air(s, x, list);
+      doubt_stirred(s, e.kind->exchange_finding, x, list);
     }
   }
   return list;

@@ -1,16 +1,19 @@
+#include <cmath>
+
 #include "effects/displacement_amount.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.add(ReadingStage::kShift,
-            [channel = e.place, amount = amount_of(e, "shift"), time_s = e["time"] * 60.0](Readings& r) {
-              const Eigen::Index row = r.displacement(channel);
-              for (Eigen::Index i = 0; i < r.n_times(); ++i) {
-                if (r.time(i) >= time_s) r.value(row, i) += amount;
-              }
-            });
+  chain.add(ReadingStage::kShift, [channel = e.place, amount = amount_of(e, "shift"), time_s = e["time"] * 60.0,
+                                   creep_s = e["creep"] * 60.0](Readings& r) {
+    const Eigen::Index row = r.displacement(channel);
+    for (Eigen::Index i = 0; i < r.n_times(); ++i) {
+      const double since_s = r.time(i) - time_s;
+      if (since_s >= 0.0) r.value(row, i) += amount * (creep_s > 0.0 ? -std::expm1(-since_s / creep_s) : 1.0);
+    }
+  });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
@@ -34,6 +37,17 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .trial = 3.0,
                       .grid = time_grid(run.length_s, 40)});
     }
+    // a stand that was clamped or glued just before the record began
+    DoubtedNumber creep{.name = "creep", .unit = "min", .nominal = 60.0, .prior_sd = 1.0, .step = 0.1, .is_log = true};
+    Doubt creeping{
+        .finding = "mount_shift",
+        .where = d.name,
+        .law = "creep from the start of each record on",
+        .added = {make_effect("mount_shift", Place::kDisplacement, d.name, {{amount_key(d, "shift"), 0.0}, {"time", 0.0}})},
+        .numbers = {doubted_amount(d, "shift"), creep},
+        .trial = 3.0,
+        .grid = {{-1.0}, {0.0}, {1.0}}};
+    list.push_back(std::move(creeping));
   }
   return list;
 }
@@ -42,10 +56,12 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 EffectKind mount_shift() {
   return {.key = "mount_shift",
-          .title = "step of a displacement channel: a magnet base, a clamp, a crash",
-          .law = "u = u + shift from a time on",
+          .title = "step of a displacement channel, or its creep: a magnet base, a clamp, a crash, glue",
+          .law = "u = u + shift (1 - exp(-(t - time) / creep)) from a time on; without creep a step",
           .places = {Place::kDisplacement},
-          .parameters = amount_parameters("shift", "step", {{"time", "min", 0.0, 1e7, {}, "when it slips"}}),
+          .parameters = amount_parameters("shift", "step",
+                                          {{"time", "min", 0.0, 1e7, {}, "when it slips"},
+                                           {"creep", "min", 0.0, 1e5, 0.0, "time constant with which it goes there"}}),
           .timing = Timing::kInRecord,
           .change_readings = change_readings,
           .check = check,

@@ -80,10 +80,12 @@ Doubt doubt(const Body& body, const DoubtScene::Column& column, const std::strin
 }
 
 /// Heat by another power of a column than the first: of a motor's current the square, its copper's loss.
-Doubt power_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& column) {
+/// @param drives_it  by a law of the scenario, which may grow too much
+Doubt power_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& column, bool drives_it) {
   Doubt d = doubt(body, column, "heat by a power of {}", "gain", "W per " + column.unit, gain_sd(s, column));
   d.law += fmt::format(", its gain stated at {:.6g} {}", column.top, column.unit);
   d.added[0].set("at", column.top);
+  if (drives_it) d.numbers[0].low = -1e300;
   d.numbers.push_back(doubted("exponent", "1", 0.5, 0.05, 2.0));
   d.numbers[1].low = kLowestExponent;
   d.numbers[1].high = kHighestExponent;
@@ -96,7 +98,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   for (const DoubtScene::Column& column : s.columns) {
     for (const Body& body : s.bodies) {
       const bool drives_it = std::find(column.drives.begin(), column.drives.end(), body) != column.drives.end();
-      if (column.unit != "K" && !column.is_temperature()) list.push_back(power_of(body, s, column));
+      if (column.unit != "K" && !column.is_temperature()) list.push_back(power_of(body, s, column, drives_it));
       if (drives_it) continue;  // another gain of what is written: Doubted::kFactor
       if (column.is_temperature()) {
         list.push_back(

@@ -5,7 +5,12 @@ namespace {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kError,
-            [sensor = e.place, bias_K = e["bias"]](Readings& r) { r.value.row(r.sensor(sensor)).array() += bias_K; });
+            [sensor = e.place, bias_K = e["bias"], turning = e.words.at("errs") == "while_spindle_turns"](Readings& r) {
+              const Eigen::Index row = r.sensor(sensor);
+              for (Eigen::Index i = 0; i < r.n_times(); ++i) {
+                if (!turning || r.cyclogram.speed_rpm(r.time(i)) > 0.0) r.value(row, i) += bias_K;
+              }
+            });
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {
@@ -19,6 +24,15 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .numbers = {doubted("bias", "K", 1.0, 0.2)},
                       .trial = 0.3},
                      list);
+    if (!s.turns) continue;
+    Doubt picked_up{.finding = "sensor_bias",
+                    .where = sensor,
+                    .law = "error while the spindle turns",
+                    .added = {make_effect("sensor_bias", Place::kSensor, sensor)},
+                    .numbers = {doubted("bias", "K", 1.0, 0.2)},
+                    .trial = 0.3};
+    picked_up.added[0].words["errs"] = "while_spindle_turns";
+    list.push_back(std::move(picked_up));
   }
   return list;
 }
@@ -27,12 +41,13 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 EffectKind sensor_bias() {
   return {.key = "sensor_bias",
-          .title = "sensor with a constant error",
-          .law = "reading = T + bias",
+          .title = "sensor with a constant error, or with one while the spindle turns: a lead that picks up the drive",
+          .law = "reading = T + bias; at standstill T, where it errs while_spindle_turns",
           .places = {Place::kSensor},
           .parameters = {{"bias", "K", -100.0, 100.0, {}, "reading minus truth"}},
           .timing = Timing::kInRecord,
           .change_readings = change_readings,
+          .choices = {{"errs", {"always", "while_spindle_turns"}, "always", "when it errs"}},
           .doubts = doubts};
 }
 

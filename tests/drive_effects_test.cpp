@@ -126,6 +126,19 @@ TEST(TrueAmbient, StepTakesAMillisecondAndRampGoesOnToTheEnd) {
   EXPECT_NEAR(ambient.at(1500), 4.0 + 2.0 + 2.0, 1e-9);  // beyond the ambient's own knots
 }
 
+TEST(TrueAmbient, MayBeAnotherOneForAWhile) {
+  const TimeSeries ambient =
+      true_ambient(change_of("{type: ambient, offset: 2 K, from: 5 min, until: 10 min}"), kAmbient, kRecorded);
+  EXPECT_DOUBLE_EQ(ambient.at(300), 1.75);
+  EXPECT_NEAR(ambient.at(300.001), 1.75 + 2.0, 1e-5);
+  EXPECT_NEAR(ambient.at(450), 2.125 + 2.0, 1e-9);
+  EXPECT_NEAR(ambient.at(600), 2.5 + 2.0, 1e-9);
+  EXPECT_NEAR(ambient.at(600.001), 2.5, 1e-5);
+  EXPECT_NEAR(ambient.at(900), 3.25, 1e-9);
+  EXPECT_THAT([] { read("{type: ambient, offset: 2 K, from: 5 min, until: 4 min}"); },
+              ThrowsMessage<InputError>(HasSubstr("until")));
+}
+
 TEST(TrueAmbient, ErrorsAddUp) {
   const DriveChange both =
       drive_change({read("{type: ambient, offset: 1 K}"), read("{type: ambient, offset: 2 K}")}, "shift");

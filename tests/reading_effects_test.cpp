@@ -77,6 +77,20 @@ TEST(Centrifugal, FollowsTheSquareOfSpeedAtOnce) {
   expect_row(1e6 * m, kZ, {-12, -12, -3, -3, 0, 0}, 1e-12);  // a section holds from its start on
 }
 
+TEST(SensorBias, MayComeAndGoWithTheSpindle) {
+  const Eigen::MatrixXd m =
+      told(std::vector<std::string>{"{type: sensor_bias, sensor: a, bias: 0.5 K, errs: while_spindle_turns}"});
+  expect_row(m, kA, {5.5, 5.5, 8.5, 2.5, 3, 7}, 1e-12);  // it stands from 600 s on
+  EXPECT_EQ(m.row(kB), truth().row(kB));
+}
+
+TEST(MountShift, CreepsWithATimeConstant) {
+  const Eigen::MatrixXd m =
+      told(std::vector<std::string>{"{type: mount_shift, displacement: z, shift: 8 um, time: 1 min, creep: 5 min}"});
+  const auto at = [](double t_s) { return 8.0 * (1.0 - std::exp(-(t_s - 60.0) / 300.0)); };
+  expect_row(1e6 * m, kZ, {0, 0, at(150), at(300), at(600), at(900)}, 1e-12);
+}
+
 TEST(DisplacementPath, FollowsABodyTheAmbientOrAColumn) {
   const auto z_um = [](const std::string& keys) -> Eigen::MatrixXd {
     Cyclogram cyclogram = kCyclogram;
