@@ -128,6 +128,12 @@ std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidat
   return added;
 }
 
+double law_price(const Candidate& candidate) {
+  const auto n = std::count_if(candidate.variants.begin(), candidate.variants.end(),
+                               [](const Variant& v) { return !v.of_chosen_records; });
+  return std::log(static_cast<double>(std::max<std::ptrdiff_t>(1, n)));
+}
+
 Variant law_of(const effects::Doubt& doubt) {
   Variant v{.law = doubt.when.empty() ? doubt.law : doubt.law + ", " + doubt.when,
             .knobs = knobs_of(doubt),

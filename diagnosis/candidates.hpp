@@ -21,9 +21,10 @@ struct Variant {
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is trial_x
   double price_nats =
       0.0;  ///< before any reading: how much rarer it is than other laws, or what was chosen to make it, such as windows seen in a waveform
-  bool happens = false;  ///< for a while or from a time on, not throughout
-  bool seen = false;     ///< at times that were read off these very readings: simulated ones say nothing of its chances
-  std::string in = {};   ///< run in which it is, or begins; "": all
+  bool happens = false;            ///< for a while or from a time on, not throughout
+  bool of_chosen_records = false;  ///< its records were read off these very readings, which price_nats pays for
+  bool seen = false;    ///< at times that were read off these very readings: simulated ones say nothing of its chances
+  std::string in = {};  ///< run in which it is, or begins; "": all
   std::shared_ptr<const effects::Doubt> of_some_runs =
       {};  ///< that it was made of, where it can be said of some records alone
 };
@@ -36,6 +37,9 @@ struct Candidate {
   std::string effect, where;
   std::vector<Variant> variants;
 };
+
+/// What one law of a candidate costs for being one of several [nats]; those whose records the readings have chosen pay for that themselves.
+[[nodiscard]] double law_price(const Candidate& candidate);
 
 /// @param without  keys of effects that are not looked for
 [[nodiscard]] std::vector<Candidate> candidates(const Twin& twin, const std::vector<MeasuredRun>& runs,

@@ -63,7 +63,7 @@ Chances chances_of(const Fitter& fitter, const std::vector<Candidate>& candidate
     const Variant& v = candidate.variants[s.variant];
     const double square = projection.square(s.column), prior_sd = v.knobs[0].prior_sd;
     const Eigen::RowVectorXd seen = s.column.transpose() * rest;
-    const double paid = v.price_nats + std::log(static_cast<double>(v.grid.size() * candidate.variants.size()));
+    const double paid = v.price_nats + std::log(static_cast<double>(v.grid.size())) + law_price(candidate);
     auto row = gains.row(static_cast<Eigen::Index>(i));
     if (!(square > 1e-12)) {
       row.setConstant(kNone);

@@ -21,10 +21,6 @@ struct Faint {
   Fit fit = {};
 };
 
-double laws_price(const Candidate& candidate) {
-  return std::log(static_cast<double>(candidate.variants.size()));
-}
-
 /// The best law of each candidate, the rarest first.
 std::vector<Faint> rarest_of(const NothingFound& s) {
   std::vector<Faint> list;
@@ -34,7 +30,7 @@ std::vector<Faint> rarest_of(const NothingFound& s) {
     const Variant& v = c.variants[score.variant];
     if (is_known[score.candidate] || v.seen || v.all_or_nothing) continue;
     is_known[score.candidate] = 1;
-    const double gain = score.gain - laws_price(c);
+    const double gain = score.gain - law_price(c);
     list.push_back({score, rarity(gain, s.chances.usual[score.candidate])});
   }
   std::stable_sort(list.begin(), list.end(), [](const Faint& a, const Faint& b) { return a.rarity > b.rarity; });
@@ -77,7 +73,7 @@ std::optional<FaintCause> faint_cause(const NothingFound& s, double wrongly_susp
   const std::vector<double> shares = shares_of(rivals);
   const double price = std::log(static_cast<double>(s.candidates.size()));
   const auto evidence = [&](const Faint& f) {
-    return f.fit.log_evidence - laws_price(s.candidates[f.score.candidate]) - price - s.without.log_evidence;
+    return f.fit.log_evidence - law_price(s.candidates[f.score.candidate]) - price - s.without.log_evidence;
   };
   FaintCause cause;
   cause.finding.claim = claim_of(s.candidates, list.front().score);

@@ -20,8 +20,10 @@ constexpr double kPromised = 1.0;    // of Φ, by slopes that do not keep it
 constexpr int kMostRetakes = 3;
 constexpr double kTail = 4.0;  // degrees of freedom of a claim's prior
 
-/// -log of Student's density at u standard deviations over that at 0.
-double tail(double u) { return 0.5 * (kTail + 1.0) * std::log1p(u * u / kTail); }
+/// -log of Student's density at u over that at 0, scaled so that near 0 it is that of a normal one, u²/2.
+double tail(double u) {
+  return 0.5 * (kTail + 1.0) * std::log1p(u * u / (kTail + 1.0));
+}
 
 Eigen::Index n_knobs(const Hypothesis& hypothesis) {
   Eigen::Index n = 0;
@@ -112,6 +114,15 @@ Fitter::Fitter(const Fitter& other, const std::vector<MeasuredRun>& runs)
   if (other.comparison_) set_noise(other.noise_, other.shared_);
 }
 
+double heavy_tailed_width(double prior_sd, double x) {
+  const double u = x / prior_sd;
+  return prior_sd * std::sqrt(1.0 + u * u / (kTail + 1.0));
+}
+
+double heavy_tailed_cost(double prior_sd, double x) {
+  return tail(x / prior_sd);
+}
+
 Eigen::VectorXd Fitter::nuisance_sd() const {
   Eigen::VectorXd sd = Eigen::VectorXd::Ones(n_nuisance());
   for (std::size_t i = 0; i < scatter_.size(); ++i) sd[static_cast<Eigen::Index>(i)] = scatter_[i].prior_sd;
@@ -128,9 +139,12 @@ Eigen::VectorXd Fitter::prior_sd(const Hypothesis& hypothesis) const {
 
 Eigen::VectorXd Fitter::prior_width(const Hypothesis& hypothesis, const Eigen::VectorXd& x) const {
   Eigen::VectorXd width = prior_sd(hypothesis);
-  for (Eigen::Index k = n_nuisance(); k < width.size(); ++k) {
-    const double u = x[k] / width[k];
-    width[k] *= std::sqrt((kTail + u * u) / (kTail + 1.0));
+  const std::vector<const Knob*> knobs = knobs_of(hypothesis);
+  const std::vector<char> smooth = smooth_knobs(hypothesis);
+  for (std::size_t k = 0; k < knobs.size(); ++k) {
+    const Eigen::Index at = n_nuisance() + static_cast<Eigen::Index>(k);
+    if (smooth[k] && !knobs[k]->is_time)
+      width[at] = heavy_tailed_width(width[at], x[at]);  // the prior of the others is flat
   }
   return width;
 }

@@ -4,9 +4,10 @@
 //     Φ(x) = 1/2 |W (y - f(x))|² + Σ ρ_i(x_i / sd_i),    log Z ≈ -Φ(x̂) - 1/2 log det(S (J'J + B⁻²) S),   S = diag(sd)
 //
 // x: every uncertain number of the scenario (scatter) and those of the hypothesis. W: whitening. J: slopes of W f at x̂.
-// ρ(u): of scatter u²/2, normal; of a claim's numbers 5/2 log(1 + u²/4), Student's t of 4 degrees of freedom: what a fault's
-// usual size is is known roughly, and a size far beyond it is not drawn back to it. B: their widths at x̂, of which
-// sd² B⁻² = ρ'(u)/u. The second term of log Z is what more freedom costs (Laplace's approximation of the marginal likelihood).
+// ρ(u): of scatter u²/2, normal; of a claim's numbers 5/2 log(1 + u²/5), Student's t of 4 degrees of freedom, scaled so that near 0 it
+// is u²/2 as well: what size a fault usually has is known roughly, and one far beyond it is not drawn back. B: widths of the normal
+// priors that draw x̂ to zero as much, sd² B⁻² = ρ'(u)/u, which is positive everywhere where ρ'' is not. The second term of log Z is
+// what more freedom costs: Laplace's approximation of the marginal likelihood, with B⁻² in the place of the priors' curvature.
 // Source: MacKay, Neural Computation 4 (1992) 415-447; Gauss-Newton with step control.
 
 #include <memory>
@@ -30,6 +31,10 @@ struct Claim {
 using Hypothesis = std::vector<Claim>;
 /// Logarithm of how many rows the jumps of a claim could have happened at [nats].
 [[nodiscard]] double price_of_times(const Claim& claim);
+
+/// Width of the normal prior that draws a claim's number to zero as much as its own does, and what its own costs [nats].
+[[nodiscard]] double heavy_tailed_width(double prior_sd, double x);
+[[nodiscard]] double heavy_tailed_cost(double prior_sd, double x);
 
 /// What is left of a hypothesis without some of its claims.
 struct Remainder {

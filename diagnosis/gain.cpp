@@ -65,7 +65,7 @@ Unexplained::Channel worst_channel(const Judge& judge, const std::map<std::strin
 /// The evidence of a claim beside what it has to pay for being one of many [nats].
 double price_of(const SearchResult& result, std::size_t claim) {
   const Candidate& candidate = result.candidates[result.hypothesis[claim].candidate];
-  return std::log(static_cast<double>(result.candidates.size()) * static_cast<double>(candidate.variants.size()));
+  return std::log(static_cast<double>(result.candidates.size())) + law_price(candidate);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ double log_likelihood(const Inquiry& of) {
   for (std::size_t b = 0; b < comparison.blocks().size(); ++b) value -= 0.5 * comparison.whitener(b).log_determinant();
   for (const Claim& c : of.search.hypothesis) {
     const std::vector<Candidate>& candidates = of.search.candidates;
-    value -= std::log(static_cast<double>(candidates.size()) * static_cast<double>(candidates[c.candidate].variants.size()));
+    value -= std::log(static_cast<double>(candidates.size())) + law_price(candidates[c.candidate]);
   }
   return value;
 }

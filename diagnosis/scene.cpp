@@ -60,12 +60,19 @@ std::vector<effects::DoubtScene::Column> columns_of(const std::vector<MeasuredRu
                                   .unit = unit,
                                   .span = *values.rbegin() - *values.begin(),
                                   .top = std::max(std::abs(*values.rbegin()), std::abs(*values.begin())),
-                                  .drives = {}};
+                                  .n_levels = 0,
+                                  .drives = {},
+                                  .heats = {}};
+    std::set<double> sizes;
+    for (double v : values) sizes.insert(std::abs(v));
+    c.n_levels = static_cast<int>(std::min<std::size_t>(3, sizes.size()));
     for (const effects::Effect& e : own) {
       const auto word = e.words.find("column");
       const bool cuts = name == "cutting_power" && e.kind->key == "cutting_heat";
-      if (e.kind->contribute && (cuts || (word != e.words.end() && (word->second == name || word->second == c.header))))
+      if (e.kind->contribute && (cuts || (word != e.words.end() && (word->second == name || word->second == c.header)))) {
         c.drives.push_back(e.body());
+        if (cuts || e.has("gain")) c.heats.push_back(e.body());
+      }
     }
     columns.push_back(c);
   };
@@ -102,6 +109,9 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
   double turning_s = 0.0, turned = 0.0;
   for (const MeasuredRun& run : runs) {
     s.runs.push_back({run.name, run.time_s.back(), run.has_ambient});
+    const auto turns = [](const auto& section) { return section.drive.speed_rpm > 0.0; };
+    const auto n_turning = std::count_if(run.cyclogram.sections.begin(), run.cyclogram.sections.end(), turns);
+    if (n_turning > 0 && n_turning < static_cast<std::ptrdiff_t>(run.cyclogram.sections.size())) s.starts_and_stops = true;
     for (const auto& section : run.cyclogram.sections) {
       if (section.drive.speed_rpm > 0.0) turning_s += section.duration_s;
       turned += section.duration_s * section.drive.speed_rpm;

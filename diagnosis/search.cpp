@@ -78,11 +78,6 @@ bool says_the_same(const Fitter& fitter, const Candidate& a, const Fit& fit_a, c
   return (c.whitened(fit_a.prediction) - c.whitened(fit_b.prediction)).squaredNorm() < kSame;
 }
 
-/// What one law of a candidate costs for being one of several; how rare it is, a fit counts itself.
-double law_price(const std::vector<Candidate>& candidates, std::size_t candidate) {
-  return std::log(static_cast<double>(candidates[candidate].variants.size()));
-}
-
 struct Fitted {
   Claim claim;
   Fit fit;
@@ -154,7 +149,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
     }
     for (Fitted& f : batch) {
       best_gain = std::max(best_gain, f.fit.log_evidence - base_fit.log_evidence);
-      f.fit.log_evidence -= law_price(candidates, f.claim.candidate);
+      f.fit.log_evidence -= law_price(candidates[f.claim.candidate]);
       fitted.push_back(std::move(f));
     }
   }
@@ -221,7 +216,7 @@ void fit_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
 
 double laws_price(const std::vector<Candidate>& candidates, const Hypothesis& hypothesis) {
   double price = 0.0;
-  for (const Claim& c : hypothesis) price += law_price(candidates, c.candidate);
+  for (const Claim& c : hypothesis) price += law_price(candidates[c.candidate]);
   return price;
 }
 
@@ -297,9 +292,8 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   double best_value = best_fit.log_evidence;
   const auto add_of_some_records = [&](const Hypothesis& beside, const Fit& at) {
     if (at.prediction.empty()) return;
-    for (Signature& s : of_some_records(fitter, candidates, columns, projection_of(fitter, beside, at)))
-      columns.push_back(std::move(s));
-    if (!best.empty()) best_value = evidence(best_fit, best) - laws_price(candidates, best);
+    const std::vector<Law> laws = add_of_chosen_records(fitter, candidates, columns, projection_of(fitter, beside, at));
+    for (Signature& s : signatures(fitter, candidates, laws, beside, at)) columns.push_back(std::move(s));
   };
   add_of_some_records({}, weighed_at);
   result.scores = scores(fitter, candidates, columns, {}, weighed_at);
@@ -377,6 +371,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       const std::vector<Law> more =
           add(events_beside(fitter, best, best_fit, projection_of(fitter, best, best_fit), listener));
       for (Signature& s : signatures(fitter, candidates, more, best, best_fit)) columns.push_back(std::move(s));
+      best_value = evidence(best_fit, best) - laws_price(candidates, best);
     }
     exchange();
   }
@@ -417,7 +412,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       const Hypothesis instead = with(others, f.claim);
       double value = evidence(f.fit, instead) - laws_price(candidates, others);
       if (value > best_value - kNear) {
-        const double law_nats = law_price(candidates, f.claim.candidate);
+        const double law_nats = law_price(candidates[f.claim.candidate]);
         f.fit.log_evidence += law_nats;  // which best_additions() has taken off
         fit_on(fitter, instead, f.fit);
         f.fit.log_evidence -= law_nats;

@@ -9,6 +9,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
+constexpr int kTurnsOfWidth = 3;       // of heavy tails: then the size stays
 constexpr double kLeastGrowth = 0.01;  // of a size over its trial, with which other numbers grow
 
 Eigen::VectorXd joined(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
@@ -97,12 +98,14 @@ LinearGain linear_gain(const Variant& law, double ss, double sr) {
   const Knob& size = law.knobs[0];
   const double sd = size.prior_sd;
   LinearGain g{.x = law.all_or_nothing ? law.trial_x : sr / (ss + 1.0 / (sd * sd)), .fall = 0.0, .gain = 0.0};
-  g.fall = law.all_or_nothing ? sr * g.x - 0.5 * ss * g.x * g.x : 0.5 * sr * sr / (ss + 1.0 / (sd * sd));
-  if (size.scale == Knob::Scale::kLinear && size.x(size.value(g.x)) != g.x) {  // out of range: at the bound
-    g.x = size.x(size.value(g.x));
-    g.fall = sr * g.x - 0.5 * ss * g.x * g.x;
+  double width = sd;
+  for (int turn = 0; turn < kTurnsOfWidth && !law.all_or_nothing; ++turn) {
+    width = heavy_tailed_width(sd, g.x);
+    g.x = sr / (ss + 1.0 / (width * width));
   }
-  g.gain = g.fall - (law.all_or_nothing ? 0.0 : 0.5 * std::log1p(sd * sd * ss)) - law.price_nats -
+  if (size.scale == Knob::Scale::kLinear) g.x = size.x(size.value(g.x));  // out of range: at the bound
+  g.fall = sr * g.x - 0.5 * ss * g.x * g.x - (law.all_or_nothing ? 0.0 : heavy_tailed_cost(sd, g.x));
+  g.gain = g.fall - (law.all_or_nothing ? 0.0 : 0.5 * std::log(sd * sd * ss + sd * sd / (width * width))) - law.price_nats -
            std::log(static_cast<double>(law.grid.size()));
   return g;
 }

@@ -36,7 +36,7 @@ struct Score {
 
 /// A hypothesis and one claim more.
 [[nodiscard]] Hypothesis with(Hypothesis hypothesis, Claim claim);
-/// Of a fit: at its optimum J'r = S⁻²x, so the data about x = 0 of the linearised problem are r + J x. Readings are condensed.
+/// Of a fit: at its optimum J'r = B⁻²x, B its prior_width(), so the data about x = 0 of the linearised problem are r + J x. Readings are condensed.
 [[nodiscard]] Projection projection_of(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& fit);
 
 /// What linear theory says of one shape of a law.

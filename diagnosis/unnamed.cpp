@@ -248,8 +248,8 @@ std::vector<Subset> subsets_of(const Fitter& fitter, const std::vector<Candidate
     for (std::size_t c = 0; c < hypothesis.size(); ++c) {
       if (((mask >> c) & 1u) == 0) continue;
       subset.claims.push_back(c);
-      paid += price + std::log(static_cast<double>(candidates[hypothesis[c].candidate].variants.size())) +
-              price_of_times(hypothesis[c]) + hypothesis[c].price_nats;
+      paid +=
+          price + law_price(candidates[hypothesis[c].candidate]) + price_of_times(hypothesis[c]) + hypothesis[c].price_nats;
     }
     const Remainder rest = without_claims(hypothesis, subset.claims, n_n);
     Eigen::MatrixXd slopes(fit.residual.size(), static_cast<Eigen::Index>(rest.x.size()));

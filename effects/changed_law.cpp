@@ -139,7 +139,7 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
                                                                       : "another conductance";
   const bool is_listed =
       std::any_of(list.begin(), list.end(), [&](const Doubt& d) {  // exchanges of one name change together
-        return d.finding == finding && d.added.front().place == exchange.name;
+        return d.finding == finding && d.added.front().place == exchange.name && d.law == what;
       });
   if (is_listed) return;
   Doubt other{.finding = finding,
@@ -166,6 +166,18 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
   }
 }
 
+/// Whether what turns heats one of the two: a bearing, whose film carries heat the better the faster it turns.
+bool has_heat_of_speed(const DoubtScene& s, const Exchange& exchange) {
+  return std::any_of(s.balance.heats.begin(), s.balance.heats.end(), [&](const HeatInput& h) {
+    if (!(h.body == exchange.body) && h.body.name != exchange.surrounding) return false;
+    const auto power_W = [&](double rpm) {
+      return h.power_W(
+          Inputs{.drive = {.speed_rpm = rpm}, .probe_K = std::vector<double>(h.power_W.probes.size(), s.reference_K)});
+    };
+    return h.power_W.thermostat.empty() && power_W(s.typical_rpm) != power_W(0.0);
+  });
+}
+
 /// Air that a turning part stirs, the film in a bearing that it runs on: an exchange that grows with speed where it is written as constant, beside what it is at
 /// standstill, or, of air, by a power of the speed while it turns. Films of surfaces have `forced_convection`.
 void doubt_stirred(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
@@ -182,7 +194,12 @@ void doubt_stirred(const DoubtScene& s, const std::string& finding, const Exchan
               .numbers = {doubted("growth", "1", 1.0, 0.1), doubted("exponent", "1", 0.5, 0.05, kStirred)},
               .trial = 0.2,
               .grid = {{0.0}, {kStirred}},
-              .at_speed_rpm = s.typical_rpm};
+              .at_speed_rpm = s.typical_rpm,
+              .rarity = is_of_air_there || has_heat_of_speed(s, exchange) ? 0.0 : kOfSolids};
+  const bool is_listed = std::any_of(list.begin(), list.end(), [&](const Doubt& d) {
+    return d.finding == grows.finding && d.added.front().place == exchange.name && d.law == grows.law;
+  });
+  if (is_listed) return;
   grows.added[0].set("at_speed", s.typical_rpm);
   grows.numbers[0].low = 0.0;
   grows.numbers[1].low = 0.3;

@@ -18,6 +18,7 @@ struct DoubtScene {
   double typical_rpm = 1.0;                ///< laws of speed are stated there
   double heat_W = 1.0;                     ///< of all sources at the highest speed
   bool moves_axes = false, turns = false;  ///< in some record
+  bool starts_and_stops = false;           ///< turns and stands in one record
   struct Run {
     std::string name;
     double length_s = 0.0;
@@ -49,7 +50,9 @@ struct DoubtScene {
     std::string header, unit;
     double span = 1.0;         ///< largest minus smallest value, > 0
     double top = 1.0;          ///< largest absolute value
+    int n_levels = 2;          ///< different absolute values, as many as three
     std::vector<Body> drives;  ///< bodies that the scenario heats or cools by it already
+    std::vector<Body> heats;   ///< of these, those that it heats in proportion
     [[nodiscard]] bool is_temperature() const { return unit == "degC"; }
   };
   std::vector<Column> columns;

@@ -12,6 +12,8 @@ namespace {
 constexpr double kMedium_K =
     kZeroCelsius_K + 20.0;  // of an exchange with a recorded temperature: heat makes up for the rest
 constexpr double kLowestExponent = 0.1, kHighestExponent = 4.0;  // of a column, that are looked for
+constexpr double kClearlyFaster = 1.3;                           // exponent, than in proportion: else it is another gain
+constexpr int kFewestLevels = 3;                                 // of a column, that tell an exponent
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const auto signal = signal_of(e.words.at("column"), e["lag"] * 60.0);
@@ -20,7 +22,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
     balance.heats.push_back(
         {name, e.body(), [=, gain = e["gain"], further = e["exponent"] - 1.0, at = e["at"]](const Inputs& u) {
            const double c = signal(u.drive).value_or(0.0);
-           return gain * c * (further != 0.0 && c != 0.0 ? std::pow(std::abs(c) / at, further) : 1.0);
+           if (further == 0.0) return gain * c;
+           return c != 0.0 ? gain * std::abs(c) * std::pow(std::abs(c) / at, further) : 0.0;
          }});
     return;
   }
@@ -55,7 +58,7 @@ void check(const Effect& e, const ConfigMap& in) {
             "says; `opening`, W/K per unit of the column, to `surrounding`");
   }
   if (e["exponent"] != 1.0 && !e.has("gain")) in.fail("exponent", "it is of a `gain`");
-  if (e["exponent"] != 1.0 && !in.has("at"))
+  if (e["exponent"] != 1.0 && !e.has("at"))
     in.fail("at", "the value of the column at which `gain` holds is wanted beside `exponent`");
   if (e["lag"] > 0.0 && is_drive_channel(e.words.at("column")))
     in.fail("lag", "feeds and cutting power act at once; a lag is one of further columns");
@@ -80,14 +83,14 @@ Doubt doubt(const Body& body, const DoubtScene::Column& column, const std::strin
 }
 
 /// Heat by another power of a column than the first: of a motor's current the square, its copper's loss.
-/// @param drives_it  by a law of the scenario, which may grow too much
-Doubt power_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& column, bool drives_it) {
+/// @param heats_it  by a law of the scenario, which may grow too fast: what is beside it may then be negative, and grows clearly faster
+Doubt power_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& column, bool heats_it) {
   Doubt d = doubt(body, column, "heat by a power of {}", "gain", "W per " + column.unit, gain_sd(s, column));
   d.law += fmt::format(", its gain stated at {:.6g} {}", column.top, column.unit);
   d.added[0].set("at", column.top);
-  if (drives_it) d.numbers[0].low = -1e300;
   d.numbers.push_back(doubted("exponent", "1", 0.5, 0.05, 2.0));
-  d.numbers[1].low = kLowestExponent;
+  d.numbers[1].low = heats_it ? kClearlyFaster : kLowestExponent;
+  if (heats_it) d.numbers[0].low = -1e300;
   d.numbers[1].high = kHighestExponent;
   d.grid = {{0.0}};
   return d;
@@ -97,8 +100,10 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const DoubtScene::Column& column : s.columns) {
     for (const Body& body : s.bodies) {
-      const bool drives_it = std::find(column.drives.begin(), column.drives.end(), body) != column.drives.end();
-      if (column.unit != "K" && !column.is_temperature()) list.push_back(power_of(body, s, column, drives_it));
+      const auto is_one_of = [&](const std::vector<Body>& of) { return std::find(of.begin(), of.end(), body) != of.end(); };
+      const bool drives_it = is_one_of(column.drives);
+      if (column.unit != "K" && !column.is_temperature() && column.n_levels >= kFewestLevels)
+        list.push_back(power_of(body, s, column, is_one_of(column.heats)));
       if (drives_it) continue;  // another gain of what is written: Doubted::kFactor
       if (column.is_temperature()) {
         list.push_back(
@@ -121,7 +126,8 @@ EffectKind recorded_drive() {
   return {.key = "recorded_drive",
           .title = "heat or exchange by a recorded column: a heater's power, the sun, a bed, a valve",
           .law =
-              "P = gain c |c / at|^(exponent - 1); or Q = conductance (T - c), c in degC; or Q = opening c (T - "
+              "P = gain c, with another exponent P = gain |c| |c / at|^(exponent - 1); or Q = conductance (T - c), c in "
+              "degC; or Q = opening c (T - "
               "T_surrounding). c: value of the "
               "column in "
               "its unit, from each row on; with a lag: lag dx/dt = c - x for c, settled at the first row",
@@ -129,7 +135,8 @@ EffectKind recorded_drive() {
           .parameters = {{"gain", "1", -1e9, 1e9, kNotGiven, "W per unit of the column", 0.1, "recorded_drive",
                           Doubted::kFactor},
                          {"exponent", "1", 0.1, 4.0, 1.0, "of the column, to which the heat grows: a motor's current, 2"},
-                         {"at", "1", 1e-12, 1e12, 1.0, "value of the column, in its unit, at which the gain holds"},
+                         {"at", "1", 1e-12, 1e12, kNotGiven,
+                          "beside an exponent: value of the column, in its unit, at which the gain holds"},
                          {"conductance", "W/K", 0.0, 1e9, kNotGiven, "or: to a body as warm as the column says", 0.1,
                           "recorded_drive", Doubted::kFactor},
                          {"opening", "1", 0.0, 1e9, kNotGiven, "or: W/K per unit of the column, to the surrounding", 0.1,

@@ -24,7 +24,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .numbers = {doubted("bias", "K", 1.0, 0.2)},
                       .trial = 0.3},
                      list);
-    if (!s.turns) continue;
+    if (!s.starts_and_stops) continue;
     Doubt picked_up{.finding = "sensor_bias",
                     .where = sensor,
                     .law = "error while the spindle turns",

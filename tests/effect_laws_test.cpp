@@ -85,13 +85,13 @@ TEST(RecordedDrive, TakesChannelsOfTheDriveToo) {
 }
 
 TEST(RecordedDrive, HeatsByAPowerOfItsColumn) {
-  // copper's loss by a current: 8 W at 4 A, a quarter of that at 2 A; a difference that turns takes heat away
+  // copper's loss by a current: 8 W at 4 A, a quarter of that at 2 A, whichever way it flows
   const Law power_W =
       balance_of("{type: recorded_drive, node: air, column: current_A, gain: 2, exponent: 2, at: 4}").heats.at(0).power_W;
   const auto at = [](double current_A) { return Inputs{.drive = {.signals = {{"current_A", current_A}}}}; };
   EXPECT_DOUBLE_EQ(power_W(at(4.0)), 8.0);
   EXPECT_DOUBLE_EQ(power_W(at(2.0)), 2.0);
-  EXPECT_DOUBLE_EQ(power_W(at(-2.0)), -2.0);
+  EXPECT_DOUBLE_EQ(power_W(at(-2.0)), 2.0);
   EXPECT_EQ(power_W(at(0.0)), 0.0);
 }
 

@@ -10,13 +10,16 @@
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/extended_scenario.hpp"
+#include "effects/lasting.hpp"
 #include "tests/lumped_records.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr const char* kMachine = R"(name: two_nodes
@@ -223,6 +226,45 @@ INSTANTIATE_TEST_SUITE_P(
               1.6,
               0.1}),
     [](const auto& one) { return one.param.name; });
+
+// Whatever a search may say of some records a scenario can say, too.
+TEST(OfSomeRecords, EveryLawCanBeWrittenAndReadAgain) {
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", kMachine), "some_", 60.0, 0.03, 0.2);
+  const Beside beside(write_file("plain.yaml", kMachine), records);
+  int n_laws = 0;
+  for (const Candidate& c : candidates(*beside.twin, beside.runs, {})) {
+    for (const Variant& v : c.variants) {
+      if (!v.of_some_runs || !v.in.empty()) continue;
+      const Variant law = law_of(effects::of_runs(*v.of_some_runs, {"some_monday", "some_friday"}));
+      EXPECT_THAT(law.law, HasSubstr("in some_monday, some_friday"));
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(law.knobs.size()));
+      x[0] = law.trial_x;
+      const Claim claim{.knobs = law.knobs, .all_or_nothing = law.all_or_nothing};
+      const ExtendedScenario extended =
+          extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
+      EXPECT_THAT(extended.text,
+                  AllOf(HasSubstr("in: some_monday"), HasSubstr("in: some_friday"), Not(HasSubstr("in: some_tuesday"))))
+          << c.effect << " at " << c.where << ": " << law.law;
+      EXPECT_NO_THROW((void)scenarios::read_scenario(write_file("extended.yaml", extended.text))) << extended.text;
+      ++n_laws;
+    }
+  }
+  EXPECT_GT(n_laws, 30);
+}
+
+// What holds in some records takes no part in the state at rest from which all begin.
+TEST(OfSomeRecords, HeatIsFoundWhereRecordsBeginAtRest) {
+  const std::string machine = "start: steady\n" + std::string(kMachine);
+  std::string truth = with_effect(machine, "{type: heat_source, node: column, power: 40 W, in: monday}");
+  truth = with_effect(truth, "{type: heat_source, node: column, power: 40 W, in: friday}");
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "rest_", 60.0, 0.03, 0.2);
+  const Diagnosis d = Beside(write_file("plain.yaml", machine), records).diagnosed();
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, "heat_source");
+  EXPECT_EQ(d.causes[0].where, "column");
+  EXPECT_THAT(d.causes[0].law, HasSubstr("in rest_monday, rest_friday"));
+  EXPECT_NEAR(d.causes[0].parameters[0].value, 40.0, 4.0);
+}
 
 // A scale that more than doubles what it measures is five of the catalogue's sigmas away: the readings, not the catalogue, say by how much.
 TEST(FarBeyondTheUsual, ASizeIsNotDrawnBackToIt) {
