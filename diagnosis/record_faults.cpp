@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "diagnosis/stuck_sensor.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kHole = 5.0;            // usual steps
+constexpr double kHole = 5.0;  // usual steps
+constexpr double kRare = 0.1;  // share of the steps up to which long ones are holes: beyond, they are the logger's pace
 constexpr std::size_t kStepsOfPace = 5;  // whose median is the pace before, and behind
 constexpr double kLeap = 40.0;           // usual changes from reading to reading
 constexpr double kLeapOfRange = 0.3;     // of what all other readings span
@@ -19,6 +21,17 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// The usual step of a logger: of one that writes in bursts, such as a homing's readings and then nothing until the next one, that from burst to burst.
+double usual_of(const std::vector<double>& steps) {
+  double usual_s = median(steps);
+  for (;;) {
+    std::vector<double> longer;
+    std::copy_if(steps.begin(), steps.end(), std::back_inserter(longer), [&](double s) { return s > kHole * usual_s; });
+    if (static_cast<double>(longer.size()) <= kRare * static_cast<double>(steps.size())) return usual_s;
+    usual_s = median(longer);
+  }
 }
 
 /// The usual step about the one that ends at a row: a logger may change its pace. @param usual_s  of the whole record
@@ -42,7 +55,7 @@ std::vector<Hole> holes_in(const Record& record, std::vector<DataFinding>& findi
   const double start_s = record.time_s.front();
   std::vector<double> steps;
   for (std::size_t i = 1; i < record.n_samples(); ++i) steps.push_back(record.time_s[i] - record.time_s[i - 1]);
-  const double usual_s = median(steps);
+  const double usual_s = usual_of(steps);
   std::vector<double> times_s, rpm;  // of rows with a speed
   for (std::size_t i = 0; i < record.n_samples(); ++i) {
     if (std::isnan(speed->values[i])) continue;

@@ -343,6 +343,19 @@ TEST_F(MeasuredRunTest, SaysThatAHoleOfRowsIsOneWhateverTheSpeedBeforeAndAfter) 
   EXPECT_THAT(run.findings.front().what, HasSubstr("500 rpm before and 500 rpm after"));
 }
 
+TEST_F(MeasuredRunTest, TakesWhatALoggerWritesInBurstsForItsPace) {
+  std::string text = "time_s,speed_rpm,t_front_degC\n";
+  double t_s = 0.0;
+  for (int burst = 0; burst < 40; ++burst) {  // three readings of a homing, then nothing for a minute; once for twenty
+    for (int i = 0; i < 3; ++i) text += fmt::format("{},500,{:.3f}\n", t_s + 4.0 * i, 20.0 + 0.01 * burst + 0.003 * i);
+    t_s += burst == 25 ? 1200.0 : 60.0;
+  }
+  const MeasuredRun run = read(text);
+  ASSERT_EQ(run.holes.size(), 1u);
+  EXPECT_EQ(run.holes[0].begin_s, 25 * 60.0 + 8.0);
+  EXPECT_EQ(run.holes[0].end_s, 25 * 60.0 + 1200.0);
+}
+
 TEST_F(MeasuredRunTest, LeavesOutAReadingThatLeapsAwayAndBack) {
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 100; ++i)
