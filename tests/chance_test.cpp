@@ -93,7 +93,7 @@ TEST(Chance, OfOneCandidateFallsByAnEfoldANat) {
 TEST(Chance, SeldomOffersWhatAFaintCauseHas) {
   const std::string scenario = write_file("nominal_for_shift.yaml", machine(nullptr));
   int n_faint = 0, n_rightly = 0;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 32; ++i) {
     Random random(23, static_cast<std::uint64_t>(i));
     const std::string truth = write_file(
         "shifted.yaml",
