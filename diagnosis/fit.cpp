@@ -20,11 +20,6 @@ constexpr double kPromised = 1.0;    // of Φ, by slopes that do not keep it
 constexpr int kMostRetakes = 3;
 constexpr double kTail = 4.0;  // degrees of freedom of a claim's prior
 
-/// -log of Student's density at u over that at 0, scaled so that near 0 it is that of a normal one, u²/2.
-double tail(double u) {
-  return 0.5 * (kTail + 1.0) * std::log1p(u * u / (kTail + 1.0));
-}
-
 Eigen::Index n_knobs(const Hypothesis& hypothesis) {
   Eigen::Index n = 0;
   for (const Claim& c : hypothesis) n += static_cast<Eigen::Index>(c.knobs.size());
@@ -120,7 +115,8 @@ double heavy_tailed_width(double prior_sd, double x) {
 }
 
 double heavy_tailed_cost(double prior_sd, double x) {
-  return tail(x / prior_sd);
+  const double u = x / prior_sd;
+  return 0.5 * (kTail + 1.0) * std::log1p(u * u / (kTail + 1.0));
 }
 
 Eigen::VectorXd Fitter::nuisance_sd() const {
@@ -327,7 +323,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   };
   const auto prior = [&](const Eigen::VectorXd& x) {
     double sum = 0.5 * x.head(n_n).cwiseQuotient(sd.head(n_n)).squaredNorm();
-    for (Eigen::Index k = n_n; k < n; ++k) sum += tail(x[k] / sd[k]);
+    for (Eigen::Index k = n_n; k < n; ++k) sum += heavy_tailed_cost(sd[k], x[k]);
     return sum;
   };
 
@@ -464,7 +460,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     const Knob& knob = *knobs[static_cast<std::size_t>(k)];
     const bool has_slope = smooth[static_cast<std::size_t>(k)] != 0;
     // the prior of a time or of swapped cables is flat
-    if (knob.is_time || !has_slope) f.log_evidence += tail(f.x[n_n + k] / sd[n_n + k]);
+    if (knob.is_time || !has_slope) f.log_evidence += heavy_tailed_cost(sd[n_n + k], f.x[n_n + k]);
   }
   return f;
 }

@@ -127,10 +127,8 @@ EffectKind recorded_drive() {
           .title = "heat or exchange by a recorded column: a heater's power, the sun, a bed, a valve",
           .law =
               "P = gain c, with another exponent P = gain |c| |c / at|^(exponent - 1); or Q = conductance (T - c), c in "
-              "degC; or Q = opening c (T - "
-              "T_surrounding). c: value of the "
-              "column in "
-              "its unit, from each row on; with a lag: lag dx/dt = c - x for c, settled at the first row",
+              "degC; or Q = opening c (T - T_surrounding). c: value of the column in its unit, from each row on; with a "
+              "lag: lag dx/dt = c - x for c, settled at the first row",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
           .parameters = {{"gain", "1", -1e9, 1e9, kNotGiven, "W per unit of the column", 0.1, "recorded_drive",
                           Doubted::kFactor},
