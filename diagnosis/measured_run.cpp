@@ -21,6 +21,7 @@ constexpr double kAmbientKnots_s = 600.0;     // at the most
 constexpr double kAmbientKnown_K = 0.003;     // what is left of a course matters to nobody
 constexpr double kMostNoise_K = 0.1;          // that an ambient thermometer has
 constexpr std::size_t kReadingsOfStart = 24;  // that say how warm the air was as the record begins
+constexpr int kLongerAtLimit = 2;             // equal readings there, than at any other value
 constexpr int kSaturatedRows = 10;            // at the largest or smallest value of all
 constexpr int kMostColumns = 6;               // that nobody drives the machine by; each may drive it at each body
 constexpr std::ptrdiff_t kFewestLeft = 20;    // readings of a channel that was stuck for a while
@@ -152,11 +153,14 @@ TimeSeries smoothed(const std::vector<double>& time_s, const std::vector<double>
   return n_readings < 3 ? on_knots(r, 1) : with_few_knots({r.time_s, r.value}, 2.0 * kAmbientKnown_K);
 }
 
-/// Most rows in a row at a value.
-int run_at(const std::vector<double>& values, double value) {
+/// Most equal values in a row, of those that are looked at.
+template <class LookedAt>
+int most_equal(const std::vector<double>& values, const LookedAt& looked_at) {
   int longest = 0, run = 0;
+  double last = std::nan("");
   for (double v : values) {
-    run = v == value ? run + 1 : 0;
+    run = !looked_at(v) ? 0 : v == last ? run + 1 : 1;
+    last = v;
     longest = std::max(longest, run);
   }
   return longest;
@@ -214,11 +218,13 @@ void inspect(const Record& record, const std::vector<double>& time_s, Channel& c
     if (leaves_out) return;
   }
   const bool is_fine = quantum == 0.0 || dithers(channel.values);  // else equal readings mean nothing
-  if (const double limit = run_at(channel.values, high) >= run_at(channel.values, low) ? high : low;
-      is_fine && run_at(channel.values, limit) >= kSaturatedRows) {
+  const auto rows_at = [&](double value) { return most_equal(channel.values, [=](double v) { return v == value; }); };
+  const double limit = rows_at(high) >= rows_at(low) ? high : low;
+  const int n_at_limit = rows_at(limit), n_elsewhere = most_equal(channel.values, [=](double v) { return v != limit; });
+  if (is_fine && n_at_limit >= kSaturatedRows && n_at_limit > kLongerAtLimit * n_elsewhere) {
     findings.push_back({channel.name,
                         fmt::format("{} stays {} rows at its limit of {:g} {}: saturated; it is left out", channel.name,
-                                    run_at(channel.values, limit), limit, channel.unit),
+                                    n_at_limit, limit, channel.unit),
                         true});
   }
 }

@@ -13,13 +13,18 @@ constexpr double kOfSolids =
 constexpr double kStirred = 0.75;  // of the speed: a film on what turns, between laminar 0.5 and turbulent 0.8
 constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // of speed, of all laws together
 
+/// Whether it acts at that time.
+bool acts(const Effect& e, const Inputs& u) {
+  return u.time_s >= e.from_s && u.time_s < e.until_s && (e.in.empty() || u.run == e.in);
+}
+
 void change(const Effect& e, const Body& body, Law& law) {
   const double factor = e["factor"], exponent = e["exponent"], n0_rpm = e["at_speed"];
   const double growth = e["growth"], growth_exponent = e["growth_exponent"];
   const double decay_1_K = e["decay"], t0_K = e["at_temperature"];
   const bool thins = decay_1_K != 0.0;
   if (thins) law.probes.push_back(body);
-  law.value = [=, value = law.value, from_s = e.from_s, until_s = e.until_s, in = e.in](const Inputs& u) {
+  law.value = [=, value = law.value](const Inputs& u) {
     Inputs own;
     const Inputs* inputs = &u;
     if (thins) {  // the last probe is this one's
@@ -28,7 +33,7 @@ void change(const Effect& e, const Body& body, Law& law) {
       inputs = &own;
     }
     const double as_written = value(*inputs);
-    if (u.time_s < from_s || u.time_s >= until_s || !(in.empty() || u.run == in)) return as_written;
+    if (!acts(e, u)) return as_written;
     const double n = u.drive.speed_rpm / n0_rpm;
     const double by_speed = (n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0) +
                             (growth != 0.0 ? growth * std::pow(n, growth_exponent) : 0.0);
@@ -36,12 +41,23 @@ void change(const Effect& e, const Body& body, Law& law) {
   };
 }
 
+/// A medium that is warmer than written brings so much more heat with the same exchange.
+HeatInput of_warmer_medium(const Effect& e, const Exchange& x) {
+  Law heat = x.coefficient;
+  heat.value = [coefficient = x.coefficient.value, warmer_K = e["warmer"], e](const Inputs& u) {
+    return acts(e, u) ? warmer_K * coefficient(u) : 0.0;
+  };
+  return {"medium of " + x.name, x.body, std::move(heat)};
+}
+
 void change_laws(const Effect& e, HeatBalance& balance) {
   for (HeatInput& h : balance.heats) {
     if (h.name == e.place) change(e, h.body, h.power_W);
   }
   for (Exchange& x : balance.exchanges) {
-    if (x.name == e.place) change(e, x.body, x.coefficient);
+    if (x.name != e.place) continue;
+    change(e, x.body, x.coefficient);
+    if (e["warmer"] != 0.0 && x.medium_K) balance.heats.push_back(of_warmer_medium(e, x));
   }
   if (e.from_s > 0.0) balance.change_times_s.push_back(e.from_s);
   if (e.until_s < kNever_s) balance.change_times_s.push_back(e.until_s);
@@ -152,18 +168,7 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
     return;
   }
   add_in_some_runs(s, other, list);  // changed between two records
-  for (std::size_t r = 0; r < s.runs.size(); ++r) {
-    const DoubtScene::Run& run = s.runs[r];
-    Doubt late = other;
-    late.law = what + " from a time on, in " + run.name;
-    late.added[0].in = run.name;
-    late.numbers.push_back(doubted_time(
-        "time", run.length_s, [](std::span<Effect> added, double value) { added[0].from_s = std::max(1.0, value); }));
-    late.trial = 0.3;
-    late.rarity = is_of_air(s, exchange) ? 0.0 : kOfSolids;
-    late.grid = time_grid(run.length_s, 8);
-    add_with_lasting(s, r, late, list);
-  }
+  add_from_a_time_on(s, other, "time", is_of_air(s, exchange) ? 0.0 : kOfSolids, list);
 }
 
 /// Whether what turns heats one of the two: a bearing, whose film carries heat the better the faster it turns.
@@ -231,8 +236,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0)
-    in.fail("factor", "nothing is changed; one of `factor`, `exponent`, `growth`, `decay` is wanted");
+  if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0 && e["warmer"] == 0.0)
+    in.fail("factor", "nothing is changed; one of `factor`, `exponent`, `growth`, `decay`, `warmer` is wanted");
 }
 
 }  // namespace
@@ -243,7 +248,8 @@ EffectKind changed_law() {
           .law =
               "c' = factor ((n / at_speed)^exponent + growth (n / at_speed)^growth_exponent) exp(-decay (T - "
               "at_temperature)) c, "
-              "c: a power or a coefficient of another effect, T of its own body; at standstill the exponent does nothing",
+              "c: a power or a coefficient of another effect, T of its own body; at standstill the exponent does nothing; a "
+              "medium that is `warmer` brings that times c'",
           .places = {Place::kLaw},
           .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
                          {"exponent", "1", -5.0, 5.0, 0.0, "further growth with speed, beside the law's own"},
@@ -251,7 +257,9 @@ EffectKind changed_law() {
                          {"growth_exponent", "1", 0.1, 5.0, 2.0 / 3.0, "of the speed, by which that grows"},
                          {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed; there the exponent changes nothing"},
                          {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
-                         {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"}},
+                         {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"},
+                         {"warmer", "K", -200.0, 200.0, 0.0,
+                          "of an exchange with a medium of stated temperature, a coolant's set point: so much more"}},
           .timing = Timing::kInTime,
           .change_laws = change_laws,
           .check = check,

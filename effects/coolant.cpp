@@ -1,13 +1,14 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
-#include "effects/doubt.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 constexpr double kAmple_L_min = 100.0;               // of a circuit that is doubted: its flow takes no part in what it does
 constexpr double kColder_K = 10.0, kWarmer_K = 3.0;  // than the reference, its medium at most
+constexpr double kSetPoint_K = 2.0;                  // 1 sigma of what somebody turns a chiller by
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double stream_W_K = e["flow"] / 60.0 * e["medium_heat_capacity"];  // L/s times J/(L K)
@@ -54,10 +55,34 @@ void check(const Effect& e, const ConfigMap& in) {
   }
 }
 
-/// Circuits that the scenario lacks: one that takes away a constant heat, and one whose medium is held at a temperature.
+/// A circuit that is written: its chiller set otherwise, or its exchange another one, in some records or from a time on.
+void doubt_circuit(const DoubtScene& s, const Effect& circuit, std::vector<Doubt>& list) {
+  const double written_C = circuit["set_point"] - kZeroCelsius_K;
+  DoubtedNumber set_point = doubted("set_point", "degC", kSetPoint_K, 0.1 * kSetPoint_K, written_C);
+  set_point.set = [written_C](std::span<Effect> added, double value) {
+    for (Effect& e : added) e.set("warmer", value - written_C);
+  };
+  Doubt other{.finding = "coolant",
+              .where = where_of(circuit),
+              .law = "another set point",
+              .added = {make_effect("changed_law", Place::kLaw, circuit.name())},
+              .numbers = {set_point},
+              .trial = 0.25 * kSetPoint_K};
+  add_changes(s, other, list);
+  other.law = "another exchange with its medium";
+  other.numbers = {doubted_factor()};
+  other.trial = kFactorTrial;
+  add_changes(s, other, list);
+}
+
+/// Circuits that the scenario lacks: one that takes away a constant heat, and one whose medium is held at a temperature, always or while the spindle turns; and
+/// changes of those it has.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double sd_W = s.unknown_heat_W(), trial_W = 0.1 * sd_W;
   std::vector<Doubt> list;
+  for (const Effect& e : s.own) {
+    if (e.kind->key == "coolant" && !e.references.contains("tank")) doubt_circuit(s, e, list);
+  }
   for (const Body& body : s.bodies) {
     Doubt removed{.finding = "coolant",
                   .where = body.name,
@@ -82,6 +107,10 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     held.numbers[1].low = nominal_C - kColder_K;
     held.numbers[1].high = nominal_C + kWarmer_K;
     held.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("set_point", value + kZeroCelsius_K); };
+    list.push_back(held);
+    if (!s.starts_and_stops) continue;
+    held.law += ", which runs while the spindle turns";
+    held.added[0].words["runs"] = "while_spindle_turns";
     list.push_back(std::move(held));
   }
   return list;

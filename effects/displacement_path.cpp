@@ -10,8 +10,27 @@ namespace driftwright::effects {
 namespace {
 
 constexpr double kSensitivitySd_um_K = 5.0;  // 1 sigma; 1 m of steel on one side: 11.5 um/K
+constexpr double kBentSd_um = 15.0;          // the same of what a recorded force or pressure bends
 
-/// Temperature over the reference at each time [K]: of the body that is named, of the ambient, or of a recorded column.
+/// What a column says at each time, in its unit, from each row on; of a channel of the drive what the sections say. Nothing where there is no such column.
+Eigen::RowVectorXd column_at(const std::string& name, const Readings& r) {
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(r.n_times());
+  if (const Cyclogram::Column* column = r.cyclogram.column(name)) {
+    for (Eigen::Index i = 0; i < row.size(); ++i) row[i] = column->at(r.time(i));
+  } else if (is_drive_channel(name)) {
+    const auto signal = signal_of(name, 0.0);
+    const auto& sections = r.cyclogram.sections;
+    double end_s = 0.0;
+    std::size_t next = 0;
+    for (Eigen::Index i = 0; i < row.size() && !sections.empty(); ++i) {
+      while (next < sections.size() && r.time(i) >= end_s) end_s += sections[next++].duration_s;
+      row[i] = signal(sections[std::max<std::size_t>(next, 1) - 1].drive).value_or(0.0);
+    }
+  }
+  return row;
+}
+
+/// Temperature over the reference at each time [K]: of the body that is named, of the ambient, or of a recorded column; or what a column says.
 Eigen::RowVectorXd followed(const Effect& e, const Readings& r) {
   const auto over_time = [&](const auto& value) {
     Eigen::RowVectorXd row(r.n_times());
@@ -22,41 +41,45 @@ Eigen::RowVectorXd followed(const Effect& e, const Readings& r) {
     if (body->second == ambient_node()) return over_time([&](double t_s) { return r.ambient.at(t_s); });
     return r.value.row(r.mean_of(body->second.name));
   }
-  const Cyclogram::Column* column = r.cyclogram.column(e.words.at("column"));
-  if (!column) return Eigen::RowVectorXd::Zero(r.n_times());
-  const double zero_C = e["zero"] - kZeroCelsius_K;
-  return over_time([&](double t_s) { return column->at(t_s) - zero_C; });
+  if (e.has("gain")) return column_at(e.words.at("column"), r);
+  if (!r.cyclogram.column(e.words.at("column"))) return Eigen::RowVectorXd::Zero(r.n_times());
+  return column_at(e.words.at("column"), r).array() - (e["zero"] - kZeroCelsius_K);
 }
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  const double per_K = amount_of(e, "sensitivity"), lag_s = e["lag"] * 60.0;
+  const double gain = e.has("gain") ? 1e-6 * e["gain"] : amount_of(e, "sensitivity"), lag_s = e["lag"] * 60.0;
   chain.add(ReadingStage::kGrowth, [=, effect = e](Readings& r) {
-    Eigen::RowVectorXd temperature_K = followed(effect, r);
-    lag_behind(temperature_K, r.time_s, lag_s);
-    r.value.row(r.displacement(effect.place)) += per_K * temperature_K;
+    Eigen::RowVectorXd signal = followed(effect, r);
+    lag_behind(signal, r.time_s, lag_s);
+    r.value.row(r.displacement(effect.place)) += gain * signal;
   });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
+  const std::string& column = e.words.at("column");
+  if (e.references.contains("body") == !column.empty())
+    in.fail("body", "one of two is wanted: the `body` that it follows, or a `column`");
+  if (e.has("gain")) {
+    if (e.has("sensitivity") || e.has("tilt"))
+      in.fail("gain", "one of them is wanted: `gain`, or `sensitivity` or `tilt` of what follows a temperature");
+    if (column.empty()) in.fail("gain", "it is of a `column`");
+    return;
+  }
   check_amount(e, in, "sensitivity");
-  if (e.references.contains("body") == !e.words.at("column").empty())
-    in.fail("body", "one of two is wanted: the `body` that it follows, or a `column` of temperatures");
-  if (is_drive_channel(e.words.at("column")))
-    in.fail("column", "a column of temperatures is wanted; this one is of the drive");
+  if (is_drive_channel(column))
+    in.fail("column", "a column of temperatures is wanted; this one is of the drive: `gain` states what it does");
 }
 
-/// At once, where the displacement has no sensitivity to it yet, and behind a lag.
-void add_paths(const DoubtScene::Displacement& d, Effect path, const std::string& follows, bool at_once,
-               std::vector<Doubt>& list) {
-  DoubtedNumber per_K = doubted("sensitivity", fmt::format("{}/K", d.unit()), kSensitivitySd_um_K, 0.2);
-  per_K.set = [key = amount_key(d, "sensitivity")](std::span<Effect> added, double value) { added[0].set(key, value); };
-  path.set(amount_key(d, "sensitivity"), 0.0);
+/// At once, where the displacement does not follow it yet, and behind a lag.
+/// @param path  what its size is set in by `size`
+void add_paths(const DoubtScene::Displacement& d, const Effect& path, const DoubtedNumber& size, const std::string& follows,
+               bool at_once, std::vector<Doubt>& list) {
   Doubt doubt{.finding = "displacement_path",
               .where = d.name,
               .law = fmt::format("follows {}", follows),
               .added = {path},
-              .numbers = {per_K},
-              .trial = 1.0};
+              .numbers = {size},
+              .trial = 0.2 * size.prior_sd};
   if (at_once) list.push_back(doubt);
   DoubtedNumber lag = doubted("lag", "min", 20.0, 0.5, 20.0);
   lag.low = 1.0;
@@ -71,11 +94,17 @@ void add_paths(const DoubtScene::Displacement& d, Effect path, const std::string
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const DoubtScene::Displacement& d : s.displacements) {
-    const Effect path = make_effect("displacement_path", Place::kDisplacement, d.name);
+    Effect path = make_effect("displacement_path", Place::kDisplacement, d.name);
+    Effect of_gain = path;
+    of_gain.set("gain", 0.0);
+    DoubtedNumber per_K = doubted("sensitivity", fmt::format("{}/K", d.unit()), kSensitivitySd_um_K, 0.2);
+    const std::string key = amount_key(d, "sensitivity");
+    per_K.set = [key](std::span<Effect> added, double value) { added[0].set(key, value); };
+    path.set(key, 0.0);
     const auto add = [&](const Body& body, bool at_once) {
       Effect of_body = path;
       of_body.references["body"] = body;
-      add_paths(d, of_body, body.name, at_once, list);
+      add_paths(d, of_body, per_K, body.name, at_once, list);
     };
     for (const DoubtScene::Material& m : s.materials) {
       if (!m.stores || m.expands) continue;  // what bends the mesh is there already, at every place of it
@@ -84,11 +113,16 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     }
     add(ambient_node(), true);
     for (const DoubtScene::Column& column : s.columns) {
-      if (!column.is_temperature()) continue;
-      Effect of_column = path;
+      Effect of_column = column.is_temperature() ? path : of_gain;
       of_column.words["column"] = column.header;
-      of_column.set("zero", s.reference_K);
-      add_paths(d, of_column, column.header, true, list);
+      if (column.is_temperature()) {
+        of_column.set("zero", s.reference_K);
+        add_paths(d, of_column, per_K, column.header, true, list);
+      } else {  // a force that bends, a clamp, a pressure
+        const double sd = kBentSd_um / column.span;
+        add_paths(d, of_column, doubted("gain", fmt::format("{} per {}", d.unit(), column.unit), sd, 0.05 * sd),
+                  column.header, true, list);
+      }
     }
   }
   return list;
@@ -99,21 +133,27 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind displacement_path() {
   return {
       .key = "displacement_path",
-      .title = "displacement that follows one more body, the ambient or a recorded temperature",
+      .title = "displacement that follows one more body, the ambient or a recorded column",
       .law =
           "u += sensitivity (T - T_reference), T: mean of the body, as `sensitivities` of a displacement have it; of a "
-          "column: T - zero. With a lag: lag dx/dt = T - x for T, settled at the start",
+          "column of temperatures: T - zero; of another one: u += gain c. With a lag: lag dx/dt = T - x for T, or c, "
+          "settled "
+          "at the start",
       .places = {Place::kDisplacement},
       .parameters = {{"sensitivity", "um/K", -1e5, 1e5, kNotGiven, "of a displacement", 0.1, "displacement_path",
                       Doubted::kFactor},
                      {"tilt", "urad/K", -1e5, 1e5, kNotGiven, "or: of a tilt", 0.1, "displacement_path", Doubted::kFactor},
-                     {"lag", "min", 0.0, 1e5, 0.0, "first-order lag behind the temperature"},
-                     {"zero", "degC", 200.0, 500.0, kZeroCelsius_K + 20.0, "of a column: where it moves nothing"}},
+                     {"gain", "1", -1e9, 1e9, kNotGiven,
+                      "or: um (of a tilt: urad) per unit of a column that is no temperature: a force, a pressure", 0.1,
+                      "displacement_path", Doubted::kFactor},
+                     {"lag", "min", 0.0, 1e5, 0.0, "first-order lag behind what it follows"},
+                     {"zero", "degC", 200.0, 500.0, kZeroCelsius_K + 20.0,
+                      "of a column of temperatures: where it moves nothing"}},
       .timing = Timing::kInRecord,
       .change_readings = change_readings,
       .references = {{"body", {BodyKind::kNode, BodyKind::kRegion}, "", "body that it follows; `ambient`: the ambient air"}},
       .check = check,
-      .mentions = {{"column", Mention::Of::kColumn, false, "or: a recorded column of temperatures in degC"}},
+      .mentions = {{"column", Mention::Of::kColumn, false, "or: a recorded column; cutting_power and feed_x, _y, _z, too"}},
       .doubts = doubts};
 }
 

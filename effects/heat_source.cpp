@@ -11,6 +11,8 @@ namespace {
 constexpr double kMostPeriods = 10000.0;
 constexpr double kFewestWaves = 4.0;  // two or three are what any bend of a model that is wrong looks like
 constexpr double kMostWaves = 14.0;   // in the longest record; shorter ones a machine hardly shows
+constexpr int kStepsOfFading = 48;    // of an eighth of its time each: then e^-6 is left, which is left out
+constexpr double kStepOfFading = 0.125, kUsualFading = 1.0 / 6.0;  // of its time; of the longest record
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double power_W = e["power"], n0_rpm = e["at_speed"], exponent = e["exponent"];
@@ -19,6 +21,17 @@ void contribute(const Effect& e, HeatBalance& balance) {
     if (rests && u.drive.speed_rpm <= 0.0) return 0.0;
     return exponent == 0.0 ? power_W : power_W * std::pow(u.drive.speed_rpm / n0_rpm, exponent);
   };
+  if (e.has("fades")) {
+    const double step_s = 60.0 * e["fades"] * kStepOfFading, from_s = e.from_s;
+    balance.heats.push_back({e.name(), e.body(), [=](const Inputs& u) {
+                               const double k = std::floor((u.time_s - from_s) / step_s);  // a step's mean
+                               const double left =
+                                   std::exp(-k * kStepOfFading) * -std::expm1(-kStepOfFading) / kStepOfFading;
+                               return k >= 0.0 && k < kStepsOfFading ? steady(u) * left : 0.0;
+                             }});
+    for (int k = 1; k <= kStepsOfFading; ++k) balance.change_times_s.push_back(from_s + k * step_s);
+    return;
+  }
   if (!e.has("period")) {
     balance.heats.push_back({e.name(), e.body(), steady});
     return;
@@ -32,6 +45,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
 }
 
 void check(const Effect& e, const ConfigMap& in) {
+  if (e.has("fades") && e.has("period"))
+    in.fail("fades", "one of two is wanted: heat that fades, or a wave with a `period`");
   if (e.has("period")) {
     if (e.until_s >= kNever_s) in.fail("period", "a wave is cut into steps: `until` is wanted, when it ends");
     if (e.until_s - e.from_s > kMostPeriods * e["period"])
@@ -81,10 +96,32 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     of_speed.grid = {{-0.5}, {0.0}, {0.5}};
     of_speed.at_speed_rpm = s.typical_rpm;
     add("constant heat while the spindle turns", {}).added[0].words["runs"] = "while_spindle_turns";
+    const Doubt while_turning = list.back();
 
+    if (s.turns) {  // new grease that runs in, a bearing that was mounted tight
+      Doubt fading = while_turning;
+      fading.law = fmt::format("heat in proportion to speed that fades, at {:.0f} rpm", s.typical_rpm);
+      fading.added = {make_effect("heat_source", body, {{"at_speed", s.typical_rpm}, {"exponent", 1.0}})};
+      DoubtedNumber fades{.name = "fades",
+                          .unit = "min",
+                          .nominal = kUsualFading * longest_min,
+                          .prior_sd = 0.7,
+                          .step = 0.05,
+                          .is_log = true};
+      fading.added[0].set("fades", fades.nominal);
+      fading.numbers.push_back(fades);
+      fading.grid = {{-0.7}, {0.7}};
+      fading.at_speed_rpm = s.typical_rpm;
+      list.push_back(fading);
+      if (s.runs.size() > 1) {
+        fading.when = "in " + s.runs.front().name;
+        fading.added.front().in = s.runs.front().name;
+        list.push_back(std::move(fading));
+      }
+    }
     for (std::size_t run = 0; run < s.runs.size(); ++run) {
       for (const bool with_speed : {false, true}) {
-        Doubt later = list[list.size() - 1];
+        Doubt later = while_turning;
         later.law = fmt::format("{} from a time on, in {}", with_speed ? "heat in proportion to speed" : "constant heat",
                                 s.runs[run].name);
         later.added = {with_speed ? make_effect("heat_source", body, {{"at_speed", s.typical_rpm}, {"exponent", 1.0}})
@@ -123,14 +160,18 @@ EffectKind heat_source() {
       .title = "heat by a power law of speed, constant, on and off with the spindle, or in a wave",
       .law =
           "P = power (n / at_speed)^exponent while the spindle turns; exponent 0: constant, also at standstill unless it "
-          "runs while_spindle_turns; with a period: mean + that times sin(2 pi (t - delay) / period)",
+          "runs while_spindle_turns; it fades: times exp(-t / fades), in steps of an eighth of that; with a period: mean + "
+          "that times sin(2 pi (t - delay) / period)",
       .places = {Place::kRegion, Place::kSurface, Place::kNode},
-      .parameters = {{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools", 0.1, "heat_source"},
-                     {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
-                     {"exponent", "1", -1.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"},
-                     {"period", "s", 1.0, 1e7, kNotGiven, "of a wave; wants `until`"},
-                     {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
-                     {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
+      .parameters =
+          {{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools", 0.1, "heat_source"},
+           {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
+           {"exponent", "1", -1.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"},
+           {"fades", "min", 0.1, 1e5, kNotGiven,
+            "time in which the heat falls to 37 %, from the start of each record or from `from` on: grease that runs in"},
+           {"period", "s", 1.0, 1e7, kNotGiven, "of a wave; wants `until`"},
+           {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
+           {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
       .timing = Timing::kInTime,
       .contribute = contribute,
       .choices = {{"runs",

@@ -9,6 +9,9 @@
 namespace driftwright::effects {
 namespace {
 
+constexpr double kFirst_s = 1.0;    // of what begins within a record
+constexpr double kLateTrial = 1.5;  // of that of all records: it acts for a part of the time
+
 /// What it does in one of its records.
 std::vector<Effect> in_each(const Doubt& doubt) {
   std::vector<Effect> list;
@@ -20,6 +23,29 @@ std::vector<Effect> in_each(const Doubt& doubt) {
 }
 
 }  // namespace
+
+void add_from_a_time_on(const DoubtScene& scene, const Doubt& doubt, const std::string& number, double rarity,
+                        std::vector<Doubt>& list) {
+  for (std::size_t r = 0; r < scene.runs.size(); ++r) {
+    const DoubtScene::Run& run = scene.runs[r];
+    Doubt late = doubt;
+    late.law += " from a time on, in " + run.name;
+    late.added[0].in = run.name;
+    late.numbers.push_back(doubted_time(
+        number, run.length_s, [](std::span<Effect> added, double value) { added[0].from_s = std::max(kFirst_s, value); }));
+    late.trial *= kLateTrial;
+    late.rarity = rarity;
+    late.grid = time_grid(run.length_s, 8);
+    add_with_lasting(scene, r, late, list);
+  }
+}
+
+void add_changes(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list) {
+  std::vector<Doubt> in_some;
+  add_in_some_runs(scene, doubt, in_some);
+  list.insert(list.end(), in_some.begin() + 1, in_some.end());
+  add_from_a_time_on(scene, doubt, "time", 0.0, list);
+}
 
 std::set<std::string> runs_of(const Doubt& doubt) {
   std::set<std::string> names;

@@ -61,6 +61,14 @@ inline void add_in_some_runs(const DoubtScene& scene, const Doubt& doubt, std::v
   }
 }
 
+/// A doubt that begins at a time in one run, in that one alone and in all later ones, each run in turn.
+/// @param doubt   with a single effect whose numbers are set by name, which holds in all runs
+/// @param number  what its time is called
+void add_from_a_time_on(const DoubtScene& scene, const Doubt& doubt, const std::string& number, double rarity,
+                        std::vector<Doubt>& list);
+/// What was changed between two records or within one: as add_in_some_runs() and add_from_a_time_on(), without what holds in all records from their start on.
+void add_changes(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list);
+
 /// Whether a doubt can be said of some records alone: it tells of no time within one, and where it holds in some it holds alike in each.
 [[nodiscard]] bool can_be_of_some_runs(const Doubt& doubt);
 /// The records that it holds in; empty: all.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
+#include "effects/lasting.hpp"
 #include "effects/recorded_column.hpp"
 
 namespace driftwright::effects {
@@ -13,6 +14,7 @@ constexpr double kMedium_K =
     kZeroCelsius_K + 20.0;  // of an exchange with a recorded temperature: heat makes up for the rest
 constexpr double kLowestExponent = 0.1, kHighestExponent = 4.0;  // of a column, that are looked for
 constexpr double kClearlyFaster = 1.3;                           // exponent, than in proportion: else it is another gain
+constexpr double kOtherMedium_K = 20.0;                          // than the reference, a stream at most
 constexpr int kFewestLevels = 3;                                 // of a column, that tell an exponent
 
 void contribute(const Effect& e, HeatBalance& balance) {
@@ -30,7 +32,11 @@ void contribute(const Effect& e, HeatBalance& balance) {
   Exchange exchange{.name = name, .body = e.body(), .coefficient = {}, .per = Per::kTotal};
   if (e.has("opening")) {
     exchange.coefficient = [=, opening = e["opening"]](const Inputs& u) { return opening * signal(u.drive).value_or(0.0); };
-    exchange.surrounding = e.references.at("surrounding").name;
+    if (e.has("medium")) {
+      exchange.medium_K = e["medium"];
+    } else {
+      exchange.surrounding = e.references.at("surrounding").name;
+    }
     balance.exchanges.push_back(exchange);
     return;
   }
@@ -55,11 +61,13 @@ void check(const Effect& e, const ConfigMap& in) {
   if (n_given != 1) {
     in.fail("gain",
             "one of three is wanted: `gain`, W per unit of the column; `conductance`, W/K to a body as warm as the column "
-            "says; `opening`, W/K per unit of the column, to `surrounding`");
+            "says; `opening`, W/K per unit of the column, to `surrounding` or to a `medium`");
   }
   if (e["exponent"] != 1.0 && !e.has("gain")) in.fail("exponent", "it is of a `gain`");
   if (e["exponent"] != 1.0 && !e.has("at"))
     in.fail("at", "the value of the column at which `gain` holds is wanted beside `exponent`");
+  if (e.has("medium") && !e.has("opening")) in.fail("medium", "it is of an `opening`");
+  if (e.has("medium") && in.has("surrounding")) in.fail("medium", "one of two is wanted: a `surrounding` or a `medium`");
   if (e["lag"] > 0.0 && is_drive_channel(e.words.at("column")))
     in.fail("lag", "feeds and cutting power act at once; a lag is one of further columns");
 }
@@ -96,8 +104,38 @@ Doubt power_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& 
   return d;
 }
 
+/// Coolant or blown air that a valve lets in, or that comes with the cutting: its temperature is its own.
+Doubt stream_of(const Body& body, const DoubtScene& s, const DoubtScene::Column& column) {
+  const double nominal_C = s.reference_K - kZeroCelsius_K;
+  Doubt d = doubt(body, column, "stream of a medium that {} opens", "opening", "W/K per " + column.unit,
+                  0.2 * s.unknown_heat_W() / column.span);
+  d.added[0].set("medium", s.reference_K);
+  d.numbers.push_back(doubted("medium", "degC", 5.0, 0.5, nominal_C));
+  d.numbers[1].low = nominal_C - kOtherMedium_K;
+  d.numbers[1].high = nominal_C + kOtherMedium_K;
+  d.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("medium", value + kZeroCelsius_K); };
+  d.grid = {{-5.0}, {5.0}};
+  return d;
+}
+
+/// What follows a record does so by another factor in some records or from a time on: one of a heater's elements fails, a lid no longer shuts.
+void doubt_changes(const DoubtScene& s, const Effect& e, std::vector<Doubt>& list) {
+  const HeatBalance of = heat_balance({e});
+  Doubt other{.finding = "recorded_drive",
+              .where = where_of(e),
+              .law = "another factor on what is written",
+              .added = {},
+              .numbers = {doubted_factor()}};
+  const std::string& law = of.exchanges.empty() ? of.heats.front().name : of.exchanges.front().name;
+  other.added = {make_effect("changed_law", Place::kLaw, law)};
+  add_changes(s, other, list);
+}
+
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
+  for (const Effect& e : s.own) {
+    if (e.kind->key == "recorded_drive" || e.kind->key == "cutting_heat") doubt_changes(s, e, list);
+  }
   for (const DoubtScene::Column& column : s.columns) {
     for (const Body& body : s.bodies) {
       const auto is_one_of = [&](const std::vector<Body>& of) { return std::find(of.begin(), of.end(), body) != of.end(); };
@@ -112,7 +150,9 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       }
       list.push_back(doubt(body, column, "heat in proportion to {}", "gain", "W per " + column.unit, gain_sd(s, column)));
       if (column.unit == "K") list.back().numbers[0].low = -1e300;  // of a difference
-      if (column.unit == "W" || column.unit == "K" || body.kind != BodyKind::kNode) continue;
+      if (column.unit == "K" || body.kind != BodyKind::kNode) continue;
+      list.push_back(stream_of(body, s, column));
+      if (column.unit == "W") continue;
       list.push_back(doubt(body, column, "exchange with the ambient that {} opens", "opening", "W/K per " + column.unit,
                            0.2 * s.unknown_heat_W() / column.span));
     }
@@ -127,7 +167,8 @@ EffectKind recorded_drive() {
           .title = "heat or exchange by a recorded column: a heater's power, the sun, a bed, a valve",
           .law =
               "P = gain c, with another exponent P = gain |c| |c / at|^(exponent - 1); or Q = conductance (T - c), c in "
-              "degC; or Q = opening c (T - T_surrounding). c: value of the column in its unit, from each row on; with a "
+              "degC; or Q = opening c (T - T_surrounding), T_surrounding the medium's where one is stated. c: value of the "
+              "column in its unit, from each row on; with a "
               "lag: lag dx/dt = c - x for c, settled at the first row",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
           .parameters = {{"gain", "1", -1e9, 1e9, kNotGiven, "W per unit of the column", 0.1, "recorded_drive",
@@ -139,6 +180,8 @@ EffectKind recorded_drive() {
                           "recorded_drive", Doubted::kFactor},
                          {"opening", "1", 0.0, 1e9, kNotGiven, "or: W/K per unit of the column, to the surrounding", 0.1,
                           "recorded_drive", Doubted::kFactor},
+                         {"medium", "degC", 200.0, 500.0, kNotGiven,
+                          "beside an opening, instead of a surrounding: temperature of the air or coolant that it lets in"},
                          {"lag", "min", 0.0, 1e5, 0.0, "first-order lag behind the column"}},
           .timing = Timing::kInTime,
           .contribute = contribute,

@@ -120,9 +120,11 @@ Inputs inputs_at(const FullSystem& system, const ReductionDemand& demand, const 
     ambient += c[static_cast<Eigen::Index>(e)] * exchange.to_ambient;
     if (exchange.offset.size() > 0) offset += c[static_cast<Eigen::Index>(e)] * exchange.offset;
   }
-  for (const Eigen::VectorXd& load : {Eigen::VectorXd(demand.ambient_K * ambient), offset}) {
-    if (load.cwiseAbs().maxCoeff() > 0.0) loads.push_back(load);
-  }
+  // As many at each set of coefficients, though all of them be zero there: a pump that stands.
+  const auto any = [&](const auto& drives) { return std::any_of(system.exchanges.begin(), system.exchanges.end(), drives); };
+  if (demand.ambient_K > 0.0 && any([](const auto& e) { return (e.to_ambient.array() != 0.0).any(); }))
+    loads.push_back(demand.ambient_K * ambient);
+  if (any([](const auto& e) { return (e.offset.array() != 0.0).any(); })) loads.push_back(offset);
   Inputs inputs;
   if (start.cwiseAbs().maxCoeff() > 0.0) {
     inputs.start = static_cast<Eigen::Index>(loads.size());

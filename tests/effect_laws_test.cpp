@@ -74,6 +74,11 @@ TEST(RecordedDrive, ExchangesWithABodyAsWarmAsTheColumnSays) {
       balance_of("{type: recorded_drive, node: air, column: valve_percent, opening: 0.2, surrounding: tank}");
   EXPECT_DOUBLE_EQ(valve.exchanges.at(0).coefficient({.drive = {.signals = {{"valve_percent", 40.0}}}}), 8.0);
   EXPECT_EQ(valve.exchanges.at(0).surrounding, "tank");
+  EXPECT_FALSE(valve.exchanges.at(0).medium_K);
+  const HeatBalance stream =
+      balance_of("{type: recorded_drive, node: air, column: valve_percent, opening: 0.2, medium: 16 degC}");
+  EXPECT_DOUBLE_EQ(stream.exchanges.at(0).coefficient({.drive = {.signals = {{"valve_percent", 40.0}}}}), 8.0);
+  EXPECT_DOUBLE_EQ(stream.exchanges.at(0).medium_K.value(), 289.15);
 }
 
 TEST(RecordedDrive, TakesChannelsOfTheDriveToo) {
@@ -491,6 +496,39 @@ TEST(Coolant, WithoutATankIsHeldAtItsSetPoint) {
   EXPECT_NEAR(b.exchanges[0].coefficient(at(0.0)), 400.0 * (1.0 - std::exp(-1.0)), 1e-9);  // W = 0.1 L/s x 4000 J/(L K)
 }
 
+TEST(ChangedLaw, WarmsTheMediumOfACircuit) {  // Q = G (T - T_medium): with 3 K more G 3 K of heat
+  const std::string circuit =
+      "{type: coolant, region: r, flow: 6 L/min, medium_heat_capacity: 4000 J/(L K), passage_conductance: 400 W/K, "
+      "set_point: 18 degC}";
+  const HeatBalance b = heat_balance(
+      {read(circuit), read("{type: changed_law, law: coolant r, warmer: 3 K, factor: 2, from: 5 min, in: monday}")});
+  ASSERT_EQ(b.heats.size(), 1u);
+  const double twice_W_K = 800.0 * (1.0 - std::exp(-1.0));
+  EXPECT_NEAR(b.exchanges.at(0).coefficient(at(0.0, 300.0, "monday")), twice_W_K, 1e-9);
+  EXPECT_NEAR(b.heats[0].power_W(at(0.0, 300.0, "monday")), 3.0 * twice_W_K, 1e-9);
+  EXPECT_EQ(b.heats[0].power_W(at(0.0, 299.0, "monday")), 0.0);
+  EXPECT_EQ(b.heats[0].power_W(at(0.0, 300.0, "tuesday")), 0.0);
+  EXPECT_EQ(b.heats[0].body, region("r"));
+}
+
+TEST(HeatSource, ThatFadesGivesItsPowerTimesItsTime) {
+  const HeatBalance b =
+      balance_of("{type: heat_source, node: n, power: 8 W, at_speed: 1000 rpm, exponent: 1, fades: 40 min, from: 5 min}");
+  const Law& power_W = b.heats.at(0).power_W;
+  ASSERT_GE(b.change_times_s.size(), 48u);
+  double energy_J = 0.0;
+  std::vector<double> times_s = b.change_times_s;
+  std::sort(times_s.begin(), times_s.end());
+  for (std::size_t i = 0; i + 1 < times_s.size(); ++i) {
+    const double middle_s = 0.5 * (times_s[i] + times_s[i + 1]), length_s = times_s[i + 1] - times_s[i];
+    energy_J += power_W(at(500.0, middle_s)) * length_s;
+    EXPECT_NEAR(power_W(at(500.0, middle_s)), 4.0 * std::exp(-(middle_s - 300.0) / 2400.0), 0.004);
+  }
+  EXPECT_NEAR(energy_J, 4.0 * 2400.0 * (1.0 - std::exp(-6.0)), 1e-6);
+  EXPECT_EQ(power_W(at(500.0, 299.0)), 0.0);
+  EXPECT_EQ(power_W(at(0.0, 400.0)), 0.0);
+}
+
 TEST(FilmsByFormula, TakeAFactor) {
   const std::string air = "{type: rotating_cylinder, surface: s, diameter: 100 mm";
   EXPECT_NEAR(law_of({air + ", factor: 1.7}"})(at(2000.0)), 1.7 * law_of({air + "}"})(at(2000.0)), 1e-12);
@@ -535,6 +573,11 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: heat_source, region: n, power: 1 W, from: 20 s, until: 20 s}", "behind `from`"},
         Bad{"{type: heat_source, region: n, power: 1 W, period: 20 min}", "`until` is wanted"},
         Bad{"{type: heat_source, region: n, power: 1 W, period: 1 min, until: 1e7 s}", "at most 10000 periods"},
+        Bad{"{type: heat_source, region: n, power: 1 W, fades: 3 min, period: 1 min, until: 1 h}", "one of two is wanted"},
+        Bad{"{type: recorded_drive, node: n, column: a_1, gain: 1, medium: 20 degC}", "of an `opening`"},
+        Bad{"{type: recorded_drive, node: n, column: a_1, opening: 1, medium: 20 degC, surrounding: b}",
+            "one of two is wanted"},
+        Bad{"{type: changed_law, law: coolant a}", "nothing is changed"},
         Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), from: 20 s, until: 10 s}", "behind `from`"},
         Bad{"{type: link, node: n, to: ambient, conductance: 1 W/K, from: 20 s, until: 10 s}", "behind `from`"},
         Bad{"{type: convection, surface: s, film: 1 W/(m^2 K), from: -1 s}", "outside what is allowed"},

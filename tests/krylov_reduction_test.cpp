@@ -89,6 +89,20 @@ TEST(KrylovReduction, BasisIsOrthonormalInMass) {
   EXPECT_LT((gram - Eigen::MatrixXd::Identity(basis.cols(), basis.cols())).cwiseAbs().maxCoeff(), 1e-10);
 }
 
+// A circuit that runs while the spindle turns: at rest its exchange is zero, and with it all that its medium drives.
+TEST(KrylovReduction, HoldsWhereAnExchangeWithAMediumIsSwitchedOff) {
+  effects::HeatBalance balance = fixtures::two_blocks_balance();
+  balance.exchanges.push_back(effects::make_link(
+      "coolant", effects::region("b"), [](const effects::Inputs& u) { return u.drive.speed_rpm > 0.0 ? 8.0 : 0.0; }));
+  balance.exchanges.back().medium_K = 280.0;
+  const FullSystem system = fixtures::two_blocks(2, balance);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
+  const Reduction reduction =
+      reduce(system, reduction_demand(balance, {&kCycle}, kRampingAmbient, 293.15), zero, {.temperature_K = 5e-3});
+  const Eigen::MatrixXd exact = complete(system, zero).outputs;
+  EXPECT_LT((run_in(system, reduction.basis, zero).outputs - exact).cwiseAbs().maxCoeff(), 5e-3);
+}
+
 TEST(ReductionDemand, SpansDrivesAndTemperaturesRoundedOutwards) {
   effects::HeatBalance balance = fixtures::two_blocks_balance();
   // A link that grows with the temperature of block a over the ambient: 1 W/K per K.

@@ -47,6 +47,9 @@ cyclograms:
 solver: {output_interval: 1 min}
 )";
 
+constexpr const char* kCooledHead =
+    "{type: coolant, node: head, flow: 4 L/min, passage_conductance: 9 W/K, set_point: 18 degC}";
+
 struct Cause {
   const char* name;
   std::vector<std::string> entries;  ///< of the truth
@@ -54,6 +57,7 @@ struct Cause {
   const char* where;
   const char* law;  ///< part of it
   double size, tolerance;
+  const char* believed = "";  ///< an effect of both
 };
 
 /// What is said of the file is what it would hold: numbers of written causes are those that are written, and what is left out says why and who may have taken it up.
@@ -80,11 +84,12 @@ class ACause : public testing::TestWithParam<Cause> {};
 
 TEST_P(ACause, IsFoundInAllItsRecordsAtOnceAndWritten) {
   const Cause& cause = GetParam();
-  std::string truth = kMachine;
+  const std::string plain = with_effect(kMachine, cause.believed);
+  std::string truth = plain;
   for (const std::string& e : cause.entries) truth = with_effect(truth, e);
   const std::vector<std::string> records =
       noisy_records(write_file("truth.yaml", truth), std::string(cause.name) + "_", 60.0, 0.03, 0.2);
-  const Beside beside(write_file("plain.yaml", kMachine), records);
+  const Beside beside(write_file("plain.yaml", plain), records);
   const Diagnosis d = beside.diagnosed();
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   expect_what_is_written_is_said(d);
@@ -218,6 +223,46 @@ INSTANTIATE_TEST_SUITE_P(
               "grows with speed",
               1.5,
               0.4},
+        Cause{"a_chiller_that_was_turned_up_for_a_day",
+              {"{type: changed_law, law: coolant head, warmer: 2 K, in: tuesday}"},
+              "coolant",
+              "head",
+              "another set point, in a_chiller_that_was_turned_up_for_a_day_tuesday",
+              20.0,
+              0.2,
+              kCooledHead},
+        Cause{"a_chiller_that_fails",
+              {"{type: changed_law, law: coolant head, warmer: 4 K, from: 120 min, in: tuesday}",
+               "{type: changed_law, law: coolant head, warmer: 4 K, in: friday}"},
+              "coolant",
+              "head",
+              "another set point from a time on",
+              22.0,
+              0.3,
+              kCooledHead},
+        Cause{"a_filter_that_clogs",
+              {"{type: changed_law, law: coolant head, factor: 0.5, in: friday}"},
+              "coolant",
+              "head",
+              "another exchange with its medium, in a_filter_that_clogs_friday",
+              0.5,
+              0.05,
+              kCooledHead},
+        Cause{"grease_that_runs_in",
+              {"{type: heat_source, node: head, power: 60 W, at_speed: 1000 rpm, exponent: 1, fades: 45 min, in: monday}"},
+              "heat_source",
+              "head",
+              "that fades",
+              60.0,
+              9.0},
+        Cause{"coolant_that_runs_with_the_spindle",
+              {"{type: coolant, node: head, flow: 100 L/min, passage_conductance: 5 W/K, set_point: 14 degC, runs: "
+               "while_spindle_turns}"},
+              "coolant",
+              "head",
+              "which runs while the spindle turns",
+              5.0,
+              0.5},
         Cause{"another_oil",
               {"{type: run_state, factor: 1.6, in: monday}", "{type: run_state, factor: 1.6, in: friday}"},
               "run_state",

@@ -292,6 +292,19 @@ TEST_F(MeasuredRunTest, LeavesOutASaturatedSensor) {  // clipped at 24 degC for 
   EXPECT_THAT(told(run), HasSubstr("at its limit of 24 degC: saturated"));
 }
 
+// Steps of 0.25 K that noise carries it across in most rows; a rest at the lowest reading is no longer than another one at a middle one.
+TEST_F(MeasuredRunTest, KeepsASensorThatRestsAtItsLowestReading) {
+  std::string text = "time_s,speed_rpm,t_front_degC,nose_z_um\n";
+  for (int i = 0; i < 200; ++i) {
+    const double moving_C = 20.0 + 0.25 * std::round(20.0 * std::sin(0.05 * i) + 3.0 * std::sin(2.1 * i));
+    const double t_C = i >= 100 && i < 120 ? 14.0 : i >= 150 && i < 162 ? 12.0 : moving_C;
+    text += fmt::format("{},500,{:.2f},{}\n", 60 * i, t_C, 1.01 * i * i);
+  }
+  const MeasuredRun run = read(text);
+  ASSERT_NE(run.find("t_front"), nullptr) << told(run);
+  EXPECT_THAT(told(run), Not(HasSubstr("saturated")));
+}
+
 TEST_F(MeasuredRunTest, KnowsTheStepOfAnInstrumentWithAnOffset) {  // 1/16 K and a calibration by 0.13 K
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 90; ++i) text += fmt::format("{},500,{:.4f}\n", 60 * i, 20.13 + 0.0625 * (i < 50 ? 0 : (i - 50) / 3));

@@ -94,6 +94,7 @@ TEST(MountShift, CreepsWithATimeConstant) {
 TEST(DisplacementPath, FollowsABodyTheAmbientOrAColumn) {
   const auto z_um = [](const std::string& keys) -> Eigen::MatrixXd {
     Cyclogram cyclogram = kCyclogram;
+    cyclogram.sections = {{300, {}}, {700, {.feed_m_s = {0.02, 0, 0}}}};  // 1200 mm/min
     cyclogram.columns = {{"bed", "degC", {{0, 300}, {25, 40}}}};
     const Effect e = read("{type: displacement_path, displacement: z, " + keys + "}");
     Eigen::MatrixXd outputs(2, 6);
@@ -106,6 +107,9 @@ TEST(DisplacementPath, FollowsABodyTheAmbientOrAColumn) {
   expect_row(z_um("body: ambient, sensitivity: -2 um/K"), 0, {0, -1.2, -3, -6, -12, -18}, 1e-12);
   expect_row(z_um("column: bed, zero: 22 degC, sensitivity: 1 um/K"), 0, {3, 3, 3, 18, 18, 18},
              1e-12);  // held from row to row
+  expect_row(z_um("column: bed, gain: 0.5"), 0, {12.5, 12.5, 12.5, 20, 20, 20},
+             1e-12);  // what the column says, as it stands
+  expect_row(z_um("column: feed_x, gain: 0.002"), 0, {0, 0, 0, 2.4, 2.4, 2.4}, 1e-12);
   // The ambient rises by 0.01 K/s from its start on: 100 s behind it is 0.01 (t - 100 (1 - exp(-t/100)))
   const auto behind = [](double t_s) { return 0.01 * (t_s - 100.0 * (1.0 - std::exp(-t_s / 100.0))); };
   expect_row(z_um("body: ambient, sensitivity: 1 um/K, lag: 1.6666666666666667 min"), 0,
@@ -121,6 +125,10 @@ TEST(DisplacementPath, WantsOneThingToFollow) {
               ThrowsMessage<InputError>(HasSubstr("one of two")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, column: feed_x, sensitivity: 1 um/K}"); },
               ThrowsMessage<InputError>(HasSubstr("of the drive")));
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, column: a_N, gain: 1, sensitivity: 1 um/K}"); },
+              ThrowsMessage<InputError>(HasSubstr("one of them")));
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, body: a, gain: 1}"); },
+              ThrowsMessage<InputError>(HasSubstr("of a `column`")));
 }
 
 TEST(MountShift, IsAStepFromItsTimeOn) {

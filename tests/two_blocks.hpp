@@ -18,10 +18,10 @@ inline effects::HeatBalance two_blocks_balance() {
   return balance;
 }
 
-inline solver::FullSystem two_blocks(int n) {
+inline solver::FullSystem two_blocks(int n, const effects::HeatBalance& balance = two_blocks_balance()) {
   const mesh::Mesh mesh = two_boxes({{0, 0, 0}, {0.05, 0.1, 0.1}, {n, n, n}, mesh::CellShape::kTet10},
                                     {{0.05, 0, 0}, {0.3, 0.1, 0.1}, {3 * n, n, n}, mesh::CellShape::kTet10}, "a.x1", "b.x0");
-  solver::FullSystem system = solver::assemble_heat(mesh, {steel(), steel()}, two_blocks_balance());
+  solver::FullSystem system = solver::assemble_heat(mesh, {steel(), steel()}, balance);
   observe_unknowns(system, {node_at(mesh, {0, 0, 0}), node_at(mesh, {0.35, 0.1, 0.1})});
   return system;
 }

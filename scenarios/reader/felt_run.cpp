@@ -29,8 +29,11 @@ std::vector<std::string> names_of(const Entries& entries) {
 /// `tilt` goes with tilts, any other amount with displacements.
 void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
   const std::vector<effects::Parameter>& parameters = effect.kind->parameters;
-  const bool knows_tilt = std::any_of(parameters.begin(), parameters.end(), [](const auto& p) { return p.name == "tilt"; });
-  if (!knows_tilt || effect.has("tilt") == is_tilt) return;
+  const auto knows = [&](const char* name) {
+    return std::any_of(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
+  };
+  if (!knows("tilt") || effect.has("tilt") == is_tilt) return;
+  if (knows("gain") && effect.has("gain")) return;  // in um or urad, as its displacement is
   throw InputError(effect.where,
                    is_tilt ? fmt::format("'{}' is a tilt; {} wants `tilt` in urad there", effect.place, effect.kind->key)
                            : fmt::format("'{}' is a displacement, no tilt; `tilt` does not fit", effect.place));
@@ -80,9 +83,12 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram) {
                       known.empty() ? "it has none beside the drive" : fmt::format("it has {}", fmt::join(known, ", ")),
                       name));
     }
-    if (effect.place_kind == effects::Place::kDisplacement && column->unit != "degC")
-      throw InputError(effect.where, fmt::format("{} follows temperatures in degC; the column '{}' is in {}", effect.name(),
-                                                 column->name, column->unit));
+    const bool wants_temperature = effect.place_kind == effects::Place::kDisplacement && !effect.has("gain");
+    if (wants_temperature && column->unit != "degC")
+      throw InputError(effect.where,
+                       fmt::format("{} follows temperatures in degC by its `sensitivity`; the column '{}' is in "
+                                   "{}, which `gain` (um per {}) is for",
+                                   effect.name(), column->name, column->unit, column->unit));
   });
 }
 
