@@ -17,7 +17,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kFewestReadings = 150;    // of all channels together: below, a verdict would be guessing
+constexpr int kFewestReadings = 60;    // of all channels together: below, a verdict would be guessing
 constexpr double kUnnamed = 3.0;        // nats by which one cause without a name must be better than those with one
 constexpr double kBeyondBelief = 2.0;   // mean square of how far the scenario's numbers moved, in their sigmas
 constexpr double kMostWork = 2e7;       // some ten seconds

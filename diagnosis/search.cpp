@@ -13,6 +13,7 @@
 #include "diagnosis/event_candidates.hpp"
 #include "diagnosis/faint_cause.hpp"
 #include "diagnosis/no_solution.hpp"
+#include "diagnosis/pairs.hpp"
 #include "diagnosis/rivals.hpp"
 #include "diagnosis/some_records.hpp"
 
@@ -35,6 +36,7 @@ constexpr double kSame = 6.0;  // squares of whitened readings: what noise makes
 constexpr double kHopeless = 0.5, kHope = 8.0;
 constexpr std::size_t kTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
+constexpr std::size_t kMostPairs = 6;  // fitted in full
 
 constexpr double kRareOrChosen = 5.0;  // nats of a claim's price: several windows that were chosen to make it
 
@@ -246,7 +248,8 @@ Bars bars_of(const Chance& chance, const SearchOptions& options) {
   const double suspected = chance.gain_at(options.wrongly_suspected), named = chance.gain_at(options.wrongly_named);
   Bars bars{.suspected = {},
             .named = std::max(named, options.least_named),
-            .named_beside = std::max(named, options.least_named_beside)};
+            .named_beside = std::max(named, options.least_named_beside),
+            .named_timed = std::max(named, options.least_named_timed)};
   for (double least : options.least_gain) bars.suspected.push_back(std::max(suspected, least));
   return bars;
 }
@@ -328,6 +331,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     }
     return any;
   };
+  std::vector<ScoredPair> pairs;
   for (int round = 0; static_cast<int>(best.size()) < options.most_effects && !listener.wants_end(); ++round) {
     listener.begin(fmt::format("weighing {} candidates{}", candidates.size(),
                                best.empty() ? "" : fmt::format(" beside {}", best.size())));
@@ -342,6 +346,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       std::stable_sort(additions.begin(), additions.end(),
                        [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
     }
+    if (round == 0) pairs = best_pairs(candidates, columns, projection_of(fitter, {}, weighed_at), kMostPairs);
     Hypothesis tried;
     Fit tried_fit;
     double value = -1e300;
@@ -374,6 +379,23 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
       best_value = evidence(best_fit, best) - laws_price(candidates, best);
     }
     exchange();
+  }
+  if (!best.empty() && options.most_effects > 1 && !listener.wants_end()) {
+    listener.begin("weighing pairs of causes");
+    std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
+    for (const ScoredPair& p : pairs) {
+      jobs.emplace_back(with(with({}, claim_of(candidates, p.first)), claim_of(candidates, p.second)),
+                        joined(p.first.start, p.second.start));
+    }
+    std::vector<Fit> fits = fit_all(fitter, jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (fits[i].prediction.empty()) continue;
+      const double value = evidence(fits[i], jobs[i].first) - laws_price(candidates, jobs[i].first);
+      if (!(value > best_value + kBetter)) continue;
+      best = std::move(jobs[i].first);
+      best_fit = std::move(fits[i]);
+      best_value = value;
+    }
   }
   for (int turn = 0; turn < 2 && !best.empty() && !listener.wants_end(); ++turn) {
     listener.begin("settling the numbers");
@@ -452,7 +474,10 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
   }
   for (Finding& f : result.findings) {
     const bool wants_more = best.size() > 1 || f.claim.price_nats > kRareOrChosen;
-    f.is_named = !f.faint_chance && f.log_evidence_gain >= (wants_more ? result.bars.named_beside : result.bars.named);
+    const bool is_timed =
+        std::any_of(f.claim.knobs.begin(), f.claim.knobs.end(), [](const Knob& k) { return k.is_time && !k.is_jump(); });
+    const double bar = is_timed ? result.bars.named_timed : wants_more ? result.bars.named_beside : result.bars.named;
+    f.is_named = !f.faint_chance && f.log_evidence_gain >= bar;
   }
   result.candidates = std::move(candidates);
   result.hypothesis = std::move(best);

@@ -28,16 +28,19 @@ struct SearchOptions {
   /// Evidence [nats] that a second, third, ... claim must bring at least, beyond the logarithm of how many candidates there are: chance is judged for machines
   /// without fault, a fault that is not quite of a law of the catalogue leaves something, and few machines are wrong in three ways.
   std::vector<double> least_gain = {0.5, 3.0, 12.0};
-  double least_named = 4.0;            ///< nor anything below, however little chance has to offer: it is even odds
-  double least_named_beside = 8.0;     ///< one of several is not named below, nor one whose times were chosen to make it
-  int refits = 16;                     ///< candidates of each round that are fitted in full
+  double least_named = 4.0;         ///< nor anything below, however little chance has to offer: it is even odds
+  double least_named_beside = 8.0;  ///< one of several is not named below, nor one whose windows were chosen to make it
+  double least_named_timed =
+      12.0;         ///< nor one of heat or exchange that begins or ends at a time of its own: it bends to what it is not
+  int refits = 16;  ///< candidates of each round that are fitted in full
   std::set<std::string> without = {};  ///< keys of effects that are not looked for
 };
 
 /// What the evidence of a claim must reach [nats, the price of the number of candidates paid]: what chance has to offer, or what is asked for at least.
 struct Bars {
   std::vector<double> suspected;           ///< the first claim, a second one beside it, a third
-  double named = 0.0, named_beside = 0.0;  ///< the only claim; one of several, or one whose times were chosen to make it
+  double named = 0.0, named_beside = 0.0;  ///< the only claim; one of several, or one whose windows were chosen to make it
+  double named_timed = 0.0;                ///< one of heat or exchange that begins or ends at a time of its own
 };
 [[nodiscard]] Bars bars_of(const Chance& chance, const SearchOptions& options);
 

@@ -1,22 +1,41 @@
 #include <algorithm>
 
 #include "effects/doubt.hpp"
+#include "effects/run_on.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 constexpr std::size_t kFewBodies = 12;  // up to so many, any two may be joined; beyond, those that a third one joins already
 constexpr double kTrial = 0.1;          // of a typical conductance
+constexpr double kUsualRunOn_min = 5.0;
+
+bool goes_with_spindle(const Effect& e) {
+  return e.words.at("runs") == "while_spindle_turns";
+}
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double conductance_W_K = e["conductance"];
   const std::string to = e.references.at("to").name;
-  balance.exchanges.push_back(make_link(
-      e.name() + " - " + to, e.body(), [=](const Inputs&) { return conductance_W_K; }, to));
+  Law conductance([=](const Inputs&) { return conductance_W_K; });
+  if (goes_with_spindle(e)) {
+    conductance.value = [=, turns = turns_or_has(60.0 * e["runs_on"])](const Inputs& u) {
+      return turns(u.drive) ? conductance_W_K : 0.0;
+    };
+  }
+  balance.exchanges.push_back(make_link(e.name() + " - " + to, e.body(), std::move(conductance), to));
+}
+
+void change_drive(const Effect& e, DriveChange& change) {
+  if (!goes_with_spindle(e) || !(e["runs_on"] > 0.0)) return;
+  change.drive.push_back(
+      [run_on_s = 60.0 * e["runs_on"]](const Cyclogram& recorded) { return with_run_on(recorded, run_on_s); });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.body() == e.references.at("to")) in.fail("to", "a link joins two bodies");
+  if (e["runs_on"] > 0.0 && !goes_with_spindle(e))
+    in.fail("runs_on", "it is of what goes with the spindle: `runs: while_spindle_turns`");
 }
 
 /// Air that films lie in. Regions meet it by their surfaces' films, which are doubted as such.
@@ -30,7 +49,30 @@ bool has_common_neighbour(const DoubtScene& s, const Body& a, const Body& b) {
                      [&](const Body& c) { return !(c == a) && !(c == b) && are_joined(s, a, c) && are_joined(s, b, c); });
 }
 
-/// A path between two bodies that nothing joins: nodes with each other, with the ambient, and with regions.
+/// A fan that goes with the spindle, and may go on for a while when that has stopped.
+void doubt_fan(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) {
+  const double typical_W_K = s.typical_conductance_W_K();
+  Doubt fan{.finding = "forced_convection",
+            .where = {},
+            .law = "a fan that runs while the spindle turns",
+            .added = {make_effect("link", body, {{"conductance", 0.0}})},
+            .numbers = {doubted("conductance", "W/K", 2.0 * typical_W_K, 0.05 * typical_W_K)},
+            .trial = kTrial * typical_W_K};
+  fan.numbers[0].low = 0.0;
+  fan.added[0].references["to"] = ambient_node();
+  fan.added[0].words["runs"] = "while_spindle_turns";
+  fan.where = where_of(fan.added[0]);
+  list.push_back(fan);
+  fan.law += " and some minutes more";
+  DoubtedNumber runs_on{
+      .name = "runs_on", .unit = "min", .nominal = kUsualRunOn_min, .prior_sd = 1.0, .step = 0.1, .is_log = true};
+  fan.added[0].set("runs_on", runs_on.nominal);
+  fan.numbers.push_back(runs_on);
+  fan.grid = {{-1.0}, {0.0}, {1.0}};
+  list.push_back(std::move(fan));
+}
+
+/// A path between two bodies that nothing joins: nodes with each other, with the ambient, and with regions; and fans.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double typical_W_K = s.typical_conductance_W_K();
   std::vector<Doubt> list;
@@ -58,6 +100,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     }
     // A region loses its heat to the ambient by films.
     if (is_node && !are_joined(s, from, ambient_node())) add(from, ambient_node());
+    if (is_node && s.starts_and_stops) doubt_fan(s, from, list);
   }
   return list;
 }
@@ -67,12 +110,18 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind body_link() {
   return {.key = "link",
           .title = "conductance between a body and a lumped node or the ambient",
-          .law = "Q = conductance (T - T_to), spread evenly over the region or surface",
+          .law =
+              "Q = conductance (T - T_to), spread evenly over the region or surface; of a fan, while the spindle turns and "
+              "for runs_on after it has stopped",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
-          .parameters = {{"conductance", "W/K", 0.0, 1e9, {}, "total conductance", 0.1, "contact"}},
+          .parameters = {{"conductance", "W/K", 0.0, 1e9, {}, "total conductance", 0.1, "contact"},
+                         {"runs_on", "min", 0.0, 1e4, 0.0, "for how long a fan runs on when the spindle has stopped"}},
           .timing = Timing::kInTime,
           .contribute = contribute,
+          .change_drive = change_drive,
           .references = {{"to", {BodyKind::kNode}, {}, "lumped node at the other end, or ambient"}},
+          .choices =
+              {{"runs", {"always", "while_spindle_turns"}, "always", "when it exchanges: a fan that goes with the spindle"}},
           .check = check,
           .doubts = doubts,
           .exchange_finding = "contact"};

@@ -10,10 +10,14 @@ constexpr double kAmple_L_min = 100.0;               // of a circuit that is dou
 constexpr double kColder_K = 10.0, kWarmer_K = 3.0;  // than the reference, its medium at most
 constexpr double kSetPoint_K = 2.0;                  // 1 sigma of what somebody turns a chiller by
 
+/// Medium that enters at its temperature and runs along a wall of one temperature takes so much for each K between the two.
+double passage_at(const Effect& e, double flow_L_min) {
+  const double stream_W_K = flow_L_min / 60.0 * e["medium_heat_capacity"];  // L/s times J/(L K)
+  return -stream_W_K * std::expm1(-e["passage_conductance"] / stream_W_K);
+}
+
 void contribute(const Effect& e, HeatBalance& balance) {
-  const double stream_W_K = e["flow"] / 60.0 * e["medium_heat_capacity"];  // L/s times J/(L K)
-  // Medium that enters at its temperature and runs along a wall of one temperature leaves it by this much of the way.
-  const double passage_W_K = -stream_W_K * std::expm1(-e["passage_conductance"] / stream_W_K);
+  const double passage_W_K = passage_at(e, e["flow"]);
   const bool with_spindle = e.words.at("runs") == "while_spindle_turns";
   const auto while_running = [=](double value) {
     return [=](const Inputs& u) { return with_spindle && !(u.drive.speed_rpm > 0.0) ? 0.0 : value; };
@@ -55,7 +59,7 @@ void check(const Effect& e, const ConfigMap& in) {
   }
 }
 
-/// A circuit that is written: its chiller set otherwise, or its exchange another one, in some records or from a time on.
+/// A circuit that is written: its chiller set otherwise, or its flow another one, in some records or from a time on.
 void doubt_circuit(const DoubtScene& s, const Effect& circuit, std::vector<Doubt>& list) {
   const double written_C = circuit["set_point"] - kZeroCelsius_K;
   DoubtedNumber set_point = doubted("set_point", "degC", kSetPoint_K, 0.1 * kSetPoint_K, written_C);
@@ -69,8 +73,13 @@ void doubt_circuit(const DoubtScene& s, const Effect& circuit, std::vector<Doubt
               .numbers = {set_point},
               .trial = 0.25 * kSetPoint_K};
   add_changes(s, other, list);
-  other.law = "another exchange with its medium";
-  other.numbers = {doubted_factor()};
+  other.law = "another flow";
+  DoubtedNumber flow{
+      .name = "flow", .unit = "L/min", .nominal = circuit["flow"], .prior_sd = kFactorSd, .step = 0.05, .is_log = true};
+  flow.set = [circuit](std::span<Effect> added, double value) {
+    for (Effect& e : added) e.set("factor", passage_at(circuit, value) / passage_at(circuit, circuit["flow"]));
+  };
+  other.numbers = {flow};
   other.trial = kFactorTrial;
   add_changes(s, other, list);
 }

@@ -23,6 +23,7 @@ struct DoubtScene {
     std::string name;
     double length_s = 0.0;
     bool has_ambient = false;  ///< its temperature was recorded
+    double row_s = 0.0;        ///< between two rows, as a rule
   };
   std::vector<Run> runs;
   struct Displacement {

@@ -260,6 +260,13 @@ DriveChange drive_change(const std::vector<Effect>& effects, const std::string& 
   return change;
 }
 
+bool changes_drive(const Effect& effect) {
+  if (!effect.kind->change_drive) return false;
+  DriveChange change;
+  effect.kind->change_drive(effect, change);
+  return !change.drive.empty() || !change.ambient.empty();
+}
+
 ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string& run) {
   ReadingChain chain;
   for (const Effect& effect : effects) {

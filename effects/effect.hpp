@@ -40,7 +40,7 @@ struct Parameter {
   double scatter = 0.0;
   std::string finding = {};  ///< key of the effect that a value far outside its scatter is called
   Doubted doubted = Doubted::kNo;
-  double shift_sd = 0.0;  ///< 1 sigma of a doubted shift, in `unit`
+  double shift_sd = 0.0;    ///< 1 sigma of a doubted shift, in `unit`
   bool is_of_body = false;  ///< calibrated by a factor on the heat capacity of its place, which is known to kBodyScatter
 };
 /// Value of a parameter that was left out; Effect::has() asks for it.
@@ -190,6 +190,8 @@ struct Effect {
 /// What it does to the recorded drive and ambient, and to readings, during a cyclogram. @param run  its name; "" for none
 [[nodiscard]] DriveChange drive_change(const std::vector<Effect>& effects, const std::string& run);
 [[nodiscard]] ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string& run);
+/// Whether an effect changes what is recorded of the drive or the ambient.
+[[nodiscard]] bool changes_drive(const Effect& effect);
 /// Whether some effect changes what instruments say, in any cyclogram.
 [[nodiscard]] bool has_reading_effects(const std::vector<Effect>& effects);
 /// And to materials (one entry an effect).

@@ -40,10 +40,14 @@ void add_from_a_time_on(const DoubtScene& scene, const Doubt& doubt, const std::
   }
 }
 
-void add_changes(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list) {
+void add_between_records(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list) {
   std::vector<Doubt> in_some;
   add_in_some_runs(scene, doubt, in_some);
   list.insert(list.end(), in_some.begin() + 1, in_some.end());
+}
+
+void add_changes(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list) {
+  add_between_records(scene, doubt, list);
   add_from_a_time_on(scene, doubt, "time", 0.0, list);
 }
 

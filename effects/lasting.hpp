@@ -66,7 +66,9 @@ inline void add_in_some_runs(const DoubtScene& scene, const Doubt& doubt, std::v
 /// @param number  what its time is called
 void add_from_a_time_on(const DoubtScene& scene, const Doubt& doubt, const std::string& number, double rarity,
                         std::vector<Doubt>& list);
-/// What was changed between two records or within one: as add_in_some_runs() and add_from_a_time_on(), without what holds in all records from their start on.
+/// What was changed between two records: as add_in_some_runs(), without what holds in all of them.
+void add_between_records(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list);
+/// And within one: as add_from_a_time_on().
 void add_changes(const DoubtScene& scene, const Doubt& doubt, std::vector<Doubt>& list);
 
 /// Whether a doubt can be said of some records alone: it tells of no time within one, and where it holds in some it holds alike in each.

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "effects/doubt.hpp"
 
 namespace driftwright::effects {
@@ -28,7 +30,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     Effect stop = make_effect("missing_stop", Place::kSpindle, "spindle");
     stop.in = run.name;
     DoubtedNumber length = doubted("length", "min", 15.0, 1.0);
-    length.low = kShortest_min;
+    length.low = std::max(kShortest_min, run.row_s / 60.0);  // no record tells of a shorter one
     list.push_back({.finding = "missing_stop",
                     .where = "spindle",
                     .law = "in " + run.name,

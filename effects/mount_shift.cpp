@@ -1,23 +1,51 @@
 #include <cmath>
 
 #include "effects/displacement_amount.hpp"
+#include "effects/lasting.hpp"
 
 namespace driftwright::effects {
 namespace {
 
+constexpr double kUsualLength = 0.25, kShortest_s = 1.0;  // of a record, that a bump lasts
+
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.add(ReadingStage::kShift, [channel = e.place, amount = amount_of(e, "shift"), time_s = e["time"] * 60.0,
-                                   creep_s = e["creep"] * 60.0](Readings& r) {
-    const Eigen::Index row = r.displacement(channel);
-    for (Eigen::Index i = 0; i < r.n_times(); ++i) {
-      const double since_s = r.time(i) - time_s;
-      if (since_s >= 0.0) r.value(row, i) += amount * (creep_s > 0.0 ? -std::expm1(-since_s / creep_s) : 1.0);
-    }
-  });
+  chain.add(ReadingStage::kShift,
+            [channel = e.place, amount = amount_of(e, "shift"), time_s = e["time"] * 60.0,
+             back_s = e.has("until_time") ? e["until_time"] * 60.0 : kNever_s, creep_s = e["creep"] * 60.0](Readings& r) {
+              const Eigen::Index row = r.displacement(channel);
+              for (Eigen::Index i = 0; i < r.n_times(); ++i) {
+                const double since_s = r.time(i) - time_s;
+                if (since_s >= 0.0 && r.time(i) < back_s)
+                  r.value(row, i) += amount * (creep_s > 0.0 ? -std::expm1(-since_s / creep_s) : 1.0);
+              }
+            });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
   check_amount(e, in, "shift");
+  if (e.has("until_time") && e["until_time"] <= e["time"]) in.fail("until_time", "it is behind `time`");
+}
+
+/// A bump that somebody mends.
+Doubt bumped(const DoubtScene::Displacement& d, const DoubtScene::Run& run, const Effect& shift) {
+  DoubtedNumber length = doubted_time("length", run.length_s, [](std::span<Effect> added, double value) {
+    added[0].set("until_time", added[0]["time"] + std::max(value, kShortest_s) / 60.0);
+  });
+  length.nominal = kUsualLength * run.length_s;
+  Doubt bump{.finding = "mount_shift",
+             .where = d.name,
+             .law = "step for a while, in " + run.name,
+             .added = {shift},
+             .numbers = {doubted_amount(d, "shift"),
+                         doubted_time("time", run.length_s,
+                                      [](std::span<Effect> added, double value) { added[0].set("time", value / 60.0); }),
+                         length},
+             .trial = 3.0,
+             .grid = {}};
+  for (double begin : {-0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3}) {
+    for (double other : {-0.15, 0.0, 0.15}) bump.grid.push_back({begin * run.length_s, other * run.length_s});
+  }
+  return bump;
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {
@@ -36,7 +64,20 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                                                                            })},
                       .trial = 3.0,
                       .grid = time_grid(run.length_s, 40)});
+      list.push_back(bumped(d, run, shift));
     }
+    // set up anew between two records
+    Doubt anew{
+        .finding = "mount_shift",
+        .where = d.name,
+        .law = "another zero",
+        .added = {make_effect("mount_shift", Place::kDisplacement, d.name, {{amount_key(d, "shift"), 0.0}, {"time", 0.0}})},
+        .numbers = {doubted_amount(d, "shift")},
+        .trial = 3.0};
+    anew.numbers[0].set = [key = amount_key(d, "shift")](std::span<Effect> added, double value) {
+      for (Effect& e : added) e.set(key, value);
+    };
+    add_between_records(s, anew, list);
     // a stand that was clamped or glued just before the record began
     DoubtedNumber creep{.name = "creep", .unit = "min", .nominal = 60.0, .prior_sd = 1.0, .step = 0.1, .is_log = true};
     Doubt creeping{
@@ -61,7 +102,8 @@ EffectKind mount_shift() {
           .places = {Place::kDisplacement},
           .parameters = amount_parameters("shift", "step",
                                           {{"time", "min", 0.0, 1e7, {}, "when it slips"},
-                                           {"creep", "min", 0.0, 1e5, 0.0, "time constant with which it goes there"}}),
+                                           {"creep", "min", 0.0, 1e5, 0.0, "time constant with which it goes there"},
+                                           {"until_time", "min", 0.0, 1e7, kNotGiven, "when it is back, at once"}}),
           .timing = Timing::kInRecord,
           .change_readings = change_readings,
           .check = check,

@@ -3,14 +3,16 @@
 namespace driftwright::effects {
 namespace {
 
+constexpr double kSlope = 0.03;  // 1 sigma of a wrong scale: a thermocouple of another class, a bridge of another resistor
+
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.add(ReadingStage::kError,
-            [sensor = e.place, bias_K = e["bias"], turning = e.words.at("errs") == "while_spindle_turns"](Readings& r) {
-              const Eigen::Index row = r.sensor(sensor);
-              for (Eigen::Index i = 0; i < r.n_times(); ++i) {
-                if (!turning || r.cyclogram.speed_rpm(r.time(i)) > 0.0) r.value(row, i) += bias_K;
-              }
-            });
+  chain.add(ReadingStage::kError, [sensor = e.place, bias_K = e["bias"], slope = e["slope"],
+                                   turning = e.words.at("errs") == "while_spindle_turns"](Readings& r) {
+    const Eigen::Index row = r.sensor(sensor);
+    for (Eigen::Index i = 0; i < r.n_times(); ++i) {
+      if (!turning || r.cyclogram.speed_rpm(r.time(i)) > 0.0) r.value(row, i) += bias_K + slope * r.value(row, i);
+    }
+  });
 }
 
 std::vector<Doubt> doubts(const DoubtScene& s) {
@@ -24,6 +26,13 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                       .numbers = {doubted("bias", "K", 1.0, 0.2)},
                       .trial = 0.3},
                      list);
+    Doubt wrong_scale{.finding = "sensor_bias",
+                      .where = sensor,
+                      .law = "error in proportion to what it is warmer than the reference",
+                      .added = {make_effect("sensor_bias", Place::kSensor, sensor, {{"bias", 0.0}})},
+                      .numbers = {doubted("slope", "1", kSlope, 0.1 * kSlope)},
+                      .trial = 0.3 * kSlope};
+    list.push_back(std::move(wrong_scale));
     if (!s.starts_and_stops) continue;
     Doubt picked_up{.finding = "sensor_bias",
                     .where = sensor,
@@ -40,15 +49,17 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 }  // namespace
 
 EffectKind sensor_bias() {
-  return {.key = "sensor_bias",
-          .title = "sensor with a constant error, or with one while the spindle turns: a lead that picks up the drive",
-          .law = "reading = T + bias; at standstill T, where it errs while_spindle_turns",
-          .places = {Place::kSensor},
-          .parameters = {{"bias", "K", -100.0, 100.0, {}, "reading minus truth"}},
-          .timing = Timing::kInRecord,
-          .change_readings = change_readings,
-          .choices = {{"errs", {"always", "while_spindle_turns"}, "always", "when it errs"}},
-          .doubts = doubts};
+  return {
+      .key = "sensor_bias",
+      .title = "sensor with a constant error, or with one while the spindle turns: a lead that picks up the drive",
+      .law = "reading = T + bias + slope (T - T_reference); at standstill T, where it errs while_spindle_turns",
+      .places = {Place::kSensor},
+      .parameters = {{"bias", "K", -100.0, 100.0, {}, "reading minus truth"},
+                     {"slope", "1", -0.9, 9.0, 0.0, "of a wrong scale: error for each K over the reference temperature"}},
+      .timing = Timing::kInRecord,
+      .change_readings = change_readings,
+      .choices = {{"errs", {"always", "while_spindle_turns"}, "always", "when it errs"}},
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -119,6 +119,7 @@ Section search_data(const diagnosis::Diagnosis& d) {
   put(section, "bars.suspected_nats", bars.suspected);
   put(section, "bars.named_nats", bars.named);
   put(section, "bars.named_beside_nats", bars.named_beside);
+  put(section, "bars.named_timed_nats", bars.named_timed);
   put(section, "bars.chance_of_suspected", d.search.chance.share_above(bars.suspected.front()));
   put(section, "bars.chance_of_named", d.search.chance.share_above(bars.named));
   return section;

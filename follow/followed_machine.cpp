@@ -24,7 +24,7 @@ void require_streamable(const MachineModel& machine) {
           e.where,
           fmt::format("{} {}; a stream does not tell enough of it, and `follow` wants a machine without", e.name(), why));
     };
-    if (e.kind->change_drive)
+    if (effects::changes_drive(e))
       refuse("changes what the record of the drive or of the ambient says, by what comes before or behind a row");
     if (e.kind->change_readings && e.place_kind != effects::Place::kSensor)
       refuse("changes what instruments say of displacements, by all that came before");

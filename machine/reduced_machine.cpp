@@ -123,8 +123,7 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
   for (const FeltRun& run : felt) driven.push_back(&run.cyclogram);
   ReductionPlan plan;
   plan.demand = solver::reduction_demand(balance, driven, model.ambient, model.reference_K);
-  const bool moves_ambient =
-      std::any_of(model.effects.begin(), model.effects.end(), [](const auto& e) { return e.kind->change_drive; });
+  const bool moves_ambient = std::any_of(model.effects.begin(), model.effects.end(), effects::changes_drive);
   if (moves_ambient) {  // each run may have an ambient of its own
     for (const FeltRun& run : felt) {
       plan.demand.include(solver::reduction_demand(balance, {&run.cyclogram}, run.ambient, model.reference_K));

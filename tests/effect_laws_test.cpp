@@ -529,6 +529,27 @@ TEST(HeatSource, ThatFadesGivesItsPowerTimesItsTime) {
   EXPECT_EQ(power_W(at(0.0, 400.0)), 0.0);
 }
 
+TEST(Link, OfAFanGoesWithTheSpindleAndRunsOn) {
+  const Effect fan =
+      read("{type: link, node: a, to: ambient, conductance: 6 W/K, runs: while_spindle_turns, runs_on: 2 min}");
+  const Cyclogram recorded{.name = "run",
+                           .sections = {{60, {}}, {90, {.speed_rpm = 100}}, {50, {}}, {40, {.speed_rpm = 50}}, {300, {}}}};
+  const Cyclogram felt = true_cyclogram(drive_change({fan}, "run"), recorded);
+  const Law conductance_W_K = heat_balance({fan}).exchanges.at(0).coefficient;
+  const auto at_s = [&](double t_s) { return conductance_W_K({.drive = felt.drive(t_s)}); };
+  EXPECT_EQ(at_s(30), 0.0);  // it has not turned yet
+  EXPECT_EQ(at_s(100), 6.0);
+  EXPECT_EQ(at_s(180), 6.0);  // between two turns
+  EXPECT_EQ(at_s(359), 6.0);  // it stops at 240 s
+  EXPECT_EQ(at_s(361), 0.0);
+  EXPECT_EQ(felt.duration_s(), recorded.duration_s());
+  EXPECT_TRUE(changes_drive(fan));
+  const Effect at_once = read("{type: link, node: a, to: ambient, conductance: 6 W/K, runs: while_spindle_turns}");
+  EXPECT_FALSE(changes_drive(at_once));
+  EXPECT_EQ(heat_balance({at_once}).exchanges.at(0).coefficient(at(0.0)), 0.0);
+  EXPECT_EQ(heat_balance({at_once}).exchanges.at(0).coefficient(at(10.0)), 6.0);
+}
+
 TEST(FilmsByFormula, TakeAFactor) {
   const std::string air = "{type: rotating_cylinder, surface: s, diameter: 100 mm";
   EXPECT_NEAR(law_of({air + ", factor: 1.7}"})(at(2000.0)), 1.7 * law_of({air + "}"})(at(2000.0)), 1e-12);
@@ -578,6 +599,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: recorded_drive, node: n, column: a_1, opening: 1, medium: 20 degC, surrounding: b}",
             "one of two is wanted"},
         Bad{"{type: changed_law, law: coolant a}", "nothing is changed"},
+        Bad{"{type: link, node: a, to: ambient, conductance: 1 W/K, runs_on: 3 min}", "goes with the spindle"},
         Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), from: 20 s, until: 10 s}", "behind `from`"},
         Bad{"{type: link, node: n, to: ambient, conductance: 1 W/K, from: 20 s, until: 10 s}", "behind `from`"},
         Bad{"{type: convection, surface: s, film: 1 W/(m^2 K), from: -1 s}", "outside what is allowed"},

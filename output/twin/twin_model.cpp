@@ -90,7 +90,7 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
   for (const effects::Effect& e : machine.effects) {
     if (e.kind->change_readings)
       notes.push_back(fmt::format("{} acts on what instruments say; here they say what is.", e.name()));
-    if (e.kind->change_drive)
+    if (effects::changes_drive(e))
       notes.push_back(fmt::format("{} changes the recorded drive or ambient; here both are as they are set.", e.name()));
     if (!e.in.empty())
       notes.push_back(fmt::format("{} acts in the cyclogram '{}' alone, and here not at all.", e.name(), e.in));

@@ -1,0 +1,47 @@
+#include "effects/run_on.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace driftwright::effects {
+namespace {
+
+std::string signal_name(double run_on_s) {
+  return fmt::format("turns, or has within {} s", run_on_s);
+}
+
+}  // namespace
+
+std::function<bool(const Drive&)> turns_or_has(double run_on_s) {
+  if (!(run_on_s > 0.0)) return [](const Drive& drive) { return drive.speed_rpm > 0.0; };
+  return [name = signal_name(run_on_s)](const Drive& drive) {
+    return drive.speed_rpm > 0.0 || std::any_of(drive.signals.begin(), drive.signals.end(),
+                                                [&](const Signal& s) { return s.name == name && s.value > 0.0; });
+  };
+}
+
+Cyclogram with_run_on(const Cyclogram& recorded, double run_on_s) {
+  if (!(run_on_s > 0.0)) return recorded;
+  std::vector<double> over_s;
+  double end_s = 0.0;
+  for (std::size_t i = 0; i < recorded.sections.size(); ++i) {
+    end_s += recorded.sections[i].duration_s;
+    const bool stops = recorded.sections[i].drive.speed_rpm > 0.0 && i + 1 < recorded.sections.size() &&
+                       !(recorded.sections[i + 1].drive.speed_rpm > 0.0);
+    if (stops) over_s.push_back(end_s + run_on_s);
+  }
+  Cyclogram felt = split_at(recorded, over_s);
+  double start_s = 0.0, turned_s = -std::numeric_limits<double>::infinity();
+  for (Cyclogram::Section& section : felt.sections) {
+    const double middle_s = start_s + 0.5 * section.duration_s;
+    start_s += section.duration_s;
+    const bool turns = section.drive.speed_rpm > 0.0;
+    if (turns) turned_s = start_s;
+    section.drive.signals.push_back({signal_name(run_on_s), turns || middle_s - turned_s < run_on_s ? 1.0 : 0.0});
+  }
+  return felt;
+}
+
+}  // namespace driftwright::effects
