@@ -220,7 +220,8 @@ void inspect(const Record& record, const std::vector<double>& time_s, Channel& c
   const bool is_fine = quantum == 0.0 || dithers(channel.values);  // else equal readings mean nothing
   const auto rows_at = [&](double value) { return most_equal(channel.values, [=](double v) { return v == value; }); };
   const double limit = rows_at(high) >= rows_at(low) ? high : low;
-  const int n_at_limit = rows_at(limit), n_elsewhere = most_equal(channel.values, [=](double v) { return v != limit; });
+  const int n_at_limit = rows_at(limit),
+            n_elsewhere = most_equal(channel.values, [=](double v) { return v != low && v != high; });
   if (is_fine && n_at_limit >= kSaturatedRows && n_at_limit > kLongerAtLimit * n_elsewhere) {
     findings.push_back({channel.name,
                         fmt::format("{} stays {} rows at its limit of {:g} {}: saturated; it is left out", channel.name,

@@ -1,5 +1,5 @@
 #pragma once
-// Two causes at once, by linear theory: what either hides, or a third one does in their place, a search that takes one after the other does not come to.
+// Two causes at once, by linear theory: where a third one does best by itself in the place of both, a search that takes one after the other does not come to them.
 
 #include "diagnosis/signatures.hpp"
 

@@ -80,6 +80,16 @@ bool says_the_same(const Fitter& fitter, const Candidate& a, const Fit& fit_a, c
   return (c.whitened(fit_a.prediction) - c.whitened(fit_b.prediction)).squaredNorm() < kSame;
 }
 
+/// Whether one of a fit's last claims is a factor so near to one that nobody would mend it.
+bool has_idle_factor(const Hypothesis& last, const Fit& fit) {
+  Eigen::Index at = fit.x.size();
+  for (auto claim = last.rbegin(); claim != last.rend() && fit.x.size() > 0; ++claim) {
+    at -= static_cast<Eigen::Index>(claim->knobs.size());
+    if (claim->knobs[0].scale == Knob::Scale::kLog && std::abs(fit.x[at]) < kLeastFactor) return true;
+  }
+  return false;
+}
+
 struct Fitted {
   Claim claim;
   Fit fit;
@@ -155,11 +165,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
       fitted.push_back(std::move(f));
     }
   }
-  std::erase_if(fitted, [&](const Fitted& f) {  // nobody would mend a factor so near to one
-    const Knob& size = f.claim.knobs[0];
-    return size.scale == Knob::Scale::kLog && f.fit.x.size() > 0 &&
-           std::abs(f.fit.x[f.fit.x.size() - static_cast<Eigen::Index>(f.claim.knobs.size())]) < kLeastFactor;
-  });
+  std::erase_if(fitted, [](const Fitted& f) { return has_idle_factor({f.claim}, f.fit); });
   std::sort(fitted.begin(), fitted.end(),
             [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
   // one law a candidate
@@ -391,7 +397,9 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       if (fits[i].prediction.empty()) continue;
       const double value = evidence(fits[i], jobs[i].first) - laws_price(candidates, jobs[i].first);
-      if (!(value > best_value + kBetter)) continue;
+      // where one cause alone was found, the second one must bring what a second one must
+      if (!(value > best_value + (best.size() < 2 ? must_gain(1) : kBetter)) || has_idle_factor(jobs[i].first, fits[i]))
+        continue;
       best = std::move(jobs[i].first);
       best_fit = std::move(fits[i]);
       best_value = value;

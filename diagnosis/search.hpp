@@ -31,8 +31,8 @@ struct SearchOptions {
   double least_named = 4.0;         ///< nor anything below, however little chance has to offer: it is even odds
   double least_named_beside = 8.0;  ///< one of several is not named below, nor one whose windows were chosen to make it
   double least_named_timed =
-      12.0;         ///< nor one of heat or exchange that begins or ends at a time of its own: it bends to what it is not
-  int refits = 16;  ///< candidates of each round that are fitted in full
+      12.0;  ///< nor one that begins or ends at a time of its own, unless it is an instrument's: it bends to what it is not
+  int refits = 16;                     ///< candidates of each round that are fitted in full
   std::set<std::string> without = {};  ///< keys of effects that are not looked for
 };
 
@@ -40,7 +40,7 @@ struct SearchOptions {
 struct Bars {
   std::vector<double> suspected;           ///< the first claim, a second one beside it, a third
   double named = 0.0, named_beside = 0.0;  ///< the only claim; one of several, or one whose windows were chosen to make it
-  double named_timed = 0.0;                ///< one of heat or exchange that begins or ends at a time of its own
+  double named_timed = 0.0;                ///< one that begins or ends at a time of its own, unless it is an instrument's
 };
 [[nodiscard]] Bars bars_of(const Chance& chance, const SearchOptions& options);
 

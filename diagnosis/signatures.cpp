@@ -110,6 +110,18 @@ LinearGain linear_gain(const Variant& law, double ss, double sr) {
   return g;
 }
 
+Eigen::VectorXd start_at(const Variant& law, const Eigen::VectorXd& shape, double x) {
+  const Knob& size = law.knobs[0];
+  Eigen::VectorXd start = shape;
+  start[0] = size.scale == Knob::Scale::kLog ? std::clamp(x, -2.0, 2.0) : x;
+  if (const double grown = x / law.trial_x; size.scale == Knob::Scale::kLinear && grown > kLeastGrowth) {
+    for (std::size_t k = 1; k < law.knobs.size(); ++k) {
+      if (law.knobs[k].grows_with_size) start[static_cast<Eigen::Index>(k)] += std::log(grown);
+    }
+  }
+  return start;
+}
+
 std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
                           const std::vector<Signature>& signatures, const Hypothesis& hypothesis, const Fit& fit) {
   const Projection projection = projection_of(fitter, hypothesis, fit);
@@ -122,15 +134,7 @@ std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& ca
     const double ss = projection.square(s), sr = s.dot(projection.rest);
     if (!(ss > 1e-12)) continue;
     const LinearGain g = linear_gain(v, ss, sr);
-    const Knob& size = v.knobs[0];
-    const double x = size.scale == Knob::Scale::kLog ? std::clamp(g.x, -2.0, 2.0) : g.x;
-    of_each[i] = {signature.candidate, signature.variant, g.gain, g.fall, signature.shape};
-    of_each[i].start[0] = x;
-    if (const double grown = x / v.trial_x; size.scale == Knob::Scale::kLinear && grown > kLeastGrowth) {
-      for (std::size_t k = 1; k < v.knobs.size(); ++k) {
-        if (v.knobs[k].grows_with_size) of_each[i].start[static_cast<Eigen::Index>(k)] += std::log(grown);
-      }
-    }
+    of_each[i] = {signature.candidate, signature.variant, g.gain, g.fall, start_at(v, signature.shape, g.x)};
   }
   std::vector<Score> list;
   for (const Score& s : of_each) {  // those of one law follow each other

@@ -48,6 +48,9 @@ struct LinearGain {
 /// @param ss  squares of its signature that other numbers leave. @param sr  its product with what they leave of the readings
 [[nodiscard]] LinearGain linear_gain(const Variant& law, double ss, double sr);
 
+/// x of a claim's knobs where a fit of it begins: its shape, and a size as linear theory has it. @param x  the size
+[[nodiscard]] Eigen::VectorXd start_at(const Variant& law, const Eigen::VectorXd& shape, double x);
+
 /// The best shape of each law of each candidate, best first.
 [[nodiscard]] std::vector<Score> scores(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                         const std::vector<Signature>& signatures, const Hypothesis& hypothesis,

@@ -15,8 +15,6 @@ constexpr std::size_t kMostSaid = 3;
 constexpr const char* kFaint =
     "its evidence does not pay for all that it might have been, though chance seldom offers as much";
 constexpr double kOpen = 100.0;
-constexpr double kBetterOfCause =
-    0.1;  // of the same: a course of any shape that is better by less follows what the cause's law leaves, and is no other cause
 constexpr double kRestOfCause = 0.35;  // of what the causes explain: more left, and they are not what is wrong
 
 std::string words(const Cause& c) {
@@ -84,10 +82,9 @@ bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
 /// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
 bool rest_rules(const Diagnosis& d) {
   if (!d.unexplained) return false;
-  if (d.causes.empty() || d.unexplained->fails_held_out) return true;
+  if (d.causes.empty() || d.unexplained->one_cause || d.unexplained->fails_held_out) return true;
   double explained = 0.0;
   for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
-  if (d.unexplained->one_cause && d.unexplained->one_cause->log_evidence_gain > kBetterOfCause * explained) return true;
   return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
 }
 

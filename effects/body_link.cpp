@@ -23,7 +23,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
       return turns(u.drive) ? conductance_W_K : 0.0;
     };
   }
-  balance.exchanges.push_back(make_link(e.name() + " - " + to, e.body(), std::move(conductance), to));
+  const std::string name = e.name() + " - " + to + (goes_with_spindle(e) ? " with the spindle" : "");
+  balance.exchanges.push_back(make_link(name, e.body(), std::move(conductance), to));
 }
 
 void change_drive(const Effect& e, DriveChange& change) {

@@ -41,18 +41,22 @@ void change(const Effect& e, const Body& body, Law& law) {
   };
 }
 
+std::string of_medium(const std::string& exchange) {
+  return "medium of " + exchange;
+}
+
 /// A medium that is warmer than written brings so much more heat with the same exchange.
 HeatInput of_warmer_medium(const Effect& e, const Exchange& x) {
   Law heat = x.coefficient;
   heat.value = [coefficient = x.coefficient.value, warmer_K = e["warmer"], e](const Inputs& u) {
     return acts(e, u) ? warmer_K * coefficient(u) : 0.0;
   };
-  return {"medium of " + x.name, x.body, std::move(heat)};
+  return {of_medium(x.name), x.body, std::move(heat)};
 }
 
 void change_laws(const Effect& e, HeatBalance& balance) {
   for (HeatInput& h : balance.heats) {
-    if (h.name == e.place) change(e, h.body, h.power_W);
+    if (h.name == e.place || h.name == of_medium(e.place)) change(e, h.body, h.power_W);
   }
   for (Exchange& x : balance.exchanges) {
     if (x.name != e.place) continue;
@@ -74,6 +78,12 @@ bool is_of_record(const DoubtScene& s, const HeatInput& heat) {
   });
 }
 
+/// Whether a heat stands for a medium that is warmer than its exchange says.
+bool is_of_medium(const DoubtScene& s, const HeatInput& heat) {
+  return std::any_of(s.balance.exchanges.begin(), s.balance.exchanges.end(),
+                     [&](const Exchange& x) { return heat.name == of_medium(x.name); });
+}
+
 /// Another heat, growth with speed or decay of what heats a body.
 void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) {
   std::vector<Effect> of_all, of_known;  // laws of the body; those that follow from the drive alone
@@ -86,7 +96,7 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
     if (std::none_of(to.begin(), to.end(), [&](const Effect& e) { return e.place == law; })) to.push_back(changed(law));
   };
   for (const HeatInput& h : s.balance.heats) {
-    if (!(h.body == body) || !h.power_W.thermostat.empty() || is_of_record(s, h)) continue;
+    if (!(h.body == body) || !h.power_W.thermostat.empty() || is_of_record(s, h) || is_of_medium(s, h)) continue;
     add(of_all, h.name);
     low_W += power_W(h, 0.97 * s.typical_rpm);
     high_W += power_W(h, 1.03 * s.typical_rpm);

@@ -63,6 +63,7 @@ void check(const Effect& e, const ConfigMap& in) {
     if (e.has("sensitivity") || e.has("tilt"))
       in.fail("gain", "one of them is wanted: `gain`, or `sensitivity` or `tilt` of what follows a temperature");
     if (column.empty()) in.fail("gain", "it is of a `column`");
+    if (in.has("zero")) in.fail("zero", "it is of a column of temperatures; a `gain` multiplies what the column says");
     return;
   }
   check_amount(e, in, "sensitivity");

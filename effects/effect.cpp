@@ -254,8 +254,11 @@ HeatBalance heat_balance(const std::vector<Effect>& effects) {
 
 DriveChange drive_change(const std::vector<Effect>& effects, const std::string& run) {
   DriveChange change;
-  for (const Effect& effect : effects) {
-    if (effect.kind->change_drive && effect.acts_in(run)) effect.kind->change_drive(effect, change);
+  for (const bool of_machine : {false, true}) {  // what follows the drive looks at the true one
+    for (const Effect& effect : effects) {
+      if (!effect.kind->change_drive || !effect.acts_in(run) || (effect.kind->contribute != nullptr) != of_machine) continue;
+      effect.kind->change_drive(effect, change);
+    }
   }
   return change;
 }

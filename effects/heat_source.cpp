@@ -14,11 +14,16 @@ constexpr double kMostWaves = 14.0;   // in the longest record; shorter ones a m
 constexpr int kStepsOfFading = 48;    // of an eighth of its time each: then e^-6 is left, which is left out
 constexpr double kStepOfFading = 0.125, kUsualFading = 1.0 / 6.0;  // of its time; of the longest record
 
+bool runs_at_rest(const Effect& e) {
+  return e.words.at("runs") == "while_spindle_stands";
+}
+
 void contribute(const Effect& e, HeatBalance& balance) {
   const double power_W = e["power"], n0_rpm = e["at_speed"], exponent = e["exponent"];
-  const bool rests = e.words.at("runs") == "while_spindle_turns" || exponent != 0.0;
+  const bool rests = e.words.at("runs") == "while_spindle_turns" || exponent != 0.0, stands = runs_at_rest(e);
   const auto steady = [=](const Inputs& u) {
-    if (rests && u.drive.speed_rpm <= 0.0) return 0.0;
+    const bool turns = u.drive.speed_rpm > 0.0;
+    if ((rests && !turns) || (stands && turns)) return 0.0;
     return exponent == 0.0 ? power_W : power_W * std::pow(u.drive.speed_rpm / n0_rpm, exponent);
   };
   if (e.has("fades")) {
@@ -45,6 +50,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
 }
 
 void check(const Effect& e, const ConfigMap& in) {
+  if (runs_at_rest(e) && e["exponent"] != 0.0) in.fail("exponent", "heat while the spindle stands does not grow with speed");
   if (e.has("fades") && e.has("period"))
     in.fail("fades", "one of two is wanted: heat that fades, or a wave with a `period`");
   if (e.has("period")) {
@@ -97,6 +103,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     of_speed.at_speed_rpm = s.typical_rpm;
     add("constant heat while the spindle turns", {}).added[0].words["runs"] = "while_spindle_turns";
     const Doubt while_turning = list.back();
+    if (s.starts_and_stops)
+      add("constant heat while the spindle stands", {}).added[0].words["runs"] = "while_spindle_stands";
 
     if (s.turns) {  // new grease that runs in, a bearing that was mounted tight
       Doubt fading = while_turning;
@@ -175,9 +183,9 @@ EffectKind heat_source() {
       .timing = Timing::kInTime,
       .contribute = contribute,
       .choices = {{"runs",
-                   {"always", "while_spindle_turns"},
+                   {"always", "while_spindle_turns", "while_spindle_stands"},
                    "always",
-                   "constant heat: at all times, or of a pump or hydraulics that go with the spindle"}},
+                   "constant heat: at all times, of a pump or hydraulics that go with the spindle, of a heater at rest"}},
       .check = check,
       .doubts = doubts};
 }

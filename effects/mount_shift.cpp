@@ -96,18 +96,20 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 }  // namespace
 
 EffectKind mount_shift() {
-  return {.key = "mount_shift",
-          .title = "step of a displacement channel, or its creep: a magnet base, a clamp, a crash, glue",
-          .law = "u = u + shift (1 - exp(-(t - time) / creep)) from a time on; without creep a step",
-          .places = {Place::kDisplacement},
-          .parameters = amount_parameters("shift", "step",
-                                          {{"time", "min", 0.0, 1e7, {}, "when it slips"},
-                                           {"creep", "min", 0.0, 1e5, 0.0, "time constant with which it goes there"},
-                                           {"until_time", "min", 0.0, 1e7, kNotGiven, "when it is back, at once"}}),
-          .timing = Timing::kInRecord,
-          .change_readings = change_readings,
-          .check = check,
-          .doubts = doubts};
+  return {
+      .key = "mount_shift",
+      .title = "step of a displacement channel, or its creep: a magnet base, a clamp, a crash, glue",
+      .law =
+          "u = u + shift (1 - exp(-(t - time) / creep)) from a time on; without creep a step; until_time: when it is back",
+      .places = {Place::kDisplacement},
+      .parameters = amount_parameters("shift", "step",
+                                      {{"time", "min", 0.0, 1e7, {}, "when it slips"},
+                                       {"creep", "min", 0.0, 1e5, 0.0, "time constant with which it goes there"},
+                                       {"until_time", "min", 0.0, 1e7, kNotGiven, "when it is back, at once"}}),
+      .timing = Timing::kInRecord,
+      .change_readings = change_readings,
+      .check = check,
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

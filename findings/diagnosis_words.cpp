@@ -85,7 +85,8 @@ std::string bars_text(const diagnosis::Diagnosis& d) {
   return fmt::format(
       "A cause is suspected from {:.1f} nats on, which chance alone reaches at {} of faultless machines, and named from "
       "{:.1f} "
-      "({}), one of several or with chosen windows from {:.1f}, one of heat or exchange with a time of its own from {:.1f}; "
+      "({}), one of several or with chosen windows from {:.1f}, one that begins or ends at a time of its own, unless it is "
+      "an instrument's, from {:.1f}; "
       "a second one beside another is suspected from {:.1f}; {}. "
       "Where none is, the "
       "candidate with the least chance is suspected if fewer than {:.2g} % of faultless machines have one with as little.",

@@ -28,6 +28,7 @@ void require_streamable(const MachineModel& machine) {
       refuse("changes what the record of the drive or of the ambient says, by what comes before or behind a row");
     if (e.kind->change_readings && e.place_kind != effects::Place::kSensor)
       refuse("changes what instruments say of displacements, by all that came before");
+    if (e.kind->key == "heat_source" && e.has("fades")) refuse("fades from the start of a record");
     if (!e.in.empty()) refuse(fmt::format("holds in the cyclogram '{}' alone", e.in));
     if (e.from_s > 0.0 || e.until_s < effects::kNever_s) refuse("holds for a part of a run");
   }

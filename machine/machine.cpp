@@ -121,6 +121,13 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
       });
       if (is_of_joint && e["decay"] != 0.0)
         throw InputError(e.where, "a joint has no temperature of its own; `decay` wants one");
+      const bool has_medium = std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
+                                          [&](const auto& x) { return x.name == e.place && x.medium_K.has_value(); });
+      if (e["warmer"] != 0.0 && !has_medium)
+        throw InputError(e.where,
+                         fmt::format("'{}' has no medium of a stated temperature, which `warmer` wants: a coolant's "
+                                     "`set_point` without `tank`, or a `medium`",
+                                     e.place));
     } else if (e.place_kind == effects::Place::kNode && e.place == effects::kAmbientName) {
       throw InputError(e.where, "the ambient is no lumped node; nothing heats or holds it");
     } else {

@@ -315,6 +315,9 @@ FullSystem assemble_heat(const Mesh& mesh, const RegionMaterials& materials, con
     system.fixed.push_back({f.name, std::move(unknowns), std::move(theta), f.follows_ambient});
   }
   system.change_times_s = balance.change_times_s;
+  std::sort(system.change_times_s.begin(), system.change_times_s.end());
+  system.change_times_s.erase(std::unique(system.change_times_s.begin(), system.change_times_s.end()),
+                              system.change_times_s.end());
 
   Cliques cliques;  // the common pattern: cells, and the entries of every exchange and term
   for (int cell = 0; cell < mesh.cells.size(); ++cell) cliques.add(mesh.cells.nodes(cell));

@@ -509,6 +509,19 @@ TEST(ChangedLaw, WarmsTheMediumOfACircuit) {  // Q = G (T - T_medium): with 3 K 
   EXPECT_EQ(b.heats[0].power_W(at(0.0, 299.0, "monday")), 0.0);
   EXPECT_EQ(b.heats[0].power_W(at(0.0, 300.0, "tuesday")), 0.0);
   EXPECT_EQ(b.heats[0].body, region("r"));
+  // in either order
+  const std::string warmer = "{type: changed_law, law: coolant r, warmer: 3 K}",
+                    half = "{type: changed_law, law: coolant r, factor: 0.5}";
+  for (const auto& [first, second] : {std::pair{warmer, half}, std::pair{half, warmer}}) {
+    const HeatBalance both = heat_balance({read(circuit), read(first), read(second)});
+    EXPECT_NEAR(both.heats.at(0).power_W(at(0.0)), 3.0 * 0.25 * twice_W_K, 1e-9) << first;
+  }
+}
+
+TEST(HeatSource, MayBeOfAHeaterAtRest) {
+  const Law power_W = law_of({"{type: heat_source, node: n, power: 8 W, runs: while_spindle_stands}"});
+  EXPECT_EQ(power_W(at(0.0)), 8.0);
+  EXPECT_EQ(power_W(at(1.0)), 0.0);
 }
 
 TEST(HeatSource, ThatFadesGivesItsPowerTimesItsTime) {
@@ -544,6 +557,17 @@ TEST(Link, OfAFanGoesWithTheSpindleAndRunsOn) {
   EXPECT_EQ(at_s(361), 0.0);
   EXPECT_EQ(felt.duration_s(), recorded.duration_s());
   EXPECT_TRUE(changes_drive(fan));
+  // a stop that the record does not have stops the fan, wherever it stands in the list
+  const Effect stop = read("{type: missing_stop, start: 1.5 min, length: 1.5 min}");
+  for (const auto& list : {std::vector<Effect>{fan, stop}, std::vector<Effect>{stop, fan}}) {
+    const Cyclogram long_run{.name = "run", .sections = {{600, {.speed_rpm = 100}}}};
+    const Cyclogram stopped = true_cyclogram(drive_change(list, "run"), long_run);
+    EXPECT_EQ(conductance_W_K({.drive = stopped.drive(170)}), 6.0);  // it runs on: from 90 to 180 s
+  }
+  const Effect long_stop = read("{type: missing_stop, start: 1.5 min, length: 5 min}");
+  const Cyclogram stopped =
+      true_cyclogram(drive_change({fan, long_stop}, "run"), {.name = "run", .sections = {{600, {.speed_rpm = 100}}}});
+  EXPECT_EQ(conductance_W_K({.drive = stopped.drive(300)}), 0.0);
   const Effect at_once = read("{type: link, node: a, to: ambient, conductance: 6 W/K, runs: while_spindle_turns}");
   EXPECT_FALSE(changes_drive(at_once));
   EXPECT_EQ(heat_balance({at_once}).exchanges.at(0).coefficient(at(0.0)), 0.0);
@@ -594,6 +618,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: heat_source, region: n, power: 1 W, from: 20 s, until: 20 s}", "behind `from`"},
         Bad{"{type: heat_source, region: n, power: 1 W, period: 20 min}", "`until` is wanted"},
         Bad{"{type: heat_source, region: n, power: 1 W, period: 1 min, until: 1e7 s}", "at most 10000 periods"},
+        Bad{"{type: heat_source, region: n, power: 1 W, runs: while_spindle_stands, exponent: 1}",
+            "does not grow with speed"},
         Bad{"{type: heat_source, region: n, power: 1 W, fades: 3 min, period: 1 min, until: 1 h}", "one of two is wanted"},
         Bad{"{type: recorded_drive, node: n, column: a_1, gain: 1, medium: 20 degC}", "of an `opening`"},
         Bad{"{type: recorded_drive, node: n, column: a_1, opening: 1, medium: 20 degC, surrounding: b}",

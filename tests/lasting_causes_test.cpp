@@ -284,6 +284,13 @@ INSTANTIATE_TEST_SUITE_P(
               "that fades",
               60.0,
               9.0},
+        Cause{"a_heater_at_rest",
+              {"{type: heat_source, node: head, power: 60 W, runs: while_spindle_stands}"},
+              "heat_source",
+              "head",
+              "while the spindle stands",
+              60.0,
+              6.0},
         Cause{"coolant_that_runs_with_the_spindle",
               {"{type: coolant, node: head, flow: 100 L/min, passage_conductance: 5 W/K, set_point: 14 degC, runs: "
                "while_spindle_turns}"},

@@ -305,6 +305,16 @@ TEST_F(MeasuredRunTest, KeepsASensorThatRestsAtItsLowestReading) {
   EXPECT_THAT(told(run), Not(HasSubstr("saturated")));
 }
 
+TEST_F(MeasuredRunTest, LeavesOutASensorThatIsSaturatedAtBothEnds) {
+  std::string text = "time_s,speed_rpm,t_front_degC,nose_z_um\n";
+  for (int i = 0; i < 240; ++i)
+    text +=
+        fmt::format("{},500,{:.5f},{}\n", 60 * i, std::clamp(25.0 + 8.0123 * std::sin(0.12 * i), 19.0, 30.0), 1.01 * i * i);
+  const MeasuredRun run = read(text);
+  EXPECT_EQ(run.find("t_front"), nullptr);
+  EXPECT_THAT(told(run), HasSubstr("at its limit of"));
+}
+
 TEST_F(MeasuredRunTest, KnowsTheStepOfAnInstrumentWithAnOffset) {  // 1/16 K and a calibration by 0.13 K
   std::string text = "time_s,speed_rpm,t_front_degC\n";
   for (int i = 0; i < 90; ++i) text += fmt::format("{},500,{:.4f}\n", 60 * i, 20.13 + 0.0625 * (i < 50 ? 0 : (i - 50) / 3));

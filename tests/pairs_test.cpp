@@ -72,7 +72,14 @@ TEST(Pairs, BringTheEvidenceOfAFitOfBoth) {
 
 TEST(Pairs, HaveBothWithinTheirRange) {  // where b would have to be negative there is no pair of the two
   const Made made(1.2, -1.0, 0.0);
-  for (const ScoredPair& p : made.pairs(10)) EXPECT_NE(p.first.candidate + p.second.candidate, 1u);
+  const std::vector<ScoredPair> pairs = made.pairs(10);
+  EXPECT_FALSE(pairs.empty());
+  for (const ScoredPair& p : pairs) {
+    EXPECT_NE(p.first.candidate, p.second.candidate);
+    EXPECT_NE(p.first.candidate + p.second.candidate, 1u);
+    EXPECT_EQ(p.first.start.size(), 1);
+    EXPECT_EQ(p.second.start.size(), 1);
+  }
 }
 
 }  // namespace

@@ -125,7 +125,8 @@ void require_exportable(const Scenario& scenario) {
   for (const effects::Effect& e : machine.effects) {
     if (e.kind->change_readings) refuse(e, "acts on what instruments say, and an FMU holds the machine alone");
     if (effects::changes_drive(e))
-      refuse(e, "says that drive or ambient were recorded wrongly, and an FMU is given the true ones");
+      refuse(e, e.kind->contribute ? "follows what the drive was before, and an FMU knows it as it is"
+                                   : "says that drive or ambient were recorded wrongly, and an FMU is given the true ones");
     if (!e.in.empty() || e.from_s > 0.0 || e.until_s < effects::kNever_s)
       refuse(e, "acts for a time or in one cyclogram alone, and an FMU knows neither");
   }
