@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kFewestReadings = 60;    // of all channels together: below, a verdict would be guessing
 constexpr double kUnnamed = 3.0;        // nats by which one cause without a name must be better than those with one
-constexpr double kBetterOfCause = 0.1;  // and of what the best of these explains: a course of any shape that is better by less follows what the cause's law leaves
+constexpr double kBetterOfCause = 0.1;  // and, if it follows time in any shape, of what the best of these explains: better by less, it follows what the cause's law leaves
 constexpr double kBeyondBelief = 2.0;   // mean square of how far the scenario's numbers moved, in their sigmas
 constexpr double kMostWork = 2e7;       // some ten seconds
 constexpr double kSmallMachine = 15.0;  // unknowns, below which a prediction costs the same
@@ -280,7 +280,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
                      : best_unnamed(fitter, list, d.search.hypothesis, d.search.fit, listener);
   double explained = 0.0;
   for (const Finding& f : d.search.findings) explained = std::max(explained, f.log_evidence_gain);
-  if (unnamed && unnamed->log_evidence_gain > std::max(kUnnamed, kBetterOfCause * explained)) {
+  const bool has_any_shape = unnamed && unnamed->follows == "time";
+  if (unnamed && unnamed->log_evidence_gain > std::max(kUnnamed, has_any_shape ? kBetterOfCause * explained : 0.0)) {
     if (!d.unexplained) d.unexplained = explained_better(fitter, d.search, *unnamed, d.noise);
     d.unexplained->one_cause = std::move(unnamed);
   }
