@@ -335,12 +335,12 @@ TEST(Happening, OfWhichHalfLiesInAHoleIsUnseen) {
   EXPECT_FALSE(is_unseen(in_each_turn));
 }
 
-TEST(MissingData, NamesNothingAndWritesNothing) {  // 60 readings, of which one thermometer is plainly off
+TEST(MissingData, NamesNothingAndWritesNothing) {  // 54 readings, of which one thermometer is plainly off
   Bench b;
   MeasuredRun& run = b.runs[0];
-  run.time_s.resize(20);
+  run.time_s.resize(18);
   run.cyclogram.sections = {{run.time_s.back(), {.speed_rpm = 1000.0}}};
-  for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd(c.value.head(20));
+  for (MeasuredChannel& c : run.channels) c.value = Eigen::VectorXd(c.value.head(18));
   set_grid(run);
   add_noise(b.channel(0), 0.05);
   add_noise(b.channel(1), 0.05);
