@@ -17,9 +17,10 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr int kFewestReadings = 60;    // of all channels together: below, a verdict would be guessing
+constexpr int kFewestReadings = 60;     // of all channels together: below, a verdict would be guessing
 constexpr double kUnnamed = 3.0;        // nats by which one cause without a name must be better than those with one
-constexpr double kBetterOfCause = 0.1;  // and, if it follows time in any shape, of what the best of these explains: better by less, it follows what the cause's law leaves
+/// And, where it follows time in any shape, of what the best of these explains: better by less, it follows what that one's law leaves.
+constexpr double kBetterOfCause = 0.1;
 constexpr double kBeyondBelief = 2.0;   // mean square of how far the scenario's numbers moved, in their sigmas
 constexpr double kMostWork = 2e7;       // some ten seconds
 constexpr double kSmallMachine = 15.0;  // unknowns, below which a prediction costs the same

@@ -34,23 +34,16 @@ struct TwoSizes {
 /// Both fitted at once; none where one of them is out of its range.
 TwoSizes together(const Variant& a, const Variant& b, const Seen& of_a, const Seen& of_b, double across) {
   const std::array<const Variant*, 2> law = {&a, &b};
-  const std::array<const Seen*, 2> seen = {&of_a, &of_b};
-  std::array<double, 2> width;
-  for (std::size_t i = 0; i < 2; ++i) width[i] = heavy_tailed_width(law[i]->knobs[0].prior_sd, seen[i]->alone.x);
+  const Eigen::Vector2d sd(a.knobs[0].prior_sd, b.knobs[0].prior_sd);
+  const Eigen::Array2d width(heavy_tailed_width(sd[0], of_a.alone.x), heavy_tailed_width(sd[1], of_b.alone.x));
   Eigen::Matrix2d squares;
   squares << of_a.square, across, across, of_b.square;
   const Eigen::Vector2d products(of_a.product, of_b.product);
   Eigen::Matrix2d held = squares;
-  for (int i = 0; i < 2; ++i) held(i, i) += 1.0 / (width[static_cast<std::size_t>(i)] * width[static_cast<std::size_t>(i)]);
+  held.diagonal().array() += width.square().inverse();
   const Eigen::Vector2d x = held.inverse() * products;
   TwoSizes two{.gain = products.dot(x) - 0.5 * x.dot(squares * x), .x = {x[0], x[1]}};
-  Eigen::Matrix2d scaled;
-  for (int i = 0; i < 2; ++i) {
-    for (int j = 0; j < 2; ++j)
-      scaled(i, j) = held(i, j) * law[static_cast<std::size_t>(i)]->knobs[0].prior_sd *
-                     law[static_cast<std::size_t>(j)]->knobs[0].prior_sd;
-  }
-  two.gain -= 0.5 * std::log(scaled.determinant());
+  two.gain -= 0.5 * std::log(held.determinant()) + sd.array().log().sum();
   for (std::size_t i = 0; i < 2; ++i) {
     const Knob& size = law[i]->knobs[0];
     if (size.scale == Knob::Scale::kLinear && size.x(size.value(two.x[i])) != two.x[i]) return {};

@@ -23,7 +23,9 @@ namespace driftwright::effects {
 /// A doubted amount in um or urad, 15 of them 1 sigma, reported by its name.
 [[nodiscard]] inline DoubtedNumber doubted_amount(const DoubtScene::Displacement& of, const std::string& name) {
   DoubtedNumber n = doubted(name, of.unit(), 15.0, 1.0);
-  n.set = [key = amount_key(of, name)](std::span<Effect> added, double value) { added[0].set(key, value); };
+  n.set = [key = amount_key(of, name)](std::span<Effect> added, double value) {
+    for (Effect& e : added) e.set(key, value);
+  };
   return n;
 }
 inline void check_amount(const Effect& effect, const ConfigMap& in, const std::string& name) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "effects/displacement_amount.hpp"
@@ -26,22 +27,15 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e.has("until_time") && e["until_time"] <= e["time"]) in.fail("until_time", "it is behind `time`");
 }
 
-/// A bump that somebody mends.
-Doubt bumped(const DoubtScene::Displacement& d, const DoubtScene::Run& run, const Effect& shift) {
-  DoubtedNumber length = doubted_time("length", run.length_s, [](std::span<Effect> added, double value) {
+/// A step that somebody takes back.
+Doubt bumped(const Doubt& step, const DoubtScene::Run& run) {
+  Doubt bump = step;
+  bump.law = "step for a while, in " + run.name;
+  bump.numbers.push_back(doubted_time("length", run.length_s, [](std::span<Effect> added, double value) {
     added[0].set("until_time", added[0]["time"] + std::max(value, kShortest_s) / 60.0);
-  });
-  length.nominal = kUsualLength * run.length_s;
-  Doubt bump{.finding = "mount_shift",
-             .where = d.name,
-             .law = "step for a while, in " + run.name,
-             .added = {shift},
-             .numbers = {doubted_amount(d, "shift"),
-                         doubted_time("time", run.length_s,
-                                      [](std::span<Effect> added, double value) { added[0].set("time", value / 60.0); }),
-                         length},
-             .trial = 3.0,
-             .grid = {}};
+  }));
+  bump.numbers.back().nominal = kUsualLength * run.length_s;
+  bump.grid = {};
   for (double begin : {-0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3}) {
     for (double other : {-0.15, 0.0, 0.15}) bump.grid.push_back({begin * run.length_s, other * run.length_s});
   }
@@ -64,7 +58,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                                                                            })},
                       .trial = 3.0,
                       .grid = time_grid(run.length_s, 40)});
-      list.push_back(bumped(d, run, shift));
+      list.push_back(bumped(list.back(), run));
     }
     // set up anew between two records
     Doubt anew{
@@ -74,9 +68,6 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
         .added = {make_effect("mount_shift", Place::kDisplacement, d.name, {{amount_key(d, "shift"), 0.0}, {"time", 0.0}})},
         .numbers = {doubted_amount(d, "shift")},
         .trial = 3.0};
-    anew.numbers[0].set = [key = amount_key(d, "shift")](std::span<Effect> added, double value) {
-      for (Effect& e : added) e.set(key, value);
-    };
     add_between_records(s, anew, list);
     // a stand that was clamped or glued just before the record began
     DoubtedNumber creep{.name = "creep", .unit = "min", .nominal = 60.0, .prior_sd = 1.0, .step = 0.1, .is_log = true};

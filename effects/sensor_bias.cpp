@@ -51,7 +51,9 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind sensor_bias() {
   return {
       .key = "sensor_bias",
-      .title = "sensor with a constant error, or with one while the spindle turns: a lead that picks up the drive",
+      .title =
+          "sensor with a constant error, with one while the spindle turns (a lead that picks up the drive), or of a wrong "
+          "scale",
       .law = "reading = T + bias + slope (T - T_reference); at standstill T, where it errs while_spindle_turns",
       .places = {Place::kSensor},
       .parameters = {{"bias", "K", -100.0, 100.0, {}, "reading minus truth"},
