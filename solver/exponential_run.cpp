@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "solver/exponentials.hpp"
 #include "solver/live_rate.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"
@@ -17,6 +18,7 @@ constexpr double kShareOfTolerance = 0.05;  // of the absolute tolerance: error 
 constexpr double kShareIterated = 1e-3;     // of a step's error: to which its end is iterated
 constexpr int kMostIterations = 8;
 constexpr int kStepsOfOneTangent = 50;
+constexpr std::size_t kMostKnown = 100;  // exponentials of one tangent that are kept
 constexpr double kShortestStep_s = 1e-3;
 constexpr double kFarthest_K = 3000.0;  // from the reference: no machine
 constexpr double kSame = 1e-9;          // of a step: times that are one
@@ -66,7 +68,7 @@ class ExponentialRun {
         limit_s = std::min(2.0 * limit_s, most_s_);
         if (n_switches_ > most_switches_) return false;
       } else {
-        has_tangent_ = false;
+        has_tangent_ = has_tangent_ && n_steps_ == 0;  // it is of this very state
         limit_s = 0.5 * h_s;
         if (!(limit_s > kShortestStep_s)) return false;
       }
@@ -86,14 +88,32 @@ class ExponentialRun {
       has_tangent_ = true;
       n_steps_ = 0;
       known_s_ = -1.0;
+      known_.clear();
     }
-    ++n_steps_;
     if (std::abs(h_s - known_s_) <= kSame * h_s) return;
-    const Exponentials e = exponentials(h_s * tangent_);
+    const Exponentials& e = exponentials_of(h_s);
     decay_ = e.exp;
     second_ = h_s * e.phi2;
     first_ = h_s * e.phi1 - second_;
     known_s_ = h_s;
+  }
+  /// Of the step's tangent: looked up, doubled from those of half the step, or anew.
+  const Exponentials& exponentials_of(double h_s) {
+    const auto of = [&](double length_s) {
+      return std::find_if(known_.begin(), known_.end(),
+                          [&](const auto& e) { return std::abs(e.first - length_s) <= kSame * length_s; });
+    };
+    if (const auto same = of(h_s); same != known_.end()) return same->second;
+    std::vector<Exponentials> halves;
+    if (const auto half = of(0.5 * h_s); half != known_.end()) {
+      halves.push_back(doubled(half->second));
+    } else {
+      halves = exponentials_and_halves(h_s * tangent_);
+      if (known_.size() > kMostKnown) known_.clear();
+    }
+    for (std::size_t i = halves.size(); i-- > 0;)
+      known_.emplace_back(std::ldexp(h_s, -static_cast<int>(i)), std::move(halves[i]));
+    return known_.back().second;
   }
   /// How far a thermostat's probe is past where it switches, when it would be on: > 0 switches it on, < 0 off.
   [[nodiscard]] double beyond_K(std::size_t i, double ambient_K, const Eigen::VectorXd& z) const {
@@ -138,6 +158,7 @@ class ExponentialRun {
       if (!tried(t_s, h_s, end)) return 0.0;
     }
     state_.swap(end);
+    ++n_steps_;
     for (std::size_t i : switched) rates_.toggle(i);
     if (!switched.empty()) {
       n_switches_ += static_cast<int>(switched.size());
@@ -177,33 +198,14 @@ class ExponentialRun {
   double most_s_, allowed_ = 0.0, farthest_ = 0.0;
   int most_switches_, n_switches_ = 0;
   bool has_tangent_ = false;
-  int n_steps_ = 0;
+  int n_steps_ = 0;        ///< gone with this tangent
   double known_s_ = -1.0;  ///< the step that the matrices are for
   Eigen::MatrixXd tangent_, decay_, first_, second_;
+  std::vector<std::pair<double, Exponentials>> known_;  ///< of this tangent, with the step that they are for
   Eigen::VectorXd next_, n0_, n1_, rest_;
 };
 
 }  // namespace
-
-Exponentials exponentials(const Eigen::MatrixXd& x) {
-  constexpr int kTerms = 14;  // of ‖X‖ <= 1/2: what is left out is 0.5^15 / 17! of 1
-  const double norm = x.cwiseAbs().rowwise().sum().maxCoeff();
-  const int n_doublings = norm > 0.5 ? static_cast<int>(std::ceil(std::log2(2.0 * norm))) : 0;
-  const Eigen::MatrixXd small = std::ldexp(1.0, -n_doublings) * x;
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(x.rows(), x.cols());
-  Exponentials e;
-  e.phi2 = one;  // 2 φ2 = 1 + X/3 (1 + X/4 (1 + ...
-  for (int k = kTerms; k > 0; --k) e.phi2 = (one + small * e.phi2 / (k + 2.0)).eval();
-  e.phi2 *= 0.5;
-  e.phi1 = one + small * e.phi2;
-  e.exp = one + small * e.phi1;
-  for (int i = 0; i < n_doublings; ++i) {
-    e.phi2 = (0.25 * (e.phi1 * e.phi1 + 2.0 * e.phi2)).eval();
-    e.phi1 = (0.5 * (e.exp + one) * e.phi1).eval();
-    e.exp = (e.exp * e.exp).eval();
-  }
-  return e;
-}
 
 std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram,
                                                   const TimeSeries& ambient, const std::vector<double>& output_s,

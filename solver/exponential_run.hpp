@@ -30,10 +30,4 @@ inline constexpr int kMostOfExponentialRun = 40;  ///< unknowns: products of ful
                                             const TimeSeries& ambient, const std::vector<double>& output_s,
                                             const TransientOptions& options, const Eigen::VectorXd& start);
 
-/// e^X, φ1(X) and φ2(X) by scaling: a series, then φ2(2X) = (φ1² + 2 φ2)/4, φ1(2X) = (e^X + 1) φ1 / 2.
-struct Exponentials {
-  Eigen::MatrixXd exp, phi1, phi2;
-};
-[[nodiscard]] Exponentials exponentials(const Eigen::MatrixXd& x);
-
 }  // namespace driftwright::solver

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <functional>
 
 #include "base/errors.hpp"
+#include "solver/exponentials.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"
 
@@ -168,6 +170,27 @@ TEST(ExponentialRun, HasTheExponentialsOfAMatrix) {  // of a 2 x 2 block with kn
   EXPECT_NEAR(far.phi1(0, 0), 1.0 / 500.0, 1e-13);
   EXPECT_NEAR(far.phi2(0, 0), (1.0 - 1.0 / 500.0) / 500.0, 1e-13);
   EXPECT_EQ(exponentials(Eigen::MatrixXd::Zero(1, 1)).phi2(0, 0), 0.5);
+}
+
+TEST(ExponentialRun, HasTheExponentialsOfEveryHalf) {  // of V Λ V⁻¹, from rates of 1e-3 to 300 of a step
+  const Eigen::Vector4d rates(-1e-3, -0.7, -20.0, -300.0);
+  Eigen::Matrix4d v;
+  v << 2.0, 1.0, 0.0, 0.5, 0.0, 1.0, -1.0, 0.0, 1.0, 0.0, 3.0, 1.0, 0.0, -1.0, 0.0, 2.0;
+  const std::vector<Exponentials> all = exponentials_and_halves(v * rates.asDiagonal() * v.inverse());
+  ASSERT_GE(all.size(), 9u);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Eigen::Array4d x = std::ldexp(1.0, -static_cast<int>(i)) * rates.array(),
+                         phi1 = x.unaryExpr([](double y) { return std::expm1(y) / y; }), phi2 = x.unaryExpr([](double y) {
+                           return std::abs(y) > 0.01 ? (std::expm1(y) - y) / (y * y)
+                                                     : 0.5 + y / 6 * (1 + y / 4 * (1 + y / 5 * (1 + y / 6)));
+                         });
+    const auto error = [&](const Eigen::MatrixXd& of, const Eigen::Array4d& is) {
+      return (of - v * is.matrix().asDiagonal() * v.inverse()).cwiseAbs().maxCoeff();
+    };
+    EXPECT_LT(error(all[i].exp, x.exp()), 1e-12) << i;
+    EXPECT_LT(error(all[i].phi1, phi1), 1e-12) << i;
+    EXPECT_LT(error(all[i].phi2, phi2), 1e-12) << i;
+  }
 }
 
 }  // namespace
