@@ -118,6 +118,7 @@ std::vector<std::pair<std::size_t, std::size_t>> add_events(std::vector<Candidat
     Variant v{e.doubt.law, knobs_of(e.doubt), e.doubt.trial, e.doubt.grid};
     v.price_nats = e.price_nats;
     v.happens = true;
+    v.takes_any_course = e.takes_any_course;
     v.seen = true;
     v.in = e.doubt.added.front().in;
     Candidate& of = candidate(list, e.doubt.finding, e.doubt.where);

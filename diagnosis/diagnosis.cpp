@@ -61,7 +61,8 @@ Written written_of(const Fitter& fitter, const SearchResult& result, const HeldO
             .causes = {},
             .fit = result.fit,
             .why_not = held.why_not_written,
-            .keeps_numbers = held.keeps_numbers};
+            .keeps_numbers = held.why_nothing.empty(),
+            .why_nothing = held.why_nothing};
   for (std::size_t c = 0; c < result.hypothesis.size(); ++c) (w.why_not[c].empty() ? w.causes : w.taken_up).push_back(c);
   if (!w.taken_up.empty()) {
     const Remainder rest = without_claims(result.hypothesis, w.taken_up, fitter.n_nuisance());
@@ -77,7 +78,6 @@ Written written_of(const Fitter& fitter, const SearchResult& result, const HeldO
     }
   }
   if (w.keeps_numbers) return w;
-  w.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
   w.taken_up.clear();
   for (std::string& why : w.why_not) {
     if (why.empty()) why = w.why_nothing;
@@ -339,9 +339,9 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   give_standing(d, held);
   const bool is_any_named =
       std::any_of(d.search.findings.begin(), d.search.findings.end(), [](const Finding& f) { return f.is_named; });
-  if (is_any_named && held.fails) {
+  if (is_any_named && !held.fails.empty()) {
     if (!d.unexplained) d.unexplained.emplace().channels.push_back(held.fails_at);
-    d.unexplained->fails_held_out = true;
+    d.unexplained->fails = held.fails;
   }
   d.verdict = n_readings < kFewestReadings ? Verdict::kInsufficientData : verdict_of(d);
   if (d.verdict == Verdict::kInsufficientData) {

@@ -52,7 +52,7 @@ struct Cause {
   /// Share of the odds of all that was fitted in its place (rivals.hpp): its own; of its kind wherever it sits; and, of the kind's, that of its place.
   double share = 1.0;
   Odds odds = {};
-  int n_searched = 0, n_again = 0;   ///< searches without a part of the rows, and in how many of them it was found again
+  int n_searched = 0, n_again = 0;  ///< searches without a part of the rows, and in how many of them it was found again
 };
 
 /// What extended.yaml holds: claims that predict kept-out rows better, and the scenario's own numbers as fitted beside them.
@@ -106,7 +106,7 @@ struct Unexplained {
   std::string heat_would_sit_in;       ///< region whose missing heat would explain most of it, or ""
   std::vector<double> time_s, heat_W;  ///< that latent heat in the first run, per row
   std::optional<Unnamed> one_cause;    ///< that explains it better than the named ones
-  bool fails_held_out = false;         ///< the causes predict kept-out data worse than scatter alone
+  std::string fails = {};  ///< how what fits best fails rows that it was not fitted to, a clause; "" where it does not
 };
 
 struct Diagnosis {

@@ -14,6 +14,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
+constexpr double kAlways =
+    0.9;  // of its records' time: what lasts longer is no window, and what pauses instead was not chosen
 constexpr double kWorthRefining = -8.0, kWorthTrying = 0.0;  // nats by linear theory
 // Of a run, in which windows are looked for first. A spindle may stop for a minute of a day; what else acts for a while does so for longer, and at many places.
 constexpr Eigen::Index kCells = 60, kCellsOfSpeed = 240;
@@ -21,7 +23,7 @@ constexpr Eigen::Index kCells = 60, kCellsOfSpeed = 240;
 /// The events that a happening may be.
 void add_events_of(const Twin& twin, const effects::DoubtScene& scene, const Happening& happening,
                    std::vector<Event>& list) {
-  if (is_unseen(happening)) return;
+  if (is_unseen(happening) || share_of_time(happening) > kAlways) return;
   if (auto event = event_of(twin, scene, happening)) list.push_back(*std::move(event));
   for (Event& visit : visits_of(scene, happening)) {
     const bool is_known = std::any_of(list.begin(), list.end(), [&](const Event& e) {  // seen as heat and as an exchange

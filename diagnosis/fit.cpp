@@ -315,6 +315,11 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   const std::vector<char> smooth = smooth_knobs(hypothesis);
   const Eigen::VectorXd sd = prior_sd(hypothesis);
   const auto into_range = [&](Eigen::VectorXd& x) {
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(scatter_.size());
+         ++i) {  // beyond its bound a number has no slope
+      const Knob& knob = scatter_[static_cast<std::size_t>(i)];
+      if (const double value = knob.value(x[i]); value == knob.low || value == knob.high) x[i] = knob.x(value);
+    }
     for (Eigen::Index k = 0; k < n_k; ++k) {
       const Knob& knob = *knobs[static_cast<std::size_t>(k)];
       if (knob.scale == Knob::Scale::kLinear) x[n_n + k] = knob.x(knob.value(x[n_n + k]));

@@ -16,6 +16,7 @@ constexpr double kWorse = 1.1;  // of the squares
 constexpr double kAlike = 3.0;            // nats
 constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorseUnforeseen = 1.1;  // of the squares
+constexpr double kWrongAmbient_K = 1.0;   // a recorded ambient is known to a third of it
 
 /// Where nobody waited for it.
 HeldOut not_held_out(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise) {
@@ -24,7 +25,7 @@ HeldOut not_held_out(const Fitter& fitter, const SearchResult& result, const std
   held.claim_nats.assign(result.hypothesis.size(), 0.0);
   held.doubt.assign(result.hypothesis.size(), "");
   held.why_not_written.assign(result.hypothesis.size(), "the diagnosis was ended before any rows were kept out");
-  held.keeps_numbers = false;
+  held.why_nothing = "the diagnosis was ended before any rows were kept out";
   const Judge judge(fitter, result, noise, {{.fitted = fitter.runs(), .kept_out = fitter.runs()}});
   const Models models{
       .written = judge.written(), .calibrated = {result.without.prediction}, .extended = {result.fit.prediction}};
@@ -108,9 +109,11 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     if (with != kept && judge.judged(with).log_predictive > judge.judged(kept).log_predictive && !judge.is_worse(with, kept))
       kept = with;
   }
-  held.fails = all != 0 && (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier ||
-                            judge.is_much_worse(all, 0));
-  if (held.fails) held.fails_at = worst_channel(judge, noise, judge.judged(all).predicted, judge.judged(0).predicted);
+  if (all != 0 &&
+      (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier || judge.is_much_worse(all, 0))) {
+    held.fails = "predicts kept-out data worse than no cause does";
+    held.fails_at = worst_channel(judge, noise, judge.judged(all).predicted, judge.judged(0).predicted);
+  }
   Subset named = 0;
   for (std::size_t c = 0; c < n_claims; ++c) {
     const Subset one = 1U << c, with = kept | one;
@@ -171,8 +174,19 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   } else {
     held.how += "; which effect it is was decided on all rows";
   }
-  held.keeps_numbers = judge.squares_over_noise(models.extended) <= judge.squares_over_noise(models.written);
-  if (!held.keeps_numbers) models.extended = models.written;
+  const double as_written = judge.squares_over_noise(models.written);
+  if (judge.squares_over_noise(models.extended) > as_written) {
+    held.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
+  } else if (const auto elsewhere = judge.filed_elsewhere(kept); judge.squares_over_noise(elsewhere) > kWorse * as_written) {
+    held.why_nothing = "without what is of these records alone they are predicted worse than by the scenario as it was";
+    if (const double offset_K = judge.largest_offset_K(kept); offset_K > kWrongAmbient_K && held.fails.empty()) {
+      held.fails = fmt::format(
+          "needs an ambient that is {:.1f} K off its record, and predicts worse than the scenario as it was without",
+          offset_K);
+      held.fails_at = worst_channel(judge, noise, elsewhere, models.written);
+    }
+  }
+  if (!held.why_nothing.empty()) models.extended = models.written;
   held.misses = misses_of(judge, models);
   held.channels = channel_gains(fitter.runs(), noise, judge, models);
   return held;

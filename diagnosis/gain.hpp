@@ -20,11 +20,12 @@ struct HeldOut {
   /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place, or at one that this is not told from.
   int n_searched = 0;
   std::vector<int> n_again = {};
-  bool fails = false;  ///< the claims together predict kept-out rows clearly worse than none of them does
+  /// How the claims together fail rows that they were not fitted to, a clause; "" where they do not: they predict kept-out rows clearly worse than none of them does, or
+  /// stand beside an ambient that is off its record, without which they predict worse than the scenario as it is written.
+  std::string fails = {};
   Unexplained::Channel
-      fails_at;  ///< where it fails, the channel that they predict worst, and how: what is left of its kept-out rows
-  bool keeps_numbers =
-      true;  ///< false: the scenario as written predicts kept-out rows better than any numbers that were fitted
+      fails_at;                  ///< where they fail, the channel that they predict worst, and how: what is left of its rows
+  std::string why_nothing = {};  ///< why neither causes nor fitted numbers are worth writing, a clause; "" where they are
 };
 
 /// A search for what is wrong in records that have some of their readings alone: with noise, bars, numbers and process noise of these.

@@ -11,9 +11,9 @@ using Times = std::vector<std::pair<double, double>>;  ///< beginnings and ends 
 struct Happening {
   effects::Body body;
   std::optional<effects::Body> other = {};  ///< an exchange with it; else heat
-  bool is_speed = false;                    ///< of the spindle, whatever the body: the size is what heat of turning grows by, over itself
+  bool is_speed = false;  ///< of the spindle, whatever the body: the size is what heat of turning grows by, over itself
   std::vector<std::pair<const MeasuredRun*, Times>> in =
-      {};                ///< each run that has some; no run: all of them, one window in each turn
+      {};  ///< each run that has some; no run: all of them, one window in each turn
   /// How much of the record would do as well as each beginning and end [s], in the order of all windows; empty: not known.
   Times wide_s = {};
   double every_s = 0.0;  ///< of windows that repeat
@@ -33,6 +33,9 @@ inline constexpr double kUnknownSpeed = 0.7;
 
 /// Whether half of the windows' time or more lies in holes of their records, where nobody saw what went on. What repeats in each turn was seen in others.
 [[nodiscard]] bool is_unseen(const Happening& happening);
+
+/// Share of the time of its records that windows take; of what repeats, of a turn.
+[[nodiscard]] double share_of_time(const Happening& happening);
 
 /// From row to row [s], on average.
 [[nodiscard]] double row_s(const MeasuredRun& run);

@@ -96,6 +96,35 @@ std::vector<Prediction> Judge::filed(Subset claims) {
   return predicted;
 }
 
+std::vector<Prediction> Judge::filed_elsewhere(Subset claims) {
+  const Judged& j = judged(claims);
+  Twin::Workspace workspace(whole_.twin());
+  std::vector<Prediction> predicted(folds_.size(), written_);
+  for (std::size_t f = 0; f < folds_.size(); ++f) {
+    if (j.x[f].size() == 0) continue;
+    TwinState state = whole_.state(j.hypothesis, j.x[f]);
+    const auto added = state.begin() + static_cast<std::ptrdiff_t>(whole_.twin().n_own_effects());
+    state.erase(std::remove_if(added, state.end(), [](const effects::Effect& e) { return !e.in.empty(); }), state.end());
+    for (std::size_t r = 0; r < written_.size(); ++r) {
+      const MeasuredRun& run = whole_.runs()[r];
+      (void)has_solution(
+          [&] { predicted[f][r] = whole_.twin().read(state, run, whole_.twin().respond(state, run, workspace)); });
+    }
+  }
+  return predicted;
+}
+
+double Judge::largest_offset_K(Subset claims) {
+  double largest_K = 0.0;
+  for (const Eigen::VectorXd& x : judged(claims).x) {
+    for (std::size_t i = 0; i < whole_.scatter().size() && x.size() > 0; ++i) {
+      const Knob& k = whole_.scatter()[i];
+      if (!k.in.empty()) largest_K = std::max(largest_K, std::abs(k.value(x[static_cast<Eigen::Index>(i)])));
+    }
+  }
+  return largest_K;
+}
+
 double Judge::least_evidence(Subset claims, Subset without) {
   const std::vector<double> with = judged(claims).log_evidence, &fewer = judged(without).log_evidence;
   double least = 1e300;

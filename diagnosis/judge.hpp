@@ -34,6 +34,10 @@ class Judge {
   /// What a file that holds some claims, all numbers as fitted to a fold's rows, predicts of its kept-out ones. Of a run that is kept out whole nobody knows when
   /// something happens, as nobody would of one still to come: no window of time is open in it.
   [[nodiscard]] std::vector<Prediction> filed(Subset claims);
+  /// The same as records still to come would be predicted: without what was found or fitted of single records, such as the offset of one's ambient.
+  [[nodiscard]] std::vector<Prediction> filed_elsewhere(Subset claims);
+  /// The largest offset of a record's ambient that was fitted beside some claims [K].
+  [[nodiscard]] double largest_offset_K(Subset claims);
   /// Least evidence of a claim in the fitted rows of a fold [nats, its price not paid]: what is known of it where some rows were never read.
   [[nodiscard]] double least_evidence(Subset claims, Subset without);
   /// What comes of the search made again without the kept-out rows; of a fold of blocks, in which something happened, what the claims make of it.

@@ -18,6 +18,7 @@ struct Knob {
   std::string effect;  ///< catalogue key that a value far off is called
   std::string where;
   std::string name, unit;  ///< of the value
+  std::string in = {};     ///< the run whose own number it is; "": of all
   enum class Scale { kLog, kLinear } scale = Scale::kLinear;
   double nominal = 0.0;               ///< value at x = 0
   double prior_sd = 1.0;              ///< of x

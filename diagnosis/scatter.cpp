@@ -35,6 +35,7 @@ std::vector<Knob> ambient_scatter(const std::vector<MeasuredRun>& runs) {
                      .where = effects::kAmbientName,
                      .name = "offset in " + run.name,
                      .unit = "K",
+                     .in = run.name,
                      .prior_sd = kAmbient_K,
                      .step = 0.5 * kAmbient_K,
                      .set = [name = run.name](TwinState& s, double value) {

@@ -82,7 +82,7 @@ bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
 /// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
 bool rest_rules(const Diagnosis& d) {
   if (!d.unexplained) return false;
-  if (d.causes.empty() || d.unexplained->one_cause || d.unexplained->fails_held_out) return true;
+  if (d.causes.empty() || d.unexplained->one_cause || !d.unexplained->fails.empty()) return true;
   double explained = 0.0;
   for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
   return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
@@ -122,8 +122,8 @@ std::string reason_of(const Diagnosis& d) {
             d.unexplained && !d.unexplained->channels.empty() ? ", most of all " + in_words(d.unexplained->channels.front())
                                                               : "");
       }
-      if (d.unexplained && d.unexplained->fails_held_out) {
-        return fmt::format("What fits best predicts kept-out data worse than no cause does, most of all {}: {}.",
+      if (d.unexplained && !d.unexplained->fails.empty()) {
+        return fmt::format("What fits best {}, most of all {}: {}.", d.unexplained->fails,
                            in_words(d.unexplained->channels.front()), text);
       }
       if (d.unexplained && d.unexplained->one_cause) {
@@ -160,6 +160,10 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     cause.doubt = held.doubt[c];
     if (cause.doubt.empty() && is_found_once(d, c, held))
       cause.doubt = "it stands beside a stronger cause, and no search without a part of the rows found it";
+    const Claim& claim = d.search.hypothesis[c];
+    if (cause.doubt.empty() && d.unexplained &&
+        d.search.candidates[claim.candidate].variants[claim.variant].takes_any_course)
+      cause.doubt = "so many and so long windows follow whatever comes and goes, and more than noise is left beside them";
     if (cause.doubt.empty() && is_size_open(cause))
       cause.doubt = "its size is open: the ends of its 95 % interval are more than a factor of 100 apart";
     if (!cause.doubt.empty()) continue;

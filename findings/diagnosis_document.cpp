@@ -172,7 +172,7 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
   add(section, Value{.key = "correlation", .words = "correlation", .datum = u.correlation, .digits = output::decimals(2)});
   if (!u.heat_would_sit_in.empty())
     add(section, Value{.key = "heat_would_sit_in", .words = "heat would sit in", .datum = u.heat_would_sit_in});
-  if (u.fails_held_out) put("fails_held_out", true);
+  if (!u.fails.empty()) put("fails_held_out", true);
   if (u.one_cause) {
     using Quantity = diagnosis::Unnamed::Quantity;
     put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat      ? "heat"
