@@ -343,6 +343,9 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
     if (!d.unexplained) d.unexplained.emplace().channels.push_back(held.fails_at);
     d.unexplained->fails = held.fails;
   }
+  if (is_any_named && d.unexplained && d.unexplained->fails.empty() && held.offset_K > kWrongAmbient_K)
+    d.unexplained->fails =
+        fmt::format("needs an ambient that is {:.1f} K off its record, and leaves more than noise", held.offset_K);
   d.verdict = n_readings < kFewestReadings ? Verdict::kInsufficientData : verdict_of(d);
   if (d.verdict == Verdict::kInsufficientData) {
     doubt_all(d, "the readings are too few to tell causes apart");

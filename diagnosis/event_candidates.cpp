@@ -14,6 +14,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
+constexpr std::size_t kFewWindows = 5;   // more are held against a course of any shape
+constexpr double kCourseIsBetter = 1.1;  // than windows, which are then left to what has no name
 constexpr double kAlways =
     0.9;  // of its records' time: what lasts longer is no window, and what pauses instead was not chosen
 constexpr double kWorthRefining = -8.0, kWorthTrying = 0.0;  // nats by linear theory
@@ -130,6 +132,11 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
         const WindowEvidence second = asked(fine);
         found = find_windows(second, found->windows);
         if (!found || !(found->gain > kWorthTrying)) return;
+        if (found->windows.size() > kFewWindows) {
+          const double course = course_gain(second, found->size);
+          if (course > kCourseIsBetter * found->gain) return;
+          h.is_course = course > found->gain;
+        }
         for (const FoundWindows::Window& w : found->windows) {
           const MeasuredRun& run = fitter.runs()[w.run];
           if (h.in.empty() || h.in.back().first != &run) h.in.push_back({&run, {}});

@@ -14,7 +14,7 @@ struct Event {
   effects::Doubt
       doubt;  ///< windows of heat, of an exchange or of another speed; its numbers: the size, and how much longer, or when they come again
   double price_nats = 0.0;        ///< of their times, which were read off the data
-  bool takes_any_course = false;  ///< windows so many and so long that they follow whatever comes and goes
+  bool takes_any_course = false;  ///< so many windows that a course of any shape would do as well
   struct Window {
     std::string in;  ///< run
     double begin_s = 0.0, end_s = 0.0;

@@ -16,7 +16,6 @@ constexpr double kWorse = 1.1;  // of the squares
 constexpr double kAlike = 3.0;            // nats
 constexpr double kSurelyLikelier = 10.0;  // nats
 constexpr double kWorseUnforeseen = 1.1;  // of the squares
-constexpr double kWrongAmbient_K = 1.0;   // a recorded ambient is known to a third of it
 
 /// Where nobody waited for it.
 HeldOut not_held_out(const Fitter& fitter, const SearchResult& result, const std::map<std::string, NoiseModel>& noise) {
@@ -174,15 +173,16 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   } else {
     held.how += "; which effect it is was decided on all rows";
   }
+  held.offset_K = judge.largest_offset_K(kept);
   const double as_written = judge.squares_over_noise(models.written);
   if (judge.squares_over_noise(models.extended) > as_written) {
     held.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
   } else if (const auto elsewhere = judge.filed_elsewhere(kept); judge.squares_over_noise(elsewhere) > kWorse * as_written) {
     held.why_nothing = "without what is of these records alone they are predicted worse than by the scenario as it was";
-    if (const double offset_K = judge.largest_offset_K(kept); offset_K > kWrongAmbient_K && held.fails.empty()) {
+    if (held.offset_K > kWrongAmbient_K && held.fails.empty()) {
       held.fails = fmt::format(
           "needs an ambient that is {:.1f} K off its record, and predicts worse than the scenario as it was without",
-          offset_K);
+          held.offset_K);
       held.fails_at = worst_channel(judge, noise, elsewhere, models.written);
     }
   }

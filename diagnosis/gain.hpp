@@ -23,10 +23,14 @@ struct HeldOut {
   /// How the claims together fail rows that they were not fitted to, a clause; "" where they do not: they predict kept-out rows clearly worse than none of them does, or
   /// stand beside an ambient that is off its record, without which they predict worse than the scenario as it is written.
   std::string fails = {};
+  double offset_K = 0.0;  ///< the largest of a record's ambient that was fitted beside what is written
   Unexplained::Channel
       fails_at;                  ///< where they fail, the channel that they predict worst, and how: what is left of its rows
   std::string why_nothing = {};  ///< why neither causes nor fitted numbers are worth writing, a clause; "" where they are
 };
+
+/// How far off its record an ambient is fitted where the machine is wrong: it is known to a third of that.
+inline constexpr double kWrongAmbient_K = 1.0;
 
 /// A search for what is wrong in records that have some of their readings alone: with noise, bars, numbers and process noise of these.
 using SearchAgain = std::function<SearchResult(const std::vector<MeasuredRun>& fitted)>;

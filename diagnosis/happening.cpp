@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kShortest_s = 1.0;     // of a window that another length has shortened
 constexpr std::size_t kFewWindows = 5;  // whose times are fitted one by one
-constexpr double kLargeShare = 0.3;     // of the time of their records: many windows are then as good as a course
 constexpr double kTurnsGoOn = 2.0;      // of the longest run: how long turns are written for
 // Of the speed, by which the heat of bearings and motors usually grows: where a fit of another speed begins.
 constexpr double kUsualExponent = 1.5;
@@ -232,7 +231,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
   }
   if (n_windows == 0) return std::nullopt;
   const bool is_fitted = h.every_s == 0.0 && n_windows <= kFewWindows && n_windows == h.wide_s.size();
-  event.takes_any_course = h.every_s == 0.0 && n_windows > kFewWindows && share_of_time(h) > kLargeShare;
+  event.takes_any_course = h.is_course;
   d.numbers = {size};
   if (h.every_s > 0.0) {
     for (effects::DoubtedNumber& n : times_of_turns(h, longest_row_s / 60.0)) d.numbers.push_back(std::move(n));

@@ -16,8 +16,9 @@ struct Happening {
       {};  ///< each run that has some; no run: all of them, one window in each turn
   /// How much of the record would do as well as each beginning and end [s], in the order of all windows; empty: not known.
   Times wide_s = {};
-  double every_s = 0.0;  ///< of windows that repeat
-  double size = 0.0;     ///< W, W/K or 1
+  double every_s = 0.0;    ///< of windows that repeat
+  bool is_course = false;  ///< a course of any shape would do as well as so many windows
+  double size = 0.0;       ///< W, W/K or 1
   double price_nats = 0.0;
 };
 

@@ -163,7 +163,7 @@ void give_standing(Diagnosis& d, const HeldOut& held) {
     const Claim& claim = d.search.hypothesis[c];
     if (cause.doubt.empty() && d.unexplained &&
         d.search.candidates[claim.candidate].variants[claim.variant].takes_any_course)
-      cause.doubt = "so many and so long windows follow whatever comes and goes, and more than noise is left beside them";
+      cause.doubt = "so many windows follow whatever comes and goes, and more than noise is left beside them";
     if (cause.doubt.empty() && is_size_open(cause))
       cause.doubt = "its size is open: the ends of its 95 % interval are more than a factor of 100 apart";
     if (!cause.doubt.empty()) continue;

@@ -1,5 +1,6 @@
 #include "diagnosis/window_search.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +17,8 @@ constexpr int kMostTurns = 40;
 constexpr double kLongestOfSeveral = 0.3;
 constexpr double kFewestTurns = 3.0;  // of the longest run: fewer do not repeat
 constexpr double kShortestCells = 3.0;
+constexpr double kCourseTimes[] = {0.02, 0.06, 0.2};  // of a run, for which a course stays alike
+constexpr double kJitter = 1e-9;
 
 /// What a set of windows has of slope and curvature.
 struct Sums {
@@ -61,6 +64,19 @@ class Searcher {
       }
     }
     return s;
+  }
+
+  /// A set whose windows all begin and end some cells later. @returns  none where one would be empty, or meet another
+  [[nodiscard]] std::vector<Window> all_moved(std::vector<Window> set, Eigen::Index begin, Eigen::Index end) const {
+    std::sort(set.begin(), set.end(),
+              [](const Window& a, const Window& b) { return a.run != b.run ? a.run < b.run : a.first < b.first; });
+    for (std::size_t k = 0; k < set.size(); ++k) {
+      Window& w = set[k];
+      w.first = std::max<Eigen::Index>(0, w.first + begin);
+      w.last = std::min(static_cast<Eigen::Index>(e_.runs[w.run].edge_s.size()) - 1, w.last + end);
+      if (w.first >= w.last || (k > 0 && set[k - 1].run == w.run && set[k - 1].last >= w.first)) return {};
+    }
+    return set;
   }
 
   struct Addition {
@@ -257,6 +273,18 @@ std::optional<FoundWindows> grow(const Searcher& searcher, std::vector<Window> s
         --k;
       }
     }
+    for (const Eigen::Index by :
+         {1, 2, 4}) {  // all of them longer or shorter: each alone would not fit the size of the others
+      for (const auto& [begin, end] : {std::pair{-by, 0L}, {by, 0L}, {0L, -by}, {0L, by}, {-by, by}, {by, -by}}) {
+        const std::vector<Window> moved = searcher.all_moved(set, begin, end);
+        if (moved.size() < 2) continue;
+        const double with = searcher.nats(searcher.sums(moved)) - kOfAWindow * static_cast<double>(moved.size());
+        if (!(with > value + 1e-6)) continue;
+        set = moved;
+        value = with;
+        changed = true;
+      }
+    }
     if (!changed) break;
   }
   if (set.empty()) return std::nullopt;
@@ -283,6 +311,34 @@ std::optional<FoundWindows> grow(const Searcher& searcher, std::vector<Window> s
 
 std::optional<FoundWindows> find_windows(const WindowEvidence& evidence, std::vector<Window> start) {
   return grow(Searcher(evidence), std::move(start), kMostWindows);
+}
+
+double course_gain(const WindowEvidence& evidence, double size) {
+  const Eigen::Index n = evidence.slope.size();
+  double best = -1e300;
+  for (const double share : kCourseTimes) {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+    for (const WindowEvidence::Run& run : evidence.runs) {
+      const auto cells = static_cast<Eigen::Index>(run.edge_s.size()) - 1;
+      const double time_s = share * (run.edge_s.back() - run.edge_s.front());
+      const auto middle_s = [&](Eigen::Index k) {
+        return 0.5 * (run.edge_s[static_cast<std::size_t>(k)] + run.edge_s[static_cast<std::size_t>(k) + 1]);
+      };
+      for (Eigen::Index i = 0; i < cells; ++i) {
+        for (Eigen::Index k = 0; k < cells; ++k)
+          covariance(run.first + i, run.first + k) = size * size * std::exp(-std::abs(middle_s(i) - middle_s(k)) / time_s);
+      }
+      covariance.diagonal().segment(run.first, cells).array() += kJitter * size * size;
+    }
+    const Eigen::MatrixXd root = covariance.llt().matrixL();
+    Eigen::MatrixXd square = root.transpose() * evidence.curvature * root;
+    square.diagonal().array() += 1.0;
+    const Eigen::LLT<Eigen::MatrixXd> factor(square);
+    const Eigen::VectorXd slope = root.transpose() * evidence.slope;
+    best = std::max(best, 0.5 * slope.dot(factor.solve(slope)) -
+                              factor.matrixLLT().diagonal().array().log().sum());  // log det is twice that
+  }
+  return best - std::log(static_cast<double>(std::size(kCourseTimes)));
 }
 
 std::optional<FoundTurns> find_turns(const WindowEvidence& evidence) {

@@ -106,6 +106,30 @@ TEST(WindowSearch, FindsTurnsThatRepeat) {
   EXPECT_GT(turns->gain, one_by_one ? one_by_one->gain : 0.0) << "three times say what twelve windows do";
 }
 
+TEST(WindowSearch, TellsManyWindowsFromACourse) {
+  Eigen::VectorXd windows = Eigen::VectorXd::Zero(kCells);
+  for (Eigen::Index begin : {3, 11, 17, 26, 35, 44, 52}) windows.segment(begin, 4).setOnes();
+  int n_dropped = 0, n_many = 0, n_told = 0;
+  constexpr int kTries = 20;
+  for (int seed = 0; seed < kTries; ++seed) {
+    Random random(1000 + static_cast<std::uint64_t>(seed), 0);
+    Eigen::VectorXd course(2 * kCells);  // that stays alike for five cells
+    double value = 0.0;
+    for (double& v : course) v = value = std::exp(-0.2) * value + std::sqrt(1.0 - std::exp(-0.4)) * random.normal();
+    const WindowEvidence of_windows = evidence(windows, 6.0, static_cast<std::uint64_t>(seed)),
+                         of_course = evidence(course, 6.0, static_cast<std::uint64_t>(seed));
+    const auto found = find_windows(of_windows), followed = find_windows(of_course);
+    ASSERT_TRUE(found && followed);
+    n_dropped += course_gain(of_windows, found->size) > 1.1 * found->gain;
+    if (followed->windows.size() <= 5) continue;
+    ++n_many;
+    n_told += course_gain(of_course, followed->size) > followed->gain;
+  }
+  EXPECT_LE(n_dropped, kTries / 4);  // seven windows that were not found to the cell
+  EXPECT_GE(n_many, kTries / 2);
+  EXPECT_EQ(n_told, n_many);
+}
+
 TEST(WindowSearch, SaysNothingOfNoise) {
   int n_found = 0;
   constexpr int kTries = 200;
