@@ -110,7 +110,7 @@ std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const st
   if (std::any_of(knots_s.begin(), knots_s.end(), [](double t_s) { return std::isnan(t_s); }))
     throw std::logic_error("linear_stretches: a knot is NaN");
   std::vector<double> knots = knots_s;
-  std::sort(knots.begin(), knots.end());
+  if (!std::is_sorted(knots.begin(), knots.end())) std::sort(knots.begin(), knots.end());
   knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
   std::vector<LinearStretch> stretches;
   double start_s = 0.0;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
+#include "base/series_in_order.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/bind_laws.hpp"
 #include "solver/exponential_run.hpp"
@@ -368,8 +369,9 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
   Eigen::MatrixXd outputs = weights.transpose() * z;
   if ((outputs_.ambient.array() == 0.0).all()) return outputs;
   const TimeSeries ambient = effects::true_ambient(effects::drive_change(state, run.name), run.ambient, run.cyclogram);
+  SeriesInOrder ambient_K(ambient);
   for (std::size_t k = 0; k < run.grid_s.size(); ++k) {
-    outputs.col(static_cast<Eigen::Index>(k)) += ambient.at(run.grid_s[k]) * outputs_.ambient;
+    outputs.col(static_cast<Eigen::Index>(k)) += ambient_K.at(run.grid_s[k]) * outputs_.ambient;
   }
   return outputs;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/series_in_order.hpp"
 #include "solver/stretches.hpp"
 
 namespace driftwright::solver {
@@ -21,14 +22,15 @@ struct Loads {
   Eigen::VectorXd coefficient;  // of each exchange
   Eigen::VectorXd constant, slope;
 };
-Loads loads_of(const ReducedSystem& system, const LinearStretch& stretch, const TimeSeries& ambient) {
+/// @param ambient  asked for stretches in their order
+void take_loads(const ReducedSystem& system, const LinearStretch& stretch, SeriesInOrder& ambient, Loads& l) {
   const double ambient_K = ambient.at(stretch.start_s),
                ambient_slope = (ambient.at(stretch.end_s) - ambient_K) / (stretch.end_s - stretch.start_s);
   effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
   at.run = stretch.run;
-  Loads l{.coefficient = Eigen::VectorXd(static_cast<Eigen::Index>(system.exchanges.size())),
-          .constant = Eigen::VectorXd::Zero(system.size()),
-          .slope = Eigen::VectorXd::Zero(system.size())};
+  l.coefficient.resize(static_cast<Eigen::Index>(system.exchanges.size()));
+  l.constant.setZero(system.size());
+  l.slope.setZero(system.size());
   for (const HeatSource& s : system.sources) {
     if (const double power_W = s.power_W(at); power_W != 0.0) l.constant += power_W * s.load;
   }
@@ -41,7 +43,6 @@ Loads loads_of(const ReducedSystem& system, const LinearStretch& stretch, const 
     l.slope += c * ambient_slope * exchange.to_ambient;
     if (exchange.offset.size() > 0) l.constant += c * exchange.offset;
   }
-  return l;
 }
 
 }  // namespace
@@ -89,8 +90,10 @@ std::optional<Course> Course::of(const ReducedSystem& system, Decompositions& de
   c.states_.resize(system.size(), static_cast<Eigen::Index>(output_s.size()));
   Eigen::VectorXd state = start;
   std::size_t next = 0;
+  SeriesInOrder ambient_K(ambient);
+  Loads loads;
   for (const LinearStretch& stretch : stretches_of(system, cyclogram, ambient)) {
-    const Loads loads = loads_of(system, stretch, ambient);
+    take_loads(system, stretch, ambient_K, loads);
     Stretch s;
     s.start_s = stretch.start_s;
     s.end_s = stretch.end_s;
@@ -174,17 +177,22 @@ std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, con
     return couplings.back();
   };
 
-  Eigen::MatrixXd states = states_;
+  Eigen::MatrixXd states = states_, change;
   Eigen::VectorXd off = start - start_;  // of the state, at the start of a stretch
+  Eigen::VectorXd y0, h0, h1, more, e0, e1, e2;
+  SeriesInOrder ambient_K(ambient);
+  Loads loads;
   for (std::size_t k = 0; k < theirs.size(); ++k) {
     const Stretch& s = stretches_[k];
     const Decomposition& d = decompositions_[s.decomposition];
-    const Loads loads = loads_of(other, theirs[k], ambient);
-    Eigen::VectorXd y0 = d.to_modes * off, h0 = d.vectors.transpose() * loads.constant - s.f0,
-                    h1 = d.vectors.transpose() * loads.slope - s.f1;
-    const Eigen::VectorXd more = loads.coefficient - d.coefficient;
+    take_loads(other, theirs[k], ambient_K, loads);
+    y0.noalias() = d.to_modes * off;
+    h0.noalias() = d.vectors.transpose() * loads.constant;
+    h0 -= s.f0;
+    h1.noalias() = d.vectors.transpose() * loads.slope;
+    h1 -= s.f1;
+    more = loads.coefficient - d.coefficient;
     const bool is_coupled = is_other_conduction || is_other_mass || (more.array() != 0.0).any();
-    Eigen::MatrixXd change;
     if (is_coupled) {
       const Coupling& c = coupling(s.decomposition, more);
       if (is_other_mass) {
@@ -194,15 +202,17 @@ std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, con
       y0.noalias() += c.apart * s.y0;
       h0.noalias() += c.apart * s.f0;
       h1.noalias() += c.apart * s.f1;
-      const Eigen::VectorXd e0 = c.equal * s.y0, e1 = c.equal * s.f0, e2 = c.equal * s.f1;
+      e0.noalias() = c.equal * s.y0;
+      e1.noalias() = c.equal * s.f0;
+      e2.noalias() = c.equal * s.f1;
       change = s.at.te.colwise() * e0.array() + s.at.r.colwise() * e1.array() + s.at.s.colwise() * e2.array();
       change.noalias() -= c.apart * s.y;
     } else {
-      change = Eigen::MatrixXd::Zero(s.y.rows(), s.y.cols());
+      change.setZero(s.y.rows(), s.y.cols());
     }
     change.array() += s.at.e.colwise() * y0.array() + s.at.p.colwise() * h0.array() + s.at.q.colwise() * h1.array();
     const Eigen::Index n_outputs = change.cols() - 1;
-    states.middleCols(s.first, n_outputs).noalias() += d.vectors * change.leftCols(n_outputs);
+    if (n_outputs > 0) states.middleCols(s.first, n_outputs).noalias() += d.vectors * change.leftCols(n_outputs);
     off.noalias() = d.vectors * change.rightCols<1>();
   }
   return states;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/series_in_order.hpp"
 #include "solver/stage_ode.hpp"
 #include "solver/stretches.hpp"
 
@@ -89,10 +90,11 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
   Eigen::VectorXd state = start, coefficient(n_exchanges), power_W(n_sources);
   Eigen::MatrixXd block, integrals;  // z and ∫ z at the outputs of a stretch, in its eigenvectors
   Eigen::ArrayXd e(n), decay(n);
+  SeriesInOrder ambient_in_order(ambient);
   std::size_t next = 0;
   for (const LinearStretch& stretch : behind(from_s, stretches_of(system_, cyclogram, ambient))) {
-    const double length_s = stretch.end_s - stretch.start_s, ambient_K = ambient.at(stretch.start_s),
-                 ambient_slope = (ambient.at(stretch.end_s) - ambient_K) / length_s;
+    const double length_s = stretch.end_s - stretch.start_s, ambient_K = ambient_in_order.at(stretch.start_s),
+                 ambient_slope = (ambient_in_order.at(stretch.end_s) - ambient_K) / length_s;
     effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
     at.run = stretch.run;
     for (Eigen::Index i = 0; i < n_exchanges; ++i) {

@@ -1,6 +1,9 @@
 #pragma once
 // Where a system's run is cut: at changes of drive, knots of the ambient temperature and times at which laws jump by themselves.
 
+#include <algorithm>
+#include <iterator>
+
 #include "base/cyclogram.hpp"
 #include "solver/thermal_system.hpp"
 
@@ -8,8 +11,10 @@ namespace driftwright::solver {
 
 template <class Matrix>
 [[nodiscard]] std::vector<double> knots_of(const ThermalSystem<Matrix>& system, const TimeSeries& ambient) {
-  std::vector<double> knots_s = ambient.time_s;
-  knots_s.insert(knots_s.end(), system.change_times_s.begin(), system.change_times_s.end());
+  std::vector<double> knots_s;  // of two sorted lists
+  knots_s.reserve(ambient.time_s.size() + system.change_times_s.size());
+  std::merge(ambient.time_s.begin(), ambient.time_s.end(), system.change_times_s.begin(), system.change_times_s.end(),
+             std::back_inserter(knots_s));
   return knots_s;
 }
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/series_in_order.hpp"
+
 namespace driftwright {
 namespace {
 
@@ -27,6 +29,17 @@ TEST(TimeSeries, IsLinearBetweenKnotsAndConstantOutside) {
   EXPECT_DOUBLE_EQ(s.at(20), 3.0);
   EXPECT_DOUBLE_EQ(s.at(30), 1.0);
   EXPECT_EQ(s.at(41), -1.0);
+}
+
+TEST(SeriesInOrder, HasTheSameValuesWhicheverWayItIsAsked) {
+  const TimeSeries s{{10, 20, 40, 41}, {1, 3, -1, 5}};
+  SeriesInOrder in_order(s);
+  for (double t_s : {-5.0, 10.0, 13.0, 13.0, 20.0, 39.0, 40.5, 60.0, 15.0, 41.0, 0.0, 40.0, 1e6})
+    EXPECT_EQ(in_order.at(t_s), s.at(t_s)) << t_s;
+  const TimeSeries constant{{0}, {2}}, none;
+  EXPECT_EQ(SeriesInOrder(constant).at(-1.0), 2.0);
+  EXPECT_EQ(SeriesInOrder(constant).at(7.0), 2.0);
+  EXPECT_THROW((void)SeriesInOrder(none).at(0.0), std::logic_error);
 }
 
 TEST(Cyclogram, SplitAtFurtherTimesEndsAtTheSameTimeToTheLastBit) {
