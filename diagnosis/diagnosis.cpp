@@ -332,6 +332,8 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   if (d.written.keeps_numbers && !d.written.taken_up.empty()) say_what_is_written(d, fitter, workspace, listener);
   d.calibrated = calibrated_numbers(fitter, d.written.fit, known_to);
   for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
+  // what came back once others were no longer held is no cause
+  std::erase_if(d.moved, [&](std::size_t i) { return !(std::abs(d.calibrated[i].deviation) > kTooFar); });
   for (Cause& c : moved_numbers(d)) d.causes.push_back(std::move(c));
   d.holdout = held.how;
   d.gain = held.channels;

@@ -18,7 +18,6 @@ constexpr double kLessSlow = 0.5;  // and its slow part: causes that come and go
 constexpr double kSeenSlow = 0.2;  // of the white part: a slow part below changes nothing
 constexpr double kLikelier = 3.0;  // nats by which causes beside white noise must be likelier than slow noise alone
 constexpr double kAmbientFault_K = 2.0;  // 1 sigma of an ambient that was recorded wrongly
-constexpr double kTooFar = 3.5;          // sigmas of its prior: a number beyond is a cause
 
 /// What the search leaves; the mesh's error is that of the machine with what was found.
 std::optional<Unexplained> what_is_left(const InquiryGround& ground, const std::vector<MeasuredRun>& runs, const Inquiry& of,

@@ -6,6 +6,9 @@
 
 namespace driftwright::diagnosis {
 
+/// Sigmas of its prior: a number that is fitted beyond is a cause.
+inline constexpr double kTooFar = 3.5;
+
 /// What all inquiries about a machine begin with; none of it is fitted to readings.
 struct InquiryGround {
   const Twin& twin;

@@ -20,6 +20,11 @@ constexpr double kMuchWorse = 1.25;       // of the squares: speaks against a cl
 constexpr int kMostAgain = 6;             // climbs from where the last one ended
 constexpr double kStoppedShort = 0.3;     // nats that another climb gains
 
+/// The kind of a cause, whether it lasts or comes in windows: with fewer rows the one may look like the other.
+std::string_view lasting_kind(std::string_view effect) {
+  return effect == "heat_window" ? "heat_source" : effect == "exchange_window" || effect == "link" ? "contact" : effect;
+}
+
 /// Climbs until it stays: what stops short in one fold is a difference of evidence that the rows do not hold.
 void go_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit, Twin::Workspace& workspace) {
   for (int again = 0; again < kMostAgain; ++again) {
@@ -158,7 +163,7 @@ Judge::Refound Judge::refound(const SearchAgain& search_again, Subset kept, cons
 bool Judge::is_told_as(std::size_t claim, const Candidate& found) const {
   const auto is_same = [&](const Claim& told) {
     const Candidate& c = result_.candidates[told.candidate];
-    return c.effect == found.effect && c.where == found.where;
+    return lasting_kind(c.effect) == lasting_kind(found.effect) && c.where == found.where;
   };
   const std::string& effect = result_.candidates[result_.hypothesis[claim].candidate].effect;
   const auto& others = result_.findings[claim].alternatives;

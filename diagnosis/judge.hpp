@@ -76,7 +76,7 @@ class Judge {
   }
 
  private:
-  /// Whether what a search without some rows found is a claim, or its effect at a place that the claim's is not told from.
+  /// Whether what a search without some rows found is a claim, in windows or lasting, or its effect at a place that the claim's is not told from.
   [[nodiscard]] bool is_told_as(std::size_t claim, const Candidate& found) const;
   /// @param x  empty: no numbers fit, and the scenario stays as it is written
   [[nodiscard]] Prediction filed(const Hypothesis& hypothesis, const Eigen::VectorXd& x, std::size_t f) const;

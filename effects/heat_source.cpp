@@ -13,6 +13,8 @@ constexpr double kFewestWaves = 4.0;  // two or three are what any bend of a mod
 constexpr double kMostWaves = 14.0;   // in the longest record; shorter ones a machine hardly shows
 constexpr int kStepsOfFading = 48;    // of an eighth of its time each: then e^-6 is left, which is left out
 constexpr double kStepOfFading = 0.125, kUsualFading = 1.0 / 6.0;  // of its time; of the longest record
+constexpr double kLongestFading =
+    1.0 / 3.0;  // of that: what fades more slowly is not seen to end, and takes what every slow bend of a model leaves
 
 bool runs_at_rest(const Effect& e) {
   return e.words.at("runs") == "while_spindle_stands";
@@ -116,6 +118,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                           .prior_sd = 0.7,
                           .step = 0.05,
                           .is_log = true};
+      fades.high = kLongestFading * longest_min;
       fading.added[0].set("fades", fades.nominal);
       fading.numbers.push_back(fades);
       fading.grid = {{-0.7}, {0.7}};
