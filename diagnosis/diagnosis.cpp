@@ -348,6 +348,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   if (is_any_named && d.unexplained && d.unexplained->fails.empty() && held.offset_K > kWrongAmbient_K)
     d.unexplained->fails =
         fmt::format("needs an ambient that is {:.1f} K off its record, and leaves more than noise", held.offset_K);
+  if (is_wrong_all_over(d)) doubt_all(d, "the scenario's own numbers had to go too far beside it");
   d.verdict = n_readings < kFewestReadings ? Verdict::kInsufficientData : verdict_of(d);
   if (d.verdict == Verdict::kInsufficientData) {
     doubt_all(d, "the readings are too few to tell causes apart");
@@ -370,7 +371,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   for (std::size_t c = 0; c < in_doubt.size() && d.verdict == Verdict::kSuspected; ++c)
     in_doubt[c] = d.causes[c].standing == Standing::kSuspected;
   const bool is_in_doubt = std::any_of(in_doubt.begin(), in_doubt.end(), [](char doubt) { return doubt != 0; });
-  if ((is_open || is_in_doubt) && !listener.wants_end()) {
+  if ((is_open || is_in_doubt) && !is_wrong_all_over(d) && !listener.wants_end()) {
     listener.begin("choosing an experiment");
     d.experiment = propose_experiment(fitter, d.search, in_doubt);
   }

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "diagnosis/inquiry.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -15,6 +17,8 @@ constexpr std::size_t kMostSaid = 3;
 constexpr const char* kFaint =
     "its evidence does not pay for all that it might have been, though chance seldom offers as much";
 constexpr double kOpen = 100.0;
+constexpr std::size_t kManyMoved =
+    3;  // blind cases of one fault or two move one number at the most, models of fewer bodies than the truth a dozen
 constexpr double kRestOfCause = 0.35;  // of what the causes explain: more left, and they are not what is wrong
 
 std::string words(const Cause& c) {
@@ -90,11 +94,18 @@ bool rest_rules(const Diagnosis& d) {
 
 }  // namespace
 
+bool is_wrong_all_over(const Diagnosis& d) {
+  return d.moved.size() >= kManyMoved;
+}
+
 std::string reason_of(const Diagnosis& d) {
   std::vector<std::string> parts;
-  for (const Cause& c : d.causes) {
+  const bool is_many = d.verdict == Verdict::kSuspected && is_wrong_all_over(d);
+  for (std::size_t i = 0; i < d.causes.size(); ++i) {
+    const Cause& c = d.causes[i];
+    if (is_many && i >= d.search.findings.size()) break;  // numbers that moved are counted
     std::string text = words(c);
-    if (c.standing == Standing::kSuspected)
+    if (c.standing == Standing::kSuspected && !is_many)
       text = fmt::format("suspected{}{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, odds_words(c), text);
     if (!c.alternatives.empty()) {
       std::vector<std::string> others;
@@ -109,6 +120,14 @@ std::string reason_of(const Diagnosis& d) {
   }
   std::string text = fmt::format("{}", fmt::join(parts, "; and "));
   if (text.starts_with("suspected")) text[0] = 'S';  // effects are written as their keys are
+  if (is_many) {
+    text = fmt::format(
+        "{} of the scenario's {} uncertain numbers had to go beyond {:.1f} sigmas of what is known of them: it is wrong in "
+        "more "
+        "ways than a few causes, or known less well than it says (`known_to`, `guess`).{}",
+        d.moved.size(), d.calibrated.size(), kTooFar,
+        text.empty() ? " No cause is found beside them" : " The best of the catalogue beside them: " + text);
+  }
   switch (d.verdict) {
     case Verdict::kConsistent:
       return fmt::format(
