@@ -9,6 +9,7 @@ namespace driftwright {
 class SeriesInOrder {
  public:
   explicit SeriesInOrder(const TimeSeries& series) : series_(series) {}  ///< borrowed
+  explicit SeriesInOrder(TimeSeries&&) = delete;
 
   /// @throws std::logic_error  without knots
   [[nodiscard]] double at(double t_s) {

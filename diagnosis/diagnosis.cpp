@@ -21,6 +21,7 @@ constexpr int kFewestReadings = 60;     // of all channels together: below, a ve
 constexpr double kUnnamed = 3.0;        // nats by which one cause without a name must be better than those with one
 /// And, where it follows time in any shape, of what the best of these explains: better by less, it follows what that one's law leaves.
 constexpr double kBetterOfCause = 0.1;
+constexpr double kWrongAmbient_K = 1.0;  // a recorded ambient is known to a third of it
 constexpr double kBeyondBelief = 2.0;   // mean square of how far the scenario's numbers moved, in their sigmas
 constexpr double kMostWork = 2e7;       // some ten seconds
 constexpr double kSmallMachine = 15.0;  // unknowns, below which a prediction costs the same
@@ -153,6 +154,15 @@ void write_nothing(Diagnosis& d, const std::string& why) {
     g.peak_after = g.peak_before;
   }
   d.misses.extended = d.misses.as_written;
+}
+
+/// Of a record's ambient, as fitted beside all causes.
+double largest_offset_K(const std::vector<Knob>& scatter, const Eigen::VectorXd& x) {
+  double largest_K = 0.0;
+  for (std::size_t i = 0; i < scatter.size(); ++i) {
+    if (!scatter[i].in.empty()) largest_K = std::max(largest_K, std::abs(scatter[i].value(x[static_cast<Eigen::Index>(i)])));
+  }
+  return largest_K;
 }
 
 /// Takes from every cause that it is sure.
@@ -291,7 +301,9 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   if (!d.scatter_alone.empty() && !listener.wants_end()) {
     // where a loud cause bent the numbers beyond belief, heats would be told of another machine
     const Eigen::VectorXd& x = d.search.without.x;
-    const bool is_bent = x.cwiseQuotient(fitter.nuisance_sd()).squaredNorm() > kBeyondBelief * static_cast<double>(x.size());
+    double squares = 0.0;
+    for (std::size_t i = 0; i < known_to.size(); ++i) squares += std::pow(x[static_cast<Eigen::Index>(i)] / known_to[i], 2);
+    const bool is_bent = squares > kBeyondBelief * static_cast<double>(known_to.size());
     (void)has_solution([&] {
       d.waveforms = is_bent ? waveforms(twin, runs, twin.as_written(), d.as_written, listener)
                             : waveforms(twin, runs, fitter.state({}, x), d.scatter_alone, listener);
@@ -341,14 +353,15 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   give_standing(d, held);
   const bool is_any_named =
       std::any_of(d.search.findings.begin(), d.search.findings.end(), [](const Finding& f) { return f.is_named; });
-  if (is_any_named && !held.fails.empty()) {
+  if (is_any_named && held.fails) {
     if (!d.unexplained) d.unexplained.emplace().channels.push_back(held.fails_at);
-    d.unexplained->fails = held.fails;
+    d.unexplained->fails_held_out = true;
   }
-  if (is_any_named && d.unexplained && d.unexplained->fails.empty() && held.offset_K > kWrongAmbient_K)
-    d.unexplained->fails =
-        fmt::format("needs an ambient that is {:.1f} K off its record, and leaves more than noise", held.offset_K);
-  if (is_wrong_all_over(d)) doubt_all(d, "the scenario's own numbers had to go too far beside it");
+  if (const double offset_K = largest_offset_K(d.scatter, d.search.fit.x); is_any_named && offset_K > kWrongAmbient_K) {
+    if (!d.unexplained && held.elsewhere_at) d.unexplained.emplace().channels.push_back(*held.elsewhere_at);
+    if (d.unexplained) d.unexplained->ambient_off_K = offset_K;
+  }
+  if (is_wrong_all_over(d)) doubt_all(d, "too many of the scenario's own numbers had to go beyond what is known of them");
   d.verdict = n_readings < kFewestReadings ? Verdict::kInsufficientData : verdict_of(d);
   if (d.verdict == Verdict::kInsufficientData) {
     doubt_all(d, "the readings are too few to tell causes apart");

@@ -106,7 +106,8 @@ struct Unexplained {
   std::string heat_would_sit_in;       ///< region whose missing heat would explain most of it, or ""
   std::vector<double> time_s, heat_W;  ///< that latent heat in the first run, per row
   std::optional<Unnamed> one_cause;    ///< that explains it better than the named ones
-  std::string fails = {};  ///< how what fits best fails rows that it was not fitted to, a clause; "" where it does not
+  bool fails_held_out = false;         ///< the causes predict kept-out data worse than scatter alone
+  double ambient_off_K = 0.0;          ///< where the causes stand beside an ambient so far off its record; 0: they do not
 };
 
 struct Diagnosis {

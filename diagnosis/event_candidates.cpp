@@ -133,7 +133,7 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
         found = find_windows(second, found->windows);
         if (!found || !(found->gain > kWorthTrying)) return;
         if (found->windows.size() > kFewWindows) {
-          const double course = course_gain(second, found->size);
+          const double course = course_gain(second, *found);
           if (course > kCourseIsBetter * found->gain) return;
           h.is_course = course > found->gain;
         }

@@ -16,6 +16,7 @@ namespace {
 constexpr int kMostIterations = 16;  // and one more for each time that slopes are taken anew
 constexpr double kConverged = 0.02;  // in Φ
 constexpr double kFar = 2.0;         // sigmas that a number has gone from where scatter's slopes were taken
+constexpr double kAtBound = 1e-6;    // of a step
 constexpr double kPromised = 1.0;    // of Φ, by slopes that do not keep it
 constexpr int kMostRetakes = 3;
 constexpr double kTail = 4.0;  // degrees of freedom of a claim's prior
@@ -225,28 +226,31 @@ Fitter::Courses Fitter::courses(const TwinState& state, Twin::Workspace& workspa
 Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
                          const Courses& about, std::size_t which, Twin::Workspace& workspace) const {
   const TwinState here = state(hypothesis, x);
+  const Knob& knob = scatter_[which];
+  const double at = x[static_cast<Eigen::Index>(which)];
+  const auto moved = [&](double by) {
+    return knob.x(knob.value(at + by)) - knob.x(knob.value(at));
+  };  // no further than its bound
   const auto beside = [&](double by) {
     Eigen::VectorXd turned = x;
-    double& number = turned[static_cast<Eigen::Index>(which)];
-    const double value = scatter_[which].value(number);
-    number += by;
+    turned[static_cast<Eigen::Index>(which)] += by;
     Prediction p;
-    if (scatter_[which].value(number) == value) return p;  // at its bound
+    if (std::abs(moved(by)) < kAtBound * std::abs(by)) return p;
     return has_solution([&] { p = predict_near(about, here, base, hypothesis, turned, workspace); }) ? p : Prediction{};
   };
   // From both sides: where capacities, conductances and heats change alike nothing does, and the bends of one-sided slopes, which do not cancel, would say that
   // this is known far better than it is.
   for (double share : {1.0, 0.1}) {  // a machine that is about to run away has a solution on one side only
-    const double step = share * scatter_[which].step;
+    const double step = share * knob.step;
     Prediction above = beside(step), below = beside(-step);
     if (above.empty() && below.empty()) continue;
-    const double width = (above.empty() ? 0.0 : step) + (below.empty() ? 0.0 : step);
+    const double width = (above.empty() ? 0.0 : moved(step)) - (below.empty() ? 0.0 : moved(-step));
     if (above.empty()) above = base;
     if (below.empty()) below = base;
     for (std::size_t r = 0; r < runs_.size(); ++r) above[r] = (above[r] - below[r]) / width;
     return above;
   }
-  throw SolveError(fmt::format("the machine has no solution beside {} of {}", scatter_[which].name, scatter_[which].where));
+  throw SolveError(fmt::format("the machine has no solution beside {} of {}", knob.name, knob.where));
 }
 
 void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Listener& listener) {
@@ -315,14 +319,13 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   const std::vector<char> smooth = smooth_knobs(hypothesis);
   const Eigen::VectorXd sd = prior_sd(hypothesis);
   const auto into_range = [&](Eigen::VectorXd& x) {
-    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(scatter_.size());
-         ++i) {  // beyond its bound a number has no slope
-      const Knob& knob = scatter_[static_cast<std::size_t>(i)];
-      if (const double value = knob.value(x[i]); value == knob.low || value == knob.high) x[i] = knob.x(value);
-    }
+    const auto to_bound = [](const Knob& knob, double& number) {  // beyond it a number has no slope
+      if (const double value = knob.value(number); value == knob.low || value == knob.high) number = knob.x(value);
+    };
+    for (std::size_t i = 0; i < scatter_.size(); ++i) to_bound(scatter_[i], x[static_cast<Eigen::Index>(i)]);
     for (Eigen::Index k = 0; k < n_k; ++k) {
       const Knob& knob = *knobs[static_cast<std::size_t>(k)];
-      if (knob.scale == Knob::Scale::kLinear) x[n_n + k] = knob.x(knob.value(x[n_n + k]));
+      to_bound(knob, x[n_n + k]);
       x[n_n + k] = std::clamp(x[n_n + k], -8.0 * knob.prior_sd, 8.0 * knob.prior_sd);
     }
   };

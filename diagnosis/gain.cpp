@@ -110,7 +110,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   }
   if (all != 0 &&
       (judge.judged(0).log_predictive - judge.judged(all).log_predictive > kSurelyLikelier || judge.is_much_worse(all, 0))) {
-    held.fails = "predicts kept-out data worse than no cause does";
+    held.fails = true;
     held.fails_at = worst_channel(judge, noise, judge.judged(all).predicted, judge.judged(0).predicted);
   }
   Subset named = 0;
@@ -173,18 +173,12 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   } else {
     held.how += "; which effect it is was decided on all rows";
   }
-  held.offset_K = judge.largest_offset_K(kept);
   const double as_written = judge.squares_over_noise(models.written);
   if (judge.squares_over_noise(models.extended) > as_written) {
     held.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
   } else if (const auto elsewhere = judge.filed_elsewhere(kept); judge.squares_over_noise(elsewhere) > kWorse * as_written) {
     held.why_nothing = "without what is of these records alone they are predicted worse than by the scenario as it was";
-    if (held.offset_K > kWrongAmbient_K && held.fails.empty()) {
-      held.fails = fmt::format(
-          "needs an ambient that is {:.1f} K off its record, and predicts worse than the scenario as it was without",
-          held.offset_K);
-      held.fails_at = worst_channel(judge, noise, elsewhere, models.written);
-    }
+    held.elsewhere_at = worst_channel(judge, noise, elsewhere, models.written);
   }
   if (!held.why_nothing.empty()) models.extended = models.written;
   held.misses = misses_of(judge, models);

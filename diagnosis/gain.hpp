@@ -20,17 +20,13 @@ struct HeldOut {
   /// Searches without the kept-out rows, and in how many of them each claim's effect was found at its place, or at one that this is not told from.
   int n_searched = 0;
   std::vector<int> n_again = {};
-  /// How the claims together fail rows that they were not fitted to, a clause; "" where they do not: they predict kept-out rows clearly worse than none of them does, or
-  /// stand beside an ambient that is off its record, without which they predict worse than the scenario as it is written.
-  std::string fails = {};
-  double offset_K = 0.0;  ///< the largest of a record's ambient that was fitted beside what is written
-  Unexplained::Channel
-      fails_at;                  ///< where they fail, the channel that they predict worst, and how: what is left of its rows
+  bool fails = false;  ///< the claims together predict kept-out rows clearly worse than none of them does
+  /// Where they fail, the channel that they predict worst, and how: what is left of its kept-out rows.
+  Unexplained::Channel fails_at;
+  /// The same of what would be written, once all is taken out that is of single records: where the scenario as written predicts better then.
+  std::optional<Unexplained::Channel> elsewhere_at = {};
   std::string why_nothing = {};  ///< why neither causes nor fitted numbers are worth writing, a clause; "" where they are
 };
-
-/// How far off its record an ambient is fitted where the machine is wrong: it is known to a third of that.
-inline constexpr double kWrongAmbient_K = 1.0;
 
 /// A search for what is wrong in records that have some of their readings alone: with noise, bars, numbers and process noise of these.
 using SearchAgain = std::function<SearchResult(const std::vector<MeasuredRun>& fitted)>;

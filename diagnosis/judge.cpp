@@ -20,7 +20,7 @@ constexpr double kMuchWorse = 1.25;       // of the squares: speaks against a cl
 constexpr int kMostAgain = 6;             // climbs from where the last one ended
 constexpr double kStoppedShort = 0.3;     // nats that another climb gains
 
-/// The kind of a cause, whether it lasts or comes in windows: with fewer rows the one may look like the other.
+/// The kind of a cause, whether it lasts or comes in windows, or is of a path that the scenario has or lacks: with fewer rows the one may look like the other.
 std::string_view lasting_kind(std::string_view effect) {
   return effect == "heat_window" ? "heat_source" : effect == "exchange_window" || effect == "link" ? "contact" : effect;
 }
@@ -117,17 +117,6 @@ std::vector<Prediction> Judge::filed_elsewhere(Subset claims) {
     }
   }
   return predicted;
-}
-
-double Judge::largest_offset_K(Subset claims) {
-  double largest_K = 0.0;
-  for (const Eigen::VectorXd& x : judged(claims).x) {
-    for (std::size_t i = 0; i < whole_.scatter().size() && x.size() > 0; ++i) {
-      const Knob& k = whole_.scatter()[i];
-      if (!k.in.empty()) largest_K = std::max(largest_K, std::abs(k.value(x[static_cast<Eigen::Index>(i)])));
-    }
-  }
-  return largest_K;
 }
 
 double Judge::least_evidence(Subset claims, Subset without) {

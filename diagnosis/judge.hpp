@@ -36,8 +36,6 @@ class Judge {
   [[nodiscard]] std::vector<Prediction> filed(Subset claims);
   /// The same as records still to come would be predicted: without what was found or fitted of single records, such as the offset of one's ambient.
   [[nodiscard]] std::vector<Prediction> filed_elsewhere(Subset claims);
-  /// The largest offset of a record's ambient that was fitted beside some claims [K].
-  [[nodiscard]] double largest_offset_K(Subset claims);
   /// Least evidence of a claim in the fitted rows of a fold [nats, its price not paid]: what is known of it where some rows were never read.
   [[nodiscard]] double least_evidence(Subset claims, Subset without);
   /// What comes of the search made again without the kept-out rows; of a fold of blocks, in which something happened, what the claims make of it.
@@ -76,7 +74,7 @@ class Judge {
   }
 
  private:
-  /// Whether what a search without some rows found is a claim, in windows or lasting, or its effect at a place that the claim's is not told from.
+  /// Whether what a search without some rows found is a claim, of the same lasting_kind(), or its effect at a place that the claim's is not told from.
   [[nodiscard]] bool is_told_as(std::size_t claim, const Candidate& found) const;
   /// @param x  empty: no numbers fit, and the scenario stays as it is written
   [[nodiscard]] Prediction filed(const Hypothesis& hypothesis, const Eigen::VectorXd& x, std::size_t f) const;

@@ -17,7 +17,7 @@ constexpr std::size_t kMostSaid = 3;
 constexpr const char* kFaint =
     "its evidence does not pay for all that it might have been, though chance seldom offers as much";
 constexpr double kOpen = 100.0;
-constexpr std::size_t kManyMoved =
+constexpr std::ptrdiff_t kManyMoved =
     3;  // blind cases of one fault or two move one number at the most, models of fewer bodies than the truth a dozen
 constexpr double kRestOfCause = 0.35;  // of what the causes explain: more left, and they are not what is wrong
 
@@ -71,6 +71,11 @@ std::string rest_words(const Unexplained& u) {
                      in_words(u.channels.front()));
 }
 
+/// Numbers of the machine that have gone too far; offsets of single records' ambient are no numbers of it.
+std::ptrdiff_t n_moved(const Diagnosis& d) {
+  return std::count_if(d.moved.begin(), d.moved.end(), [&](std::size_t i) { return d.scatter[i].in.empty(); });
+}
+
 /// Machines without fault per one at which chance offers as much.
 std::string odds_words(const Cause& c) {
   return c.chance < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / c.chance);
@@ -86,7 +91,8 @@ bool is_found_once(const Diagnosis& d, std::size_t claim, const HeldOut& held) {
 /// Whether what is left is more than what the causes explain, so that none of them is what is wrong.
 bool rest_rules(const Diagnosis& d) {
   if (!d.unexplained) return false;
-  if (d.causes.empty() || d.unexplained->one_cause || !d.unexplained->fails.empty()) return true;
+  if (d.causes.empty() || d.unexplained->one_cause || d.unexplained->fails_held_out || d.unexplained->ambient_off_K > 0.0)
+    return true;
   double explained = 0.0;
   for (const Cause& c : d.causes) explained = std::max(explained, c.log_evidence_gain);
   return explained < kSureCause || d.unexplained->nats > kRestOfCause * explained;
@@ -95,7 +101,7 @@ bool rest_rules(const Diagnosis& d) {
 }  // namespace
 
 bool is_wrong_all_over(const Diagnosis& d) {
-  return d.moved.size() >= kManyMoved;
+  return n_moved(d) >= kManyMoved;
 }
 
 std::string reason_of(const Diagnosis& d) {
@@ -125,7 +131,7 @@ std::string reason_of(const Diagnosis& d) {
         "{} of the scenario's {} uncertain numbers had to go beyond {:.1f} sigmas of what is known of them: it is wrong in "
         "more "
         "ways than a few causes, or known less well than it says (`known_to`, `guess`).{}",
-        d.moved.size(), d.calibrated.size(), kTooFar,
+        n_moved(d), std::count_if(d.scatter.begin(), d.scatter.end(), [](const Knob& k) { return k.in.empty(); }), kTooFar,
         text.empty() ? " No cause is found beside them" : " The best of the catalogue beside them: " + text);
   }
   switch (d.verdict) {
@@ -141,9 +147,14 @@ std::string reason_of(const Diagnosis& d) {
             d.unexplained && !d.unexplained->channels.empty() ? ", most of all " + in_words(d.unexplained->channels.front())
                                                               : "");
       }
-      if (d.unexplained && !d.unexplained->fails.empty()) {
-        return fmt::format("What fits best {}, most of all {}: {}.", d.unexplained->fails,
+      if (d.unexplained && d.unexplained->fails_held_out) {
+        return fmt::format("What fits best predicts kept-out data worse than no cause does, most of all {}: {}.",
                            in_words(d.unexplained->channels.front()), text);
+      }
+      if (d.unexplained && d.unexplained->ambient_off_K > 0.0) {
+        return fmt::format(
+            "What fits best needs an ambient that is {:.1f} K off its record, and something is left, most of all {}: {}.",
+            d.unexplained->ambient_off_K, in_words(d.unexplained->channels.front()), text);
       }
       if (d.unexplained && d.unexplained->one_cause) {
         return fmt::format("{}. The best of the catalogue: {}.", words(*d.unexplained->one_cause), text);

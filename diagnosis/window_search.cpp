@@ -74,7 +74,7 @@ class Searcher {
       Window& w = set[k];
       w.first = std::max<Eigen::Index>(0, w.first + begin);
       w.last = std::min(static_cast<Eigen::Index>(e_.runs[w.run].edge_s.size()) - 1, w.last + end);
-      if (w.first >= w.last || (k > 0 && set[k - 1].run == w.run && set[k - 1].last >= w.first)) return {};
+      if (w.first >= w.last || is_long(w) || (k > 0 && set[k - 1].run == w.run && set[k - 1].last >= w.first)) return {};
     }
     return set;
   }
@@ -313,7 +313,8 @@ std::optional<FoundWindows> find_windows(const WindowEvidence& evidence, std::ve
   return grow(Searcher(evidence), std::move(start), kMostWindows);
 }
 
-double course_gain(const WindowEvidence& evidence, double size) {
+double course_gain(const WindowEvidence& evidence, const FoundWindows& windows) {
+  const double size = windows.size;
   const Eigen::Index n = evidence.slope.size();
   double best = -1e300;
   for (const double share : kCourseTimes) {
@@ -338,7 +339,9 @@ double course_gain(const WindowEvidence& evidence, double size) {
     best = std::max(best, 0.5 * slope.dot(factor.solve(slope)) -
                               factor.matrixLLT().diagonal().array().log().sum());  // log det is twice that
   }
-  return best - std::log(static_cast<double>(std::size(kCourseTimes)));
+  const double curvature = Searcher(evidence).sums(windows.windows).curvature;
+  return best - std::log(static_cast<double>(std::size(kCourseTimes))) -
+         0.5 * std::log1p(evidence.prior_sd * evidence.prior_sd * curvature);
 }
 
 std::optional<FoundTurns> find_turns(const WindowEvidence& evidence) {

@@ -45,9 +45,9 @@ struct FoundWindows {
 [[nodiscard]] std::optional<FoundWindows> find_windows(const WindowEvidence& evidence,
                                                        std::vector<FoundWindows::Window> start = {});
 
-/// What a course of any shape brings in the windows' place [nats]: sizes that wander about 0 with covariance s² e^{-|t - t'|/T} in each run, s as large as the windows,
+/// What a course of any shape brings in the windows' place [nats]: sizes that wander about 0 with covariance s² e^{-|t - t'|/T} in each run, s as large as the windows, which it pays for as they do,
 /// T the best of a few. Many windows of one size follow any course somehow; where it is one, this brings more.
-[[nodiscard]] double course_gain(const WindowEvidence& evidence, double size);
+[[nodiscard]] double course_gain(const WindowEvidence& evidence, const FoundWindows& windows);
 
 struct FoundTurns {
   double begin_s = 0.0, length_s = 0.0, every_s = 0.0;

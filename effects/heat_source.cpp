@@ -121,12 +121,13 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       fades.high = kLongestFading * longest_min;
       fading.added[0].set("fades", fades.nominal);
       fading.numbers.push_back(fades);
-      fading.grid = {{-0.7}, {0.7}};
+      fading.grid = {{-0.7}, {0.6}};  // of the logarithm of its time
       fading.at_speed_rpm = s.typical_rpm;
       list.push_back(fading);
       if (s.runs.size() > 1) {
         fading.when = "in " + s.runs.front().name;
         fading.added.front().in = s.runs.front().name;
+        fading.numbers.back().high = kLongestFading * s.runs.front().length_s / 60.0;
         list.push_back(std::move(fading));
       }
     }

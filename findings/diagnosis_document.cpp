@@ -172,7 +172,9 @@ Section unexplained_section(const diagnosis::Unexplained& u) {
   add(section, Value{.key = "correlation", .words = "correlation", .datum = u.correlation, .digits = output::decimals(2)});
   if (!u.heat_would_sit_in.empty())
     add(section, Value{.key = "heat_would_sit_in", .words = "heat would sit in", .datum = u.heat_would_sit_in});
-  if (!u.fails.empty()) put("fails_held_out", true);
+  if (u.fails_held_out) put("fails_held_out", true);
+  if (u.ambient_off_K > 0.0)
+    put("ambient_off_K", u.ambient_off_K);
   if (u.one_cause) {
     using Quantity = diagnosis::Unnamed::Quantity;
     put("one_cause.quantity", u.one_cause->quantity == Quantity::kHeat      ? "heat"
@@ -418,7 +420,8 @@ Section numbers_section(const diagnosis::Diagnosis& d, bool detail) {
       .key = "calibrated",
       .caption =
           "The uncertain ones as fitted. Moved: from what the scenario says, in standard deviations of what is known of "
-          "it: the scenario's `known_to`, else 10 %, exponents 3 %, the ambient 0.3 K. What is not in the file was fitted and "
+          "it: the scenario's `known_to`, else 10 %, exponents 3 %, the ambient 0.3 K. What is not in the file was fitted "
+          "and "
           "left "
           "as the scenario has it.",
       .columns = {{.key = "name", .title = "number"},
@@ -448,7 +451,7 @@ Section written_section(const DiagnosisFindings& found, const std::string& key) 
       output::Notes{.key = "not_written", .sort = "NOT WRITTEN to " + found.file, .lines = found.extended.not_written});
   add(section, Value{.key = "written", .datum = found.extended.written});
   add(section, output::Preformatted{.text = !found.extended.not_written.empty() ? "Nothing."
-                                             : found.difference.empty()         ? "No difference to the scenario."
+                                            : found.difference.empty()          ? "No difference to the scenario."
                                                                                 : found.difference});
   return section;
 }

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/inquiry.hpp"
+
 namespace driftwright::findings {
 namespace {
 
 using diagnosis::Estimate;
+using diagnosis::kTooFar;
 
-constexpr double kTooFar = 3.5;          // sigmas: beyond, a number is an effect
 constexpr double kClearlyBetter = 0.95;  // of the RMSE
 
 std::string unit_of(const Estimate& e) {

@@ -158,7 +158,9 @@ void bind_laws(ReducedSystem& system, const effects::HeatBalance& balance) {
   for (const effects::Thermostat& t : balance.thermostats)
     thermostats.push_back({t.name, find.probe(t.probe, ""), t.on_above_K, t.off_below_K});
   system.thermostats = std::move(thermostats);
-  system.change_times_s = balance.change_times_s;
+  std::vector<double>& times_s = system.change_times_s = balance.change_times_s;
+  std::sort(times_s.begin(), times_s.end());
+  times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
 }
 
 }  // namespace driftwright::solver

@@ -18,7 +18,7 @@ constexpr double kShareOfTolerance = 0.05;  // of the absolute tolerance: error 
 constexpr double kShareIterated = 1e-3;     // of a step's error: to which its end is iterated
 constexpr int kMostIterations = 8;
 constexpr int kStepsOfOneTangent = 50;
-constexpr std::size_t kMostKnown = 100;  // exponentials of one tangent that are kept
+constexpr std::size_t kMostKnown = 100;  // exponentials of one tangent: more are not kept for the next step
 constexpr double kShortestStep_s = 1e-3;
 constexpr double kFarthest_K = 3000.0;  // from the reference: no machine
 constexpr double kSame = 1e-9;          // of a step: times that are one
@@ -104,12 +104,12 @@ class ExponentialRun {
                           [&](const auto& e) { return std::abs(e.first - length_s) <= kSame * length_s; });
     };
     if (const auto same = of(h_s); same != known_.end()) return same->second;
+    if (known_.size() > kMostKnown) known_.clear();
     std::vector<Exponentials> halves;
     if (const auto half = of(0.5 * h_s); half != known_.end()) {
       halves.push_back(doubled(half->second));
     } else {
       halves = exponentials_and_halves(h_s * tangent_);
-      if (known_.size() > kMostKnown) known_.clear();
     }
     for (std::size_t i = halves.size(); i-- > 0;)
       known_.emplace_back(std::ldexp(h_s, -static_cast<int>(i)), std::move(halves[i]));

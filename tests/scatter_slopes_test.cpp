@@ -84,15 +84,39 @@ TEST(ScatterSlopes, AreThoseOfRunsForEveryNumber) {
   }
 }
 
+// A number that loud readings would bend past the end of its range stays there, and the others are fitted beside it.
+TEST(ScatterSlopes, ANumberAtTheEndOfItsRangeStopsNoFit) {
+  const studies::MeasuredTwin m =
+      studies::open_measured_twin(scenarios::read_scenario(write_file("bounded.yaml", kScenario)), "diagnose",
+                                  {record("first", 3000), record("second", 1000)}, {});
+  const std::vector<Knob> knobs = scatter(*m.twin);
+  const auto capacity = std::find_if(knobs.begin(), knobs.end(), [](const Knob& k) { return k.effect == "heat_capacity"; });
+  ASSERT_NE(capacity, knobs.end());
+  ASSERT_LT(capacity->high, 1e4);
+  Fitter fitter(*m.twin, m.runs, knobs, {});
+  fitter.set_noise({{"t_spindle", {0.1, 0.0, 0.0}}, {"t_column", {0.1, 0.0, 0.0}}, {"tip_z", {0.5e-6, 0.0, 0.0}}});
+  Twin::Workspace workspace(*m.twin);
+  for (const double value : {10.0 * capacity->high, 0.1 * capacity->low}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(knobs.size()));
+    x[capacity - knobs.begin()] = capacity->x(value);
+    const Fit fit = fitter.fit_others({}, x, -1, workspace);
+    EXPECT_TRUE(std::isfinite(fit.misfit));
+    EXPECT_LE(fit.x[capacity - knobs.begin()], capacity->x(capacity->high) + 1e-9);
+    EXPECT_GE(fit.x[capacity - knobs.begin()], capacity->x(capacity->low) - 1e-9);
+  }
+}
+
 // Twice every capacity, conductance and heat is the same machine: no temperature tells of it, so that slopes add up to nothing along that direction. What is known of it
 // is what was known before.
 TEST(ScatterSlopes, SeeNothingOfTheScaleOfAllHeatsAndConductances) {
   std::string text = kScenario;
   const std::string heat = "type: heat_source, node: spindle, power: 120 W, at_speed: 3000 rpm, exponent: 1.3";
   text.replace(text.find(heat), heat.size(),
-               "type: friction_law, node: spindle, power: 120 W, at_speed: 3000 rpm, exponent: 1.3, decay: 0.015 1/K, at_temperature: 20 degC");
-  const studies::MeasuredTwin m = studies::open_measured_twin(scenarios::read_scenario(write_file("scaled.yaml", text)),
-                                                              "diagnose", {record("first", 3000), record("second", 1000)}, {});
+               "type: friction_law, node: spindle, power: 120 W, at_speed: 3000 rpm, exponent: 1.3, decay: 0.015 1/K, "
+               "at_temperature: 20 degC");
+  const studies::MeasuredTwin m =
+      studies::open_measured_twin(scenarios::read_scenario(write_file("scaled.yaml", text)), "diagnose",
+                                  {record("first", 3000), record("second", 1000)}, {});
   const std::vector<Knob> knobs = scatter(*m.twin);
   Fitter fitter(*m.twin, m.runs, knobs, {});
   fitter.set_noise({{"t_spindle", {0.1, 0.0, 0.0}}, {"t_column", {0.1, 0.0, 0.0}}, {"tip_z", {0.5e-6, 0.0, 0.0}}});

@@ -46,6 +46,13 @@ TEST(NumbersFarOff, AreCausesWhereTheyAreFew) {
   EXPECT_THAT(d.reason, HasSubstr("contact at head,column"));
 }
 
+TEST(NumbersFarOff, AreCausesWhereTheyAreTwo) {
+  const Beside beside(machine("plain.yaml", {14, 12, 14}, 20), record(machine("truth.yaml", {14, 26, 14}, 9), "two"));
+  const Diagnosis d = beside.diagnosed(3);
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
+  EXPECT_THAT(d.reason, testing::AllOf(HasSubstr("contact at head,column"), HasSubstr("heat_capacity at head")));
+}
+
 TEST(NumbersFarOff, SayThatTheModelIsWrongAllOverWhereTheyAreMany) {
   const Beside beside(machine("plain.yaml", {14, 12, 14}, 20), record(machine("truth.yaml", {30, 5, 32}, 8), "many"));
   const Diagnosis d = beside.diagnosed(3);
