@@ -121,7 +121,7 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
     # --- steps: rows, events, and for heat that follows temperature no step longer than the machine's own -------------------
     marks = [t_rows] + [np.clip(np.concatenate([np.atleast_1d(e) for e in f.events(record)]), 0, t_rows[-1]) for f in faults if f.events(record)]
     t = np.unique(np.round(np.concatenate(marks), 6))
-    if any(h["has_decay"] for h in machine.heats) or any(f.key == "friction_law" and f.data.get("decay") for f in faults):
+    if any(h["has_decay"] for h in machine.heats) or getattr(machine, "feedback", ()) or any(f.key == "friction_law" and f.data.get("decay") for f in faults):
         t = np.unique(np.concatenate([np.linspace(a, b, int(np.ceil((b - a) / machine.longest_step_s)) + 1)[:-1] for a, b in zip(t[:-1], t[1:])] + [t[-1:]]))
     t0, h = t[:-1], np.diff(t)
     row = np.clip(np.searchsorted(t_rows, t0 + 1e-7, side="right") - 1, 0, len(t_rows) - 1)
@@ -148,6 +148,8 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
             speed[:, in_windows(t0 + 1e-6, f.windows(record))] *= np.exp(f.size)[:, None]
         elif f.key == "run_state" and f.data["what"] == "heat":
             all_heat *= np.exp(f.size)[:, None]
+
+    fed = [make(index, record, row, speed, hall0) for make in getattr(machine, "feedback", ())]      # (temperatures, step) -> [(body, watts)], of what hangs on temperatures in any way
 
     # --- heat by body; that with a decay apart ----------------------------------------------------------------------------
     heat = np.zeros((n_var, n_steps, n))
@@ -305,7 +307,7 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
         T = np.linalg.solve(a_matrix, -(heat_still / c + to_hall * hall0[:, :1] + constant)[:, :, None])[:, :, 0]
     out = np.empty((n_var, n_steps + 1, n))
     out[:, 0] = T
-    if not decaying:
+    if not decaying and not fed:
         for i, tr in enumerate(table):       # what does not depend on T, at once
             m = code == i
             base[:, m] = np.matmul(base[:, m], tr[2].transpose(0, 2, 1)) + np.matmul(ramp[:, m], tr[3].transpose(0, 2, 1))
@@ -318,10 +320,15 @@ def simulate(machine, numbers, record, faults=(), offset_K=0.0):
             b = base[:, k].copy()
             for i, q, decay, at in decaying:
                 b[:, i] += q[:, k] * np.exp(-decay * (T[:, i] - at)) / c[:, i]
+            before = [x for q in fed for x in q(T, k)]
+            for i, watts in before:
+                b[:, i] += watts / c[:, i]
             first = np.matmul(E, T[:, :, None]) + np.matmul(F1, b[:, :, None]) + np.matmul(F2, ramp[:, k, :, None])
             r = ramp[:, k].copy()
             for i, q, decay, at in decaying:
                 r[:, i] += q[:, k] * (np.exp(-decay * (first[:, i, 0] - at)) - np.exp(-decay * (T[:, i] - at))) / c[:, i] / h[k]
+            for (i, old), (_, new) in zip(before, [x for q in fed for x in q(first[:, :, 0], k)]):
+                r[:, i] += (new - old) / c[:, i] / h[k]
             T = (np.matmul(E, T[:, :, None]) + np.matmul(F1, b[:, :, None]) + np.matmul(F2, r[:, :, None]))[:, :, 0]
             out[:, k + 1] = T
     at_rows = np.searchsorted(t, t_rows - 1e-6)
