@@ -7,6 +7,7 @@
 #include "diagnosis/happening.hpp"
 #include "diagnosis/no_solution.hpp"
 #include "diagnosis/scene.hpp"
+#include "diagnosis/stretch_choice.hpp"
 #include "diagnosis/visit.hpp"
 #include "diagnosis/waveform.hpp"
 #include "diagnosis/window_evidence.hpp"
@@ -33,6 +34,27 @@ void add_events_of(const Twin& twin, const effects::DoubtScene& scene, const Hap
     });
     if (!is_known) list.push_back(std::move(visit));
   }
+}
+
+/// What was found at a place, its windows as times. @param evidence  in whose cells they are
+/// @returns  nothing where so many windows are no more than a course of any shape
+std::optional<Happening> happening_of(const Fitter& fitter, const WindowEvidence& evidence, const FoundWindows& found,
+                                      Happening h) {
+  if (found.windows.size() > kFewWindows) {
+    const double course = course_gain(evidence, found);
+    if (course > kCourseIsBetter * found.gain) return std::nullopt;
+    h.is_course = course > found.gain;
+  }
+  for (const FoundWindows::Window& w : found.windows) {
+    const MeasuredRun& run = fitter.runs()[w.run];
+    if (h.in.empty() || h.in.back().first != &run) h.in.push_back({&run, {}});
+    const std::vector<double>& edge_s = evidence.runs[w.run].edge_s;
+    h.in.back().second.emplace_back(edge_s[static_cast<std::size_t>(w.first)], edge_s[static_cast<std::size_t>(w.last)]);
+    if (w.begin_wide_s > 0.0) h.wide_s.emplace_back(w.begin_wide_s, w.end_wide_s);
+  }
+  h.size = found.size;
+  h.price_nats = found.price_nats;
+  return h;
 }
 
 }  // namespace
@@ -103,6 +125,7 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
       std::any_of(runs.begin(), runs.end(), [](const SeenRun& r) { return (r.linear.turning_W.array() != 0.0).any(); });
   if (turns_heat) places.push_back({.is_speed = true});
   const Edges few = coarse_edges(fitter.runs(), kCells), many = coarse_edges(fitter.runs(), kCellsOfSpeed);
+  const std::vector<WorkStretches> works = stretches_of_work(fitter.runs());
   std::vector<std::vector<Happening>> of_place(places.size());
   for_each_index(
       places.size(), [] { return 0; },
@@ -126,28 +149,19 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
           again.price_nats = turns->price_nats;
           of_place[p].push_back(std::move(again));
         }
+        for (const WorkStretches& stretches : works) {
+          const WindowEvidence of_works = asked(stretches.edges);
+          const auto chosen = choose_stretches(of_works, stretches);
+          if (!chosen || !(chosen->gain > kWorthTrying)) continue;
+          if (auto seen = happening_of(fitter, of_works, *chosen, h)) of_place[p].push_back(*std::move(seen));
+        }
         auto found = find_windows(first);
         if (!found || !(found->gain > kWorthRefining)) return;
         const Edges fine = finer_edges(coarse, found->windows);
         const WindowEvidence second = asked(fine);
         found = find_windows(second, found->windows);
         if (!found || !(found->gain > kWorthTrying)) return;
-        if (found->windows.size() > kFewWindows) {
-          const double course = course_gain(second, *found);
-          if (course > kCourseIsBetter * found->gain) return;
-          h.is_course = course > found->gain;
-        }
-        for (const FoundWindows::Window& w : found->windows) {
-          const MeasuredRun& run = fitter.runs()[w.run];
-          if (h.in.empty() || h.in.back().first != &run) h.in.push_back({&run, {}});
-          const std::vector<double>& edge_s = second.runs[w.run].edge_s;
-          h.in.back().second.emplace_back(edge_s[static_cast<std::size_t>(w.first)],
-                                          edge_s[static_cast<std::size_t>(w.last)]);
-          h.wide_s.emplace_back(w.begin_wide_s, w.end_wide_s);
-        }
-        h.size = found->size;
-        h.price_nats = found->price_nats;
-        of_place[p].push_back(std::move(h));
+        if (auto seen = happening_of(fitter, second, *found, h)) of_place[p].push_back(*std::move(seen));
       },
       listener);
   std::vector<Event> events;

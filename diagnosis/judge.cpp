@@ -181,7 +181,7 @@ bool Judge::is_much_worse(Subset claims, Subset fewer) {
 double Judge::over_noise(const std::vector<Prediction>& predicted) const {
   double n = 0.0;
   for_each_miss(predicted, [&](const MeasuredChannel&, double) { n += 1.0; });
-  return std::sqrt(squares_over_noise(predicted) / std::max(1.0, n));
+  return n > 0.0 ? std::sqrt(squares_over_noise(predicted) / n) : std::numeric_limits<double>::quiet_NaN();
 }
 
 double Judge::squares_over_noise(const std::vector<Prediction>& predicted) const {
@@ -246,7 +246,10 @@ std::vector<ChannelGain> channel_gains(const std::vector<MeasuredRun>& runs, con
       if (peak) gains[i].*peak = std::max(gains[i].*peak, std::abs(x));
       n_rows[i] += 1.0;
     });
-    for (std::size_t i = 0; i < gains.size(); ++i) gains[i].*rmse = std::sqrt(gains[i].*rmse / std::max(1.0, n_rows[i]));
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+      gains[i].*rmse = std::sqrt(gains[i].*rmse / n_rows[i]);  // of no rows: NaN
+      if (peak && n_rows[i] == 0.0) gains[i].*peak = std::numeric_limits<double>::quiet_NaN();
+    }
   };
   add(judge.regressed(Regressors::kDrive), &ChannelGain::rmse_of_drive, nullptr);
   add(judge.regressed(Regressors::kDriveAndReadings), &ChannelGain::rmse_of_readings, nullptr);

@@ -57,6 +57,7 @@ class Judge {
   [[nodiscard]] bool is_much_worse(Subset claims, Subset fewer);
 
   /// Root mean square of kept-out misses over the noise of their channels.
+  /// NaN where no row is kept out that could judge.
   [[nodiscard]] double over_noise(const std::vector<Prediction>& predicted) const;
   /// Squares of kept-out misses over those of noise, not whitened: what a user sees of them.
   [[nodiscard]] double squares_over_noise(const std::vector<Prediction>& predicted) const;

@@ -140,6 +140,7 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
     const double mean_rpm = turned / turning_s, decade = std::pow(10.0, std::floor(std::log10(mean_rpm)));
     s.typical_rpm = std::max(1.0, std::round(mean_rpm / decade)) * decade;
   }
+  s.top_rpm = std::max(1.0, top_speed_rpm(runs));
   s.heat_W = 0.0;
   const effects::Inputs top{.drive = {.speed_rpm = top_speed_rpm(runs)}};
   for (const auto& h : s.balance.heats) {

@@ -34,6 +34,7 @@ constexpr double kSame = 6.0;  // squares of whitened readings: what noise makes
 
 // What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full.
 constexpr double kHopeless = 0.5, kHope = 8.0;
+constexpr double kFarOff = -200.0;    // nats by linear theory, below which no label is tried
 constexpr std::size_t kTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
 constexpr std::size_t kMostPairs = 6;  // fitted in full
@@ -117,6 +118,26 @@ class KnownFits {
   std::map<Laws, Fit> fits_;
 };
 
+/// Labels on the wrong cables: linear theory sees such a law at numbers that were fitted to the body on the label, and little of what its own body's numbers would mend. It tells which
+/// label is the likeliest, not what that brings; so the best law of each such kind is always fitted, before all others.
+/// @param list  all scores, best first. @param chosen  those to be fitted  @returns  how many labels it begins with
+std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std::vector<Score>& list,
+                             std::vector<Score>& chosen) {
+  std::vector<Score> labels;
+  for (const Score& s : list) {
+    const Candidate& c = candidates[s.candidate];
+    const bool is_known = std::any_of(labels.begin(), labels.end(),
+                                      [&](const Score& l) { return candidates[l.candidate].effect == c.effect; });
+    if (c.variants[s.variant].all_or_nothing && !is_known && s.gain > kFarOff) labels.push_back(s);
+  }
+  std::erase_if(chosen, [&](const Score& s) {
+    return std::any_of(labels.begin(), labels.end(),
+                       [&](const Score& l) { return l.candidate == s.candidate && l.variant == s.variant; });
+  });
+  chosen.insert(chosen.begin(), labels.begin(), labels.end());
+  return labels.size();
+}
+
 /// The best candidates on top of a hypothesis, fitted in full, best first.
 /// @param known      null: all are fitted anew, from where scatter was settled last
 /// @param each_kind  the best of each effect is among them, though the first n be of others: which kind it is must not hang on linear theory
@@ -137,10 +158,12 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
     });
     if (is_full ? is_new_kind : n_same < 2) chosen.push_back(s);
   }
+  const std::size_t n_labels = put_labels_first(candidates, list, chosen);
   const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
   std::vector<Fitted> fitted;
   double best_gain = 0.0;  // of those fitted
-  for (std::size_t from = 0; from < chosen.size() && chosen[from].gain > kHopeless * best_gain - kHope;) {
+  const auto is_hopeless = [&](std::size_t i) { return i >= n_labels && !(chosen[i].gain > kHopeless * best_gain - kHope); };
+  for (std::size_t from = 0; from < chosen.size() && !is_hopeless(from);) {
     if (listener.wants_end()) break;
     listener.share(static_cast<double>(from) / static_cast<double>(chosen.size()));
     std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;

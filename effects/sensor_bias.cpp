@@ -1,3 +1,4 @@
+#include "effects/instrument_groups.hpp"
 #include "effects/lasting.hpp"
 
 namespace driftwright::effects {
@@ -15,24 +16,29 @@ void change_readings(const Effect& e, ReadingChain& chain) {
   });
 }
 
+Doubt constant_error(const std::string& sensor) {
+  return {.finding = "sensor_bias",
+          .where = sensor,
+          .law = "constant error",
+          .added = {make_effect("sensor_bias", Place::kSensor, sensor)},
+          .numbers = {doubted("bias", "K", 1.0, 0.2)},
+          .trial = 0.3};
+}
+
+Doubt wrong_scale(const std::string& sensor) {
+  return {.finding = "sensor_bias",
+          .where = sensor,
+          .law = "error in proportion to what it is warmer than the reference",
+          .added = {make_effect("sensor_bias", Place::kSensor, sensor, {{"bias", 0.0}})},
+          .numbers = {doubted("slope", "1", kSlope, 0.1 * kSlope)},
+          .trial = 0.3 * kSlope};
+}
+
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const std::string& sensor : s.sensors) {
-    add_in_some_runs(s,
-                     {.finding = "sensor_bias",
-                      .where = sensor,
-                      .law = "constant error",
-                      .added = {make_effect("sensor_bias", Place::kSensor, sensor)},
-                      .numbers = {doubted("bias", "K", 1.0, 0.2)},
-                      .trial = 0.3},
-                     list);
-    Doubt wrong_scale{.finding = "sensor_bias",
-                      .where = sensor,
-                      .law = "error in proportion to what it is warmer than the reference",
-                      .added = {make_effect("sensor_bias", Place::kSensor, sensor, {{"bias", 0.0}})},
-                      .numbers = {doubted("slope", "1", kSlope, 0.1 * kSlope)},
-                      .trial = 0.3 * kSlope};
-    list.push_back(std::move(wrong_scale));
+    add_in_some_runs(s, constant_error(sensor), list);
+    list.push_back(wrong_scale(sensor));
     if (!s.starts_and_stops) continue;
     Doubt picked_up{.finding = "sensor_bias",
                     .where = sensor,
@@ -42,6 +48,10 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                     .trial = 0.3};
     picked_up.added[0].words["errs"] = "while_spindle_turns";
     list.push_back(std::move(picked_up));
+  }
+  if (s.sensors.size() > 1) {
+    add_in_groups(s.sensors, constant_error(s.sensors.front()), list);
+    add_in_groups(s.sensors, wrong_scale(s.sensors.front()), list);
   }
   return list;
 }

@@ -1,3 +1,4 @@
+#include "effects/instrument_groups.hpp"
 #include "effects/lasting.hpp"
 
 namespace driftwright::effects {
@@ -12,16 +13,16 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
-  for (const std::string& sensor : s.sensors) {
-    add_in_some_runs(s,
-                     {.finding = "sensor_drift",
-                      .where = sensor,
-                      .law = "error that grows with time",
-                      .added = {make_effect("sensor_drift", Place::kSensor, sensor)},
-                      .numbers = {doubted("drift", "K/h", 0.5, 0.1)},
-                      .trial = 0.2},
-                     list);
-  }
+  const auto drifts = [](const std::string& sensor) -> Doubt {
+    return {.finding = "sensor_drift",
+            .where = sensor,
+            .law = "error that grows with time",
+            .added = {make_effect("sensor_drift", Place::kSensor, sensor)},
+            .numbers = {doubted("drift", "K/h", 0.5, 0.1)},
+            .trial = 0.2};
+  };
+  for (const std::string& sensor : s.sensors) add_in_some_runs(s, drifts(sensor), list);
+  if (s.sensors.size() > 1) add_in_groups(s.sensors, drifts(s.sensors.front()), list);
   return list;
 }
 

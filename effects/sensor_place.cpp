@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "effects/instrument_groups.hpp"
 #include "effects/lasting.hpp"
 
 namespace driftwright::effects {
@@ -20,7 +21,21 @@ void change_readings(const Effect& e, ReadingChain& chain) {
   });
 }
 
-/// Each other body has a law of its own, in all records or from one of them on; the ambient has one, too: a thermometer that never touched well.
+/// A label on the wrong cable: it sits on another body altogether, in all records.
+Doubt mislabelled(const Effect& place) {
+  Doubt d{.finding = "sensor_place",
+          .where = place.place,
+          .law = "sits on " + place.references.at("body").name + ", not at its place",
+          .added = {place},
+          .numbers = {doubted("share", "1", 1.0, 1.0)},
+          .trial = 1.0,
+          .all_or_nothing = true};
+  d.added.front().set("share", 1.0);
+  d.numbers.front().set = [](std::span<Effect>, double) {};
+  return d;
+}
+
+/// Each other body has a law of its own, in all records or from one of them on; the ambient has one, too: a thermometer that never touched well, or all of them.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const std::string& sensor : s.sensors) {
@@ -44,6 +59,9 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                          .trial = 0.3,
                          .rarity = may_touch ? 0.0 : kTouchWithoutPath};
       list.push_back(always);
+      const bool is_there = at != s.sensor_bodies.end() && at->second == body;
+      if (!is_there && !(body == ambient_node())) list.push_back(mislabelled(place));
+      if (body == ambient_node() && sensor == s.sensors.front()) add_in_groups(s.sensors, always, list);
       for (std::size_t run = 1; run < s.runs.size(); ++run) {  // mounted anew between two records
         Doubt moved = always;
         const bool is_last = run + 1 == s.runs.size();

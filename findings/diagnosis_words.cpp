@@ -100,6 +100,9 @@ std::string bars_text(const diagnosis::Diagnosis& d) {
 std::string shares_of_gain_text(const diagnosis::Diagnosis& d) {
   if (!d.ended_at.empty()) return "";
   const diagnosis::KeptOutMisses& m = d.misses;
+  if (std::isnan(m.as_written))
+    return "No reading could judge what is written: before all rows that were kept out there is a hole of the record, and what drove the machine within it matters to them "
+           "still. Another record would judge it.";
   std::string text = fmt::format(
       "All channels together, the misses of kept-out rows are {:.2f} times the noise as written and {:.2f} with the "
       "scenario's "

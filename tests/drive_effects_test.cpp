@@ -62,6 +62,16 @@ TEST(TrueCyclogram, AnOverrideComesAgain) {
   EXPECT_THAT(speeds_rpm(felt), ElementsAre(1000, 2000, 1000, 2000, 3000, 0));
 }
 
+TEST(TrueCyclogram, ALimitIsNeverExceeded) {
+  EXPECT_THAT(speeds_rpm(true_cyclogram(change_of("{type: speed_override, at_most: 2000 rpm}"), kRecorded)),
+              ElementsAre(1000, 2000, 0));
+  EXPECT_THAT(speeds_rpm(true_cyclogram(change_of("{type: speed_override, factor: 3, at_most: 4000 rpm}"), kRecorded)),
+              ElementsAre(3000, 4000, 0));
+  EXPECT_THAT(speeds_rpm(true_cyclogram(
+                  change_of("{type: speed_override, at_most: 2500 rpm, windows: [[10 min, 15 min]]}"), kRecorded)),
+              ElementsAre(1000, 2500, 3000, 0));
+}
+
 TEST(TrueCyclogram, OverridesMultiply) {
   const DriveChange twice =
       drive_change({read("{type: speed_override, factor: 1.25}"), read("{type: speed_override, factor: 2}")}, "shift");
@@ -165,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(Each, BadDriveEffect,
                          ::testing::Values(Bad{"{type: ambient}", "`offset`, `ramp` or both"},
                                            Bad{"{type: ambient, ambient: ambient, offset: 1 K}", "unknown key 'ambient'"},
                                            Bad{"{type: ambient, offset: 1 K/h}", "wrong unit"},
-                                           Bad{"{type: speed_override}", "key 'factor' is missing"},
+                                           Bad{"{type: speed_override}", "`factor` or `at_most` is wanted"},
                                            Bad{"{type: speed_override, factor: -1}", "outside what is allowed"},
                                            Bad{"{type: speed_override, factor: 2, every: 8 min, until_time: 1 h}", "has none"},
                                            Bad{"{type: speed_override, factor: 2, windows: [[2 min, 1 min]]}", "behind its beginning"},

@@ -1,0 +1,115 @@
+// In which stretches of work something acted, in a linear problem whose truth is known: every other one, any of them, all but one; none where there is noise alone.
+
+#include "diagnosis/stretch_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+constexpr int kStretches = 12;
+constexpr Eigen::Index kRows = 20;  // of each stretch and of each rest
+
+/// Stretches of work with rests between, of a body that forgets over thirty rows and is read in each row with noise of 1.
+struct Works {
+  WorkStretches stretches;
+  WindowEvidence evidence;
+};
+
+Works works(const std::vector<int>& in, double size, std::uint64_t seed) {
+  const Eigen::Index n_cells = 2 * kStretches, n_rows = n_cells * kRows;
+  Works w;
+  w.stretches.edges.resize(1);
+  w.stretches.is_work.resize(1);
+  w.evidence.runs = {{0, {}, 1.0}};
+  for (Eigen::Index c = 0; c <= n_cells; ++c) {
+    w.stretches.edges[0].push_back(c * kRows);
+    w.evidence.runs[0].edge_s.push_back(static_cast<double>(c * kRows));
+    if (c < n_cells) w.stretches.is_work[0].push_back(c % 2 == 0 ? 1 : 0);
+  }
+  Eigen::MatrixXd s = Eigen::MatrixXd::Zero(n_rows, n_cells);
+  for (Eigen::Index c = 0; c < n_cells; ++c) {
+    double warm = 0.0;
+    for (Eigen::Index row = 0; row < n_rows; ++row) {
+      const bool acts = row >= c * kRows && row < (c + 1) * kRows;
+      warm += (acts ? 1.0 : 0.0) / 30.0 - warm / 30.0;
+      s(row, c) = warm;
+    }
+  }
+  Random random(seed, 0);
+  Eigen::VectorXd y(n_rows);
+  for (double& v : y) v = random.normal();
+  for (int stretch : in) y += size * s.col(2 * stretch);
+  w.evidence.slope = s.transpose() * y;
+  w.evidence.curvature = s.transpose() * s;
+  w.evidence.prior_sd = 5.0;
+  return w;
+}
+
+std::vector<int> chosen(const FoundWindows& found) {
+  std::vector<int> list;
+  for (const FoundWindows::Window& w : found.windows) {
+    EXPECT_EQ(w.last, w.first + 1);
+    list.push_back(static_cast<int>(w.first) / 2);
+  }
+  return list;
+}
+
+TEST(StretchChoice, FindsEveryOtherAndAnyOfThemAndSaysTheirSize) {
+  for (const std::vector<int>& in : {std::vector{1, 3, 5, 7, 9, 11}, {0, 1, 6}, {4}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 11}}) {
+    const Works w = works(in, 2.0, 1);
+    const auto found = choose_stretches(w.evidence, w.stretches);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(chosen(*found), in);
+        EXPECT_GT(found->gain, 10.0);
+    const auto n = static_cast<double>(in.size());
+    EXPECT_NEAR(found->size, 2.0, 1.0 / std::sqrt(n));
+    const double choices = std::tgamma(kStretches + 1.0) / std::tgamma(n + 1.0) / std::tgamma(kStretches - n + 1.0);
+    EXPECT_NEAR(found->price_nats, std::log(kStretches * choices), 1e-9);
+  }
+}
+
+TEST(StretchChoice, IsWorthNothingWhereThereIsNoiseAloneOrAllStretchesAreAlike) {
+  int n_taken = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const Works w = works({}, 0.0, seed);
+    const auto found = choose_stretches(w.evidence, w.stretches);
+    if (found && found->gain > 0.0) ++n_taken;
+  }
+  EXPECT_LE(n_taken, 10);  // of 200: what is paid for is what choosing brings
+  const Works all = works({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, 2.0, 3);
+  const auto found = choose_stretches(all.evidence, all.stretches);
+  ASSERT_TRUE(found);
+  EXPECT_LT(found->windows.size(), static_cast<std::size_t>(kStretches));  // all of them is a law of the drive
+}
+
+TEST(StretchChoice, TakesNoSizeThatIsNotAllowed) {
+  Works w = works({1, 3, 5, 7, 9, 11}, -2.0, 1);
+  EXPECT_GT(choose_stretches(w.evidence, w.stretches)->gain, 10.0);
+  w.evidence.is_positive = true;
+  const auto found = choose_stretches(w.evidence, w.stretches);
+  EXPECT_FALSE(found && found->gain > 0.0);
+}
+
+TEST(WorkStretches, AreThoseOfTheSpindleAndOfEachColumnThatRestsAtOtherTimes) {
+  MeasuredRun run;
+  for (int k = 0; k <= 40; ++k) run.time_s.push_back(60.0 * k);
+  for (int k = 0; k < 5; ++k) {
+    run.cyclogram.sections.push_back({240.0, {.speed_rpm = 1000.0}});
+    run.cyclogram.sections.push_back({240.0, {.speed_rpm = 0.0}});
+  }
+  const std::vector<WorkStretches> list = stretches_of_work({run});
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].edges[0], (std::vector<Eigen::Index>{0, 4, 8, 12, 16, 20, 24, 28, 32, 36, 40}));
+  EXPECT_EQ(list[0].is_work[0], (std::vector<char>{1, 0, 1, 0, 1, 0, 1, 0, 1, 0}));
+  run.cyclogram.sections.resize(4);  // two stretches of work, and the last rest goes on: nothing to choose among
+  run.cyclogram.sections.push_back({1440.0, {.speed_rpm = 0.0}});
+  EXPECT_TRUE(stretches_of_work({run}).empty());
+}
+
+}  // namespace
+}  // namespace driftwright::diagnosis
