@@ -150,9 +150,14 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
           of_place[p].push_back(std::move(again));
         }
         for (const WorkStretches& stretches : works) {
+          if (place.is_speed) break;  // a speed that is another one in some runs alone is a level of the drive
           const WindowEvidence of_works = asked(stretches.edges);
-          const auto chosen = choose_stretches(of_works, stretches);
-          if (!chosen || !(chosen->gain > kWorthTrying)) continue;
+          auto chosen = choose_stretches(of_works, stretches);
+          if (!chosen) continue;
+          const double of_drives = std::log(static_cast<double>(works.size()));  // whose stretches they are
+          chosen->gain -= of_drives;
+          chosen->price_nats += of_drives;
+          if (!(chosen->gain > kWorthTrying)) continue;
           if (auto seen = happening_of(fitter, of_works, *chosen, h)) of_place[p].push_back(*std::move(seen));
         }
         auto found = find_windows(first);

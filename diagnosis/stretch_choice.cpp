@@ -1,7 +1,9 @@
 #include "diagnosis/stretch_choice.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "diagnosis/residual_structure.hpp"
 
@@ -11,6 +13,8 @@ namespace {
 constexpr std::size_t kFewest = 3, kMost = 60;  // stretches of all runs
 constexpr double kAtWork = 0.05;                // of a column's span above its least
 constexpr int kMostTurns = 40;
+constexpr double kLevelWidths[] = {0.05, 0.2, 0.6};  // of a quantity's span, over which sizes are alike
+constexpr double kJitter = 1e-9;
 
 /// @param at_work  of each run, whether there is work from row k to row k + 1
 std::optional<WorkStretches> stretches_of(const std::vector<std::vector<char>>& at_work) {
@@ -81,6 +85,29 @@ class Chooser {
     }
     return best;
   }
+  /// What sizes bring that follow a level in any shape: about 0 with covariance s² e^{-|v - v'|/w}, s as large as the choice's, which they pay for as it does.
+  /// @param level  of each stretch
+  [[nodiscard]] double gain_by(const Eigen::VectorXd& level, double width, const FoundWindows& of) const {
+    Eigen::MatrixXd covariance(n(), n());
+    for (Eigen::Index i = 0; i < n(); ++i)
+      covariance.col(i) = of.size * of.size * (-(level.array() - level[i]).abs() / width).exp();
+    covariance.diagonal().array() += kJitter * of.size * of.size;
+    const Eigen::MatrixXd root = covariance.llt().matrixL();
+    const Eigen::MatrixXd information = root.transpose() * curvature_ * root + Eigen::MatrixXd::Identity(n(), n());
+    const Eigen::LLT<Eigen::MatrixXd> factor(information);
+    const Eigen::VectorXd slope = root.transpose() * slope_;
+    return 0.5 * slope.dot(factor.solve(slope)) - factor.matrixLLT().diagonal().array().log().sum() -
+           0.5 * std::log1p(e_.prior_sd * e_.prior_sd * curvature_of(of));
+  }
+  /// Of each stretch. @param of_cell  by run and cell
+  [[nodiscard]] Eigen::VectorXd of_stretches(const std::vector<std::vector<double>>& of_cell) const {
+    Eigen::VectorXd values(n());
+    for (Eigen::Index i = 0; i < n(); ++i) {
+      const FoundWindows::Window& c = cells_[static_cast<std::size_t>(i)];
+      values[i] = of_cell[c.run][static_cast<std::size_t>(c.first)];
+    }
+    return values;
+  }
   [[nodiscard]] FoundWindows found(const std::vector<char>& chosen, double value) const {
     FoundWindows f;
     f.gain = value;
@@ -96,6 +123,14 @@ class Chooser {
   }
 
  private:
+  [[nodiscard]] double curvature_of(const FoundWindows& of) const {
+    double sum = 0.0;
+    for (const FoundWindows::Window& a : of.windows) {
+      for (const FoundWindows::Window& b : of.windows)
+        sum += e_.curvature(e_.runs[a.run].first + a.first, e_.runs[b.run].first + b.first);
+    }
+    return sum;
+  }
   [[nodiscard]] Eigen::Index at(Eigen::Index i) const {
     const FoundWindows::Window& c = cells_[static_cast<std::size_t>(i)];
     return e_.runs[c.run].first + c.first;
@@ -109,34 +144,64 @@ class Chooser {
 
 }  // namespace
 
+namespace {
+
+/// Means of what is recorded in each cell. @param values  of each run, from row k to row k + 1
+std::vector<std::vector<double>> means(const Edges& edges, const std::vector<Eigen::VectorXd>& values) {
+  std::vector<std::vector<double>> level;
+  for (std::size_t r = 0; r < edges.size(); ++r) {
+    std::vector<double>& of_run = level.emplace_back();
+    for (std::size_t k = 0; k + 1 < edges[r].size(); ++k)
+      of_run.push_back(values[r].segment(edges[r][k], edges[r][k + 1] - edges[r][k]).mean());
+  }
+  return level;
+}
+
+}  // namespace
+
 std::vector<WorkStretches> stretches_of_work(const std::vector<MeasuredRun>& runs) {
-  std::vector<WorkStretches> list;
-  std::vector<std::vector<char>> turning;
-  std::vector<std::string> columns;
+  // What is recorded of each run, from row to row: the speed, then further columns.
+  std::vector<std::string> columns = {""};
+  std::vector<std::map<std::string, Eigen::VectorXd>> recorded;
   for (const MeasuredRun& run : runs) {
-    std::vector<char>& steps = turning.emplace_back();
-    for (std::size_t k = 0; k + 1 < run.time_s.size(); ++k)
-      steps.push_back(run.cyclogram.speed_rpm(0.5 * (run.time_s[k] + run.time_s[k + 1])) != 0.0 ? 1 : 0);
+    const auto n_steps = static_cast<Eigen::Index>(run.time_s.size()) - 1;
+    auto& of_run = recorded.emplace_back();
+    Eigen::VectorXd& speed = of_run[""] = Eigen::VectorXd(n_steps);
+    for (Eigen::Index k = 0; k < n_steps; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      speed[k] = run.cyclogram.speed_rpm(0.5 * (run.time_s[i] + run.time_s[i + 1]));
+    }
     for (const auto& [name, values] : beside_drive(run, 0.0)) {
+      of_run[name] = values.head(n_steps);
       if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
     }
+    for (const std::string& column : columns) {
+      if (!of_run.contains(column)) of_run[column] = Eigen::VectorXd::Zero(n_steps);
+    }
   }
-  if (auto s = stretches_of(turning)) list.push_back(*std::move(s));
+  std::erase_if(columns, [&](const std::string& c) {
+    return std::any_of(recorded.begin(), recorded.end(), [&](const auto& of_run) { return !of_run.contains(c); });
+  });
+  std::vector<WorkStretches> list;
   for (const std::string& column : columns) {
     std::vector<std::vector<char>> at_work;
-    for (const MeasuredRun& run : runs) {
-      std::vector<char>& steps = at_work.emplace_back(run.time_s.size() - 1, 0);
-      for (const auto& [name, values] : beside_drive(run, 0.0)) {
-        if (name != column) continue;
-        const double least = values.minCoeff(), span = values.maxCoeff() - least;
-        for (std::size_t k = 0; k < steps.size(); ++k)
-          steps[k] = span > 0.0 && values[static_cast<Eigen::Index>(k)] > least + kAtWork * span ? 1 : 0;
-      }
+    for (const auto& of_run : recorded) {
+      const Eigen::VectorXd& values = of_run.at(column);
+      const double least = column.empty() ? 0.0 : values.minCoeff(), span = values.maxCoeff() - least;
+      std::vector<char>& steps = at_work.emplace_back();
+      for (double v : values) steps.push_back(span > 0.0 && v > least + (column.empty() ? 0.0 : kAtWork * span) ? 1 : 0);
     }
     auto s = stretches_of(at_work);
     const bool is_known =
         s && std::any_of(list.begin(), list.end(), [&](const WorkStretches& o) { return o.edges == s->edges; });
     if (s && !is_known) list.push_back(*std::move(s));
+  }
+  for (WorkStretches& s : list) {
+    for (const std::string& column : columns) {
+      std::vector<Eigen::VectorXd> values;
+      for (const auto& of_run : recorded) values.push_back(of_run.at(column));
+      s.levels.push_back(means(s.edges, values));
+    }
   }
   return list;
 }
@@ -165,7 +230,16 @@ std::optional<FoundWindows> choose_stretches(const WindowEvidence& evidence, con
     begin_with(std::move(chosen));
   }
   if (best.empty()) return std::nullopt;
-  return chooser.found(best, value);
+  const FoundWindows found = chooser.found(best, value);
+  const double n_tried = static_cast<double>(std::size(kLevelWidths) * std::max<std::size_t>(1, stretches.levels.size()));
+  for (const auto& level : stretches.levels) {
+    const Eigen::VectorXd of = chooser.of_stretches(level);
+    const double span = of.maxCoeff() - of.minCoeff();
+    for (const double width : kLevelWidths) {
+      if (span > 0.0 && chooser.gain_by(of, width * span, found) - std::log(n_tried) > found.gain) return std::nullopt;
+    }
+  }
+  return found;
 }
 
 }  // namespace driftwright::diagnosis

@@ -10,6 +10,8 @@ namespace driftwright::diagnosis {
 struct WorkStretches {
   Edges edges;                             ///< rows between the cells of each run: where work begins and ends
   std::vector<std::vector<char>> is_work;  ///< of each run, a cell each
+  /// Of the speed and of each recorded column: its mean in each cell of each run.
+  std::vector<std::vector<std::vector<double>>> levels = {};
 };
 
 /// Those of the spindle's turning, and of each further recorded column that rests and works. None of what has too few stretches to choose among, or too many.
@@ -17,6 +19,7 @@ struct WorkStretches {
 
 /// The choice that brings most, windows from edge to edge of these stretches' cells; neither all of them nor none.
 /// @param evidence  of these edges
+/// @returns  nothing where sizes that follow how fast or how hard it worked, in any shape, do better: that is a law of the drive
 [[nodiscard]] std::optional<FoundWindows> choose_stretches(const WindowEvidence& evidence, const WorkStretches& stretches);
 
 }  // namespace driftwright::diagnosis
