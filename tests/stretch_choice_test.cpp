@@ -65,7 +65,7 @@ TEST(StretchChoice, FindsEveryOtherAndAnyOfThemAndSaysTheirSize) {
     const auto found = choose_stretches(w.evidence, w.stretches);
     ASSERT_TRUE(found);
     EXPECT_EQ(chosen(*found), in);
-        EXPECT_GT(found->gain, 10.0);
+    EXPECT_GT(found->gain, 10.0);
     const auto n = static_cast<double>(in.size());
     EXPECT_NEAR(found->size, 2.0, 1.0 / std::sqrt(n));
     const double choices = std::tgamma(kStretches + 1.0) / std::tgamma(n + 1.0) / std::tgamma(kStretches - n + 1.0);
@@ -85,6 +85,22 @@ TEST(StretchChoice, IsWorthNothingWhereThereIsNoiseAloneOrAllStretchesAreAlike) 
   const auto found = choose_stretches(all.evidence, all.stretches);
   ASSERT_TRUE(found);
   EXPECT_LT(found->windows.size(), static_cast<std::size_t>(kStretches));  // all of them is a law of the drive
+}
+
+// Heat that rattles at some speeds is none that comes in some stretches: where sizes follow the level of the work in any shape, nothing is chosen.
+TEST(StretchChoice, ChoosesNothingWhereSizesFollowHowFastItWorked) {
+  const std::vector<int> fast = {1, 2, 5, 8, 9};
+  Works w = works(fast, 2.0, 1);
+  std::vector<double> level(2 * kStretches, 0.0);
+  for (int k = 0; k < kStretches; ++k) level[static_cast<std::size_t>(2 * k)] = 1000.0 + 10.0 * (k % 3);
+  for (int k : fast) level[static_cast<std::size_t>(2 * k)] += 800.0;
+  EXPECT_TRUE(choose_stretches(w.evidence, w.stretches));
+  w.stretches.levels = {{level}};
+  EXPECT_FALSE(choose_stretches(w.evidence, w.stretches));
+  for (int k = 0; k < kStretches; ++k)
+    level[static_cast<std::size_t>(2 * k)] = 1000.0 + 100.0 * ((7 * k) % 12);  // of another order
+  w.stretches.levels = {{level}};
+  EXPECT_TRUE(choose_stretches(w.evidence, w.stretches));
 }
 
 TEST(StretchChoice, TakesNoSizeThatIsNotAllowed) {
