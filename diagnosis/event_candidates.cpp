@@ -125,7 +125,7 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
       std::any_of(runs.begin(), runs.end(), [](const SeenRun& r) { return (r.linear.turning_W.array() != 0.0).any(); });
   if (turns_heat) places.push_back({.is_speed = true});
   const Edges few = coarse_edges(fitter.runs(), kCells), many = coarse_edges(fitter.runs(), kCellsOfSpeed);
-  const std::vector<WorkStretches> works = stretches_of_work(fitter.runs());
+  const std::vector<WorkStretches> of_work = stretches_of_work(fitter.runs());
   std::vector<std::vector<Happening>> of_place(places.size());
   for_each_index(
       places.size(), [] { return 0; },
@@ -149,16 +149,16 @@ std::vector<Event> events_beside(const Fitter& fitter, const Hypothesis& hypothe
           again.price_nats = turns->price_nats;
           of_place[p].push_back(std::move(again));
         }
-        for (const WorkStretches& stretches : works) {
+        for (const WorkStretches& stretches : of_work) {
           if (place.is_speed) break;  // a speed that is another one in some runs alone is a level of the drive
-          const WindowEvidence of_works = asked(stretches.edges);
-          auto chosen = choose_stretches(of_works, stretches);
+          const WindowEvidence there = asked(stretches.edges);
+          auto chosen = choose_stretches(there, stretches);
           if (!chosen) continue;
-          const double of_drives = std::log(static_cast<double>(works.size()));  // whose stretches they are
+          const double of_drives = std::log(static_cast<double>(of_work.size()));  // whose stretches they are
           chosen->gain -= of_drives;
           chosen->price_nats += of_drives;
           if (!(chosen->gain > kWorthTrying)) continue;
-          if (auto seen = happening_of(fitter, of_works, *chosen, h)) of_place[p].push_back(*std::move(seen));
+          if (auto seen = happening_of(fitter, there, *chosen, h)) of_place[p].push_back(*std::move(seen));
         }
         auto found = find_windows(first);
         if (!found || !(found->gain > kWorthRefining)) return;

@@ -140,7 +140,10 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
     const double mean_rpm = turned / turning_s, decade = std::pow(10.0, std::floor(std::log10(mean_rpm)));
     s.typical_rpm = std::max(1.0, std::round(mean_rpm / decade)) * decade;
   }
-  s.top_rpm = std::max(1.0, top_speed_rpm(runs));
+  for (const MeasuredRun& run : runs) {  // of what the machine feels as written
+    for (const auto& section : effects::true_cyclogram(effects::drive_change(s.own, run.name), run.cyclogram).sections)
+      s.top_rpm = std::max(s.top_rpm, section.drive.speed_rpm);
+  }
   s.heat_W = 0.0;
   const effects::Inputs top{.drive = {.speed_rpm = top_speed_rpm(runs)}};
   for (const auto& h : s.balance.heats) {

@@ -120,15 +120,15 @@ class KnownFits {
 
 /// Labels on the wrong cables: linear theory sees such a law at numbers that were fitted to the body on the label, and little of what its own body's numbers would mend. It tells which
 /// label is the likeliest, not what that brings; so the best law of each such kind is always fitted, before all others.
-/// @param list  all scores, best first. @param chosen  those to be fitted  @returns  how many labels it begins with
-std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std::vector<Score>& list,
+/// @param list  all scores, best first. @param least  a nat a reading: below there is no hope. @param chosen  those to be fitted  @returns  how many labels it begins with
+std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std::vector<Score>& list, double least,
                              std::vector<Score>& chosen) {
   std::vector<Score> labels;
   for (const Score& s : list) {
     const Candidate& c = candidates[s.candidate];
     const bool is_known = std::any_of(labels.begin(), labels.end(),
                                       [&](const Score& l) { return candidates[l.candidate].effect == c.effect; });
-    if (c.variants[s.variant].all_or_nothing && !is_known && s.gain > kFarOff) labels.push_back(s);
+    if (c.variants[s.variant].all_or_nothing && !is_known && s.gain > least) labels.push_back(s);
   }
   std::erase_if(chosen, [&](const Score& s) {
     return std::any_of(labels.begin(), labels.end(),
@@ -158,7 +158,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
     });
     if (is_full ? is_new_kind : n_same < 2) chosen.push_back(s);
   }
-  const std::size_t n_labels = put_labels_first(candidates, list, chosen);
+  const std::size_t n_labels = put_labels_first(candidates, list, -static_cast<double>(fitter.comparison().n()), chosen);
   const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
   std::vector<Fitted> fitted;
   double best_gain = 0.0;  // of those fitted

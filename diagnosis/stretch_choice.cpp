@@ -5,13 +5,13 @@
 #include <cmath>
 #include <map>
 
-#include "diagnosis/residual_structure.hpp"
-
 namespace driftwright::diagnosis {
 namespace {
 
 constexpr std::size_t kFewest = 3, kMost = 60;  // stretches of all runs
 constexpr double kAtWork = 0.05;                // of a column's span above its least
+constexpr const char* kFeeds[] = {"feed_x", "feed_y", "feed_z"};
+constexpr const char *kSpeed = "speed", *kCutting = "cutting_power";
 constexpr int kMostTurns = 40;
 constexpr double kLevelWidths[] = {0.05, 0.2, 0.6};  // of a quantity's span, over which sizes are alike
 constexpr double kJitter = 1e-9;
@@ -52,39 +52,55 @@ class Chooser {
       slope_[i] = e_.slope[at(i)];
       for (Eigen::Index j = 0; j < n; ++j) curvature_(i, j) = e_.curvature(at(i), at(j));
     }
+    const auto log_factorial = [](Eigen::Index m) {
+      double sum = 0.0;
+      for (Eigen::Index i = 2; i <= m; ++i) sum += std::log(static_cast<double>(i));
+      return sum;
+    };
+    for (Eigen::Index k = 0; k <= n; ++k)
+      price_.push_back(k < n ? std::log(static_cast<double>(n)) + log_factorial(n) - log_factorial(k) - log_factorial(n - k)
+                             : 0.0);
   }
 
   [[nodiscard]] Eigen::Index n() const { return slope_.size(); }
-  [[nodiscard]] static double price(Eigen::Index n, Eigen::Index k) {
-    const auto log_factorial = [](Eigen::Index m) { return std::lgamma(static_cast<double>(m) + 1.0); };
-    return std::log(static_cast<double>(n)) + log_factorial(n) - log_factorial(k) - log_factorial(n - k);
-  }
-  [[nodiscard]] double gain(const std::vector<char>& chosen) const {
-    const Eigen::VectorXd w = Eigen::Map<const Eigen::Vector<char, Eigen::Dynamic>>(chosen.data(), n()).cast<double>();
-    const auto k = static_cast<Eigen::Index>(w.sum());
-    if (k == 0 || k == n()) return -1e300;
-    const double slope = slope_.dot(w), curvature = w.dot(curvature_ * w), known = 1.0 / (e_.prior_sd * e_.prior_sd);
+  /// @param slope, curvature  of the chosen ones, k of n
+  [[nodiscard]] double gain(double slope, double curvature, Eigen::Index k) const {
+    const double known = 1.0 / (e_.prior_sd * e_.prior_sd);
     if (!(curvature > 1e-9) || (e_.is_positive && slope < 0.0)) return -1e300;
-    return 0.5 * slope * slope / (curvature + known) - 0.5 * std::log1p(curvature / known) - price(n(), k);
+    return 0.5 * slope * slope / (curvature + known) - 0.5 * std::log1p(curvature / known) -
+           price_[static_cast<std::size_t>(k)];
   }
-  /// The best that is reached by taking one in or out at a time.
+  /// The best that is reached by taking one in or out at a time, neither all of them nor none.
   [[nodiscard]] double improve(std::vector<char>& chosen) const {
-    double best = gain(chosen);
+    Eigen::VectorXd w = Eigen::Map<const Eigen::Vector<char, Eigen::Dynamic>>(chosen.data(), n()).cast<double>();
+    Eigen::VectorXd along = curvature_ * w;
+    auto k = static_cast<Eigen::Index>(w.sum());
+    const auto is_choice = [&](Eigen::Index of) { return of > 0 && of < n(); };
+    double best = is_choice(k) ? gain(slope_.dot(w), w.dot(along), k) : -1e300;
     for (int turn = 0; turn < kMostTurns; ++turn) {
-      std::size_t flip = chosen.size();
-      for (std::size_t i = 0; i < chosen.size(); ++i) {
-        chosen[i] ^= 1;
-        if (const double value = gain(chosen); value > best + 1e-9) {
+      const double slope = slope_.dot(w), curvature = w.dot(along);
+      Eigen::Index flip = -1;
+      for (Eigen::Index i = 0; i < n(); ++i) {
+        const double sign = w[i] > 0.0 ? -1.0 : 1.0;
+        const Eigen::Index of = k + (sign > 0.0 ? 1 : -1);
+        if (!is_choice(of)) continue;
+        const double value = gain(slope + sign * slope_[i], curvature + 2.0 * sign * along[i] + curvature_(i, i), of);
+        if (value > best + 1e-9) {
           best = value;
           flip = i;
         }
-        chosen[i] ^= 1;
       }
-      if (flip == chosen.size()) break;
-      chosen[flip] ^= 1;
+      if (flip < 0) break;
+      const double sign = w[flip] > 0.0 ? -1.0 : 1.0;
+      w[flip] += sign;
+      k += sign > 0.0 ? 1 : -1;
+      along += sign * curvature_.col(flip);
     }
+    for (Eigen::Index i = 0; i < n(); ++i) chosen[static_cast<std::size_t>(i)] = w[i] > 0.0 ? 1 : 0;
     return best;
   }
+  /// What all of them bring, which is no choice and costs none: a law of the drive.
+  [[nodiscard]] double gain_of_all() const { return gain(slope_.sum(), curvature_.sum(), n()); }
   /// What sizes bring that follow a level in any shape: about 0 with covariance s² e^{-|v - v'|/w}, s as large as the choice's, which they pay for as it does.
   /// @param level  of each stretch
   [[nodiscard]] double gain_by(const Eigen::VectorXd& level, double width, const FoundWindows& of) const {
@@ -118,7 +134,7 @@ class Chooser {
       w[static_cast<Eigen::Index>(i)] = 1.0;
     }
     f.size = slope_.dot(w) / (w.dot(curvature_ * w) + 1.0 / (e_.prior_sd * e_.prior_sd));
-    f.price_nats = price(n(), static_cast<Eigen::Index>(f.windows.size()));
+    f.price_nats = price_[f.windows.size()];
     return f;
   }
 
@@ -140,19 +156,47 @@ class Chooser {
   std::vector<FoundWindows::Window> cells_;
   Eigen::VectorXd slope_;
   Eigen::MatrixXd curvature_;
+  std::vector<double> price_;  // of k of them
 };
 
 }  // namespace
 
 namespace {
 
-/// Means of what is recorded in each cell. @param values  of each run, from row k to row k + 1
-std::vector<std::vector<double>> means(const Edges& edges, const std::vector<Eigen::VectorXd>& values) {
+using Recorded = std::map<std::string, Eigen::VectorXd>;  // of a run, from row to row
+
+/// What is recorded of a run's work: speed, feeds, cutting power and further columns.
+Recorded recorded_in(const MeasuredRun& run) {
+  const auto n_steps = static_cast<Eigen::Index>(run.time_s.size()) - 1;
+  Recorded values;
+  for (const char* name : {kSpeed, kCutting, kFeeds[0], kFeeds[1], kFeeds[2]}) values[name] = Eigen::VectorXd::Zero(n_steps);
+  const auto& sections = run.cyclogram.sections;
+  std::size_t at = 0;
+  double end_s = sections.empty() ? 0.0 : sections[0].duration_s;
+  for (Eigen::Index k = 0; k < n_steps && !sections.empty(); ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    const double middle_s = 0.5 * (run.time_s[row] + run.time_s[row + 1]);
+    while (at + 1 < sections.size() && middle_s >= end_s) end_s += sections[++at].duration_s;
+    const Drive& drive = sections[at].drive;
+    values[kSpeed][k] = drive.speed_rpm;
+    values[kCutting][k] = drive.cutting_power_W;
+    for (std::size_t axis = 0; axis < 3; ++axis) values[kFeeds[axis]][k] = drive.feed_m_s[axis];
+  }
+  for (const Cyclogram::Column& c : run.cyclogram.columns) {
+    Eigen::VectorXd& of_column = values[c.header()] = Eigen::VectorXd(n_steps);
+    for (Eigen::Index step = 0; step < n_steps; ++step) of_column[step] = c.at(run.time_s[static_cast<std::size_t>(step)]);
+  }
+  return values;
+}
+
+/// Means of what is recorded in each cell.
+std::vector<std::vector<double>> means(const Edges& edges, const std::vector<Recorded>& recorded, const std::string& of) {
   std::vector<std::vector<double>> level;
   for (std::size_t r = 0; r < edges.size(); ++r) {
+    const Eigen::VectorXd& values = recorded[r].at(of);
     std::vector<double>& of_run = level.emplace_back();
     for (std::size_t k = 0; k + 1 < edges[r].size(); ++k)
-      of_run.push_back(values[r].segment(edges[r][k], edges[r][k + 1] - edges[r][k]).mean());
+      of_run.push_back(values.segment(edges[r][k], edges[r][k + 1] - edges[r][k]).mean());
   }
   return level;
 }
@@ -160,48 +204,44 @@ std::vector<std::vector<double>> means(const Edges& edges, const std::vector<Eig
 }  // namespace
 
 std::vector<WorkStretches> stretches_of_work(const std::vector<MeasuredRun>& runs) {
-  // What is recorded of each run, from row to row: the speed, then further columns.
-  std::vector<std::string> columns = {""};
-  std::vector<std::map<std::string, Eigen::VectorXd>> recorded;
-  for (const MeasuredRun& run : runs) {
-    const auto n_steps = static_cast<Eigen::Index>(run.time_s.size()) - 1;
-    auto& of_run = recorded.emplace_back();
-    Eigen::VectorXd& speed = of_run[""] = Eigen::VectorXd(n_steps);
-    for (Eigen::Index k = 0; k < n_steps; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      speed[k] = run.cyclogram.speed_rpm(0.5 * (run.time_s[i] + run.time_s[i + 1]));
+  std::vector<Recorded> recorded;
+  for (const MeasuredRun& run : runs) recorded.push_back(recorded_in(run));
+  std::vector<std::string> names;  // of what all runs have and what changes in some
+  for (const auto& [name, values] : recorded.front()) {
+    double least = values.minCoeff(), most = values.maxCoeff();
+    bool is_in_all = true;
+    for (const Recorded& of_run : recorded) {
+      const auto found = of_run.find(name);
+      is_in_all = is_in_all && found != of_run.end();
+      if (!is_in_all) break;
+      least = std::min(least, found->second.minCoeff());
+      most = std::max(most, found->second.maxCoeff());
     }
-    for (const auto& [name, values] : beside_drive(run, 0.0)) {
-      of_run[name] = values.head(n_steps);
-      if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
-    }
-    for (const std::string& column : columns) {
-      if (!of_run.contains(column)) of_run[column] = Eigen::VectorXd::Zero(n_steps);
-    }
+    if (is_in_all && most > least) names.push_back(name);
   }
-  std::erase_if(columns, [&](const std::string& c) {
-    return std::any_of(recorded.begin(), recorded.end(), [&](const auto& of_run) { return !of_run.contains(c); });
-  });
   std::vector<WorkStretches> list;
-  for (const std::string& column : columns) {
+  for (const std::string& name : names) {
+    if (name.ends_with("degC")) continue;  // a temperature does not work
+    const bool is_drive = name == kSpeed || name == kCutting || name.starts_with("feed_");
+    double least = is_drive ? 0.0 : 1e300, most = -1e300;
+    for (const Recorded& of_run : recorded) {
+      least = std::min(least, of_run.at(name).minCoeff());
+      most = std::max(most, of_run.at(name).maxCoeff());
+    }
+    const double rests_to = least + (is_drive ? 0.0 : kAtWork * (most - least));
     std::vector<std::vector<char>> at_work;
-    for (const auto& of_run : recorded) {
-      const Eigen::VectorXd& values = of_run.at(column);
-      const double least = column.empty() ? 0.0 : values.minCoeff(), span = values.maxCoeff() - least;
+    for (const Recorded& of_run : recorded) {
       std::vector<char>& steps = at_work.emplace_back();
-      for (double v : values) steps.push_back(span > 0.0 && v > least + (column.empty() ? 0.0 : kAtWork * span) ? 1 : 0);
+      for (double v : of_run.at(name)) steps.push_back(v > rests_to ? 1 : 0);
     }
     auto s = stretches_of(at_work);
-    const bool is_known =
-        s && std::any_of(list.begin(), list.end(), [&](const WorkStretches& o) { return o.edges == s->edges; });
+    const bool is_known = s && std::any_of(list.begin(), list.end(), [&](const WorkStretches& o) {
+                            return o.edges == s->edges && o.is_work == s->is_work;
+                          });
     if (s && !is_known) list.push_back(*std::move(s));
   }
   for (WorkStretches& s : list) {
-    for (const std::string& column : columns) {
-      std::vector<Eigen::VectorXd> values;
-      for (const auto& of_run : recorded) values.push_back(of_run.at(column));
-      s.levels.push_back(means(s.edges, values));
-    }
+    for (const std::string& name : names) s.levels.push_back(means(s.edges, recorded, name));
   }
   return list;
 }
@@ -231,6 +271,7 @@ std::optional<FoundWindows> choose_stretches(const WindowEvidence& evidence, con
   }
   if (best.empty()) return std::nullopt;
   const FoundWindows found = chooser.found(best, value);
+  if (chooser.gain_of_all() >= found.gain) return std::nullopt;
   const double n_tried = static_cast<double>(std::size(kLevelWidths) * std::max<std::size_t>(1, stretches.levels.size()));
   for (const auto& level : stretches.levels) {
     const Eigen::VectorXd of = chooser.of_stretches(level);

@@ -10,16 +10,17 @@ namespace driftwright::diagnosis {
 struct WorkStretches {
   Edges edges;                             ///< rows between the cells of each run: where work begins and ends
   std::vector<std::vector<char>> is_work;  ///< of each run, a cell each
-  /// Of the speed and of each recorded column: its mean in each cell of each run.
+  /// Of whatever is recorded of the drive in all runs: its mean in each cell of each run.
   std::vector<std::vector<std::vector<double>>> levels = {};
 };
 
-/// Those of the spindle's turning, and of each further recorded column that rests and works. None of what has too few stretches to choose among, or too many.
+/// Those of the spindle's turning, of each axis, of cutting and of each further column that all runs have and that is no temperature: it rests up to a twentieth of its span over its least value. None of what has
+/// too few stretches to choose among, or too many.
 [[nodiscard]] std::vector<WorkStretches> stretches_of_work(const std::vector<MeasuredRun>& runs);
 
 /// The choice that brings most, windows from edge to edge of these stretches' cells; neither all of them nor none.
 /// @param evidence  of these edges
-/// @returns  nothing where sizes that follow how fast or how hard it worked, in any shape, do better: that is a law of the drive
+/// @returns  nothing where all of them bring as much, or sizes that follow how fast or how hard it worked, in any shape, do better: that is a law of the drive
 [[nodiscard]] std::optional<FoundWindows> choose_stretches(const WindowEvidence& evidence, const WorkStretches& stretches);
 
 }  // namespace driftwright::diagnosis

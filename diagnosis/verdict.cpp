@@ -19,7 +19,17 @@ constexpr const char* kFaint =
 constexpr double kOpen = 100.0;
 constexpr std::ptrdiff_t kManyMoved =
     3;  // blind cases of one fault or two move one number at the most, models of fewer bodies than the truth a dozen
-constexpr double kRestOfCause = 0.35;  // of what the causes explain: more left, and they are not what is wrong
+constexpr std::ptrdiff_t kMostPlaces = 4;  // that are named one by one
+constexpr double kRestOfCause = 0.35;      // of what the causes explain: more left, and they are not what is wrong
+
+/// A place, of many the first ones and how many there are.
+std::string place_words(const std::string& where) {
+  const auto n = std::count(where.begin(), where.end(), ',') + 1;
+  if (n <= kMostPlaces) return where;
+  std::size_t end = 0;
+  for (std::ptrdiff_t i = 0; i < kMostPlaces - 1; ++i) end = where.find(',', end + 1);
+  return fmt::format("{} and {} others", where.substr(0, end), n - kMostPlaces + 1);
+}
 
 std::string words(const Cause& c) {
   std::vector<std::string> numbers;
@@ -28,7 +38,8 @@ std::string words(const Cause& c) {
     numbers.push_back(
         fmt::format("{} {:.3g}{} ({:.3g} to {:.3g})", p.name, p.value, p.unit == "1" ? "" : " " + p.unit, p.low, p.high));
   }
-  return fmt::format("{} at {} ({}){}{}", c.effect, c.where, c.law, numbers.empty() ? "" : ": ", fmt::join(numbers, ", "));
+  return fmt::format("{} at {} ({}){}{}", c.effect, place_words(c.where), c.law, numbers.empty() ? "" : ": ",
+                     fmt::join(numbers, ", "));
 }
 
 /// One cause without a name, in words.
@@ -115,7 +126,7 @@ std::string reason_of(const Diagnosis& d) {
       text = fmt::format("suspected{}{}: {}", c.doubt.empty() ? "" : ", since " + c.doubt, odds_words(c), text);
     if (!c.alternatives.empty()) {
       std::vector<std::string> others;
-      for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, a.where));
+      for (const Cause& a : c.alternatives) others.push_back(fmt::format("{} at {}", a.effect, place_words(a.where)));
       text +=
           fmt::format(fmt::runtime(c.odds.kind < kSure
                                        ? "; the data cannot tell it from {} (odds of its kind {:.0f} %)"

@@ -16,7 +16,7 @@ inline constexpr double kFactorTrial = 0.2;
 struct DoubtScene {
   double reference_K = 293.15;
   double typical_rpm = 1.0;                ///< laws of speed are stated there
-  double top_rpm = 1.0;                    ///< the highest of all records
+  double top_rpm = 1.0;                    ///< the highest of all records, as the scenario's own effects make it
   double heat_W = 1.0;                     ///< of all sources at the highest speed
   bool moves_axes = false, turns = false;  ///< in some record
   bool starts_and_stops = false;           ///< turns and stands in one record

@@ -21,7 +21,7 @@ void change_readings(const Effect& e, ReadingChain& chain) {
   });
 }
 
-/// A label on the wrong cable: it sits on another body altogether, in all records.
+/// A label on the wrong cable, of sensors on lumped nodes: it sits on another body altogether, in all records.
 Doubt mislabelled(const Effect& place) {
   Doubt d{.finding = "sensor_place",
           .where = place.place,
@@ -59,8 +59,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                          .trial = 0.3,
                          .rarity = may_touch ? 0.0 : kTouchWithoutPath};
       list.push_back(always);
-      const bool is_there = at != s.sensor_bodies.end() && at->second == body;
-      if (!is_there && !(body == ambient_node())) list.push_back(mislabelled(place));
+      const bool is_elsewhere = at != s.sensor_bodies.end() && !(at->second == body);
+      if (is_elsewhere && !(body == ambient_node())) list.push_back(mislabelled(place));
       if (body == ambient_node() && sensor == s.sensors.front()) add_in_groups(s.sensors, always, list);
       for (std::size_t run = 1; run < s.runs.size(); ++run) {  // mounted anew between two records
         Doubt moved = always;

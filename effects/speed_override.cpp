@@ -37,7 +37,7 @@ Cyclogram turned_within(const Cyclogram& recorded, const Windows& windows, const
 }
 
 void change_drive(const Effect& e, DriveChange& change) {
-  const Turning turning{.factor = e["factor"], .at_most_rpm = e["at_most"]};
+  const Turning turning{.factor = e.has("factor") ? e["factor"] : 1.0, .at_most_rpm = e["at_most"]};
   if (e.tables.contains(kWindows)) {
     change.drive.push_back(
         [turning, windows = windows_of(e)](const Cyclogram& recorded) { return turned_within(recorded, windows, turning); });
@@ -52,7 +52,7 @@ void change_drive(const Effect& e, DriveChange& change) {
 
 /// Another factor or a limit; windows are as everywhere; what repeats must have some.
 void check(const Effect& e, const ConfigMap& in) {
-  if (!in.has("factor") && !e.has("at_most"))
+  if (!e.has("factor") && !e.has("at_most"))
     in.fail("factor", "`factor` or `at_most` is wanted: how the true speed differs from the recorded one");
   if (e.tables.contains(kWindows)) {
     check_windows(e, in);
@@ -76,15 +76,14 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   if (!s.turns) return list;
   DoubtedNumber at_most = doubted("at_most", "rpm", kCapSd * s.top_rpm, 0.02 * s.top_rpm, s.top_rpm);
   at_most.high = s.top_rpm;
-  add_in_some_runs(
-      s,
-      {.finding = "speed_override",
-       .where = "spindle",
-       .law = "a speed that is never exceeded, whatever is recorded",
-       .added = {make_effect("speed_override", Place::kSpindle, "spindle", {{"factor", 1.0}, {"at_most", s.top_rpm}})},
-       .numbers = {at_most},
-       .trial = kCapTrial * s.top_rpm},
-      list);
+  add_in_some_runs(s,
+                   {.finding = "speed_override",
+                    .where = "spindle",
+                    .law = "a speed that is never exceeded, whatever is recorded",
+                    .added = {make_effect("speed_override", Place::kSpindle, "spindle", {{"at_most", s.top_rpm}})},
+                    .numbers = {at_most},
+                    .trial = kCapTrial * s.top_rpm},
+                   list);
   return list;
 }
 
@@ -99,7 +98,7 @@ EffectKind speed_override() {
       .law = "n = factor n_recorded, at most `at_most`; with `windows` in these alone; feeds and cutting power as recorded",
       .places = {Place::kSpindle},
       .parameters =
-          repeating({{"factor", "1", 0.0, 10.0, 1.0, "true over recorded speed"},
+          repeating({{"factor", "1", 0.0, 10.0, kNotGiven, "true over recorded speed; 1 where only `at_most` is given"},
                      {"at_most", "rpm", 0.0, 1e6, kNotGiven, "the speed that it never exceeds: a drive at its limit"}}),
       .timing = Timing::kInRecord,
       .change_drive = change_drive,

@@ -42,7 +42,7 @@ void add_causes(std::vector<ResultKey>& keys) {
   keys.insert(keys.end(), {object("causes[]", "what the simulation gets wrong, surest first"),
                            text("causes[].effect", "key of the catalogue of effects"),
                            words("causes[].standing", standings, "how surely it is a cause"),
-                           text("causes[].where", "where it acts; of two places \"a,b\"; `hall` is the ambient"),
+                           text("causes[].where", "where it acts; of several places \"a,b\"; `hall` is the ambient"),
                            text("causes[].law", "its law in a sentence; empty where the effect has one law alone"),
                            object("causes[].parameters[]", "its numbers"),
                            text("causes[].parameters[].name", "key in the scenario"),

@@ -113,6 +113,11 @@ std::string shares_of_gain_text(const diagnosis::Diagnosis& d) {
   if (!std::isnan(m.found) && std::abs(m.found - m.extended) > 0.005 * m.extended)
     text +=
         fmt::format(". What the searches without these rows found, whether or not it is written, leaves {:.2f}", m.found);
+  std::vector<std::string> open;
+  for (const auto& g : d.gain) {
+    if (std::isnan(g.rmse_before)) open.push_back(channel_text(g.name, g.unit));
+  }
+  if (!open.empty()) text += fmt::format(". No kept-out reading of {} could judge", fmt::join(open, ", "));
   return text + ".";
 }
 

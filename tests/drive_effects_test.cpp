@@ -49,15 +49,16 @@ TEST(TrueCyclogram, OverrideScalesTheSpindleAlone) {
 }
 
 TEST(TrueCyclogram, AnOverrideInWindowsHoldsInTheseAlone) {
-  const Cyclogram felt =
-      true_cyclogram(change_of("{type: speed_override, factor: 0.5, windows: [[8 min, 13 min], [20 min, 30 min]]}"), kRecorded);
+  const Cyclogram felt = true_cyclogram(
+      change_of("{type: speed_override, factor: 0.5, windows: [[8 min, 13 min], [20 min, 30 min]]}"), kRecorded);
   EXPECT_THAT(durations_s(felt), ElementsAre(480, 120, 180, 420, 300));
   EXPECT_THAT(speeds_rpm(felt), ElementsAre(1000, 500, 1500, 3000, 0));  // the spindle stands in the second one
 }
 
 TEST(TrueCyclogram, AnOverrideComesAgain) {
   const Cyclogram felt = true_cyclogram(
-      change_of("{type: speed_override, factor: 2, windows: [[1 min, 2 min]], every: 8 min, until_time: 15 min}"), kRecorded);
+      change_of("{type: speed_override, factor: 2, windows: [[1 min, 2 min]], every: 8 min, until_time: 15 min}"),
+      kRecorded);
   EXPECT_THAT(durations_s(felt), ElementsAre(60, 60, 420, 60, 600, 300));
   EXPECT_THAT(speeds_rpm(felt), ElementsAre(1000, 2000, 1000, 2000, 3000, 0));
 }
@@ -67,9 +68,17 @@ TEST(TrueCyclogram, ALimitIsNeverExceeded) {
               ElementsAre(1000, 2000, 0));
   EXPECT_THAT(speeds_rpm(true_cyclogram(change_of("{type: speed_override, factor: 3, at_most: 4000 rpm}"), kRecorded)),
               ElementsAre(3000, 4000, 0));
-  EXPECT_THAT(speeds_rpm(true_cyclogram(
-                  change_of("{type: speed_override, at_most: 2500 rpm, windows: [[10 min, 15 min]]}"), kRecorded)),
+  EXPECT_THAT(speeds_rpm(true_cyclogram(change_of("{type: speed_override, at_most: 2500 rpm, windows: [[10 min, 15 min]]}"),
+                                        kRecorded)),
               ElementsAre(1000, 2500, 3000, 0));
+}
+
+TEST(TrueCyclogram, AnOverrideIsReadBackAsItIsWritten) {
+  for (const char* text : {"{type: speed_override, factor: 1}", "{type: speed_override, at_most: 2000 rpm}",
+                           "{type: speed_override, factor: 1, windows: [[10 min, 15 min]]}"}) {
+    const Effect once = read(text);
+    EXPECT_EQ(yaml_of(read(yaml_of(once))), yaml_of(once));
+  }
 }
 
 TEST(TrueCyclogram, OverridesMultiply) {
@@ -171,17 +180,17 @@ TEST_P(BadDriveEffect, IsAnInputError) {
   EXPECT_THAT([] { (void)read(GetParam().text); }, ThrowsMessage<InputError>(HasSubstr(GetParam().message)));
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, BadDriveEffect,
-                         ::testing::Values(Bad{"{type: ambient}", "`offset`, `ramp` or both"},
-                                           Bad{"{type: ambient, ambient: ambient, offset: 1 K}", "unknown key 'ambient'"},
-                                           Bad{"{type: ambient, offset: 1 K/h}", "wrong unit"},
-                                           Bad{"{type: speed_override}", "`factor` or `at_most` is wanted"},
-                                           Bad{"{type: speed_override, factor: -1}", "outside what is allowed"},
-                                           Bad{"{type: speed_override, factor: 2, every: 8 min, until_time: 1 h}", "has none"},
-                                           Bad{"{type: speed_override, factor: 2, windows: [[2 min, 1 min]]}", "behind its beginning"},
-                                           Bad{"{type: missing_stop, start: 1 min}", "key 'length' is missing"},
-                                           Bad{"{type: missing_stop, start: 1 min, length: 0 min}",
-                                               "outside what is allowed"}));
+INSTANTIATE_TEST_SUITE_P(
+    Each, BadDriveEffect,
+    ::testing::Values(Bad{"{type: ambient}", "`offset`, `ramp` or both"},
+                      Bad{"{type: ambient, ambient: ambient, offset: 1 K}", "unknown key 'ambient'"},
+                      Bad{"{type: ambient, offset: 1 K/h}", "wrong unit"},
+                      Bad{"{type: speed_override}", "`factor` or `at_most` is wanted"},
+                      Bad{"{type: speed_override, factor: -1}", "outside what is allowed"},
+                      Bad{"{type: speed_override, factor: 2, every: 8 min, until_time: 1 h}", "has none"},
+                      Bad{"{type: speed_override, factor: 2, windows: [[2 min, 1 min]]}", "behind its beginning"},
+                      Bad{"{type: missing_stop, start: 1 min}", "key 'length' is missing"},
+                      Bad{"{type: missing_stop, start: 1 min, length: 0 min}", "outside what is allowed"}));
 
 }  // namespace
 }  // namespace driftwright::effects

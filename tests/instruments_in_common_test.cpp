@@ -92,6 +92,7 @@ TEST(InstrumentsInCommon, ThermometersThatAllReadAShareOfTheAirAreOneCause) {
                         "{type: sensor_place, sensor: card2_ch1, body: ambient, share: 0.06}"}),
                   "air");
   ASSERT_THAT(said.d.causes, SizeIs(1)) << said.d.reason;
+  EXPECT_EQ(said.d.verdict, Verdict::kNamed) << said.d.reason;
   EXPECT_EQ(said.d.causes[0].effect, "sensor_place");
   EXPECT_EQ(said.d.causes[0].where, "card1_ch1,card1_ch2,card2_ch1");
   EXPECT_NEAR(said.d.causes[0].parameters[0].value, 0.06, 0.02);

@@ -507,6 +507,24 @@ TEST(ARecordWithAHole, HidesNoCauseThatLasts) {
   EXPECT_TRUE(d.causes[0].is_written) << d.causes[0].why_not_written;  // what the holes leave open does not speak against it
 }
 
+// What is read for an hour and a half behind a hole tells of what drove the machine in it: such rows judge nothing, and where there are no others nothing is said of a gain.
+TEST(ARecordWithAHole, LeavesNothingToJudgeByWhereItIsJustBeforeAllThatIsKeptOut) {
+  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kMachine), "hole_", 60.0, 0.03, 0.2);
+  for (const auto& [first, last, is_open] : {std::tuple{150, 195, true}, {5, 12, false}}) {
+    const Beside beside(write_file("plain.yaml", kMachine), {with_hole(records[0], first, last, "gap_monday.csv")});
+    const Diagnosis d = beside.diagnosed();
+    EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
+    EXPECT_EQ(std::isnan(d.misses.as_written), is_open);
+    EXPECT_EQ(std::isnan(d.misses.extended), is_open);
+    ASSERT_THAT(d.gain, Not(IsEmpty()));
+    for (const ChannelGain& g : d.gain) {
+      EXPECT_EQ(std::isnan(g.rmse_before), is_open) << g.name;
+      EXPECT_EQ(std::isnan(g.rmse_after), is_open) << g.name;
+      EXPECT_EQ(std::isnan(g.peak_after), is_open) << g.name;
+    }
+  }
+}
+
 /// Without the speed in rows `first` to `last`, all else as it was.
 std::string without_speed(const std::string& record, int first, int last, const std::string& name) {
   std::ifstream whole(record);

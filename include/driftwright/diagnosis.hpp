@@ -29,7 +29,7 @@ struct Cause {
   std::vector<Cause> alternatives;  ///< what the records cannot tell from it
 };
 
-/// What is left of a channel, RMS: as the scenario is, with its numbers fitted, extended; on rows that were kept out.
+/// What is left of a channel, RMS: as the scenario is, with its numbers fitted, extended; on rows that were kept out; NaN where none could judge.
 struct ChannelGain {
   std::string name, unit;
   double rmse_before = 0.0, rmse_calibrated = 0.0, rmse_after = 0.0, noise_floor = 0.0;
