@@ -120,15 +120,15 @@ class KnownFits {
 
 /// Labels on the wrong cables: linear theory sees such a law at numbers that were fitted to the body on the label, and little of what its own body's numbers would mend. It tells which
 /// label is the likeliest, not what that brings; so the best law of each such kind is always fitted, before all others.
-/// @param list  all scores, best first. @param least  a nat a reading: below there is no hope. @param chosen  those to be fitted  @returns  how many labels it begins with
-std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std::vector<Score>& list, double least,
+/// @param list  all scores, best first. @param chosen  those to be fitted  @returns  how many labels it begins with
+std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std::vector<Score>& list,
                              std::vector<Score>& chosen) {
   std::vector<Score> labels;
   for (const Score& s : list) {
     const Candidate& c = candidates[s.candidate];
     const bool is_known = std::any_of(labels.begin(), labels.end(),
                                       [&](const Score& l) { return candidates[l.candidate].effect == c.effect; });
-    if (c.variants[s.variant].all_or_nothing && !is_known && s.gain > least) labels.push_back(s);
+    if (c.variants[s.variant].all_or_nothing && !is_known && s.gain > -1e200) labels.push_back(s);
   }
   std::erase_if(chosen, [&](const Score& s) {
     return std::any_of(labels.begin(), labels.end(),
@@ -136,6 +136,17 @@ std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std
   });
   chosen.insert(chosen.begin(), labels.begin(), labels.end());
   return labels.size();
+}
+
+/// A fit of a label from where the scenario stands, kept where it is better: with labels right its numbers are, and from what was fitted to the wrong body no fit may lead there.
+/// @param claims  x of all of them
+void fit_from_scenario(const Fitter& fitter, const Hypothesis& hypothesis, const Eigen::VectorXd& claims, Fit& fit) {
+  Twin::Workspace workspace(fitter.twin());
+  Fit other;
+  const Eigen::VectorXd start = joined(Eigen::VectorXd::Zero(fitter.n_nuisance()), claims);
+  if (has_solution([&] { other = fitter.fit_others(hypothesis, start, kNothingHeld, workspace); }) &&
+      other.log_evidence > fit.log_evidence)
+    fit = std::move(other);
 }
 
 /// The best candidates on top of a hypothesis, fitted in full, best first.
@@ -158,7 +169,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
     });
     if (is_full ? is_new_kind : n_same < 2) chosen.push_back(s);
   }
-  const std::size_t n_labels = put_labels_first(candidates, list, -static_cast<double>(fitter.comparison().n()), chosen);
+  const std::size_t n_labels = put_labels_first(candidates, list, chosen);
   const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
   std::vector<Fitted> fitted;
   double best_gain = 0.0;  // of those fitted
@@ -179,6 +190,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
     }
     std::vector<Fit> fits = fit_all(fitter, jobs);
     for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (jobs[i].first.back().all_or_nothing) fit_from_scenario(fitter, jobs[i].first, jobs[i].second, fits[i]);
       if (known) known->keep(jobs[i].first, fits[i]);
       batch.push_back({jobs[i].first.back(), std::move(fits[i])});
     }

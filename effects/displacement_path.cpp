@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/quantity.hpp"
 #include "effects/displacement_amount.hpp"
@@ -10,6 +11,7 @@ namespace driftwright::effects {
 namespace {
 
 constexpr double kSensitivitySd_um_K = 5.0;  // 1 sigma; 1 m of steel on one side: 11.5 um/K
+constexpr double kShareSd = 0.1;             // of what an indicator that stands askew reads of another axis
 constexpr double kBentSd_um = 15.0;          // the same of what a recorded force or pressure bends
 
 /// What a column says at each time, in its unit, from each row on; of a channel of the drive what the sections say. Nothing where there is no such column.
@@ -47,6 +49,15 @@ Eigen::RowVectorXd followed(const Effect& e, const Readings& r) {
 }
 
 void change_readings(const Effect& e, ReadingChain& chain) {
+  if (e.has("share")) {
+    chain.add(ReadingStage::kScale,
+              [place = e.place, of = e.words.at("of"), share = e["share"], lag_s = e["lag"] * 60.0](Readings& r) {
+                Eigen::RowVectorXd signal = r.value.row(r.displacement(of));
+                lag_behind(signal, r.time_s, lag_s);
+                r.value.row(r.displacement(place)) += share * signal;
+              });
+    return;
+  }
   const double gain = e.has("gain") ? 1e-6 * e["gain"] : amount_of(e, "sensitivity"), lag_s = e["lag"] * 60.0;
   chain.add(ReadingStage::kGrowth, [=, effect = e](Readings& r) {
     Eigen::RowVectorXd signal = followed(effect, r);
@@ -56,9 +67,19 @@ void change_readings(const Effect& e, ReadingChain& chain) {
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  const std::string& column = e.words.at("column");
-  if (e.references.contains("body") == !column.empty())
-    in.fail("body", "one of two is wanted: the `body` that it follows, or a `column`");
+  const std::string &column = e.words.at("column"), &of = e.words.at("of");
+  if ((e.references.contains("body") ? 1 : 0) + (column.empty() ? 0 : 1) + (of.empty() ? 0 : 1) != 1)
+    in.fail("body",
+            "one of three is wanted: the `body` that it follows, a `column`, or another displacement that it reads a share "
+            "`of`");
+  if (of.empty() == e.has("share")) in.fail("share", "`of` and `share` go together: which displacement, and how much of it");
+  if (!of.empty()) {
+    if (of == e.place) in.fail("of", "another displacement is wanted");
+    for (const char* key : {"sensitivity", "tilt", "gain"}) {
+      if (e.has(key)) in.fail(key, "what reads a share of another displacement has no sensitivity, tilt or gain");
+    }
+    return;
+  }
   if (e.has("gain")) {
     if (e.has("sensitivity") || e.has("tilt"))
       in.fail("gain", "one of them is wanted: `gain`, or `sensitivity` or `tilt` of what follows a temperature");
@@ -92,6 +113,30 @@ void add_paths(const DoubtScene::Displacement& d, const Effect& path, const Doub
   list.push_back(std::move(doubt));
 }
 
+/// Displacements of sensitivities, which others may read a share of.
+std::set<std::string> of_sensitivities(const DoubtScene& s) {
+  std::set<std::string> names;
+  for (const DoubtScene::Material& m : s.materials) names.insert(m.sensitivities.begin(), m.sensitivities.end());
+  return names;
+}
+
+/// An indicator that stands askew.
+void add_shares(const DoubtScene& s, const DoubtScene::Displacement& d, std::vector<Doubt>& list) {
+  if (d.is_tilt) return;
+  const std::set<std::string> others = of_sensitivities(s);
+  for (const DoubtScene::Displacement& other : s.displacements) {
+    if (other.name == d.name || other.is_tilt || !others.contains(other.name)) continue;
+    Effect share = make_effect("displacement_path", Place::kDisplacement, d.name, {{"share", 0.0}});
+    share.words["of"] = other.name;
+    list.push_back({.finding = "displacement_path",
+                    .where = d.name,
+                    .law = "reads a share of " + other.name,
+                    .added = {share},
+                    .numbers = {doubted("share", "1", kShareSd, 0.05 * kShareSd)},
+                    .trial = 0.5 * kShareSd});
+  }
+}
+
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const DoubtScene::Displacement& d : s.displacements) {
@@ -113,6 +158,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       add(m.body, std::find(known.begin(), known.end(), d.name) == known.end());
     }
     add(ambient_node(), true);
+    add_shares(s, d, list);
     for (const DoubtScene::Column& column : s.columns) {
       Effect of_column = column.is_temperature() ? path : of_gain;
       of_column.words["column"] = column.header;
@@ -134,27 +180,29 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 EffectKind displacement_path() {
   return {
       .key = "displacement_path",
-      .title = "displacement that follows one more body, the ambient or a recorded column",
+      .title = "displacement that follows one more body, the ambient or a recorded column, or reads a share of another one",
       .law =
           "u += sensitivity (T - T_reference), T: mean of the body, as `sensitivities` of a displacement have it; of a "
           "column of temperatures: T - zero; of another one: u += gain c. With a lag: lag dx/dt = T - x for T, or c, "
           "settled "
-          "at the start",
+          "at the start. Of another displacement, as its indicator would read it but for its own errors: u += share u_of",
       .places = {Place::kDisplacement},
-      .parameters = {{"sensitivity", "um/K", -1e5, 1e5, kNotGiven, "of a displacement", 0.1, "displacement_path",
-                      Doubted::kFactor},
-                     {"tilt", "urad/K", -1e5, 1e5, kNotGiven, "or: of a tilt", 0.1, "displacement_path", Doubted::kFactor},
-                     {"gain", "1", -1e9, 1e9, kNotGiven,
-                      "or: um (of a tilt: urad) per unit of a column that is no temperature: a force, a pressure", 0.1,
-                      "displacement_path", Doubted::kFactor},
-                     {"lag", "min", 0.0, 1e5, 0.0, "first-order lag behind what it follows"},
-                     {"zero", "degC", 200.0, 500.0, kZeroCelsius_K + 20.0,
-                      "of a column of temperatures: where it moves nothing"}},
+      .parameters =
+          {{"sensitivity", "um/K", -1e5, 1e5, kNotGiven, "of a displacement", 0.1, "displacement_path", Doubted::kFactor},
+           {"tilt", "urad/K", -1e5, 1e5, kNotGiven, "or: of a tilt", 0.1, "displacement_path", Doubted::kFactor},
+           {"gain", "1", -1e9, 1e9, kNotGiven,
+            "or: um (of a tilt: urad) per unit of a column that is no temperature: a force, a pressure", 0.1,
+            "displacement_path", Doubted::kFactor},
+           {"share", "1", -10.0, 10.0, kNotGiven, "or: of another displacement, of an indicator that stands askew"},
+           {"lag", "min", 0.0, 1e5, 0.0, "first-order lag behind what it follows"},
+           {"zero", "degC", 200.0, 500.0, kZeroCelsius_K + 20.0, "of a column of temperatures: where it moves nothing"}},
       .timing = Timing::kInRecord,
       .change_readings = change_readings,
       .references = {{"body", {BodyKind::kNode, BodyKind::kRegion}, "", "body that it follows; `ambient`: the ambient air"}},
       .check = check,
-      .mentions = {{"column", Mention::Of::kColumn, false, "or: a recorded column; cutting_power and feed_x, _y, _z, too"}},
+      .mentions = {{"column", Mention::Of::kColumn, false, "or: a recorded column; cutting_power and feed_x, _y, _z, too"},
+                   {"of", Mention::Of::kDisplacement, false,
+                    "or: another displacement of sensitivities that it reads a share of"}},
       .doubts = doubts};
 }
 

@@ -36,6 +36,7 @@ sensors:
   - {name: card2_ch1, node: beam}
 displacements:
   - {name: bow, sensitivities: [{node: left, sensitivity: 2 um/K}, {node: beam, sensitivity: -5 um/K}]}
+  - {name: rise, sensitivities: [{node: right, sensitivity: 3 um/K}]}
 cyclograms:
   monday: [[60 min, 600 rpm], [60 min, 1900 rpm], [40 min, 0 rpm], [80 min, 1000 rpm], [60 min, 1400 rpm]]
   tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
@@ -96,6 +97,16 @@ TEST(InstrumentsInCommon, ThermometersThatAllReadAShareOfTheAirAreOneCause) {
   EXPECT_EQ(said.d.causes[0].effect, "sensor_place");
   EXPECT_EQ(said.d.causes[0].where, "card1_ch1,card1_ch2,card2_ch1");
   EXPECT_NEAR(said.d.causes[0].parameters[0].value, 0.06, 0.02);
+}
+
+TEST(InstrumentsInCommon, AnIndicatorThatStandsAskewReadsAShareOfAnother) {
+  const Said said(with({"{type: displacement_path, displacement: rise, of: bow, share: 0.08}"}), "askew");
+  ASSERT_THAT(said.d.causes, SizeIs(1)) << said.d.reason;
+  EXPECT_EQ(said.d.causes[0].effect, "displacement_path");
+  EXPECT_EQ(said.d.causes[0].where, "rise");
+  EXPECT_THAT(said.d.causes[0].law, HasSubstr("reads a share of bow"));
+  EXPECT_NEAR(said.d.causes[0].parameters[0].value, 0.08, 0.01);
+  EXPECT_THAT(said.written(), HasSubstr("of: bow"));
 }
 
 TEST(InstrumentsInCommon, AreNoCauseWhereNothingIsWrong) {

@@ -49,6 +49,38 @@ void expect_row(const Eigen::MatrixXd& m, int row, const std::vector<double>& ex
   }
 }
 
+TEST(SensorBias, FadesFromTheStartOfEachCyclogram) {
+  const Eigen::MatrixXd t = told(std::vector<std::string>{"{type: sensor_bias, sensor: a, bias: -2 K, fades: 5 min}"});
+  expect_row(t, 0,
+             {5 - 2.0, 5 - 2 * std::exp(-0.2), 8 - 2 * std::exp(-0.5), 2 - 2 * std::exp(-1.0), 3 - 2 * std::exp(-2.0),
+              7 - 2 * std::exp(-3.0)},
+             1e-12);
+}
+
+TEST(DisplacementPath, ReadsAShareOfAnotherDisplacementAfterWhatThatOneFollows) {
+  const Eigen::MatrixXd outputs = truth();
+  Eigen::MatrixXd two(5, 6);
+  two << outputs, Eigen::RowVectorXd::Constant(6, 4e-6);
+  const ReadingChain chain =
+      reading_chain({read("{type: displacement_path, displacement: z, of: y, share: 0.25}"),
+                     read("{type: displacement_path, displacement: y, body: a, sensitivity: 2 um/K}")},
+                    "shift");
+  const Eigen::MatrixXd t = chain.apply({"a", "b", "z", "tilt", "y", "mean of a"}, {"K", "K", "m", "rad", "m", "K"}, kTime_s,
+                                        kCyclogram, kAmbient, (Eigen::MatrixXd(6, 6) << two, outputs.row(0)).finished());
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    EXPECT_NEAR(t(4, i), 4e-6 + 2e-6 * outputs(0, i), 1e-15);
+    EXPECT_NEAR(t(2, i), 0.25 * t(4, i), 1e-15);
+  }
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: y}"); },
+              ThrowsMessage<InputError>(HasSubstr("go together")));
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: z, share: 0.1}"); },
+              ThrowsMessage<InputError>(HasSubstr("another displacement is wanted")));
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: y, share: 0.1, gain: 2}"); },
+              ThrowsMessage<InputError>(HasSubstr("no sensitivity, tilt or gain")));
+  EXPECT_THAT([] { read("{type: displacement_path, displacement: z, of: y, body: a, share: 0.1}"); },
+              ThrowsMessage<InputError>(HasSubstr("one of three is wanted")));
+}
+
 TEST(Readings, AreTheTruthWithoutEffects) {
   EXPECT_EQ(told(ReadingChain{}), truth());
 }
@@ -118,9 +150,9 @@ TEST(DisplacementPath, FollowsABodyTheAmbientOrAColumn) {
 
 TEST(DisplacementPath, WantsOneThingToFollow) {
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, sensitivity: 1 um/K}"); },
-              ThrowsMessage<InputError>(HasSubstr("one of two")));
+              ThrowsMessage<InputError>(HasSubstr("one of three")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, body: a, column: b, sensitivity: 1 um/K}"); },
-              ThrowsMessage<InputError>(HasSubstr("one of two")));
+              ThrowsMessage<InputError>(HasSubstr("one of three")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, body: a, sensitivity: 1 um/K, tilt: 1 urad/K}"); },
               ThrowsMessage<InputError>(HasSubstr("one of two")));
   EXPECT_THAT([] { read("{type: displacement_path, displacement: z, column: feed_x, sensitivity: 1 um/K}"); },

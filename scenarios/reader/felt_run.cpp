@@ -33,6 +33,12 @@ void require_fitting_amount(const effects::Effect& effect, bool is_tilt) {
     return std::any_of(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
   };
   if (!knows("tilt") || effect.has("tilt") == is_tilt) return;
+  if (knows("share") && effect.has("share")) {
+    if (is_tilt)
+      throw InputError(effect.where,
+                       fmt::format("'{}' is a tilt; a `share` of a displacement fits displacements alone", effect.place));
+    return;
+  }
   if (knows("gain") && effect.has("gain")) return;  // in um or urad, as its displacement is
   throw InputError(effect.where,
                    is_tilt ? fmt::format("'{}' is a tilt; {} wants `tilt` in urad there", effect.place, effect.kind->key)
