@@ -120,7 +120,7 @@ class KnownFits {
 
 /// Labels on the wrong cables: linear theory sees such a law at numbers that were fitted to the body on the label, and little of what its own body's numbers would mend. It tells which
 /// label is the likeliest, not what that brings; so the best law of each such kind is always fitted, before all others.
-/// @param list  all scores, best first. @param chosen  those to be fitted  @returns  how many labels it begins with
+/// @param list  all scores, best first. @param chosen  those to be fitted, no labels among them  @returns  how many labels it begins with
 std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std::vector<Score>& list,
                              std::vector<Score>& chosen) {
   std::vector<Score> labels;
@@ -130,10 +130,6 @@ std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std
                                       [&](const Score& l) { return candidates[l.candidate].effect == c.effect; });
     if (c.variants[s.variant].all_or_nothing && !is_known && s.gain > -1e200) labels.push_back(s);
   }
-  std::erase_if(chosen, [&](const Score& s) {
-    return std::any_of(labels.begin(), labels.end(),
-                       [&](const Score& l) { return l.candidate == s.candidate && l.variant == s.variant; });
-  });
   chosen.insert(chosen.begin(), labels.begin(), labels.end());
   return labels.size();
 }
@@ -160,6 +156,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
   std::erase_if(list, [&](const Score& s) { return !(s.gain > -1e200) || overlaps(base, s.candidate); });
   std::vector<Score> chosen;
   for (const Score& s : list) {  // a second law of a good candidate counts as well, but only a few
+    if (candidates[s.candidate].variants[s.variant].all_or_nothing) continue;  // of labels only the best, below
     const auto n_same =
         std::count_if(chosen.begin(), chosen.end(), [&](const Score& c) { return c.candidate == s.candidate; });
     const bool is_full = static_cast<int>(chosen.size()) >= n;
