@@ -28,7 +28,8 @@ std::vector<Faint> rarest_of(const NothingFound& s) {
   for (const Score& score : s.scores) {  // the best law of a candidate comes first
     const Candidate& c = s.candidates[score.candidate];
     const Variant& v = c.variants[score.variant];
-    if (is_known[score.candidate] || v.seen || v.all_or_nothing) continue;
+    if (is_known[score.candidate] || v.seen || v.all_or_nothing || v.price_nats > 0.0)
+      continue;  // nor what is rare by itself
     is_known[score.candidate] = 1;
     const double gain = score.gain - law_price(c);
     list.push_back({score, rarity(gain, s.chances.usual[score.candidate])});

@@ -176,7 +176,11 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
     listener.share(static_cast<double>(from) / static_cast<double>(chosen.size()));
     std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
     std::vector<Fitted> batch;
-    for (; from < chosen.size() && jobs.size() < kTogether; ++from) {
+    const std::size_t end =
+        from < n_labels
+            ? n_labels
+            : chosen.size();  // labels by themselves: whether there is hope for the others is asked as without them
+    for (; from < end && jobs.size() < kTogether; ++from) {
       const Score& s = chosen[from];
       Hypothesis tried = with(base, claim_of(candidates, s));
       if (const Fit* fit = known ? known->find(tried) : nullptr) {

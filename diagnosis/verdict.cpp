@@ -87,6 +87,15 @@ std::ptrdiff_t n_moved(const Diagnosis& d) {
   return std::count_if(d.moved.begin(), d.moved.end(), [&](std::size_t i) { return d.scatter[i].in.empty(); });
 }
 
+/// With those that a search found as causes: another size of what the scenario has.
+std::ptrdiff_t n_far(const Diagnosis& d) {
+  return n_moved(d) + std::count_if(d.search.findings.begin(), d.search.findings.end(), [&](const Finding& f) {
+           const Candidate& c = d.search.candidates[f.claim.candidate];
+           return std::any_of(d.scatter.begin(), d.scatter.end(),
+                              [&](const Knob& k) { return k.in.empty() && k.effect == c.effect && k.where == c.where; });
+         });
+}
+
 /// Machines without fault per one at which chance offers as much.
 std::string odds_words(const Cause& c) {
   return c.chance < 1e-6 ? "" : fmt::format(", chance offers as much at one faultless machine in {:.0f}", 1.0 / c.chance);
@@ -112,7 +121,7 @@ bool rest_rules(const Diagnosis& d) {
 }  // namespace
 
 bool is_wrong_all_over(const Diagnosis& d) {
-  return n_moved(d) >= kManyMoved;
+  return n_moved(d) >= kManyMoved || (n_moved(d) > 0 && n_far(d) > kManyMoved);
 }
 
 std::string reason_of(const Diagnosis& d) {
@@ -142,7 +151,7 @@ std::string reason_of(const Diagnosis& d) {
         "{} of the scenario's {} uncertain numbers had to go beyond {:.1f} sigmas of what is known of them: it is wrong in "
         "more "
         "ways than a few causes, or known less well than it says (`known_to`, `guess`).{}",
-        n_moved(d), std::count_if(d.scatter.begin(), d.scatter.end(), [](const Knob& k) { return k.in.empty(); }), kTooFar,
+        n_far(d), std::count_if(d.scatter.begin(), d.scatter.end(), [](const Knob& k) { return k.in.empty(); }), kTooFar,
         text.empty() ? " No cause is found beside them" : " The best of the catalogue beside them: " + text);
   }
   switch (d.verdict) {

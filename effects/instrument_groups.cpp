@@ -5,6 +5,11 @@
 #include <algorithm>
 
 namespace driftwright::effects {
+namespace {
+
+constexpr double kSameOfAll = 2.0;  // nats: several instruments are seldom wrong by the same at once
+
+}  // namespace
 
 std::vector<std::vector<std::string>> instrument_groups(const std::vector<std::string>& names) {
   std::map<std::string, std::vector<std::string>> of_card;
@@ -24,6 +29,7 @@ void add_in_groups(const std::vector<std::string>& names, const Doubt& doubt, st
     Doubt common = doubt;
     common.where = fmt::format("{}", fmt::join(group, ","));
     common.law += ", the same of them all";
+    common.rarity += kSameOfAll;
     common.added.clear();
     for (const std::string& name : group) {
       common.added.push_back(doubt.added.front());
