@@ -34,7 +34,6 @@ constexpr double kSame = 6.0;  // squares of whitened readings: what noise makes
 
 // What linear theory gives less than this share of the best full fit, and some nats less, is not fitted in full.
 constexpr double kHopeless = 0.5, kHope = 8.0;
-constexpr double kFarOff = -200.0;    // nats by linear theory, below which no label is tried
 constexpr std::size_t kTogether = 4;  // fits between two looks at that
 constexpr std::size_t kMostKnown = 64;
 constexpr std::size_t kMostPairs = 6;  // fitted in full
@@ -128,7 +127,7 @@ std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std
     const Candidate& c = candidates[s.candidate];
     const bool is_known = std::any_of(labels.begin(), labels.end(),
                                       [&](const Score& l) { return candidates[l.candidate].effect == c.effect; });
-    if (c.variants[s.variant].all_or_nothing && !is_known && s.gain > -1e200) labels.push_back(s);
+    if (c.variants[s.variant].all_or_nothing && !is_known) labels.push_back(s);
   }
   chosen.insert(chosen.begin(), labels.begin(), labels.end());
   return labels.size();
