@@ -51,6 +51,10 @@ void hear_in(HeardValues& values, const Observation& o) {
   }
 }
 
+double in_milliseconds(double time_s) {
+  return std::round(1e3 * time_s) / 1e3;  // as a row writes it
+}
+
 void wait_for(double seconds) {
   const timespec time{.tv_sec = static_cast<time_t>(seconds),
                       .tv_nsec = static_cast<long>(1e9 * (seconds - std::floor(seconds)))};
@@ -147,11 +151,11 @@ void SampleRows::begin(const MtconnectStreams& now) {
   next_ = now.next;
   values_.forget_all();
   for (const Observation& o : now.observations) hear_in(values_, o);
-  last_s_ = now.created_s;
+  last_s_ = in_milliseconds(now.created_s);
   rows_.push_back(values_.row(last_s_));
 }
 
-/// Observations of one time make one row; those of channels that nobody follows make none.
+/// Observations of one time make one row, a millisecond after the last one if they come late; those of channels that nobody follows make none.
 void SampleRows::take(const MtconnectStreams& streams) {
   std::vector<Observation> list;
   for (const Observation& o : streams.observations) {
@@ -172,13 +176,13 @@ void SampleRows::take(const MtconnectStreams& streams) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     hear_in(values_, list[i]);
     const bool is_last_of_time = i + 1 == list.size() || list[i + 1].time_s != list[i].time_s;
-    if (!is_last_of_time || !(list[i].time_s > last_s_ + 5e-4)) continue;
-    last_s_ = list[i].time_s;
+    if (!is_last_of_time) continue;
+    last_s_ = std::max(in_milliseconds(list[i].time_s), in_milliseconds(last_s_ + 1e-3));
     rows_.push_back(values_.row(last_s_));
   }
   next_ = streams.next;
-  if (next_ > streams.last && streams.created_s > last_s_ + 5e-4) {
-    last_s_ = streams.created_s;
+  if (next_ > streams.last && in_milliseconds(streams.created_s) > last_s_) {
+    last_s_ = in_milliseconds(streams.created_s);
     rows_.push_back(values_.row(last_s_));
   }
 }

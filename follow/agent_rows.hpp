@@ -32,7 +32,7 @@ class CurrentRows final : public RowSource {
 /// `/sample?from=`: a row at the time of each observation of a channel, and one at the agent's present time each time that it is asked. No observation
 /// is lost between two questions: the agent keeps them, and says where the next question goes on. What came while it was away comes then. Where it
 /// has forgotten some (its buffer is too short for that), or has been started anew (another instanceId), that is said, and what it tells now is taken.
-/// An observation that comes behind a row of a later time counts from the next row on.
+/// An observation that comes behind a row of a later time has a row right behind that one.
 class SampleRows final : public RowSource {
  public:
   SampleRows(const std::string& url, HeardValues values, double every_s, Say say);

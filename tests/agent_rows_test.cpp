@@ -103,6 +103,21 @@ TEST(SampleRows, AnObservationFarAheadOfTheAgentsOwnTimeIsOfThatTime) {
                                            std::pair(20.0, 1800.0)));
 }
 
+TEST(SampleRows, AnObservationThatComesBehindARowOfLaterTimeIsNotLost) {
+  // Observed before the answer that lacks them, by a clock that is behind the agent's: a spindle that turned for a moment.
+  Agent agent(streams(0, 2, 1, {{1, 0, 1000}}),
+              {streams(10, 2, 1, {}), streams(20, 4, 3, {{2, 9, 1500}, {3, 10, 1800}}), streams(20, 4, 3, {})});
+  SampleRows source(agent.url(), speed(), 0.05, [](const std::string&) {});
+  const auto told = rows(source, 5);
+  ASSERT_THAT(told, SizeIs(5));
+  EXPECT_EQ(told[1], std::pair(10.0, 1000.0));
+  EXPECT_NEAR(told[2].first, 10.001, 1e-6);
+  EXPECT_EQ(told[2].second, 1500.0);
+  EXPECT_NEAR(told[3].first, 10.002, 1e-6);
+  EXPECT_EQ(told[3].second, 1800.0);
+  EXPECT_EQ(told[4], std::pair(20.0, 1800.0));
+}
+
 TEST(SampleRows, GoOnByAnAgentsClockThatIsSetBack) {
   Agent agent(streams(7200, 2, 1, {{1, 7200, 1000}}),
               {streams(7210, 3, 2, {{2, 7205, 1500}}), streams(3620, 4, 3, {{3, 3615, 1800}}), streams(3620, 4, 3, {})});
