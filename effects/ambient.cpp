@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "effects/ambient_thermometer.hpp"
 #include "effects/lasting.hpp"
 
 namespace driftwright::effects {
@@ -7,6 +8,8 @@ namespace {
 
 constexpr double kShortest_min = 0.1;  // of another ambient for a while
 constexpr double kStep_s = 1e-3;       // that a jump of the ambient takes
+// 1 sigma of how late an ambient's record is, by its clock and by its thermometer, and how late at the most; how the air follows a machine.
+constexpr double kUsuallyLate_min = 15.0, kUsualLag_min = 10.0, kMostLate_min = 240.0, kUsuallyBehind_min = 30.0;
 // Nats: an ambient that was recorded is wrong by an offset, which the scatter of 0.3 K has; a step or a slow change its thermometer would
 // have seen, unless it hangs where the machine does not stand.
 constexpr double kSeenByItsThermometer = 2.0;
@@ -43,14 +46,25 @@ TimeSeries with_error(const TimeSeries& ambient, double offset_K, double ramp_K_
 }
 
 void change_drive(const Effect& e, DriveChange& change) {
-  change.ambient.push_back([offset_K = e["offset"], ramp_K_s = e["ramp"] / 3600.0, from_s = e["from"] * 60.0,
-                            until_s = e["until"] * 60.0](const TimeSeries& ambient, double duration_s) {
-    return with_error(ambient, offset_K, ramp_K_s, from_s, until_s, duration_s);
+  change.ambient.push_back([e](const TimeSeries& recorded, const Cyclogram& cyclogram) {
+    TimeSeries ambient = of_slow_thermometer(of_late_clock(recorded, 60.0 * e["late"]), 60.0 * e["lag"]);
+    if (e["with_speed"] != 0.0)
+      ambient = warmed_with_speed(ambient, cyclogram, e["with_speed"], e["at_speed"], 60.0 * e["behind"]);
+    if (e["offset"] == 0.0 && e["ramp"] == 0.0) return ambient;
+    return with_error(ambient, e["offset"], e["ramp"] / 3600.0, 60.0 * e["from"], 60.0 * e["until"], cyclogram.duration_s());
   });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (!in.has("offset") && !in.has("ramp")) in.fail("offset", "`offset`, `ramp` or both are wanted");
+  const bool is_off = in.has("offset") || in.has("ramp");
+  if (!is_off && !in.has("late") && !in.has("lag") && !in.has("with_speed"))
+    in.fail("offset", "one of `offset`, `ramp`, `late`, `lag` and `with_speed` is wanted");
+  for (const char* key : {"from", "until"}) {
+    if (in.has(key) && !is_off) in.fail(key, "is of `offset` and `ramp`; `late`, `lag` and `with_speed` hold all along");
+  }
+  for (const char* key : {"at_speed", "behind"}) {
+    if (in.has(key) && !in.has("with_speed")) in.fail(key, "is of `with_speed`, which is not there");
+  }
   if (!(e["until"] > e["from"])) in.fail("until", "ends before it begins `from`");
 }
 
@@ -84,6 +98,30 @@ Doubt for_a_while(const DoubtScene::Run& run) {
   return d;
 }
 
+/// Its logger has a clock of its own, its thermometer a case of its own, and it stands near the machine or far from it.
+void doubt_thermometer(const DoubtScene& s, std::vector<Doubt>& list) {
+  DoubtedNumber late = doubted("late", "min", kUsuallyLate_min, 0.5);
+  late.low = -kMostLate_min;
+  late.high = kMostLate_min;
+  add_in_some_runs(s, doubt("recorded late or early", "", late, 3.0), list);
+  DoubtedNumber lag = doubted("lag", "min", kUsualLag_min, 0.5);
+  lag.low = 0.0;
+  lag.high = kMostLate_min;
+  list.push_back(doubt("recorded by a slow thermometer", "", lag, 3.0));
+  if (!s.turns) return;
+  Doubt warmed = doubt(fmt::format("warmer or colder with the speed, behind one lag, at {:.0f} rpm", s.typical_rpm), "",
+                       doubted("with_speed", "K", 2.0, 0.3), 0.5);
+  warmed.added[0].set("at_speed", s.typical_rpm);
+  DoubtedNumber behind{
+      .name = "behind", .unit = "min", .nominal = kUsuallyBehind_min, .prior_sd = 1.0, .step = 0.05, .is_log = true};
+  behind.low = kShortest_min;
+  behind.high = kMostLate_min;
+  warmed.numbers.push_back(behind);
+  warmed.grid = {{-1.0}, {0.0}, {1.0}};
+  warmed.at_speed_rpm = s.typical_rpm;
+  list.push_back(std::move(warmed));
+}
+
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const auto offset = [] { return doubted("offset", "K", 2.0, 0.3); };
   const auto ramp = [] { return doubted("ramp", "K/h", 0.7, 0.1); };
@@ -112,6 +150,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     list.push_back(doubt("ramp", run.name, ramp(), 0.2));
     list.back().rarity = stepped.rarity;
   }
+  if (is_recorded && !s.runs.empty()) doubt_thermometer(s, list);
   return list;
 }
 
@@ -119,13 +158,23 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 EffectKind ambient() {
   return {.key = "ambient",
-          .title = "ambient that is warmer or colder than recorded",
-          .law = "T_ambient = recorded + offset + ramp (t - from) from a time on, until another one",
+          .title = "ambient that is warmer or colder than recorded, or that was recorded late",
+          .law =
+              "T_ambient = recorded + offset + ramp (t - from) from a time on, until another one; recorded(t + late) in its "
+              "place, or "
+              "recorded + lag d(recorded)/dt; behind a lag, with_speed n / at_speed more",
           .places = {Place::kAmbient},
           .parameters = {{"offset", "K", -50.0, 50.0, 0.0, "true minus recorded"},
                          {"ramp", "K/h", -50.0, 50.0, 0.0, "its growth"},
                          {"from", "min", 0.0, 1e7, 0.0, "when it begins; a step takes a millisecond"},
-                         {"until", "min", 0.0, 1e7, 1e7, "when it ends"}},
+                         {"until", "min", 0.0, 1e7, 1e7, "when it ends"},
+                         {"late", "min", -1e4, 1e4, 0.0, "that its record is late, by a clock of its own; < 0: early"},
+                         {"lag", "min", 0.0, 1e4, 0.0, "time constant of its thermometer, which the record follows with"},
+                         {"with_speed", "K", -50.0, 50.0, 0.0,
+                          "true minus recorded, settled at the stated speed: the machine warms the air at itself (> 0) "
+                          "or at the thermometer (< 0)"},
+                         {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed"},
+                         {"behind", "min", 0.01, 1e5, 30.0, "time constant with which that air follows"}},
           .timing = Timing::kInRecord,
           .change_drive = change_drive,
           .check = check,

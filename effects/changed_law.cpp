@@ -22,6 +22,7 @@ void change(const Effect& e, const Body& body, Law& law) {
   const double factor = e["factor"], exponent = e["exponent"], n0_rpm = e["at_speed"];
   const double growth = e["growth"], growth_exponent = e["growth_exponent"];
   const double decay_1_K = e["decay"], t0_K = e["at_temperature"];
+  const double beyond_rpm = e["beyond"], growth_beyond = e["growth_beyond"];
   const bool thins = decay_1_K != 0.0;
   if (thins) law.probes.push_back(body);
   law.value = [=, value = law.value](const Inputs& u) {
@@ -32,8 +33,15 @@ void change(const Effect& e, const Body& body, Law& law) {
       own.probe_K.pop_back();
       inputs = &own;
     }
-    const double as_written = value(*inputs);
+    double as_written = value(*inputs);
     if (!acts(e, u)) return as_written;
+    if (growth_beyond != 1.0 && u.drive.speed_rpm > beyond_rpm) {
+      Inputs at_bend = *inputs;
+      at_bend.drive.speed_rpm = beyond_rpm;
+      const double there = value(at_bend);
+      const double bent = there + growth_beyond * (as_written - there);
+      as_written = bent * there < 0.0 ? 0.0 : bent;  // it falls to nothing, and turns no heat into cold
+    }
     const double n = u.drive.speed_rpm / n0_rpm;
     const double by_speed = (n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0) +
                             (growth != 0.0 ? growth * std::pow(n, growth_exponent) : 0.0);
@@ -141,6 +149,22 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
     friction.grid = {{0.0}, {0.4}, {-0.4}};
     list.push_back(friction);
   }
+  if (written > 0.05) {  // a film that starves, a motor beyond its base speed, a seal that lifts off
+    Doubt bends = friction;
+    bends.law = "heat that grows by another share beyond a speed; 0: it levels off";
+    bends.at_speed_rpm = 0.0;
+    DoubtedNumber share = doubted("growth_beyond", "1", 1.0, 0.1, 1.0);
+    share.low = -3.0;
+    share.high = 5.0;
+    DoubtedNumber beyond = doubted("beyond", "rpm", 0.3 * s.top_rpm, 0.01 * s.top_rpm, 0.6 * s.top_rpm);
+    beyond.low = 0.1 * s.top_rpm;
+    beyond.high = 0.95 * s.top_rpm;
+    bends.numbers = {share, beyond};
+    bends.trial = -0.5;
+    bends.grid.clear();
+    for (const double of_top : {0.25, 0.4, 0.55, 0.7, 0.85}) bends.grid.push_back({(of_top - 0.6) * s.top_rpm});
+    list.push_back(std::move(bends));
+  }
   friction.law = "heat that falls as its body warms";
   friction.at_speed_rpm = 0.0;
   friction.numbers = {doubted("decay", "1/K", 0.02, 0.002)};
@@ -246,34 +270,43 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0 && e["warmer"] == 0.0)
-    in.fail("factor", "nothing is changed; one of `factor`, `exponent`, `growth`, `decay`, `warmer` is wanted");
+  if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0 && e["warmer"] == 0.0 &&
+      e["growth_beyond"] == 1.0)
+    in.fail("factor",
+            "nothing is changed; one of `factor`, `exponent`, `growth`, `growth_beyond`, `decay`, `warmer` is wanted");
+  if (in.has("beyond") != in.has("growth_beyond"))
+    in.fail("beyond", "`beyond`, a speed, and `growth_beyond`, the share of the growth that is left there, go together");
 }
 
 }  // namespace
 
 EffectKind changed_law() {
-  return {.key = "changed_law",
-          .title = "another size, growth with speed or decay of what another effect does",
-          .law =
-              "c' = factor ((n / at_speed)^exponent + growth (n / at_speed)^growth_exponent) exp(-decay (T - "
-              "at_temperature)) c, "
-              "c: a power or a coefficient of another effect, T of its own body; at standstill the exponent does nothing; a "
-              "medium that is `warmer` brings that times c'",
-          .places = {Place::kLaw},
-          .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
-                         {"exponent", "1", -5.0, 5.0, 0.0, "further growth with speed, beside the law's own"},
-                         {"growth", "1", 0.0, 1e4, 0.0, "added at the stated speed, as a share of the law itself"},
-                         {"growth_exponent", "1", 0.1, 5.0, 2.0 / 3.0, "of the speed, by which that grows"},
-                         {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed; there the exponent changes nothing"},
-                         {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
-                         {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"},
-                         {"warmer", "K", -200.0, 200.0, 0.0,
-                          "of an exchange with a medium of stated temperature, a coolant's set point: so much more"}},
-          .timing = Timing::kInTime,
-          .change_laws = change_laws,
-          .check = check,
-          .doubts = doubts};
+  return {
+      .key = "changed_law",
+      .title = "another size, growth with speed or decay of what another effect does",
+      .law =
+          "c' = factor ((n / at_speed)^exponent + growth (n / at_speed)^growth_exponent) exp(-decay (T - "
+          "at_temperature)) c, "
+          "c: a power or a coefficient of another effect, T of its own body; at standstill the exponent does nothing; "
+          "beyond a speed c grows by growth_beyond times as much, and falls to nothing at the most; a "
+          "medium that is `warmer` brings that times c'",
+      .places = {Place::kLaw},
+      .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
+                     {"exponent", "1", -5.0, 5.0, 0.0, "further growth with speed, beside the law's own"},
+                     {"growth", "1", 0.0, 1e4, 0.0, "added at the stated speed, as a share of the law itself"},
+                     {"growth_exponent", "1", 0.1, 5.0, 2.0 / 3.0, "of the speed, by which that grows"},
+                     {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed; there the exponent changes nothing"},
+                     {"growth_beyond", "1", -10.0, 10.0, 1.0,
+                      "share of the growth with speed that is left beyond a speed; 0: the law levels off, < 0: it falls"},
+                     {"beyond", "rpm", 0.0, 1e6, 0.0, "that speed"},
+                     {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
+                     {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"},
+                     {"warmer", "K", -200.0, 200.0, 0.0,
+                      "of an exchange with a medium of stated temperature, a coolant's set point: so much more"}},
+      .timing = Timing::kInTime,
+      .change_laws = change_laws,
+      .check = check,
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -8,7 +8,7 @@ Cyclogram true_cyclogram(const DriveChange& change, Cyclogram recorded) {
 }
 
 TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyclogram& cyclogram) {
-  for (const auto& changed : change.ambient) ambient = changed(ambient, cyclogram.duration_s());
+  for (const auto& changed : change.ambient) ambient = changed(ambient, cyclogram);
   return ambient;
 }
 

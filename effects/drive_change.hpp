@@ -11,8 +11,8 @@ namespace driftwright::effects {
 /// Changes in their order.
 struct DriveChange {
   std::vector<std::function<Cyclogram(const Cyclogram&)>> drive;
-  /// Of the ambient temperature [K] during a cyclogram of that length.
-  std::vector<std::function<TimeSeries(const TimeSeries&, double duration_s)>> ambient;
+  /// Of the ambient temperature [K] during a cyclogram.
+  std::vector<std::function<TimeSeries(const TimeSeries&, const Cyclogram& recorded)>> ambient;
 };
 
 /// The drive that the machine felt while another one was recorded.

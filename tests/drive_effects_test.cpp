@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "base/errors.hpp"
 #include "effects/effect.hpp"
 #include "tests/temporary_file.hpp"
@@ -170,6 +173,48 @@ TEST(TrueAmbient, AnErrorOfOneCyclogramSparesTheOthers) {
             kAmbient.value);
 }
 
+TEST(TrueAmbient, OfALateClockIsTheRecordAheadByAsMuch) {
+  const TimeSeries ambient = true_ambient(change_of("{type: ambient, late: 5 min}"), kAmbient, kRecorded);
+  EXPECT_DOUBLE_EQ(ambient.at(0), 1.75);
+  EXPECT_DOUBLE_EQ(ambient.at(600), 3.25);
+  EXPECT_DOUBLE_EQ(ambient.at(900), 4.0);  // recorded at 1200 s
+  EXPECT_DOUBLE_EQ(ambient.at(1500), 4.0);
+  const TimeSeries early = true_ambient(change_of("{type: ambient, late: -5 min}"), kAmbient, kRecorded);
+  EXPECT_DOUBLE_EQ(early.at(0), 1.0);
+  EXPECT_DOUBLE_EQ(early.at(300), 1.0);
+  EXPECT_DOUBLE_EQ(early.at(900), 2.5);  // recorded at 600 s
+}
+
+TEST(TrueAmbient, OfASlowThermometerIsAheadOfTheRecordByItsLag) {
+  // A wave of an hour that a thermometer of 4 min follows: smaller by cos(phi), later by phi, tan(phi) = lag omega. The slope over half of a lag is 0.2 % short.
+  const double omega_1_s = 2.0 * std::numbers::pi / 3600.0, phi = std::atan(240.0 * omega_1_s);
+  TimeSeries recorded;
+  for (double t_s = 0.0; t_s <= 7200.0; t_s += 10.0) {
+    recorded.time_s.push_back(t_s);
+    recorded.value.push_back(20.0 + 2.0 * std::cos(phi) * std::sin(omega_1_s * t_s - phi));
+  }
+  const Cyclogram two_hours{.name = "shift", .sections = {turning(7200, 1000)}};
+  const TimeSeries ambient = true_ambient(change_of("{type: ambient, lag: 4 min}"), recorded, two_hours);
+  double most_K = 0.0;
+  for (double t_s = 120.0; t_s <= 7080.0; t_s += 10.0)
+    most_K = std::max(most_K, std::abs(ambient.at(t_s) - (20.0 + 2.0 * std::sin(omega_1_s * t_s))));
+  EXPECT_LT(most_K, 0.005);
+}
+
+TEST(TrueAmbient, FollowsTheSpeedBehindALag) {
+  const TimeSeries recorded{{0, 1500}, {1.0, 1.0}};
+  const TimeSeries ambient =
+      true_ambient(change_of("{type: ambient, with_speed: -2 K, at_speed: 2000 rpm, behind: 5 min}"), recorded, kRecorded);
+  const auto expected = [](double t_s) {  // half of it at 1000 rpm, one and a half at 3000 rpm, nothing at rest
+    const double first = 0.5 * -std::expm1(-std::min(t_s, 600.0) / 300.0);
+    const double second = t_s > 600.0 ? 1.5 + (first - 1.5) * std::exp(-(std::min(t_s, 1200.0) - 600.0) / 300.0) : first;
+    return 1.0 - 2.0 * (t_s > 1200.0 ? second * std::exp(-(t_s - 1200.0) / 300.0) : second);
+  };
+  for (double t_s = 0.0; t_s <= 1500.0; t_s += 7.0) EXPECT_NEAR(ambient.at(t_s), expected(t_s), 2.0 * 0.02) << t_s;
+  EXPECT_NEAR(ambient.at(1200), expected(1200), 1e-9);
+  EXPECT_NEAR(ambient.at(1500), expected(1500), 1e-9);
+}
+
 struct Bad {
   const char* text;
   const char* message;
@@ -182,7 +227,10 @@ TEST_P(BadDriveEffect, IsAnInputError) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, BadDriveEffect,
-    ::testing::Values(Bad{"{type: ambient}", "`offset`, `ramp` or both"},
+    ::testing::Values(Bad{"{type: ambient}", "one of `offset`, `ramp`, `late`, `lag` and `with_speed`"},
+                      Bad{"{type: ambient, late: 5 min, from: 1 h}", "hold all along"},
+                      Bad{"{type: ambient, late: 5 min, behind: 5 min}", "is of `with_speed`"},
+                      Bad{"{type: ambient, lag: -1 min}", "outside what is allowed"},
                       Bad{"{type: ambient, ambient: ambient, offset: 1 K}", "unknown key 'ambient'"},
                       Bad{"{type: ambient, offset: 1 K/h}", "wrong unit"},
                       Bad{"{type: speed_override}", "`factor` or `at_most` is wanted"},

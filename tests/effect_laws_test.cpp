@@ -373,6 +373,18 @@ TEST(ChangedLaw, AddsAGrowthWithSpeedToWhatIsThereAtStandstill) {
   EXPECT_NEAR(twice(at(2000.0)), 32.0, 1e-12);  // of the law as changed
 }
 
+TEST(ChangedLaw, GrowsByAnotherShareBeyondASpeed) {
+  const std::string motor = "{type: motor_loss, region: m, power: 100 W, at_speed: 1000 rpm, exponent: 2, idle: 20 W}";
+  const auto changed = [&](const std::string& share) {
+    return law_of({motor, "{type: changed_law, law: motor_loss m, growth_beyond: " + share + ", beyond: 2000 rpm}"});
+  };
+  EXPECT_EQ(changed("0")(at(2000.0)), 420.0);  // as written up to there
+  EXPECT_EQ(changed("0")(at(3000.0)), 420.0);
+  EXPECT_NEAR(changed("0.5")(at(3000.0)), 420.0 + 0.5 * 500.0, 1e-9);
+  EXPECT_NEAR(changed("-0.5")(at(3000.0)), 420.0 - 0.5 * 500.0, 1e-9);
+  EXPECT_EQ(changed("-3")(at(3000.0)), 0.0);  // and never takes heat away
+}
+
 TEST(ChangedLaw, LeavesALawThatLooksAtTemperaturesItsOwnProbes) {
   const Law law = law_of({"{type: friction_law, node: a, power: 80 W, decay: 0.01 1/K, at_temperature: 20 degC}",
                           "{type: changed_law, law: friction_law a, factor: 2, decay: 0.03 1/K, at_temperature: 20 degC}"});
@@ -625,6 +637,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: recorded_drive, node: n, column: a_1, opening: 1, medium: 20 degC, surrounding: b}",
             "one of two is wanted"},
         Bad{"{type: changed_law, law: coolant a}", "nothing is changed"},
+        Bad{"{type: changed_law, law: coolant a, growth_beyond: 0}", "go together"},
         Bad{"{type: link, node: a, to: ambient, conductance: 1 W/K, runs_on: 3 min}", "goes with the spindle"},
         Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), from: 20 s, until: 10 s}", "behind `from`"},
         Bad{"{type: link, node: n, to: ambient, conductance: 1 W/K, from: 20 s, until: 10 s}", "behind `from`"},
