@@ -104,6 +104,8 @@ void doubt_thermometer(const DoubtScene& s, std::vector<Doubt>& list) {
   late.low = -kMostLate_min;
   late.high = kMostLate_min;
   add_in_some_runs(s, doubt("recorded late or early", "", late, 3.0), list);
+  // far beyond the way to the next turn of the weather or the heating no slope leads: a clock of winter time, of the next zone
+  for (const double hours : {-2.0, -1.0, 1.0, 2.0}) list.push_back(doubt("recorded late or early", "", late, 60.0 * hours));
   DoubtedNumber lag = doubted("lag", "min", kUsualLag_min, 0.5);
   lag.low = 0.0;
   lag.high = kMostLate_min;

@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
 
 #include "diagnosis/candidates.hpp"
 #include "diagnosis/extended_scenario.hpp"
@@ -21,31 +19,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
-
-constexpr const char* kMachine = R"(name: two_nodes
-reference_temperature: 20 degC
-machine: {generator: lumped}
-effects:
-  - {type: node, node: head, capacity: 6 kJ/K}
-  - {type: node, node: column, capacity: 40 kJ/K}
-  - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
-  - {type: link, node: head, to: column, conductance: 12 W/K}
-  - {type: link, node: column, to: ambient, conductance: 14 W/K}
-  - {type: link, node: head, to: ambient, conductance: 4 W/K}
-ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
-sensors:
-  - {name: t_head, node: head}
-  - {name: t_column, node: column}
-displacements:
-  - name: nose
-    sensitivities:
-      - {node: head, sensitivity: 3 um/K}
-cyclograms:
-  monday: [[60 min, 600 rpm], [60 min, 1900 rpm], [40 min, 0 rpm], [80 min, 1000 rpm], [60 min, 1400 rpm]]
-  tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
-  friday: [[40 min, 900 rpm], [60 min, 0 rpm], [80 min, 1600 rpm]]
-solver: {output_interval: 1 min}
-)";
 
 constexpr const char* kCooledHead =
     "{type: coolant, node: head, flow: 4 L/min, passage_conductance: 9 W/K, set_point: 18 degC}";
@@ -84,7 +57,7 @@ class ACause : public testing::TestWithParam<Cause> {};
 
 TEST_P(ACause, IsFoundInAllItsRecordsAtOnceAndWritten) {
   const Cause& cause = GetParam();
-  const std::string plain = with_effect(kMachine, cause.believed);
+  const std::string plain = with_effect(kTwoNodes, cause.believed);
   std::string truth = plain;
   for (const std::string& e : cause.entries) truth = with_effect(truth, e);
   const std::vector<std::string> records =
@@ -338,8 +311,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Whatever a search may say of some records a scenario can say, too.
 TEST(OfSomeRecords, EveryLawCanBeWrittenAndReadAgain) {
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", kMachine), "some_", 60.0, 0.03, 0.2);
-  const Beside beside(write_file("plain.yaml", kMachine), records);
+  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", kTwoNodes), "some_", 60.0, 0.03, 0.2);
+  const Beside beside(write_file("plain.yaml", kTwoNodes), records);
   int n_laws = 0;
   for (const Candidate& c : candidates(*beside.twin, beside.runs, {})) {
     for (const Variant& v : c.variants) {
@@ -363,7 +336,7 @@ TEST(OfSomeRecords, EveryLawCanBeWrittenAndReadAgain) {
 
 // What holds in some records takes no part in the state at rest from which all begin.
 TEST(OfSomeRecords, HeatIsFoundWhereRecordsBeginAtRest) {
-  const std::string machine = "start: steady\n" + std::string(kMachine);
+  const std::string machine = "start: steady\n" + std::string(kTwoNodes);
   std::string truth = with_effect(machine, "{type: heat_source, node: column, power: 40 W, in: monday}");
   truth = with_effect(truth, "{type: heat_source, node: column, power: 40 W, in: friday}");
   const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "rest_", 60.0, 0.03, 0.2);
@@ -377,7 +350,7 @@ TEST(OfSomeRecords, HeatIsFoundWhereRecordsBeginAtRest) {
 
 // A scale that more than doubles what it measures is five of the catalogue's sigmas away: the readings, not the catalogue, say by how much.
 TEST(FarBeyondTheUsual, ASizeIsNotDrawnBackToIt) {
-  std::string machine = kMachine;
+  std::string machine = kTwoNodes;
   const std::string one = "      - {node: head, sensitivity: 3 um/K}\n";
   machine.insert(machine.find(one) + one.size(), "      - {node: column, sensitivity: 2 um/K}\n");
   const std::string truth = with_effect(machine, "{type: scale_expansion, displacement: nose, factor: 2.5}");
@@ -438,9 +411,9 @@ TEST(KeptOutRecords, AreJudgedByWhatTheOthersTell) {
 
 TEST(AShortStop,
      IsFoundThoughItLiesBetweenTheTimesThatAreTriedFirst) {  // 2.5 min of a record of 5 h: rarer than any grid of stops
-  const std::string truth = with_effect(kMachine, "{type: missing_stop, start: 216 min, length: 2.5 min, in: monday}");
+  const std::string truth = with_effect(kTwoNodes, "{type: missing_stop, start: 216 min, length: 2.5 min, in: monday}");
   const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "stop_", 30.0, 0.1, 1.0);
-  const Diagnosis d = Beside(write_file("plain.yaml", kMachine), records).diagnosed();
+  const Diagnosis d = Beside(write_file("plain.yaml", kTwoNodes), records).diagnosed();
   ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
   EXPECT_EQ(d.causes[0].effect, "missing_stop");
   EXPECT_NE(d.causes[0].standing, Standing::kSuspected);
@@ -452,7 +425,7 @@ TEST(AShortStop,
 }
 
 TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {  // heat in one body would not do
-  const std::string machine = with_effect(kMachine, "{type: heat_source, node: column, power: 80 W, at_speed: 1000 rpm}");
+  const std::string machine = with_effect(kTwoNodes, "{type: heat_source, node: column, power: 80 W, at_speed: 1000 rpm}");
   const std::string truth = with_effect(
       machine, "{type: speed_override, factor: 0.55, windows: [[20 min, 45 min], [180 min, 210 min]], in: monday}");
   const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "speed_", 60.0, 0.03, 0.2);
@@ -475,110 +448,10 @@ TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {
   EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
 }
 
-/// Without its rows from `first` to `last`, a row a minute.
-std::string with_hole(const std::string& record, int first, int last, const std::string& name) {
-  std::ifstream whole(record);
-  std::string kept, row;
-  for (int i = -1; std::getline(whole, row); ++i) {
-    if (i < first || i > last) kept += row + "\n";
-  }
-  return write_file(name, kept);
-}
-
-// The rows on both sides of a hole count, and what the machine did meanwhile is no cause: a change of speed, or a stop of which nothing is recorded.
-TEST(ARecordWithAHole, CountsOnBothSidesOfIt) {
-  std::string truth = kMachine;
-  const std::string monday = "monday: [[60 min, 600 rpm], [60 min, 1900 rpm], ";
-  truth.replace(truth.find(monday), monday.size(),
-                "monday: [[60 min, 600 rpm], [15 min, 1900 rpm], [20 min, 0 rpm], [25 min, 1900 rpm], ");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_", 60.0, 0.03, 0.2);
-  for (const auto& [first, last] :
-       {std::pair{51, 69}, {73, 97}}) {  // speed changes in the first one; 1900 rpm before and behind the second one
-    const Beside beside(write_file("plain.yaml", kMachine),
-                        {with_hole(records[0], first, last, "gap_monday.csv"), records[1]});
-    ASSERT_THAT(beside.runs[0].holes, SizeIs(1));
-    EXPECT_THAT(beside.runs[1].holes, IsEmpty());
-    EXPECT_DOUBLE_EQ(beside.runs[0].holes[0].begin_s, 60.0 * (first - 1));
-    EXPECT_DOUBLE_EQ(beside.runs[0].holes[0].end_s, 60.0 * (last + 1));
-    EXPECT_EQ(beside.runs[0].time_s.front(), 0.0);
-    EXPECT_EQ(beside.runs[0].time_s.back(), 300.0 * 60.0);
-    const Diagnosis d = beside.diagnosed();
-    EXPECT_EQ(d.verdict, Verdict::kConsistent) << first << ": " << d.reason;
-  }
-}
-
-// What is wrong in all of a record is found on both sides of its hole.
-TEST(ARecordWithAHole, HidesNoCauseThatLasts) {
-  const std::string truth = with_effect(kMachine, "{type: heat_source, node: column, power: 25 W}");
-  const std::vector<std::string> records = noisy_records(write_file("truth.yaml", truth), "hole_", 60.0, 0.03, 0.2);
-  const Beside beside(write_file("plain.yaml", kMachine),
-                      {with_hole(records[0], 51, 90, "gap_monday.csv"), with_hole(records[1], 100, 150, "gap_tuesday.csv")});
-  const Diagnosis d = beside.diagnosed();
-  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
-  EXPECT_EQ(d.causes[0].effect, "heat_source");
-  EXPECT_EQ(d.causes[0].where, "column");
-  EXPECT_NEAR(d.causes[0].parameters[0].value, 25.0, 3.0);
-  EXPECT_TRUE(d.causes[0].is_written) << d.causes[0].why_not_written;  // what the holes leave open does not speak against it
-}
-
-// What is read for an hour and a half behind a hole tells of what drove the machine in it: such rows judge nothing, and where there are no others nothing is said of a gain.
-TEST(ARecordWithAHole, LeavesNothingToJudgeByWhereItIsJustBeforeAllThatIsKeptOut) {
-  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kMachine), "hole_", 60.0, 0.03, 0.2);
-  for (const auto& [first, last, is_open] : {std::tuple{150, 195, true}, {5, 12, false}}) {
-    const Beside beside(write_file("plain.yaml", kMachine), {with_hole(records[0], first, last, "gap_monday.csv")});
-    const Diagnosis d = beside.diagnosed();
-    EXPECT_EQ(d.verdict, Verdict::kConsistent) << d.reason;
-    EXPECT_EQ(std::isnan(d.misses.as_written), is_open);
-    EXPECT_EQ(std::isnan(d.misses.extended), is_open);
-    ASSERT_THAT(d.gain, Not(IsEmpty()));
-    for (const ChannelGain& g : d.gain) {
-      EXPECT_EQ(std::isnan(g.rmse_before), is_open) << g.name;
-      EXPECT_EQ(std::isnan(g.rmse_after), is_open) << g.name;
-      EXPECT_EQ(std::isnan(g.peak_after), is_open) << g.name;
-    }
-  }
-}
-
-/// Without the speed in rows `first` to `last`, all else as it was.
-std::string without_speed(const std::string& record, int first, int last, const std::string& name) {
-  std::ifstream whole(record);
-  std::string kept, row;
-  for (int i = -1; std::getline(whole, row); ++i) {
-    const std::size_t comma = row.find(',');
-    const bool is_blank = i >= first && i <= last;
-    kept += (is_blank ? row.substr(0, comma + 1) + row.substr(row.find(',', comma + 1)) : row) + "\n";
-  }
-  return write_file(name, kept);
-}
-
-// What is read while nobody knows the speed says nothing: within a record, at its beginning and at its end.
-TEST(ARecordWithAHole, IsNotReadWhereTheSpeedIsMissing) {
-  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kMachine), "hole_", 60.0, 0.03, 0.2);
-  for (const auto& [first, last] : {std::pair{61, 130}, {0, 79}, {226, 300}}) {
-    const Beside beside(write_file("plain.yaml", kMachine),
-                        {without_speed(records[0], first, last, "gap_monday.csv"), records[1]});
-    ASSERT_THAT(beside.runs[0].holes, SizeIs(1)) << first;
-    const Diagnosis d = beside.diagnosed();
-    EXPECT_EQ(d.verdict, Verdict::kConsistent) << first << ": " << d.reason;
-  }
-}
-
-// A logger that writes less often from a time on leaves no holes.
-TEST(ARecordWithAHole, IsNoneOfRowsThatAreFurtherApartFromATimeOn) {
-  const std::vector<std::string> records = noisy_records(write_file("plain.yaml", kMachine), "hole_", 60.0, 0.03, 0.2);
-  std::ifstream whole(records[0]);
-  std::string kept, row;
-  for (int i = -1; std::getline(whole, row); ++i) {
-    if (i <= 170 || i % 6 == 0) kept += row + "\n";
-  }
-  const Beside beside(write_file("plain.yaml", kMachine), {write_file("gap_monday.csv", kept), records[1]});
-  EXPECT_THAT(beside.runs[0].holes, IsEmpty());
-}
-
 // The state of rest that a machine starts from follows its numbers, also where a law follows temperature: a weaker path to the ambient, with heat that is always
 // there, is a warmer start and nothing that happened.
 TEST(ASteadyStart, FollowsTheNumbersOfAMachineWhoseFrictionFollowsTemperature) {
-  std::string nominal = with_effect(kMachine, "{type: heat_source, node: column, power: 60 W}");
+  std::string nominal = with_effect(kTwoNodes, "{type: heat_source, node: column, power: 60 W}");
   nominal = with_effect(nominal,
                         "{type: friction_law, node: head, power: 50 W, at_speed: 1000 rpm, exponent: 1.3, decay: 0.0125 "
                         "1/K, at_temperature: 20 degC}");

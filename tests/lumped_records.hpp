@@ -13,6 +13,32 @@
 
 namespace driftwright::diagnosis {
 
+/// Two lumped bodies, their thermometers, an indicator, and three records of 3 to 5 h.
+inline constexpr const char* kTwoNodes = R"(name: two_nodes
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: head, capacity: 6 kJ/K}
+  - {type: node, node: column, capacity: 40 kJ/K}
+  - {type: heat_source, node: head, power: 100 W, at_speed: 1000 rpm, exponent: 1.3}
+  - {type: link, node: head, to: column, conductance: 12 W/K}
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+  - {type: link, node: head, to: ambient, conductance: 4 W/K}
+ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+sensors:
+  - {name: t_head, node: head}
+  - {name: t_column, node: column}
+displacements:
+  - name: nose
+    sensitivities:
+      - {node: head, sensitivity: 3 um/K}
+cyclograms:
+  monday: [[60 min, 600 rpm], [60 min, 1900 rpm], [40 min, 0 rpm], [80 min, 1000 rpm], [60 min, 1400 rpm]]
+  tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
+  friday: [[40 min, 900 rpm], [60 min, 0 rpm], [80 min, 1600 rpm]]
+solver: {output_interval: 1 min}
+)";
+
 /// A scenario's text with one more effect, before its key `ambient`.
 inline std::string with_effect(std::string text, const std::string& entry) {
   if (!entry.empty()) text.insert(text.find("ambient: [["), "  - " + entry + "\n");
