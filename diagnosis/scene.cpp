@@ -124,7 +124,11 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
     for (const auto& section : run.cyclogram.sections) {
       if (section.drive.speed_rpm > 0.0) turning_s += section.duration_s;
       turned += section.duration_s * section.drive.speed_rpm;
-      for (double f : section.drive.feed_m_s) s.moves_axes = s.moves_axes || f > 0.0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double feed_m_s = section.drive.feed_m_s[axis];
+        s.top_feed_m_s[axis] = std::max(s.top_feed_m_s[axis], feed_m_s);
+        s.axis_rests[axis] = s.axis_rests[axis] || feed_m_s == 0.0;
+      }
     }
     for (const MeasuredChannel& c : run.channels) {
       if (c.unit == "K") {

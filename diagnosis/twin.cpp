@@ -325,7 +325,21 @@ Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspa
            .start = {}};
   d.cyclogram.name = run.name;
   d.start = start(run, d.ambient, workspace);
+  if (const Cyclogram before = effects::driven_before(change, d.cyclogram); !before.sections.empty())
+    d.start = after(before, d.ambient.at(0.0), d.start, workspace);
   return d;
+}
+
+Eigen::VectorXd Twin::after(const Cyclogram& before, double ambient_K, const Eigen::VectorXd& start,
+                            Workspace& workspace) const {
+  const TimeSeries ambient{{0.0}, {ambient_K}};
+  const std::vector<double> end_s = {before.duration_s()};
+  Eigen::MatrixXd states;
+  if (workspace.system_.is_linear())
+    (void)workspace.propagator().run(before, ambient, end_s, start, false, &states);
+  else
+    states = solver::states_of_run(workspace.system_, before, ambient, end_s, tolerances_, start);
+  return states.rightCols<1>();
 }
 
 Twin::Bound Twin::bound(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {

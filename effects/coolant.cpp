@@ -111,7 +111,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                .numbers = {doubted("passage_conductance", "W/K", sd_W_K, 0.1 * sd_W_K),
                            doubted("set_point", "degC", 5.0, 0.5, nominal_C)},
                .trial = 0.1 * sd_W_K,
-               .grid = {{-5.0}, {0.0}}};
+               .grid = {{-5.0}, {0.0}, {5.0}}};  // a well, a tank, a warm floor
     held.numbers[0].low = 0.0;
     held.numbers[1].low = nominal_C - kColder_K;
     held.numbers[1].high = nominal_C + kWarmer_K;

@@ -2,6 +2,7 @@
 // What may be wrong with a machine: effects that it may have beside those written, and the numbers of them that a diagnosis turns. Each kind says so
 // for itself in EffectKind::doubts; what it says is plain data.
 
+#include <array>
 #include <map>
 #include <span>
 
@@ -15,11 +16,13 @@ inline constexpr double kFactorTrial = 0.2;
 /// What a kind may look at when it is asked where it could be.
 struct DoubtScene {
   double reference_K = 293.15;
-  double typical_rpm = 1.0;                ///< laws of speed are stated there
-  double top_rpm = 1.0;                    ///< the highest of all records, as the scenario's own effects make it
-  double heat_W = 1.0;                     ///< of all sources at the highest speed
-  bool moves_axes = false, turns = false;  ///< in some record
-  bool starts_and_stops = false;           ///< turns and stands in one record
+  double typical_rpm = 1.0;  ///< laws of speed are stated there
+  double top_rpm = 1.0;      ///< the highest of all records, as the scenario's own effects make it
+  double heat_W = 1.0;       ///< of all sources at the highest speed
+  bool turns = false;        ///< in some record
+  std::array<double, 3> top_feed_m_s = {0.0, 0.0, 0.0};    ///< of the axes x, y, z in all records; 0: it never moves
+  std::array<bool, 3> axis_rests = {false, false, false};  ///< for a while in some record
+  bool starts_and_stops = false;                           ///< turns and stands in one record
   struct Run {
     std::string name;
     double length_s = 0.0;

@@ -12,4 +12,13 @@ TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyc
   return ambient;
 }
 
+Cyclogram driven_before(const DriveChange& change, const Cyclogram& felt) {
+  Cyclogram before;
+  for (const auto& driven : change.before) {
+    const Cyclogram more = driven(felt);
+    before.sections.insert(before.sections.end(), more.sections.begin(), more.sections.end());
+  }
+  return before;
+}
+
 }  // namespace driftwright::effects

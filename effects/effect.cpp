@@ -267,7 +267,7 @@ bool changes_drive(const Effect& effect) {
   if (!effect.kind->change_drive) return false;
   DriveChange change;
   effect.kind->change_drive(effect, change);
-  return !change.drive.empty() || !change.ambient.empty();
+  return !change.drive.empty() || !change.ambient.empty() || !change.before.empty();
 }
 
 ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string& run) {

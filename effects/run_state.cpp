@@ -7,12 +7,14 @@ namespace driftwright::effects {
 namespace {
 
 constexpr std::size_t kFewRuns = 5;  // of which every choice is tried
+constexpr double kLongest_min = 1440.0;
 
 bool is_meant(const Effect& e, const Exchange& x) {
   return e.words.at("of") == "exchange" && x.body.kind != BodyKind::kJoint && x.surrounding == kAmbientName && !x.medium_K;
 }
 
 void change_laws(const Effect& e, HeatBalance& balance) {
+  if (e["factor"] == 1.0) return;
   const auto change = [&](Law& law) {
     law.value = [value = law.value, factor = e["factor"], in = e.in](const Inputs& u) {
       return (in.empty() || u.run == in ? factor : 1.0) * value(u);
@@ -26,8 +28,25 @@ void change_laws(const Effect& e, HeatBalance& balance) {
   }
 }
 
+/// A record that begins with a machine which nobody saw run: as warm as after so long of the record's own mean drive, and a rest.
+void change_drive(const Effect& e, DriveChange& change) {
+  if (e["warmed_up"] == 0.0) return;
+  change.before.push_back([run_s = 60.0 * e["warmed_up"], rest_s = 60.0 * e["rested"]](const Cyclogram& felt) {
+    Cyclogram before;
+    if (felt.sections.empty()) return before;
+    before.sections.push_back({run_s, mean_drive({&felt})});
+    if (rest_s == 0.0) return before;
+    Drive rest;
+    for (const Signal& signal : before.sections.front().drive.signals) rest.signals.push_back({signal.name, 0.0});
+    before.sections.push_back({rest_s, rest});
+    return before;
+  });
+}
+
 void check(const Effect& e, const ConfigMap& in) {
   if (e.in.empty()) in.fail("in", "the cyclogram is wanted that ran in this state");
+  if (in.has("rested") && !in.has("warmed_up"))
+    in.fail("rested", "is of a machine that was `warmed_up` before, which is not there");
 }
 
 /// Runs that may have had a state of their own: of a few, every choice of some of them; of many, each alone and each split in order.
@@ -51,8 +70,31 @@ std::vector<std::vector<std::size_t>> choices_of(std::size_t n_runs) {
   return list;
 }
 
+/// The machine had been run before somebody began to write.
+void doubt_start(const DoubtScene& s, std::vector<Doubt>& list) {
+  constexpr double kUsual_min = 30.0, kRest_min = 3.0;
+  for (const DoubtScene::Run& run : s.runs) {
+    Effect state = make_effect("run_state", Place::kSpindle, place_key(Place::kSpindle));
+    state.in = run.name;
+    Doubt d{.finding = "run_state",
+            .where = "record",
+            .law = "as warm at its start as after so long of its mean drive, in " + run.name,
+            .added = {state},
+            .numbers = {doubted("warmed_up", "min", kUsual_min, 1.0), doubted("rested", "min", kUsual_min, 1.0, kRest_min)}};
+    d.numbers[0].low = 0.0;
+    d.numbers[1].low = 0.0;
+    d.numbers[0].high = d.numbers[1].high = kLongest_min;
+    d.grid = {{0.0}, {20.0}};
+    for (const double trial_min : {10.0, 60.0}) {  // what a short run warms is not what a long one does
+      d.trial = trial_min;
+      list.push_back(d);
+    }
+  }
+}
+
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
+  if (!s.balance.heats.empty()) doubt_start(s, list);
   if (s.runs.size() < 2) return list;
   Effect films = make_effect("run_state", Place::kSpindle, place_key(Place::kSpindle));
   films.words["of"] = "exchange";
@@ -81,16 +123,25 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 }  // namespace
 
 EffectKind run_state() {
-  return {.key = "run_state",
-          .title = "a record in which the machine ran in another state: another oil, cover or preload, that nobody noted",
-          .law = "P' = factor P of every heat, or c' = factor c of every exchange with the ambient, in one record",
-          .places = {Place::kSpindle},
-          .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on all of them"}},
-          .timing = Timing::kInRecord,
-          .change_laws = change_laws,
-          .choices = {{"of", {"heat", "exchange"}, "heat", "what is another: all heat, or all exchange with the ambient"}},
-          .check = check,
-          .doubts = doubts};
+  return {
+      .key = "run_state",
+      .title =
+          "a record in which the machine ran in another state: another oil, cover or preload, or warm from before, that "
+          "nobody noted",
+      .law =
+          "P' = factor P of every heat, or c' = factor c of every exchange with the ambient, in one record; before it, the "
+          "mean drive of the record for the time `warmed_up`, and standstill for the time `rested`, in the ambient of its "
+          "start",
+      .places = {Place::kSpindle},
+      .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on all of them"},
+                     {"warmed_up", "min", 0.0, kLongest_min, 0.0, "that the machine had run before the record began"},
+                     {"rested", "min", 0.0, kLongest_min, 0.0, "and how long it had stood then"}},
+      .timing = Timing::kInRecord,
+      .change_laws = change_laws,
+      .change_drive = change_drive,
+      .choices = {{"of", {"heat", "exchange"}, "heat", "what is another: all heat, or all exchange with the ambient"}},
+      .check = check,
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -10,15 +10,18 @@ namespace {
 constexpr double kTouchWithoutPath = 2.0;
 
 void change_readings(const Effect& e, ReadingChain& chain) {
-  chain.add(ReadingStage::kDetachment, [sensor = e.place, share = e["share"], body = e.references.at("body")](Readings& r) {
-    const Eigen::Index row = r.sensor(sensor);
-    const Eigen::RowVectorXd here = r.value.row(row);
-    if (body == ambient_node()) {
-      for (Eigen::Index i = 0; i < r.n_times(); ++i) r.value(row, i) += share * (r.ambient.at(r.time(i)) - here[i]);
-    } else {
-      r.value.row(row) += share * (r.value.row(r.mean_of(body.name)) - here);
-    }
-  });
+  const bool turning = e.words.at("acts") == "while_spindle_turns";
+  chain.add(ReadingStage::kDetachment,
+            [sensor = e.place, share = e["share"], body = e.references.at("body"), turning](Readings& r) {
+              const Eigen::Index row = r.sensor(sensor);
+              const bool is_ambient = body == ambient_node();
+              const Eigen::RowVectorXd there =
+                  is_ambient ? Eigen::RowVectorXd() : Eigen::RowVectorXd(r.value.row(r.mean_of(body.name)));
+              for (Eigen::Index i = 0; i < r.n_times(); ++i) {
+                if (turning && !(r.cyclogram.speed_rpm(r.time(i)) > 0.0)) continue;
+                r.value(row, i) += share * ((is_ambient ? r.ambient.at(r.time(i)) : there[i]) - r.value(row, i));
+              }
+            });
 }
 
 /// A label on the wrong cable, of sensors on lumped nodes: it sits on another body altogether, in all records.
@@ -59,6 +62,12 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                          .trial = 0.3,
                          .rarity = may_touch ? 0.0 : kTouchWithoutPath};
       list.push_back(always);
+      if (body == ambient_node() && s.starts_and_stops) {  // a stream of air that the machine makes
+        Doubt blown_at = always;
+        blown_at.law = "reads a share of the air while the spindle turns";
+        blown_at.added.front().words["acts"] = "while_spindle_turns";
+        list.push_back(std::move(blown_at));
+      }
       const bool is_elsewhere = at != s.sensor_bodies.end() && !(at->second == body);
       if (is_elsewhere && !(body == ambient_node())) list.push_back(mislabelled(place));
       if (body == ambient_node() && sensor == s.sensors.front()) add_in_groups(s.sensors, always, list);
@@ -77,15 +86,22 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 }  // namespace
 
 EffectKind sensor_place() {
-  return {.key = "sensor_place",
-          .title = "sensor that sits elsewhere than stated: between its place and another body",
-          .law = "reading = share T_body + (1 - share) T at its place, T_body: mean of the body",
-          .places = {Place::kSensor},
-          .parameters = {{"share", "1", 0.0, 1.0, {}, "of the other body in the reading"}},
-          .timing = Timing::kInRecord,
-          .change_readings = change_readings,
-          .references = {{"body", {BodyKind::kNode, BodyKind::kRegion}, {}, "the other body; `ambient`: the ambient air"}},
-          .doubts = doubts};
+  return {
+      .key = "sensor_place",
+      .title = "sensor that sits elsewhere than stated: between its place and another body",
+      .law =
+          "reading = share T_body + (1 - share) T at its place, T_body: mean of the body; at standstill T, where it acts "
+          "while_spindle_turns",
+      .places = {Place::kSensor},
+      .parameters = {{"share", "1", 0.0, 1.0, {}, "of the other body in the reading"}},
+      .timing = Timing::kInRecord,
+      .change_readings = change_readings,
+      .references = {{"body", {BodyKind::kNode, BodyKind::kRegion}, {}, "the other body; `ambient`: the ambient air"}},
+      .choices = {{"acts",
+                   {"always", "while_spindle_turns"},
+                   "always",
+                   "when it does: a stream of air blows at it while the spindle turns"}},
+      .doubts = doubts};
 }
 
 }  // namespace driftwright::effects

@@ -8,6 +8,7 @@
 #include "base/parallel.hpp"
 #include "base/quantity.hpp"
 #include "machine/as_recorded.hpp"
+#include "machine/driven_before.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/energy_balance.hpp"
 #include "solver/reduced_transient.hpp"
@@ -72,6 +73,13 @@ Eigen::VectorXd start_of(const MachineModel& machine, const Model& model) {
   return model.reduced() ? model.reduced()->start : start_state(machine, *model.full());
 }
 
+Eigen::VectorXd after_what_was_before(const MachineModel& machine, const solver::TransientOptions& options,
+                                      const Model& model, const Eigen::VectorXd& from, const Cyclogram& cyclogram) {
+  const FeltRun felt = felt_run(machine, cyclogram);
+  return model.reduced() ? after_what_was_before(model.reduced()->system, felt, options, from)
+                         : after_what_was_before(model.full()->system, felt, options, from);
+}
+
 const Eigen::VectorXd& ones_of(const Model& model) {
   return model.reduced() ? model.reduced()->system.ones : model.full()->system.ones;
 }
@@ -112,7 +120,8 @@ std::vector<SimulatedRun> simulate_cyclograms(const Scenario& scenario, const Mo
       }
     };
     const std::vector<double> times_s = output_times_s(cyclogram, settings.output_interval_s, settings.fields_at_s);
-    const Eigen::VectorXd from = start + warmer_start_K(machine, cyclogram) * ones_of(model);
+    const Eigen::VectorXd from = after_what_was_before(
+        machine, settings.transient, model, start + warmer_start_K(machine, cyclogram) * ones_of(model), cyclogram);
     runs[i] = simulate_run(machine, settings.transient, model, from, cyclogram, times_s, at_output);
   });
   return runs;

@@ -26,6 +26,10 @@ struct SimulatedRun {
 
 /// The state of the model at t = 0, by the scenario's `start`, over the reference temperature [K]; reduced for a reduced model.
 [[nodiscard]] Eigen::VectorXd start_of(const MachineModel& machine, const Model& model);
+/// The same of a model and a cyclogram (driven_before.hpp).
+[[nodiscard]] Eigen::VectorXd after_what_was_before(const MachineModel& machine, const solver::TransientOptions& options,
+                                                    const Model& model, const Eigen::VectorXd& from,
+                                                    const Cyclogram& cyclogram);
 /// The state "1 K warmer everywhere".
 [[nodiscard]] const Eigen::VectorXd& ones_of(const Model& model);
 

@@ -186,7 +186,9 @@ Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, co
   double warmer_K = scenarios::warmer_start_K(ahead.machine, ahead.series.cyclogram);
   if (own.start == scenarios::Start::kAmbient || own.start == scenarios::Start::kSteady)
     warmer_K += scenarios::felt_ambient_at_start_K(ahead.machine) - scenarios::felt_ambient_at_start_K(own);
-  ahead.start = scenarios::start_of(own, *ahead.model) + warmer_K * scenarios::ones_of(*ahead.model);
+  ahead.start = scenarios::after_what_was_before(
+      ahead.machine, scenario.solver.transient, *ahead.model,
+      scenarios::start_of(own, *ahead.model) + warmer_K * scenarios::ones_of(*ahead.model), ahead.series.cyclogram);
   return ahead;
 }
 

@@ -215,6 +215,19 @@ TEST(TrueAmbient, FollowsTheSpeedBehindALag) {
   EXPECT_NEAR(ambient.at(1500), expected(1500), 1e-9);
 }
 
+TEST(DrivenBefore, IsTheMeanDriveOfTheRecordAndARest) {
+  const std::string warm = "{type: run_state, warmed_up: 40 min, rested: 10 min, in: shift}";
+  const Cyclogram before = driven_before(change_of(warm), kRecorded);
+  EXPECT_THAT(durations_s(before), ElementsAre(2400, 600));
+  EXPECT_THAT(speeds_rpm(before), ElementsAre(1600, 0));  // 1000, 3000 and 0 rpm for 10, 10 and 5 min
+  EXPECT_DOUBLE_EQ(before.sections[0].drive.feed_m_s[0], 0.1);
+  EXPECT_DOUBLE_EQ(before.sections[0].drive.cutting_power_W, 50.0);
+  EXPECT_EQ(before.sections[1].drive, Drive{});
+  EXPECT_EQ(before.name, "");
+  EXPECT_THAT(driven_before(change_of(warm, "other"), kRecorded).sections, ::testing::IsEmpty());
+  EXPECT_THAT(driven_before(change_of("{type: run_state, factor: 2, in: shift}"), kRecorded).sections, ::testing::IsEmpty());
+}
+
 struct Bad {
   const char* text;
   const char* message;
@@ -233,6 +246,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{"{type: ambient, lag: -1 min}", "outside what is allowed"},
                       Bad{"{type: ambient, ambient: ambient, offset: 1 K}", "unknown key 'ambient'"},
                       Bad{"{type: ambient, offset: 1 K/h}", "wrong unit"},
+                      Bad{"{type: run_state, rested: 5 min, in: shift}", "is of a machine that was `warmed_up`"},
+                      Bad{"{type: run_state, warmed_up: 5 min}", "the cyclogram is wanted"},
                       Bad{"{type: speed_override}", "`factor` or `at_most` is wanted"},
                       Bad{"{type: speed_override, factor: -1}", "outside what is allowed"},
                       Bad{"{type: speed_override, factor: 2, every: 8 min, until_time: 1 h}", "has none"},

@@ -373,6 +373,14 @@ TEST(ChangedLaw, AddsAGrowthWithSpeedToWhatIsThereAtStandstill) {
   EXPECT_NEAR(twice(at(2000.0)), 32.0, 1e-12);  // of the law as changed
 }
 
+TEST(ServoLoss, HoldsAWeightWhileItsAxisStands) {
+  const Law law = law_of({"{type: servo_loss, region: m, power: 80 W, at_feed: 0.2 m/s, idle: 5 W, holding: 30 W, axis: z}"});
+  Inputs u = at(0.0);
+  EXPECT_EQ(law(u), 35.0);
+  u.drive.feed_m_s[2] = 0.1;
+  EXPECT_NEAR(law(u), 45.0, 1e-12);
+}
+
 TEST(ChangedLaw, GrowsByAnotherShareBeyondASpeed) {
   const std::string motor = "{type: motor_loss, region: m, power: 100 W, at_speed: 1000 rpm, exponent: 2, idle: 20 W}";
   const auto changed = [&](const std::string& share) {

@@ -9,6 +9,7 @@
 
 #include "diagnosis/scatter.hpp"
 #include "machine/as_recorded.hpp"
+#include "machine/driven_before.hpp"
 #include "machine/machine.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
@@ -136,7 +137,7 @@ Eigen::MatrixXd by_simulation(const std::string& path) {
   const scenarios::FeltRun felt = scenarios::felt_run(model, cyclogram);
   const solver::Trajectory run = solver::simulate(machine.system, felt.cyclogram, felt.ambient,
                                                   scenarios::output_times_s(cyclogram, s.solver.output_interval_s), kTight,
-                                                  scenarios::start_state(model, machine));
+                                                  scenarios::after_what_was_before(machine.system, felt, kTight, scenarios::start_state(model, machine)));
   const Record record = scenarios::as_recorded(model, run, machine.system.outputs, cyclogram);
   const auto& names = machine.system.outputs.name;
   Eigen::MatrixXd readings(static_cast<Eigen::Index>(names.size()), static_cast<Eigen::Index>(record.n_samples()));
@@ -238,6 +239,10 @@ const std::vector<Case> kCases = {
     {"another_heat_capacity", true, added({"{type: heat_capacity, region: head, factor: 1.5}"})},
     {"another_expansion", true, added({"{type: expansion, region: head, factor: 1.6}"})},
     {"stratified_air", true, added({"{type: stratification, gradient: 5 K/m, level: -0.5 m}"})},
+    {"a_warm_start", false, added({"{type: run_state, warmed_up: 40 min, rested: 6 min, in: cycle}"})},
+    {"a_warm_start_of_a_mesh", true, added({"{type: run_state, warmed_up: 40 min, in: cycle}"})},
+    {"an_axis_that_holds_a_weight", false,
+     added({"{type: servo_loss, node: housing, power: 0 W, at_feed: 0.1 m/s, holding: 20 W, axis: x}"})},
     {"ambient_offset", false, added({"{type: ambient, offset: 1.5 K}"})},
     {"ambient_of_a_late_clock", false, added({"{type: ambient, late: 7 min}"})},
     {"ambient_of_a_slow_thermometer", false, added({"{type: ambient, lag: 7 min, in: cycle}"})},

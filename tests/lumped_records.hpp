@@ -6,6 +6,7 @@
 #include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "machine/as_recorded.hpp"
+#include "machine/driven_before.hpp"
 #include "machine/machine.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/transient.hpp"
@@ -51,14 +52,16 @@ inline std::vector<std::string> noisy_records(const std::string& scenario, const
   const scenarios::Scenario s = scenarios::read_scenario(scenario);
   const scenarios::MachineModel& model = *s.machine;
   const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
+  const solver::TransientOptions exact{.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7};
   Random random(seed, 0);
   std::vector<std::string> paths;
   for (const Cyclogram& c : s.cyclograms) {
     const scenarios::FeltRun felt = scenarios::felt_run(model, c);
     Record r = scenarios::as_recorded(
         model,
-        solver::simulate(machine.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(c, row_s),
-                         {.relative_tolerance = 1e-7, .absolute_tolerance_K = 1e-7}, scenarios::start_state(model, machine)),
+        solver::simulate(
+            machine.system, felt.cyclogram, felt.ambient, scenarios::output_times_s(c, row_s), exact,
+            scenarios::after_what_was_before(machine.system, felt, exact, scenarios::start_state(model, machine))),
         machine.system.outputs, c);
     for (Channel& channel : r.channels) {
       const double noise = channel.unit == "degC" && channel.name != "ambient" ? noise_K

@@ -105,7 +105,9 @@ FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
 
 FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded) {
   const effects::DriveChange change = effects::drive_change(model.effects, recorded.name);
-  return {effects::true_cyclogram(change, recorded), effects::true_ambient(change, model.ambient, recorded)};
+  FeltRun felt{effects::true_cyclogram(change, recorded), effects::true_ambient(change, model.ambient, recorded)};
+  felt.before = effects::driven_before(change, felt.cyclogram);
+  return felt;
 }
 
 double felt_ambient_at_start_K(const MachineModel& model) {

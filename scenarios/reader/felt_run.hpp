@@ -13,6 +13,7 @@ inline constexpr const char* kAmbient = "ambient";
 struct FeltRun {
   Cyclogram cyclogram;
   TimeSeries ambient;  ///< minus the reference temperature [K]
+  Cyclogram before{};  ///< what drove it between its start and t = 0; most often no section
 };
 /// What is felt while the record says `recorded` and the scenario's ambient; its effects tell them apart.
 /// @throws InputError  where an effect wants a column that the cyclogram does not have

@@ -1,0 +1,24 @@
+#pragma once
+// The state in which a run begins that the machine had been driven before.
+
+#include "scenarios/reader/felt_run.hpp"
+#include "solver/reduced_transient.hpp"
+#include "solver/transient.hpp"
+
+namespace driftwright::scenarios {
+
+/// The state at t = 0 of a run: `from`, and what drove the machine between that and the run, in the ambient of the run's start.
+/// @param system  a solver::FullSystem or a solver::ReducedSystem
+/// @param from    its state before
+template <typename System>
+[[nodiscard]] Eigen::VectorXd after_what_was_before(const System& system, const FeltRun& felt,
+                                                    const solver::TransientOptions& options, Eigen::VectorXd from) {
+  if (felt.before.sections.empty()) return from;
+  const TimeSeries ambient{{0.0}, {felt.ambient.at(0.0)}};
+  Eigen::VectorXd reached = from;
+  (void)solver::simulate(system, felt.before, ambient, {0.0, felt.before.duration_s()}, options, from,
+                         [&](double, const Eigen::VectorXd& state) { reached = state; });
+  return reached;
+}
+
+}  // namespace driftwright::scenarios
