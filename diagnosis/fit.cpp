@@ -403,7 +403,9 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     row_s = std::min(row_s, run.time_s.back() / static_cast<double>(run.time_s.size() - 1));
   }
   const bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
-  for (int iteration = 0; iteration < kMostIterations + n_retakes; ++iteration) {
+  // Times wait for the first step: linear theory chose them with all other numbers moved, and by those that are not moved yet a better time is a worse one.
+  for (int iteration = search_times ? -1 : 0; iteration < kMostIterations + n_retakes; ++iteration) {
+    const bool times_wait = iteration < 0;
     differentiate(false);
     const Eigen::VectorXd known = prior_width(hypothesis, f.x).cwiseAbs2().cwiseInverse();
     Eigen::MatrixXd hessian = square;
@@ -415,11 +417,15 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     for (Eigen::Index k = 0; k < n_k; ++k) {
       if (!smooth[static_cast<std::size_t>(k)]) gradient[n_n + k] = 0.0;  // no slope: stays where the search has put it
     }
-    if (held >= 0) {
-      hessian.row(held).setZero();
-      hessian.col(held).setZero();
-      hessian(held, held) = 1.0;
-      gradient[held] = 0.0;
+    const auto hold = [&](Eigen::Index i) {
+      hessian.row(i).setZero();
+      hessian.col(i).setZero();
+      hessian(i, i) = 1.0;
+      gradient[i] = 0.0;
+    };
+    if (held >= 0) hold(held);
+    for (Eigen::Index k = 0; k < n_k && times_wait; ++k) {
+      if (knobs[static_cast<std::size_t>(k)]->is_time) hold(n_n + k);
     }
     const Eigen::VectorXd step = hessian.llt().solve(gradient);
     const double before = f.misfit;
@@ -435,7 +441,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
       responses = std::move(kept);
       break;
     }
-    if (search_times) {
+    if (search_times && !times_wait) {
       for (Eigen::Index k = 0; k < n_k; ++k) {
         const Knob& knob = *knobs[static_cast<std::size_t>(k)];
         if (!knob.is_time || n_n + k == held) continue;
@@ -453,7 +459,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
         }
       }
     }
-    if (before - f.misfit < kConverged && !retake(0.5 * gradient.dot(step))) break;
+    if (!times_wait && before - f.misfit < kConverged && !retake(0.5 * gradient.dot(step))) break;
   }
   differentiate(true);
   Eigen::MatrixXd hessian = square;

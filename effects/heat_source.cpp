@@ -4,11 +4,13 @@
 #include <numbers>
 
 #include "effects/lasting.hpp"
+#include "effects/run_on.hpp"
 
 namespace driftwright::effects {
 namespace {
 
 constexpr double kMostPeriods = 10000.0;
+constexpr double kUsualRunOn_min = 10.0;
 constexpr double kFewestWaves = 4.0;  // two or three are what any bend of a model that is wrong looks like
 constexpr double kMostWaves = 14.0;   // in the longest record; shorter ones a machine hardly shows
 constexpr int kStepsOfFading = 48;    // of an eighth of its time each: then e^-6 is left, which is left out
@@ -23,9 +25,10 @@ bool runs_at_rest(const Effect& e) {
 void contribute(const Effect& e, HeatBalance& balance) {
   const double power_W = e["power"], n0_rpm = e["at_speed"], exponent = e["exponent"];
   const bool rests = e.words.at("runs") == "while_spindle_turns" || exponent != 0.0, stands = runs_at_rest(e);
+  const auto turns_or_just_has = turns_or_has(e["runs_on"] * 60.0);
   const auto steady = [=](const Inputs& u) {
     const bool turns = u.drive.speed_rpm > 0.0;
-    if ((rests && !turns) || (stands && turns)) return 0.0;
+    if ((rests && !turns_or_just_has(u.drive)) || (stands && turns)) return 0.0;
     return exponent == 0.0 ? power_W : power_W * std::pow(u.drive.speed_rpm / n0_rpm, exponent);
   };
   if (e.has("fades")) {
@@ -51,7 +54,15 @@ void contribute(const Effect& e, HeatBalance& balance) {
   for (int k = 1; e.from_s + k * step_s < e.until_s; ++k) balance.change_times_s.push_back(e.from_s + k * step_s);
 }
 
+void change_drive(const Effect& e, DriveChange& change) {
+  if (!(e["runs_on"] > 0.0)) return;
+  change.drive.push_back(
+      [run_on_s = 60.0 * e["runs_on"]](const Cyclogram& recorded) { return with_run_on(recorded, run_on_s); });
+}
+
 void check(const Effect& e, const ConfigMap& in) {
+  if (e["runs_on"] > 0.0 && (e.words.at("runs") != "while_spindle_turns" || e["exponent"] != 0.0))
+    in.fail("runs_on", "it is of constant heat that goes with the spindle: `runs: while_spindle_turns`, no `exponent`");
   if (runs_at_rest(e) && e["exponent"] != 0.0) in.fail("exponent", "heat while the spindle stands does not grow with speed");
   if (e.has("fades") && e.has("period"))
     in.fail("fades", "one of two is wanted: heat that fades, or a wave with a `period`");
@@ -105,8 +116,17 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     of_speed.at_speed_rpm = s.typical_rpm;
     add("constant heat while the spindle turns", {}).added[0].words["runs"] = "while_spindle_turns";
     const Doubt while_turning = list.back();
-    if (s.starts_and_stops)
+    if (s.starts_and_stops) {
       add("constant heat while the spindle stands", {}).added[0].words["runs"] = "while_spindle_stands";
+      Doubt standby = while_turning;  // drives, pumps, until the control switches them off
+      standby.law += " and some minutes more";
+      DoubtedNumber runs_on{
+          .name = "runs_on", .unit = "min", .nominal = kUsualRunOn_min, .prior_sd = 1.0, .step = 0.1, .is_log = true};
+      standby.added[0].set("runs_on", runs_on.nominal);
+      standby.numbers.push_back(runs_on);
+      standby.grid = {{-1.0}, {0.0}, {1.0}};
+      list.push_back(std::move(standby));
+    }
 
     if (s.turns) {  // new grease that runs in, a bearing that was mounted tight
       Doubt fading = while_turning;
@@ -172,7 +192,8 @@ EffectKind heat_source() {
       .title = "heat by a power law of speed, constant, on and off with the spindle, or in a wave",
       .law =
           "P = power (n / at_speed)^exponent while the spindle turns; exponent 0: constant, also at standstill unless it "
-          "runs while_spindle_turns; it fades: times exp(-t / fades), in steps of an eighth of that; with a period: mean + "
+          "runs while_spindle_turns (and runs on for a while); it fades: times exp(-t / fades), in steps of an eighth of "
+          "that; with a period: mean + "
           "that times sin(2 pi (t - delay) / period)",
       .places = {Place::kRegion, Place::kSurface, Place::kNode},
       .parameters =
@@ -181,11 +202,13 @@ EffectKind heat_source() {
            {"exponent", "1", -1.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"},
            {"fades", "min", 0.1, 1e5, kNotGiven,
             "time in which the heat falls to 37 %, from the start of each record or from `from` on: grease that runs in"},
+           {"runs_on", "min", 0.0, 1e4, 0.0, "for how long what goes with the spindle runs on when that has stopped"},
            {"period", "s", 1.0, 1e7, kNotGiven, "of a wave; wants `until`"},
            {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
            {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
       .timing = Timing::kInTime,
       .contribute = contribute,
+      .change_drive = change_drive,
       .choices = {{"runs",
                    {"always", "while_spindle_turns", "while_spindle_stands"},
                    "always",

@@ -373,6 +373,19 @@ TEST(ChangedLaw, AddsAGrowthWithSpeedToWhatIsThereAtStandstill) {
   EXPECT_NEAR(twice(at(2000.0)), 32.0, 1e-12);  // of the law as changed
 }
 
+TEST(HeatSource, ThatGoesWithTheSpindleRunsOnForAWhile) {
+  const std::string standby = "{type: heat_source, node: a, power: 40 W, runs: while_spindle_turns, runs_on: 10 min}";
+  const Law law = law_of({standby});
+  const DriveChange change = drive_change({read(standby)}, "");
+  const Cyclogram felt = true_cyclogram(change, {.name = "", .sections = {{600, {.speed_rpm = 1000}}, {3600, {}}}});
+  const auto heat_W = [&](double time_s) {
+    return law(Inputs{.drive = felt.drive(time_s), .ambient_K = 0.0, .time_s = time_s, .probe_K = {}});
+  };
+  EXPECT_EQ(heat_W(300.0), 40.0);
+  EXPECT_EQ(heat_W(1190.0), 40.0);
+  EXPECT_EQ(heat_W(1210.0), 0.0);
+}
+
 TEST(ServoLoss, HoldsAWeightWhileItsAxisStands) {
   const Law law = law_of({"{type: servo_loss, region: m, power: 80 W, at_feed: 0.2 m/s, idle: 5 W, holding: 30 W, axis: z}"});
   Inputs u = at(0.0);
@@ -645,6 +658,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: recorded_drive, node: n, column: a_1, opening: 1, medium: 20 degC, surrounding: b}",
             "one of two is wanted"},
         Bad{"{type: changed_law, law: coolant a}", "nothing is changed"},
+        Bad{"{type: heat_source, node: a, power: 1 W, runs_on: 5 min}", "goes with the spindle"},
         Bad{"{type: changed_law, law: coolant a, growth_beyond: 0}", "go together"},
         Bad{"{type: link, node: a, to: ambient, conductance: 1 W/K, runs_on: 3 min}", "goes with the spindle"},
         Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), from: 20 s, until: 10 s}", "behind `from`"},
