@@ -304,7 +304,7 @@ INSTANTIATE_TEST_SUITE_P(
               {"{type: run_state, warmed_up: 35 min, rested: 8 min, in: tuesday}"},
               "run_state",
               "record",
-              "as warm at its start as after so long of its mean drive, in tuesday",
+              "as warm at its start as after so long of its mean drive, in a_machine_that_had_run_tuesday",
               35.0,
               6.0},
         Cause{"a_bearing_that_starves",
