@@ -5,6 +5,7 @@
 #include "app/results.hpp"
 #include "base/option_quantity.hpp"
 #include "findings/placement_document.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "studies/placement_yaml.hpp"
 
 namespace driftwright::app {
@@ -52,7 +53,7 @@ std::vector<std::string> words_of(const PlaceOptions& options) {
 
 void place(const PlaceOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
-  (void)scenarios::require_machine(scenario, "place");
+  scenarios::require_nothing_before(scenarios::require_machine(scenario, "place"), "place");
   const studies::PlacementOptions how = options_of(options, scenario);
   (void)studies::with_sensors(scenario.path, {"{name: tried}"},
                               {});  // what cannot be edited is told before all the computing

@@ -4,12 +4,14 @@
 #include "base/file_name.hpp"
 #include "findings/machine_study_document.hpp"
 #include "machine/ways_out.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "studies/table_study.hpp"
 
 namespace driftwright::app {
 
 void run(const CommonOptions& options) {
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
+  if (scenario.machine) scenarios::require_nothing_before(*scenario.machine, "run");
   if (scenario.table) return run_table(options, scenario);
   const scenarios::MachineModel& model = scenarios::require_machine(scenario, "run");
   (void)scenarios::require_study(scenario, "run");

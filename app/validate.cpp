@@ -7,6 +7,7 @@
 #include "findings/programme_section.hpp"
 #include "findings/strategy_section.hpp"
 #include "output/document_csv.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "studies/record_study.hpp"
 #include "studies/validation_study.hpp"
 
@@ -65,6 +66,7 @@ void validate(const RecordOptions& options) {
   }
   const scenarios::Scenario scenario = scenarios::read_scenario(options.scenario);
   if (!on_records) {
+    if (scenario.machine) scenarios::require_nothing_before(*scenario.machine, "validate");
     if (!scenario.programme && !scenario.validation) {
       throw InputError(fmt::format(
           "{}: `validate` wants records (--train, --test), or the key `validation` or `programme` in the scenario "

@@ -117,7 +117,7 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
   s.balance = twin.balance(s.own);
   double turning_s = 0.0, turned = 0.0;
   for (const MeasuredRun& run : runs) {
-    s.runs.push_back({run.name, run.time_s.back(), run.has_ambient, usual_row_s(run.time_s)});
+    s.runs.push_back({run.name, run.time_s.back(), run.has_ambient, usual_row_s(run.time_s), run.start_K.size() > 0});
     const auto turns = [](const auto& section) { return section.drive.speed_rpm > 0.0; };
     const auto n_turning = std::count_if(run.cyclogram.sections.begin(), run.cyclogram.sections.end(), turns);
     if (n_turning > 0 && n_turning < static_cast<std::ptrdiff_t>(run.cyclogram.sections.size())) s.starts_and_stops = true;

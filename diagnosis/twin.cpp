@@ -292,7 +292,7 @@ Eigen::VectorXd at_rest(const solver::ReducedSystem& system, const effects::Inpu
 
 }  // namespace
 
-Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& ambient, const Workspace& workspace) const {
+Eigen::VectorXd Twin::start(const TimeSeries& ambient, const Workspace& workspace) const {
   const solver::ReducedSystem& system = workspace.system_;
   Eigen::VectorXd start = machine_.start;
   const double ambient_at_start_K = ambient.at(0.0);
@@ -300,14 +300,11 @@ Eigen::VectorXd Twin::start(const MeasuredRun& run, const TimeSeries& ambient, c
   if (augmented_.model.start == scenarios::Start::kAmbient) start = ambient_at_start_K * machine_.system.ones;
   if (augmented_.model.start == scenarios::Start::kSteady)  // with thermostats as written, moved with the ambient
     start += (ambient_at_start_K - scenarios::felt_ambient_at_start_K(augmented_.model)) * machine_.system.ones;
-  Eigen::VectorXd warmer = Eigen::VectorXd::Zero(start.size());
-  if (run.start_K.size() > 0) warmer = warmer_bodies() * run.start_K;
-  if (!is_steady) return solver::with_places(start + warmer, machine_.system, workspace.added_);
+  if (!is_steady) return solver::with_places(start, machine_.system, workspace.added_);
   const effects::Inputs standstill{.drive = {},
                                    .ambient_K = ambient_at_start_K};  // before the run: what happened in it acts not yet
   return at_rest(system, standstill, static_cast<Eigen::Index>(workspace.added_.nodes.size()),
-                 solver::with_places(start, machine_.system, workspace.added_)) +
-         solver::with_places(warmer, machine_.system, workspace.added_);
+                 solver::with_places(start, machine_.system, workspace.added_));
 }
 
 Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
@@ -320,13 +317,24 @@ Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspa
   set_matrices(state, workspace);
   set_laws(std::move(now), workspace);
   const effects::DriveChange change = effects::drive_change(state, run.name);
-  Driven d{.cyclogram = effects::true_cyclogram(change, run.cyclogram),
-           .ambient = effects::true_ambient(change, run.ambient, run.cyclogram),
-           .start = {}};
+  Driven d{.cyclogram = effects::true_cyclogram(change, run.cyclogram), .ambient = {}, .start = {}};
+  d.ambient = effects::true_ambient(change, run.ambient, d.cyclogram);
   d.cyclogram.name = run.name;
-  d.start = start(run, d.ambient, workspace);
-  if (const Cyclogram before = effects::driven_before(change, d.cyclogram); !before.sections.empty())
+  d.start = start(d.ambient, workspace);
+  if (const Cyclogram before = effects::driven_before(change, d.cyclogram); !before.sections.empty()) {
+    TwinState lasting = acting;
+    std::erase_if(lasting, effects::goes_by_the_clock);
+    const auto take = [&](const TwinState& effects) {
+      if (lasting.size() == acting.size()) return;  // its laws are there
+      workspace.propagator_.reset();
+      set_laws(balance(effects), workspace);
+    };
+    take(lasting);
     d.start = after(before, d.ambient.at(0.0), d.start, workspace);
+    take(acting);
+  }
+  if (run.start_K.size() > 0)  // what the first readings say is said of t = 0
+    d.start += solver::with_places(warmer_bodies() * run.start_K, machine_.system, workspace.added_);
   return d;
 }
 
@@ -382,7 +390,8 @@ Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Wo
   solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));
   Eigen::MatrixXd outputs = weights.transpose() * z;
   if ((outputs_.ambient.array() == 0.0).all()) return outputs;
-  const TimeSeries ambient = effects::true_ambient(effects::drive_change(state, run.name), run.ambient, run.cyclogram);
+  const effects::DriveChange change = effects::drive_change(state, run.name);
+  const TimeSeries ambient = effects::true_ambient(change, run.ambient, effects::true_cyclogram(change, run.cyclogram));
   SeriesInOrder ambient_K(ambient);
   for (std::size_t k = 0; k < run.grid_s.size(); ++k) {
     outputs.col(static_cast<Eigen::Index>(k)) += ambient_K.at(run.grid_s[k]) * outputs_.ambient;
@@ -395,7 +404,7 @@ Eigen::MatrixXd Twin::read(const TwinState& state, const MeasuredRun& run, Eigen
   if (!chain.empty()) {
     const effects::DriveChange change = effects::drive_change(state, run.name);
     const Cyclogram felt = effects::true_cyclogram(change, run.cyclogram);
-    const TimeSeries ambient = effects::true_ambient(change, run.ambient, run.cyclogram);
+    const TimeSeries ambient = effects::true_ambient(change, run.ambient, felt);
     outputs = chain.apply(outputs_.name, outputs_.unit, run.grid_s, felt, ambient, std::move(outputs));
   }
   Eigen::MatrixXd rows(outputs.rows(), static_cast<Eigen::Index>(run.row_in_grid.size()));

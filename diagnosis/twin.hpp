@@ -107,7 +107,7 @@ class Twin {
     Eigen::VectorXd start;
   };
   [[nodiscard]] Driven drive(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const;
-  [[nodiscard]] Eigen::VectorXd start(const MeasuredRun& run, const TimeSeries& ambient, const Workspace& workspace) const;
+  [[nodiscard]] Eigen::VectorXd start(const TimeSeries& ambient, const Workspace& workspace) const;
   /// The state at the end of what drove the machine before a run, in one ambient.
   [[nodiscard]] Eigen::VectorXd after(const Cyclogram& before, double ambient_K, const Eigen::VectorXd& start,
                                       Workspace& workspace) const;

@@ -9,7 +9,8 @@ namespace {
 constexpr double kShortest_min = 0.1;  // of another ambient for a while
 constexpr double kStep_s = 1e-3;       // that a jump of the ambient takes
 // 1 sigma of how late an ambient's record is, by its clock and by its thermometer, and how late at the most; how the air follows a machine.
-constexpr double kUsuallyLate_min = 15.0, kUsualLag_min = 10.0, kMostLate_min = 240.0, kUsuallyBehind_min = 30.0;
+constexpr double kUsuallyLate_min = 15.0, kUsualLag_min = 10.0, kMostLate_min = 120.0, kMostLag_min = 80.0,
+                 kUsuallyBehind_min = 30.0, kMostBehind_min = 240.0;
 // Nats: an ambient that was recorded is wrong by an offset, which the scatter of 0.3 K has; a step or a slow change its thermometer would
 // have seen, unless it hangs where the machine does not stand.
 constexpr double kSeenByItsThermometer = 2.0;
@@ -108,7 +109,7 @@ void doubt_thermometer(const DoubtScene& s, std::vector<Doubt>& list) {
   for (const double hours : {-2.0, -1.0, 1.0, 2.0}) list.push_back(doubt("recorded late or early", "", late, 60.0 * hours));
   DoubtedNumber lag = doubted("lag", "min", kUsualLag_min, 0.5);
   lag.low = 0.0;
-  lag.high = kMostLate_min;
+  lag.high = kMostLag_min;
   list.push_back(doubt("recorded by a slow thermometer", "", lag, 3.0));
   if (!s.turns) return;
   Doubt warmed = doubt(fmt::format("warmer or colder with the speed, behind one lag, at {:.0f} rpm", s.typical_rpm), "",
@@ -117,7 +118,7 @@ void doubt_thermometer(const DoubtScene& s, std::vector<Doubt>& list) {
   DoubtedNumber behind{
       .name = "behind", .unit = "min", .nominal = kUsuallyBehind_min, .prior_sd = 1.0, .step = 0.05, .is_log = true};
   behind.low = kShortest_min;
-  behind.high = kMostLate_min;
+  behind.high = kMostBehind_min;
   warmed.numbers.push_back(behind);
   warmed.grid = {{-1.0}, {0.0}, {1.0}};
   warmed.at_speed_rpm = s.typical_rpm;

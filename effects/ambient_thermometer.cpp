@@ -28,14 +28,26 @@ TimeSeries of_late_clock(const TimeSeries& recorded, double late_s) {
 
 TimeSeries of_slow_thermometer(const TimeSeries& recorded, double lag_s) {
   if (lag_s == 0.0) return recorded;
-  TimeSeries ahead = recorded;
-  SeriesInOrder before_K(recorded), after_K(recorded);
-  const double first_s = recorded.time_s.front(), last_s = recorded.time_s.back();
-  for (std::size_t i = 0; i < recorded.time_s.size(); ++i) {
-    const double from_s = std::max(first_s, recorded.time_s[i] - 0.25 * lag_s),
-                 until_s = std::min(last_s, recorded.time_s[i] + 0.25 * lag_s);
-    if (!(until_s > from_s)) continue;
-    ahead.value[i] += lag_s * (after_K.at(until_s) - before_K.at(from_s)) / (until_s - from_s);
+  const double half_s = 0.25 * lag_s;
+  std::vector<double> knots = recorded.time_s;
+  const auto bend_between = [&](double t_s, double from_s, double until_s) {
+    if (t_s > from_s && t_s < until_s) knots.push_back(t_s);
+  };
+  for (std::size_t i = 0; i + 1 < recorded.time_s.size(); ++i) {  // where rows are far apart the slope changes between them
+    const double from_s = recorded.time_s[i], until_s = recorded.time_s[i + 1];
+    if (!(until_s - from_s > half_s)) continue;
+    bend_between(from_s + half_s, from_s, until_s);
+    bend_between(until_s - half_s, from_s, until_s);
+  }
+  std::sort(knots.begin(), knots.end());
+  knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
+  TimeSeries ahead;
+  SeriesInOrder at_K(recorded), before_K(recorded), after_K(recorded);
+  for (const double t_s : knots) {
+    const double from_s = std::max(knots.front(), t_s - half_s), until_s = std::min(knots.back(), t_s + half_s);
+    const double slope_K_s = until_s > from_s ? (after_K.at(until_s) - before_K.at(from_s)) / (until_s - from_s) : 0.0;
+    ahead.time_s.push_back(t_s);
+    ahead.value.push_back(at_K.at(t_s) + lag_s * slope_K_s);
   }
   return ahead;
 }

@@ -10,7 +10,9 @@ namespace {
 
 constexpr double kOfSolids =
     2.0;  // nats: a joint of solid bodies does not change in the middle of a record, unless somebody works on it
-constexpr double kStirred = 0.75;  // of the speed: a film on what turns, between laminar 0.5 and turbulent 0.8
+constexpr double kLess = -0.4;         // of the logarithm of an exchange, at which that is tried
+constexpr double kShortest_min = 0.5;  // while
+constexpr double kStirred = 0.75;      // of the speed: a film on what turns, between laminar 0.5 and turbulent 0.8
 constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // of speed, of all laws together
 
 /// Whether it acts at that time.
@@ -40,7 +42,7 @@ void change(const Effect& e, const Body& body, Law& law) {
       at_bend.drive.speed_rpm = beyond_rpm;
       const double there = value(at_bend);
       const double bent = there + growth_beyond * (as_written - there);
-      as_written = bent * there < 0.0 ? 0.0 : bent;  // it falls to nothing, and turns no heat into cold
+      as_written = bent * as_written < 0.0 ? 0.0 : bent;  // it falls to nothing, and turns no heat into cold
     }
     const double n = u.drive.speed_rpm / n0_rpm;
     const double by_speed = (n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0) +
@@ -181,6 +183,31 @@ bool is_of_air(const DoubtScene& s, const Exchange& exchange) {
   });
 }
 
+/// A fan that is off, a circuit that passes less, a cover that lies on: less of an exchange for a while. More of one is an `exchange_window`.
+void add_less_for_a_while(const DoubtScene& s, const Doubt& other, std::vector<Doubt>& list) {
+  for (const DoubtScene::Run& run : s.runs) {
+    Doubt less = other;
+    less.law = fmt::format("less of it for a while, in {}", run.name);
+    less.added.front().in = run.name;
+    less.numbers.front().high = 1.0;
+    less.trial = kLess;
+    less.numbers.push_back(
+        doubted_time("begin", run.length_s, [](std::span<Effect> added, double value) { added[0].from_s = value; }));
+    const double usual_min = run.length_s / 60.0 / 6.0;
+    DoubtedNumber length{
+        .name = "length", .unit = "min", .nominal = usual_min, .prior_sd = 1.0, .step = 0.05, .is_log = true};
+    length.set = [](std::span<Effect> added, double value) {
+      added[0].until_s = added[0].from_s + 60.0 * std::max(kShortest_min, value);
+    };
+    less.numbers.push_back(std::move(length));
+    less.grid.clear();
+    for (const std::vector<double>& begin : time_grid(run.length_s, 10)) {
+      for (const double x : {-0.5, 0.6}) less.grid.push_back({begin.front(), x});
+    }
+    list.push_back(std::move(less));
+  }
+}
+
 /// Another coefficient of an exchange: in all records, in one or from one on, or in one from a time on.
 void doubt_exchange(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
   const bool is_growth = finding == "forced_convection";
@@ -203,6 +230,7 @@ void doubt_exchange(const DoubtScene& s, const std::string& finding, const Excha
   }
   add_in_some_runs(s, other, list);  // changed between two records
   add_from_a_time_on(s, other, "time", is_of_air(s, exchange) ? 0.0 : kOfSolids, list);
+  if (is_of_air(s, exchange)) add_less_for_a_while(s, other, list);
 }
 
 /// Whether what turns heats one of the two: a bearing, whose film carries heat the better the faster it turns.
@@ -273,7 +301,8 @@ void check(const Effect& e, const ConfigMap& in) {
   if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0 && e["warmer"] == 0.0 &&
       e["growth_beyond"] == 1.0)
     in.fail("factor",
-            "nothing is changed; one of `factor`, `exponent`, `growth`, `growth_beyond`, `decay`, `warmer` is wanted");
+            "nothing is changed; another value of one of `factor`, `exponent`, `growth`, `growth_beyond`, `decay`, `warmer` "
+            "is wanted");
   if (in.has("beyond") != in.has("growth_beyond"))
     in.fail("beyond", "`beyond`, a speed, and `growth_beyond`, the share of the growth that is left there, go together");
 }
@@ -298,7 +327,7 @@ EffectKind changed_law() {
                      {"at_speed", "rpm", 1.0, 1e6, 1000.0, "the stated speed; there the exponent changes nothing"},
                      {"growth_beyond", "1", -10.0, 10.0, 1.0,
                       "share of the growth with speed that is left beyond a speed; 0: the law levels off, < 0: it falls"},
-                     {"beyond", "rpm", 0.0, 1e6, 0.0, "that speed"},
+                     {"beyond", "rpm", 1.0, 1e6, 1000.0, "that speed"},
                      {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
                      {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"},
                      {"warmer", "K", -200.0, 200.0, 0.0,

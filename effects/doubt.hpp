@@ -26,8 +26,9 @@ struct DoubtScene {
   struct Run {
     std::string name;
     double length_s = 0.0;
-    bool has_ambient = false;  ///< its temperature was recorded
-    double row_s = 0.0;        ///< between two rows, as a rule
+    bool has_ambient = false;     ///< its temperature was recorded
+    double row_s = 0.0;           ///< between two rows, as a rule
+    bool starts_as_read = false;  ///< its first readings say how warm the machine is there
   };
   std::vector<Run> runs;
   struct Displacement {

@@ -7,8 +7,8 @@ Cyclogram true_cyclogram(const DriveChange& change, Cyclogram recorded) {
   return recorded;
 }
 
-TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyclogram& cyclogram) {
-  for (const auto& changed : change.ambient) ambient = changed(ambient, cyclogram);
+TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyclogram& felt) {
+  for (const auto& changed : change.ambient) ambient = changed(ambient, felt);
   return ambient;
 }
 

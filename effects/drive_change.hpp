@@ -12,7 +12,7 @@ namespace driftwright::effects {
 struct DriveChange {
   std::vector<std::function<Cyclogram(const Cyclogram&)>> drive;
   /// Of the ambient temperature [K] during a cyclogram.
-  std::vector<std::function<TimeSeries(const TimeSeries&, const Cyclogram& recorded)>> ambient;
+  std::vector<std::function<TimeSeries(const TimeSeries&, const Cyclogram& felt)>> ambient;
   /// What the machine did before a cyclogram that it felt, one after the other.
   std::vector<std::function<Cyclogram(const Cyclogram& felt)>> before;
 };
@@ -20,8 +20,8 @@ struct DriveChange {
 /// The drive that the machine felt while another one was recorded.
 [[nodiscard]] Cyclogram true_cyclogram(const DriveChange& change, Cyclogram recorded);
 
-/// The ambient that the machine felt. @param ambient  recorded, minus the reference temperature [K]
-[[nodiscard]] TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyclogram& cyclogram);
+/// The ambient that the machine felt. @param ambient  recorded, minus the reference temperature [K]; @param felt  the true cyclogram
+[[nodiscard]] TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyclogram& felt);
 
 /// What drove the machine between its start and t = 0 of a cyclogram, in an ambient as at t = 0. It has no name, so that what happens in one cyclogram alone does
 /// not act in it; no sections: nothing did, as of most.

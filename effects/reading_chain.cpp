@@ -6,6 +6,18 @@
 
 namespace driftwright::effects {
 
+std::vector<bool> Readings::spindle_turns() const {
+  std::vector<bool> turns;
+  const std::vector<Cyclogram::Section>& sections = cyclogram.sections;
+  std::size_t section = 0;
+  double end_s = sections.empty() ? 0.0 : sections.front().duration_s;
+  for (const double t_s : time_s) {
+    while (section + 1 < sections.size() && t_s >= end_s) end_s += sections[++section].duration_s;
+    turns.push_back(!sections.empty() && sections[section].drive.speed_rpm > 0.0);
+  }
+  return turns;
+}
+
 Eigen::Index Readings::row(const std::string& of, bool is_temperature) const {
   for (std::size_t i = 0; i < name.size(); ++i) {
     if (name[i] == of && (unit[i] == "K") == is_temperature) return static_cast<Eigen::Index>(i);

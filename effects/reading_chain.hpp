@@ -47,6 +47,8 @@ struct Readings {
   [[nodiscard]] Eigen::Index mean_of(const std::string& body) const { return row(mean_output(body), true); }
   [[nodiscard]] Eigen::Index n_times() const { return value.cols(); }
   [[nodiscard]] double time(Eigen::Index i) const { return time_s[static_cast<std::size_t>(i)]; }
+  /// Whether the spindle turns at each time.
+  [[nodiscard]] std::vector<bool> spindle_turns() const;
 
  private:
   [[nodiscard]] Eigen::Index row(const std::string& of, bool is_temperature) const;

@@ -7,7 +7,7 @@ namespace driftwright::effects {
 namespace {
 
 constexpr std::size_t kFewRuns = 5;  // of which every choice is tried
-constexpr double kLongest_min = 1440.0;
+constexpr double kLongest_min = 1440.0, kLongestLooked_min = 240.0;
 
 bool is_meant(const Effect& e, const Exchange& x) {
   return e.words.at("of") == "exchange" && x.body.kind != BodyKind::kJoint && x.surrounding == kAmbientName && !x.medium_K;
@@ -37,7 +37,7 @@ void change_drive(const Effect& e, DriveChange& change) {
     before.sections.push_back({run_s, mean_drive({&felt})});
     if (rest_s == 0.0) return before;
     Drive rest;
-    for (const Signal& signal : before.sections.front().drive.signals) rest.signals.push_back({signal.name, 0.0});
+    rest.signals = felt.sections.front().drive.signals;  // a bed, a water main: as warm as where the record begins
     before.sections.push_back({rest_s, rest});
     return before;
   });
@@ -45,7 +45,9 @@ void change_drive(const Effect& e, DriveChange& change) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.in.empty()) in.fail("in", "the cyclogram is wanted that ran in this state");
-  if (in.has("rested") && !in.has("warmed_up"))
+  if (e["factor"] == 1.0 && e["warmed_up"] == 0.0 && e["rested"] == 0.0)
+    in.fail("factor", "nothing is another in this state; another `factor` than 1 or `warmed_up`, a time, is wanted");
+  if (e["rested"] > 0.0 && e["warmed_up"] == 0.0)
     in.fail("rested", "is of a machine that was `warmed_up` before, which is not there");
 }
 
@@ -74,6 +76,7 @@ std::vector<std::vector<std::size_t>> choices_of(std::size_t n_runs) {
 void doubt_start(const DoubtScene& s, std::vector<Doubt>& list) {
   constexpr double kUsual_min = 30.0, kRest_min = 3.0;
   for (const DoubtScene::Run& run : s.runs) {
+    if (run.starts_as_read) continue;
     Effect state = make_effect("run_state", Place::kSpindle, place_key(Place::kSpindle));
     state.in = run.name;
     Doubt d{.finding = "run_state",
@@ -83,7 +86,7 @@ void doubt_start(const DoubtScene& s, std::vector<Doubt>& list) {
             .numbers = {doubted("warmed_up", "min", kUsual_min, 1.0), doubted("rested", "min", kUsual_min, 1.0, kRest_min)}};
     d.numbers[0].low = 0.0;
     d.numbers[1].low = 0.0;
-    d.numbers[0].high = d.numbers[1].high = kLongest_min;
+    d.numbers[0].high = d.numbers[1].high = kLongestLooked_min;
     d.grid = {{0.0}, {20.0}};
     for (const double trial_min : {10.0, 60.0}) {  // what a short run warms is not what a long one does
       d.trial = trial_min;
@@ -130,8 +133,9 @@ EffectKind run_state() {
           "nobody noted",
       .law =
           "P' = factor P of every heat, or c' = factor c of every exchange with the ambient, in one record; before it, the "
-          "mean drive of the record for the time `warmed_up`, and standstill for the time `rested`, in the ambient of its "
-          "start",
+          "mean drive of the record for the time `warmed_up`, and standstill for the time `rested`, recorded columns as at "
+          "its "
+          "start, in the ambient of its start; nothing that goes by a time of the record acts then",
       .places = {Place::kSpindle},
       .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on all of them"},
                      {"warmed_up", "min", 0.0, kLongest_min, 0.0, "that the machine had run before the record began"},

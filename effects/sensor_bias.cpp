@@ -14,8 +14,9 @@ void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kError, [sensor = e.place, bias_K = e["bias"], slope = e["slope"], fades_s,
                                    turning = e.words.at("errs") == "while_spindle_turns"](Readings& r) {
     const Eigen::Index row = r.sensor(sensor);
+    const std::vector<bool> turns = turning ? r.spindle_turns() : std::vector<bool>();
     for (Eigen::Index i = 0; i < r.n_times(); ++i) {
-      if (turning && !(r.cyclogram.speed_rpm(r.time(i)) > 0.0)) continue;
+      if (turning && !turns[static_cast<std::size_t>(i)]) continue;
       r.value(row, i) += bias_K * std::exp(-r.time(i) / fades_s) + slope * r.value(row, i);
     }
   });

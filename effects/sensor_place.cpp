@@ -17,8 +17,9 @@ void change_readings(const Effect& e, ReadingChain& chain) {
               const bool is_ambient = body == ambient_node();
               const Eigen::RowVectorXd there =
                   is_ambient ? Eigen::RowVectorXd() : Eigen::RowVectorXd(r.value.row(r.mean_of(body.name)));
+              const std::vector<bool> turns = turning ? r.spindle_turns() : std::vector<bool>();
               for (Eigen::Index i = 0; i < r.n_times(); ++i) {
-                if (turning && !(r.cyclogram.speed_rpm(r.time(i)) > 0.0)) continue;
+                if (turning && !turns[static_cast<std::size_t>(i)]) continue;
                 r.value(row, i) += share * ((is_ambient ? r.ambient.at(r.time(i)) : there[i]) - r.value(row, i));
               }
             });

@@ -73,6 +73,7 @@ Run Machine::start(std::optional<double> ambient_degC, const std::string& run_na
   auto s = std::make_unique<Run::State>();
   const scenarios::Scenario asked = as_predicted(parts_->scenario);
   const scenarios::MachineModel& own = *asked.machine;
+  scenarios::require_nothing_before(own, "start");
   s->machine = own;
   s->tolerances = asked.solver.transient;
   s->cyclogram.name = run_name;

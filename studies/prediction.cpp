@@ -186,9 +186,10 @@ Outlook outlook_of(const scenarios::Scenario& scenario, const Cyclogram& job, co
   double warmer_K = scenarios::warmer_start_K(ahead.machine, ahead.series.cyclogram);
   if (own.start == scenarios::Start::kAmbient || own.start == scenarios::Start::kSteady)
     warmer_K += scenarios::felt_ambient_at_start_K(ahead.machine) - scenarios::felt_ambient_at_start_K(own);
-  ahead.start = scenarios::after_what_was_before(
-      ahead.machine, scenario.solver.transient, *ahead.model,
-      scenarios::start_of(own, *ahead.model) + warmer_K * scenarios::ones_of(*ahead.model), ahead.series.cyclogram);
+  ahead.start = scenarios::start_of(own, *ahead.model) + warmer_K * scenarios::ones_of(*ahead.model);
+  if (options.start.empty())  // else the run before is told
+    ahead.start = scenarios::after_what_was_before(ahead.machine, scenario.solver.transient, *ahead.model, ahead.start,
+                                                   ahead.series.cyclogram);
   return ahead;
 }
 

@@ -11,6 +11,7 @@
 #include "base/csv_row.hpp"
 #include "machine/machine_key.hpp"
 #include "machine/model.hpp"
+#include "scenarios/reader/felt_run.hpp"
 #include "studies/sweep_member.hpp"
 
 namespace driftwright::studies {
@@ -154,6 +155,7 @@ struct LastMachine {
 std::vector<double> run_member(const SweepPlan& plan, std::size_t member, ReducedMachines& reduced, const Structure& shared,
                                LastMachine& last) {
   const Scenario scenario = scenarios::read_scenario(plan.scenario_of(member));
+  scenarios::require_nothing_before(*scenario.machine, "sweep");
   if (scenario.solver.model == scenarios::ModelKind::kReduced) {
     return simulate_member(scenario, *reduced.of(scenario), plan.collect);
   }

@@ -201,6 +201,14 @@ TEST(TrueAmbient, OfASlowThermometerIsAheadOfTheRecordByItsLag) {
   EXPECT_LT(most_K, 0.005);
 }
 
+TEST(TrueAmbient, OfASlowThermometerIsAheadAllTheWayBetweenRowsThatAreFarApart) {
+  const TimeSeries recorded{{0, 3600, 7200}, {0.0, 2.0, 0.0}};  // 2 K/h up and down
+  const Cyclogram two_hours{.name = "shift", .sections = {turning(7200, 1000)}};
+  const TimeSeries ambient = true_ambient(change_of("{type: ambient, lag: 12 min}"), recorded, two_hours);
+  for (const double t_s : {0.0, 600.0, 1800.0, 3400.0}) EXPECT_NEAR(ambient.at(t_s), t_s / 1800.0 + 0.4, 1e-12) << t_s;
+  for (const double t_s : {3800.0, 5400.0, 7200.0}) EXPECT_NEAR(ambient.at(t_s), 4.0 - t_s / 1800.0 - 0.4, 1e-12) << t_s;
+}
+
 TEST(TrueAmbient, FollowsTheSpeedBehindALag) {
   const TimeSeries recorded{{0, 1500}, {1.0, 1.0}};
   const TimeSeries ambient =
@@ -223,6 +231,13 @@ TEST(DrivenBefore, IsTheMeanDriveOfTheRecordAndARest) {
   EXPECT_DOUBLE_EQ(before.sections[0].drive.feed_m_s[0], 0.1);
   EXPECT_DOUBLE_EQ(before.sections[0].drive.cutting_power_W, 50.0);
   EXPECT_EQ(before.sections[1].drive, Drive{});
+  Cyclogram with_bed = kRecorded;
+  with_bed.sections[0].drive.signals = {{"bed", 20.0}};
+  with_bed.sections[1].drive.signals = {{"bed", 60.0}};
+  with_bed.sections[2].drive.signals = {{"bed", 60.0}};
+  const Cyclogram behind = driven_before(change_of(warm), with_bed);
+  EXPECT_DOUBLE_EQ(behind.sections[0].drive.signals[0].value, 44.0);
+  EXPECT_DOUBLE_EQ(behind.sections[1].drive.signals[0].value, 20.0);  // as where the record begins, and not 0 degC
   EXPECT_EQ(before.name, "");
   EXPECT_THAT(driven_before(change_of(warm, "other"), kRecorded).sections, ::testing::IsEmpty());
   EXPECT_THAT(driven_before(change_of("{type: run_state, factor: 2, in: shift}"), kRecorded).sections, ::testing::IsEmpty());
@@ -248,6 +263,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{"{type: ambient, offset: 1 K/h}", "wrong unit"},
                       Bad{"{type: run_state, rested: 5 min, in: shift}", "is of a machine that was `warmed_up`"},
                       Bad{"{type: run_state, warmed_up: 5 min}", "the cyclogram is wanted"},
+                      Bad{"{type: run_state, in: shift}", "nothing is another"},
                       Bad{"{type: speed_override}", "`factor` or `at_most` is wanted"},
                       Bad{"{type: speed_override, factor: -1}", "outside what is allowed"},
                       Bad{"{type: speed_override, factor: 2, every: 8 min, until_time: 1 h}", "has none"},

@@ -404,6 +404,10 @@ TEST(ChangedLaw, GrowsByAnotherShareBeyondASpeed) {
   EXPECT_NEAR(changed("0.5")(at(3000.0)), 420.0 + 0.5 * 500.0, 1e-9);
   EXPECT_NEAR(changed("-0.5")(at(3000.0)), 420.0 - 0.5 * 500.0, 1e-9);
   EXPECT_EQ(changed("-3")(at(3000.0)), 0.0);  // and never takes heat away
+  const Law rests = law_of({"{type: heat_source, node: a, power: 40 W, runs: while_spindle_stands}",
+                            "{type: changed_law, law: heat_source a, growth_beyond: 0.5, beyond: 100 rpm}"});
+  EXPECT_EQ(rests(at(0.0)), 40.0);
+  EXPECT_EQ(rests(at(3000.0)), 0.0);
 }
 
 TEST(ChangedLaw, LeavesALawThatLooksAtTemperaturesItsOwnProbes) {

@@ -7,6 +7,7 @@
 
 #include <functional>
 
+#include "base/errors.hpp"
 #include "diagnosis/scatter.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
@@ -482,6 +483,37 @@ TEST(ExtendedScenario, StartsInTheAmbientThatTheRunReallyHad) {
   another.name = "another";
   EXPECT_EQ(scenarios::warmer_start_K(*s.machine, another), 0.0);
   EXPECT_NEAR(by_twin(*b, change)(0, 0), 3.0, 1e-9);
+}
+
+const std::string kWarm = "{type: run_state, warmed_up: 40 min, rested: 5 min, in: cycle}";
+
+TEST(AMachineThatHadRun, IsWarmerByWhatFirstReadingsSayAtTheStartOfTheRecord) {
+  const Twin twin(spindle().augmented, spindle().machine, kTight);
+  TwinState state = twin.as_written();
+  state.push_back(effect(kWarm));
+  Twin::Workspace workspace(twin);
+  MeasuredRun run = spindle().runs[0];
+  const Eigen::VectorXd without = twin.states(state, run, workspace).col(0);
+  run.start_K = Eigen::VectorXd::Constant(twin.warmer_bodies().cols(), 2.0);
+  const Eigen::VectorXd expected = without + twin.warmer_bodies() * run.start_K;
+  EXPECT_LT((twin.states(state, run, workspace).col(0) - expected).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_GT((without - twin.states(twin.as_written(), spindle().runs[0], workspace).col(0)).cwiseAbs().maxCoeff(), 0.1);
+}
+
+TEST(AMachineThatHadRun, KnowsNothingBeforeOfWhatGoesByATimeOfTheRecord) {
+  const std::string pump = "{type: heat_source, node: shaft, power: 400 W, from: 20 min}";
+  EXPECT_LT((by_twin(spindle(), added({kWarm, pump})).col(0) - by_twin(spindle(), added({kWarm})).col(0)).cwiseAbs().maxCoeff(),
+            1e-9);
+  const auto with = [](const std::string& entries) {
+    std::string text = kSpindle;
+    return text.insert(text.find("ambient: [["), entries);
+  };
+  const std::string both = write_file("clock_before.yaml", with("  - " + kWarm + "\n  - " + pump + "\n"));
+  EXPECT_THAT([&] { (void)scenarios::read_scenario(both); },
+              testing::ThrowsMessage<InputError>(HasSubstr("say `in` which cyclogram")));
+  const scenarios::Scenario s = scenarios::read_scenario(write_file("warm_before.yaml", with("  - " + kWarm + "\n")));
+  EXPECT_THAT([&] { scenarios::require_nothing_before(*s.machine, "sweep"); },
+              testing::ThrowsMessage<InputError>(HasSubstr("`sweep` begins every cyclogram")));
 }
 
 }  // namespace

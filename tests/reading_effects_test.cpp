@@ -57,6 +57,13 @@ TEST(SensorBias, FadesFromTheStartOfEachCyclogram) {
              1e-12);
 }
 
+TEST(SensorPlace, ReadsAShareOfTheAirWhileTheSpindleTurns) {
+  const Eigen::MatrixXd t = told(
+      std::vector<std::string>{"{type: sensor_place, sensor: a, body: ambient, share: 0.2, acts: while_spindle_turns}"});
+  // the ambient grows from 0 to 9 K in 900 s; the spindle stands from 600 s on
+  expect_row(t, 0, {5 - 1.0, 5 + 0.2 * (0.6 - 5), 8 + 0.2 * (1.5 - 8), 2 + 0.2 * (3 - 2), 3, 7}, 1e-12);
+}
+
 TEST(DisplacementPath, ReadsAShareOfAnotherDisplacementAfterWhatThatOneFollows) {
   const Eigen::MatrixXd outputs = truth();
   Eigen::MatrixXd two(5, 6);

@@ -105,9 +105,28 @@ FeltRun felt_run(const MachineModel& model, const Cyclogram& recorded) {
 
 FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& recorded) {
   const effects::DriveChange change = effects::drive_change(model.effects, recorded.name);
-  FeltRun felt{effects::true_cyclogram(change, recorded), effects::true_ambient(change, model.ambient, recorded)};
+  FeltRun felt{.cyclogram = effects::true_cyclogram(change, recorded), .ambient = {}};
+  felt.ambient = effects::true_ambient(change, model.ambient, felt.cyclogram);
   felt.before = effects::driven_before(change, felt.cyclogram);
+  for (const effects::Effect& e : model.effects) {
+    if (felt.before.sections.empty() || !e.in.empty() || !effects::goes_by_the_clock(e)) continue;
+    throw InputError(
+        e.where,
+        fmt::format(
+            "{} begins or ends at a time of every cyclogram; before '{}' a `run_state` has the machine `warmed_up`, "
+            "where no time is counted: say `in` which cyclogram it acts",
+            e.name(), recorded.name));
+  }
   return felt;
+}
+
+void require_nothing_before(const MachineModel& model, const std::string& verb) {
+  for (const effects::Effect& e : model.effects) {
+    if (effects::drive_change({e}, e.in).before.empty()) continue;
+    throw InputError(e.where, fmt::format("{} has the machine driven before cyclogram '{}'; `{}` begins every cyclogram at the "
+                                          "scenario's `start`: take it out (`simulate`, `diagnose`, `predict` and `view` know it)",
+                                          e.name(), e.in, verb));
+  }
 }
 
 double felt_ambient_at_start_K(const MachineModel& model) {

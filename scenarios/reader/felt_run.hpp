@@ -31,6 +31,10 @@ void require_columns(const MachineModel& model, const Cyclogram& cyclogram);
 /// the ambient record was wrong in this cyclogram alone.
 [[nodiscard]] double warmer_start_K(const MachineModel& model, const Cyclogram& recorded);
 
+/// For what begins every cyclogram at the scenario's `start`.
+/// @throws InputError  where an effect has the machine driven before a cyclogram
+void require_nothing_before(const MachineModel& model, const std::string& verb);
+
 [[nodiscard]] bool is_on_ambient(const Sensor& sensor);
 /// Whether the machine's records have the channel `ambient`.
 [[nodiscard]] bool has_ambient_channel(const MachineModel& model);
