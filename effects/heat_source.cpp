@@ -22,10 +22,14 @@ bool runs_at_rest(const Effect& e) {
   return e.words.at("runs") == "while_spindle_stands";
 }
 
+double run_on_s(const Effect& e) {
+  return e.has("runs_on") ? 60.0 * e["runs_on"] : 0.0;
+}
+
 void contribute(const Effect& e, HeatBalance& balance) {
   const double power_W = e["power"], n0_rpm = e["at_speed"], exponent = e["exponent"];
   const bool rests = e.words.at("runs") == "while_spindle_turns" || exponent != 0.0, stands = runs_at_rest(e);
-  const auto turns_or_just_has = turns_or_has(e["runs_on"] * 60.0);
+  const auto turns_or_just_has = turns_or_has(run_on_s(e));
   const auto steady = [=](const Inputs& u) {
     const bool turns = u.drive.speed_rpm > 0.0;
     if ((rests && !turns_or_just_has(u.drive)) || (stands && turns)) return 0.0;
@@ -55,13 +59,12 @@ void contribute(const Effect& e, HeatBalance& balance) {
 }
 
 void change_drive(const Effect& e, DriveChange& change) {
-  if (!(e["runs_on"] > 0.0)) return;
-  change.drive.push_back(
-      [run_on_s = 60.0 * e["runs_on"]](const Cyclogram& recorded) { return with_run_on(recorded, run_on_s); });
+  if (!e.has("runs_on")) return;
+  change.drive.push_back([s = run_on_s(e)](const Cyclogram& recorded) { return with_run_on(recorded, s); });
 }
 
 void check(const Effect& e, const ConfigMap& in) {
-  if (e["runs_on"] > 0.0 && (e.words.at("runs") != "while_spindle_turns" || e["exponent"] != 0.0))
+  if (e.has("runs_on") && (e.words.at("runs") != "while_spindle_turns" || e["exponent"] != 0.0))
     in.fail("runs_on", "it is of constant heat that goes with the spindle: `runs: while_spindle_turns`, no `exponent`");
   if (runs_at_rest(e) && e["exponent"] != 0.0) in.fail("exponent", "heat while the spindle stands does not grow with speed");
   if (e.has("fades") && e.has("period"))
@@ -202,7 +205,7 @@ EffectKind heat_source() {
            {"exponent", "1", -1.0, 4.0, 0.0, "growth with speed", 0.03, "friction_law"},
            {"fades", "min", 0.1, 1e5, kNotGiven,
             "time in which the heat falls to 37 %, from the start of each record or from `from` on: grease that runs in"},
-           {"runs_on", "min", 0.0, 1e4, 0.0, "for how long what goes with the spindle runs on when that has stopped"},
+           {"runs_on", "min", 0.0, 1e4, kNotGiven, "for how long what goes with the spindle runs on when that has stopped"},
            {"period", "s", 1.0, 1e7, kNotGiven, "of a wave; wants `until`"},
            {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
            {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
