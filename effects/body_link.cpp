@@ -28,9 +28,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
 }
 
 void change_drive(const Effect& e, DriveChange& change) {
-  if (!goes_with_spindle(e) || !(e["runs_on"] > 0.0)) return;
-  change.drive.push_back(
-      [run_on_s = 60.0 * e["runs_on"]](const Cyclogram& recorded) { return with_run_on(recorded, run_on_s); });
+  if (goes_with_spindle(e)) add_run_on(60.0 * e["runs_on"], change);
 }
 
 void check(const Effect& e, const ConfigMap& in) {
@@ -65,10 +63,8 @@ void doubt_fan(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) 
   fan.where = where_of(fan.added[0]);
   list.push_back(fan);
   fan.law += " and some minutes more";
-  DoubtedNumber runs_on{
-      .name = "runs_on", .unit = "min", .nominal = kUsualRunOn_min, .prior_sd = 1.0, .step = 0.1, .is_log = true};
-  fan.added[0].set("runs_on", runs_on.nominal);
-  fan.numbers.push_back(runs_on);
+  fan.added[0].set("runs_on", kUsualRunOn_min);
+  fan.numbers.push_back(doubted_run_on(kUsualRunOn_min));
   fan.grid = {{-1.0}, {0.0}, {1.0}};
   list.push_back(std::move(fan));
 }

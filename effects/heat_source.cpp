@@ -59,8 +59,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
 }
 
 void change_drive(const Effect& e, DriveChange& change) {
-  if (!e.has("runs_on")) return;
-  change.drive.push_back([s = run_on_s(e)](const Cyclogram& recorded) { return with_run_on(recorded, s); });
+  add_run_on(run_on_s(e), change);
 }
 
 void check(const Effect& e, const ConfigMap& in) {
@@ -123,10 +122,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       add("constant heat while the spindle stands", {}).added[0].words["runs"] = "while_spindle_stands";
       Doubt standby = while_turning;  // drives, pumps, until the control switches them off
       standby.law += " and some minutes more";
-      DoubtedNumber runs_on{
-          .name = "runs_on", .unit = "min", .nominal = kUsualRunOn_min, .prior_sd = 1.0, .step = 0.1, .is_log = true};
-      standby.added[0].set("runs_on", runs_on.nominal);
-      standby.numbers.push_back(runs_on);
+      standby.added[0].set("runs_on", kUsualRunOn_min);
+      standby.numbers.push_back(doubted_run_on(kUsualRunOn_min));
       standby.grid = {{-1.0}, {0.0}, {1.0}};
       list.push_back(std::move(standby));
     }

@@ -44,4 +44,13 @@ Cyclogram with_run_on(const Cyclogram& recorded, double run_on_s) {
   return felt;
 }
 
+void add_run_on(double run_on_s, DriveChange& change) {
+  if (!(run_on_s > 0.0)) return;
+  change.drive.push_back([run_on_s](const Cyclogram& recorded) { return with_run_on(recorded, run_on_s); });
+}
+
+DoubtedNumber doubted_run_on(double usual_min) {
+  return {.name = "runs_on", .unit = "min", .nominal = usual_min, .prior_sd = 1.0, .step = 0.1, .is_log = true};
+}
+
 }  // namespace driftwright::effects

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "base/cyclogram.hpp"
+#include "effects/doubt.hpp"
 
 namespace driftwright::effects {
 
@@ -12,5 +13,10 @@ namespace driftwright::effects {
 
 /// A cyclogram whose sections carry the signal that turns_or_has() looks for: split where the time behind a stop is over. As it was for no such time.
 [[nodiscard]] Cyclogram with_run_on(const Cyclogram& recorded, double run_on_s);
+
+/// The same of the drive that is recorded; nothing for no such time.
+void add_run_on(double run_on_s, DriveChange& change);
+/// The number `runs_on` [min] of a doubt, from a usual one on.
+[[nodiscard]] DoubtedNumber doubted_run_on(double usual_min);
 
 }  // namespace driftwright::effects
