@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "diagnosis/extended_scenario.hpp"
 #include "tests/lumped_records.hpp"
 
 namespace driftwright::diagnosis {
@@ -59,13 +58,7 @@ TEST_P(AnAmbient, ThatIsRecordedWronglyIsNamedAndWritten) {
   EXPECT_THAT(d.causes[0].law, HasSubstr(cause.law));
   EXPECT_THAT(d.causes[0].alternatives, IsEmpty());
   EXPECT_NEAR(d.causes[0].parameters[0].value, cause.size, cause.tolerance);
-  const Claim& claim = d.search.hypothesis[0];
-  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
-  const ExtendedScenario extended =
-      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
-  EXPECT_THAT(extended.not_written, IsEmpty());
-  const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
-  EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+  expect_written_is_found_no_more(beside, d, records);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -3,14 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "diagnosis/extended_scenario.hpp"
 #include "tests/lumped_records.hpp"
 
 namespace driftwright::diagnosis {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr const char* kMachine = R"(name: two_axes
@@ -68,13 +66,7 @@ TEST_P(HeatOfAnAxis, IsNamedWithItsAxisAndWritten) {
   ASSERT_GE(d.causes[0].parameters.size(), cause.numbers.size());
   for (std::size_t i = 0; i < cause.numbers.size(); ++i)
     EXPECT_NEAR(d.causes[0].parameters[i].value, cause.numbers[i].first, cause.numbers[i].second);
-  const Claim& claim = d.search.hypothesis[0];
-  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
-  const ExtendedScenario extended =
-      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
-  EXPECT_THAT(extended.not_written, IsEmpty());
-  const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
-  EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+  expect_written_is_found_no_more(beside, d, records);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -16,7 +16,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
@@ -70,13 +69,7 @@ TEST_P(ACause, IsFoundInAllItsRecordsAtOnceAndWritten) {
   EXPECT_EQ(d.causes[0].where, cause.where);
   EXPECT_THAT(d.causes[0].law, HasSubstr(cause.law));
   EXPECT_NEAR(d.causes[0].parameters[0].value, cause.size, cause.tolerance);
-  const Claim& claim = d.search.hypothesis[0];
-  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
-  const ExtendedScenario extended =
-      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
-  EXPECT_THAT(extended.not_written, IsEmpty());
-  const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
-  EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+  expect_written_is_found_no_more(beside, d, records);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -467,13 +460,7 @@ TEST(AnotherSpeedForAWhile, IsFoundInAllItsWindowsWhereTwoHeatsFollowTheSpeed) {
   EXPECT_NEAR(d.causes[0].parameters[0].value, 0.55, 0.03);
   const double times_min[] = {20.0, 45.0, 180.0, 210.0};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(d.causes[0].parameters[i + 1].value, times_min[i], 1.0);
-  const Claim& claim = d.search.hypothesis[0];
-  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
-  const ExtendedScenario extended =
-      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
-  EXPECT_THAT(extended.not_written, IsEmpty());
-  const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
-  EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+  expect_written_is_found_no_more(beside, d, records);
 }
 
 // The state of rest that a machine starts from follows its numbers, also where a law follows temperature: a weaker path to the ambient, with heat that is always

@@ -1,10 +1,13 @@
 #pragma once
 // Lumped machines and records of them, with noise, for tests of what a diagnosis says.
 
+#include <gtest/gtest.h>
+
 #include <optional>
 
 #include "base/random.hpp"
 #include "diagnosis/diagnosis.hpp"
+#include "diagnosis/extended_scenario.hpp"
 #include "machine/as_recorded.hpp"
 #include "machine/driven_before.hpp"
 #include "machine/machine.hpp"
@@ -99,5 +102,17 @@ struct Beside {
     return diagnose(*twin, nullptr, runs, how);
   }
 };
+
+/// The first cause of a diagnosis, written into the scenario, and the records diagnosed by that file: nothing is found any more.
+inline void expect_written_is_found_no_more(const Beside& beside, const Diagnosis& d,
+                                            const std::vector<std::string>& records) {
+  const Claim& claim = d.search.hypothesis[0];
+  const Eigen::VectorXd x = d.search.fit.x.tail(static_cast<Eigen::Index>(claim.knobs.size()));
+  const ExtendedScenario extended =
+      extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
+  EXPECT_TRUE(extended.not_written.empty());
+  const Diagnosis again = Beside(write_file("extended.yaml", extended.text), records).diagnosed();
+  EXPECT_EQ(again.verdict, Verdict::kConsistent) << again.reason;
+}
 
 }  // namespace driftwright::diagnosis
