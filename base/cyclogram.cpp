@@ -123,11 +123,11 @@ std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const st
     for (auto knot = std::upper_bound(knots.begin(), knots.end(), start_s); knot != knots.end(); ++knot) {
       if (*knot >= end_s - rounding_s) break;
       if (*knot <= start_s + rounding_s) continue;
-      stretches.push_back({start_s, *knot, section.drive, changed, cyclogram.name});
+      stretches.push_back({start_s, *knot, section.drive, changed, cyclogram.name, cyclogram.clock_s});
       start_s = *knot;
       changed = false;
     }
-    stretches.push_back({start_s, end_s, section.drive, changed, cyclogram.name});
+    stretches.push_back({start_s, end_s, section.drive, changed, cyclogram.name, cyclogram.clock_s});
     last = &section.drive;
     start_s = end_s;
   }

@@ -182,12 +182,16 @@ Prediction Fitter::predict_machine(const Hypothesis& hypothesis, const Eigen::Ve
 }
 
 Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction& known, const Hypothesis& hypothesis,
-                                  const Eigen::VectorXd& x, Twin::Workspace& workspace) const {
+                                  const Eigen::VectorXd& x, Twin::Workspace& workspace, const KeptRuns& about) const {
   const TwinState s = state(hypothesis, x);
   Prediction prediction;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    prediction.push_back(
-        acts_alike(known_state, s, runs_[r].name) ? known[r] : readings(s, r, x, twin_.respond(s, runs_[r], workspace)));
+    if (acts_alike(known_state, s, runs_[r].name)) {
+      prediction.push_back(known[r]);
+      continue;
+    }
+    const solver::KeptRun* near = about.empty() ? nullptr : about[r].get();
+    prediction.push_back(readings(s, r, x, twin_.respond(s, runs_[r], workspace, near)));
   }
   return prediction;
 }
@@ -202,29 +206,14 @@ Eigen::MatrixXd Fitter::readings(const TwinState& state, std::size_t run, const 
   return readings;
 }
 
-Prediction Fitter::predict_near(const Courses& about, const TwinState& known_state, const Prediction& known,
-                                const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace) const {
-  const TwinState s = state(hypothesis, x);
-  Prediction prediction;
-  for (std::size_t r = 0; r < runs_.size(); ++r) {
-    if (acts_alike(known_state, s, runs_[r].name)) {
-      prediction.push_back(known[r]);
-      continue;
-    }
-    const solver::Course* near = about[r] ? &*about[r] : nullptr;
-    prediction.push_back(readings(s, r, x, twin_.respond(s, runs_[r], workspace, near)));
-  }
-  return prediction;
-}
-
-Fitter::Courses Fitter::courses(const TwinState& state, Twin::Workspace& workspace) const {
-  Courses all;
-  for (const MeasuredRun& run : runs_) all.push_back(twin_.course(state, run, workspace));
+Fitter::KeptRuns Fitter::kept_runs(const TwinState& state, Twin::Workspace& workspace) const {
+  KeptRuns all;
+  for (const MeasuredRun& run : runs_) all.push_back(twin_.kept_run(state, run, workspace));
   return all;
 }
 
 Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
-                         const Courses& about, std::size_t which, Twin::Workspace& workspace) const {
+                         const KeptRuns& about, std::size_t which, Twin::Workspace& workspace) const {
   const TwinState here = state(hypothesis, x);
   const Knob& knob = scatter_[which];
   const double at = x[static_cast<Eigen::Index>(which)];
@@ -236,7 +225,7 @@ Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
     turned[static_cast<Eigen::Index>(which)] += by;
     Prediction p;
     if (std::abs(moved(by)) < kAtBound * std::abs(by)) return p;
-    return has_solution([&] { p = predict_near(about, here, base, hypothesis, turned, workspace); }) ? p : Prediction{};
+    return has_solution([&] { p = predict_beside(here, base, hypothesis, turned, workspace, about); }) ? p : Prediction{};
   };
   // From both sides: where capacities, conductances and heats change alike nothing does, and the bends of one-sided slopes, which do not cancel, would say that
   // this is known far better than it is.
@@ -256,11 +245,11 @@ Prediction Fitter::slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
 void Fitter::take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Listener& listener) {
   std::vector<Prediction> differences(scatter_.size());
   Prediction base;
-  Courses about;
+  KeptRuns about;
   {
     Twin::Workspace workspace(twin_);
     base = predict(hypothesis, x, workspace);
-    about = courses(state(hypothesis, x), workspace);
+    about = kept_runs(state(hypothesis, x), workspace);
   }
   for_each_index(
       scatter_.size(), [&] { return Twin::Workspace(twin_); },
@@ -294,7 +283,7 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
 
 Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const {
   Eigen::MatrixXd slopes = slopes_;
-  const Courses about = courses(state(hypothesis, at.x), workspace);
+  const KeptRuns about = kept_runs(state(hypothesis, at.x), workspace);
   for (std::size_t i = 0; i < scatter_.size(); ++i) {
     slopes.col(static_cast<Eigen::Index>(i)) =
         comparison_->whitened(slope(hypothesis, at.x, at.prediction, about, i, workspace));

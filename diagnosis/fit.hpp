@@ -105,28 +105,25 @@ class Fitter {
   [[nodiscard]] Prediction predict_machine(const Hypothesis& hypothesis, const Eigen::VectorXd& x,
                                            Twin::Workspace& workspace) const;
 
-  /// The same as predict() where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects act are taken from it.
-  [[nodiscard]] Prediction predict_beside(const TwinState& known_state, const Prediction& known,
-                                          const Hypothesis& hypothesis, const Eigen::VectorXd& x,
-                                          Twin::Workspace& workspace) const;
+  /// One of each run, null where there is none: what states near it are answered from.
+  using KeptRuns = std::vector<std::shared_ptr<const solver::KeptRun>>;
+  [[nodiscard]] KeptRuns kept_runs(const TwinState& state, Twin::Workspace& workspace) const;
 
-  /// One run each, empty where the machine is not linear: what slopes are taken about.
-  using Courses = std::vector<std::optional<solver::Course>>;
+  /// The same as predict() where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects act are taken from it.
+  /// @param about  of a state near by, which others are answered from where it can be
+  [[nodiscard]] Prediction predict_beside(const TwinState& known_state, const Prediction& known,
+                                          const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace,
+                                          const KeptRuns& about = {}) const;
 
  private:
   [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held,
                           Twin::Workspace& workspace) const;
-  [[nodiscard]] Courses courses(const TwinState& state, Twin::Workspace& workspace) const;
-  /// Readings to first order in how x differs from where the courses were taken, as predict_beside() otherwise.
-  [[nodiscard]] Prediction predict_near(const Courses& about, const TwinState& known_state, const Prediction& known,
-                                        const Hypothesis& hypothesis, const Eigen::VectorXd& x,
-                                        Twin::Workspace& workspace) const;
   /// Readings of a state, whose responses are those of the machine.
   [[nodiscard]] Eigen::MatrixXd readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
                                          Eigen::MatrixXd response) const;
   /// Slope of the readings by one of scatter's numbers. @param base, about  at x
   [[nodiscard]] Prediction slope(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Prediction& base,
-                                 const Courses& about, std::size_t which, Twin::Workspace& workspace) const;
+                                 const KeptRuns& about, std::size_t which, Twin::Workspace& workspace) const;
   void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Listener& listener = {});
   /// W f's slopes by scatter and linear columns at an x far from where scatter was settled.
   [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const;

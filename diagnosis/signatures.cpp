@@ -52,11 +52,16 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
   const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
   std::vector<std::vector<Signature>> lists(laws.size());
   Prediction responses;
+  const TwinState known = fitter.state(hypothesis, fit.x);
+  Fitter::KeptRuns about;
   {
     Twin::Workspace workspace(fitter.twin());
     (void)fitter.predict(hypothesis, fit.x, workspace, &responses);
+    about = fitter.kept_runs(known, workspace);
+    for (auto& run : about) {
+      if (run && run->is_of_first_order()) run.reset();  // what a law makes of a reading is no slope
+    }
   }
-  const TwinState known = fitter.state(hypothesis, fit.x);
   struct Space {
     Twin::Workspace workspace;
     Prediction kept;
@@ -77,8 +82,9 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
           for (std::size_t k = 0; k < shape.size(); ++k) claim[static_cast<Eigen::Index>(k + 1)] = shape[k];
           Prediction p;
           const bool is_solved = has_solution([&] {
-            p = reading_only ? fitter.predict(tried, joined(fit.x, claim), space.workspace, &space.kept, true)
-                             : fitter.predict_beside(known, fit.prediction, tried, joined(fit.x, claim), space.workspace);
+            p = reading_only
+                    ? fitter.predict(tried, joined(fit.x, claim), space.workspace, &space.kept, true)
+                    : fitter.predict_beside(known, fit.prediction, tried, joined(fit.x, claim), space.workspace, about);
           });
           if (!is_solved) continue;
           Eigen::VectorXd column = fitter.comparison().condensed((fitter.comparison().whitened(p) - base) / v.trial_x);

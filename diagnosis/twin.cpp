@@ -321,18 +321,8 @@ Twin::Driven Twin::drive(const TwinState& state, const MeasuredRun& run, Workspa
   d.ambient = effects::true_ambient(change, run.ambient, d.cyclogram);
   d.cyclogram.name = run.name;
   d.start = start(d.ambient, workspace);
-  if (const Cyclogram before = effects::driven_before(change, d.cyclogram); !before.sections.empty()) {
-    TwinState lasting = acting;
-    std::erase_if(lasting, effects::goes_by_the_clock);
-    const auto take = [&](const TwinState& effects) {
-      if (lasting.size() == acting.size()) return;  // its laws are there
-      workspace.propagator_.reset();
-      set_laws(balance(effects), workspace);
-    };
-    take(lasting);
+  if (const Cyclogram before = effects::driven_before(change, d.cyclogram); !before.sections.empty())
     d.start = after(before, d.ambient.at(0.0), d.start, workspace);
-    take(acting);
-  }
   if (run.start_K.size() > 0)  // what the first readings say is said of t = 0
     d.start += solver::with_places(warmer_bodies() * run.start_K, machine_.system, workspace.added_);
   return d;
@@ -357,19 +347,25 @@ Twin::Bound Twin::bound(const TwinState& state, const MeasuredRun& run, Workspac
   return {workspace.system_, std::move(d.cyclogram), std::move(d.ambient), std::move(weights), std::move(d.start)};
 }
 
-std::optional<solver::Course> Twin::course(const TwinState& state, const MeasuredRun& run, Workspace& workspace) const {
+std::shared_ptr<const solver::KeptRun> Twin::kept_run(const TwinState& state, const MeasuredRun& run,
+                                                      Workspace& workspace) const {
+  const auto shared = [](auto kept) -> std::shared_ptr<const solver::KeptRun> {
+    using Kept = typename decltype(kept)::value_type;
+    return kept ? std::make_shared<const Kept>(*std::move(kept)) : nullptr;
+  };
   const Driven d = drive(state, run, workspace);
-  if (!workspace.system_.is_linear()) return std::nullopt;
-  return workspace.propagator().course(d.cyclogram, d.ambient, run.grid_s, d.start);
+  if (workspace.system_.is_linear())
+    return shared(workspace.propagator().course(d.cyclogram, d.ambient, run.grid_s, d.start));
+  return shared(solver::KeptSteps::of(workspace.system_, d.cyclogram, d.ambient, run.grid_s, tolerances_, d.start));
 }
 
 Eigen::MatrixXd Twin::states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                             const solver::Course* near) const {
+                             const solver::KeptRun* near) const {
   return all_states(state, run, workspace, near).topRows(machine_.system.size());
 }
 
 Eigen::MatrixXd Twin::all_states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                                 const solver::Course* near) const {
+                                 const solver::KeptRun* near) const {
   auto [felt, ambient, from] = drive(state, run, workspace);
   solver::ReducedSystem& system = workspace.system_;
   if (near && near->states().rows() == system.size()) {
@@ -384,7 +380,7 @@ Eigen::MatrixXd Twin::all_states(const TwinState& state, const MeasuredRun& run,
 }
 
 Eigen::MatrixXd Twin::respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                              const solver::Course* near) const {
+                              const solver::KeptRun* near) const {
   const Eigen::MatrixXd z = states(state, run, workspace, near);
   Eigen::MatrixXd weights = outputs_.state;
   solver::scale_expansion(weights, machine_.system.parts, expansion_factors(state));

@@ -57,16 +57,16 @@ class Twin {
   /// Reduced states of the machine at a run's grid, size x n_grid.
   /// @throws SolveError  where a state has no solution
   [[nodiscard]] Eigen::MatrixXd states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                                       const solver::Course* near = nullptr) const;
+                                       const solver::KeptRun* near = nullptr) const;
   /// Outputs of the machine at a run's grid, n_outputs x n_grid [K over the reference, m, rad]: the model's own, then the mean temperatures
   /// of its regions and nodes.
-  /// @param near  unless null, course() of a state close by: a response to first order in how the two differ is enough
+  /// @param near  unless null, kept_run() of a state close by: what that answers is enough
   /// @throws SolveError  where a state has no solution
   [[nodiscard]] Eigen::MatrixXd respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                                        const solver::Course* near = nullptr) const;
-  /// What states near this one are answered from; nothing where the machine is not linear.
-  [[nodiscard]] std::optional<solver::Course> course(const TwinState& state, const MeasuredRun& run,
-                                                     Workspace& workspace) const;
+                                        const solver::KeptRun* near = nullptr) const;
+  /// What states near this one are answered from; null where there is nothing of that sort.
+  [[nodiscard]] std::shared_ptr<const solver::KeptRun> kept_run(const TwinState& state, const MeasuredRun& run,
+                                                                Workspace& workspace) const;
   /// What its instruments say of them at the run's rows, n_outputs x n_times.
   [[nodiscard]] Eigen::MatrixXd read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const;
 
@@ -112,7 +112,7 @@ class Twin {
   [[nodiscard]] Eigen::VectorXd after(const Cyclogram& before, double ambient_K, const Eigen::VectorXd& start,
                                       Workspace& workspace) const;
   [[nodiscard]] Eigen::MatrixXd all_states(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
-                                           const solver::Course* near) const;
+                                           const solver::KeptRun* near) const;
 
   const AugmentedModel& augmented_;
   const scenarios::ReducedMachine& machine_;

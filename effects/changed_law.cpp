@@ -15,8 +15,9 @@ constexpr double kShortest_min = 0.5;  // while
 constexpr double kStirred = 0.75;      // of the speed: a film on what turns, between laminar 0.5 and turbulent 0.8
 constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // of speed, of all laws together
 
-/// Whether it acts at that time.
+/// Whether it acts at that time; before a record, where time is negative, only what has neither beginning nor end.
 bool acts(const Effect& e, const Inputs& u) {
+  if (e.in.empty() && e.from_s == 0.0 && e.until_s == kNever_s) return true;
   return u.time_s >= e.from_s && u.time_s < e.until_s && (e.in.empty() || u.run == e.in);
 }
 

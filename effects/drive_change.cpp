@@ -18,6 +18,7 @@ Cyclogram driven_before(const DriveChange& change, const Cyclogram& felt) {
     const Cyclogram more = driven(felt);
     before.sections.insert(before.sections.end(), more.sections.begin(), more.sections.end());
   }
+  before.clock_s = -before.duration_s();
   return before;
 }
 

@@ -23,8 +23,8 @@ struct DriveChange {
 /// The ambient that the machine felt. @param ambient  recorded, minus the reference temperature [K]; @param felt  the true cyclogram
 [[nodiscard]] TimeSeries true_ambient(const DriveChange& change, TimeSeries ambient, const Cyclogram& felt);
 
-/// What drove the machine between its start and t = 0 of a cyclogram, in an ambient as at t = 0. It has no name, so that what happens in one cyclogram alone does
-/// not act in it; no sections: nothing did, as of most.
+/// What drove the machine between its start and t = 0 of a cyclogram, in an ambient as at t = 0. It has no name and its clock
+/// ends at zero, so that what happens in one cyclogram alone or at a time of it does not act in it; no sections: nothing did, as of most.
 /// @param felt  the true cyclogram
 [[nodiscard]] Cyclogram driven_before(const DriveChange& change, const Cyclogram& felt);
 

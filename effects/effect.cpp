@@ -270,10 +270,6 @@ bool changes_drive(const Effect& effect) {
   return !change.drive.empty() || !change.ambient.empty() || !change.before.empty();
 }
 
-bool goes_by_the_clock(const Effect& effect) {
-  return !heat_balance({effect}).change_times_s.empty();
-}
-
 ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string& run) {
   ReadingChain chain;
   for (const Effect& effect : effects) {

@@ -192,8 +192,6 @@ struct Effect {
 [[nodiscard]] ReadingChain reading_chain(const std::vector<Effect>& effects, const std::string& run);
 /// Whether an effect changes what is recorded of the drive or the ambient.
 [[nodiscard]] bool changes_drive(const Effect& effect);
-/// Whether what an effect does to heat jumps at times of a cyclogram: it begins, ends, comes again, fades.
-[[nodiscard]] bool goes_by_the_clock(const Effect& effect);
 /// Whether some effect changes what instruments say, in any cyclogram.
 [[nodiscard]] bool has_reading_effects(const std::vector<Effect>& effects);
 /// And to materials (one entry an effect).

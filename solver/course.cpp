@@ -26,7 +26,7 @@ struct Loads {
 void take_loads(const ReducedSystem& system, const LinearStretch& stretch, SeriesInOrder& ambient, Loads& l) {
   const double ambient_K = ambient.at(stretch.start_s),
                ambient_slope = (ambient.at(stretch.end_s) - ambient_K) / (stretch.end_s - stretch.start_s);
-  effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
+  effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = stretch.law_time_s()};
   at.run = stretch.run;
   l.coefficient.resize(static_cast<Eigen::Index>(system.exchanges.size()));
   l.constant.setZero(system.size());

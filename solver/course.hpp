@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "base/cyclogram.hpp"
 #include "solver/decomposition.hpp"
+#include "solver/kept_run.hpp"
 
 namespace driftwright::solver {
 
@@ -16,7 +16,7 @@ namespace driftwright::solver {
 ///
 /// with V of the decomposition and y0, f0, f1 in it. Pairs of equal λ have the limit of this: products of matrices, and no decomposition.
 /// Source: derivative of the matrix exponential, Najfeld & Havel, Adv. Appl. Math. 16 (1995) 321-375.
-class Course {
+class Course final : public KeptRun {
  public:
   /// As Propagator::course() asks for it. Nothing is borrowed.
   /// @param decompositions  of the system, which is linear
@@ -26,13 +26,12 @@ class Course {
                                                 const std::vector<double>& output_s, const Eigen::VectorXd& start);
   static constexpr std::size_t kMostSets = 64;
 
-  /// Reduced states at the outputs, size x n_times.
-  [[nodiscard]] const Eigen::MatrixXd& states() const { return states_; }
-
-  /// What the same unknowns come to in another system at the same times, to first order in how it differs, size x n_times.
+  /// To first order in how the other differs.
   /// @returns nothing where the other is not linear or passes other stretches of time: such a one is to be run by itself
   [[nodiscard]] std::optional<Eigen::MatrixXd> states_of(const ReducedSystem& other, const Cyclogram& cyclogram,
-                                                         const TimeSeries& ambient, const Eigen::VectorXd& start) const;
+                                                         const TimeSeries& ambient,
+                                                         const Eigen::VectorXd& start) const override;
+  [[nodiscard]] bool is_of_first_order() const override { return true; }
 
  private:
   Course() = default;
@@ -55,7 +54,6 @@ class Course {
   Eigen::VectorXd start_;
   std::vector<Decomposition> decompositions_;
   std::vector<Stretch> stretches_;
-  Eigen::MatrixXd states_;
 };
 
 }  // namespace driftwright::solver

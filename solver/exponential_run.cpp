@@ -28,9 +28,10 @@ constexpr int kBisections = 40;
 class ExponentialRun {
  public:
   ExponentialRun(const ReducedSystem& system, const TimeSeries& ambient, const TransientOptions& options,
-                 const Eigen::VectorXd& start)
+                 const Eigen::VectorXd& start, StepsOfRun* steps)
       : system_(system),
         ambient_(ambient),
+        steps_(steps),
         rates_(system, ambient),
         state_(start),
         most_s_(options.max_step_s),
@@ -50,6 +51,7 @@ class ExponentialRun {
     }
     allowed_ = kShareOfTolerance * options.absolute_tolerance_K / per_unit;
     farthest_ = kFarthest_K / per_unit;
+    if (steps_) steps_->allowed = allowed_;
   }
 
   [[nodiscard]] const Eigen::VectorXd& state() const { return state_; }
@@ -85,6 +87,7 @@ class ExponentialRun {
   void prepare(double t_s, double h_s) {
     if (!has_tangent_ || n_steps_ == kStepsOfOneTangent) {
       tangent_ = rates_.tangent(t_s, state_);
+      is_tangent_kept_ = false;
       has_tangent_ = true;
       n_steps_ = 0;
       known_s_ = -1.0;
@@ -157,6 +160,7 @@ class ExponentialRun {
       h_s *= share;
       if (!tried(t_s, h_s, end)) return 0.0;
     }
+    if (steps_) keep(t_s, h_s);
     state_.swap(end);
     ++n_steps_;
     for (std::size_t i : switched) rates_.toggle(i);
@@ -166,6 +170,19 @@ class ExponentialRun {
       has_tangent_ = false;
     }
     return h_s;
+  }
+  /// The step that was tried last.
+  void keep(double t_s, double h_s) {
+    if (!is_tangent_kept_) steps_->tangents.push_back(tangent_);
+    is_tangent_kept_ = true;
+    const std::size_t tangent = steps_->tangents.size() - 1;
+    std::vector<StepsOfRun::Matrices>& known = steps_->matrices;
+    std::size_t which = known.size();
+    for (std::size_t i = known.size(); i-- > 0 && known[i].tangent == tangent && which == known.size();) {
+      if (std::abs(known[i].h_s - h_s) <= kSame * h_s) which = i;
+    }
+    if (which == known.size()) known.push_back({tangent, h_s, decay_, first_, second_});
+    steps_->steps.push_back({t_s, which, n1_ - n0_});
   }
   /// @param end  the state at its end; @return false where the step is too long
   bool tried(double t_s, double h_s, Eigen::VectorXd& end) {
@@ -192,12 +209,13 @@ class ExponentialRun {
 
   const ReducedSystem& system_;
   const TimeSeries& ambient_;
+  StepsOfRun* steps_;  ///< null: they are not kept
   const LinearStretch* stretch_ = nullptr;
   LiveRate rates_;
   Eigen::VectorXd state_;
   double most_s_, allowed_ = 0.0, farthest_ = 0.0;
   int most_switches_, n_switches_ = 0;
-  bool has_tangent_ = false;
+  bool has_tangent_ = false, is_tangent_kept_ = false;
   int n_steps_ = 0;        ///< gone with this tangent
   double known_s_ = -1.0;  ///< the step that the matrices are for
   Eigen::MatrixXd tangent_, decay_, first_, second_;
@@ -209,11 +227,12 @@ class ExponentialRun {
 
 std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram,
                                                   const TimeSeries& ambient, const std::vector<double>& output_s,
-                                                  const TransientOptions& options, const Eigen::VectorXd& start) {
+                                                  const TransientOptions& options, const Eigen::VectorXd& start,
+                                                  StepsOfRun* steps) {
   if (system.size() > kMostOfExponentialRun || options.from_s != 0.0) return std::nullopt;
   Eigen::MatrixXd states(system.size(), static_cast<Eigen::Index>(output_s.size()));
   try {
-    ExponentialRun run(system, ambient, options, start);
+    ExponentialRun run(system, ambient, options, start, steps);
     std::size_t next = 0;
     const std::vector<LinearStretch> stretches = stretches_of(system, cyclogram, ambient);
     for (const LinearStretch& stretch : stretches) {

@@ -10,6 +10,7 @@
 
 #include <optional>
 
+#include "solver/kept_steps.hpp"
 #include "solver/transient.hpp"
 
 namespace driftwright::solver {
@@ -19,11 +20,12 @@ inline constexpr int kMostOfExponentialRun = 40;  ///< unknowns: products of ful
 /// States at times on a cyclogram, size x n_times; M is any.
 /// @returns nothing for a system with more unknowns, one whose laws are not defined at a state that was tried, whose temperatures no machine has, or
 ///          whose thermostats switch without end: integrate() then says what is wrong, or goes on
+/// @param steps  unless null, those that were gone
 [[nodiscard]] std::optional<Eigen::MatrixXd> exponential_states(const ReducedSystem& system, const Cyclogram& cyclogram,
                                                                 const TimeSeries& ambient,
                                                                 const std::vector<double>& output_s,
                                                                 const TransientOptions& options,
-                                                                const Eigen::VectorXd& start);
+                                                                const Eigen::VectorXd& start, StepsOfRun* steps = nullptr);
 
 /// The same of any reduced system by exponentials, where they serve, or by integrate(). @throws SolveError
 [[nodiscard]] Eigen::MatrixXd states_of_run(const ReducedSystem& system, const Cyclogram& cyclogram,

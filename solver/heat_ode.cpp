@@ -158,7 +158,7 @@ bool HeatOde::begin_stretch(const LinearStretch& stretch, double*) {
     if (slope_K_s != slope_K_s_[f]) forget_slopes();
     slope_K_s_[f] = slope_K_s;
   }
-  const bool jumps = rate_.set(stretch.drive, 0.5 * (stretch.start_s + stretch.end_s), stretch.run);
+  const bool jumps = rate_.set(stretch.drive, stretch.law_time_s(), stretch.run);
   gamma_ = -1.0;
   if (jumps) {
     forget_slopes();

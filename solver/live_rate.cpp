@@ -22,7 +22,7 @@ LiveRate::LiveRate(const ReducedSystem& system, const TimeSeries& ambient)
 bool LiveRate::enter(const LinearStretch& stretch) {
   inputs_.drive = stretch.drive;
   inputs_.run = stretch.run;
-  inputs_.time_s = 0.5 * (stretch.start_s + stretch.end_s);
+  inputs_.time_s = stretch.law_time_s();
   inputs_.ambient_K = ambient_.at(stretch.start_s);
   inputs_.probe_K.clear();
   std::vector<double> followed;

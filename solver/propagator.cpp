@@ -95,7 +95,7 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
   for (const LinearStretch& stretch : behind(from_s, stretches_of(system_, cyclogram, ambient))) {
     const double length_s = stretch.end_s - stretch.start_s, ambient_K = ambient_in_order.at(stretch.start_s),
                  ambient_slope = (ambient_in_order.at(stretch.end_s) - ambient_K) / length_s;
-    effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = 0.5 * (stretch.start_s + stretch.end_s)};
+    effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = stretch.law_time_s()};
     at.run = stretch.run;
     for (Eigen::Index i = 0; i < n_exchanges; ++i) {
       coefficient[i] = system_.exchanges[static_cast<std::size_t>(i)].coefficient(at);

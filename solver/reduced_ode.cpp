@@ -86,7 +86,7 @@ std::vector<double> ReducedOde::probe_K(const Eigen::VectorXd& w, double ambient
 bool ReducedOde::begin_stretch(const LinearStretch& stretch, double* y) {
   inputs_.drive = stretch.drive;
   inputs_.run = stretch.run;
-  inputs_.time_s = 0.5 * (stretch.start_s + stretch.end_s);
+  inputs_.time_s = stretch.law_time_s();
   inputs_.ambient_K = ambient_.at(stretch.start_s);
   Eigen::VectorXd coefficient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system_.exchanges.size())),
                   power_W = Eigen::VectorXd::Zero(power_W_.size());

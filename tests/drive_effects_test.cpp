@@ -240,6 +240,7 @@ TEST(DrivenBefore, IsTheMeanDriveOfTheRecordAndARest) {
   EXPECT_DOUBLE_EQ(behind.sections[0].drive.signals[0].value, 44.0);
   EXPECT_DOUBLE_EQ(behind.sections[1].drive.signals[0].value, 20.0);  // as where the record begins, and not 0 degC
   EXPECT_EQ(before.name, "");
+  EXPECT_DOUBLE_EQ(before.clock_s, -3000.0);
   EXPECT_THAT(driven_before(change_of(warm, "other"), kRecorded).sections, ::testing::IsEmpty());
   EXPECT_THAT(driven_before(change_of("{type: run_state, factor: 2, in: shift}"), kRecorded).sections, ::testing::IsEmpty());
 }

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "base/errors.hpp"
+#include "solver/added_places.hpp"
 #include "solver/exponentials.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"
@@ -134,6 +135,67 @@ TEST(ExponentialRun, IsExactWhereNothingLooksAtTemperatures) {
   m.decay_1_K = 0.0;
   m.film_W_K = 0.0;
   EXPECT_LT(miss_K(m, integrated(m, 450.0), 450.0, 1e-4), 1e-7);
+}
+
+// Machines near a run that is kept go its steps: as near to the integrator as a run of their own.
+TEST(KeptSteps, AnswerForMachinesNearBy) {
+  const Machine machine;
+  const std::vector<double> rows_s = times_s(150.0);
+  const auto kept =
+      KeptSteps::of(machine.system(), kCycle, machine.ambient, rows_s, {.absolute_tolerance_K = 1e-4}, machine.start_K);
+  ASSERT_TRUE(kept);
+  EXPECT_LT((kept->states() - integrated(machine, 150.0)).cwiseAbs().maxCoeff(), 1e-4);
+  for (const auto& change : std::vector<std::function<void(Machine&)>>{
+           [](Machine&) {}, [](Machine& m) { m.friction_W *= 1.1; }, [](Machine& m) { m.decay_1_K = 0.015; },
+           [](Machine& m) { m.film_W_K = 15.0; }, [](Machine& m) { m.link_W_K = 22.0; },
+           [](Machine& m) { m.capacity_J_K *= 1.05; },
+           [](Machine& m) {
+             m.start_K = {2.0, 2.0, 2.0};
+           },
+           [](Machine& m) {
+             m.ambient.value = {1.0, 0.5, 2.5, -1.0};
+           },
+           [](Machine& m) { m.heat_W = 40.0, m.from_s = 1234.5, m.until_s = 2101.7; }}) {  // within steps
+    Machine m;
+    change(m);
+    const auto states = kept->states_of(m.system(), kCycle, m.ambient, m.start_K);
+    ASSERT_TRUE(states);
+    EXPECT_LT((*states - integrated(m, 150.0)).cwiseAbs().maxCoeff(), 1.5e-4);
+  }
+}
+
+TEST(KeptSteps, GiveSlopesThatTheErrorsOfStepsDoNotBlur) {
+  const Machine machine;
+  const std::vector<double> rows_s = times_s(150.0);
+  const auto kept =
+      KeptSteps::of(machine.system(), kCycle, machine.ambient, rows_s, {.absolute_tolerance_K = 1e-3}, machine.start_K);
+  ASSERT_TRUE(kept);
+  const auto with = [&](double factor) {
+    Machine m;
+    m.friction_W *= factor;
+    return m;
+  };
+  constexpr double kSmall = 1e-4;
+  const Machine more = with(1.0 + kSmall);
+  const auto states = kept->states_of(more.system(), kCycle, more.ambient, more.start_K);
+  ASSERT_TRUE(states);
+  const Eigen::MatrixXd slope = (*states - kept->states()) / kSmall,
+                        expected = (integrated(with(1.01), 150.0) - integrated(with(0.99), 150.0)) / 0.02;
+  EXPECT_GT(expected.maxCoeff(), 5.0);
+  EXPECT_LT((slope - expected).cwiseAbs().maxCoeff(), 2e-3 * expected.maxCoeff());
+}
+
+TEST(KeptSteps, AreNotForThermostatsAndOtherUnknowns) {
+  Machine chilled;
+  chilled.chiller_W = 600.0;
+  const std::vector<double> rows_s = times_s(150.0);
+  EXPECT_FALSE(KeptSteps::of(chilled.system(), kCycle, chilled.ambient, rows_s, {}, chilled.start_K));
+  const Machine machine;
+  const auto kept = KeptSteps::of(machine.system(), kCycle, machine.ambient, rows_s, {}, machine.start_K);
+  ASSERT_TRUE(kept);
+  EXPECT_FALSE(kept->states_of(chilled.system(), kCycle, chilled.ambient, chilled.start_K));
+  const ReducedSystem more = with_places(machine.system(), {.nodes = {{"another", 1000.0}}, .exchanges = {}});
+  EXPECT_FALSE(kept->states_of(more, kCycle, machine.ambient, Eigen::VectorXd::Zero(4)));
 }
 
 TEST(ExponentialRun, LeavesToTheIntegratorWhatHasNoStepsOfItsOwn) {

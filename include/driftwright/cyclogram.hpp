@@ -54,6 +54,7 @@ struct DRIFTWRIGHT_API Cyclogram {
   std::vector<Section> sections;
   std::vector<std::string> remarks = {};  ///< for the user: where it comes from and what was passed over there
   std::vector<Column> columns = {};       ///< names are unique
+  double clock_s = 0.0;                   ///< the time at its start for laws that begin and end; < 0 of what came before a record
 
   [[nodiscard]] double duration_s() const;
   /// Drive at time t >= 0 [s]; a section holds from its start on, the last one also at and after its end.
@@ -79,6 +80,10 @@ struct LinearStretch {
   Drive drive;
   bool drive_changed = false;  ///< true where the drive before start_s was another one, or at t = 0
   std::string_view run = {};   ///< name of the cyclogram, which must outlive the stretch
+  double clock_s = 0.0;        ///< Cyclogram::clock_s of it
+
+  /// A time within it at which laws are asked: none of them begins or ends in it.
+  [[nodiscard]] double law_time_s() const { return clock_s + 0.5 * (start_s + end_s); }
 };
 
 /// Cuts a cyclogram at its changes of drive and at further knots, in order, without empty pieces.

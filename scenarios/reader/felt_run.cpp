@@ -108,15 +108,6 @@ FeltRun felt_run_as_far_as_known(const MachineModel& model, const Cyclogram& rec
   FeltRun felt{.cyclogram = effects::true_cyclogram(change, recorded), .ambient = {}};
   felt.ambient = effects::true_ambient(change, model.ambient, felt.cyclogram);
   felt.before = effects::driven_before(change, felt.cyclogram);
-  for (const effects::Effect& e : model.effects) {
-    if (felt.before.sections.empty() || !e.in.empty() || !effects::goes_by_the_clock(e)) continue;
-    throw InputError(
-        e.where,
-        fmt::format(
-            "{} begins or ends at a time of every cyclogram; before '{}' a `run_state` has the machine `warmed_up`, "
-            "where no time is counted: say `in` which cyclogram it acts",
-            e.name(), recorded.name));
-  }
   return felt;
 }
 

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/doubt.hpp"
+
+namespace driftwright::effects {
+namespace {
+
+constexpr const char* kAir = "air_in_guard";
+constexpr std::size_t kMostBodies = 12;    // up to so many, any two may stand behind one
+constexpr double kSd = 0.5, kTrial = 0.1;  // of the share of a rise that the air takes
+constexpr double kLeastShare = 1e-4, kMostShare = 0.98;
+constexpr double kCapacitySd = 1.5;       // of the logarithm
+constexpr double kUsual_min = 10.0;       // in which the air and the sheets follow
+constexpr double kTried[] = {-1.5, 1.0};  // of the logarithm of that time
+constexpr double kRare = 2.0;             // nats: rather than a path of one body
+
+bool is_meant(const Exchange& x, const Body& body) {
+  return x.body == body && x.surrounding == kAmbientName && !x.medium_K;
+}
+
+void change_laws(const Effect& e, HeatBalance& balance) {
+  const std::string& air = e.references.at("air").name;
+  for (Exchange& x : balance.exchanges) {
+    if (is_meant(x, e.body()) && !(x.body == node(air))) x.surrounding = air;
+  }
+  for (Radiation& r : balance.radiations) {
+    if (e.body() == surface(r.surface) && r.surrounding == kAmbientName) r.surrounding = air;
+  }
+}
+
+void check(const Effect& e, const ConfigMap& in) {
+  if (e.references.at("air") == ambient_node())
+    in.fail("air", "a lumped node is wanted, which has a way of its own to the ambient");
+  if (e.references.at("air") == e.body()) in.fail("air", "the air of a guard is another node than the body in it");
+}
+
+/// What a body exchanges with the ambient at the typical speed [W/K].
+double to_ambient_W_K(const DoubtScene& s, const Body& body) {
+  double sum_W_K = 0.0;
+  for (const Exchange& x : s.balance.exchanges) {
+    if (!is_meant(x, body) || x.per != Per::kTotal) continue;
+    Inputs u{.drive = {.speed_rpm = s.typical_rpm}};
+    u.probe_K.assign(x.coefficient.probes.size(), s.reference_K);
+    sum_W_K += x.coefficient(u);
+  }
+  return sum_W_K;
+}
+
+Doubt around(const std::vector<Body>& bodies, double sum_W_K) {
+  Doubt d{.finding = "hidden_body",
+          .where = {},
+          .law = "the air of a guard around them, with a way of its own to the ambient",
+          .added = {make_effect("node", node(kAir)), make_effect("link", node(kAir))},
+          .numbers = {doubted("share", "1", kSd, kTrial),
+                      doubted("capacity", "J/K", kCapacitySd, 0.1, 60.0 * kUsual_min * sum_W_K)},
+          .trial = kTrial,
+          .grid = {}};
+  std::vector<std::string> names;
+  for (const Body& body : bodies) {
+    names.push_back(body.name);
+    d.added.push_back(make_effect("guard", body));
+    d.added.back().references["air"] = node(kAir);
+  }
+  d.where = fmt::format("{}", fmt::join(names, ","));
+  d.added[1].references["to"] = ambient_node();
+  d.numbers[0].low = 0.0;
+  d.numbers[0].high = kMostShare;
+  d.numbers[0].set = [sum_W_K](std::span<Effect> added, double share) {
+    added[1].set("conductance", sum_W_K * (1.0 / std::max(share, kLeastShare) - 1.0));
+  };
+  d.numbers[1].is_log = true;
+  d.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("capacity", value); };
+  d.numbers[0].set(d.added, 0.0);
+  d.numbers[1].set(d.added, d.numbers[1].nominal);
+  for (const double x : kTried) d.grid.push_back({x});
+  d.rarity = kRare;
+  return d;
+}
+
+/// A guard that the scenario lacks: around all bodies that lose heat to the ambient, around all but one, around any two. Its size is how much of its bodies' rise
+/// over the ambient the air takes, at the typical speed.
+std::vector<Doubt> doubts(const DoubtScene& s) {
+  std::vector<Doubt> list;
+  const bool has_one =
+      std::any_of(s.balance.nodes.begin(), s.balance.nodes.end(), [](const LumpedNode& n) { return n.name == kAir; });
+  if (has_one) return list;
+  std::vector<Body> bodies;
+  std::vector<double> each_W_K;
+  for (const Body& body : s.bodies) {
+    const double sum_W_K = body == ambient_node() ? 0.0 : to_ambient_W_K(s, body);
+    if (!(sum_W_K > 0.0)) continue;
+    bodies.push_back(body);
+    each_W_K.push_back(sum_W_K);
+  }
+  const std::size_t n = bodies.size();
+  const auto add = [&](const auto& is_in) {
+    std::vector<Body> chosen;
+    double sum_W_K = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!is_in(i)) continue;
+      chosen.push_back(bodies[i]);
+      sum_W_K += each_W_K[i];
+    }
+    list.push_back(around(chosen, sum_W_K));
+  };
+  if (n < 2) return list;
+  add([](std::size_t) { return true; });
+  for (std::size_t out = 0; n > 3 && out < n; ++out) add([=](std::size_t i) { return i != out; });
+  for (std::size_t a = 0; n > 2 && n <= kMostBodies && a < n; ++a) {
+    for (std::size_t b = a + 1; b < n; ++b) add([=](std::size_t i) { return i == a || i == b; });
+  }
+  return list;
+}
+
+}  // namespace
+
+EffectKind guard() {
+  return {.key = "guard",
+          .title = "a body that stands behind a guard: what it loses to the ambient goes to the air in the guard",
+          .law =
+              "films, links and radiation of the body to the ambient lead to `air`, a node with a link of its own to the "
+              "ambient; one entry for each body behind the guard",
+          .places = {Place::kRegion, Place::kSurface, Place::kNode},
+          .parameters = {},
+          .change_laws = change_laws,
+          .references = {{"air", {BodyKind::kNode}, {}, "lumped node: the air in the guard"}},
+          .check = check,
+          .doubts = doubts};
+}
+
+}  // namespace driftwright::effects

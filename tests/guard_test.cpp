@@ -1,0 +1,123 @@
+// Bodies behind a guard whose air has a way of its own to the ambient: what the entry says, and that one which a scenario lacks is found.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/lumped_records.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+constexpr const char* kMachine = R"(name: behind_a_guard
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: spindle, capacity: 5 kJ/K}
+  - {type: node, node: table, capacity: 12 kJ/K}
+  - {type: node, node: column, capacity: 40 kJ/K}
+  - {type: heat_source, node: spindle, power: 120 W, at_speed: 1000 rpm, exponent: 1.3}
+  - {type: link, node: spindle, to: column, conductance: 6 W/K}
+  - {type: link, node: table, to: column, conductance: 2 W/K}
+  - {type: link, node: spindle, to: ambient, conductance: 5 W/K}
+  - {type: link, node: table, to: ambient, conductance: 7 W/K}
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+ambient: [[0 min, 20 degC], [200 min, 22 degC], [400 min, 21 degC]]
+sensors:
+  - {name: t_spindle, node: spindle}
+  - {name: t_table, node: table}
+  - {name: t_column, node: column}
+displacements:
+  - name: nose
+    sensitivities:
+      - {node: column, sensitivity: 3 um/K}
+cyclograms:
+  monday: [[60 min, 600 rpm], [60 min, 1900 rpm], [40 min, 0 rpm], [80 min, 1000 rpm], [60 min, 1400 rpm]]
+  tuesday: [[50 min, 1800 rpm], [70 min, 300 rpm], [60 min, 1000 rpm], [60 min, 0 rpm], [60 min, 2000 rpm]]
+solver: {output_interval: 1 min}
+)";
+constexpr const char* kGuard = R"({type: node, node: air, capacity: 2 kJ/K}
+  - {type: link, node: air, to: ambient, conductance: 8 W/K}
+  - {type: guard, node: spindle, air: air}
+  - {type: guard, node: table, air: air})";
+
+TEST(AGuard, TakesWhatItsBodiesLoseToTheAmbientToItsAir) {
+  const scenarios::Scenario s = scenarios::read_scenario(write_file("guard.yaml", with_effect(kMachine, kGuard)));
+  const effects::HeatBalance b = effects::heat_balance(s.machine->effects);
+  for (const effects::Exchange& x : b.exchanges) {
+    if (x.name == "link spindle - ambient" || x.name == "link table - ambient")
+      EXPECT_EQ(x.surrounding, "air") << x.name;
+    else
+      EXPECT_NE(x.surrounding, "air") << x.name;
+  }
+}
+
+// 120 W into the spindle alone, two bodies without a way to a third: T_air = P / G_air over the ambient, the spindle P / G_film above the air, the table as warm as the air.
+TEST(AGuard, InSteadyStateIsThreeConductancesInARow) {
+  const char* text = R"(name: steady
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: spindle, capacity: 1 kJ/K}
+  - {type: node, node: table, capacity: 1 kJ/K}
+  - {type: node, node: air, capacity: 1 kJ/K}
+  - {type: heat_source, node: spindle, power: 120 W}
+  - {type: link, node: spindle, to: ambient, conductance: 5 W/K}
+  - {type: link, node: table, to: ambient, conductance: 7 W/K}
+  - {type: link, node: air, to: ambient, conductance: 8 W/K}
+  - {type: guard, node: spindle, air: air}
+  - {type: guard, node: table, air: air}
+ambient: 20 degC
+sensors: [{name: t_spindle, node: spindle}, {name: t_table, node: table}, {name: t_air, node: air}]
+cyclograms: {long: [[50 h, 1000 rpm]]}
+)";
+  const scenarios::Scenario s = scenarios::read_scenario(write_file("steady.yaml", text));
+  const scenarios::MachineModel& model = *s.machine;
+  const scenarios::Machine machine = scenarios::build(model, scenarios::place(model));
+  const Cyclogram& c = s.cyclograms.front();
+  const auto run =
+      solver::simulate(machine.system, c, model.ambient, {0.0, c.duration_s()}, {}, scenarios::start_state(model, machine));
+  const Record r = scenarios::as_recorded(model, run, machine.system.outputs, c);
+  const auto at_end = [&](const std::string& name) {
+    for (const Channel& channel : r.channels) {
+      if (channel.name == name) return channel.values.back();
+    }
+    ADD_FAILURE() << name;
+    return 0.0;
+  };
+  EXPECT_NEAR(at_end("t_air"), 20.0 + 120.0 / 8.0, 1e-3);
+  EXPECT_NEAR(at_end("t_spindle"), 20.0 + 120.0 / 8.0 + 120.0 / 5.0, 1e-3);
+  EXPECT_NEAR(at_end("t_table"), 20.0 + 120.0 / 8.0, 1e-3);
+}
+
+TEST(AGuard, ThatAScenarioLacksIsNamedAtItsBodiesAndWritten) {
+  const std::vector<std::string> records =
+      noisy_records(write_file("truth.yaml", with_effect(kMachine, kGuard)), "guard_", 60.0, 0.03, 0.2);
+  const Beside beside(write_file("plain.yaml", kMachine), records);
+  const Diagnosis d = beside.diagnosed();
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].effect, "hidden_body");
+  EXPECT_EQ(d.causes[0].where, "spindle,table");
+  EXPECT_THAT(d.causes[0].law, HasSubstr("guard"));
+  ASSERT_THAT(d.causes[0].parameters, SizeIs(2));
+  EXPECT_NEAR(d.causes[0].parameters[0].value, 12.0 / (12.0 + 8.0), 0.03);
+  EXPECT_NEAR(d.causes[0].parameters[1].value, 2000.0, 600.0);
+  expect_written_is_found_no_more(beside, d, records);
+}
+
+TEST(AGuard, WantsANodeForItsAir) {
+  for (const auto& [entry, message] :
+       {std::pair{"{type: guard, node: spindle}", "key 'air' is missing"},
+        std::pair{"{type: guard, node: spindle, air: ambient}", "a lumped node is wanted"},
+        std::pair{"{type: guard, node: spindle, air: spindle}", "another node than the body"}}) {
+    EXPECT_THAT([&] { (void)scenarios::read_scenario(write_file("bad_guard.yaml", with_effect(kMachine, entry))); },
+                ThrowsMessage<InputError>(HasSubstr(message)));
+  }
+}
+
+}  // namespace
+}  // namespace driftwright::diagnosis
