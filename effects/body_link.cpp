@@ -9,6 +9,7 @@ namespace {
 constexpr std::size_t kFewBodies = 12;  // up to so many, any two may be joined; beyond, those that a third one joins already
 constexpr double kTrial = 0.1;          // of a typical conductance
 constexpr double kUsualRunOn_min = 5.0;
+constexpr double kRare = 1.0;  // nats: rather than a path that is always there
 
 bool goes_with_spindle(const Effect& e) {
   return e.words.at("runs") == "while_spindle_turns";
@@ -69,7 +70,25 @@ void doubt_fan(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) 
   list.push_back(std::move(fan));
 }
 
-/// A path between two bodies that nothing joins: nodes with each other, with the ambient, and with regions; and fans.
+/// Oil, chips or a belt that carry heat from one body to another while the spindle turns.
+Doubt carried(const DoubtScene& s, const Body& from, const Body& to) {
+  const double typical_W_K = s.typical_conductance_W_K();
+  Doubt d{.finding = "link",
+          .where = {},
+          .law = "a path of heat while the spindle turns",
+          .added = {make_effect("link", from, {{"conductance", 0.0}})},
+          .numbers = {doubted("conductance", "W/K", 2.0 * typical_W_K, 0.05 * typical_W_K)},
+          .trial = kTrial * typical_W_K,
+          .rarity = kRare};
+  d.numbers[0].low = 0.0;
+  d.added[0].references["to"] = to;
+  d.added[0].words["runs"] = "while_spindle_turns";
+  d.where = where_of(d.added[0]);
+  return d;
+}
+
+/// A path between two bodies that nothing joins: nodes with each other, with the ambient, and with regions; one between any two nodes that is there while the
+/// spindle turns; and fans.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double typical_W_K = s.typical_conductance_W_K();
   std::vector<Doubt> list;
@@ -91,6 +110,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     const bool is_node = from.kind == BodyKind::kNode;
     for (std::size_t j = is_node ? i + 1 : 0; j < s.bodies.size(); ++j) {
       const Body& to = s.bodies[j];
+      if (is_node && to.kind == BodyKind::kNode && is_small && s.starts_and_stops) list.push_back(carried(s, from, to));
       if (to.kind != BodyKind::kNode || are_joined(s, from, to)) continue;
       if (!is_node && is_air_of_films(s, to)) continue;
       if (is_small || has_common_neighbour(s, from, to)) add(from, to);

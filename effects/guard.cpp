@@ -10,13 +10,13 @@ namespace driftwright::effects {
 namespace {
 
 constexpr const char* kAir = "air_in_guard";
-constexpr std::size_t kMostBodies = 12;    // up to so many, any two may stand behind one
-constexpr double kSd = 0.5, kTrial = 0.1;  // of the share of a rise that the air takes
-constexpr double kLeastShare = 1e-4, kMostShare = 0.98;
+constexpr std::size_t kMostBodies = 12;  // up to so many, any two may stand behind one
+// Of the resistance of its bodies' own exchange with the ambient at the typical speed: what that of the guard is thought to be.
+constexpr double kSd = 1.0, kTrial = 0.1, kLeast = 1e-4, kMost = 50.0;
 constexpr double kCapacitySd = 1.5;       // of the logarithm
 constexpr double kUsual_min = 10.0;       // in which the air and the sheets follow
 constexpr double kTried[] = {-1.5, 1.0};  // of the logarithm of that time
-constexpr double kRare = 2.0;             // nats: rather than a path of one body
+constexpr double kRare = 1.0;             // nats, beside which bodies it stands around: rather than a path of one body
 
 bool is_meant(const Exchange& x, const Body& body) {
   return x.body == body && x.surrounding == kAmbientName && !x.medium_K;
@@ -51,13 +51,14 @@ double to_ambient_W_K(const DoubtScene& s, const Body& body) {
 }
 
 Doubt around(const std::vector<Body>& bodies, double sum_W_K) {
+  const double usual_K_W = 1.0 / sum_W_K;
   Doubt d{.finding = "hidden_body",
           .where = {},
           .law = "the air of a guard around them, with a way of its own to the ambient",
           .added = {make_effect("node", node(kAir)), make_effect("link", node(kAir))},
-          .numbers = {doubted("share", "1", kSd, kTrial),
+          .numbers = {doubted("resistance", "K/W", kSd * usual_K_W, kTrial * usual_K_W),
                       doubted("capacity", "J/K", kCapacitySd, 0.1, 60.0 * kUsual_min * sum_W_K)},
-          .trial = kTrial,
+          .trial = kTrial * usual_K_W,
           .grid = {}};
   std::vector<std::string> names;
   for (const Body& body : bodies) {
@@ -68,21 +69,20 @@ Doubt around(const std::vector<Body>& bodies, double sum_W_K) {
   d.where = fmt::format("{}", fmt::join(names, ","));
   d.added[1].references["to"] = ambient_node();
   d.numbers[0].low = 0.0;
-  d.numbers[0].high = kMostShare;
-  d.numbers[0].set = [sum_W_K](std::span<Effect> added, double share) {
-    added[1].set("conductance", sum_W_K * (1.0 / std::max(share, kLeastShare) - 1.0));
+  d.numbers[0].high = kMost * usual_K_W;
+  d.numbers[0].set = [least_K_W = kLeast * usual_K_W](std::span<Effect> added, double resistance_K_W) {
+    added[1].set("conductance", 1.0 / std::max(resistance_K_W, least_K_W));  // a way to the ambient there is
   };
   d.numbers[1].is_log = true;
   d.numbers[1].set = [](std::span<Effect> added, double value) { added[0].set("capacity", value); };
   d.numbers[0].set(d.added, 0.0);
   d.numbers[1].set(d.added, d.numbers[1].nominal);
   for (const double x : kTried) d.grid.push_back({x});
-  d.rarity = kRare;
   return d;
 }
 
-/// A guard that the scenario lacks: around all bodies that lose heat to the ambient, around all but one, around any two. Its size is how much of its bodies' rise
-/// over the ambient the air takes, at the typical speed.
+/// A guard that the scenario lacks: around all bodies that lose heat to the ambient, around all but one, around any two. Its size is the resistance of the
+/// way from its air to the ambient: none, and there is no guard.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   const bool has_one =
@@ -113,6 +113,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   for (std::size_t a = 0; n > 2 && n <= kMostBodies && a < n; ++a) {
     for (std::size_t b = a + 1; b < n; ++b) add([=](std::size_t i) { return i == a || i == b; });
   }
+  for (Doubt& d : list) d.rarity = kRare + std::log(static_cast<double>(list.size()));
   return list;
 }
 

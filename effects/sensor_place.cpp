@@ -63,11 +63,12 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
                          .trial = 0.3,
                          .rarity = may_touch ? 0.0 : kTouchWithoutPath};
       list.push_back(always);
-      if (body == ambient_node() && s.starts_and_stops) {  // a stream of air that the machine makes
-        Doubt blown_at = always;
-        blown_at.law = "reads a share of the air while the spindle turns";
-        blown_at.added.front().words["acts"] = "while_spindle_turns";
-        list.push_back(std::move(blown_at));
+      if (s.starts_and_stops) {  // a stream of air that the machine makes, or oil that comes from another body
+        Doubt flown_at = always;
+        flown_at.law =
+            fmt::format("reads a share of {} while the spindle turns", body == ambient_node() ? "the air" : body.name);
+        flown_at.added.front().words["acts"] = "while_spindle_turns";
+        list.push_back(std::move(flown_at));
       }
       const bool is_elsewhere = at != s.sensor_bodies.end() && !(at->second == body);
       if (is_elsewhere && !(body == ambient_node())) list.push_back(mislabelled(place));
@@ -101,7 +102,7 @@ EffectKind sensor_place() {
       .choices = {{"acts",
                    {"always", "while_spindle_turns"},
                    "always",
-                   "when it does: a stream of air blows at it while the spindle turns"}},
+                   "when it does: air blows at it, or oil comes from the other body, while the spindle turns"}},
       .doubts = doubts};
 }
 

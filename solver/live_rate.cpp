@@ -23,7 +23,9 @@ bool LiveRate::enter(const LinearStretch& stretch) {
   inputs_.drive = stretch.drive;
   inputs_.run = stretch.run;
   inputs_.time_s = stretch.law_time_s();
-  inputs_.ambient_K = ambient_.at(stretch.start_s);
+  start_s_ = stretch.start_s;
+  start_ambient_K_ = inputs_.ambient_K = ambient_.at(stretch.start_s);
+  ambient_K_s_ = (ambient_.at(stretch.end_s) - start_ambient_K_) / (stretch.end_s - stretch.start_s);
   inputs_.probe_K.clear();
   std::vector<double> followed;
   followed.reserve(followed_.size());
@@ -66,7 +68,7 @@ double LiveRate::value(const BoundLaw& law) {
 }
 
 void LiveRate::look(double t_s, const Eigen::VectorXd& z) {
-  inputs_.ambient_K = ambient_.at(t_s);
+  inputs_.ambient_K = start_ambient_K_ + ambient_K_s_ * (t_s - start_s_);
   for (std::size_t p = 0; p < probe_K_.size(); ++p)
     probe_K_[p] = system_.reference_K + system_.probes[p].theta_K(z, inputs_.ambient_K);
 }

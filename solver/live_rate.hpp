@@ -49,6 +49,7 @@ class LiveRate {
   std::vector<Source> sources_;
   std::vector<Exchange> exchanges_;
   effects::Inputs inputs_;
+  double start_s_ = 0.0, start_ambient_K_ = 0.0, ambient_K_s_ = 0.0;  ///< of the stretch, in which the ambient is a line
   std::vector<double> probe_K_;
   std::vector<double> followed_;  ///< values of the laws that do not look at the state, 0 where a thermostat has them off
   bool has_entered_ = false;

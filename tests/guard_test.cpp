@@ -104,7 +104,7 @@ TEST(AGuard, ThatAScenarioLacksIsNamedAtItsBodiesAndWritten) {
   EXPECT_EQ(d.causes[0].where, "spindle,table");
   EXPECT_THAT(d.causes[0].law, HasSubstr("guard"));
   ASSERT_THAT(d.causes[0].parameters, SizeIs(2));
-  EXPECT_NEAR(d.causes[0].parameters[0].value, 12.0 / (12.0 + 8.0), 0.03);
+  EXPECT_NEAR(d.causes[0].parameters[0].value, 1.0 / 8.0, 0.015);
   EXPECT_NEAR(d.causes[0].parameters[1].value, 2000.0, 600.0);
   expect_written_is_found_no_more(beside, d, records);
 }
