@@ -35,7 +35,7 @@ Eigen::Index first_of(const Hypothesis& hypothesis, std::size_t claim, Eigen::In
 
 /// A claim of a hypothesis in numbers.
 Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const Hypothesis& hypothesis, std::size_t claim,
-               const Fit& fit, double gain, Twin::Workspace& workspace, const Listener& listener) {
+               const Fit& fit, double gain, const Listener& listener) {
   const Claim& of = hypothesis[claim];
   const Variant& variant = list[of.candidate].variants[of.variant];
   Cause c{list[of.candidate].effect, list[of.candidate].where, variant.law, {}, gain, {}};
@@ -45,7 +45,7 @@ Cause cause_of(const std::vector<Candidate>& list, const Fitter& fitter, const H
     const auto at = first + static_cast<Eigen::Index>(k);
     const double sd = std::sqrt(std::max(0.0, fit.covariance(at, at)));
     const Interval x = listener.wants_end() ? Interval{fit.x[at] - 1.96 * sd, fit.x[at] + 1.96 * sd}
-                                            : profile_interval(fitter, hypothesis, fit, claim, k, workspace);
+                                            : profile_interval(fitter, hypothesis, fit, claim, k);
     const double scale = knob.is_time ? 60.0 : 1.0;
     c.parameters.push_back({knob.name, knob.is_time ? "min" : knob.unit, knob.value(fit.x[at]) / scale,
                             knob.value(x.low) / scale, knob.value(x.high) / scale});
@@ -174,11 +174,11 @@ void doubt_all(Diagnosis& d, const std::string& why) {
 }
 
 /// Numbers of the written causes, as they are written. @param fitter  that they were fitted with
-void say_what_is_written(Diagnosis& d, const Fitter& fitter, Twin::Workspace& workspace, const Listener& listener) {
+void say_what_is_written(Diagnosis& d, const Fitter& fitter, const Listener& listener) {
   for (std::size_t i = 0; i < d.written.causes.size(); ++i) {
     Cause& c = d.causes.at(d.written.causes[i]);
     c.parameters = cause_of(d.search.candidates, fitter, d.written.hypothesis, i, d.written.fit, c.log_evidence_gain,
-                            workspace, listener)
+                            listener)
                        .parameters;
   }
 }
@@ -207,7 +207,7 @@ void write_alone(Diagnosis& d, const CausesAlone& alone, const Fitter& fitter, T
     d.causes[c].is_written = is_written;
     d.causes[c].why_not_written = is_written ? "" : d.written.why_nothing;
   }
-  say_what_is_written(d, numbers_as_written, workspace, listener);
+  say_what_is_written(d, numbers_as_written, listener);
 }
 
 /// Of a diagnosis that was ended: what stands so far is said, and that it was not judged.
@@ -314,13 +314,13 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   for (std::size_t c = 0; c < d.search.findings.size(); ++c) {
     listener.share(static_cast<double>(c) / static_cast<double>(d.search.findings.size()));
     const Finding& f = d.search.findings[c];
-    Cause cause = cause_of(list, fitter, d.search.hypothesis, c, d.search.fit, f.log_evidence_gain, workspace, listener);
+    Cause cause = cause_of(list, fitter, d.search.hypothesis, c, d.search.fit, f.log_evidence_gain, listener);
     for (const Finding::Alternative& a : f.alternatives) {
       Hypothesis other = d.search.hypothesis;
       other.erase(other.begin() + static_cast<std::ptrdiff_t>(c));
       other.push_back(a.claim);
       cause.alternatives.push_back(
-          cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, workspace, listener));
+          cause_of(list, fitter, other, other.size() - 1, a.fit, a.log_evidence_gain, listener));
       leave_out(cause.alternatives.back(), "the cause that it cannot be told from is");
       cause.alternatives.back().chance = d.search.chance.share_above(a.log_evidence_gain);
       cause.alternatives.back().share = a.share;
@@ -341,7 +341,7 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
   d.written = written_of(fitter, d.search, held, workspace);
   d.extended =
       d.written.keeps_numbers ? fitter.predict_machine(d.written.hypothesis, d.written.fit.x, workspace) : d.as_written;
-  if (d.written.keeps_numbers && !d.written.taken_up.empty()) say_what_is_written(d, fitter, workspace, listener);
+  if (d.written.keeps_numbers && !d.written.taken_up.empty()) say_what_is_written(d, fitter, listener);
   d.calibrated = calibrated_numbers(fitter, d.written.fit, known_to);
   for (Estimate& e : d.calibrated) e.is_written = d.written.keeps_numbers;
   // what came back once others were no longer held is no cause

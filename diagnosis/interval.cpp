@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "diagnosis/no_solution.hpp"
 
 namespace driftwright::diagnosis {
@@ -17,7 +18,7 @@ constexpr double kHopeless = 8.0;  // of Φ
 }  // namespace
 
 Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& best, std::size_t claim,
-                          std::size_t which, Twin::Workspace& workspace) {
+                          std::size_t which) {
   Eigen::Index at = fitter.n_nuisance() + static_cast<Eigen::Index>(which);
   for (std::size_t c = 0; c < claim; ++c) at += static_cast<Eigen::Index>(hypothesis[c].knobs.size());
   const Knob& knob = hypothesis[claim].knobs[which];
@@ -33,7 +34,7 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
   if (!(sd > 0.0)) return {middle, middle};
 
   // Rise of Φ at a distance; the others begin where the best fit's own covariance expects them.
-  const auto rise = [&](double distance) {
+  const auto rise = [&](double distance, Twin::Workspace& workspace) {
     Eigen::VectorXd start = best.x;
     if (is_jump || !(variance > 0.0)) {
       start[at] = middle + distance;
@@ -46,21 +47,21 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
   };
   const auto room = [&](double sign) { return std::max(0.0, sign > 0.0 ? high - middle : middle - low); };
   // A jump between two rows is anywhere between them; beyond a worse row there may be a better one.
-  const auto last_row = [&](double sign) {
+  const auto last_row = [&](double sign, Twin::Workspace& workspace) {
     double last = 0.0;
     for (int i = 1; i <= kMostRows && i * row_s < room(sign); ++i) {
-      const double r = rise(sign * i * row_s);
+      const double r = rise(sign * i * row_s, workspace);
       if (r < kRise) last = i * row_s;
       if (r > kHopeless) break;
     }
     return middle + sign * std::min(room(sign), last + row_s);
   };
-  const auto end = [&](double sign) {
+  const auto end = [&](double sign, Twin::Workspace& workspace) {
     double inside = 0.0, rise_inside = 0.0, outside = 0.0, rise_outside = 0.0;
     double distance = std::min(room(sign), 1.96 * sd);
     if (!(distance > 0.0)) return middle;
     for (int i = 0; i < kMostTries; ++i) {
-      const double r = rise(sign * distance);
+      const double r = rise(sign * distance, workspace);
       if (std::abs(r - kRise) < kNear) return middle + sign * distance;
       if (r < kRise) {
         inside = distance, rise_inside = std::max(0.0, r);
@@ -80,8 +81,14 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
     // never left: the data allow all that the knob does
     return middle + sign * (outside > 0.0 ? 0.5 * (inside + outside) : std::min(room(sign), 8.0 * knob.prior_sd));
   };
-  if (is_jump) return {last_row(-1.0), last_row(1.0)};
-  return {end(-1.0), end(1.0)};
+  double ends[2] = {};
+  for_each_index(
+      2, [&] { return Twin::Workspace(fitter.twin()); },
+      [&](std::size_t i, Twin::Workspace& workspace) {
+        const double sign = i == 0 ? -1.0 : 1.0;
+        ends[i] = is_jump ? last_row(sign, workspace) : end(sign, workspace);
+      });
+  return {ends[0], ends[1]};
 }
 
 }  // namespace driftwright::diagnosis

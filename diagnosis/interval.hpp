@@ -14,6 +14,6 @@ struct Interval {
 /// Source: Venzon & Moolgavkar, J. R. Stat. Soc. C 37 (1988) 87-94.
 /// @param claim, knob  which of the hypothesis's
 [[nodiscard]] Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, const Fit& best,
-                                        std::size_t claim, std::size_t knob, Twin::Workspace& workspace);
+                                        std::size_t claim, std::size_t knob);
 
 }  // namespace driftwright::diagnosis

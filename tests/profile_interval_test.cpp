@@ -64,7 +64,7 @@ TEST_F(ProfileInterval, OfABiasIsThatOfAMean) {
   const Hypothesis h = claim("sensor_bias", "t_body");
   ASSERT_EQ(h.size(), 1u);
   const Fit fit = fitter_->fit(h, Eigen::VectorXd::Zero(1), workspace);
-  const Interval x = profile_interval(*fitter_, h, fit, 0, 0, workspace);
+  const Interval x = profile_interval(*fitter_, h, fit, 0, 0);
   // Φ may be off by its tolerance of 0.15 in 1.92: 4 % of the width
   const double half_K = 1.96 * kNoise_K / std::sqrt(static_cast<double>(kRows));
   EXPECT_NEAR(x.high - fit.x[fitter_->n_nuisance()], half_K, 0.04 * half_K);
@@ -77,7 +77,7 @@ TEST_F(ProfileInterval, OfAStepInAReadingReachesFromRowToRow) {
   ASSERT_EQ(h.size(), 1u);
   const Fit fit = fitter_->fit(h, Eigen::Vector2d(3.0, -1500.0), workspace);
   const Knob& time = h[0].knobs[1];
-  const Interval x = profile_interval(*fitter_, h, fit, 0, 1, workspace);
+  const Interval x = profile_interval(*fitter_, h, fit, 0, 1);
   const double low_s = time.value(x.low), high_s = time.value(x.high);
   EXPECT_LE(low_s, kShiftAt_s - 60.0);  // between the row before it and its own, no reading tells
   EXPECT_GE(high_s, kShiftAt_s);
