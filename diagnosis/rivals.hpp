@@ -6,7 +6,7 @@
 //     odds of the place = share of these that sit where the claim does
 //
 // Two claims of one kind at two bodies leave open where it is, and not what it is. A claim that says the same in other words, as heat in a window that lasts to the
-// end and heat from a time on, takes nothing away from either.
+// end and heat from a time on, takes nothing away from either; heat for two minutes and a film that is less for two minutes are two things, of which one is true.
 
 #include <string>
 #include <vector>
@@ -18,6 +18,9 @@ struct Rival {
   double log_evidence = 0.0;
   bool says_the_same = false;  ///< as the first one, in other words
 };
+
+/// Whether one of two kinds is of heat that is released and the other of an exchange: these are no two words for one thing, even where no reading tells them apart.
+[[nodiscard]] bool are_apart(const std::string& effect, const std::string& other);
 
 struct Odds {
   double kind = 1.0, place = 1.0;

@@ -75,7 +75,7 @@ std::set<std::string> bodies_in(const std::string& where) {
 
 /// Whether two claims say of the same bodies, in other words, what no reading could tell apart: a window that lasts to the end, heat from a time on.
 bool says_the_same(const Fitter& fitter, const Candidate& a, const Fit& fit_a, const Candidate& b, const Fit& fit_b) {
-  if (bodies_in(a.where) != bodies_in(b.where)) return false;
+  if (bodies_in(a.where) != bodies_in(b.where) || are_apart(a.effect, b.effect)) return false;
   const Comparison& c = fitter.comparison();
   return (c.whitened(fit_a.prediction) - c.whitened(fit_b.prediction)).squaredNorm() < kSame;
 }
