@@ -13,6 +13,8 @@ constexpr double kOfSolids =
 constexpr double kLess = -0.4;         // of the logarithm of an exchange, at which that is tried
 constexpr double kShortest_min = 0.5;  // while
 constexpr double kStirred = 0.75;      // of the speed: a film on what turns, between laminar 0.5 and turbulent 0.8
+constexpr double kLeastDifference_K = 0.05, kAtDifference_K = 10.0;
+constexpr double kFree = 0.25, kMostOfDifference = 1.5;           // free convection of a plate; what is hot radiates, too
 constexpr double kLowestExponent = -1.0, kHighestExponent = 4.0;  // of speed, of all laws together
 
 /// Whether it acts at that time; before a record, where time is negative, only what has neither beginning nor end.
@@ -21,19 +23,26 @@ bool acts(const Effect& e, const Inputs& u) {
   return u.time_s >= e.from_s && u.time_s < e.until_s && (e.in.empty() || u.run == e.in);
 }
 
-void change(const Effect& e, const Body& body, Law& law) {
+/// @param other  at the other end of an exchange; nullptr: of a heat, or of an exchange with a medium or across a joint
+void change(const Effect& e, const Body& body, const Body* other, Law& law) {
   const double factor = e["factor"], exponent = e["exponent"], n0_rpm = e["at_speed"];
   const double growth = e["growth"], growth_exponent = e["growth_exponent"];
   const double decay_1_K = e["decay"], t0_K = e["at_temperature"];
   const double beyond_rpm = e["beyond"], growth_beyond = e["growth_beyond"];
-  const bool thins = decay_1_K != 0.0;
+  const double of_difference = e["difference_exponent"], at_difference_K = e["at_difference"];
+  const bool thins = decay_1_K != 0.0, follows_difference = of_difference != 0.0 && other;
   if (thins) law.probes.push_back(body);
+  if (follows_difference) {
+    law.probes.push_back(body);
+    law.probes.push_back(*other);
+  }
   law.value = [=, value = law.value](const Inputs& u) {
     Inputs own;
     const Inputs* inputs = &u;
-    if (thins) {  // the last probe is this one's
+    const std::size_t n_probes = u.probe_K.size() - (thins ? 1 : 0) - (follows_difference ? 2 : 0);
+    if (thins || follows_difference) {  // the last probes are this one's
       own = u;
-      own.probe_K.pop_back();
+      own.probe_K.resize(n_probes);
       inputs = &own;
     }
     double as_written = value(*inputs);
@@ -48,7 +57,11 @@ void change(const Effect& e, const Body& body, Law& law) {
     const double n = u.drive.speed_rpm / n0_rpm;
     const double by_speed = (n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0) +
                             (growth != 0.0 ? growth * std::pow(n, growth_exponent) : 0.0);
-    return factor * by_speed * as_written * (thins ? std::exp(-decay_1_K * (u.probe_K.back() - t0_K)) : 1.0);
+    const double by_temperature = thins ? std::exp(-decay_1_K * (u.probe_K[n_probes] - t0_K)) : 1.0;
+    const double difference_K =
+        follows_difference ? std::max(kLeastDifference_K, std::abs(u.probe_K.end()[-2] - u.probe_K.back())) : 1.0;
+    const double by_difference = follows_difference ? std::pow(difference_K / at_difference_K, of_difference) : 1.0;
+    return factor * by_speed * as_written * by_temperature * by_difference;
   };
 }
 
@@ -67,11 +80,12 @@ HeatInput of_warmer_medium(const Effect& e, const Exchange& x) {
 
 void change_laws(const Effect& e, HeatBalance& balance) {
   for (HeatInput& h : balance.heats) {
-    if (h.name == e.place || h.name == of_medium(e.place)) change(e, h.body, h.power_W);
+    if (h.name == e.place || h.name == of_medium(e.place)) change(e, h.body, nullptr, h.power_W);
   }
   for (Exchange& x : balance.exchanges) {
     if (x.name != e.place) continue;
-    change(e, x.body, x.coefficient);
+    const Body other = node(x.surrounding);
+    change(e, x.body, x.medium_K || x.body.kind == BodyKind::kJoint ? nullptr : &other, x.coefficient);
     if (e["warmer"] != 0.0 && x.medium_K) balance.heats.push_back(of_warmer_medium(e, x));
   }
   if (e.from_s > 0.0) balance.change_times_s.push_back(e.from_s);
@@ -285,6 +299,30 @@ void doubt_stirred(const DoubtScene& s, const std::string& finding, const Exchan
   list.push_back(std::move(grows));
 }
 
+/// Free convection, radiation: what a lumped body loses to the ambient grows with the difference of their temperatures where it is written as constant.
+void doubt_free(const Exchange& exchange, std::vector<Doubt>& list) {
+  if (exchange.surrounding != kAmbientName || exchange.medium_K || exchange.per == Per::kArea ||
+      exchange.body.kind != BodyKind::kNode || !exchange.coefficient.probes.empty())
+    return;
+  Doubt free{
+      .finding = "natural_convection",
+      .where = where_of(exchange),
+      .law = fmt::format("a conductance that follows a power of the temperature difference, the same but for a factor at "
+                         "{:.0f} K",
+                         kAtDifference_K),
+      .added = {changed(exchange.name)},
+      .numbers = {doubted("difference_exponent", "1", kFree, 0.1 * kFree), doubted_factor()},
+      .trial = 0.4 * kFree,
+      .rarity = kOfSolids};
+  free.added[0].set("at_difference", kAtDifference_K);
+  free.numbers[0].low = 0.0;
+  free.numbers[0].high = kMostOfDifference;
+  const bool is_listed = std::any_of(list.begin(), list.end(), [&](const Doubt& d) {
+    return d.finding == free.finding && d.added.front().place == exchange.name;
+  });
+  if (!is_listed) list.push_back(std::move(free));
+}
+
 std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   for (const Body& body : s.bodies) doubt_heat(s, body, list);
@@ -293,6 +331,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     for (const Exchange& x : heat_balance({e}).exchanges) {
       doubt_exchange(s, e.kind->exchange_finding, x, list);
       doubt_stirred(s, e.kind->exchange_finding, x, list);
+      doubt_free(x, list);
     }
   }
   return list;
@@ -300,10 +339,10 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0 && e["warmer"] == 0.0 &&
-      e["growth_beyond"] == 1.0)
+      e["growth_beyond"] == 1.0 && e["difference_exponent"] == 0.0)
     in.fail("factor",
-            "nothing is changed; another value of one of `factor`, `exponent`, `growth`, `growth_beyond`, `decay`, `warmer` "
-            "is wanted");
+            "nothing is changed; another value of one of `factor`, `exponent`, `growth`, `growth_beyond`, `decay`, "
+            "`difference_exponent`, `warmer` is wanted");
   if (in.has("beyond") != in.has("growth_beyond"))
     in.fail("beyond", "`beyond`, a speed, and `growth_beyond`, the share of the growth that is left there, go together");
 }
@@ -316,7 +355,7 @@ EffectKind changed_law() {
       .title = "another size, growth with speed or decay of what another effect does",
       .law =
           "c' = factor ((n / at_speed)^exponent + growth (n / at_speed)^growth_exponent) exp(-decay (T - "
-          "at_temperature)) c, "
+          "at_temperature)) (|T - T_other| / at_difference)^difference_exponent c, "
           "c: a power or a coefficient of another effect, T of its own body; at standstill the exponent does nothing; "
           "beyond a speed c grows by growth_beyond times as much, and falls to nothing at the most; a "
           "medium that is `warmer` brings that times c'",
@@ -331,6 +370,9 @@ EffectKind changed_law() {
                      {"beyond", "rpm", 1.0, 1e6, 1000.0, "that speed"},
                      {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
                      {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"},
+                     {"difference_exponent", "1", -1.0, 3.0, 0.0,
+                      "of an exchange: of the temperature difference, by which it grows; free convection: 0.25 to 0.33"},
+                     {"at_difference", "K", 0.1, 1e3, 10.0, "where that changes nothing"},
                      {"warmer", "K", -200.0, 200.0, 0.0,
                       "of an exchange with a medium of stated temperature, a coolant's set point: so much more"}},
       .timing = Timing::kInTime,

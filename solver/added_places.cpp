@@ -123,6 +123,13 @@ ReducedSystem with_places(const ReducedSystem& system, const AddedPlaces& added)
       grow(*v, n);
   }
   for (HeatSource& source : s.sources) grow(source.load, n);
+  for (const auto& [name, capacity_J_K] : added.nodes) {  // a law may look at its temperature
+    HeatSource heat{.name = name, .body = effects::node(name), .load = {}, .power_W = BoundLaw([](const effects::Inputs&) {
+                                                                             return 0.0;
+                                                                           })};
+    heat.load = mean_weights(system, added, heat.body);
+    s.sources.push_back(std::move(heat));
+  }
   for (Probe& probe : s.probes) grow(probe.weights, n);
   s.outputs.state = Eigen::MatrixXd::Zero(n, system.outputs.state.cols());
   s.outputs.state.topRows(own) = system.outputs.state;

@@ -21,7 +21,7 @@ struct AddedPlaces {
 [[nodiscard]] AddedPlaces places_lacking(const ReducedSystem& system, const effects::HeatBalance& balance);
 
 /// The system with them, their coefficients zero. Each node is one unknown behind the system's own, sqrt(capacity) times its temperature over the
-/// reference [K], so that its mass is one. Nothing else changes; the parts that the matrices are sums of are left out.
+/// reference [K], so that its mass is one; heat may enter it, and its temperature may be looked at. Nothing else changes; the parts that the matrices are sums of are left out.
 /// @throws std::logic_error  for a region or surface without an exchange with a medium, whose matrix its own exchanges take
 [[nodiscard]] ReducedSystem with_places(const ReducedSystem& system, const AddedPlaces& added);
 

@@ -373,6 +373,22 @@ TEST(ChangedLaw, AddsAGrowthWithSpeedToWhatIsThereAtStandstill) {
   EXPECT_NEAR(twice(at(2000.0)), 32.0, 1e-12);  // of the law as changed
 }
 
+TEST(ChangedLaw, FollowsAPowerOfTheTemperatureDifference) {
+  const std::string film = "{type: link, node: a, to: b, conductance: 10 W/K}";
+  const Law free = law_of({film, "{type: changed_law, law: link a - b, difference_exponent: 0.25, at_difference: 16 K}"});
+  ASSERT_EQ(free.probes, (std::vector<Body>{node("a"), node("b")}));
+  EXPECT_NEAR(free(at(0.0, 0.0, "", {309.0, 293.0})), 10.0, 1e-12);
+  EXPECT_NEAR(free(at(0.0, 0.0, "", {293.0, 294.0})), 5.0, 1e-12);  // 10 (1/16)^0.25, whichever is the warmer
+  EXPECT_NEAR(free(at(0.0, 0.0, "", {293.0, 293.0})), 10.0 * std::pow(0.05 / 16.0, 0.25), 1e-12);
+  // beside a decay, which looks at its own body as well
+  const Law both =
+      law_of({film,
+              "{type: changed_law, law: link a - b, difference_exponent: 0.25, at_difference: 16 K, decay: 0.02 1/K, "
+              "at_temperature: 20 degC}"});
+  ASSERT_EQ(both.probes, (std::vector<Body>{node("a"), node("a"), node("b")}));
+  EXPECT_NEAR(both(at(0.0, 0.0, "", {303.15, 303.15, 302.15})), 5.0 * std::exp(-0.2), 1e-12);
+}
+
 TEST(HeatSource, ThatGoesWithTheSpindleRunsOnForAWhile) {
   const std::string standby = "{type: heat_source, node: a, power: 40 W, runs: while_spindle_turns, runs_on: 10 min}";
   const Law law = law_of({standby});
@@ -387,7 +403,8 @@ TEST(HeatSource, ThatGoesWithTheSpindleRunsOnForAWhile) {
 }
 
 TEST(ServoLoss, HoldsAWeightWhileItsAxisStands) {
-  const Law law = law_of({"{type: servo_loss, region: m, power: 80 W, at_feed: 0.2 m/s, idle: 5 W, holding: 30 W, axis: z}"});
+  const Law law =
+      law_of({"{type: servo_loss, region: m, power: 80 W, at_feed: 0.2 m/s, idle: 5 W, holding: 30 W, axis: z}"});
   Inputs u = at(0.0);
   EXPECT_EQ(law(u), 35.0);
   u.drive.feed_m_s[2] = 0.1;
