@@ -7,6 +7,7 @@
 namespace driftwright {
 namespace {
 
+constexpr double kMostRounding_s = 1e-4;  // an ambient jumps within a millisecond
 constexpr double kRounding = 1e-9;  // of the time: sums of many durations miss a knot that is meant to be one of them
 
 /// A cut on a grid of four times the rounding of the section's end: so durations of its pieces add up to that end to the last bit.
@@ -56,11 +57,12 @@ double Cyclogram::speed_rpm(double time_s) const {
 
 Cyclogram split_at(const Cyclogram& cyclogram, std::vector<double> times_s) {
   std::sort(times_s.begin(), times_s.end());
-  Cyclogram split{.name = cyclogram.name, .sections = {}, .remarks = cyclogram.remarks, .columns = cyclogram.columns};
+  Cyclogram split = cyclogram;
+  split.sections.clear();
   split.sections.reserve(cyclogram.sections.size() + times_s.size());
   double start_s = 0.0;
   for (const Cyclogram::Section& section : cyclogram.sections) {
-    const double end_s = start_s + section.duration_s, rounding_s = kRounding * end_s;
+    const double end_s = start_s + section.duration_s, rounding_s = std::min(kRounding * end_s, kMostRounding_s);
     double from_s = start_s;
     for (auto t = std::upper_bound(times_s.begin(), times_s.end(), start_s + rounding_s); t != times_s.end(); ++t) {
       if (*t >= end_s - rounding_s) break;
@@ -119,7 +121,7 @@ std::vector<LinearStretch> linear_stretches(const Cyclogram& cyclogram, const st
     const double end_s = start_s + section.duration_s;
     if (!(end_s > start_s)) continue;
     bool changed = !last || section.drive != *last;
-    const double rounding_s = kRounding * end_s;
+    const double rounding_s = std::min(kRounding * end_s, kMostRounding_s);
     for (auto knot = std::upper_bound(knots.begin(), knots.end(), start_s); knot != knots.end(); ++knot) {
       if (*knot >= end_s - rounding_s) break;
       if (*knot <= start_s + rounding_s) continue;

@@ -206,9 +206,9 @@ Eigen::MatrixXd Fitter::readings(const TwinState& state, std::size_t run, const 
   return readings;
 }
 
-Fitter::KeptRuns Fitter::kept_runs(const TwinState& state, Twin::Workspace& workspace) const {
+Fitter::KeptRuns Fitter::kept_runs(const TwinState& state, Twin::Workspace& workspace, bool for_slopes) const {
   KeptRuns all;
-  for (const MeasuredRun& run : runs_) all.push_back(twin_.kept_run(state, run, workspace));
+  for (const MeasuredRun& run : runs_) all.push_back(twin_.kept_run(state, run, workspace, for_slopes));
   return all;
 }
 

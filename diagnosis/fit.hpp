@@ -107,7 +107,8 @@ class Fitter {
 
   /// One of each run, null where there is none: what states near it are answered from.
   using KeptRuns = std::vector<std::shared_ptr<const solver::KeptRun>>;
-  [[nodiscard]] KeptRuns kept_runs(const TwinState& state, Twin::Workspace& workspace) const;
+  /// @param for_slopes  as Twin::kept_run()
+  [[nodiscard]] KeptRuns kept_runs(const TwinState& state, Twin::Workspace& workspace, bool for_slopes = true) const;
 
   /// The same as predict() where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects act are taken from it.
   /// @param about  of a state near by, which others are answered from where it can be

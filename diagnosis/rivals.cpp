@@ -20,7 +20,7 @@ bool releases(const std::string& effect) {
   return is_one_of(effect, {"heat_source", "heat_window", "friction_law"});
 }
 bool exchanges(const std::string& effect) {
-  return is_one_of(effect, {"contact", "convection", "exchange_window", "forced_convection", "link"});
+  return is_one_of(effect, {"contact", "convection", "exchange_window", "forced_convection", "link", "natural_convection", "radiation"});
 }
 
 }  // namespace

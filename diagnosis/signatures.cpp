@@ -49,6 +49,7 @@ std::vector<Law> laws_of(const std::vector<Candidate>& candidates) {
 std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                   const std::vector<Law>& laws, const Hypothesis& hypothesis, const Fit& fit,
                                   const Listener& listener) {
+  if (laws.empty()) return {};
   const Eigen::VectorXd base = fitter.comparison().whitened(fit.prediction);
   std::vector<std::vector<Signature>> lists(laws.size());
   Prediction responses;
@@ -57,10 +58,7 @@ std::vector<Signature> signatures(const Fitter& fitter, const std::vector<Candid
   {
     Twin::Workspace workspace(fitter.twin());
     (void)fitter.predict(hypothesis, fit.x, workspace, &responses);
-    about = fitter.kept_runs(known, workspace);
-    for (auto& run : about) {
-      if (run && run->is_of_first_order()) run.reset();  // what a law makes of a reading is no slope
-    }
+    about = fitter.kept_runs(known, workspace, false);  // what a law makes of a reading is no slope
   }
   struct Space {
     Twin::Workspace workspace;

@@ -348,14 +348,14 @@ Twin::Bound Twin::bound(const TwinState& state, const MeasuredRun& run, Workspac
 }
 
 std::shared_ptr<const solver::KeptRun> Twin::kept_run(const TwinState& state, const MeasuredRun& run,
-                                                      Workspace& workspace) const {
+                                                      Workspace& workspace, bool for_slopes) const {
   const auto shared = [](auto kept) -> std::shared_ptr<const solver::KeptRun> {
     using Kept = typename decltype(kept)::value_type;
     return kept ? std::make_shared<const Kept>(*std::move(kept)) : nullptr;
   };
   const Driven d = drive(state, run, workspace);
   if (workspace.system_.is_linear())
-    return shared(workspace.propagator().course(d.cyclogram, d.ambient, run.grid_s, d.start));
+    return for_slopes ? shared(workspace.propagator().course(d.cyclogram, d.ambient, run.grid_s, d.start)) : nullptr;
   return shared(solver::KeptSteps::of(workspace.system_, d.cyclogram, d.ambient, run.grid_s, tolerances_, d.start));
 }
 

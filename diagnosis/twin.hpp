@@ -65,8 +65,9 @@ class Twin {
   [[nodiscard]] Eigen::MatrixXd respond(const TwinState& state, const MeasuredRun& run, Workspace& workspace,
                                         const solver::KeptRun* near = nullptr) const;
   /// What states near this one are answered from; null where there is nothing of that sort.
+  /// @param for_slopes  what answers to first order will do
   [[nodiscard]] std::shared_ptr<const solver::KeptRun> kept_run(const TwinState& state, const MeasuredRun& run,
-                                                                Workspace& workspace) const;
+                                                                Workspace& workspace, bool for_slopes = true) const;
   /// What its instruments say of them at the run's rows, n_outputs x n_times.
   [[nodiscard]] Eigen::MatrixXd read(const TwinState& state, const MeasuredRun& run, Eigen::MatrixXd outputs) const;
 

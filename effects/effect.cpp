@@ -242,6 +242,9 @@ HeatBalance heat_balance(const std::vector<Effect>& effects) {
     balance.append(std::move(own));
   }
   for (const Effect& effect : effects) {
+    if (effect.kind->change_paths) effect.kind->change_paths(effect, balance);
+  }
+  for (const Effect& effect : effects) {
     if (effect.kind->change_laws) effect.kind->change_laws(effect, balance);
   }
   for (const MaterialFactor& factor : material_factors(effects)) {

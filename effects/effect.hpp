@@ -107,7 +107,9 @@ struct EffectKind {
   bool keeps_time_itself = false;  ///< its laws look at `in` themselves: something goes on outside of it as well
   /// Adds what the effect does to heat, as if it acted at all times. The Effect outlives no call: copy what a Law needs.
   void (*contribute)(const Effect&, HeatBalance&) = nullptr;
-  /// Or changes what all others do to heat, once their laws are there.
+  /// Or changes where the exchanges of all others lead.
+  void (*change_paths)(const Effect&, HeatBalance&) = nullptr;
+  /// Or what all others do to heat, once laws and paths are there.
   void (*change_laws)(const Effect&, HeatBalance&) = nullptr;
   // Or to the drive and the ambient that are recorded, to what instruments say, to a material. Null: nothing.
   void (*change_drive)(const Effect&, DriveChange&) = nullptr;
@@ -126,8 +128,9 @@ struct EffectKind {
 
   /// Names of the numbers that a diagnosis calibrates.
   [[nodiscard]] std::vector<std::string> known_roughly() const;
+  [[nodiscard]] bool acts_on_heat() const { return contribute || change_paths || change_laws; }
   /// Whether it acts on instruments alone: the machine itself does not notice.
-  [[nodiscard]] bool is_of_readings() const { return change_readings && !contribute && !change_laws && !change_drive; }
+  [[nodiscard]] bool is_of_readings() const { return change_readings && !acts_on_heat() && !change_drive; }
 };
 
 /// The reference `surrounding` that films share: a lumped node, "ambient" by default.

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "effects/doubt.hpp"
@@ -9,8 +10,8 @@
 namespace driftwright::effects {
 namespace {
 
-constexpr const char* kAir = "air_in_guard";
-constexpr std::size_t kMostBodies = 12;  // up to so many, any two may stand behind one
+constexpr std::size_t kEveryChoice = 6;  // of up to so many bodies any two and more may stand behind one
+constexpr std::size_t kMostBodies = 12;  // of up to so many any two
 // Of the resistance of its bodies' own exchange with the ambient at the typical speed: what that of the guard is thought to be.
 constexpr double kSd = 1.0, kTrial = 0.1, kLeast = 1e-4, kMost = 50.0;
 constexpr double kCapacitySd = 1.5;       // of the logarithm
@@ -22,10 +23,14 @@ bool is_meant(const Exchange& x, const Body& body) {
   return x.body == body && x.surrounding == kAmbientName && !x.medium_K;
 }
 
-void change_laws(const Effect& e, HeatBalance& balance) {
+void change_paths(const Effect& e, HeatBalance& balance) {
   const std::string& air = e.references.at("air").name;
   for (Exchange& x : balance.exchanges) {
-    if (is_meant(x, e.body()) && !(x.body == node(air))) x.surrounding = air;
+    if (!is_meant(x, e.body())) continue;
+    x.surrounding = air;
+    for (Body& probe : x.coefficient.probes) {  // free convection looks at the air that it flows to
+      if (probe == ambient_node()) probe = node(air);
+    }
   }
   for (Radiation& r : balance.radiations) {
     if (e.body() == surface(r.surface) && r.surrounding == kAmbientName) r.surrounding = air;
@@ -50,12 +55,13 @@ double to_ambient_W_K(const DoubtScene& s, const Body& body) {
   return sum_W_K;
 }
 
-Doubt around(const std::vector<Body>& bodies, double sum_W_K) {
+/// @param air  its name
+Doubt around(const std::vector<Body>& bodies, const std::string& air, double sum_W_K) {
   const double usual_K_W = 1.0 / sum_W_K;
   Doubt d{.finding = "hidden_body",
           .where = {},
           .law = "the air of a guard around them, with a way of its own to the ambient",
-          .added = {make_effect("node", node(kAir)), make_effect("link", node(kAir))},
+          .added = {make_effect("node", node(air)), make_effect("link", node(air))},
           .numbers = {doubted("resistance", "K/W", kSd * usual_K_W, kTrial * usual_K_W),
                       doubted("capacity", "J/K", kCapacitySd, 0.1, 60.0 * kUsual_min * sum_W_K)},
           .trial = kTrial * usual_K_W,
@@ -64,7 +70,7 @@ Doubt around(const std::vector<Body>& bodies, double sum_W_K) {
   for (const Body& body : bodies) {
     names.push_back(body.name);
     d.added.push_back(make_effect("guard", body));
-    d.added.back().references["air"] = node(kAir);
+    d.added.back().references["air"] = node(air);
   }
   d.where = fmt::format("{}", fmt::join(names, ","));
   d.added[1].references["to"] = ambient_node();
@@ -81,37 +87,54 @@ Doubt around(const std::vector<Body>& bodies, double sum_W_K) {
   return d;
 }
 
-/// A guard that the scenario lacks: around all bodies that lose heat to the ambient, around all but one, around any two. Its size is the resistance of the
-/// way from its air to the ambient: none, and there is no guard.
+/// Which of n bodies stand behind one guard: of a few every choice of two and more; of more all, all but one, and, of not too many, any two.
+std::vector<std::vector<std::size_t>> choices_of(std::size_t n) {
+  std::vector<std::vector<std::size_t>> list;
+  const auto add = [&](const auto& is_in) {
+    list.emplace_back();
+    for (std::size_t i = 0; i < n; ++i) {
+      if (is_in(i)) list.back().push_back(i);
+    }
+  };
+  if (n < 2) return list;
+  if (n <= kEveryChoice) {
+    for (unsigned chosen = 1; chosen < 1U << n; ++chosen) {
+      if (std::popcount(chosen) > 1) add([=](std::size_t i) { return (chosen >> i & 1U) != 0; });
+    }
+    return list;
+  }
+  add([](std::size_t) { return true; });
+  for (std::size_t out = 0; out < n; ++out) add([=](std::size_t i) { return i != out; });
+  for (std::size_t a = 0; n <= kMostBodies && a < n; ++a) {
+    for (std::size_t b = a + 1; b < n; ++b) add([=](std::size_t i) { return i == a || i == b; });
+  }
+  return list;
+}
+
+/// A guard that the scenario lacks, around bodies that lose heat to the ambient. Its size is the resistance of the way from its air to the ambient: none, and there
+/// is no guard.
 std::vector<Doubt> doubts(const DoubtScene& s) {
-  std::vector<Doubt> list;
-  const bool has_one =
-      std::any_of(s.balance.nodes.begin(), s.balance.nodes.end(), [](const LumpedNode& n) { return n.name == kAir; });
-  if (has_one) return list;
   std::vector<Body> bodies;
   std::vector<double> each_W_K;
   for (const Body& body : s.bodies) {
-    const double sum_W_K = body == ambient_node() ? 0.0 : to_ambient_W_K(s, body);
+    const double sum_W_K = to_ambient_W_K(s, body);
     if (!(sum_W_K > 0.0)) continue;
     bodies.push_back(body);
     each_W_K.push_back(sum_W_K);
   }
-  const std::size_t n = bodies.size();
-  const auto add = [&](const auto& is_in) {
+  std::vector<Doubt> list;
+  for (const std::vector<std::size_t>& choice : choices_of(bodies.size())) {
     std::vector<Body> chosen;
+    std::string air = "air_around";
     double sum_W_K = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!is_in(i)) continue;
+    for (const std::size_t i : choice) {
       chosen.push_back(bodies[i]);
+      air += "_" + bodies[i].name;
       sum_W_K += each_W_K[i];
     }
-    list.push_back(around(chosen, sum_W_K));
-  };
-  if (n < 2) return list;
-  add([](std::size_t) { return true; });
-  for (std::size_t out = 0; n > 3 && out < n; ++out) add([=](std::size_t i) { return i != out; });
-  for (std::size_t a = 0; n > 2 && n <= kMostBodies && a < n; ++a) {
-    for (std::size_t b = a + 1; b < n; ++b) add([=](std::size_t i) { return i == a || i == b; });
+    const bool is_taken =
+        std::any_of(s.balance.nodes.begin(), s.balance.nodes.end(), [&](const LumpedNode& n) { return n.name == air; });
+    if (!is_taken) list.push_back(around(chosen, air, sum_W_K));
   }
   for (Doubt& d : list) d.rarity = kRare + std::log(static_cast<double>(list.size()));
   return list;
@@ -127,7 +150,7 @@ EffectKind guard() {
               "ambient; one entry for each body behind the guard",
           .places = {Place::kRegion, Place::kSurface, Place::kNode},
           .parameters = {},
-          .change_laws = change_laws,
+          .change_paths = change_paths,
           .references = {{"air", {BodyKind::kNode}, {}, "lumped node: the air in the guard"}},
           .check = check,
           .doubts = doubts};

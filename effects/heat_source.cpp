@@ -52,7 +52,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   }
   const double period_s = e["period"], delay_s = e["delay"], mean_W = e["mean"], step_s = period_s / kStepsAPeriod;
   const auto wave = [=](const Inputs& u) {
-    return u.time_s < 0.0 ? mean_W : mean_W + steady(u) * std::sin(2.0 * std::numbers::pi * (u.time_s - delay_s) / period_s);
+    return mean_W + steady(u) * std::sin(2.0 * std::numbers::pi * (u.time_s - delay_s) / period_s);
   };
   balance.heats.push_back({e.name(), e.body(), wave});
   for (int k = 1; e.from_s + k * step_s < e.until_s; ++k) balance.change_times_s.push_back(e.from_s + k * step_s);

@@ -94,6 +94,31 @@ void require_outside(const Mesh& mesh, const std::string& surface, const Where& 
   }
 }
 
+/// An effect that leads the exchanges of others elsewhere finds some that it can.
+void require_changed_paths(const MachineModel& model) {
+  effects::HeatBalance balance;
+  for (const effects::Effect& e : model.effects) {
+    if (e.kind->contribute) e.kind->contribute(e, balance);
+  }
+  const auto surroundings = [&] {
+    std::vector<std::string> names;
+    for (const effects::Exchange& x : balance.exchanges) names.push_back(x.surrounding);
+    for (const effects::Radiation& r : balance.radiations) names.push_back(r.surrounding);
+    return names;
+  };
+  for (const effects::Effect& e : model.effects) {
+    if (!e.kind->change_paths) continue;
+    const std::vector<std::string> before = surroundings();
+    e.kind->change_paths(e, balance);
+    if (surroundings() == before)
+      throw InputError(
+          e.where,
+          fmt::format("nothing leads from {} to the ambient that a {} could take; films and radiation of a region are "
+                      "on its surfaces: name these, each once",
+                      e.place, e.kind->key));
+  }
+}
+
 void check_effects(const MachineModel& model, const Mesh& mesh, const effects::HeatBalance& balance) {
   const std::vector<std::string> nodes = node_names(model);
   const auto must_exist = [&](const Where& where, effects::BodyKind kind, const std::string& name) {
@@ -141,6 +166,7 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
   for (const effects::Effect& e : model.effects) {
     if (e.place_kind == effects::Place::kSurface) require_outside(mesh, e.place, e.where);
   }
+  require_changed_paths(model);
   for (std::size_t i = 0; i < model.effects.size(); ++i) {
     const effects::Effect& e = model.effects[i];
     const bool is_joint = e.kind->key == "contact";  // one after another is no doubt

@@ -57,7 +57,7 @@ bool looks_at_temperatures(const effects::HeatBalance& balance) {
 std::string numbers_of_laws(const MachineModel& model) {
   std::string text;
   for (const effects::Effect& e : model.effects) {
-    if (!e.kind->contribute && !e.kind->change_laws) continue;
+    if (!e.kind->acts_on_heat()) continue;
     text += fmt::format("{}: {}", e.name(), fmt::join(e.values, " "));
     for (const auto& [name, word] : e.words) text += fmt::format(" {} {}", name, word);
     for (const auto& [name, table] : e.tables) {

@@ -78,7 +78,7 @@ Json observer_json(const Observer& observer, const std::vector<effects::Effect>&
     arrays[name] = matrix_json(values);
   });
   for (const effects::Effect& e : effects) {
-    if (e.kind->contribute || e.kind->change_laws) laws.push_back(effects::yaml_of(e));
+    if (e.kind->acts_on_heat()) laws.push_back(effects::yaml_of(e));
   }
   return {{"sensors", s.sensors},
           {"drift", s.drift},

@@ -144,12 +144,14 @@ Eigen::VectorXd with_places(const Eigen::VectorXd& state, const ReducedSystem& s
   grow(all, state.size() + static_cast<Eigen::Index>(added.nodes.size()));
   for (std::size_t i = 0; i < added.nodes.size(); ++i) {
     const auto& [name, capacity_J_K] = added.nodes[i];
+    double sum_K = 0.0;
+    int n_bodies = 0;
     for (const ExchangePlace& place : added.exchanges) {
       if (place.surrounding != name) continue;
-      all[state.size() + static_cast<Eigen::Index>(i)] =
-          std::sqrt(capacity_J_K) * mean_weights(system, added, place.body).dot(all);
-      break;
+      sum_K += mean_weights(system, added, place.body).dot(all);
+      ++n_bodies;
     }
+    if (n_bodies > 0) all[state.size() + static_cast<Eigen::Index>(i)] = std::sqrt(capacity_J_K) * sum_K / n_bodies;
   }
   return all;
 }

@@ -25,7 +25,7 @@ struct AddedPlaces {
 /// @throws std::logic_error  for a region or surface without an exchange with a medium, whose matrix its own exchanges take
 [[nodiscard]] ReducedSystem with_places(const ReducedSystem& system, const AddedPlaces& added);
 
-/// A state of the system as one of the system with added nodes, each of which is as warm as the mean of the body that it exchanges heat with.
+/// A state of the system as one of the system with added nodes, each of which is as warm as the mean of the bodies that lose heat to it.
 [[nodiscard]] Eigen::VectorXd with_places(const Eigen::VectorXd& state, const ReducedSystem& system,
                                           const AddedPlaces& added);
 

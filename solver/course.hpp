@@ -31,7 +31,6 @@ class Course final : public KeptRun {
   [[nodiscard]] std::optional<Eigen::MatrixXd> states_of(const ReducedSystem& other, const Cyclogram& cyclogram,
                                                          const TimeSeries& ambient,
                                                          const Eigen::VectorXd& start) const override;
-  [[nodiscard]] bool is_of_first_order() const override { return true; }
 
  private:
   Course() = default;

@@ -51,7 +51,10 @@ class ExponentialRun {
     }
     allowed_ = kShareOfTolerance * options.absolute_tolerance_K / per_unit;
     farthest_ = kFarthest_K / per_unit;
-    if (steps_) steps_->allowed = allowed_;
+    if (steps_) {
+      steps_->allowed = allowed_;
+      steps_->farthest = farthest_;
+    }
   }
 
   [[nodiscard]] const Eigen::VectorXd& state() const { return state_; }
@@ -173,6 +176,11 @@ class ExponentialRun {
   }
   /// The step that was tried last.
   void keep(double t_s, double h_s) {
+    if (!steps_->is_whole) return;
+    if (3 * sizeof(double) * static_cast<std::size_t>(tangent_.size()) * steps_->matrices.size() > KeptSteps::kMostBytes) {
+      *steps_ = {.tangents = {}, .matrices = {}, .steps = {}, .is_whole = false};
+      return;
+    }
     if (!is_tangent_kept_) steps_->tangents.push_back(tangent_);
     is_tangent_kept_ = true;
     const std::size_t tangent = steps_->tangents.size() - 1;

@@ -20,8 +20,6 @@ class KeptRun {
   [[nodiscard]] virtual std::optional<Eigen::MatrixXd> states_of(const ReducedSystem& other, const Cyclogram& cyclogram,
                                                                  const TimeSeries& ambient,
                                                                  const Eigen::VectorXd& start) const = 0;
-  /// Whether it answers to first order in how the other differs, for slopes; else as well as a run of the other's own.
-  [[nodiscard]] virtual bool is_of_first_order() const = 0;
 
  protected:
   KeptRun() = default;

@@ -106,7 +106,7 @@ std::optional<KeptSteps> KeptSteps::of(const ReducedSystem& system, const Cyclog
   KeptSteps kept;
   kept.output_s_ = output_s;
   auto states = exponential_states(system, cyclogram, ambient, output_s, options, start, &kept.run_);
-  if (!states) return std::nullopt;
+  if (!states || !kept.run_.is_whole) return std::nullopt;
   kept.states_ = *std::move(states);
   return kept;
 }
@@ -144,7 +144,7 @@ std::optional<Eigen::MatrixXd> KeptSteps::states_of(const ReducedSystem& other, 
   } catch (const RangeError&) {
     return std::nullopt;
   }
-  if (!states.allFinite()) return std::nullopt;
+  if (!(states.lpNorm<Eigen::Infinity>() <= run_.farthest)) return std::nullopt;
   return states;
 }
 

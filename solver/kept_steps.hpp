@@ -30,21 +30,24 @@ struct StepsOfRun {
   std::vector<Eigen::MatrixXd> tangents;
   std::vector<Matrices> matrices;
   std::vector<Step> steps;
-  double allowed = 0.0;  ///< error of a step
+  double allowed = 0.0;   ///< error of a step
+  double farthest = 0.0;  ///< of a state from the reference, beyond which no machine is
+  bool is_whole = true;   ///< false: they were too many to keep, and none are
 };
 
 class KeptSteps final : public KeptRun {
  public:
-  /// @returns nothing where exponential_states() has nothing, and for a system with thermostats
+  static constexpr std::size_t kMostBytes = 128u << 20;  ///< of the matrices of one run
+  /// @returns nothing where exponential_states() has nothing, for a system with thermostats, and for a run of more matrices than are kept
   [[nodiscard]] static std::optional<KeptSteps> of(const ReducedSystem& system, const Cyclogram& cyclogram,
                                                    const TimeSeries& ambient, const std::vector<double>& output_s,
                                                    const TransientOptions& options, const Eigen::VectorXd& start);
 
-  /// @returns nothing for a system with another number of unknowns or with thermostats, and where the steps are too long for it
+  /// To the error of the kept run's steps and a hundredth of what the two machines' laws do differently in one.
+  /// @returns nothing for a system with another number of unknowns or with thermostats, and for one that runs away
   [[nodiscard]] std::optional<Eigen::MatrixXd> states_of(const ReducedSystem& other, const Cyclogram& cyclogram,
                                                          const TimeSeries& ambient,
                                                          const Eigen::VectorXd& start) const override;
-  [[nodiscard]] bool is_of_first_order() const override { return false; }
 
  private:
   KeptSteps() = default;

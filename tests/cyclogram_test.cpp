@@ -115,5 +115,14 @@ TEST(LinearStretches, AChangeOfFeedOrCuttingPowerAloneIsAChangeOfDrive) {
   EXPECT_EQ(cycle.drive(45.0), cutting);
 }
 
+// An ambient jumps within a millisecond, also where a section lasts for weeks.
+TEST(LinearStretches, KeepBothKnotsOfAJumpInALongSection) {
+  const Cyclogram weeks{.name = "weeks", .sections = {{20.0 * 86400.0, {.speed_rpm = 1000}}}};
+  const auto stretches = linear_stretches(weeks, std::vector<double>{600000.0, 600000.001});
+  ASSERT_EQ(stretches.size(), 3u);
+  EXPECT_EQ(stretches[1].start_s, 600000.0);
+  EXPECT_EQ(stretches[1].end_s, 600000.001);
+}
+
 }  // namespace
 }  // namespace driftwright

@@ -154,7 +154,7 @@ TEST(Catalogue, EveryEffectDoesSomethingAtEachPlaceItAllows) {
       if (!kind.contribute) {
         const DriveChange drive = drive_change({effect}, "");
         EXPECT_TRUE(!drive.ambient.empty() || !drive.drive.empty() || !reading_chain({effect}, "").empty() ||
-                    material_factors({effect}).size() == 1u || kind.change_laws)
+                    material_factors({effect}).size() == 1u || kind.acts_on_heat())
             << kind.key << " at a " << place_key(place);
         continue;
       }

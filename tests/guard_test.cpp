@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/effect_list.hpp"
 #include "tests/lumped_records.hpp"
 
 namespace driftwright::diagnosis {
@@ -107,6 +108,79 @@ TEST(AGuard, ThatAScenarioLacksIsNamedAtItsBodiesAndWritten) {
   EXPECT_NEAR(d.causes[0].parameters[0].value, 1.0 / 8.0, 0.015);
   EXPECT_NEAR(d.causes[0].parameters[1].value, 2000.0, 600.0);
   expect_written_is_found_no_more(beside, d, records);
+}
+
+// A film that looks at the temperatures of both sides is the same by a guard as by its own `surrounding`; so is radiation.
+TEST(AGuard, OfAFilmOfFreeConvectionIsItsSurrounding) {
+  const std::string film = "{type: natural_convection, surface: top, length: 0.2 m, orientation: up",
+                    grey = "{type: radiation, surface: top, emissivity: 0.9";
+  const effects::HeatBalance by_guard =
+                                 fixtures::balance_of({film + "}", grey + "}", "{type: guard, surface: top, air: box}"}),
+                             by_surrounding =
+                                 fixtures::balance_of({film + ", surrounding: box}", grey + ", surrounding: box}"});
+  ASSERT_THAT(by_guard.exchanges, SizeIs(1));
+  EXPECT_EQ(by_guard.exchanges[0].surrounding, "box");
+  EXPECT_EQ(by_guard.exchanges[0].coefficient.probes, by_surrounding.exchanges[0].coefficient.probes);
+  EXPECT_EQ(by_guard.radiations[0].surrounding, by_surrounding.radiations[0].surrounding);
+}
+
+// Where a guard stands in the list does not matter: paths are changed before laws.
+TEST(AGuard, StandsAnywhereInTheList) {
+  const std::string guard = "{type: guard, node: spindle, air: air}",
+                    state = "{type: run_state, of: exchange, factor: 2, in: monday}";
+  const auto with = [&](const std::string& first, const std::string& second) {
+    const std::string entries =
+        first + "\n  - " + second +
+        "\n  - {type: node, node: air, capacity: 2 kJ/K}\n  - {type: link, node: air, to: ambient, conductance: 8 W/K}";
+    return effects::heat_balance(
+        scenarios::read_scenario(write_file("anywhere.yaml", with_effect(kMachine, entries))).machine->effects);
+  };
+  const effects::HeatBalance a = with(guard, state), b = with(state, guard);
+  ASSERT_EQ(a.exchanges.size(), b.exchanges.size());
+  const effects::Inputs monday{.drive = {}, .run = "monday"};
+  for (std::size_t i = 0; i < a.exchanges.size(); ++i) {
+    EXPECT_EQ(a.exchanges[i].surrounding, b.exchanges[i].surrounding);
+    EXPECT_EQ(a.exchanges[i].coefficient(monday), b.exchanges[i].coefficient(monday)) << a.exchanges[i].name;
+  }
+}
+
+TEST(AGuard, FindsSomethingToTake) {
+  const auto refused = [](const std::string& entries) {
+    EXPECT_THAT(
+        [&] {
+          const scenarios::Scenario s =
+              scenarios::read_scenario(write_file("takes_nothing.yaml", with_effect(kMachine, entries)));
+          (void)scenarios::place(*s.machine);
+        },
+        ThrowsMessage<InputError>(HasSubstr("nothing leads from")));
+  };
+  const std::string air =
+      "{type: node, node: air, capacity: 2 kJ/K}\n  - {type: link, node: air, to: spindle, conductance: 8 W/K}\n  - ";
+  refused(air + "{type: guard, node: table, air: air}\n  - {type: guard, node: table, air: air}");
+  refused("{type: node, node: tool, capacity: 2 kJ/K}\n  - " + air + "{type: guard, node: tool, air: air}");
+}
+
+// Two guards, each of them around bodies of its own: one is written and the other one found.
+TEST(AGuard, BesideAnotherOneIsFound) {
+  const std::string other =
+      "{type: node, node: motor, capacity: 3 kJ/K}\n  - {type: node, node: tank, capacity: 9 kJ/K}\n  - {type: heat_source, "
+      "node: motor, power: 60 W, at_speed: 1000 rpm, exponent: 0.7}\n  - {type: link, node: motor, to: tank, conductance: 2 "
+      "W/K}\n  - {type: link, node: motor, to: ambient, conductance: 4 W/K}\n  - {type: link, node: tank, to: ambient, "
+      "conductance: 6 W/K}";
+  std::string machine = with_effect(kMachine, other);
+  machine.insert(machine.find("displacements:"), "  - {name: t_motor, node: motor}\n  - {name: t_tank, node: tank}\n");
+  const std::string around =
+      "{type: node, node: box, capacity: 1 kJ/K}\n  - {type: link, node: box, to: ambient, conductance: 12 W/K}\n  - {type: "
+      "guard, node: motor, air: box}\n  - {type: guard, node: tank, air: box}";
+  const std::string believed = with_effect(machine, kGuard);
+  const Beside beside(
+      write_file("plain.yaml", believed),
+      noisy_records(write_file("truth.yaml", with_effect(believed, around)), "two_guards_", 60.0, 0.03, 0.2));
+  const Diagnosis d = beside.diagnosed();
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.reason;
+  ASSERT_THAT(d.causes, SizeIs(1)) << d.reason;
+  EXPECT_EQ(d.causes[0].where, "motor,tank");
+  EXPECT_NEAR(d.causes[0].parameters[0].value, 1.0 / 12.0, 0.015);
 }
 
 TEST(AGuard, WantsANodeForItsAir) {

@@ -82,7 +82,7 @@ struct LinearStretch {
   std::string_view run = {};   ///< name of the cyclogram, which must outlive the stretch
   double clock_s = 0.0;        ///< Cyclogram::clock_s of it
 
-  /// A time within it at which laws are asked: none of them begins or ends in it.
+  /// A time within it at which laws are asked.
   [[nodiscard]] double law_time_s() const { return clock_s + 0.5 * (start_s + end_s); }
 };
 
