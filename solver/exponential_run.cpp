@@ -44,7 +44,16 @@ class ExponentialRun {
       if (beyond_K(i, ambient.at(0.0), start) > 0.0) rates_.toggle(i);
     }
     double per_unit = 1.0 / system.ones.norm();
-    for (const Probe& p : system.probes) per_unit = std::max(per_unit, p.weights.norm());
+    const auto look_at = [&](int p) {
+      per_unit = std::max(per_unit, system.probes[static_cast<std::size_t>(p)].weights.norm());
+    };
+    const auto look_at_those_of =
+        [&](const BoundLaw& law) {  // not all: a system may have more of them from laws that it had before
+          for (int p : law.probes) look_at(p);
+        };
+    for (const HeatSource& s : system.sources) look_at_those_of(s.power_W);
+    for (const auto& e : system.exchanges) look_at_those_of(e.coefficient);
+    for (const Thermostat& t : system.thermostats) look_at(t.probe);
     for (std::size_t o = 0; o < system.outputs.unit.size(); ++o) {
       if (system.outputs.unit[o] == "K")
         per_unit = std::max(per_unit, system.outputs.state.col(static_cast<Eigen::Index>(o)).norm());
