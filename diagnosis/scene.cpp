@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace driftwright::diagnosis {
 namespace {
+
+constexpr double kLeastOfSpeed = 0.05;  // of the time in which the spindle turns, on either side of a step of speed
+constexpr std::size_t kMostSpeedSteps = 6;
 
 /// What a part is made of: what scatters and may be wrong about it.
 effects::DoubtScene::Material material_of(const Twin& twin, const solver::BodyPart<Eigen::MatrixXd>& part) {
@@ -100,6 +104,31 @@ double usual_row_s(const std::vector<double>& time_s) {
   return *middle;
 }
 
+/// Between two speeds that it turns at, with some of the time on either side; of many, those that lie furthest apart.
+std::vector<double> speed_steps_rpm(const std::vector<MeasuredRun>& runs) {
+  std::map<double, double> time_s;  // by speed
+  double turning_s = 0.0;
+  for (const MeasuredRun& run : runs) {
+    for (const auto& section : run.cyclogram.sections) {
+      if (!(section.drive.speed_rpm > 0.0)) continue;
+      time_s[section.drive.speed_rpm] += section.duration_s;
+      turning_s += section.duration_s;
+    }
+  }
+  std::vector<std::pair<double, double>> gaps;  // ratio of the two speeds, what lies between them
+  double slower_s = 0.0, slower_rpm = 0.0;
+  for (const auto& [rpm, of_speed_s] : time_s) {
+    if (std::min(slower_s, turning_s - slower_s) > kLeastOfSpeed * turning_s)
+      gaps.emplace_back(rpm / slower_rpm, 0.5 * (rpm + slower_rpm));
+    slower_s += of_speed_s;
+    slower_rpm = rpm;
+  }
+  std::sort(gaps.begin(), gaps.end(), std::greater<>());
+  std::vector<double> steps_rpm;
+  for (std::size_t i = 0; i < std::min(kMostSpeedSteps, gaps.size()); ++i) steps_rpm.push_back(gaps[i].second);
+  return steps_rpm;
+}
+
 }  // namespace
 
 double top_speed_rpm(const std::vector<MeasuredRun>& runs) {
@@ -140,6 +169,7 @@ effects::DoubtScene scene_of(const Twin& twin, const std::vector<MeasuredRun>& r
     }
   }
   s.turns = turning_s > 0.0;
+  s.speed_steps_rpm = speed_steps_rpm(runs);
   if (s.turns) {  // a round number near the mean speed: where laws of speed are stated
     const double mean_rpm = turned / turning_s, decade = std::pow(10.0, std::floor(std::log10(mean_rpm)));
     s.typical_rpm = std::max(1.0, std::round(mean_rpm / decade)) * decade;

@@ -29,6 +29,7 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
   const double growth = e["growth"], growth_exponent = e["growth_exponent"];
   const double decay_1_K = e["decay"], t0_K = e["at_temperature"];
   const double beyond_rpm = e["beyond"], growth_beyond = e["growth_beyond"];
+  const double below_rpm = e["below"], factor_below = e["factor_below"];
   const double of_difference = e["difference_exponent"], at_difference_K = e["at_difference"];
   const bool thins = decay_1_K != 0.0, follows_difference = of_difference != 0.0 && other;
   if (thins) law.probes.push_back(body);
@@ -54,6 +55,7 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
       const double bent = there + growth_beyond * (as_written - there);
       as_written = bent * as_written < 0.0 ? 0.0 : bent;  // it falls to nothing, and turns no heat into cold
     }
+    if (u.drive.speed_rpm > 0.0 && u.drive.speed_rpm < below_rpm) as_written *= factor_below;
     const double n = u.drive.speed_rpm / n0_rpm;
     const double by_speed = (n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0) +
                             (growth != 0.0 ? growth * std::pow(n, growth_exponent) : 0.0);
@@ -181,6 +183,16 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
     bends.grid.clear();
     for (const double of_top : {0.25, 0.4, 0.55, 0.7, 0.85}) bends.grid.push_back({(of_top - 0.6) * s.top_rpm});
     list.push_back(std::move(bends));
+  }
+  for (const double rpm : s.speed_steps_rpm) {  // a gear stage, a winding that is switched, a pump that is geared
+    Doubt stage = friction;
+    stage.law = fmt::format("heat by another factor below {:.0f} rpm", rpm);
+    stage.at_speed_rpm = 0.0;
+    for (Effect& e : stage.added) e.set("below", rpm);
+    stage.numbers = {doubted_factor()};
+    stage.numbers.front().name = "factor_below";
+    stage.grid = {{}};
+    list.push_back(std::move(stage));
   }
   friction.law = "heat that falls as its body warms";
   friction.at_speed_rpm = 0.0;
@@ -339,12 +351,15 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e["factor"] == 1.0 && e["exponent"] == 0.0 && e["growth"] == 0.0 && e["decay"] == 0.0 && e["warmer"] == 0.0 &&
-      e["growth_beyond"] == 1.0 && e["difference_exponent"] == 0.0)
+      e["growth_beyond"] == 1.0 && e["factor_below"] == 1.0 && e["difference_exponent"] == 0.0)
     in.fail("factor",
-            "nothing is changed; another value of one of `factor`, `exponent`, `growth`, `growth_beyond`, `decay`, "
+            "nothing is changed; another value of one of `factor`, `exponent`, `growth`, `growth_beyond`, `factor_below`, "
+            "`decay`, "
             "`difference_exponent`, `warmer` is wanted");
   if (in.has("beyond") != in.has("growth_beyond"))
     in.fail("beyond", "`beyond`, a speed, and `growth_beyond`, the share of the growth that is left there, go together");
+  if (in.has("below") != in.has("factor_below"))
+    in.fail("below", "`below`, a speed, and `factor_below`, what the law is times below it, go together");
 }
 
 }  // namespace
@@ -357,7 +372,9 @@ EffectKind changed_law() {
           "c' = factor ((n / at_speed)^exponent + growth (n / at_speed)^growth_exponent) exp(-decay (T - "
           "at_temperature)) (|T - T_other| / at_difference)^difference_exponent c, "
           "c: a power or a coefficient of another effect, T of its own body; at standstill the exponent does nothing; "
-          "beyond a speed c grows by growth_beyond times as much, and falls to nothing at the most; a "
+          "beyond a speed c grows by growth_beyond times as much, and falls to nothing at the most; it is times "
+          "factor_below "
+          "while the spindle turns more slowly than `below`; a "
           "medium that is `warmer` brings that times c'",
       .places = {Place::kLaw},
       .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
@@ -368,6 +385,8 @@ EffectKind changed_law() {
                      {"growth_beyond", "1", -10.0, 10.0, 1.0,
                       "share of the growth with speed that is left beyond a speed; 0: the law levels off, < 0: it falls"},
                      {"beyond", "rpm", 1.0, 1e6, 1000.0, "that speed"},
+                     {"factor_below", "1", 0.0, 1e4, 1.0, "on the law below a speed: another gear, another winding"},
+                     {"below", "rpm", 0.0, 1e6, 0.0, "that speed"},
                      {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
                      {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"},
                      {"difference_exponent", "1", -1.0, 3.0, 0.0,

@@ -18,8 +18,10 @@ struct DoubtScene {
   double reference_K = 293.15;
   double typical_rpm = 1.0;  ///< laws of speed are stated there
   double top_rpm = 1.0;      ///< the highest of all records, as the scenario's own effects make it
-  double heat_W = 1.0;       ///< of all sources at the highest speed
-  bool turns = false;        ///< in some record
+  std::vector<double>
+      speed_steps_rpm;  ///< between two speeds that it turns at for a while: where a gear may change; six at the most
+  double heat_W = 1.0;  ///< of all sources at the highest speed
+  bool turns = false;   ///< in some record
   std::array<double, 3> top_feed_m_s = {0.0, 0.0, 0.0};    ///< of the axes x, y, z in all records; 0: it never moves
   std::array<bool, 3> axis_rests = {false, false, false};  ///< for a while in some record
   bool starts_and_stops = false;                           ///< turns and stands in one record

@@ -11,9 +11,10 @@ namespace {
 
 constexpr double kMostPeriods = 10000.0;
 constexpr double kUsualRunOn_min = 10.0;
-constexpr double kFewestWaves = 4.0;  // two or three are what any bend of a model that is wrong looks like
-constexpr double kMostWaves = 14.0;   // in the longest record; shorter ones a machine hardly shows
-constexpr int kStepsOfFading = 48;    // of an eighth of its time each: then e^-6 is left, which is left out
+constexpr double kUsualOfStop_min = 5.0;  // a changer, clamping, a resistor that has taken what braking gave back
+constexpr double kFewestWaves = 4.0;      // two or three are what any bend of a model that is wrong looks like
+constexpr double kMostWaves = 14.0;       // in the longest record; shorter ones a machine hardly shows
+constexpr int kStepsOfFading = 48;        // of an eighth of its time each: then e^-6 is left, which is left out
 constexpr double kStepOfFading = 0.125, kUsualFading = 1.0 / 6.0;  // of its time; of the longest record
 constexpr double kLongestFading =
     1.0 / 3.0;  // of that: what fades more slowly is not seen to end, and takes what every slow bend of a model leaves
@@ -22,14 +23,19 @@ bool runs_at_rest(const Effect& e) {
   return e.words.at("runs") == "while_spindle_stands";
 }
 
-double run_on_s(const Effect& e) {
-  return e.has("runs_on") ? 60.0 * e["runs_on"] : 0.0;
+/// Behind a stop, for which something goes on.
+double behind_stop_s(const Effect& e) {
+  for (const char* key : {"runs_on", "lasts"}) {
+    if (e.has(key)) return 60.0 * e[key];
+  }
+  return 0.0;
 }
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double power_W = e["power"], n0_rpm = e["at_speed"], exponent = e["exponent"];
-  const bool rests = e.words.at("runs") == "while_spindle_turns" || exponent != 0.0, stands = runs_at_rest(e);
-  const auto turns_or_just_has = turns_or_has(run_on_s(e));
+  const bool stands = runs_at_rest(e);
+  const bool rests = e.words.at("runs") == "while_spindle_turns" || exponent != 0.0 || e.has("lasts");
+  const auto turns_or_just_has = turns_or_has(behind_stop_s(e));
   const auto steady = [=](const Inputs& u) {
     const bool turns = u.drive.speed_rpm > 0.0;
     if ((rests && !turns_or_just_has(u.drive)) || (stands && turns)) return 0.0;
@@ -59,12 +65,14 @@ void contribute(const Effect& e, HeatBalance& balance) {
 }
 
 void change_drive(const Effect& e, DriveChange& change) {
-  add_run_on(run_on_s(e), change);
+  add_run_on(behind_stop_s(e), change);
 }
 
 void check(const Effect& e, const ConfigMap& in) {
   if (e.has("runs_on") && (e.words.at("runs") != "while_spindle_turns" || e["exponent"] != 0.0))
     in.fail("runs_on", "it is of constant heat that goes with the spindle: `runs: while_spindle_turns`, no `exponent`");
+  if (e.has("lasts") && !runs_at_rest(e))
+    in.fail("lasts", "it is of heat behind each stop of the spindle: `runs: while_spindle_stands`");
   if (runs_at_rest(e) && e["exponent"] != 0.0) in.fail("exponent", "heat while the spindle stands does not grow with speed");
   if (e.has("fades") && e.has("period"))
     in.fail("fades", "one of two is wanted: heat that fades, or a wave with a `period`");
@@ -120,6 +128,13 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     const Doubt while_turning = list.back();
     if (s.starts_and_stops) {
       add("constant heat while the spindle stands", {}).added[0].words["runs"] = "while_spindle_stands";
+      Doubt of_stops = list.back();
+      of_stops.law = "constant heat for some minutes behind each stop";
+      of_stops.added[0].set("lasts", kUsualOfStop_min);
+      of_stops.numbers.push_back(doubted_run_on(kUsualOfStop_min));
+      of_stops.numbers.back().name = "lasts";
+      of_stops.grid = {{-1.0}, {0.0}, {1.0}};
+      list.push_back(std::move(of_stops));
       Doubt standby = while_turning;  // drives, pumps, until the control switches them off
       standby.law += " and some minutes more";
       standby.added[0].set("runs_on", kUsualRunOn_min);
@@ -192,7 +207,8 @@ EffectKind heat_source() {
       .title = "heat by a power law of speed, constant, on and off with the spindle, or in a wave",
       .law =
           "P = power (n / at_speed)^exponent while the spindle turns; exponent 0: constant, also at standstill unless it "
-          "runs while_spindle_turns (and runs on for a while); it fades: times exp(-t / fades), in steps of an eighth of "
+          "runs while_spindle_turns (and runs on for a while) or while_spindle_stands (and lasts for a while); it fades: "
+          "times exp(-t / fades), in steps of an eighth of "
           "that; with a period: mean + "
           "that times sin(2 pi (t - delay) / period)",
       .places = {Place::kRegion, Place::kSurface, Place::kNode},
@@ -203,6 +219,9 @@ EffectKind heat_source() {
            {"fades", "min", 0.1, 1e5, kNotGiven,
             "time in which the heat falls to 37 %, from the start of each record or from `from` on: grease that runs in"},
            {"runs_on", "min", 0.0, 1e4, kNotGiven, "for how long what goes with the spindle runs on when that has stopped"},
+           {"lasts", "min", 0.01, 1e4, kNotGiven,
+            "for how long behind each stop there is heat that `runs: while_spindle_stands`: a tool changer, a brake's "
+            "resistor"},
            {"period", "s", 1.0, 1e7, kNotGiven, "of a wave; wants `until`"},
            {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
            {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},

@@ -6,9 +6,9 @@
 namespace driftwright::effects {
 namespace {
 
-constexpr const char* kSuffix = "_hidden";
-constexpr double kCapacitySd = 1.5;  // of the logarithm: from a fifth to five times its body's
-constexpr double kTrial = 0.1;       // of a typical conductance
+constexpr const char *kSuffix = "_hidden", *kIn = " in ";  // of a body's node, and of one that is there in one record alone
+constexpr double kCapacitySd = 1.5;                        // of the logarithm: from a fifth to five times its body's
+constexpr double kTrial = 0.1;                             // of a typical conductance
 constexpr double kRare =
     4.0;  // nats; with little capacity a body between is a path to the ambient, which is the simpler one
 constexpr double kTimeConstants[] = {0.03, 0.12, 0.5};  // tried first, of the longest record
@@ -19,17 +19,25 @@ constexpr double kFollowTimes[] = {0.01, 0.04, 0.15, 0.6};
 constexpr double kTakesTheAmbient_s = 60.0;  // time constant of a body that is away: it comes as warm as the ambient
 constexpr double kTrace = 1e-6;              // of that exchange with the ambient, while the body is there
 
+/// A body that is there in one record alone is a node of its own: another record may have one that is like it.
+std::string node_name(const Effect& e) {
+  const bool stays = !e.in.empty() && !e.tables.contains(kWindows);
+  return e.place + kSuffix + (stays ? kIn + e.in : "");
+}
+
 void contribute(const Effect& e, HeatBalance& balance) {
   const double link_W_K = e["conductance"];
   const double to_ambient_W_K = e.has("hall_conductance") ? e["hall_conductance"] : 0.0;
-  const std::string own = e.place + kSuffix;
+  const std::string own = node_name(e);
   balance.nodes.push_back({own, e["capacity"]});
   if (!e.tables.contains(kWindows)) {
+    const auto is_there = [in = e.in](const Inputs& u) { return in.empty() || u.run == in; };
     balance.exchanges.push_back(make_link(
-        e.name() + " - " + own, e.body(), [=](const Inputs&) { return link_W_K; }, own));
-    if (e.has("hall_conductance"))
+        e.name() + " - " + own, e.body(), [=](const Inputs& u) { return is_there(u) ? link_W_K : 0.0; }, own));
+    const double trace_W_K = e.in.empty() ? 0.0 : kTrace * e["capacity"] / kTakesTheAmbient_s;
+    if (trace_W_K > to_ambient_W_K || e.has("hall_conductance"))
       balance.exchanges.push_back(
-          make_link(e.name() + " - ambient", node(own), [=](const Inputs&) { return to_ambient_W_K; }));
+          make_link(e.name() + " - ambient", node(own), [=](const Inputs&) { return std::max(to_ambient_W_K, trace_W_K); }));
   } else {
     const auto windows = windows_of(e);
     const auto is_there = [in = e.in, inside = within(windows, 1.0)](const Inputs& u) {
@@ -50,8 +58,8 @@ void contribute(const Effect& e, HeatBalance& balance) {
 void check(const Effect& e, const ConfigMap& in) {
   if (e.tables.contains(kWindows)) {
     check_windows(e, in);
-  } else if (!e.in.empty() || e.has("every") || e.has("until_time")) {
-    in.fail(kWindows, "`in`, `every` and `until_time` are of a body that comes and goes: they want `windows`");
+  } else if (e.has("every") || e.has("until_time")) {
+    in.fail(kWindows, "`every` and `until_time` are of a body that comes and goes: they want `windows`");
   }
 }
 
@@ -85,8 +93,11 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   std::vector<Doubt> list;
   if (!(longest_s > 0.0)) return list;
   for (const DoubtScene::Material& m : s.materials) {
+    const auto hides = [](const std::string& name, const std::string& behind) {
+      return name == behind + kSuffix || name.starts_with(behind + kSuffix + kIn);
+    };
     const bool has_one = std::any_of(s.balance.nodes.begin(), s.balance.nodes.end(), [&](const LumpedNode& n) {
-      return n.name == m.body.name + kSuffix || n.name + kSuffix == m.body.name;
+      return hides(n.name, m.body.name) || hides(m.body.name, n.name);
     });
     const bool is_hidden = m.body.name.ends_with(kSuffix);
     if (has_one || is_hidden || !m.stores || m.body.kind == BodyKind::kSurface) continue;
@@ -128,7 +139,7 @@ EffectKind hidden_body() {
       .law =
           "capacity dT_hidden/dt = conductance (T - T_hidden) - hall_conductance (T_hidden - T_ambient); it makes the node "
           "<its body>_hidden, and takes its heat evenly from the region; with windows it is there within them, and as warm "
-          "as the ambient else",
+          "as the ambient else; `in` a record without windows it is there all along in that one, and in no other",
       .places = {Place::kRegion, Place::kNode},
       .parameters = repeating({{"capacity", "J/K", 1e-6, 1e12, {}, "heat capacity of the hidden body"},
                                {"conductance", "W/K", 0.0, 1e9, {}, "between the two", 0.1, "hidden_body", Doubted::kFactor},

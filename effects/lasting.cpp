@@ -72,7 +72,7 @@ bool can_be_of_some_runs(const Doubt& doubt) {
   const bool is_timed = std::any_of(doubt.added.begin(), doubt.added.end(), [](const Effect& e) {
     const auto windows = e.tables.find(kWindows);
     const bool has_windows = windows != e.tables.end() && !windows->second.time_s.empty();
-    return e.kind->timing == Timing::kAlways || e.kind->keeps_time_itself || e.from_s > 0.0 || has_windows;
+    return e.kind->timing == Timing::kAlways || e.from_s > 0.0 || has_windows;
   });
   const std::size_t n_runs = std::max<std::size_t>(1, runs_of(doubt).size());
   return !has_time && !is_timed && doubt.when.empty() == doubt.added.front().in.empty() &&
