@@ -19,7 +19,10 @@ constexpr double kFar = 2.0;         // sigmas that a number has gone from where
 constexpr double kAtBound = 1e-6;    // of a step
 constexpr double kPromised = 1.0;    // of Φ, by slopes that do not keep it
 constexpr int kMostRetakes = 3;
-constexpr double kTail = 4.0;  // degrees of freedom of a claim's prior
+constexpr int kPatience = 5;           // steps after which
+constexpr double kOutOfReach = 3.0;    // times the misfit of interest is given up
+constexpr double kOutOfReachBy = 100;  // and so much more
+constexpr double kTail = 4.0;          // degrees of freedom of a claim's prior
 
 Eigen::Index n_knobs(const Hypothesis& hypothesis) {
   Eigen::Index n = 0;
@@ -182,7 +185,8 @@ Prediction Fitter::predict_machine(const Hypothesis& hypothesis, const Eigen::Ve
 }
 
 Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction& known, const Hypothesis& hypothesis,
-                                  const Eigen::VectorXd& x, Twin::Workspace& workspace, const KeptRuns& about) const {
+                                  const Eigen::VectorXd& x, Twin::Workspace& workspace, const KeptRuns& about,
+                                  Prediction* responses) const {
   const TwinState s = state(hypothesis, x);
   Prediction prediction;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
@@ -191,7 +195,9 @@ Prediction Fitter::predict_beside(const TwinState& known_state, const Prediction
       continue;
     }
     const solver::KeptRun* near = about.empty() ? nullptr : about[r].get();
-    prediction.push_back(readings(s, r, x, twin_.respond(s, runs_[r], workspace, near)));
+    Eigen::MatrixXd response = twin_.respond(s, runs_[r], workspace, near);
+    if (responses) (*responses)[r] = response;
+    prediction.push_back(readings(s, r, x, std::move(response)));
   }
   return prediction;
 }
@@ -284,25 +290,29 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
 Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const {
   Eigen::MatrixXd slopes = slopes_;
   const KeptRuns about = kept_runs(state(hypothesis, at.x), workspace);
-  for (std::size_t i = 0; i < scatter_.size(); ++i) {
-    slopes.col(static_cast<Eigen::Index>(i)) =
-        comparison_->whitened(slope(hypothesis, at.x, at.prediction, about, i, workspace));
-  }
+  for_each_index(
+      scatter_.size(), [&] { return Twin::Workspace(twin_); },
+      [&](std::size_t i, Twin::Workspace& own) {
+        slopes.col(static_cast<Eigen::Index>(i)) =
+            comparison_->whitened(slope(hypothesis, at.x, at.prediction, about, i, own));
+      });
   return slopes;
 }
 
-Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const {
+Fit Fitter::fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace,
+                double of_interest) const {
   Eigen::VectorXd x(n_nuisance() + start.size());
   x << nuisance_, start;
-  return climb(hypothesis, std::move(x), -1, workspace);
+  return climb(hypothesis, std::move(x), -1, workspace, of_interest);
 }
 
 Fit Fitter::fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
-                       Twin::Workspace& workspace) const {
-  return climb(hypothesis, start, held, workspace);
+                       Twin::Workspace& workspace, double of_interest) const {
+  return climb(hypothesis, start, held, workspace, of_interest);
 }
 
-Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::Index held, Twin::Workspace& workspace) const {
+Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::Index held, Twin::Workspace& workspace,
+                  double of_interest) const {
   const Eigen::Index n_n = n_nuisance(), n_k = n_knobs(hypothesis), n = n_n + n_k;
   const std::vector<const Knob*> knobs = knobs_of(hypothesis);
   const std::vector<char> smooth = smooth_knobs(hypothesis);
@@ -328,13 +338,15 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   f.x = std::move(start);
   into_range(f.x);
   Prediction responses;
-  const auto look = [&](Fit& at, Prediction& kept, bool reuse) {
+  const auto judge = [&](Fit& at, const auto& predicted) {
     at.misfit = 1e300;
-    if (!has_solution([&] { at.prediction = predict(hypothesis, at.x, workspace, &kept, reuse); }))
-      return;  // a step too far
+    if (!has_solution([&] { at.prediction = predicted(); })) return;  // a step too far
     at.residual = comparison_->measured() - comparison_->whitened(at.prediction);
     const double misfit = 0.5 * at.residual.squaredNorm() + prior(at.x);
     if (std::isfinite(misfit)) at.misfit = misfit;
+  };
+  const auto look = [&](Fit& at, Prediction& kept, bool reuse) {
+    judge(at, [&] { return predict(hypothesis, at.x, workspace, &kept, reuse); });
   };
   look(f, responses, false);
   if (f.prediction.empty() || f.misfit >= 1e300) throw SolveError("the machine has no solution where the fit begins");
@@ -347,7 +359,9 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   const auto retake = [&](double promised) {
     if (n_n == 0) return false;
     const Eigen::VectorXd gone = (f.x.head(n_n) - taken_at).cwiseQuotient(sd.head(n_n));
-    if (n_retakes == kMostRetakes || (gone.cwiseAbs().maxCoeff() <= kFar && promised < kPromised)) return false;
+    const double far = gone.cwiseAbs().maxCoeff();
+    const bool are_here = n_retakes > 0 && far == 0.0;
+    if (n_retakes == kMostRetakes || are_here || (far <= kFar && promised < kPromised)) return false;
     own_slopes = slopes_at(hypothesis, f, workspace);
     own_squares.noalias() = own_slopes.transpose() * own_slopes;
     nuisance_slopes = &own_slopes;
@@ -391,6 +405,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   for (const MeasuredRun& run : runs_) {
     row_s = std::min(row_s, run.time_s.back() / static_cast<double>(run.time_s.size() - 1));
   }
+  double searched_at = 1e300;  // misfit where no other time was better
   const bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
   // Times wait for the first step: linear theory chose them with all other numbers moved, and by those that are not moved yet a better time is a worse one.
   for (int iteration = search_times ? -1 : 0; iteration < kMostIterations + n_retakes; ++iteration) {
@@ -430,7 +445,9 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
       responses = std::move(kept);
       break;
     }
-    if (search_times && !times_wait) {
+    if (search_times && !times_wait && searched_at - f.misfit >= kConverged) {
+      const double unsearched = f.misfit;
+      TwinState here = state(hypothesis, f.x);
       for (Eigen::Index k = 0; k < n_k; ++k) {
         const Knob& knob = *knobs[static_cast<std::size_t>(k)];
         if (!knob.is_time || n_n + k == held) continue;
@@ -439,15 +456,21 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
           tried.x = f.x;
           tried.x[n_n + k] += jump_s;
           into_range(tried.x);
-          Prediction kept = knob.reading_only ? responses : Prediction{};
-          look(tried, kept, knob.reading_only);
+          Prediction kept = responses;
+          if (knob.reading_only)
+            look(tried, kept, true);
+          else
+            judge(tried, [&] { return predict_beside(here, f.prediction, hypothesis, tried.x, workspace, {}, &kept); });
           if (!(tried.misfit < f.misfit)) continue;
           tried.slopes = std::move(f.slopes);
           f = std::move(tried);
           responses = std::move(kept);
+          here = state(hypothesis, f.x);
         }
       }
+      searched_at = f.misfit < unsearched ? 1e300 : f.misfit;
     }
+    if (iteration >= kPatience && f.misfit > kOutOfReach * of_interest + kOutOfReachBy) return {};
     if (!times_wait && before - f.misfit < kConverged && !retake(0.5 * gradient.dot(step))) break;
   }
   differentiate(true);

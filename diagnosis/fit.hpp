@@ -73,12 +73,15 @@ class Fitter {
   /// Takes scatter's slopes at a fit of a hypothesis: later fits of others start there.
   void settle(const Hypothesis& hypothesis, const Fit& at);
 
-  /// @param start  x of the claims, in order; scatter starts where it was last settled
+  /// @param start       x of the claims, in order; scatter starts where it was last settled
+  /// @param of_interest a fit whose Φ is still several times this one after some steps is given up, as one that has no solution
   /// @throws SolveError  when the machine has no solution there
-  [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace) const;
+  [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace,
+                        double of_interest = kAny) const;
   /// The most probable other numbers while one keeps its value. @param start  all of x  @param held  which of x keeps its value
   [[nodiscard]] Fit fit_others(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Eigen::Index held,
-                               Twin::Workspace& workspace) const;
+                               Twin::Workspace& workspace, double of_interest = kAny) const;
+  static constexpr double kAny = 1e300;
 
   [[nodiscard]] Eigen::Index n_nuisance() const { return static_cast<Eigen::Index>(scatter_.size() + linear_.size()); }
   [[nodiscard]] const std::vector<Knob>& scatter() const { return scatter_; }
@@ -111,14 +114,15 @@ class Fitter {
   [[nodiscard]] KeptRuns kept_runs(const TwinState& state, Twin::Workspace& workspace, bool for_slopes = true) const;
 
   /// The same as predict() where a prediction of other numbers, or of fewer claims, is known: runs in which the same effects act are taken from it.
-  /// @param about  of a state near by, which others are answered from where it can be
+  /// @param about      of a state near by, which others are answered from where it can be
+  /// @param responses  the machine's outputs at the known state; they become those at x
   [[nodiscard]] Prediction predict_beside(const TwinState& known_state, const Prediction& known,
                                           const Hypothesis& hypothesis, const Eigen::VectorXd& x, Twin::Workspace& workspace,
-                                          const KeptRuns& about = {}) const;
+                                          const KeptRuns& about = {}, Prediction* responses = nullptr) const;
 
  private:
-  [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held,
-                          Twin::Workspace& workspace) const;
+  [[nodiscard]] Fit climb(const Hypothesis& hypothesis, Eigen::VectorXd x, Eigen::Index held, Twin::Workspace& workspace,
+                          double of_interest) const;
   /// Readings of a state, whose responses are those of the machine.
   [[nodiscard]] Eigen::MatrixXd readings(const TwinState& state, std::size_t run, const Eigen::VectorXd& x,
                                          Eigen::MatrixXd response) const;

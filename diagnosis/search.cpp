@@ -40,14 +40,15 @@ constexpr std::size_t kMostPairs = 6;  // fitted in full
 
 constexpr double kRareOrChosen = 5.0;  // nats of a claim's price: several windows that were chosen to make it
 
-/// Fits some hypotheses side by side.
-std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses) {
+/// Fits some hypotheses side by side. @param of_interest  as Fitter::fit()
+std::vector<Fit> fit_all(const Fitter& fitter, const std::vector<std::pair<Hypothesis, Eigen::VectorXd>>& hypotheses,
+                         double of_interest = Fitter::kAny) {
   std::vector<Fit> fits(hypotheses.size());
   for_each_index(
       hypotheses.size(), [&] { return Twin::Workspace(fitter.twin()); },
       [&](std::size_t i, Twin::Workspace& workspace) {
         // a state without solution is no explanation
-        if (!has_solution([&] { fits[i] = fitter.fit(hypotheses[i].first, hypotheses[i].second, workspace); }))
+        if (!has_solution([&] { fits[i] = fitter.fit(hypotheses[i].first, hypotheses[i].second, workspace, of_interest); }))
           fits[i] = Fit{};
       });
   return fits;
@@ -134,12 +135,13 @@ std::size_t put_labels_first(const std::vector<Candidate>& candidates, const std
 }
 
 /// A fit of a label from where the scenario stands, kept where it is better: with labels right its numbers are, and from what was fitted to the wrong body no fit may lead there.
-/// @param claims  x of all of them
-void fit_from_scenario(const Fitter& fitter, const Hypothesis& hypothesis, const Eigen::VectorXd& claims, Fit& fit) {
+/// @param claims  x of all of them. @param of_interest  as Fitter::fit()
+void fit_from_scenario(const Fitter& fitter, const Hypothesis& hypothesis, const Eigen::VectorXd& claims, double of_interest,
+                       Fit& fit) {
   Twin::Workspace workspace(fitter.twin());
   Fit other;
   const Eigen::VectorXd start = joined(Eigen::VectorXd::Zero(fitter.n_nuisance()), claims);
-  if (has_solution([&] { other = fitter.fit_others(hypothesis, start, kNothingHeld, workspace); }) &&
+  if (has_solution([&] { other = fitter.fit_others(hypothesis, start, kNothingHeld, workspace, of_interest); }) &&
       other.log_evidence > fit.log_evidence)
     fit = std::move(other);
 }
@@ -188,9 +190,10 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
         jobs.emplace_back(std::move(tried), joined(base_x, s.start));
       }
     }
-    std::vector<Fit> fits = fit_all(fitter, jobs);
+    std::vector<Fit> fits = fit_all(fitter, jobs, base_fit.misfit);
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-      if (jobs[i].first.back().all_or_nothing) fit_from_scenario(fitter, jobs[i].first, jobs[i].second, fits[i]);
+      if (jobs[i].first.back().all_or_nothing)
+        fit_from_scenario(fitter, jobs[i].first, jobs[i].second, base_fit.misfit, fits[i]);
       if (known) known->keep(jobs[i].first, fits[i]);
       batch.push_back({jobs[i].first.back(), std::move(fits[i])});
     }

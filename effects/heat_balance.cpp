@@ -28,7 +28,9 @@ void HeatBalance::append(HeatBalance other) {
   move_behind(stratifications, other.stratifications);
   move_behind(thermostats, other.thermostats);
   move_behind(change_times_s, other.change_times_s);
-  std::stable_sort(exchanges.begin(), exchanges.end(), [](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  const auto before = [](const auto& a, const auto& b) { return rank(a) < rank(b); };
+  if (!std::is_sorted(exchanges.begin(), exchanges.end(), before))
+    std::stable_sort(exchanges.begin(), exchanges.end(), before);
 }
 
 HeatBalance with_radiation_as_films(HeatBalance balance) {
