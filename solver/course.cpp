@@ -17,33 +17,47 @@ double series(double x, double c0, double c1, double c2, double c3) {
   return 1.0 / c0 - x * (1.0 / c1 - x * (1.0 / c2 - x / c3));
 }
 
-/// What drives a system in a stretch.
-struct Loads {
-  Eigen::VectorXd coefficient;  // of each exchange
+/// What drives a system in the stretches of a run, asked for in their order.
+class Loads {
+ public:
+  /// Both are borrowed.
+  Loads(const ReducedSystem& system, const TimeSeries& ambient)
+      : system_(system), ambient_(ambient), changes_(system.change_times_s) {}
+  void enter(const LinearStretch& stretch) {
+    if (changes_.at(stretch)) ask_laws(stretch);
+    const double ambient_K = ambient_.at(stretch.start_s);
+    constant = load_ + ambient_K * to_ambient_;
+    slope = (ambient_.at(stretch.end_s) - ambient_K) / (stretch.end_s - stretch.start_s) * to_ambient_;
+  }
+
+  Eigen::VectorXd coefficient;  ///< of each exchange
   Eigen::VectorXd constant, slope;
+
+ private:
+  void ask_laws(const LinearStretch& stretch) {
+    effects::Inputs at{.drive = stretch.drive, .time_s = stretch.law_time_s()};
+    at.run = stretch.run;
+    coefficient.resize(static_cast<Eigen::Index>(system_.exchanges.size()));
+    load_.setZero(system_.size());
+    to_ambient_.setZero(system_.size());
+    for (const HeatSource& s : system_.sources) {
+      if (const double power_W = s.power_W(at); power_W != 0.0) load_ += power_W * s.load;
+    }
+    for (std::size_t e = 0; e < system_.exchanges.size(); ++e) {
+      const Exchange<Eigen::MatrixXd>& exchange = system_.exchanges[e];
+      const double c = exchange.coefficient(at);
+      coefficient[static_cast<Eigen::Index>(e)] = c;
+      if (c == 0.0) continue;
+      to_ambient_ += c * exchange.to_ambient;
+      if (exchange.offset.size() > 0) load_ += c * exchange.offset;
+    }
+  }
+
+  const ReducedSystem& system_;
+  SeriesInOrder ambient_;
+  LawChanges changes_;
+  Eigen::VectorXd load_, to_ambient_;
 };
-/// @param ambient  asked for stretches in their order
-void take_loads(const ReducedSystem& system, const LinearStretch& stretch, SeriesInOrder& ambient, Loads& l) {
-  const double ambient_K = ambient.at(stretch.start_s),
-               ambient_slope = (ambient.at(stretch.end_s) - ambient_K) / (stretch.end_s - stretch.start_s);
-  effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = stretch.law_time_s()};
-  at.run = stretch.run;
-  l.coefficient.resize(static_cast<Eigen::Index>(system.exchanges.size()));
-  l.constant.setZero(system.size());
-  l.slope.setZero(system.size());
-  for (const HeatSource& s : system.sources) {
-    if (const double power_W = s.power_W(at); power_W != 0.0) l.constant += power_W * s.load;
-  }
-  for (std::size_t e = 0; e < system.exchanges.size(); ++e) {
-    const Exchange<Eigen::MatrixXd>& exchange = system.exchanges[e];
-    const double c = exchange.coefficient(at);
-    l.coefficient[static_cast<Eigen::Index>(e)] = c;
-    if (c == 0.0) continue;
-    l.constant += c * ambient_K * exchange.to_ambient;
-    l.slope += c * ambient_slope * exchange.to_ambient;
-    if (exchange.offset.size() > 0) l.constant += c * exchange.offset;
-  }
-}
 
 }  // namespace
 
@@ -90,10 +104,9 @@ std::optional<Course> Course::of(const ReducedSystem& system, Decompositions& de
   c.states_.resize(system.size(), static_cast<Eigen::Index>(output_s.size()));
   Eigen::VectorXd state = start;
   std::size_t next = 0;
-  SeriesInOrder ambient_K(ambient);
-  Loads loads;
+  Loads loads(system, ambient);
   for (const LinearStretch& stretch : stretches_of(system, cyclogram, ambient)) {
-    take_loads(system, stretch, ambient_K, loads);
+    loads.enter(stretch);
     Stretch s;
     s.start_s = stretch.start_s;
     s.end_s = stretch.end_s;
@@ -180,12 +193,11 @@ std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, con
   Eigen::MatrixXd states = states_, change;
   Eigen::VectorXd off = start - start_;  // of the state, at the start of a stretch
   Eigen::VectorXd y0, h0, h1, more, e0, e1, e2;
-  SeriesInOrder ambient_K(ambient);
-  Loads loads;
+  Loads loads(other, ambient);
   for (std::size_t k = 0; k < theirs.size(); ++k) {
     const Stretch& s = stretches_[k];
     const Decomposition& d = decompositions_[s.decomposition];
-    take_loads(other, theirs[k], ambient_K, loads);
+    loads.enter(theirs[k]);
     y0.noalias() = d.to_modes * off;
     h0.noalias() = d.vectors.transpose() * loads.constant;
     h0 -= s.f0;

@@ -1,11 +1,16 @@
 #include "solver/live_rate.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace driftwright::solver {
 
 LiveRate::LiveRate(const ReducedSystem& system, const TimeSeries& ambient)
-    : system_(system), ambient_(ambient), is_on_(system.thermostats.size(), 0), probe_K_(system.probes.size()) {
+    : system_(system),
+      ambient_(ambient),
+      is_on_(system.thermostats.size(), 0),
+      probe_K_(system.probes.size()),
+      changes_(system.change_times_s) {
   if (!system.mass.isIdentity(1e-12))
     per_mass_ = system.mass.llt().solve(Eigen::MatrixXd::Identity(system.size(), system.size()));
   const auto over_mass = [&](const auto& x) { return per_mass_.size() > 0 ? (per_mass_ * x).eval() : x; };
@@ -17,15 +22,25 @@ LiveRate::LiveRate(const ReducedSystem& system, const TimeSeries& ambient)
     exchanges_.push_back({&e.coefficient, over_mass(e.matrix), over_mass(e.to_ambient),
                           e.offset.size() > 0 ? over_mass(e.offset) : Eigen::VectorXd::Zero(system.size())});
   }
+  const auto look_at = [&](const BoundLaw& law) {
+    for (int p : law.probes) looked_at_.push_back(static_cast<std::size_t>(p));
+  };
+  for (const Source& s : sources_) look_at(*s.law);
+  for (const Exchange& e : exchanges_) look_at(*e.law);
+  std::sort(looked_at_.begin(), looked_at_.end());
+  looked_at_.erase(std::unique(looked_at_.begin(), looked_at_.end()), looked_at_.end());
 }
 
 bool LiveRate::enter(const LinearStretch& stretch) {
-  inputs_.drive = stretch.drive;
-  inputs_.run = stretch.run;
   inputs_.time_s = stretch.law_time_s();
   start_s_ = stretch.start_s;
   start_ambient_K_ = inputs_.ambient_K = ambient_.at(stretch.start_s);
   ambient_K_s_ = (ambient_.at(stretch.end_s) - start_ambient_K_) / (stretch.end_s - stretch.start_s);
+  const bool has_changed = changes_.at(stretch);
+  if (!has_changed && !has_toggled_) return false;
+  has_toggled_ = false;
+  inputs_.drive = stretch.drive;
+  inputs_.run = stretch.run;
   inputs_.probe_K.clear();
   std::vector<double> followed;
   followed.reserve(followed_.size());
@@ -69,8 +84,7 @@ double LiveRate::value(const BoundLaw& law) {
 
 void LiveRate::look(double t_s, const Eigen::VectorXd& z) {
   inputs_.ambient_K = start_ambient_K_ + ambient_K_s_ * (t_s - start_s_);
-  for (std::size_t p = 0; p < probe_K_.size(); ++p)
-    probe_K_[p] = system_.reference_K + system_.probes[p].theta_K(z, inputs_.ambient_K);
+  for (std::size_t p : looked_at_) probe_K_[p] = system_.reference_K + system_.probes[p].theta_K(z, inputs_.ambient_K);
 }
 
 void LiveRate::rate(double t_s, const Eigen::VectorXd& z, Eigen::VectorXd& dz_dt) {

@@ -6,6 +6,7 @@
 // with sums over the laws that look at the state; those that follow drive and time alone are within f, h and K.
 
 #include "base/cyclogram.hpp"
+#include "solver/stretches.hpp"
 #include "solver/thermal_system.hpp"
 
 namespace driftwright::solver {
@@ -17,9 +18,12 @@ class LiveRate {
 
   [[nodiscard]] bool is_on(std::size_t thermostat) const { return is_on_[thermostat] != 0; }
   /// Call enter() afterwards.
-  void toggle(std::size_t thermostat) { is_on_[thermostat] ^= 1; }
+  void toggle(std::size_t thermostat) {
+    is_on_[thermostat] ^= 1;
+    has_toggled_ = true;
+  }
 
-  /// Takes over drive and time of a stretch. @return true when a power or a coefficient that does not look at the state is another one
+  /// Takes over drive and time of a stretch, the same one or the next. @return true when a power or a coefficient that does not look at the state is another one
   bool enter(const LinearStretch& stretch);
   /// dz/dt in the stretch entered last.
   void rate(double t_s, const Eigen::VectorXd& z, Eigen::VectorXd& dz_dt);
@@ -52,7 +56,9 @@ class LiveRate {
   double start_s_ = 0.0, start_ambient_K_ = 0.0, ambient_K_s_ = 0.0;  ///< of the stretch, in which the ambient is a line
   std::vector<double> probe_K_;
   std::vector<double> followed_;  ///< values of the laws that do not look at the state, 0 where a thermostat has them off
-  bool has_entered_ = false;
+  std::vector<std::size_t> looked_at_;  ///< probes of the laws that do
+  LawChanges changes_;
+  bool has_entered_ = false, has_toggled_ = false;
   Eigen::MatrixXd conduction_;
   Eigen::VectorXd load_, to_ambient_;
 };

@@ -91,19 +91,25 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
   Eigen::MatrixXd block, integrals;  // z and ∫ z at the outputs of a stretch, in its eigenvectors
   Eigen::ArrayXd e(n), decay(n);
   SeriesInOrder ambient_in_order(ambient);
+  LawChanges changes(system_.change_times_s);
+  const Decomposition* decomposition = nullptr;
+  Eigen::VectorXd load;  // of all that does not follow the ambient, in the eigenvectors
   std::size_t next = 0;
   for (const LinearStretch& stretch : behind(from_s, stretches_of(system_, cyclogram, ambient))) {
     const double length_s = stretch.end_s - stretch.start_s, ambient_K = ambient_in_order.at(stretch.start_s),
                  ambient_slope = (ambient_in_order.at(stretch.end_s) - ambient_K) / length_s;
-    effects::Inputs at{.drive = stretch.drive, .ambient_K = ambient_K, .time_s = stretch.law_time_s()};
-    at.run = stretch.run;
-    for (Eigen::Index i = 0; i < n_exchanges; ++i) {
-      coefficient[i] = system_.exchanges[static_cast<std::size_t>(i)].coefficient(at);
+    if (changes.at(stretch)) {
+      effects::Inputs at{.drive = stretch.drive, .time_s = stretch.law_time_s()};
+      at.run = stretch.run;
+      for (Eigen::Index i = 0; i < n_exchanges; ++i)
+        coefficient[i] = system_.exchanges[static_cast<std::size_t>(i)].coefficient(at);
+      for (Eigen::Index s = 0; s < n_sources; ++s) power_W[s] = system_.sources[static_cast<std::size_t>(s)].power_W(at);
+      decomposition = &decompositions_.at(coefficient, with_heat);
+      load = decomposition->loads * power_W + decomposition->offset;
     }
-    for (Eigen::Index s = 0; s < n_sources; ++s) power_W[s] = system_.sources[static_cast<std::size_t>(s)].power_W(at);
-    const Decomposition& d = decompositions_.at(coefficient, with_heat);
-    const Solution solution(d.lambda_1_s, d.to_modes * state, d.loads * power_W + ambient_K * d.to_ambient + d.offset,
-                            ambient_slope * d.to_ambient, length_s);
+    const Decomposition& d = *decomposition;
+    const Solution solution(d.lambda_1_s, d.to_modes * state, load + ambient_K * d.to_ambient, ambient_slope * d.to_ambient,
+                            length_s);
 
     std::size_t last = next;
     while (last < output_s.size() && output_s[last] <= stretch.end_s) ++last;

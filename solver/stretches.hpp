@@ -25,4 +25,22 @@ template <class Matrix>
   return linear_stretches(cyclogram, knots_of(system, ambient));
 }
 
+/// Asked for each stretch of a run in their order: whether a law that does not look at the state may be another one than in the stretch before.
+class LawChanges {
+ public:
+  /// @param change_times_s  of the system, in their order; borrowed
+  explicit LawChanges(const std::vector<double>& change_times_s) : times_s_(change_times_s) {}
+  [[nodiscard]] bool at(const LinearStretch& stretch) {
+    bool changed = is_first_ || stretch.drive_changed;
+    is_first_ = false;
+    for (; next_ < times_s_.size() && times_s_[next_] <= 0.5 * (stretch.start_s + stretch.end_s); ++next_) changed = true;
+    return changed;
+  }
+
+ private:
+  const std::vector<double>& times_s_;
+  std::size_t next_ = 0;
+  bool is_first_ = true;
+};
+
 }  // namespace driftwright::solver
