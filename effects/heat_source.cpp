@@ -33,8 +33,15 @@ double behind_stop_s(const Effect& e) {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double power_W = e["power"], n0_rpm = e["at_speed"], exponent = e["exponent"];
-  const bool stands = runs_at_rest(e);
-  const bool rests = e.words.at("runs") == "while_spindle_turns" || exponent != 0.0 || e.has("lasts");
+  if (e.has("lasts")) {
+    balance.heats.push_back(
+        {e.name(), e.body(), [=, stopped_from_rpm = stopped_from_rpm(behind_stop_s(e))](const Inputs& u) {
+           const double before_rpm = stopped_from_rpm(u.drive);
+           return before_rpm > 0.0 ? power_W * std::pow(before_rpm / n0_rpm, exponent) : 0.0;
+         }});
+    return;
+  }
+  const bool rests = e.words.at("runs") == "while_spindle_turns" || exponent != 0.0, stands = runs_at_rest(e);
   const auto turns_or_just_has = turns_or_has(behind_stop_s(e));
   const auto steady = [=](const Inputs& u) {
     const bool turns = u.drive.speed_rpm > 0.0;
@@ -73,7 +80,10 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("runs_on", "it is of constant heat that goes with the spindle: `runs: while_spindle_turns`, no `exponent`");
   if (e.has("lasts") && !runs_at_rest(e))
     in.fail("lasts", "it is of heat behind each stop of the spindle: `runs: while_spindle_stands`");
-  if (runs_at_rest(e) && e["exponent"] != 0.0) in.fail("exponent", "heat while the spindle stands does not grow with speed");
+  if (e.has("lasts") && (e.has("fades") || e.has("period")))
+    in.fail("lasts", "heat behind each stop neither fades nor comes in waves");
+  if (runs_at_rest(e) && e["exponent"] != 0.0 && !e.has("lasts"))
+    in.fail("exponent", "heat while the spindle stands does not grow with speed");
   if (e.has("fades") && e.has("period"))
     in.fail("fades", "one of two is wanted: heat that fades, or a wave with a `period`");
   if (e.has("period")) {
@@ -134,6 +144,12 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       of_stops.numbers.push_back(doubted_run_on(kUsualOfStop_min));
       of_stops.numbers.back().name = "lasts";
       of_stops.grid = {{-1.0}, {0.0}, {1.0}};
+      list.push_back(of_stops);
+      of_stops.law = fmt::format(
+          "heat for some minutes behind each stop, by the square of the speed before it, at {:.0f} rpm", s.typical_rpm);
+      of_stops.added[0].set("at_speed", s.typical_rpm);
+      of_stops.added[0].set("exponent", 2.0);  // what turned has given back
+      of_stops.at_speed_rpm = s.typical_rpm;
       list.push_back(std::move(of_stops));
       Doubt standby = while_turning;  // drives, pumps, until the control switches them off
       standby.law += " and some minutes more";

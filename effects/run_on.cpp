@@ -22,6 +22,15 @@ std::function<bool(const Drive&)> turns_or_has(double run_on_s) {
   };
 }
 
+std::function<double(const Drive&)> stopped_from_rpm(double run_on_s) {
+  return [name = signal_name(run_on_s)](const Drive& drive) {
+    if (drive.speed_rpm > 0.0) return 0.0;
+    const auto signal =
+        std::find_if(drive.signals.begin(), drive.signals.end(), [&](const Signal& s) { return s.name == name; });
+    return signal == drive.signals.end() ? 0.0 : signal->value;
+  };
+}
+
 Cyclogram with_run_on(const Cyclogram& recorded, double run_on_s) {
   if (!(run_on_s > 0.0)) return recorded;
   std::vector<double> over_s;
@@ -33,13 +42,15 @@ Cyclogram with_run_on(const Cyclogram& recorded, double run_on_s) {
     if (stops) over_s.push_back(end_s + run_on_s);
   }
   Cyclogram felt = split_at(recorded, over_s);
-  double start_s = 0.0, turned_s = -std::numeric_limits<double>::infinity();
+  double start_s = 0.0, turned_s = -std::numeric_limits<double>::infinity(), last_rpm = 0.0;
   for (Cyclogram::Section& section : felt.sections) {
     const double middle_s = start_s + 0.5 * section.duration_s;
     start_s += section.duration_s;
-    const bool turns = section.drive.speed_rpm > 0.0;
-    if (turns) turned_s = start_s;
-    section.drive.signals.push_back({signal_name(run_on_s), turns || middle_s - turned_s < run_on_s ? 1.0 : 0.0});
+    if (section.drive.speed_rpm > 0.0) {
+      turned_s = start_s;
+      last_rpm = section.drive.speed_rpm;
+    }
+    section.drive.signals.push_back({signal_name(run_on_s), middle_s - turned_s < run_on_s ? last_rpm : 0.0});
   }
   return felt;
 }

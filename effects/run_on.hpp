@@ -11,7 +11,10 @@ namespace driftwright::effects {
 /// Whether the spindle turns, or has stopped less than a time ago, of a drive that with_run_on() was asked for.
 [[nodiscard]] std::function<bool(const Drive&)> turns_or_has(double run_on_s);
 
-/// A cyclogram whose sections carry the signal that turns_or_has() looks for: split where the time behind a stop is over. As it was for no such time.
+/// The speed [rpm] from which a spindle that stands has stopped, less than a time ago; else 0. Of such a drive as well.
+[[nodiscard]] std::function<double(const Drive&)> stopped_from_rpm(double run_on_s);
+
+/// A cyclogram whose sections carry the signal that these look for: split where the time behind a stop is over. As it was for no such time.
 [[nodiscard]] Cyclogram with_run_on(const Cyclogram& recorded, double run_on_s);
 
 /// The same of the drive that is recorded; nothing for no such time.
