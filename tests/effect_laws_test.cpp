@@ -402,6 +402,45 @@ TEST(HeatSource, ThatGoesWithTheSpindleRunsOnForAWhile) {
   EXPECT_EQ(heat_W(1210.0), 0.0);
 }
 
+TEST(HeatSource, BehindEachStopLastsForAWhileAndGrowsWithTheSpeedBefore) {
+  const Cyclogram recorded = {.name = "",
+                              .sections = {{300, {}},
+                                           {600, {.speed_rpm = 1000}},
+                                           {600, {.speed_rpm = 3000}},
+                                           {1800, {}},
+                                           {600, {.speed_rpm = 1500}},
+                                           {60, {}},
+                                           {600, {.speed_rpm = 1500}}}};
+  const auto heat_W = [&](const std::string& more, double time_s) {
+    const std::string entry =
+        "{type: heat_source, node: a, power: 40 W, runs: while_spindle_stands, lasts: 5 min" + more + "}";
+    const Cyclogram felt = true_cyclogram(drive_change({read(entry)}, ""), recorded);
+    return law_of({entry})(Inputs{.drive = felt.drive(time_s), .ambient_K = 0.0, .time_s = time_s, .probe_K = {}});
+  };
+  const std::string by_square = ", exponent: 2, at_speed: 1000 rpm";
+  for (const std::string& more : {std::string(), by_square}) {
+    EXPECT_EQ(heat_W(more, 100.0), 0.0);   // it has not turned yet
+    EXPECT_EQ(heat_W(more, 800.0), 0.0);   // it turns
+    EXPECT_EQ(heat_W(more, 1000.0), 0.0);  // faster, which is no stop
+    EXPECT_EQ(heat_W(more, 1810.0), 0.0);  // 310 s behind a stop
+    EXPECT_EQ(heat_W(more, 3970.0), 0.0);  // it turns again
+  }
+  EXPECT_EQ(heat_W("", 1510.0), 40.0);
+  EXPECT_EQ(heat_W("", 1790.0), 40.0);
+  EXPECT_EQ(heat_W("", 3930.0), 40.0);
+  EXPECT_EQ(heat_W(by_square, 1510.0), 360.0);
+  EXPECT_EQ(heat_W(by_square, 3930.0), 90.0);
+}
+
+TEST(ChangedLaw, IsTimesAFactorBelowASpeed) {
+  const std::string motor = "{type: motor_loss, region: m, power: 100 W, at_speed: 1000 rpm, exponent: 2, idle: 20 W}";
+  const Law law = law_of({motor, "{type: changed_law, law: motor_loss m, factor_below: 1.5, below: 1200 rpm}"});
+  EXPECT_EQ(law(at(1000.0)), 180.0);
+  EXPECT_EQ(law(at(1200.0)), 164.0);
+  EXPECT_EQ(law(at(2000.0)), 420.0);
+  EXPECT_EQ(law(at(0.0)), law_of({motor})(at(0.0)));  // no gear takes part where nothing turns
+}
+
 TEST(ServoLoss, HoldsAWeightWhileItsAxisStands) {
   const Law law =
       law_of({"{type: servo_loss, region: m, power: 80 W, at_feed: 0.2 m/s, idle: 5 W, holding: 30 W, axis: z}"});
@@ -468,6 +507,25 @@ TEST(HiddenBody, IsJoinedWithinItsWindowsAndOtherwiseAsWarmAsTheAmbient) {
     EXPECT_EQ(away(elsewhere), 100.0);  // 6 kJ/K in a minute
   }
   EXPECT_EQ(b.change_times_s, (std::vector<double>{600.0, 1200.0}));
+}
+
+TEST(HiddenBody, IsThereInOneRecordAlone) {
+  const std::string begin = "{type: hidden_body, node: head, capacity: 6 kJ/K, conductance: 9 W/K";
+  const HeatBalance b = heat_balance(
+      {read(begin + ", hall_conductance: 2 W/K, in: monday}"), read(begin + ", hall_conductance: 2 W/K, in: friday}")});
+  ASSERT_EQ(b.nodes.size(), 2u);  // each its own
+  EXPECT_EQ(b.nodes[0].name, "head_hidden in monday");
+  EXPECT_EQ(b.nodes[1].name, "head_hidden in friday");
+  ASSERT_EQ(b.exchanges.size(), 4u);
+  EXPECT_EQ(b.exchanges[0].surrounding, "head_hidden in monday");
+  EXPECT_EQ(b.exchanges[0].coefficient(at(0.0, 900.0, "monday")), 9.0);
+  EXPECT_EQ(b.exchanges[0].coefficient(at(0.0, 900.0, "friday")), 0.0);
+  EXPECT_EQ(b.exchanges[0].coefficient(at(0.0, 0.0)), 0.0);  // nor in the state at rest
+  EXPECT_EQ(b.exchanges[1].surrounding, kAmbientName);
+  EXPECT_EQ(b.exchanges[1].coefficient(at(0.0, 900.0, "monday")), 2.0);
+  const HeatBalance closed = balance_of(begin + ", in: monday}");
+  ASSERT_EQ(closed.exchanges.size(), 2u);  // where nothing joins it, some way out lets a state at rest be found
+  EXPECT_NEAR(closed.exchanges[1].coefficient(at(0.0)), 1e-4, 1e-12);
 }
 
 TEST(InOneRun, AnEffectActsDuringItAlone) {
@@ -680,7 +738,12 @@ INSTANTIATE_TEST_SUITE_P(
             "one of two is wanted"},
         Bad{"{type: changed_law, law: coolant a}", "nothing is changed"},
         Bad{"{type: heat_source, node: a, power: 1 W, runs_on: 5 min}", "goes with the spindle"},
+        Bad{"{type: heat_source, node: a, power: 1 W, lasts: 5 min}", "behind each stop"},
+        Bad{"{type: heat_source, node: a, power: 1 W, runs: while_spindle_stands, lasts: 5 min, fades: 9 min}",
+            "neither fades nor"},
+        Bad{"{type: heat_source, node: a, power: 1 W, runs: while_spindle_stands, exponent: 2}", "does not grow with speed"},
         Bad{"{type: changed_law, law: coolant a, growth_beyond: 0}", "go together"},
+        Bad{"{type: changed_law, law: coolant a, factor_below: 2}", "go together"},
         Bad{"{type: link, node: a, to: ambient, conductance: 1 W/K, runs_on: 3 min}", "goes with the spindle"},
         Bad{"{type: contact, joint: j, conductance: 1 W/(m^2 K), from: 20 s, until: 10 s}", "behind `from`"},
         Bad{"{type: link, node: n, to: ambient, conductance: 1 W/K, from: 20 s, until: 10 s}", "behind `from`"},
@@ -712,7 +775,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: link, node: n, conductance: 1 W/K, to: n}", "joins two bodies"},
         Bad{"{type: link, node: n, conductance: -1 W/K, to: ambient}", "outside what is allowed"},
         Bad{"{type: hidden_body, node: n, conductance: 1 W/K}", "key 'capacity' is missing"},
-        Bad{"{type: hidden_body, node: n, capacity: 1 J/K, conductance: 1 W/K, in: monday}", "they want `windows`"},
+        Bad{"{type: hidden_body, node: n, capacity: 1 J/K, conductance: 1 W/K, every: 5 min}", "they want `windows`"},
         Bad{"{type: hidden_body, node: n, capacity: 0 J/K, conductance: 1 W/K}", "outside what is allowed"},
         Bad{"{type: hidden_body, surface: s, capacity: 1 J/K, conductance: 1 W/K}", "wants one place: region or node"},
         Bad{"{type: coolant, region: r, tank: ambient, flow: 1 L/min, passage_conductance: 1 W/K, volume: 1 L}",

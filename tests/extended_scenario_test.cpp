@@ -240,6 +240,9 @@ const std::vector<Case> kCases = {
     {"another_heat_capacity", true, added({"{type: heat_capacity, region: head, factor: 1.5}"})},
     {"another_expansion", true, added({"{type: expansion, region: head, factor: 1.6}"})},
     {"stratified_air", true, added({"{type: stratification, gradient: 5 K/m, level: -0.5 m}"})},
+    {"heat_behind_each_stop", false,
+     added({"{type: heat_source, node: housing, power: 50 W, at_speed: 900 rpm, exponent: 2, runs: while_spindle_stands, "
+            "lasts: 7 min}"})},
     {"heat_that_runs_on", false,
      added({"{type: heat_source, node: housing, power: 50 W, runs: while_spindle_turns, runs_on: 7 min}"})},
     {"a_warm_start", false, added({"{type: run_state, warmed_up: 40 min, rested: 6 min, in: cycle}"})},

@@ -9,44 +9,11 @@ of `extended.yaml` on the part kept out; then both over the channels' noise (as 
 import json
 import math
 import os
-import re
 import sys
 import time
 
 import records
 import score
-
-
-def simulated_rows(program, scenario, record, folder, name):
-    """{header: [(time, measured, simulated)]} of all channels that record and simulation have, or why there is none."""
-    with open(scenario, encoding="utf-8") as file:
-        text = file.read()
-    text = re.sub(r"^cyclograms:.*\n", lambda m: m.group(0) + f"  kept_out: {{csv: {record}}}\n", text, count=1, flags=re.M)
-    rows = score.raw_rows(record)
-    if "ambient_degC" in rows[0]:
-        text = re.sub(r"^(?:ambient|hall):.*$", f"ambient: {{csv: {record}, channel: ambient}}", text, count=1, flags=re.M)
-    edited, log, out = (os.path.join(folder, name + end) for end in (".yaml", ".log", ""))
-    with open(edited, "w", encoding="utf-8") as file:
-        file.write(text)
-    if score.run([program, "simulate", edited, "--cyclogram", "kept_out", "-o", out], log) != 0:
-        return None, score.why(log)
-    got = score.raw_rows(os.path.join(out, "record.csv"))
-    got = got[next(i for i, r in enumerate(got) if r[0].startswith("time")):]
-    t, start_s = [float(r[0]) for r in got[1:]], float(rows[1][0])
-    channels = {}
-    for column, header in enumerate(rows[0]):
-        if column == 0 or header not in got[0] or header.startswith(("speed", "feed", "cutting", "ambient")):
-            continue
-        y = [float(r[got[0].index(header)]) for r in got[1:]]
-        hi = 1
-        for row in rows[1:]:
-            at = min(max(float(row[0]) - start_s, t[0]), t[-1])
-            while hi < len(t) - 1 and t[hi] < at:
-                hi += 1
-            share = (at - t[hi - 1]) / (t[hi] - t[hi - 1])
-            if row[column]:
-                channels.setdefault(header, []).append((float(row[0]), float(row[column]), y[hi - 1] + share * (y[hi] - y[hi - 1])))
-    return channels, ""
 
 
 def main():
@@ -76,7 +43,7 @@ def main():
             for source in case.judge_files:
                 name = os.path.basename(source)
                 record = score.converted(case, source, os.path.join(folder, "twin_judge_" + name))
-                channels, reason = simulated_rows(program, scenario, record, folder, f"all_{key.replace(' ', '_')}_{name[:-4]}")
+                channels, reason = score.simulated_channels(program, scenario, record, folder, f"all_{key.replace(' ', '_')}_{name[:-4]}")
                 if channels is None:
                     print(f"  {key}: {reason}")
                     continue

@@ -136,8 +136,8 @@ def raw_rows(path):
         return list(csv.reader(file))
 
 
-def simulated(case, program, scenario, record, folder, name):
-    """Target [unit of the record] at the rows of the record, by the scenario driven as the record says; None and why where that fails."""
+def simulated_channels(program, scenario, record, folder, name):
+    """{header: [(time, measured, simulated)]} of all channels that record and simulation have, by the scenario driven as the record says; None and why where that fails."""
     with open(scenario, encoding="utf-8") as file:
         text = file.read()
     text = re.sub(r"^cyclograms:.*\n", lambda m: m.group(0) + f"  kept_out: {{csv: {record}}}\n", text, count=1, flags=re.M)
@@ -145,31 +145,36 @@ def simulated(case, program, scenario, record, folder, name):
     if "ambient_degC" in rows[0]:
         text = re.sub(r"^(?:ambient|hall):.*$", f"ambient: {{csv: {record}, channel: ambient}}", text, count=1, flags=re.M)
     # paths of extended.yaml are absolute; it may lie anywhere
-    edited = os.path.join(folder, name + ".yaml")
+    edited, log, out = (os.path.join(folder, name + end) for end in (".yaml", ".log", ""))
     with open(edited, "w", encoding="utf-8") as file:
         file.write(text)
-    log = os.path.join(folder, name + ".log")
-    out = os.path.join(folder, name)
     if run([program, "simulate", edited, "--cyclogram", "kept_out", "-o", out], log) != 0:
         return None, why(log)
     got = raw_rows(os.path.join(out, "record.csv"))
     got = got[next(i for i, r in enumerate(got) if r[0].startswith("time")):]
-    t = [float(r[0]) for r in got[1:]]
-    y = [float(r[got[0].index(simulated_name(got[0], case))]) for r in got[1:]]
-    column = rows[0].index(case.scenario_target if case.scenario_target in rows[0] else rows[0][-1])
-    start_s = float(rows[1][0])
-    pairs = []
-    for row in rows[1:]:
-        at = min(max(float(row[0]) - start_s, t[0]), t[-1])
-        hi = max(1, next((k for k, v in enumerate(t) if v >= at), len(t) - 1))
-        share = (at - t[hi - 1]) / (t[hi] - t[hi - 1])
-        if row[column]:
-            pairs.append((float(row[0]), float(row[column]), y[hi - 1] + share * (y[hi] - y[hi - 1])))
-    return pairs, ""
+    t, start_s = [float(r[0]) for r in got[1:]], float(rows[1][0])
+    channels = {}
+    for column, header in enumerate(rows[0]):
+        if column == 0 or header not in got[0] or header.startswith(("speed", "feed", "cutting", "ambient")):
+            continue
+        y = [float(r[got[0].index(header)]) for r in got[1:]]
+        hi = 1
+        for row in rows[1:]:
+            at = min(max(float(row[0]) - start_s, t[0]), t[-1])
+            while hi < len(t) - 1 and t[hi] < at:
+                hi += 1
+            share = (at - t[hi - 1]) / (t[hi] - t[hi - 1])
+            if row[column]:
+                channels.setdefault(header, []).append((float(row[0]), float(row[column]), y[hi - 1] + share * (y[hi] - y[hi - 1])))
+    return channels, ""
 
 
-def simulated_name(header, case):
-    return next(h for h in header if base(h) == base(case.scenario_target))
+def simulated(case, program, scenario, record, folder, name):
+    """The same of the target alone [unit of the record]."""
+    channels, reason = simulated_channels(program, scenario, record, folder, name)
+    if channels is None:
+        return None, reason
+    return next(rows for header, rows in channels.items() if base(header) == base(case.scenario_target)), ""
 
 
 def by_diagnosis(case, program, folder):
