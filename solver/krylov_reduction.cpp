@@ -14,6 +14,7 @@
 namespace driftwright::solver {
 namespace {
 
+constexpr int kWhole = 40;            // unknowns: such a system is kept as it is
 constexpr double kShortest_s = 15.0;  // the fastest answer that a basis is made for; outputs are minutes apart
 
 std::vector<double> log_spaced(double from, double to, int n) {
@@ -307,11 +308,14 @@ class Reducer {
   /// Keeps the directions that the step tests use most, as few as the other half of the tolerance allows.
   void compress(Reduction& result, const std::vector<Eigen::MatrixXd>& reference) const {
     const Eigen::Index n = basis_.size();
-    const Eigen::Index n_kept = 1 + (inputs_[0].start >= 0 ? 1 : 0);  // 1 and the start stay
-    if (n <= n_kept) {  // of a machine of one node there is nothing to leave out
-      result.basis = basis_.vectors();
+    if (system_.size() <= kWhole) {  // two bodies that coefficients always joined alike may be parted by a law
+      Basis whole = basis_;
+      whole.add(Eigen::MatrixXd::Identity(system_.size(), system_.size()));
+      result.basis = whole.vectors();
+      result.error = {};
       return;
     }
+    const Eigen::Index n_kept = 1 + (inputs_[0].start >= 0 ? 1 : 0);  // 1 and the start stay
     Eigen::MatrixXd kept(n, n_kept);
     kept.col(0) = basis_.m_vectors().transpose() * system_.ones;
     if (inputs_[0].start >= 0) kept.col(1) = basis_.m_vectors().transpose() * start_;

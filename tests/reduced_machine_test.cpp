@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "solver/bind_laws.hpp"
 #include "solver/reduced_transient.hpp"
@@ -74,6 +75,33 @@ double difference_K(const solver::Trajectory& a, const solver::Trajectory& b, co
 double missed_K(const Both& of) {
   return difference_K(run_full(of.scenario, of.machine), run_small(of.scenario, of.reduced.system, of.reduced.start),
                       of.machine.system.outputs);
+}
+
+// Two like bodies, of which a law joins one alone: nothing that they were asked for together tells them apart.
+TEST(ANetworkOfAFewNodes, IsNotMadeSmaller) {
+  const auto path = fresh_folder("reduced_network") / "network.yaml";
+  std::ofstream(path) << R"(name: network
+reference_temperature: 20 degC
+machine: {generator: lumped}
+effects:
+  - {type: node, node: column, capacity: 40 kJ/K}
+  - {type: heat_source, node: column, power: 300 W}
+  - {type: link, node: column, to: ambient, conductance: 14 W/K}
+  - {type: node, node: left, capacity: 20 kJ/K}
+  - {type: link, node: column, to: left, conductance: 15 W/K, in: monday}
+  - {type: link, node: left, to: ambient, conductance: 0.5 W/K}
+  - {type: node, node: right, capacity: 20 kJ/K}
+  - {type: link, node: column, to: right, conductance: 15 W/K, in: tuesday}
+  - {type: link, node: right, to: ambient, conductance: 0.5 W/K}
+sensors: [{name: t, node: column}]
+cyclograms:
+  monday: [[5 h, 0 rpm]]
+)";
+  Scenario scenario = read_scenario(path.string());
+  Machine machine = machine_of(scenario);
+  const ReducedMachine reduced = reduce(*scenario.machine, machine, plan_of(scenario));
+  EXPECT_EQ(reduced.system.size(), 3);
+  EXPECT_LT(missed_K({std::move(scenario), std::move(machine), reduced}), 1e-3);
 }
 
 class AReducedMachine : public ::testing::TestWithParam<std::pair<const char*, ColumnAndHead>> {};
