@@ -21,7 +21,8 @@ constexpr double kPromised = 1.0;    // of Φ, by slopes that do not keep it
 constexpr int kMostRetakes = 3;
 constexpr int kPatience = 5;           // steps after which
 constexpr double kOutOfReach = 3.0;    // times the misfit of interest is given up
-constexpr double kOutOfReachBy = 100;  // and so much more
+constexpr double kOutOfReachBy = 100;  // and so much more,
+constexpr double kFallen = 0.7;        // where it has not fallen to this share of itself in three steps
 constexpr double kTail = 4.0;          // degrees of freedom of a claim's prior
 
 Eigen::Index n_knobs(const Hypothesis& hypothesis) {
@@ -405,6 +406,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
   for (const MeasuredRun& run : runs_) {
     row_s = std::min(row_s, run.time_s.back() / static_cast<double>(run.time_s.size() - 1));
   }
+  std::vector<double> passed;  // misfits
   double searched_at = 1e300;  // misfit where no other time was better
   const bool search_times = std::any_of(knobs.begin(), knobs.end(), [](const Knob* k) { return k->is_time; });
   // Times wait for the first step: linear theory chose them with all other numbers moved, and by those that are not moved yet a better time is a worse one.
@@ -470,7 +472,10 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
       }
       searched_at = f.misfit < unsearched ? 1e300 : f.misfit;
     }
-    if (iteration >= kPatience && f.misfit > kOutOfReach * of_interest + kOutOfReachBy) return {};
+    passed.push_back(f.misfit);
+    if (iteration >= kPatience && f.misfit > kOutOfReach * of_interest + kOutOfReachBy &&
+        f.misfit > kFallen * passed[passed.size() - 4])
+      return {};
     if (!times_wait && before - f.misfit < kConverged && !retake(0.5 * gradient.dot(step))) break;
   }
   differentiate(true);

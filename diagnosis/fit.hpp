@@ -74,7 +74,7 @@ class Fitter {
   void settle(const Hypothesis& hypothesis, const Fit& at);
 
   /// @param start       x of the claims, in order; scatter starts where it was last settled
-  /// @param of_interest a fit whose Φ is still several times this one after some steps is given up, as one that has no solution
+  /// @param of_interest a fit whose Φ is still several times this one after some steps, and falls slowly, is given up as one that has no solution
   /// @throws SolveError  when the machine has no solution there
   [[nodiscard]] Fit fit(const Hypothesis& hypothesis, const Eigen::VectorXd& start, Twin::Workspace& workspace,
                         double of_interest = kAny) const;

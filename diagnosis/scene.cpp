@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kLeastOfSpeed = 0.05;  // of the time in which the spindle turns, on either side of a step of speed
 constexpr std::size_t kMostSpeedSteps = 6;
+constexpr double kLeastRatio = 1.1;  // of two speeds: nearer ones are one that was measured twice
 
 /// What a part is made of: what scatters and may be wrong about it.
 effects::DoubtScene::Material material_of(const Twin& twin, const solver::BodyPart<Eigen::MatrixXd>& part) {
@@ -118,7 +119,7 @@ std::vector<double> speed_steps_rpm(const std::vector<MeasuredRun>& runs) {
   std::vector<std::pair<double, double>> gaps;  // ratio of the two speeds, what lies between them
   double slower_s = 0.0, slower_rpm = 0.0;
   for (const auto& [rpm, of_speed_s] : time_s) {
-    if (std::min(slower_s, turning_s - slower_s) > kLeastOfSpeed * turning_s)
+    if (std::min(slower_s, turning_s - slower_s) > kLeastOfSpeed * turning_s && rpm > kLeastRatio * slower_rpm)
       gaps.emplace_back(rpm / slower_rpm, 0.5 * (rpm + slower_rpm));
     slower_s += of_speed_s;
     slower_rpm = rpm;

@@ -194,7 +194,7 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       if (jobs[i].first.back().all_or_nothing)
         fit_from_scenario(fitter, jobs[i].first, jobs[i].second, base_fit.misfit, fits[i]);
-      if (known) known->keep(jobs[i].first, fits[i]);
+      if (known && !fits[i].prediction.empty()) known->keep(jobs[i].first, fits[i]);
       batch.push_back({jobs[i].first.back(), std::move(fits[i])});
     }
     for (Fitted& f : batch) {
@@ -231,6 +231,7 @@ Fit fit_at_zero(const Fitter& fitter) {
   Twin::Workspace workspace(fitter.twin());
   fit.prediction = fitter.predict({}, fit.x, workspace);
   fit.residual = fitter.comparison().measured() - fitter.comparison().whitened(fit.prediction);
+  fit.misfit = 0.5 * fit.residual.squaredNorm();
   fit.slopes.resize(fit.residual.size(), 0);
   return fit;
 }

@@ -386,7 +386,7 @@ EffectKind changed_law() {
                       "share of the growth with speed that is left beyond a speed; 0: the law levels off, < 0: it falls"},
                      {"beyond", "rpm", 1.0, 1e6, 1000.0, "that speed"},
                      {"factor_below", "1", 0.0, 1e4, 1.0, "on the law below a speed: another gear, another winding"},
-                     {"below", "rpm", 0.0, 1e6, 0.0, "that speed"},
+                     {"below", "rpm", 1.0, 1e6, 1000.0, "that speed"},
                      {"decay", "1/K", -0.5, 0.5, 0.0, "share lost a kelvin; a thinning oil: 0.01 to 0.05"},
                      {"at_temperature", "degC", 200.0, 500.0, 293.15, "where that decay changes nothing"},
                      {"difference_exponent", "1", -1.0, 3.0, 0.0,

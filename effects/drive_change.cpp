@@ -1,5 +1,7 @@
 #include "effects/drive_change.hpp"
 
+#include "effects/run_on.hpp"
+
 namespace driftwright::effects {
 
 Cyclogram true_cyclogram(const DriveChange& change, Cyclogram recorded) {
@@ -18,6 +20,7 @@ Cyclogram driven_before(const DriveChange& change, const Cyclogram& felt) {
     const Cyclogram more = driven(felt);
     before.sections.insert(before.sections.end(), more.sections.begin(), more.sections.end());
   }
+  for (double time_s : change.run_on_s) before = with_run_on(std::move(before), time_s);
   before.clock_s = -before.duration_s();
   return before;
 }

@@ -13,6 +13,8 @@ struct DriveChange {
   std::vector<std::function<Cyclogram(const Cyclogram&)>> drive;
   /// Of the ambient temperature [K] during a cyclogram.
   std::vector<std::function<TimeSeries(const TimeSeries&, const Cyclogram& felt)>> ambient;
+  /// Times for which something goes on behind a stop [s]: they are among the changes of the drive (effects/run_on.hpp).
+  std::vector<double> run_on_s;
   /// What the machine did before a cyclogram that it felt, one after the other.
   std::vector<std::function<Cyclogram(const Cyclogram& felt)>> before;
 };

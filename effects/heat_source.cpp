@@ -64,8 +64,9 @@ void contribute(const Effect& e, HeatBalance& balance) {
     return;
   }
   const double period_s = e["period"], delay_s = e["delay"], mean_W = e["mean"], step_s = period_s / kStepsAPeriod;
-  const auto wave = [=](const Inputs& u) {
-    return mean_W + steady(u) * std::sin(2.0 * std::numbers::pi * (u.time_s - delay_s) / period_s);
+  const auto wave = [=, from_s = e.from_s](const Inputs& u) {  // that in the middle of its step, wherever in it one asks
+    const double middle_s = from_s + (std::floor((u.time_s - from_s) / step_s) + 0.5) * step_s;
+    return mean_W + steady(u) * std::sin(2.0 * std::numbers::pi * (middle_s - delay_s) / period_s);
   };
   balance.heats.push_back({e.name(), e.body(), wave});
   for (int k = 1; e.from_s + k * step_s < e.until_s; ++k) balance.change_times_s.push_back(e.from_s + k * step_s);
@@ -226,7 +227,7 @@ EffectKind heat_source() {
           "runs while_spindle_turns (and runs on for a while) or while_spindle_stands (and lasts for a while); it fades: "
           "times exp(-t / fades), in steps of an eighth of "
           "that; with a period: mean + "
-          "that times sin(2 pi (t - delay) / period)",
+          "that times sin(2 pi (t - delay) / period), in sixteen steps a period",
       .places = {Place::kRegion, Place::kSurface, Place::kNode},
       .parameters =
           {{"power", "W", -1e6, 1e6, {}, "heat at the stated speed; negative cools", 0.1, "heat_source"},

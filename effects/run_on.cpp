@@ -8,8 +8,10 @@
 namespace driftwright::effects {
 namespace {
 
+constexpr double kSlowing_s = 60.0;  // a spindle takes seconds to stop, which a record may have as a row or some
+
 std::string signal_name(double run_on_s) {
-  return fmt::format("turns, or has within {} s", run_on_s);
+  return fmt::format("turns, or has stopped from within {} s", run_on_s);
 }
 
 }  // namespace
@@ -31,8 +33,11 @@ std::function<double(const Drive&)> stopped_from_rpm(double run_on_s) {
   };
 }
 
-Cyclogram with_run_on(const Cyclogram& recorded, double run_on_s) {
+Cyclogram with_run_on(Cyclogram recorded, double run_on_s) {
   if (!(run_on_s > 0.0)) return recorded;
+  const std::string name = signal_name(run_on_s);
+  for (Cyclogram::Section& section : recorded.sections)  // of a drive that was made of others
+    std::erase_if(section.drive.signals, [&](const Signal& s) { return s.name == name; });
   std::vector<double> over_s;
   double end_s = 0.0;
   for (std::size_t i = 0; i < recorded.sections.size(); ++i) {
@@ -42,21 +47,26 @@ Cyclogram with_run_on(const Cyclogram& recorded, double run_on_s) {
     if (stops) over_s.push_back(end_s + run_on_s);
   }
   Cyclogram felt = split_at(recorded, over_s);
-  double start_s = 0.0, turned_s = -std::numeric_limits<double>::infinity(), last_rpm = 0.0;
+  double start_s = 0.0, turned_s = -std::numeric_limits<double>::infinity(), from_rpm = 0.0;
+  std::vector<std::pair<double, double>> slows;  // ends of the sections of the last minute, and their speeds
   for (Cyclogram::Section& section : felt.sections) {
     const double middle_s = start_s + 0.5 * section.duration_s;
+    std::erase_if(slows, [&](const auto& s) { return s.first < start_s - kSlowing_s; });
     start_s += section.duration_s;
     if (section.drive.speed_rpm > 0.0) {
       turned_s = start_s;
-      last_rpm = section.drive.speed_rpm;
+      from_rpm = section.drive.speed_rpm;
+      for (const auto& [end, rpm] : slows) from_rpm = std::max(from_rpm, rpm);
+      slows.emplace_back(start_s, section.drive.speed_rpm);
     }
-    section.drive.signals.push_back({signal_name(run_on_s), middle_s - turned_s < run_on_s ? last_rpm : 0.0});
+    section.drive.signals.push_back({name, middle_s - turned_s < run_on_s ? from_rpm : 0.0});
   }
   return felt;
 }
 
 void add_run_on(double run_on_s, DriveChange& change) {
   if (!(run_on_s > 0.0)) return;
+  change.run_on_s.push_back(run_on_s);
   change.drive.push_back([run_on_s](const Cyclogram& recorded) { return with_run_on(recorded, run_on_s); });
 }
 

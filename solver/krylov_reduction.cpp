@@ -14,7 +14,7 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr int kWhole = 40;            // unknowns: such a system is kept as it is
+constexpr int kWhole = 100;           // unknowns: such a system is kept as it is
 constexpr double kShortest_s = 15.0;  // the fastest answer that a basis is made for; outputs are minutes apart
 
 std::vector<double> log_spaced(double from, double to, int n) {

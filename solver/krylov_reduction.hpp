@@ -5,7 +5,8 @@
 // shifts s [1/s] from standing still to seconds and at several sets of coefficients c. K is affine in c, so that films, joints
 // and links keep their laws in the small system. Each round adds the responses where the residual is largest; the outputs under
 // steps of all inputs then tell how much the round has changed.
-// A system of a few dozen unknowns, a network of lumped nodes, has nothing to leave out: its basis is whole.
+// A system of up to a hundred unknowns, a network of lumped nodes, has nothing to leave out: its basis is whole. In a larger one, two like bodies that all sets
+// of coefficients join alike are one to the basis, and stay one where a law parts them.
 // Source: Grimme, Krylov Projection Methods for Model Reduction (1997); the greedy choice of shifts by the residual follows
 // Druskin & Simoncini, Systems & Control Letters 60 (2011) 546-560.
 

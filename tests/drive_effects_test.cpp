@@ -241,6 +241,13 @@ TEST(DrivenBefore, IsTheMeanDriveOfTheRecordAndARest) {
   EXPECT_DOUBLE_EQ(behind.sections[1].drive.signals[0].value, 20.0);  // as where the record begins, and not 0 degC
   EXPECT_EQ(before.name, "");
   EXPECT_DOUBLE_EQ(before.clock_s, -3000.0);
+  const Effect standby = read("{type: heat_source, node: a, power: 40 W, runs: while_spindle_turns, runs_on: 3 min}");
+  const DriveChange both = drive_change({read(warm), standby}, "shift");
+  const Cyclogram rests = driven_before(both, true_cyclogram(both, kRecorded));
+  EXPECT_THAT(durations_s(rests), ElementsAre(2400, 180, 420));  // what runs on behind the stop does so for its time
+  ASSERT_THAT(rests.sections[1].drive.signals, ::testing::SizeIs(1));
+  EXPECT_EQ(rests.sections[1].drive.signals[0].value, 1600.0);
+  EXPECT_EQ(rests.sections[2].drive.signals[0].value, 0.0);
   EXPECT_THAT(driven_before(change_of(warm, "other"), kRecorded).sections, ::testing::IsEmpty());
   EXPECT_THAT(driven_before(change_of("{type: run_state, factor: 2, in: shift}"), kRecorded).sections, ::testing::IsEmpty());
 }

@@ -317,10 +317,11 @@ TEST(Windows, JointsAndLinksHaveThem) {
 TEST(HeatSource, InAWaveRisesThroughZeroAtItsDelayAndIsCutIntoSteps) {
   const HeatBalance b = balance_of("{type: heat_source, node: n, power: 8 W, period: 40 min, delay: 5 min, until: 80 min}");
   const Law& power_W = b.heats.at(0).power_W;
-  EXPECT_NEAR(power_W({.drive = {}, .time_s = 300.0}), 0.0, 1e-12);
-  EXPECT_NEAR(power_W({.drive = {}, .time_s = 900.0}), 8.0, 1e-12);            // a quarter later
-  EXPECT_NEAR(power_W({.drive = {}, .time_s = 2100.0}), -8.0, 1e-12);          // three quarters
-  EXPECT_NEAR(power_W({.drive = {}, .time_s = 400.0}), 8.0 * 0.258819, 1e-5);  // sin 15 deg
+  for (double time_s : {300.0, 320.0, 449.0})  // alike in all of a step, wherever in it somebody asks: as in its middle
+    EXPECT_NEAR(power_W({.drive = {}, .time_s = time_s}), 8.0 * 0.195090, 1e-5);  // sin 11.25 deg
+  EXPECT_NEAR(power_W({.drive = {}, .time_s = 225.0}), -8.0 * 0.195090, 1e-5);    // before its delay
+  EXPECT_NEAR(power_W({.drive = {}, .time_s = 900.0}), 8.0 * 0.980785, 1e-5);     // a quarter later, and half a step
+  EXPECT_NEAR(power_W({.drive = {}, .time_s = 2100.0}), -8.0 * 0.980785, 1e-5);   // three quarters
   EXPECT_EQ(power_W({.drive = {}, .time_s = 4800.0}), 0.0);
   EXPECT_EQ(b.change_times_s.size(), 32U);  // 31 between, and the end: every 150 s
 }
@@ -429,6 +430,13 @@ TEST(HeatSource, BehindEachStopLastsForAWhileAndGrowsWithTheSpeedBefore) {
   EXPECT_EQ(heat_W("", 1790.0), 40.0);
   EXPECT_EQ(heat_W("", 3930.0), 40.0);
   EXPECT_EQ(heat_W(by_square, 1510.0), 360.0);
+  const Cyclogram slows = {.name = "", .sections = {{600, {.speed_rpm = 3000}}, {1, {.speed_rpm = 300}}, {900, {}}}};
+  const std::string brake =
+      "{type: heat_source, node: a, power: 40 W, runs: while_spindle_stands, lasts: 5 min, exponent: "
+      "2, at_speed: 1000 rpm}";
+  const Cyclogram felt = true_cyclogram(drive_change({read(brake)}, ""), slows);
+  EXPECT_EQ(law_of({brake})(Inputs{.drive = felt.drive(700.0), .ambient_K = 0.0, .time_s = 700.0, .probe_K = {}}),
+            360.0);  // a row in which it is about to stand is no other stop
   EXPECT_EQ(heat_W(by_square, 3930.0), 90.0);
 }
 
@@ -545,8 +553,8 @@ TEST(HeatSource, GoesWithTheSpindleOrFallsWithSpeed) {
   EXPECT_EQ(falls(at(0.0)), 0.0);  // not infinite
   EXPECT_NEAR(falls(at(4000.0)), 25.0, 1e-12);
   const Law wave = law_of({"{type: heat_source, node: a, power: 10 W, mean: 30 W, period: 400 s, until: 2000 s}"});
-  EXPECT_NEAR(wave(at(0.0, 100.0)), 40.0, 1e-9);
-  EXPECT_NEAR(wave(at(0.0, 300.0)), 20.0, 1e-9);
+  EXPECT_NEAR(wave(at(0.0, 100.0)), 30.0 + 10.0 * 0.980785, 1e-5);
+  EXPECT_NEAR(wave(at(0.0, 300.0)), 30.0 - 10.0 * 0.980785, 1e-5);
 }
 
 TEST(ExchangeWindow, OpensAndClosesOnceOrAgainAndAgain) {

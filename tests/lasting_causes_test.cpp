@@ -356,6 +356,14 @@ INSTANTIATE_TEST_SUITE_P(
               "for some minutes behind each stop",
               150.0,
               30.0},
+        Cause{"a_brakes_resistor",
+              {"{type: heat_source, node: column, power: 60 W, at_speed: 1000 rpm, exponent: 2, runs: while_spindle_stands, "
+               "lasts: 8 min}"},
+              "heat_source",
+              "column",
+              "by the square of the speed before it",
+              60.0,
+              12.0},
         Cause{"a_fixture_that_stays",
               {"{type: hidden_body, node: column, capacity: 20 kJ/K, conductance: 15 W/K, in: tuesday}",
                "{type: hidden_body, node: column, capacity: 20 kJ/K, conductance: 15 W/K, in: friday}"},
@@ -372,6 +380,19 @@ INSTANTIATE_TEST_SUITE_P(
               1.6,
               0.1}),
     [](const auto& one) { return one.param.name; });
+
+// Between speeds that each hold for a while, a tenth apart and more; of many the widest.
+TEST(AGearStage, IsLookedForBetweenTheSpeedsOfTheRecords) {
+  const Beside beside(write_file("plain.yaml", kTwoNodes),
+                      noisy_records(write_file("truth.yaml", kTwoNodes), "geared_", 60.0, 0.03, 0.2));
+  std::vector<std::string> stages;
+  for (const Candidate& c : candidates(*beside.twin, beside.runs, {})) {
+    for (const Variant& v : c.variants) {
+      if (c.where == "head" && v.law.starts_with("heat by another factor below")) stages.push_back(v.law.substr(29));
+    }
+  }
+  EXPECT_THAT(stages, testing::UnorderedElementsAre("450 rpm", "750 rpm", "950 rpm", "1200 rpm", "1500 rpm", "1700 rpm"));
+}
 
 // Whatever a search may say of some records a scenario can say, too.
 TEST(OfSomeRecords, EveryLawCanBeWrittenAndReadAgain) {

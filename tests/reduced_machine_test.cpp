@@ -83,6 +83,7 @@ TEST(ANetworkOfAFewNodes, IsNotMadeSmaller) {
   std::ofstream(path) << R"(name: network
 reference_temperature: 20 degC
 machine: {generator: lumped}
+ambient: 20 degC
 effects:
   - {type: node, node: column, capacity: 40 kJ/K}
   - {type: heat_source, node: column, power: 300 W}
@@ -96,6 +97,7 @@ effects:
 sensors: [{name: t, node: column}]
 cyclograms:
   monday: [[5 h, 0 rpm]]
+  tuesday: [[5 h, 0 rpm]]
 )";
   Scenario scenario = read_scenario(path.string());
   Machine machine = machine_of(scenario);

@@ -174,7 +174,8 @@ def simulated(case, program, scenario, record, folder, name):
     channels, reason = simulated_channels(program, scenario, record, folder, name)
     if channels is None:
         return None, reason
-    return next(rows for header, rows in channels.items() if base(header) == base(case.scenario_target)), ""
+    target = next((rows for header, rows in channels.items() if base(header) == base(case.scenario_target)), None)
+    return target, "" if target else f"{case.scenario_target} is not both measured and simulated"
 
 
 def by_diagnosis(case, program, folder):

@@ -55,8 +55,10 @@ bool keeps_to(const Coefficients& c, const std::function<double(double)>& f, dou
 
 /// @returns false where it would take more than kMostPieces
 bool add_pieces(LawTerm& term, const std::function<double(double)>& f, double at_rest, double low, double high) {
-  const Coefficients c = interpolated(f, low, high);
-  if (high - low > kNarrowest && !keeps_to(c, f, at_rest, low, high)) {
+  Coefficients c = interpolated(f, low, high);
+  const bool keeps = keeps_to(c, f, at_rest, low, high);
+  if (!keeps && high - low <= kNarrowest) c = {f(high)};  // a jump: what holds from there on holds at the very place
+  if (!keeps && high - low > kNarrowest) {
     const double middle = 0.5 * (low + high);
     return add_pieces(term, f, at_rest, low, middle) && add_pieces(term, f, at_rest, middle, high);
   }

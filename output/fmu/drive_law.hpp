@@ -40,7 +40,7 @@ struct DriveRange {
 };
 
 /// Tabulates a law that is a sum of functions of one variable each. Pieces are halved until the polynomial keeps to the law within 1e-13 of what the
-/// law is at most in the piece or at rest, or are 1e-9 wide in log x: around a kink or a jump. The first begins at 1e-6 of the largest value.
+/// law is at most in the piece or at rest, or are 1e-9 wide in log x: around a kink or a jump, where the law is what it is at the piece's end. The first begins at 1e-6 of the largest value.
 /// @param law   finite for drives up to the largest values
 /// @returns nothing where two variables act together, or the law is too rough for some two thousand pieces
 [[nodiscard]] std::optional<DriveLaw> tabulated(const std::function<double(const Drive&)>& law,

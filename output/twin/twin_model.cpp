@@ -91,10 +91,11 @@ std::vector<std::string> notes_of(const MachineModel& machine) {
     if (e.kind->change_readings)
       notes.push_back(fmt::format("{} acts on what instruments say; here they say what is.", e.name()));
     if (effects::changes_drive(e))
-      notes.push_back(fmt::format("{} {}", e.name(),
-                                  e.kind->contribute
-                                      ? "follows what the drive was before; here it is as it is set."
-                                      : "changes the recorded drive or ambient; here both are as they are set."));
+      notes.push_back(fmt::format(
+          "{} {}", e.name(),
+          e.kind->key == "heat_source" && e.has("lasts") ? "comes behind each stop of the spindle; here it never comes."
+          : e.kind->contribute                           ? "follows what the drive was before; here it is as it is set."
+                               : "changes the recorded drive or ambient; here both are as they are set."));
     if (!e.in.empty())
       notes.push_back(fmt::format("{} acts in the cyclogram '{}' alone, and here not at all.", e.name(), e.in));
   }
