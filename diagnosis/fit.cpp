@@ -288,9 +288,13 @@ void Fitter::settle(const Hypothesis& hypothesis, const Fit& at) {
   whiten_slopes();
 }
 
-Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const {
+Eigen::MatrixXd Fitter::slopes_at(const Hypothesis& hypothesis, const Fit& at) const {
   Eigen::MatrixXd slopes = slopes_;
-  const KeptRuns about = kept_runs(state(hypothesis, at.x), workspace);
+  KeptRuns about;
+  {
+    Twin::Workspace workspace(twin_);  // as new as those that are held against it
+    about = kept_runs(state(hypothesis, at.x), workspace);
+  }
   for_each_index(
       scatter_.size(), [&] { return Twin::Workspace(twin_); },
       [&](std::size_t i, Twin::Workspace& own) {
@@ -363,7 +367,7 @@ Fit Fitter::climb(const Hypothesis& hypothesis, Eigen::VectorXd start, Eigen::In
     const double far = gone.cwiseAbs().maxCoeff();
     const bool are_here = n_retakes > 0 && far == 0.0;
     if (n_retakes == kMostRetakes || are_here || (far <= kFar && promised < kPromised)) return false;
-    own_slopes = slopes_at(hypothesis, f, workspace);
+    own_slopes = slopes_at(hypothesis, f);
     own_squares.noalias() = own_slopes.transpose() * own_slopes;
     nuisance_slopes = &own_slopes;
     nuisance_squares = &own_squares;

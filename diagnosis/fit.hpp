@@ -131,7 +131,7 @@ class Fitter {
                                  const KeptRuns& about, std::size_t which, Twin::Workspace& workspace) const;
   void take_slopes(const Hypothesis& hypothesis, const Eigen::VectorXd& x, const Listener& listener = {});
   /// W f's slopes by scatter and linear columns at an x far from where scatter was settled.
-  [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at, Twin::Workspace& workspace) const;
+  [[nodiscard]] Eigen::MatrixXd slopes_at(const Hypothesis& hypothesis, const Fit& at) const;
   void whiten_slopes();
 
   const Twin& twin_;

@@ -139,6 +139,10 @@ std::optional<Course> Course::of(const ReducedSystem& system, Decompositions& de
 std::optional<Eigen::MatrixXd> Course::states_of(const ReducedSystem& other, const Cyclogram& cyclogram,
                                                  const TimeSeries& ambient, const Eigen::VectorXd& start) const {
   if (!other.is_linear()) return std::nullopt;
+  // a system may have exchanges more, of laws that it had before
+  if (!decompositions_.empty() &&
+      static_cast<Eigen::Index>(other.exchanges.size()) != decompositions_.front().coefficient.size())
+    return std::nullopt;
   const std::vector<LinearStretch> theirs = stretches_of(other, cyclogram, ambient);
   if (theirs.size() != stretches_.size()) return std::nullopt;
   for (std::size_t k = 0; k < theirs.size(); ++k) {
