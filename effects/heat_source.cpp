@@ -237,8 +237,8 @@ EffectKind heat_source() {
             "time in which the heat falls to 37 %, from the start of each record or from `from` on: grease that runs in"},
            {"runs_on", "min", 0.0, 1e4, kNotGiven, "for how long what goes with the spindle runs on when that has stopped"},
            {"lasts", "min", 0.01, 1e4, kNotGiven,
-            "for how long behind each stop there is heat that `runs: while_spindle_stands`: a tool changer, a brake's "
-            "resistor"},
+            "for how long behind each stop there is heat that `runs: while_spindle_stands`: a tool changer; with an "
+            "exponent by the speed before the stop: a brake's resistor"},
            {"period", "s", 1.0, 1e7, kNotGiven, "of a wave; wants `until`"},
            {"delay", "s", -1e7, 1e7, 0.0, "when the wave rises through its mean"},
            {"mean", "W", -1e6, 1e6, 0.0, "of a wave", 0.1, "heat_source"}},
