@@ -362,8 +362,9 @@ TEST(DriveLaw, IsMetToRoundingWhateverItsFormula) {
   const auto geared = [](const Drive& d) { return (d.speed_rpm < 1200.0 ? 1.7 : 1.0) * d.speed_rpm; };
   const std::optional<DriveLaw> stage = tabulated(geared, ranges);
   ASSERT_TRUE(stage);
-  for (double n : {600.0, 1199.99, 1200.0, 1200.01, 3000.0})  // at the very speed of the change, too: one value for a piece 1e-9 wide
-    EXPECT_NEAR(stage->at({n, 0.0}), geared({.speed_rpm = n}), 1e-9 * n) << n << " rpm";
+  for (double n : {600.0, 1199.99, 1200.01, 3000.0})
+    EXPECT_NEAR(stage->at({n, 0.0}), geared({.speed_rpm = n}), 1e-11 * n) << n << " rpm";
+  EXPECT_NEAR(stage->at({1200.0, 0.0}), 1200.0, 1e-9 * 1200.0);  // at the very speed of the change: a piece 1e-9 wide
   EXPECT_TRUE(tabulated([](const Drive&) { return 5.0; }, ranges)->terms.empty());
   EXPECT_FALSE(tabulated([](const Drive& d) { return d.speed_rpm * d.feed_m_s[0]; }, ranges)) << "two variables together";
 }
