@@ -88,6 +88,11 @@ effects:
   - {type: node, node: column, capacity: 40 kJ/K}
   - {type: heat_source, node: column, power: 300 W}
   - {type: link, node: column, to: ambient, conductance: 14 W/K}
+  - {type: node, node: head, capacity: 6 kJ/K}
+  - {type: link, node: head, to: column, conductance: 12 W/K}
+  - {type: node, node: base, capacity: 90 kJ/K}
+  - {type: link, node: base, to: column, conductance: 30 W/K}
+  - {type: link, node: base, to: ambient, conductance: 9 W/K}
   - {type: node, node: left, capacity: 20 kJ/K}
   - {type: link, node: column, to: left, conductance: 15 W/K, in: monday}
   - {type: link, node: left, to: ambient, conductance: 0.5 W/K}
@@ -101,8 +106,9 @@ cyclograms:
 )";
   Scenario scenario = read_scenario(path.string());
   Machine machine = machine_of(scenario);
-  const ReducedMachine reduced = reduce(*scenario.machine, machine, plan_of(scenario));
-  EXPECT_EQ(reduced.system.size(), 3);
+  const ReducedMachine reduced =
+      reduce(*scenario.machine, machine, reduction_plan(scenario, {&scenario.cyclograms[0], &scenario.cyclograms[1]}));
+  EXPECT_EQ(reduced.system.size(), 5);
   EXPECT_LT(missed_K({std::move(scenario), std::move(machine), reduced}), 1e-3);
 }
 
