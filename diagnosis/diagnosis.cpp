@@ -377,6 +377,9 @@ Diagnosis diagnose(const Twin& twin, const Twin* coarse, const std::vector<Measu
       } else if (d.written.keeps_numbers) {
         write_nothing(d, "a single record of which something is left that nothing explains says too little of others");
       }
+    } else if (d.written.keeps_numbers && !listener.wants_end()) {
+      const std::string why = worse_in_another_cycle(fitter, d.search, d.noise, d.written.causes);
+      if (!why.empty()) write_nothing(d, why);
     }
   }
   const bool is_open = std::any_of(d.causes.begin(), d.causes.end(), [](const Cause& c) { return !c.alternatives.empty(); });

@@ -1,6 +1,6 @@
 #include "diagnosis/gain.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -184,6 +184,29 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   held.misses = misses_of(judge, models);
   held.channels = channel_gains(fitter.runs(), noise, judge, models);
   return held;
+}
+
+std::string worse_in_another_cycle(const Fitter& fitter, const SearchResult& result,
+                                   const std::map<std::string, NoiseModel>& noise, const std::vector<std::size_t>& claims) {
+  Subset subset = 0;
+  for (std::size_t c : claims) subset |= 1U << c;
+  std::vector<Fold> cycles = folds_of_cycles(fitter.runs());
+  if (cycles.empty()) return "";
+  const std::vector<Fold> folds = cycles;
+  Judge judge(fitter, result, noise, std::move(cycles));
+  const std::vector<double> filed = judge.over_noise_by_fold(judge.filed(subset)),
+                            written = judge.over_noise_by_fold(judge.written());
+  for (std::size_t f = 0; f < folds.size(); ++f) {
+    if (!(filed[f] * filed[f] > kWorse * written[f] * written[f])) continue;
+    std::vector<std::string> names;
+    for (std::size_t run : folds[f].whole) names.push_back(fitter.runs()[run].name);
+    return fmt::format(
+        "records of another duty cycle are predicted worse than by the scenario as it was: {} by {:.3g} times the noise, "
+        "not "
+        "{:.3g} times, with numbers fitted to the other records",
+        fmt::join(names, ", "), filed[f], written[f]);
+  }
+  return "";
 }
 
 }  // namespace driftwright::diagnosis

@@ -79,7 +79,8 @@ Doubt carried(const DoubtScene& s, const Body& from, const Body& to) {
           .added = {make_effect("link", from, {{"conductance", 0.0}})},
           .numbers = {doubted("conductance", "W/K", 2.0 * typical_W_K, 0.05 * typical_W_K)},
           .trial = kTrial * typical_W_K,
-          .rarity = kRare};
+          .rarity = kRare,
+          .is_built_in = true};
   d.numbers[0].low = 0.0;
   d.added[0].references["to"] = to;
   d.added[0].words["runs"] = "while_spindle_turns";

@@ -99,6 +99,7 @@ struct Doubt {
   double at_speed_rpm = 0.0;                     ///< the speed its size is stated at; 0: none
   bool all_or_nothing = false;                   ///< two cables are swapped or not: the size is the trial
   double rarity = 0.0;                           ///< nats: how much rarer it is than other laws, before any reading
+  bool is_built_in = false;                      ///< so a machine is built: in all records or in none
   bool scatters = false;                         ///< its size is one of those that no scenario knows better than to 10 %
 };
 

@@ -22,14 +22,6 @@ std::vector<Effect> in_each(const Doubt& doubt) {
   return list;
 }
 
-/// Oil, chips or a belt that carry heat, or pass a thermometer, while the spindle turns: so a machine is built, and it is so in all records.
-bool is_built_so(const Effect& e) {
-  const auto word = e.words.find(e.kind->key == "link" ? "runs" : "acts");
-  const auto other = e.references.find(e.kind->key == "link" ? "to" : "body");
-  return (e.kind->key == "link" || e.kind->key == "sensor_place") && word != e.words.end() &&
-         word->second == "while_spindle_turns" && other != e.references.end() && !(other->second == ambient_node());
-}
-
 }  // namespace
 
 void add_from_a_time_on(const DoubtScene& scene, const Doubt& doubt, const std::string& number, double rarity,
@@ -67,7 +59,7 @@ std::set<std::string> runs_of(const Doubt& doubt) {
 }
 
 bool can_be_of_some_runs(const Doubt& doubt) {
-  if (std::any_of(doubt.added.begin(), doubt.added.end(), is_built_so)) return false;
+  if (doubt.is_built_in) return false;
   const bool has_time = std::any_of(doubt.numbers.begin(), doubt.numbers.end(), [](const auto& n) { return n.is_time; });
   const bool is_timed = std::any_of(doubt.added.begin(), doubt.added.end(), [](const Effect& e) {
     const auto windows = e.tables.find(kWindows);

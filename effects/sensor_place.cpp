@@ -68,6 +68,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
         flown_at.law =
             fmt::format("reads a share of {} while the spindle turns", body == ambient_node() ? "the air" : body.name);
         flown_at.added.front().words["acts"] = "while_spindle_turns";
+        flown_at.is_built_in = !(body == ambient_node());
         list.push_back(std::move(flown_at));
       }
       const bool is_elsewhere = at != s.sensor_bodies.end() && !(at->second == body);

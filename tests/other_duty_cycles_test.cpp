@@ -1,0 +1,71 @@
+// What was fitted to records of some duty cycles is written where it does no harm to one that it was not fitted to.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string_view>
+
+#include "tests/lumped_records.hpp"
+
+namespace driftwright::diagnosis {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Three days of a slow cycle and two of a fast one.
+std::string of_two_cycles(std::string text) {
+  const std::size_t from = text.find("cyclograms:"), to = text.find("solver:");
+  text.replace(from, to - from, R"(cyclograms:
+  slow_1: [[150 min, 1000 rpm], [50 min, 0 rpm], [60 min, 1000 rpm]]
+  slow_2: [[120 min, 1000 rpm], [40 min, 0 rpm], [90 min, 1000 rpm]]
+  fast_1: [[100 min, 3000 rpm], [50 min, 0 rpm], [100 min, 3000 rpm]]
+  slow_3: [[60 min, 1000 rpm], [30 min, 0 rpm], [100 min, 1000 rpm]]
+  fast_2: [[160 min, 3000 rpm], [60 min, 0 rpm], [40 min, 3000 rpm]]
+)");
+  return text;
+}
+
+constexpr const char* kWritten = "power: 100 W, at_speed: 1000 rpm, exponent: 1.3";
+// Twice the friction when slow, as much as is written when fast.
+constexpr const char* kTrue = "power: 200 W, at_speed: 1000 rpm, exponent: 0.67";
+
+/// Of records of a machine whose friction grows less with speed than is written. @param also  what it has beside that
+Diagnosis diagnosed(const std::string& also, const std::set<std::string>& without = {}) {
+  const std::string plain = of_two_cycles(kTwoNodes);
+  std::string truth = with_effect(plain, also);
+  truth.replace(truth.find(kWritten), std::string_view(kWritten).size(), kTrue);
+  const Beside beside(write_file("plain.yaml", plain),
+                      noisy_records(write_file("truth.yaml", truth), "cycles_", 60.0, 0.03, 0.2));
+  DiagnosisOptions how;
+  how.most_effects = 1;
+  how.without = without;
+  return diagnose(*beside.twin, nullptr, beside.runs, how);
+}
+
+TEST(OtherDutyCycles, HoldBackWhatIsTrueOfOneAloneWhereMoreIsLeftThanAnythingExplains) {
+  // Heat that comes and goes in every record as nobody could tell, and no law of friction to be found: the scenario's own power takes up what the slow days show.
+  std::string unexplained;
+  for (const char* record : {"slow_1", "slow_2", "slow_3", "fast_1", "fast_2"}) {
+    for (const char* window : {"30 W, windows: [[11 min, 34 min]]", "-25 W, windows: [[52 min, 80 min]]",
+                               "35 W, windows: [[97 min, 122 min]]", "-30 W, windows: [[140 min, 171 min]]"})
+      unexplained += fmt::format("{}{{type: heat_window, node: column, in: {}, power: {}}}",
+                                 unexplained.empty() ? "" : "\n  - ", record, window);
+  }
+  const Diagnosis d = diagnosed(unexplained, {"changed_law", "friction_law", "heat_window", "heat_source", "run_state"});
+  ASSERT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
+  EXPECT_FALSE(d.written.keeps_numbers);
+  EXPECT_THAT(d.written.why_nothing,
+              HasSubstr("records of another duty cycle are predicted worse than by the scenario as it was: "
+                        "cycles_fast_1, cycles_fast_2 by"));
+}
+
+TEST(OtherDutyCycles, DoNotHoldBackWhatExplainsAll) {
+  const Diagnosis d = diagnosed("");
+  ASSERT_EQ(d.verdict, Verdict::kNamed) << d.reason;
+  EXPECT_TRUE(d.written.keeps_numbers) << d.written.why_nothing;
+}
+
+}  // namespace
+}  // namespace driftwright::diagnosis
