@@ -44,11 +44,6 @@ bool is_air_of_films(const DoubtScene& s, const Body& body) {
                      [&](const Exchange& e) { return e.body.kind == BodyKind::kSurface && node(e.surrounding) == body; });
 }
 
-bool has_common_neighbour(const DoubtScene& s, const Body& a, const Body& b) {
-  return std::any_of(s.bodies.begin(), s.bodies.end(),
-                     [&](const Body& c) { return !(c == a) && !(c == b) && are_joined(s, a, c) && are_joined(s, b, c); });
-}
-
 /// A fan that goes with the spindle, and may go on for a while when that has stopped.
 void doubt_fan(const DoubtScene& s, const Body& body, std::vector<Doubt>& list) {
   const double typical_W_K = s.typical_conductance_W_K();
@@ -114,7 +109,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       if (is_node && to.kind == BodyKind::kNode && is_small && s.starts_and_stops) list.push_back(carried(s, from, to));
       if (to.kind != BodyKind::kNode || are_joined(s, from, to)) continue;
       if (!is_node && is_air_of_films(s, to)) continue;
-      if (is_small || has_common_neighbour(s, from, to)) add(from, to);
+      if (is_small || have_common_neighbour(s, from, to)) add(from, to);
     }
     // A region loses its heat to the ambient by films.
     if (is_node && !are_joined(s, from, ambient_node())) add(from, ambient_node());

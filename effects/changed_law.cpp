@@ -32,7 +32,10 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
   const double below_rpm = e["below"], factor_below = e["factor_below"];
   const double of_difference = e["difference_exponent"], at_difference_K = e["at_difference"];
   const bool thins = decay_1_K != 0.0, follows_difference = of_difference != 0.0 && other;
+  const auto over = e.references.find("over");
+  const bool is_over = thins && over != e.references.end();  // another body's temperature, not a stated one
   if (thins) law.probes.push_back(body);
+  if (is_over) law.probes.push_back(over->second);
   if (follows_difference) {
     law.probes.push_back(body);
     law.probes.push_back(*other);
@@ -40,7 +43,7 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
   law.value = [=, value = law.value](const Inputs& u) {
     Inputs own;
     const Inputs* inputs = &u;
-    const std::size_t n_probes = u.probe_K.size() - (thins ? 1 : 0) - (follows_difference ? 2 : 0);
+    const std::size_t n_probes = u.probe_K.size() - (thins ? 1 : 0) - (is_over ? 1 : 0) - (follows_difference ? 2 : 0);
     if (thins || follows_difference) {  // the last probes are this one's
       own = u;
       own.probe_K.resize(n_probes);
@@ -59,7 +62,8 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
     const double n = u.drive.speed_rpm / n0_rpm;
     const double by_speed = (n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0) +
                             (growth != 0.0 ? growth * std::pow(n, growth_exponent) : 0.0);
-    const double by_temperature = thins ? std::exp(-decay_1_K * (u.probe_K[n_probes] - t0_K)) : 1.0;
+    const double zero_K = is_over ? u.probe_K[n_probes + 1] : t0_K;
+    const double by_temperature = thins ? std::exp(-decay_1_K * (u.probe_K[n_probes] - zero_K)) : 1.0;
     const double difference_K =
         follows_difference ? std::max(kLeastDifference_K, std::abs(u.probe_K.end()[-2] - u.probe_K.back())) : 1.0;
     const double by_difference = follows_difference ? std::pow(difference_K / at_difference_K, of_difference) : 1.0;
@@ -200,6 +204,13 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
   friction.trial = 0.01;
   friction.grid = {{}};
   list.push_back(friction);
+  for (const Body& other : s.bodies) {  // preload that grows, or is lost, as the inner ring becomes warmer than the housing
+    if (other == body || !are_joined(s, body, other)) continue;
+    Doubt preload = friction;
+    preload.law = fmt::format("heat that falls as its body becomes warmer than {}; < 0: it grows", other.name);
+    for (Effect& e : preload.added) e.references["over"] = other;
+    list.push_back(std::move(preload));
+  }
 }
 
 /// Whether air or a medium takes part, which a door, a fan or a valve changes from one minute to the next.
@@ -311,6 +322,24 @@ void doubt_stirred(const DoubtScene& s, const std::string& finding, const Exchan
   list.push_back(std::move(grows));
 }
 
+/// A fit that tightens as its inner part becomes warmer than its outer one: an exchange of two bodies that follows their difference where it is written as constant.
+void doubt_fit(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
+  if (is_of_air(s, exchange) || exchange.body.kind != BodyKind::kNode || !exchange.coefficient.probes.empty()) return;
+  Doubt tightens{.finding = finding,
+                 .where = where_of(exchange),
+                 .law = fmt::format("a conductance that falls as {} becomes warmer than {}; < 0: it grows",
+                                    exchange.body.name, exchange.surrounding),
+                 .added = {changed(exchange.name)},
+                 .numbers = {doubted("decay", "1/K", 0.02, 0.002)},
+                 .trial = 0.01,
+                 .rarity = kOfSolids};
+  tightens.added[0].references["over"] = node(exchange.surrounding);
+  const bool is_listed = std::any_of(list.begin(), list.end(), [&](const Doubt& d) {
+    return d.finding == finding && d.added.front().place == exchange.name && d.law == tightens.law;
+  });
+  if (!is_listed) list.push_back(std::move(tightens));
+}
+
 /// Free convection, radiation: what a lumped body loses to the ambient grows with the difference of their temperatures where it is written as constant.
 void doubt_free(const Exchange& exchange, std::vector<Doubt>& list) {
   if (exchange.surrounding != kAmbientName || exchange.medium_K || exchange.per == Per::kArea ||
@@ -344,6 +373,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
       doubt_exchange(s, e.kind->exchange_finding, x, list);
       doubt_stirred(s, e.kind->exchange_finding, x, list);
       doubt_free(x, list);
+      doubt_fit(s, e.kind->exchange_finding, x, list);
     }
   }
   return list;
@@ -356,6 +386,8 @@ void check(const Effect& e, const ConfigMap& in) {
             "nothing is changed; another value of one of `factor`, `exponent`, `growth`, `growth_beyond`, `factor_below`, "
             "`decay`, "
             "`difference_exponent`, `warmer` is wanted");
+  if (e.references.contains("over") && e["decay"] == 0.0)
+    in.fail("over", "it is what the temperature of the law's body counts over where there is a `decay`");
   if (in.has("beyond") != in.has("growth_beyond"))
     in.fail("beyond", "`beyond`, a speed, and `growth_beyond`, the share of the growth that is left there, go together");
   if (in.has("below") != in.has("factor_below"))
@@ -371,7 +403,9 @@ EffectKind changed_law() {
       .law =
           "c' = factor ((n / at_speed)^exponent + growth (n / at_speed)^growth_exponent) exp(-decay (T - "
           "at_temperature)) (|T - T_other| / at_difference)^difference_exponent c, "
-          "c: a power or a coefficient of another effect, T of its own body; at standstill the exponent does nothing; "
+          "c: a power or a coefficient of another effect, T of its own body, over that of the body `over` where there is "
+          "one; at "
+          "standstill the exponent does nothing; "
           "beyond a speed c grows by growth_beyond times as much, and falls to nothing at the most; it is times "
           "factor_below "
           "while the spindle turns more slowly than `below`; a "
@@ -396,6 +430,12 @@ EffectKind changed_law() {
                       "of an exchange with a medium of stated temperature, a coolant's set point: so much more"}},
       .timing = Timing::kInTime,
       .change_laws = change_laws,
+      .references =
+          {{"over",
+            {BodyKind::kNode, BodyKind::kRegion},
+            "",
+            "body whose temperature stands in place of `at_temperature`: a bearing's preload follows what its inner "
+            "ring is warmer than its housing"}},
       .check = check,
       .doubts = doubts};
 }

@@ -60,6 +60,11 @@ bool are_joined(const DoubtScene& s, const Body& a, const Body& b) {
   });
 }
 
+bool have_common_neighbour(const DoubtScene& s, const Body& a, const Body& b) {
+  return std::any_of(s.bodies.begin(), s.bodies.end(),
+                     [&](const Body& c) { return !(c == a) && !(c == b) && are_joined(s, a, c) && are_joined(s, b, c); });
+}
+
 bool has_film(const HeatBalance& balance, const std::string& on) {
   return std::any_of(balance.exchanges.begin(), balance.exchanges.end(),
                      [&](const Exchange& e) { return e.body == surface(on) && e.per == Per::kArea; });

@@ -114,6 +114,8 @@ struct Doubt {
 
 /// Whether an exchange of its own joins two bodies.
 [[nodiscard]] bool are_joined(const DoubtScene& s, const Body& a, const Body& b);
+/// Whether both are joined to some third body.
+[[nodiscard]] bool have_common_neighbour(const DoubtScene& s, const Body& a, const Body& b);
 
 /// Whether some film lies on a surface.
 [[nodiscard]] bool has_film(const HeatBalance& balance, const std::string& surface);

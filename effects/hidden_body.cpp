@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "effects/body_between.hpp"
 #include "effects/time_windows.hpp"
 
 namespace driftwright::effects {
@@ -87,7 +89,7 @@ Doubt following(const DoubtScene::Material& m, double longest_s) {
   return d;
 }
 
-/// A body at each region and node: what it exchanges and stores, and in a second law its own way to the ambient.
+/// A body at each region and node: what it exchanges and stores, and in a second law its own way to the ambient; and bodies between two others.
 std::vector<Doubt> doubts(const DoubtScene& s) {
   const double typical_W_K = s.typical_conductance_W_K(), longest_s = s.longest_s();
   std::vector<Doubt> list;
@@ -127,6 +129,8 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
     between.rarity = kRare;
     list.push_back(std::move(between));
   }
+  std::vector<Doubt> between_two = bodies_between(s);
+  std::move(between_two.begin(), between_two.end(), std::back_inserter(list));
   return list;
 }
 

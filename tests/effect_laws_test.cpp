@@ -374,6 +374,20 @@ TEST(ChangedLaw, AddsAGrowthWithSpeedToWhatIsThereAtStandstill) {
   EXPECT_NEAR(twice(at(2000.0)), 32.0, 1e-12);  // of the law as changed
 }
 
+TEST(ChangedLaw, FallsWithWhatItsBodyIsWarmerThanAnother) {
+  const std::string over = "decay: -0.02 1/K, at_temperature: 20 degC, over: c}";
+  const Law preload =
+      law_of({"{type: heat_source, node: a, power: 100 W}", "{type: changed_law, law: heat_source a, " + over});
+  ASSERT_EQ(preload.probes, (std::vector<Body>{node("a"), node("c")}));
+  EXPECT_NEAR(preload(at(0.0, 0.0, "", {303.0, 298.0})), 100.0 * std::exp(0.1), 1e-9);
+  EXPECT_NEAR(preload(at(0.0, 0.0, "", {298.0, 298.0})), 100.0, 1e-9);  // whatever at_temperature is
+  // beside a power of the difference at its own ends
+  const Law both = law_of({"{type: link, node: a, to: b, conductance: 10 W/K}",
+                           "{type: changed_law, law: link a - b, difference_exponent: 0.25, at_difference: 16 K, " + over});
+  ASSERT_EQ(both.probes, (std::vector<Body>{node("a"), node("c"), node("a"), node("b")}));
+  EXPECT_NEAR(both(at(0.0, 0.0, "", {303.0, 298.0, 303.0, 302.0})), 5.0 * std::exp(0.1), 1e-9);
+}
+
 TEST(ChangedLaw, FollowsAPowerOfTheTemperatureDifference) {
   const std::string film = "{type: link, node: a, to: b, conductance: 10 W/K}";
   const Law free = law_of({film, "{type: changed_law, law: link a - b, difference_exponent: 0.25, at_difference: 16 K}"});

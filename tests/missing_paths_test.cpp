@@ -57,8 +57,9 @@ struct Missing {
   const char* entry;  ///< of the truth
   const char* effect;
   const char* where;
-  std::vector<double> values;  ///< of its parameters, as they are reported
-  double tolerance;            ///< relative: some three of their standard deviations
+  std::vector<double> values;                               ///< of its parameters, as they are reported
+  double tolerance;                                         ///< relative: some three of their standard deviations
+  std::string written = "- {type: " + std::string(effect);  ///< in the scenario that is made
 };
 class AMissingPath : public testing::TestWithParam<Missing> {};
 
@@ -83,7 +84,7 @@ TEST_P(AMissingPath, IsNamedWithItsNumbersAndWritten) {
   const ExtendedScenario extended =
       extended_scenario(beside.scenario, *beside.twin, beside.runs, {{"it", "because", change_of(claim, x)}}, {});
   EXPECT_THAT(extended.not_written, IsEmpty());
-  EXPECT_THAT(extended.text, HasSubstr(std::string("- {type: ") + missing.effect));
+  EXPECT_THAT(extended.text, HasSubstr(missing.written));
   const Beside again(write_file("extended_again.yaml", extended.text), record(truth, missing.name));
   EXPECT_EQ(again.diagnosed(3).verdict, Verdict::kConsistent);
 }
@@ -114,7 +115,26 @@ INSTANTIATE_TEST_SUITE_P(OfEachSort, AMissingPath,
                                                "hidden_body",
                                                "spindle",
                                                {5.0, 12e3, 4.0},
-                                               0.25}),
+                                               0.25},
+                                           Missing{"body_between_two",
+                                                   "{type: node, node: oil, capacity: 15 kJ/K}\n"
+                                                   "  - {type: link, node: spindle, to: oil, conductance: 6 W/K}\n"
+                                                   "  - {type: link, node: column, to: oil, conductance: 9 W/K}",
+                                                   "hidden_body",
+                                                   "spindle,column",
+                                                   {6.0, 15e3, 1.5},
+                                                   0.25,
+                                                   "- {type: node, node: between_spindle_column, capacity: "},
+                                           Missing{"body_between_two_with_a_way_out",
+                                                   "{type: node, node: cover, capacity: 12 kJ/K}\n"
+                                                   "  - {type: link, node: head, to: cover, conductance: 8 W/K}\n"
+                                                   "  - {type: link, node: column, to: cover, conductance: 8 W/K}\n"
+                                                   "  - {type: link, node: cover, to: ambient, conductance: 5 W/K}",
+                                                   "hidden_body",
+                                                   "head,column",
+                                                   {8.0, 12e3, 1.0, 0.625},
+                                                   0.35,
+                                                   "- {type: node, node: between_head_column, capacity: "}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 TEST(NoMissingPath, IsConsistent) {
@@ -134,8 +154,9 @@ TEST(MissingPaths, AreOfferedOnceWhereNothingJoinsTwoBodies) {
   EXPECT_THAT(links, testing::UnorderedElementsAre("spindle,column", "spindle,motor", "spindle,ambient", "head,ambient",
                                                    "column,motor", "spindle,head", "head,motor",
                                                    "head,column"));  // these while the spindle turns
-  EXPECT_THAT(bodies,
-              testing::UnorderedElementsAre("spindle", "head", "column", "motor", "column,motor"));  // a guard around these
+  EXPECT_THAT(bodies, testing::UnorderedElementsAre("spindle", "head", "column", "motor", "spindle,head", "head,column",
+                                                    "head,motor", "spindle,column", "spindle,motor",
+                                                    "column,motor"));  // between two, or a guard around them
 }
 
 TEST(AWrittenGradient, ThatIsFarOffIsFound) {
