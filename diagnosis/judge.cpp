@@ -184,19 +184,6 @@ double Judge::over_noise(const std::vector<Prediction>& predicted) const {
   return n > 0.0 ? std::sqrt(squares_over_noise(predicted) / n) : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::vector<double> Judge::over_noise_by_fold(const std::vector<Prediction>& predicted) const {
-  std::vector<double> misses;
-  for (std::size_t f = 0; f < folds_.size(); ++f) {
-    double n = 0.0, sum = 0.0;
-    for_each_miss(f, predicted, [&](const MeasuredChannel& c, double miss) {
-      n += 1.0;
-      sum += std::pow(miss / noise_.at(c.name).total(), 2);
-    });
-    misses.push_back(std::sqrt(sum / n));  // of no rows: NaN
-  }
-  return misses;
-}
-
 double Judge::squares_over_noise(const std::vector<Prediction>& predicted) const {
   double sum = 0.0;
   for_each_miss(predicted,

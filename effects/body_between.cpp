@@ -27,7 +27,7 @@ DoubtedNumber logarithmic(const char* name, const char* unit, double prior_sd, d
 Doubt between(const DoubtScene& s, const DoubtScene::Material& a, const DoubtScene::Material& b) {
   const double typical_W_K = s.typical_conductance_W_K();
   const double capacity_J_K = std::min(a.capacity_J_K, b.capacity_J_K);
-  const Body own = node(fmt::format("between_{}_{}", a.body.name, b.body.name));
+  const Body own = node(fmt::format("between_{}_and_{}", a.body.name, b.body.name));
   Doubt d{
       .finding = "hidden_body",
       .where = a.body.name + "," + b.body.name,

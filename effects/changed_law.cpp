@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "effects/lasting.hpp"
 
@@ -62,8 +63,9 @@ void change(const Effect& e, const Body& body, const Body* other, Law& law) {
     const double n = u.drive.speed_rpm / n0_rpm;
     const double by_speed = (n > 0.0 && exponent != 0.0 ? std::pow(n, exponent) : 1.0) +
                             (growth != 0.0 ? growth * std::pow(n, growth_exponent) : 0.0);
-    const double zero_K = is_over ? u.probe_K[n_probes + 1] : t0_K;
-    const double by_temperature = thins ? std::exp(-decay_1_K * (u.probe_K[n_probes] - zero_K)) : 1.0;
+    const double by_temperature = is_over ? std::max(0.0, 1.0 - decay_1_K * (u.probe_K[n_probes] - u.probe_K[n_probes + 1]))
+                                  : thins ? std::exp(-decay_1_K * (u.probe_K[n_probes] - t0_K))
+                                          : 1.0;
     const double difference_K =
         follows_difference ? std::max(kLeastDifference_K, std::abs(u.probe_K.end()[-2] - u.probe_K.back())) : 1.0;
     const double by_difference = follows_difference ? std::pow(difference_K / at_difference_K, of_difference) : 1.0;
@@ -204,11 +206,19 @@ void doubt_heat(const DoubtScene& s, const Body& body, std::vector<Doubt>& list)
   friction.trial = 0.01;
   friction.grid = {{}};
   list.push_back(friction);
-  for (const Body& other : s.bodies) {  // preload that grows, or is lost, as the inner ring becomes warmer than the housing
-    if (other == body || !are_joined(s, body, other)) continue;
+  if (!(written > 0.05)) return;
+  std::vector<Body> neighbours;
+  std::copy_if(s.bodies.begin(), s.bodies.end(), std::back_inserter(neighbours),
+               [&](const Body& other) { return !(other == body) && are_joined(s, body, other); });
+  for (const Body& other :
+       neighbours) {  // preload that grows, or is lost, as the inner ring becomes warmer than the housing
     Doubt preload = friction;
     preload.law = fmt::format("heat that falls as its body becomes warmer than {}; < 0: it grows", other.name);
-    for (Effect& e : preload.added) e.references["over"] = other;
+    preload.rarity = std::log(static_cast<double>(neighbours.size()));
+    for (Effect& e : preload.added) {
+      e = changed(e.place);
+      e.references["over"] = other;
+    }
     list.push_back(std::move(preload));
   }
 }
@@ -324,7 +334,9 @@ void doubt_stirred(const DoubtScene& s, const std::string& finding, const Exchan
 
 /// A fit that tightens as its inner part becomes warmer than its outer one: an exchange of two bodies that follows their difference where it is written as constant.
 void doubt_fit(const DoubtScene& s, const std::string& finding, const Exchange& exchange, std::vector<Doubt>& list) {
-  if (is_of_air(s, exchange) || exchange.body.kind != BodyKind::kNode || !exchange.coefficient.probes.empty()) return;
+  if (is_of_air(s, exchange) || exchange.body.kind != BodyKind::kNode || !exchange.coefficient.probes.empty() ||
+      exchange.coefficient(Inputs{.drive = {.speed_rpm = s.typical_rpm}}) != exchange.coefficient(Inputs{}))
+    return;
   Doubt tightens{.finding = finding,
                  .where = where_of(exchange),
                  .law = fmt::format("a conductance that falls as {} becomes warmer than {}; < 0: it grows",
@@ -388,6 +400,9 @@ void check(const Effect& e, const ConfigMap& in) {
             "`difference_exponent`, `warmer` is wanted");
   if (e.references.contains("over") && e["decay"] == 0.0)
     in.fail("over", "it is what the temperature of the law's body counts over where there is a `decay`");
+  if (e.references.contains("over") && in.has("at_temperature"))
+    in.fail("at_temperature",
+            "with `over` it is the other body's temperature that the law's body counts over; leave this out");
   if (in.has("beyond") != in.has("growth_beyond"))
     in.fail("beyond", "`beyond`, a speed, and `growth_beyond`, the share of the growth that is left there, go together");
   if (in.has("below") != in.has("factor_below"))
@@ -403,12 +418,11 @@ EffectKind changed_law() {
       .law =
           "c' = factor ((n / at_speed)^exponent + growth (n / at_speed)^growth_exponent) exp(-decay (T - "
           "at_temperature)) (|T - T_other| / at_difference)^difference_exponent c, "
-          "c: a power or a coefficient of another effect, T of its own body, over that of the body `over` where there is "
-          "one; at "
-          "standstill the exponent does nothing; "
+          "c: a power or a coefficient of another effect, T of its own body; with `over` 1 - decay (T - T_over), at least "
+          "0, "
+          "in place of the exponential; at standstill the exponent does nothing; "
           "beyond a speed c grows by growth_beyond times as much, and falls to nothing at the most; it is times "
-          "factor_below "
-          "while the spindle turns more slowly than `below`; a "
+          "factor_below while the spindle turns more slowly than `below`; a "
           "medium that is `warmer` brings that times c'",
       .places = {Place::kLaw},
       .parameters = {{"factor", "1", 0.0, 1e4, 1.0, "on the law"},
@@ -430,12 +444,12 @@ EffectKind changed_law() {
                       "of an exchange with a medium of stated temperature, a coolant's set point: so much more"}},
       .timing = Timing::kInTime,
       .change_laws = change_laws,
-      .references =
-          {{"over",
-            {BodyKind::kNode, BodyKind::kRegion},
-            "",
-            "body whose temperature stands in place of `at_temperature`: a bearing's preload follows what its inner "
-            "ring is warmer than its housing"}},
+      .references = {{"over",
+                      {BodyKind::kNode, BodyKind::kRegion},
+                      "",
+                      "body (or `ambient`) whose temperature T counts over, in place of `at_temperature`: a bearing's "
+                      "preload follows what its inner "
+                      "ring is warmer than its housing"}},
       .check = check,
       .doubts = doubts};
 }

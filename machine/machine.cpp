@@ -144,6 +144,17 @@ void check_effects(const MachineModel& model, const Mesh& mesh, const effects::H
       const bool is_of_joint = std::any_of(balance.exchanges.begin(), balance.exchanges.end(), [&](const auto& x) {
         return x.name == e.place && x.body.kind == effects::BodyKind::kJoint;
       });
+      if (const auto over = e.references.find("over"); over != e.references.end()) {
+        bool is_own = false;
+        for (const effects::HeatInput& h : balance.heats) is_own = is_own || (h.name == e.place && h.body == over->second);
+        for (const effects::Exchange& x : balance.exchanges)
+          is_own = is_own || (x.name == e.place && x.body == over->second);
+        if (is_own)
+          throw InputError(e.where,
+                           fmt::format("'{}' is of {} itself; `over` names another body, whose temperature that of {} "
+                                       "counts over",
+                                       e.place, over->second.name, over->second.name));
+      }
       if (is_of_joint && e["decay"] != 0.0)
         throw InputError(e.where, "a joint has no temperature of its own; `decay` wants one");
       const bool has_medium = std::any_of(balance.exchanges.begin(), balance.exchanges.end(),

@@ -105,8 +105,9 @@ void check(int flag, const char* call, double time_s, Callee& callee) {
   if (callee.failure) std::rethrow_exception(callee.failure);
   if (flag >= 0) return;
   const std::unique_ptr<char, decltype(&std::free)> name(ARKStepGetReturnFlagName(flag), &std::free);
-  const std::string remedy = callee.out_of_range.empty() ? "try looser tolerances in `solver`"
-                                                         : "a law refused a trial state: " + callee.out_of_range;
+  const std::string remedy = callee.out_of_range.empty()
+                                 ? "try looser tolerances in `solver`; a machine whose heat grows as it warms may run away"
+                                 : "a law refused a trial state: " + callee.out_of_range;
   throw SolveError(fmt::format("{} failed at t = {:.1f} s with {}; {}", call, time_s, name.get(), remedy));
 }
 

@@ -30,15 +30,21 @@ struct Range {
 void look(const effects::Law& law, effects::Inputs at, double reference_K, Range& range) {
   if (!law.thermostat.empty()) range.take(0.0);
   if (law.probes.empty()) return range.take(std::abs(law(at)));
-  for (double warmer_K : kWarmer_K) {
+  const auto take_where = [&](const auto& warmer_K_of) {
     at.probe_K.clear();
     for (const effects::Body& body : law.probes) {
-      at.probe_K.push_back(reference_K + at.ambient_K + (body == effects::node(effects::kAmbientName) ? 0.0 : warmer_K));
+      at.probe_K.push_back(reference_K + at.ambient_K +
+                           (body == effects::node(effects::kAmbientName) ? 0.0 : warmer_K_of(body)));
     }
     try {
       range.take(std::abs(law(at)));
     } catch (const RangeError&) {  // the law says by itself where it ends, should a run come there
     }
+  };
+  for (double warmer_K : kWarmer_K) {
+    take_where([&](const effects::Body&) { return warmer_K; });
+    for (const effects::Body& one : law.probes)  // what follows a difference is the same where all are as warm
+      take_where([&](const effects::Body& body) { return body == one ? warmer_K : 0.0; });
   }
 }
 

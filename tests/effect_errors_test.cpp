@@ -64,6 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
             "one of two is wanted"},
         Bad{"{type: changed_law, law: coolant a}", "nothing is changed"},
         Bad{"{type: changed_law, law: coolant a, factor: 2, over: b}", "where there is a `decay`"},
+        Bad{"{type: changed_law, law: coolant a, decay: 0.01 1/K, at_temperature: 30 degC, over: b}", "leave this out"},
         Bad{"{type: heat_source, node: a, power: 1 W, runs_on: 5 min}", "goes with the spindle"},
         Bad{"{type: heat_source, node: a, power: 1 W, lasts: 5 min}", "behind each stop"},
         Bad{"{type: heat_source, node: a, power: 1 W, runs: while_spindle_stands, lasts: 5 min, fades: 9 min}",

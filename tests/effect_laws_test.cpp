@@ -375,17 +375,18 @@ TEST(ChangedLaw, AddsAGrowthWithSpeedToWhatIsThereAtStandstill) {
 }
 
 TEST(ChangedLaw, FallsWithWhatItsBodyIsWarmerThanAnother) {
-  const std::string over = "decay: -0.02 1/K, at_temperature: 20 degC, over: c}";
+  const std::string over = "decay: -0.02 1/K, over: c}";
   const Law preload =
       law_of({"{type: heat_source, node: a, power: 100 W}", "{type: changed_law, law: heat_source a, " + over});
   ASSERT_EQ(preload.probes, (std::vector<Body>{node("a"), node("c")}));
-  EXPECT_NEAR(preload(at(0.0, 0.0, "", {303.0, 298.0})), 100.0 * std::exp(0.1), 1e-9);
-  EXPECT_NEAR(preload(at(0.0, 0.0, "", {298.0, 298.0})), 100.0, 1e-9);  // whatever at_temperature is
+  EXPECT_NEAR(preload(at(0.0, 0.0, "", {303.0, 298.0})), 110.0, 1e-9);  // 100 (1 + 0.02 (303 - 298))
+  EXPECT_NEAR(preload(at(0.0, 0.0, "", {298.0, 298.0})), 100.0, 1e-9);
+  EXPECT_EQ(preload(at(0.0, 0.0, "", {238.0, 298.0})), 0.0);  // lost altogether, and no cold
   // beside a power of the difference at its own ends
   const Law both = law_of({"{type: link, node: a, to: b, conductance: 10 W/K}",
                            "{type: changed_law, law: link a - b, difference_exponent: 0.25, at_difference: 16 K, " + over});
   ASSERT_EQ(both.probes, (std::vector<Body>{node("a"), node("c"), node("a"), node("b")}));
-  EXPECT_NEAR(both(at(0.0, 0.0, "", {303.0, 298.0, 303.0, 302.0})), 5.0 * std::exp(0.1), 1e-9);
+  EXPECT_NEAR(both(at(0.0, 0.0, "", {303.0, 298.0, 303.0, 302.0})), 5.5, 1e-9);
 }
 
 TEST(ChangedLaw, FollowsAPowerOfTheTemperatureDifference) {

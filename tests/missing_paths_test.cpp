@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(OfEachSort, AMissingPath,
                                                    "spindle,column",
                                                    {6.0, 15e3, 1.5},
                                                    0.25,
-                                                   "- {type: node, node: between_spindle_column, capacity: "},
+                                                   "- {type: node, node: between_spindle_and_column, capacity: "},
                                            Missing{"body_between_two_with_a_way_out",
                                                    "{type: node, node: cover, capacity: 12 kJ/K}\n"
                                                    "  - {type: link, node: head, to: cover, conductance: 8 W/K}\n"
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(OfEachSort, AMissingPath,
                                                    "head,column",
                                                    {8.0, 12e3, 1.0, 0.625},
                                                    0.35,
-                                                   "- {type: node, node: between_head_column, capacity: "}),
+                                                   "- {type: node, node: between_head_and_column, capacity: "}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 TEST(NoMissingPath, IsConsistent) {

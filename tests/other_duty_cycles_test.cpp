@@ -31,11 +31,9 @@ constexpr const char* kWritten = "power: 100 W, at_speed: 1000 rpm, exponent: 1.
 // Twice the friction when slow, as much as is written when fast.
 constexpr const char* kTrue = "power: 200 W, at_speed: 1000 rpm, exponent: 0.67";
 
-/// Of records of a machine whose friction grows less with speed than is written. @param also  what it has beside that
-Diagnosis diagnosed(const std::string& also, const std::set<std::string>& without = {}) {
-  const std::string plain = of_two_cycles(kTwoNodes);
-  std::string truth = with_effect(plain, also);
-  truth.replace(truth.find(kWritten), std::string_view(kWritten).size(), kTrue);
+Diagnosis diagnosed(const std::string& plain, std::string truth, const char* friction,
+                    const std::set<std::string>& without = {}) {
+  truth.replace(truth.find(kWritten), std::string_view(kWritten).size(), friction);
   const Beside beside(write_file("plain.yaml", plain),
                       noisy_records(write_file("truth.yaml", truth), "cycles_", 60.0, 0.03, 0.2));
   DiagnosisOptions how;
@@ -44,25 +42,49 @@ Diagnosis diagnosed(const std::string& also, const std::set<std::string>& withou
   return diagnose(*beside.twin, nullptr, beside.runs, how);
 }
 
-TEST(OtherDutyCycles, HoldBackWhatIsTrueOfOneAloneWhereMoreIsLeftThanAnythingExplains) {
-  // Heat that comes and goes in every record as nobody could tell, and no law of friction to be found: the scenario's own power takes up what the slow days show.
-  std::string unexplained;
-  for (const char* record : {"slow_1", "slow_2", "slow_3", "fast_1", "fast_2"}) {
+/// Heat that comes and goes in some records as nobody could tell.
+std::string comes_and_goes(const std::vector<std::string>& records) {
+  std::string list;
+  for (const std::string& record : records) {
     for (const char* window : {"30 W, windows: [[11 min, 34 min]]", "-25 W, windows: [[52 min, 80 min]]",
                                "35 W, windows: [[97 min, 122 min]]", "-30 W, windows: [[140 min, 171 min]]"})
-      unexplained += fmt::format("{}{{type: heat_window, node: column, in: {}, power: {}}}",
-                                 unexplained.empty() ? "" : "\n  - ", record, window);
+      list += fmt::format("{}{{type: heat_window, node: column, in: {}, power: {}}}", list.empty() ? "" : "\n  - ", record,
+                          window);
   }
-  const Diagnosis d = diagnosed(unexplained, {"changed_law", "friction_law", "heat_window", "heat_source", "run_state"});
+  return list;
+}
+// What could tell the friction's growth, or the windows.
+const std::set<std::string> kNotLookedFor = {"changed_law", "friction_law", "heat_window",
+                                             "heat_source", "run_state",    "exchange_window"};
+
+TEST(OtherDutyCycles, HoldBackWhatIsTrueOfOneAloneWhereMoreIsLeftThanAnythingExplains) {
+  // The scenario's own power takes up what the slow days show.
+  const std::string plain = of_two_cycles(kTwoNodes);
+  const Diagnosis d = diagnosed(
+      plain, with_effect(plain, comes_and_goes({"slow_1", "slow_2", "slow_3", "fast_1", "fast_2"})), kTrue, kNotLookedFor);
   ASSERT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
   EXPECT_FALSE(d.written.keeps_numbers);
   EXPECT_THAT(d.written.why_nothing,
-              HasSubstr("records of another duty cycle are predicted worse than by the scenario as it was: "
-                        "cycles_fast_1, cycles_fast_2 by"));
+              HasSubstr("of 2 duty cycles, each kept out whole, all together are predicted best by the "
+                        "scenario as it was: "));
+}
+
+TEST(OtherDutyCycles, DoNotHoldBackWhatGainsFarMoreInOneThanItLosesInAnother) {
+  // A night at rest, of which the scenario as it is misses next to nothing.
+  std::string plain = of_two_cycles(kTwoNodes);
+  const std::size_t from = plain.find("  fast_1:");
+  plain.replace(from, plain.find('\n', from) - from, "  night: [[250 min, 0 rpm]]");
+  plain.erase(plain.find("  fast_2:"), plain.find("solver:") - plain.find("  fast_2:"));
+  const Diagnosis d = diagnosed(plain, with_effect(plain, comes_and_goes({"slow_1", "slow_2", "slow_3"})),
+                                "power: 200 W, at_speed: 1000 rpm, exponent: 1.3", kNotLookedFor);
+  ASSERT_EQ(d.verdict, Verdict::kUnexplained) << d.reason;
+  EXPECT_TRUE(d.written.keeps_numbers) << d.written.why_nothing;
+  EXPECT_LT(d.misses.extended, 0.5 * d.misses.as_written);
 }
 
 TEST(OtherDutyCycles, DoNotHoldBackWhatExplainsAll) {
-  const Diagnosis d = diagnosed("");
+  const std::string plain = of_two_cycles(kTwoNodes);
+  const Diagnosis d = diagnosed(plain, plain, kTrue);
   ASSERT_EQ(d.verdict, Verdict::kNamed) << d.reason;
   EXPECT_TRUE(d.written.keeps_numbers) << d.written.why_nothing;
 }

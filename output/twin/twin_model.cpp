@@ -74,10 +74,11 @@ TwinTimedLaw timed_law(const Scenario& scenario, const solver::BoundLaw& bound, 
     std::optional<TwinLaw> table =
         twin_law(law, static_cast<int>(bound.probes.size()), model.drive, temperatures_of(*scenario.machine));
     if (!table)
-      throw InputError(scenario.machine->where,
-                       fmt::format("'{}' depends on more than two temperatures or two variables of the drive together, or "
-                                   "jumps about; no page is made of such a machine yet (docs/view.md)",
-                                   name));
+      throw InputError(
+          scenario.machine->where,
+          fmt::format("'{}' depends on temperatures, or on variables of the drive, together in a way that no "
+                      "table of two of them holds, or jumps about; no page is made of such a machine yet (docs/view.md)",
+                      name));
     auto known = std::find_if(timed.laws.begin(), timed.laws.end(), [&](const TwinLaw& l) { return is_equal(l, *table); });
     timed.of_stretch.push_back(static_cast<int>(known - timed.laws.begin()));
     if (known == timed.laws.end()) timed.laws.push_back(std::move(*table));
