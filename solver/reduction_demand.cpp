@@ -43,8 +43,10 @@ void look(const effects::Law& law, effects::Inputs at, double reference_K, Range
   };
   for (double warmer_K : kWarmer_K) {
     take_where([&](const effects::Body&) { return warmer_K; });
-    for (const effects::Body& one : law.probes)  // what follows a difference is the same where all are as warm
+    for (const effects::Body& one : law.probes) {  // what follows a difference is the same where all are as warm
+      if (one == effects::node(effects::kAmbientName)) continue;
       take_where([&](const effects::Body& body) { return body == one ? warmer_K : 0.0; });
+    }
   }
 }
 

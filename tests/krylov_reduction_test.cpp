@@ -37,6 +37,17 @@ Trajectory complete(const FullSystem& system, const Eigen::VectorXd& start, cons
   return run_in(system, orthonormalise(system.mass, Eigen::MatrixXd::Identity(system.size(), system.size())), start, cycle);
 }
 
+TEST(ReductionDemand, LooksAtALawOfTwoTemperaturesWhereOneOfTheBodiesIsWarmer) {
+  const effects::Body a = effects::node("a"), b = effects::node("b");
+  effects::HeatBalance balance;
+  const effects::Law tightens([](const effects::Inputs& u) { return 10.0 * (1.0 + 0.02 * (u.probe_K[0] - u.probe_K[1])); },
+                              {a, b});
+  balance.exchanges.push_back(effects::make_link("fit", a, tightens, "b"));
+  const ReductionDemand demand = reduction_demand(balance, {}, {{0.0}, {0.0}}, 293.15);
+  EXPECT_LE(demand.low[0], 2.0);    // b is 40 K warmer
+  EXPECT_GE(demand.high[0], 18.0);  // a is
+}
+
 TEST(KrylovReduction, MeetsItsToleranceAndItsEstimateBoundsTheError) {
   const FullSystem system = fixtures::two_blocks(2);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(system.size());
