@@ -7,7 +7,7 @@
 //
 // with matrices that level and doubt have once and for all (Van Loan: one exponential of the block matrix). A law that looks at temperatures is taken to first
 // order about the state halfway to balance at each level; what a thermostat switches goes in proportion between its two limits where the machine
-// comes that warm; of a power of a temperature difference a third of its information is left; what runs on for some minutes after the spindle has stopped does so in none, and of heat behind each stop nothing is left. That is for finding programmes: what is found is judged by information_by_channel().
+// comes that warm; of a power of a temperature difference a third of its information is left, of a conductance that follows the difference somewhat more than a half; what runs on for some minutes after the spindle has stopped does so in none, and of heat behind each stop nothing is left. That is for finding programmes: what is found is judged by information_by_channel().
 // Source: Van Loan, IEEE Trans. Autom. Control 23 (1978) 395-404.
 
 #include "diagnosis/foresight.hpp"
