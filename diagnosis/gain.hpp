@@ -40,8 +40,8 @@ using SearchAgain = std::function<SearchResult(const std::vector<MeasuredRun>& f
                                     const std::map<std::string, NoiseModel>& noise, const SearchAgain& search_again,
                                     const Listener& listener = {});
 
-/// Whether duty cycles, each kept out whole, are together predicted worse than as written by what would be written, with numbers fitted to the records of the others: of a model that is wrong in a
-/// way that nothing explains, a record of a cycle that others went through as well is predicted by what is true of that cycle alone.
+/// Whether duty cycles, each kept out whole, are together predicted worse by what would be written, with numbers fitted to the records of the others, than by the scenario as written. Of a model
+/// that is wrong in a way that nothing explains, a record of a cycle that others went through as well is predicted by what is true of that cycle alone.
 /// @param claims  of the search's hypothesis: those that would be written
 /// @return        a clause; "" where they are not, or where each record is of a cycle of its own, or all are of one
 [[nodiscard]] std::string worse_in_another_cycle(const Fitter& fitter, const SearchResult& result,

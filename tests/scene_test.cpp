@@ -35,7 +35,7 @@ TEST(SpeedSteps, AreNoneBesideASpeedItPassesOrNextToOneThatWasReadTwice) {
 }
 
 TEST(SpeedSteps, AreTheSixWidestOfMany) {
-  // Each 1.2 times the one before it, but for the first and the last step.
+  // Ratios of 3, 1.20, 1.22, 1.23, 1.24, 1.25 and 2.2: the second is the one too many.
   EXPECT_THAT(
       steps_rpm("[20 min, 100 rpm], [20 min, 300 rpm], [20 min, 360 rpm], [20 min, 440 rpm], [20 min, 540 rpm], [20 min, "
                 "670 rpm], "
