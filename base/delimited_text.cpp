@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/characters.hpp"
 #include "base/errors.hpp"
 #include "base/file_bytes.hpp"
 
@@ -62,10 +63,6 @@ std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string::npos) return "";
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
 }
 
 }  // namespace

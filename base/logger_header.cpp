@@ -22,7 +22,7 @@ std::vector<std::string> names_of(const std::vector<Cell>& cells) {
 }
 
 /// Cells of a line that may be no row at all.
-std::vector<Cell> cells_of(const std::string& line, char separator) {
+std::vector<Cell> typed_cells_of(const std::string& line, char separator) {
   try {
     return split_cells(line, separator);
   } catch (const RangeError&) {
@@ -57,7 +57,7 @@ LoggerHeader header_of(const std::string& path, const std::vector<std::string>& 
   int most = -1;
   for (std::size_t i = first; i < last; ++i) {
     for (const char separator : separators_of(map)) {
-      const std::vector<std::string> names = names_of(cells_of(lines[i], separator));
+      const std::vector<std::string> names = names_of(typed_cells_of(lines[i], separator));
       const int n = n_found(names, places);
       if (n < most || (n == most && names.size() <= best.names.size()) || names.empty()) continue;
       most = n;
@@ -84,7 +84,7 @@ LoggerHeader no_header(const std::string& path, const std::vector<std::string>& 
     if (map.separator == '\0') separators.push_back(' ');
     LoggerHeader best{i, separators.front(), {}};
     for (const char separator : separators) {
-      const std::vector<std::string> cells = names_of(cells_of(lines[i], separator));
+      const std::vector<std::string> cells = names_of(typed_cells_of(lines[i], separator));
       if (cells.size() > best.names.size()) best = {i, separator, cells};
     }
     return best;

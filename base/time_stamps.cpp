@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/characters.hpp"
 #include "base/errors.hpp"
 
 namespace driftwright {
@@ -24,10 +25,6 @@ bool has_any(const std::string& format, const std::string& letters) {
     if (format[i] == '%' && letters.find(format[++i]) != std::string::npos) return true;
   }
   return false;
-}
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
 }
 
 /// "08:07:12:237" and "08:07:12,237" as "08:07:12.237".

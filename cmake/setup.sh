@@ -24,7 +24,7 @@ install() {
     as_root=(sudo)
     [ -t 0 ] || as_root=(sudo -n)   # in a pipe nobody can type a password
   fi
-  say "driftwright: installing Debian packages: ${missing[*]}"
+  say "driftwright: installing ${#missing[@]} Debian packages and what they need, in a minute or two: ${missing[*]}"
   if ! "${as_root[@]}" apt-get update -q >"$log" 2>&1 </dev/null; then
     tail -n 15 "$log" >&2
     say "driftwright: the lists of packages could not be read; the whole story is in $log"
@@ -71,15 +71,29 @@ configure() {
   return 1
 }
 
+# show_progress WHAT: of Ninja's lines "FINISHED ALL ...", on a terminal one line that moves: how far it is, and about how long it takes yet.
+show_progress() {
+  local line began=$SECONDS finished all rest words
+  while IFS= read -r line; do
+    [ -t 2 ] && [[ "$line" =~ ^([0-9]+)\ ([0-9]+)\  ]] || continue
+    finished=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} words=""
+    if [ "$finished" -gt 4 ]; then
+      rest=$(((SECONDS - began) * (all - finished) / finished))
+      words=", about $(((rest + 59) / 60)) min left"
+    fi
+    printf '\r\033[Kdriftwright: building %s (Release), %d %%%s' "$1" $((100 * finished / all)) "$words" >&2
+  done
+  [ ! -t 2 ] || printf '\r\033[K' >&2
+}
+
 # build TARGET: what Ninja finds to do. A dry run tells whether there is work; only then is there anything to see.
 build() {
   ninja -C "$build" -n "$1" 2>/dev/null | grep -q 'no work to do' && return 0
-  say "driftwright: building $1 (Release)"
-  if [ -t 2 ]; then
-    ninja -C "$build" "$1" >&2 || { say "driftwright: the build failed"; return 1; }
-  else
-    ninja -C "$build" "$1" >"$log" 2>&1 || { tail -n 40 "$log" >&2; say "driftwright: the build failed; see $log"; return 1; }
-  fi
+  say "driftwright: building $1 (Release); the first time it takes minutes"
+  (set -o pipefail; NINJA_STATUS='%f %t ' ninja -C "$build" "$1" 2>&1 | tee "$log" | show_progress "$1") && return 0
+  tail -n 40 "$log" >&2
+  say "driftwright: the build failed; see $log"
+  return 1
 }
 
 configure_and_build() {

@@ -8,7 +8,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kWorse = 1.1;        // of the squares
+constexpr double kMostWorse = 1.1;        // of the squares
 constexpr double kWorseOfOne = 1.05;  // RMSE of one channel
 constexpr double kStrong = 20.0;      // nats of a cause that may be written alone
 
@@ -51,7 +51,7 @@ std::optional<CausesAlone> causes_alone(const Fitter& fitter, const SearchResult
     });
     if (!is_solved) continue;
     const std::vector<Prediction> extended = {before.prediction};
-    if (judge.squares_over_noise(extended) * kWorse > judge.squares_over_noise(written)) continue;
+    if (judge.squares_over_noise(extended) * kMostWorse > judge.squares_over_noise(written)) continue;
     const Models models{.written = written, .calibrated = judge.filed(0), .extended = extended};
     alone.misses = misses_of(judge, models);
     alone.channels = channel_gains(fitter.runs(), noise, judge, models);

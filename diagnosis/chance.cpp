@@ -12,8 +12,8 @@ namespace {
 
 constexpr Eigen::Index kDraws = 200;
 constexpr std::uint64_t kSeed = 1957;
-constexpr double kNone = -1e300;  // evidence of what no reading tells of
-constexpr double kNever = 1e300;
+constexpr double kNoEvidence = -1e300;  // evidence of what no reading tells of
+constexpr double kNeverReached = 1e300;
 constexpr double kUsual = 0.2;  // share of faultless machines: well inside what 200 draws tell
 
 /// By its mean and spread.
@@ -42,7 +42,7 @@ double rarity(double gain, double usual) {
 
 Chances chances_of(const Fitter& fitter, const std::vector<Candidate>& candidates, const std::vector<Signature>& columns,
                    const Fit& at) {
-  Chances chances{.best = {}, .usual = std::vector<double>(candidates.size(), kNever), .rarest = {}};
+  Chances chances{.best = {}, .usual = std::vector<double>(candidates.size(), kNeverReached), .rarest = {}};
   if (columns.empty()) return chances;
   const Eigen::Index n = fitter.comparison().n_condensed();
   const Eigen::MatrixXd slopes = fitter.comparison().condensed(fitter.nuisance_slopes());
@@ -66,7 +66,7 @@ Chances chances_of(const Fitter& fitter, const std::vector<Candidate>& candidate
     const double paid = v.price_nats + std::log(static_cast<double>(v.grid.size())) + law_price(candidate);
     auto row = gains.row(static_cast<Eigen::Index>(i));
     if (!(square > 1e-12)) {
-      row.setConstant(kNone);
+      row.setConstant(kNoEvidence);
     } else if (v.all_or_nothing) {
       row = (seen.array() * v.trial_x - 0.5 * square * v.trial_x * v.trial_x - paid).matrix();
     } else {
@@ -77,7 +77,7 @@ Chances chances_of(const Fitter& fitter, const std::vector<Candidate>& candidate
   chances.best = gumbel_of((gains.colwise().maxCoeff().array() - price).matrix());
   // each candidate by its best law
   const auto n_candidates = static_cast<Eigen::Index>(candidates.size());
-  Eigen::MatrixXd each = Eigen::MatrixXd::Constant(n_candidates, kDraws, kNone);
+  Eigen::MatrixXd each = Eigen::MatrixXd::Constant(n_candidates, kDraws, kNoEvidence);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const Signature& s = columns[i];
     const Variant& v = candidates[s.candidate].variants[s.variant];
@@ -90,7 +90,7 @@ Chances chances_of(const Fitter& fitter, const std::vector<Candidate>& candidate
     std::vector<double> sorted(each.row(c).begin(), each.row(c).end());
     std::sort(sorted.begin(), sorted.end());
     const double usual = sorted[static_cast<std::size_t>((1.0 - kUsual) * static_cast<double>(kDraws))];
-    if (!(usual > kNone)) continue;
+    if (!(usual > kNoEvidence)) continue;
     chances.usual[static_cast<std::size_t>(c)] = usual;
     for (Eigen::Index d = 0; d < kDraws; ++d) rarest[d] = std::max(rarest[d], rarity(each(c, d), usual));
   }

@@ -54,7 +54,7 @@ bool is_near(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return is_near(x, y); });
 }
 
-bool is_same(const Effect& a, const Effect& b) {
+bool reads_back(const Effect& a, const Effect& b) {
   return a.kind == b.kind && a.place_kind == b.place_kind && a.place == b.place && a.references == b.references &&
          a.words == b.words && a.in == b.in && is_near(a.from_s, b.from_s) && is_near(a.until_s, b.until_s) &&
          is_near(a.values, b.values) &&
@@ -130,7 +130,7 @@ class Writer {
     }
     if (read.size() != list_.size()) return false;
     return std::all_of(list_.begin(), list_.end(), [&](const Effect& wanted) {
-      return std::any_of(read.begin(), read.end(), [&](const Effect& e) { return is_same(e, wanted); });
+      return std::any_of(read.begin(), read.end(), [&](const Effect& e) { return reads_back(e, wanted); });
     });
   }
 

@@ -9,10 +9,10 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNear = 6.0;  // nats behind the rarest: what the full model may make up for
+constexpr double kNearRarest = 6.0;  // nats behind the rarest: what the full model may make up for
 constexpr std::size_t kMostFits = 12;
 constexpr double kBorneOut = 0.5;      // of what linear theory promised, that the full model must keep
-constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a name
+constexpr double kLeastNamedFactor = 0.05;  // logarithm of a factor that is worth a name
 
 /// A candidate by its rarest law.
 struct Faint {
@@ -42,7 +42,7 @@ std::vector<Faint> rarest_of(const NothingFound& s) {
 bool is_borne_out(const NothingFound& s, Faint& f) {
   if (f.fit.prediction.empty()) return false;
   const Knob& size = s.candidates[f.score.candidate].variants[f.score.variant].knobs[0];
-  if (size.scale == Knob::Scale::kLog && std::abs(f.fit.x[s.fitter.n_nuisance()]) < kLeastFactor) return false;
+  if (size.scale == Knob::Scale::kLog && std::abs(f.fit.x[s.fitter.n_nuisance()]) < kLeastNamedFactor) return false;
   const double fall = s.without.misfit - f.fit.misfit;
   if (fall < kBorneOut * f.score.fall) return false;
   f.rarity += fall - f.score.fall;
@@ -56,7 +56,7 @@ std::optional<FaintCause> faint_cause(const NothingFound& s, double wrongly_susp
   const double bar = s.chances.rarest.gain_at(wrongly_suspected);
   if (list.empty() || !(list.front().rarity > bar)) return std::nullopt;
   const double rarest = list.front().rarity;
-  std::erase_if(list, [&](const Faint& f) { return f.rarity < rarest - kNear; });
+  std::erase_if(list, [&](const Faint& f) { return f.rarity < rarest - kNearRarest; });
   if (list.size() > kMostFits) list.resize(kMostFits);
   for_each_index(
       list.size(), [&] { return Twin::Workspace(s.fitter.twin()); },

@@ -53,7 +53,7 @@ bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
                     [](double u, double v) { return u == v || (std::isnan(u) && std::isnan(v)); });
 }
 
-bool is_same(const effects::Effect& a, const effects::Effect& b) {
+bool acts_alike(const effects::Effect& a, const effects::Effect& b) {
   return a.kind == b.kind && a.place == b.place && a.in == b.in && a.from_s == b.from_s && a.until_s == b.until_s &&
          a.words == b.words && same_numbers(a.values, b.values) &&
          std::equal(a.tables.begin(), a.tables.end(), b.tables.begin(), b.tables.end(), [](const auto& s, const auto& t) {
@@ -66,7 +66,7 @@ bool acts_alike(const TwinState& before, const TwinState& after, const std::stri
   for (std::size_t i = 0; i < after.size(); ++i) {
     const bool is_there = i < before.size();
     const bool acts = after[i].acts_in(run) || (is_there && before[i].acts_in(run));
-    if (acts && (!is_there || !is_same(before[i], after[i]))) return false;
+    if (acts && (!is_there || !acts_alike(before[i], after[i]))) return false;
   }
   return after.size() >= before.size();
 }

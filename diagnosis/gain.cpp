@@ -10,7 +10,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kWorse = 1.1;  // of the squares
+constexpr double kWorseForeseen = 1.1;  // of the squares
 // Where the scenario's own numbers can do what a claim does, if they go far enough, kept-out rows are predicted alike with it and without; then it is the
 // evidence of all rows that counts how far they had to go.
 constexpr double kAlike = 3.0;            // nats
@@ -158,7 +158,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
     models.calibrated = std::move(again.calibrated);
     models.found = std::move(again.extended);
     // A search that finds what does harm to rows it has not seen would do so to records that are still to come.
-    if (kept != 0 && judge.squares_over_noise(models.found) > kWorse * judge.squares_over_noise(models.calibrated)) {
+    if (kept != 0 && judge.squares_over_noise(models.found) > kWorseForeseen * judge.squares_over_noise(models.calibrated)) {
       for (std::size_t c = 0; c < n_claims; ++c) {
         if (((kept >> c) & 1U) != 0)
           held.why_not_written[c] =
@@ -176,7 +176,7 @@ HeldOut held_out_gain(const Fitter& fitter, const SearchResult& result, const st
   const double as_written = judge.squares_over_noise(models.written);
   if (judge.squares_over_noise(models.extended) > as_written) {
     held.why_nothing = "rows that were kept out are predicted best by the scenario as it was";
-  } else if (const auto elsewhere = judge.filed_elsewhere(kept); judge.squares_over_noise(elsewhere) > kWorse * as_written) {
+  } else if (const auto elsewhere = judge.filed_elsewhere(kept); judge.squares_over_noise(elsewhere) > kWorseForeseen * as_written) {
     held.why_nothing = "without what is of these records alone they are predicted worse than by the scenario as it was";
     held.elsewhere_at = worst_channel(judge, noise, elsewhere, models.written);
   }

@@ -12,8 +12,8 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kShortest_s = 1.0;     // of a window that another length has shortened
-constexpr std::size_t kFewWindows = 5;  // whose times are fitted one by one
+constexpr double kShortestWindow_s = 1.0;     // of a window that another length has shortened
+constexpr std::size_t kWindowsFittedAlone = 5;  // whose times are fitted one by one
 constexpr double kTurnsGoOn = 2.0;      // of the longest run: how long turns are written for
 // Of the speed, by which the heat of bearings and motors usually grows: where a fit of another speed begins.
 constexpr double kUsualExponent = 1.5;
@@ -34,7 +34,7 @@ effects::DoubtedNumber longer_by(double sd_min, const std::vector<effects::Effec
       TimeSeries& rows = added[i].tables.at(effects::kWindows);
       for (std::size_t k = 0; k < rows.value.size(); ++k) {
         const double next_s = k + 1 < rows.time_s.size() ? rows.time_s[k + 1] : 1e9;
-        rows.value[k] = std::clamp(seen_rows.value[k] + 60.0 * value, rows.time_s[k] + kShortest_s, next_s);
+        rows.value[k] = std::clamp(seen_rows.value[k] + 60.0 * value, rows.time_s[k] + kShortestWindow_s, next_s);
       }
     }
   };
@@ -55,7 +55,7 @@ std::vector<effects::DoubtedNumber> times_of_windows(const std::vector<effects::
       effects::DoubtedNumber begin = effects::doubted(fmt::format("begin_{}", of + 1), "min", wide_s[of].first / 60.0,
                                                       0.2 * row_min, seen.time_s[k] / 60.0);
       begin.low = before_s / 60.0;
-      begin.high = (seen.value[k] - kShortest_s) / 60.0;
+      begin.high = (seen.value[k] - kShortestWindow_s) / 60.0;
       begin.set = [e, k](std::span<effects::Effect> added, double value) {
         TimeSeries& rows = added[e].tables.at(effects::kWindows);
         rows.time_s[k] = std::max(60.0 * value, k > 0 ? rows.value[k - 1] : 0.0);
@@ -66,7 +66,7 @@ std::vector<effects::DoubtedNumber> times_of_windows(const std::vector<effects::
       end.high = after_s / 60.0;
       end.set = [e, k](std::span<effects::Effect> added, double value) {
         TimeSeries& rows = added[e].tables.at(effects::kWindows);
-        rows.value[k] = std::max(60.0 * value, rows.time_s[k] + kShortest_s);
+        rows.value[k] = std::max(60.0 * value, rows.time_s[k] + kShortestWindow_s);
       };
       numbers.push_back(std::move(begin));
       numbers.push_back(std::move(end));
@@ -86,7 +86,7 @@ std::vector<effects::DoubtedNumber> times_of_turns(const Happening& h, double ro
     rows = {{60.0 * value}, {60.0 * value + rows.value[0] - rows.time_s[0]}};
   };
   effects::DoubtedNumber length = effects::doubted("length", "min", 2.0 * row_min, 0.2 * row_min, length_min);
-  length.low = kShortest_s / 60.0;
+  length.low = kShortestWindow_s / 60.0;
   length.high = h.every_s / 60.0;
   length.set = [](std::span<effects::Effect> added, double value) {
     TimeSeries& rows = added[0].tables.at(effects::kWindows);
@@ -106,7 +106,7 @@ std::optional<Event> one_event(const effects::DoubtScene& scene, const Happening
                                const effects::DoubtedNumber& size) {
   const auto& [run, windows] = h.in.front();
   const auto [begin_s, end_s] = windows.front();
-  if (!(end_s - begin_s > kShortest_s)) return std::nullopt;
+  if (!(end_s - begin_s > kShortestWindow_s)) return std::nullopt;
   const auto of_run = std::find_if(scene.runs.begin(), scene.runs.end(), [&](const auto& r) { return r.name == run->name; });
   const std::string what = h.is_speed ? "another speed for a while" : h.other ? effects::kLid : "heat for a while";
   Event event{.doubt = effects::one_window(*of_run, window, size, h.size, what),
@@ -215,7 +215,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
     TimeSeries& rows = in_run.tables[effects::kWindows];
     rows = {};
     for (const auto& [begin_s, end_s] : windows) {
-      if (!(end_s - begin_s > kShortest_s)) continue;
+      if (!(end_s - begin_s > kShortestWindow_s)) continue;
       rows.time_s.push_back(std::round(begin_s));
       rows.value.push_back(std::max(std::round(begin_s) + 1.0, std::round(end_s)));
       times.push_back(fmt::format("{:.1f} to {:.1f}", begin_s / 60.0, end_s / 60.0));
@@ -230,7 +230,7 @@ std::optional<Event> event_of(const Twin& twin, const effects::DoubtScene& scene
     d.added.push_back(std::move(in_run));
   }
   if (n_windows == 0) return std::nullopt;
-  const bool is_fitted = h.every_s == 0.0 && n_windows <= kFewWindows && n_windows == h.wide_s.size();
+  const bool is_fitted = h.every_s == 0.0 && n_windows <= kWindowsFittedAlone && n_windows == h.wide_s.size();
   event.takes_any_course = h.is_course;
   d.numbers = {size};
   if (h.every_s > 0.0) {

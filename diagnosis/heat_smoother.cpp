@@ -7,7 +7,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kFirst = 10.0;     // the heat at the first row may be so many typical ones
-constexpr int kTurns = 8;           // of steps that learn their own size
+constexpr int kSmoothings = 8;           // of steps that learn their own size
 constexpr double kSharpens = 12.0;  // nats of a heat that is worth it
 constexpr double kQuiet = 0.003;    // variance of a step where nothing happens, over the mean one
 
@@ -219,7 +219,7 @@ SmoothedHeat smooth_heat(const ModalCourse& machine, const Eigen::MatrixXd& resi
   (void)smooth(step_W2, -1e300);
   // Events are few and sharp: each step learns its own variance from what it turned out to be (a Student distribution of one degree of freedom).
   const double quiet_W2 = kQuiet * step_W2.mean();
-  for (int turn = 0; turn < kTurns && best_value > nothing + kSharpens; ++turn) {
+  for (int turn = 0; turn < kSmoothings && best_value > nothing + kSharpens; ++turn) {
     for (Eigen::Index k = 0; k < n_steps; ++k)
       step_W2[k] = 0.5 * (std::pow(smoothed.heat_W[k + 1] - smoothed.heat_W[k], 2) / std::pow(smoothed.noise_scale, 2) +
                           quiet_W2 * share[k]);

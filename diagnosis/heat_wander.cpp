@@ -11,7 +11,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr Eigen::Index kKnots = 24;  // of a run, between which heat is a straight line
-constexpr int kTurns = 30;           // of expectation and maximisation
+constexpr int kMaximisations = 30;           // of expectation and maximisation
 constexpr double kMatters = 0.02;    // of all that the bodies do
 constexpr double kShortest = 1.0;    // time constants that are tried, in distances of knots
 constexpr double kLongest = 64.0;
@@ -57,7 +57,7 @@ Eigen::MatrixXd readings_of(const SeenRun& seen, Eigen::Index body, std::size_t 
   return response(seen.linear, modal_gain(seen.linear, heat_W), from, hat.size());
 }
 
-struct Fitted {
+struct FittedCourse {
   double log_likelihood = -1e300;
   double time_s = 0.0;
   Eigen::VectorXd variance_W2;  ///< of each body
@@ -65,7 +65,7 @@ struct Fitted {
 };
 
 /// Expectation and maximisation. @param gram, along  of each run: columns' products, and with the residual
-Fitted fitted(const std::vector<Run>& runs, const std::vector<Eigen::MatrixXd>& gram,
+FittedCourse fitted(const std::vector<Run>& runs, const std::vector<Eigen::MatrixXd>& gram,
               const std::vector<Eigen::VectorXd>& along, Eigen::Index n_bodies, double time_s) {
   const Eigen::Index n = n_bodies * kKnots;
   std::vector<Eigen::MatrixXd> g;
@@ -87,11 +87,11 @@ Fitted fitted(const std::vector<Run>& runs, const std::vector<Eigen::MatrixXd>& 
     a.push_back(std::move(v));
     squares += runs[r].residual.squaredNorm();
   }
-  Fitted f{.time_s = time_s, .variance_W2 = Eigen::VectorXd::Zero(n_bodies), .does = does};
+  FittedCourse f{.time_s = time_s, .variance_W2 = Eigen::VectorXd::Zero(n_bodies), .does = does};
   for (Eigen::Index b = 0; b < n_bodies; ++b) {
     if (does[b] > 0.0) f.variance_W2[b] = squares / does[b] / static_cast<double>(n_bodies);
   }
-  for (int turn = 0; turn <= kTurns; ++turn) {
+  for (int turn = 0; turn <= kMaximisations; ++turn) {
     Eigen::VectorXd sd(n), amplitude2 = Eigen::VectorXd::Zero(n_bodies);
     for (Eigen::Index b = 0; b < n_bodies; ++b) sd.segment(b * kKnots, kKnots).setConstant(std::sqrt(f.variance_W2[b]));
     double log_likelihood = 0.0;
@@ -101,13 +101,13 @@ Fitted fitted(const std::vector<Run>& runs, const std::vector<Eigen::MatrixXd>& 
       const Eigen::LLT<Eigen::MatrixXd> factor(information);
       const Eigen::VectorXd rhs = sd.cwiseProduct(a[r]), u = factor.solve(rhs);
       log_likelihood += 0.5 * rhs.dot(u) - factor.matrixLLT().diagonal().array().log().sum();
-      if (turn == kTurns) continue;
+      if (turn == kMaximisations) continue;
       const Eigen::VectorXd spread = factor.solve(Eigen::MatrixXd::Identity(n, n)).diagonal();
       for (Eigen::Index b = 0; b < n_bodies; ++b)
         amplitude2[b] += u.segment(b * kKnots, kKnots).squaredNorm() + spread.segment(b * kKnots, kKnots).sum();
     }
     f.log_likelihood = log_likelihood;
-    if (turn < kTurns)
+    if (turn < kMaximisations)
       f.variance_W2.array() *= amplitude2.array() / static_cast<double>(kKnots * static_cast<Eigen::Index>(runs.size()));
   }
   f.does.array() *= f.variance_W2.array();
@@ -148,10 +148,10 @@ std::optional<HeatWander> heat_wander(const Fitter& fitter, const TwinState& sta
     longest_s = std::max(longest_s, run.spacing_s);
     runs.push_back(std::move(run));
   }
-  Fitted best;
+  FittedCourse best;
   double last_s = 0.0;
   for (double time_s = kShortest * shortest_s; time_s <= kLongest * longest_s; time_s *= 4.0) {
-    Fitted f = fitted(runs, gram, along, n_bodies, time_s);
+    FittedCourse f = fitted(runs, gram, along, n_bodies, time_s);
     if (f.log_likelihood > best.log_likelihood) best = std::move(f);
     last_s = time_s;
   }

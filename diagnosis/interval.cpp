@@ -10,10 +10,10 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kRise = 1.92;  // of Φ: half the 95 % quantile of χ² with one degree of freedom
-constexpr double kNear = 0.15;  // to it
+constexpr double kNearBound = 0.15;  // to it
 constexpr int kMostTries = 7;   // a side
 constexpr int kMostRows = 15;
-constexpr double kHopeless = 8.0;  // of Φ
+constexpr double kHopelessStep = 8.0;  // of Φ
 
 }  // namespace
 
@@ -52,7 +52,7 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
     for (int i = 1; i <= kMostRows && i * row_s < room(sign); ++i) {
       const double r = rise(sign * i * row_s, workspace);
       if (r < kRise) last = i * row_s;
-      if (r > kHopeless) break;
+      if (r > kHopelessStep) break;
     }
     return middle + sign * std::min(room(sign), last + row_s);
   };
@@ -62,7 +62,7 @@ Interval profile_interval(const Fitter& fitter, const Hypothesis& hypothesis, co
     if (!(distance > 0.0)) return middle;
     for (int i = 0; i < kMostTries; ++i) {
       const double r = rise(sign * distance, workspace);
-      if (std::abs(r - kRise) < kNear) return middle + sign * distance;
+      if (std::abs(r - kRise) < kNearBound) return middle + sign * distance;
       if (r < kRise) {
         inside = distance, rise_inside = std::max(0.0, r);
         if (inside >= room(sign)) return middle + sign * inside;

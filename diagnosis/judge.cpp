@@ -11,11 +11,11 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
+constexpr Eigen::Index kAllFitted = -1;  // of a fit of all numbers
 constexpr double kNoSolution = -1e6;       // nats of a fold that no numbers fit
 // What a kept-out record has of its own, such as its ambient, is in the misses and says nothing of a claim: they count where likelihood is not clear.
-constexpr double kSurelyLikelier = 10.0;  // nats
-constexpr double kWorse = 1.1;            // of the squares
+constexpr double kSurelyLikelierKeptOut = 10.0;  // nats
+constexpr double kWorseKeptOut = 1.1;            // of the squares
 constexpr double kMuchWorse = 1.25;       // of the squares: speaks against a claim, not only against writing it
 constexpr int kMostAgain = 6;             // climbs from where the last one ended
 constexpr double kStoppedShort = 0.3;     // nats that another climb gains
@@ -29,7 +29,7 @@ std::string_view lasting_kind(std::string_view effect) {
 void go_on(const Fitter& fitter, const Hypothesis& hypothesis, Fit& fit, Twin::Workspace& workspace) {
   for (int again = 0; again < kMostAgain; ++again) {
     Fit next;
-    const bool is_solved = has_solution([&] { next = fitter.fit_others(hypothesis, fit.x, kNothingHeld, workspace); });
+    const bool is_solved = has_solution([&] { next = fitter.fit_others(hypothesis, fit.x, kAllFitted, workspace); });
     if (!is_solved || !(next.misfit < fit.misfit)) return;
     const double gained = fit.misfit - next.misfit;
     fit = std::move(next);
@@ -78,7 +78,7 @@ const Judge::Judged& Judge::judged(Subset claims) {
     Twin::Workspace workspace(whole_.twin());
     Fit again;
     const bool is_solved =
-        has_solution([&] { again = fitters_[f]->fit_others(rest.hypothesis, all.x, kNothingHeld, workspace); });
+        has_solution([&] { again = fitters_[f]->fit_others(rest.hypothesis, all.x, kAllFitted, workspace); });
     if (is_solved) go_on(*fitters_[f], rest.hypothesis, again, workspace);
     if (is_solved && (fits[f].prediction.empty() || again.misfit < fits[f].misfit)) fits[f] = std::move(again);
   }
@@ -169,8 +169,8 @@ std::vector<Prediction> Judge::regressed(Regressors regressors) const {
 }
 
 bool Judge::is_worse(Subset claims, Subset fewer) {
-  return judged(fewer).log_predictive - judged(claims).log_predictive > -kSurelyLikelier &&
-         squares_over_noise(judged(claims).predicted) > kWorse * squares_over_noise(judged(fewer).predicted);
+  return judged(fewer).log_predictive - judged(claims).log_predictive > -kSurelyLikelierKeptOut &&
+         squares_over_noise(judged(claims).predicted) > kWorseKeptOut * squares_over_noise(judged(fewer).predicted);
 }
 
 bool Judge::is_much_worse(Subset claims, Subset fewer) {

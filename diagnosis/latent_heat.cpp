@@ -15,7 +15,7 @@ namespace {
 constexpr double kPiece_s = 1200.0;
 constexpr double kTypical_W = 30.0;  // of a change from piece to piece
 
-double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+double resemblance(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   const Eigen::VectorXd x = a.array() - a.mean(), y = b.array() - b.mean();
   const double norms = x.norm() * y.norm();
   return norms > 0.0 ? x.dot(y) / norms : 0.0;
@@ -47,7 +47,7 @@ std::pair<std::string, double> resembles(const MeasuredRun& run, const Eigen::Ve
       {"feeds", feed},  {"ambient temperature", ambient},           {"its rate", ambient_rate},   {"time", time}};
   for (auto& [name, values] : beside_drive(run, 0.0)) quantities.emplace_back(name, std::move(values));
   for (const auto& [name, values] : quantities) {
-    const double c = correlation(values, series);
+    const double c = resemblance(values, series);
     if (std::abs(c) > std::abs(best.second) + 0.01) best = {name, c};
   }
   if (std::abs(best.second) < 0.4) best.first = "nothing recorded";

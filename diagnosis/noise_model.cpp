@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/median.hpp"
+
 namespace driftwright::diagnosis {
 namespace {
 
@@ -15,13 +17,6 @@ constexpr int kMostCosines = 24;
 constexpr double kRowsAlike[] = {1.0, 2.0, 4.0, 7.0, 12.0, 20.0, 35.0};
 constexpr double kLongestAlike_s = 480.0;
 constexpr int kMostJumps = 3;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Steps where the residual jumps far more than it usually moves; a jump is no noise.
 Eigen::MatrixXd jumps(const Eigen::VectorXd& residual) {
@@ -34,7 +29,7 @@ Eigen::MatrixXd jumps(const Eigen::VectorXd& residual) {
   }
   std::vector<double> sizes;
   for (const auto& m : moves) sizes.push_back(m.first);
-  const double usual = median(sizes) / 0.6745;
+  const double usual = upper_median(sizes) / 0.6745;
   std::sort(moves.rbegin(), moves.rend());
   std::vector<Eigen::Index> at;
   for (const auto& [size, i] : moves) {
@@ -125,7 +120,7 @@ NoiseModel estimate_noise(const std::vector<NoiseSeries>& given, double floor) {
     s.smooth.rightCols(steps.cols()) = steps;
     for (std::size_t i = 1; i < s.time_s.size(); ++i) steps_s.push_back(s.time_s[i] - s.time_s[i - 1]);
   }
-  const double step_s = median(steps_s);
+  const double step_s = upper_median(steps_s);
   NoiseModel best{1.0, 0.0, 0.0};
   Likelihood l = likelihood(series, best);
   double best_value = l.log_value + 2.0;  // correlation must earn its two numbers

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostFirst = 40;  // candidates that a pair begins with
 constexpr double kToldApart = 0.98;     // cosine: more alike than that, two causes are one
 constexpr double kSeen = 1e-12;         // squares of a signature
-constexpr double kNone = -1e200;        // nats of what is no pair
+constexpr double kNoPair = -1e200;        // nats of what is no pair
 
 /// A signature beside the numbers that are fitted anyway.
 struct Seen {
@@ -95,7 +95,7 @@ std::vector<ScoredPair> best_pairs(const std::vector<Candidate>& candidates, con
       if (across * across > kToldApart * kToldApart * a.square * b.square) continue;
       const TwoSizes two = together(law_of(candidates, first), law_of(candidates, second), a, b, across);
       const double gain = two.gain - law_price(candidates[first.candidate]) - law_price(candidates[second.candidate]);
-      if (!(gain > kNone)) continue;  // one of them out of its range
+      if (!(gain > kNoPair)) continue;  // one of them out of its range
       const auto scored = [&](const Signature& s, double x) {
         return Score{.candidate = s.candidate, .variant = s.variant, .start = start_at(law_of(candidates, s), s.shape, x)};
       };

@@ -13,22 +13,11 @@ struct Projection {
   Eigen::VectorXd rest;                ///< y minus what the free numbers would take of it
   double log_evidence = 0.0;           ///< of y, without the constant -n/2 log 2π
 
-  Projection(Eigen::MatrixXd j, const Eigen::VectorXd& sd, const Eigen::VectorXd& y) : slopes(std::move(j)) {
-    Eigen::MatrixXd hessian = slopes.transpose() * slopes;
-    hessian.diagonal() += sd.cwiseProduct(sd).cwiseInverse();
-    factor.compute(hessian);
-    rest = without(y);
-    log_evidence = -0.5 * y.dot(rest) - factor.matrixLLT().diagonal().array().log().sum() - sd.array().log().sum();
-  }
+  Projection(Eigen::MatrixXd j, const Eigen::VectorXd& sd, const Eigen::VectorXd& y);
   /// A column, or several, minus what the free numbers would take of them.
-  [[nodiscard]] Eigen::MatrixXd without(const Eigen::MatrixXd& columns) const {
-    return columns - slopes * factor.solve(slopes.transpose() * columns);
-  }
+  [[nodiscard]] Eigen::MatrixXd without(const Eigen::MatrixXd& columns) const;
   /// Squares of a column that are left.
-  [[nodiscard]] double square(const Eigen::VectorXd& s) const {
-    const Eigen::VectorXd js = slopes.transpose() * s;
-    return s.squaredNorm() - js.dot(factor.solve(js));
-  }
+  [[nodiscard]] double square(const Eigen::VectorXd& s) const;
 };
 
 }  // namespace driftwright::diagnosis

@@ -8,7 +8,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kNeverDecided = std::numeric_limits<double>::infinity();
 constexpr double kSmallest = 0.01, kLargest = 2.0;  // sizes of faults, in standard deviations of their priors
 
 /// I_JJ + S⁻².
@@ -38,9 +38,9 @@ Eigen::MatrixXd left_of_laws(const Question& question, const Eigen::MatrixXd& in
 
 /// z² from which on an expected gain z²/2 slope - cost reaches 0.
 double square_of_size(double slope, double cost) {
-  if (slope < -1e-9) return kNever;  // what it brings falls with its size, as beside a law that does the same and more
+  if (slope < -1e-9) return kNeverDecided;  // what it brings falls with its size, as beside a law that does the same and more
   if (cost <= 0.0) return 0.0;
-  return slope > 1e-12 ? 2.0 * cost / slope : kNever;
+  return slope > 1e-12 ? 2.0 * cost / slope : kNeverDecided;
 }
 
 /// The z² from which on each law is told from each other one; on the diagonal, from nothing.
@@ -86,7 +86,7 @@ double share_named(const Question& question, const Eigen::MatrixXd& information)
   double share = 0.0;
   for (Eigen::Index a = 0; a < left.rows(); ++a) {
     double square = sizes.from_nothing(a);
-    for (Eigen::Index b = 0; b < left.rows() && square < kNever; ++b) {
+    for (Eigen::Index b = 0; b < left.rows() && square < kNeverDecided; ++b) {
       if (!sizes.are_alike(a, b)) square = std::max(square, sizes.from(a, b));
     }
     share += question.laws[static_cast<std::size_t>(a)].weight * share_beyond(square);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/median.hpp"
 #include "diagnosis/stuck_sensor.hpp"
 
 namespace driftwright::diagnosis {
@@ -17,20 +18,14 @@ constexpr std::size_t kStepsOfPace = 5;  // whose median is the pace before, and
 constexpr double kLeap = 40.0;           // usual changes from reading to reading
 constexpr double kLeapOfRange = 0.3;     // of what all other readings span
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The usual step of a logger: of one that writes in bursts, such as a homing's readings and then nothing until the next one, that from burst to burst.
 double usual_of(const std::vector<double>& steps) {
-  double usual_s = median(steps);
+  double usual_s = upper_median(steps);
   for (;;) {
     std::vector<double> longer;
     std::copy_if(steps.begin(), steps.end(), std::back_inserter(longer), [&](double s) { return s > kHole * usual_s; });
     if (static_cast<double>(longer.size()) <= kRare * static_cast<double>(steps.size())) return usual_s;
-    usual_s = median(longer);
+    usual_s = upper_median(longer);
   }
 }
 
@@ -39,7 +34,7 @@ double usual_about(const std::vector<double>& times_s, std::size_t row, double u
   const auto of = [&](std::size_t first, std::size_t last) {  // steps that end at rows first to last
     std::vector<double> steps;
     for (std::size_t i = first; i <= last; ++i) steps.push_back(times_s[i] - times_s[i - 1]);
-    return median(steps);
+    return upper_median(steps);
   };
   double usual = usual_s;
   if (row > kStepsOfPace) usual = std::max(usual, of(row - kStepsOfPace, row - 1));
@@ -100,7 +95,7 @@ Record without_spikes(Record record, std::vector<DataFinding>& findings) {
     std::sort(sorted.begin(), sorted.end());
     const std::size_t few = 1 + sorted.size() / 50;  // spikes themselves do not count
     const double range = sorted[sorted.size() - 1 - few] - sorted[few],
-                 usual = std::max(median(changes), quantum_of(c.values));  // one step of the instrument is no leap
+                 usual = std::max(upper_median(changes), quantum_of(c.values));  // one step of the instrument is no leap
     const double leap = std::max(kLeap * usual, kLeapOfRange * range);
     if (!(leap > 0.0)) continue;
     int n = 0;

@@ -6,7 +6,7 @@
 namespace driftwright::diagnosis {
 namespace {
 
-constexpr double kShortest_s = 60.0, kLongest_s = 36000.0;  // time constants of machines
+constexpr double kShortestConstant_s = 60.0, kLongestConstant_s = 36000.0;  // time constants of machines
 constexpr int kPerDecade = 20;
 constexpr double kWorthTelling = 0.3;
 
@@ -124,8 +124,8 @@ ResidualStructure residual_structure(const MeasuredRun& run, const Eigen::Vector
     // the machine has not turned before, but it has stood in its ambient and its sun
     const bool from_zero = q.name == "speed" || q.name == "speed^2";
     for (int k = 0;; ++k) {
-      const double lag_s = kShortest_s * std::pow(10.0, static_cast<double>(k) / kPerDecade);
-      if (lag_s > kLongest_s) break;
+      const double lag_s = kShortestConstant_s * std::pow(10.0, static_cast<double>(k) / kPerDecade);
+      if (lag_s > kLongestConstant_s) break;
       const double c = correlation(lagged(run.time_s, q.value, lag_s, from_zero), residual);
       const double share = std::isnan(c) ? 0.0 : c * c;
       if (share >= kWorthTelling && (!s.lag || share > s.lag->share)) s.lag = {q.name, lag_s, share};

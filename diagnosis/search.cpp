@@ -21,11 +21,11 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kLeastFactor = 0.05;  // logarithm of a factor that is worth a name
-constexpr int kMostTurns = 6;
+constexpr int kMostRounds = 6;
 constexpr double kBetter = 0.5;    // nats for which one explanation is exchanged for another
 constexpr double kSettled = 0.05;  // of Φ
 constexpr int kMostTurnsOfRival = 3;
-constexpr double kNear = 12.0;             // nats: what fits on may make up for
+constexpr double kNearBest = 12.0;             // nats: what fits on may make up for
 constexpr Eigen::Index kNothingHeld = -1;  // of a fit of all numbers
 constexpr double kBent =
     1.6;  // mean square of scatter's numbers in sigmas of their priors, from which on they are no longer believed
@@ -91,7 +91,7 @@ bool has_idle_factor(const Hypothesis& last, const Fit& fit) {
   return false;
 }
 
-struct Fitted {
+struct FittedClaim {
   Claim claim;
   Fit fit;
 };
@@ -149,7 +149,7 @@ void fit_from_scenario(const Fitter& fitter, const Hypothesis& hypothesis, const
 /// The best candidates on top of a hypothesis, fitted in full, best first.
 /// @param known      null: all are fitted anew, from where scatter was settled last
 /// @param each_kind  the best of each effect is among them, though the first n be of others: which kind it is must not hang on linear theory
-std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
+std::vector<FittedClaim> best_additions(const Fitter& fitter, const std::vector<Candidate>& candidates,
                                    const std::vector<Signature>& columns, const Hypothesis& base, const Fit& base_fit, int n,
                                    KnownFits* known, const Listener& listener, bool each_kind = false) {
   if (base_fit.prediction.empty()) return {};  // no solution without the claim just taken out: nothing to add to
@@ -169,14 +169,14 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
   }
   const std::size_t n_labels = put_labels_first(candidates, list, chosen);
   const Eigen::VectorXd base_x = base_fit.x.tail(base_fit.x.size() - fitter.n_nuisance());
-  std::vector<Fitted> fitted;
+  std::vector<FittedClaim> fitted;
   double best_gain = 0.0;  // of those fitted
   const auto is_hopeless = [&](std::size_t i) { return i >= n_labels && !(chosen[i].gain > kHopeless * best_gain - kHope); };
   for (std::size_t from = 0; from < chosen.size() && !is_hopeless(from);) {
     if (listener.wants_end()) break;
     listener.share(static_cast<double>(from) / static_cast<double>(chosen.size()));
     std::vector<std::pair<Hypothesis, Eigen::VectorXd>> jobs;
-    std::vector<Fitted> batch;
+    std::vector<FittedClaim> batch;
     const std::size_t end =
         from < n_labels
             ? n_labels
@@ -197,20 +197,20 @@ std::vector<Fitted> best_additions(const Fitter& fitter, const std::vector<Candi
       if (known && !fits[i].prediction.empty()) known->keep(jobs[i].first, fits[i]);
       batch.push_back({jobs[i].first.back(), std::move(fits[i])});
     }
-    for (Fitted& f : batch) {
+    for (FittedClaim& f : batch) {
       best_gain = std::max(best_gain, f.fit.log_evidence - base_fit.log_evidence);
       f.fit.log_evidence -= law_price(candidates[f.claim.candidate]);
       fitted.push_back(std::move(f));
     }
   }
-  std::erase_if(fitted, [](const Fitted& f) { return has_idle_factor({f.claim}, f.fit); });
+  std::erase_if(fitted, [](const FittedClaim& f) { return has_idle_factor({f.claim}, f.fit); });
   std::sort(fitted.begin(), fitted.end(),
-            [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
+            [](const FittedClaim& a, const FittedClaim& b) { return a.fit.log_evidence > b.fit.log_evidence; });
   // one law a candidate
-  std::vector<Fitted> unique;
-  for (Fitted& f : fitted) {
+  std::vector<FittedClaim> unique;
+  for (FittedClaim& f : fitted) {
     const bool seen =
-        std::any_of(unique.begin(), unique.end(), [&](const Fitted& u) { return u.claim.candidate == f.claim.candidate; });
+        std::any_of(unique.begin(), unique.end(), [&](const FittedClaim& u) { return u.claim.candidate == f.claim.candidate; });
     if (!seen) unique.push_back(std::move(f));
   }
   return unique;
@@ -238,7 +238,7 @@ Fit fit_at_zero(const Fitter& fitter) {
 
 /// Takes scatter's slopes where a fit stands and fits again, until nothing is gained by it: what a fit has left to gain, the next claim would be thanked for.
 void settle_well(Fitter& fitter, const Hypothesis& hypothesis, Fit& fit) {
-  for (int turn = 0; turn < kMostTurns; ++turn) {
+  for (int turn = 0; turn < kMostRounds; ++turn) {
     fitter.settle(hypothesis, fit);
     Fit again = fit_all(fitter, {{hypothesis, fit.x.tail(fit.x.size() - fitter.n_nuisance())}}).front();
     if (again.prediction.empty()) return;  // the last one stands
@@ -360,7 +360,7 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
         const auto [others, x] = without_claim(best, best_fit, i, fitter.n_nuisance());
         const Fit fit = fit_all(fitter, {{others, x}}).front();
         add_of_some_records(others, fit);
-        const std::vector<Fitted> replacements =
+        const std::vector<FittedClaim> replacements =
             best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener, true);
         if (replacements.empty()) continue;
         const Hypothesis exchanged = with(others, replacements.front().claim);
@@ -381,15 +381,15 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     listener.begin(fmt::format("weighing {} candidates{}", candidates.size(),
                                best.empty() ? "" : fmt::format(" beside {}", best.size())));
     if (round > 0) add_of_some_records(best, best_fit);
-    std::vector<Fitted> additions = best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit,
+    std::vector<FittedClaim> additions = best_additions(fitter, candidates, columns, best, round == 0 ? weighed_at : best_fit,
                                                    options.refits, &known, listener);
     if (round == 0 && is_bent) {  // and where scatter was bent to: a number that has gone far may be the cause itself
       fitter.settle({}, best_fit);
       const std::vector<Signature> there = signatures(fitter, candidates, laws_of(candidates), {}, best_fit, listener);
-      for (Fitted& f : best_additions(fitter, candidates, there, best, best_fit, options.refits, nullptr, listener))
+      for (FittedClaim& f : best_additions(fitter, candidates, there, best, best_fit, options.refits, nullptr, listener))
         additions.push_back(std::move(f));
       std::stable_sort(additions.begin(), additions.end(),
-                       [](const Fitted& a, const Fitted& b) { return a.fit.log_evidence > b.fit.log_evidence; });
+                       [](const FittedClaim& a, const FittedClaim& b) { return a.fit.log_evidence > b.fit.log_evidence; });
     }
     if (round == 0) pairs = best_pairs(candidates, columns, projection_of(fitter, {}, weighed_at), kMostPairs);
     Hypothesis tried;
@@ -476,11 +476,11 @@ SearchResult search(Fitter& fitter, std::vector<Candidate> candidates, const Sea
     };
     std::vector<Rival> rivals = {rival(best[i], best_value)};
     std::vector<Finding::Alternative> others_fitted = {{}};  // beside `rivals`; the first is the claim
-    for (Fitted& f : best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener, true)) {
+    for (FittedClaim& f : best_additions(fitter, candidates, columns, others, fit, options.refits, &known, listener, true)) {
       if (f.claim.candidate == best[i].candidate) continue;
       const Hypothesis instead = with(others, f.claim);
       double value = evidence(f.fit, instead) - laws_price(candidates, others);
-      if (value > best_value - kNear) {
+      if (value > best_value - kNearBest) {
         const double law_nats = law_price(candidates[f.claim.candidate]);
         f.fit.log_evidence += law_nats;  // which best_additions() has taken off
         fit_on(fitter, instead, f.fit);

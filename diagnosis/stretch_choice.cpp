@@ -12,7 +12,7 @@ constexpr std::size_t kFewest = 3, kMost = 60;  // stretches of all runs
 constexpr double kAtWork = 0.05;                // of a column's span above its least
 constexpr const char* kFeeds[] = {"feed_x", "feed_y", "feed_z"};
 constexpr const char *kSpeed = "speed", *kCutting = "cutting_power";
-constexpr int kMostTurns = 40;
+constexpr int kMostExchanges = 40;
 constexpr double kLevelWidths[] = {0.05, 0.2, 0.6};  // of a quantity's span, over which sizes are alike
 constexpr double kJitter = 1e-9;
 
@@ -77,7 +77,7 @@ class Chooser {
     auto k = static_cast<Eigen::Index>(w.sum());
     const auto is_choice = [&](Eigen::Index of) { return of > 0 && of < n(); };
     double best = is_choice(k) ? gain(slope_.dot(w), w.dot(along), k) : -1e300;
-    for (int turn = 0; turn < kMostTurns; ++turn) {
+    for (int turn = 0; turn < kMostExchanges; ++turn) {
       const double slope = slope_.dot(w), curvature = w.dot(along);
       Eigen::Index flip = -1;
       for (Eigen::Index i = 0; i < n(); ++i) {

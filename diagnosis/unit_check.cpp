@@ -12,7 +12,7 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr double kWithin = 5.0;         // of a thousand
-constexpr double kFollows = 0.6;        // correlation of readings with the twin
+constexpr double kFollowsTwin = 0.6;        // correlation of readings with the twin
 constexpr double kTurned = 0.3;         // of the readings: what minus the twin leaves of them
 constexpr double kLeastMoved_m = 1e-6;  // of the twin: where it stands still nothing can be said
 
@@ -64,7 +64,7 @@ bool temperatures_follow(const MeasuredRun& run, const Eigen::MatrixXd& predicti
     const Pairs p = pairs_of(c, prediction);
     if (p.read.size() < 3) continue;
     const Eigen::ArrayXd read = p.read - p.read.mean(), model = p.model - p.model.mean();
-    ++((read * model).mean() > kFollows * rms(read) * rms(model) ? n_following : n_other);
+    ++((read * model).mean() > kFollowsTwin * rms(read) * rms(model) ? n_following : n_other);
   }
   return n_following > n_other;
 }
@@ -74,7 +74,7 @@ std::optional<std::string> displacement_finding(const MeasuredChannel& c, const 
   const Eigen::ArrayXd read = p.read - p.read.mean(), model = p.model - p.model.mean();
   const double read_m = rms(read), model_m = rms(model);
   if (!(model_m > kLeastMoved_m && read_m > 0.0)) return std::nullopt;
-  if (!(std::abs((read * model).mean()) > kFollows * read_m * model_m)) return std::nullopt;
+  if (!(std::abs((read * model).mean()) > kFollowsTwin * read_m * model_m)) return std::nullopt;
   if (may_be_turned && rms(read + model) < kTurned * read_m) {
     return fmt::format(
         "{}_{} looks turned in sign: it runs against what the scenario says, and minus its readings would meet that to "

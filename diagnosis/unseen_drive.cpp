@@ -9,8 +9,8 @@ namespace driftwright::diagnosis {
 namespace {
 
 constexpr int kHalvings = 4;
-constexpr double kOpen = 0.5;  // of what the drive can do: one standard deviation
-constexpr double kKnown_K = 0.01;  // an ambient that strays no further is known
+constexpr double kOpenDrive = 0.5;  // of what the drive can do: one standard deviation
+constexpr double kKnownAmbient_K = 0.01;  // an ambient that strays no further is known
 
 /// Of all that a run shows, each quantity of the drive at its most.
 Drive most_of(const Cyclogram& cyclogram) {
@@ -155,8 +155,8 @@ std::vector<Prediction> hole_columns(const Twin& twin, const std::vector<Measure
       const double ambient_K = runs[r].has_ambient ? unseen_ambient_K(runs[r], hole) : 0.0;
       for (int halving = 0; halving <= kHalvings; ++halving) {
         part.end_s = halving < kHalvings ? 0.5 * (part.begin_s + hole.end_s) : hole.end_s;
-        add(r, [&] { return Eigen::MatrixXd(kOpen * (driven(runs[r], part, true) - driven(runs[r], part, false))); });
-        if (ambient_K > kKnown_K && !has_rows(runs[r], part)) {
+        add(r, [&] { return Eigen::MatrixXd(kOpenDrive * (driven(runs[r], part, true) - driven(runs[r], part, false))); });
+        if (ambient_K > kKnownAmbient_K && !has_rows(runs[r], part)) {
           add(r, [&] {
             if (as_it_is.size() == 0) as_it_is = readings(runs[r]);
             MeasuredRun warmer = runs[r];

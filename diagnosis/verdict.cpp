@@ -16,7 +16,7 @@ constexpr double kWorthSaying = 1.5;  // sigmas of its prior
 constexpr std::size_t kMostSaid = 3;
 constexpr const char* kFaint =
     "its evidence does not pay for all that it might have been, though chance seldom offers as much";
-constexpr double kOpen = 100.0;
+constexpr double kOpenWidth = 100.0;
 constexpr std::ptrdiff_t kManyMoved =
     3;  // blind cases of one fault or two move one number at the most, models of fewer bodies than the truth a dozen
 constexpr std::ptrdiff_t kMostPlaces = 4;  // that are named one by one
@@ -192,7 +192,7 @@ bool is_size_open(const Cause& cause) {
   if (cause.parameters.empty()) return false;
   const Estimate& size = cause.parameters.front();
   const double least = std::min(std::abs(size.low), std::abs(size.high));
-  return size.low * size.high > 0.0 && std::max(std::abs(size.low), std::abs(size.high)) > kOpen * least;
+  return size.low * size.high > 0.0 && std::max(std::abs(size.low), std::abs(size.high)) > kOpenWidth * least;
 }
 
 void give_standing(Diagnosis& d, const HeldOut& held) {

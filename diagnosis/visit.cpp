@@ -13,7 +13,7 @@ constexpr double kLeast = 1e-4, kTrial = 0.1;   // of the capacity of the body t
 constexpr double kTimeSd = 1.5;                 // of the logarithm of how fast it follows
 constexpr double kFollows[] = {0.3, 1.0, 3.0};  // of the window that was seen: time constants tried first
 constexpr double kStays[] = {1.0, 3.0};         // of that window: how long it is there
-constexpr double kShortest_s = 1.0;
+constexpr double kShortestVisit_s = 1.0;
 
 TimeSeries& rows(std::span<effects::Effect> added) {
   return added[0].tables.at(effects::kWindows);
@@ -32,7 +32,7 @@ std::vector<Event> visits_of(const effects::DoubtScene& scene, const Happening& 
   const MeasuredRun& run = *h.in.front().first;
   const auto [begin_s, end_s] = h.in.front().second.front();
   const double length_s = run.time_s.back(), seen_s = end_s - begin_s;
-  if (!(seen_s > kShortest_s)) return {};
+  if (!(seen_s > kShortestVisit_s)) return {};
 
   effects::Effect body =
       effects::make_effect("hidden_body", h.body, {{"capacity", kLeast * to->capacity_J_K}, {"conductance", 0.0}});
@@ -50,7 +50,7 @@ std::vector<Event> visits_of(const effects::DoubtScene& scene, const Happening& 
   };
   const effects::DoubtedNumber begin = effects::doubted_time(
       "begin", length_s, [end_s = kBehindTheEnd * length_s](std::span<effects::Effect> added, double value) {
-        rows(added) = {{std::min(value, end_s - kShortest_s)}, {end_s}};
+        rows(added) = {{std::min(value, end_s - kShortestVisit_s)}, {end_s}};
       });
   Event stays{.doubt = {.finding = "hidden_body",
                         .where = h.body.name,
@@ -67,7 +67,7 @@ std::vector<Event> visits_of(const effects::DoubtScene& scene, const Happening& 
   };
   goes.doubt.added[0].tables[effects::kWindows] = {{begin_s}, {end_s}};
   effects::DoubtedNumber length = effects::doubted("length", "min", length_s / 60.0 / 4.0, 1.0, seen_s / 60.0);
-  length.low = kShortest_s / 60.0;
+  length.low = kShortestVisit_s / 60.0;
   length.high = length_s / 60.0;
   length.set = [](std::span<effects::Effect> added, double value) {
     rows(added).value[0] = rows(added).time_s[0] + 60.0 * value;

@@ -11,7 +11,7 @@ namespace {
 constexpr double kWarm_K = 4.0;
 constexpr double kTogether = 0.7;    // correlation of two bodies' starts
 constexpr double kFirstRow_K = 0.5;  // of a first reading: noise, and bodies that are not of one temperature
-constexpr double kKnown_K = 0.02;    // a start known better is known
+constexpr double kKnownStart_K = 0.02;    // a start known better is known
 
 struct First {
   std::vector<int> outputs;
@@ -67,7 +67,7 @@ void find_warm_starts(std::vector<MeasuredRun>& runs, const Twin& twin) {
                                     root.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal();
     run.start_doubt_K.resize(columns.rows(), 0);
     for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-      if (columns.col(k).norm() < kKnown_K) continue;
+      if (columns.col(k).norm() < kKnownStart_K) continue;
       run.start_doubt_K.conservativeResize(Eigen::NoChange, run.start_doubt_K.cols() + 1);
       run.start_doubt_K.rightCols<1>() = columns.col(k);
     }

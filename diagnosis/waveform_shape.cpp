@@ -16,8 +16,8 @@ constexpr double kWindowsExplain = 0.8;    // of them: two levels are 0.64 of an
 constexpr double kConstantExplains = 0.8;  // of all squares
 constexpr double kMostOfTheTime = 0.5;     // windows are open
 constexpr double kSlow = 0.25;             // of the record: bends of the base are slower than windows are long
-constexpr int kMostTurns = 12;
-constexpr std::size_t kMostWindows = 40;
+constexpr int kMostRefinements = 12;
+constexpr std::size_t kMostPieces = 40;
 
 /// What a base leaves of values, and of further columns.
 class Base {
@@ -184,7 +184,7 @@ class Classifier {
     std::vector<char> open, before;
     Eigen::VectorXd own;
     double square = 0.0, left = 0.0;
-    for (int turn = 0; turn < kMostTurns; ++turn) {
+    for (int turn = 0; turn < kMostRefinements; ++turn) {
       open = path(level, size, variance);
       const auto n_open = std::count(open.begin(), open.end(), 1);
       if (n_open == 0 || static_cast<double>(n_open) > kMostOfTheTime * static_cast<double>(n_)) return;
@@ -211,7 +211,7 @@ class Classifier {
         w.windows_s.emplace_back(edge_s_[k], edge_s_[k + 1]);
       }
     }
-    if (w.windows_s.size() > kMostWindows) return;
+    if (w.windows_s.size() > kMostPieces) return;
     double longest_s = 0.0;
     for (const auto& [begin_s, end_s] : w.windows_s) longest_s = std::max(longest_s, end_s - begin_s);
     if (base.columns().cols() > base_.columns().cols() && longest_s > kSlow * (edge_s_.back() - edge_s_.front())) return;

@@ -1,8 +1,7 @@
 #include "effects/effect.hpp"
 #include "effects/film_formulas.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::air_gap {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double diameter_m = e["diameter"], gap_m = e["gap"], factor = e["factor"];
@@ -18,9 +17,7 @@ void check(const Effect& e, const ConfigMap& in) {
   if (!(e["gap"] < 0.1 * e["diameter"])) in.fail("gap", "the law is one of narrow gaps: less than a tenth of the diameter");
 }
 
-}  // namespace
-
-EffectKind air_gap() {
+EffectKind kind() {
   return {
       .key = "air_gap",
       .title = "gap of air between a rotor and what surrounds it",
@@ -38,4 +35,4 @@ EffectKind air_gap() {
       .exchange_finding = "contact"};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::air_gap

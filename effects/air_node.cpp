@@ -1,7 +1,6 @@
 #include "effects/effect.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::air_node {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.nodes.push_back({e.place, e["capacity"]});
@@ -9,9 +8,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   balance.exchanges.push_back(make_link(e.name(), node(e.place), [=](const Inputs&) { return exchange_W_K; }));
 }
 
-}  // namespace
-
-EffectKind air_node() {
+EffectKind kind() {
   return {.key = "air_node",
           .title = "air near the machine that the machine warms",
           .law = "C dT/dt = sum of films that name it as surrounding - exchange (T - T_ambient)",
@@ -22,4 +19,4 @@ EffectKind air_node() {
           .exchange_finding = "contact"};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::air_node

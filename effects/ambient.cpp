@@ -3,8 +3,7 @@
 #include "effects/ambient_thermometer.hpp"
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::ambient {
 
 constexpr double kShortest_min = 0.1;  // of another ambient for a while
 constexpr double kStep_s = 1e-3;       // that a jump of the ambient takes
@@ -157,9 +156,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind ambient() {
+EffectKind kind() {
   return {.key = "ambient",
           .title = "ambient that is warmer or colder than recorded, or that was recorded late",
           .law =
@@ -184,4 +181,4 @@ EffectKind ambient() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::ambient

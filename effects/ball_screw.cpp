@@ -2,8 +2,7 @@
 
 #include "effects/axis.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::ball_screw {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double torque_Nm = e["torque"], lead_m = 1e-3 * e["lead"], thrust_N = e["thrust"], efficiency = e["efficiency"];
@@ -16,9 +15,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   balance.heats.push_back({e.name(), e.body(), law});
 }
 
-}  // namespace
-
-EffectKind ball_screw() {
+EffectKind kind() {
   return {
       .key = "ball_screw",
       .title = "friction of a ball screw and its nut",
@@ -38,4 +35,4 @@ EffectKind ball_screw() {
       .choices = {axis_choice()}};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::ball_screw

@@ -1,8 +1,7 @@
 #include "effects/bearing_formulas.hpp"
 #include "effects/effect.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::bearing_friction {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double f0 = e["f0"], f1 = e["f1"], preload_N = e["load"], d_mm = e["mean_diameter"], count = e["count"];
@@ -44,9 +43,7 @@ void check(const Effect& e, const ConfigMap& in) {
   }
 }
 
-}  // namespace
-
-EffectKind bearing_friction() {
+EffectKind kind() {
   return {
       .key = "bearing_friction",
       .title = "friction of a rolling bearing",
@@ -72,4 +69,4 @@ EffectKind bearing_friction() {
       .check = check};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::bearing_friction

@@ -3,8 +3,7 @@
 #include "effects/doubt.hpp"
 #include "effects/run_on.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::body_link {
 
 constexpr std::size_t kFewBodies = 12;  // up to so many, any two may be joined; beyond, those that a third one joins already
 constexpr double kTrial = 0.1;          // of a typical conductance
@@ -118,9 +117,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind body_link() {
+EffectKind kind() {
   return {.key = "link",
           .title = "conductance between a body and a lumped node or the ambient",
           .law =
@@ -140,4 +137,4 @@ EffectKind body_link() {
           .exchange_finding = "contact"};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::body_link

@@ -17,7 +17,7 @@ std::string places_of(const EffectKind& kind) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string key_of(const Parameter& p) {
+std::string described(const Parameter& p) {
   const std::string unit = p.unit == "1" ? "" : " [" + p.unit + "]";
   if (!p.fallback) return fmt::format("**{}**{}: {}", p.name, unit, p.meaning);
   if (std::isnan(*p.fallback)) return fmt::format("{}{}: {}", p.name, unit, p.meaning);
@@ -28,7 +28,7 @@ std::string key_of(const Parameter& p) {
 /// All keys beside type and place; those that are compulsory in bold.
 std::string keys_of(const EffectKind& kind) {
   std::vector<std::string> keys;
-  for (const Parameter& p : kind.parameters) keys.push_back(key_of(p));
+  for (const Parameter& p : kind.parameters) keys.push_back(described(p));
   const auto named = [&](const auto& list, const auto& is_compulsory) {
     for (const auto& k : list)
       keys.push_back(fmt::format(fmt::runtime(is_compulsory(k) ? "**{}**: {}" : "{}: {}"), k.name, k.meaning));

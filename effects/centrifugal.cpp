@@ -2,8 +2,7 @@
 
 #include "effects/displacement_amount.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::centrifugal {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kGrowth,
@@ -31,9 +30,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind centrifugal() {
+EffectKind kind() {
   return {.key = "centrifugal",
           .title = "displacement by centrifugal force on rings and balls",
           .law = "u = growth (n / at_speed)^2, at once, without heat",
@@ -46,4 +43,4 @@ EffectKind centrifugal() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::centrifugal

@@ -6,8 +6,7 @@
 
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::changed_law {
 
 constexpr double kOfSolids =
     2.0;  // nats: a joint of solid bodies does not change in the middle of a record, unless somebody works on it
@@ -409,9 +408,7 @@ void check(const Effect& e, const ConfigMap& in) {
     in.fail("below", "`below`, a speed, and `factor_below`, what the law is times below it, go together");
 }
 
-}  // namespace
-
-EffectKind changed_law() {
+EffectKind kind() {
   return {
       .key = "changed_law",
       .title = "another size, growth with speed or decay of what another effect does",
@@ -454,4 +451,4 @@ EffectKind changed_law() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::changed_law

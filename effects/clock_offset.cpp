@@ -2,8 +2,7 @@
 
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::clock_offset {
 
 /// Readings at t that were taken at t - offset, from a time on.
 Eigen::MatrixXd shifted(const Eigen::MatrixXd& outputs, const std::vector<double>& time_s, double offset_s, double from_s) {
@@ -57,9 +56,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind clock_offset() {
+EffectKind kind() {
   return {.key = "clock_offset",
           .title = "readings logged late or early against drive and ambient",
           .law =
@@ -74,4 +71,4 @@ EffectKind clock_offset() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::clock_offset

@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::conductivity {
 
 void change_material(const Effect& e, MaterialFactor& factor) {
   factor.conductivity *= e["factor"];
@@ -21,9 +20,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind conductivity() {
+EffectKind kind() {
   return {.key = "conductivity",
           .title = "a material that conducts better or worse than written",
           .law = "k = factor k_material, at every temperature",
@@ -33,4 +30,4 @@ EffectKind conductivity() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::conductivity

@@ -2,8 +2,7 @@
 
 #include "effects/effect.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::contact {
 
 constexpr const char* kTable = "conductance_over_pressure";
 
@@ -27,9 +26,7 @@ void check(const Effect& e, const ConfigMap& in) {
   }
 }
 
-}  // namespace
-
-EffectKind contact() {
+EffectKind kind() {
   return {.key = "contact",
           .title = "conductance of a joint, constant or at a pressure",
           .law = "q = conductance (T_a - T_b); from a table: linear between its rows",
@@ -45,4 +42,4 @@ EffectKind contact() {
           .exchange_finding = "contact"};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::contact

@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::convection {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.exchanges.push_back(make_film(
@@ -24,9 +23,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind convection() {
+EffectKind kind() {
   return {.key = "convection",
           .title = "film on a surface, constant or for a time (a draught)",
           .law = "q = film (T - T_surrounding)",
@@ -46,4 +43,4 @@ EffectKind convection() {
           .exchange_finding = "convection"};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::convection

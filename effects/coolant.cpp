@@ -3,8 +3,7 @@
 #include "base/quantity.hpp"
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::coolant {
 
 constexpr double kAmple_L_min = 100.0;               // of a circuit that is doubted: its flow takes no part in what it does
 constexpr double kColder_K = 10.0, kWarmer_K = 3.0;  // than the reference, its medium at most
@@ -125,9 +124,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind coolant() {
+EffectKind kind() {
   return {
       .key = "coolant",
       .title = "circuit of coolant or oil with tank, pump and a chiller on a thermostat",
@@ -164,4 +161,4 @@ EffectKind coolant() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::coolant

@@ -1,16 +1,13 @@
 #include "effects/effect.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::cutting_heat {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double share = e["share"];
   balance.heats.push_back({e.name(), e.body(), [=](const Inputs& u) { return share * u.drive.cutting_power_W; }});
 }
 
-}  // namespace
-
-EffectKind cutting_heat() {
+EffectKind kind() {
   return {
       .key = "cutting_heat",
       .title = "heat of cutting",
@@ -31,4 +28,4 @@ EffectKind cutting_heat() {
       .contribute = contribute};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::cutting_heat

@@ -7,8 +7,7 @@
 #include "effects/displacement_amount.hpp"
 #include "effects/recorded_column.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::displacement_path {
 
 constexpr double kSensitivitySd_um_K = 5.0;  // 1 sigma; 1 m of steel on one side: 11.5 um/K
 constexpr double kShareSd = 0.1;             // of what an indicator that stands askew reads of another axis
@@ -175,9 +174,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind displacement_path() {
+EffectKind kind() {
   return {
       .key = "displacement_path",
       .title = "displacement that follows one more body, the ambient or a recorded column, or reads a share of another one",
@@ -206,4 +203,4 @@ EffectKind displacement_path() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::displacement_path

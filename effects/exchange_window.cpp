@@ -1,7 +1,6 @@
 #include "effects/time_windows.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::exchange_window {
 
 /// A region or node takes a conductance of its own, a surface or joint one per area.
 bool is_total(const Effect& e) {
@@ -49,9 +48,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind exchange_window() {
+EffectKind kind() {
   return {.key = "exchange_window",
           .title = "exchange that is there for a while, once or again and again: a lid, a door, a valve",
           .law = "q = film (T - T_surrounding) or Q = conductance (T - T_surrounding) within the windows, else 0",
@@ -66,4 +63,4 @@ EffectKind exchange_window() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::exchange_window

@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::expansion {
 
 void change_material(const Effect& e, MaterialFactor& factor) {
   factor.expansion *= e["factor"];
@@ -33,9 +32,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind expansion() {
+EffectKind kind() {
   return {.key = "expansion",
           .title = "a material that expands more or less than written",
           .law = "alpha = factor alpha_material, along each axis; a displacement's sensitivity to the body times the factor",
@@ -48,4 +45,4 @@ EffectKind expansion() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::expansion

@@ -1,7 +1,6 @@
 #include "effects/effect.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::fixed_temperature {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const bool follows_ambient = e.words.at("follows") == kAmbientName;
@@ -17,9 +16,7 @@ void check(const Effect& e, const ConfigMap& in) {
   }
 }
 
-}  // namespace
-
-EffectKind fixed_temperature() {
+EffectKind kind() {
   return {.key = "fixed_temperature",
           .title = "prescribed temperature",
           .law = "T = temperature(t), linear between rows and constant outside them, or that of the ambient",
@@ -31,4 +28,4 @@ EffectKind fixed_temperature() {
           .check = check};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::fixed_temperature

@@ -5,8 +5,7 @@
 
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::forced_convection {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double growth = e["growth"], n0_rpm = e["at_speed"], exponent = e["exponent"];
@@ -50,9 +49,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind forced_convection() {
+EffectKind kind() {
   return {.key = "forced_convection",
           .title = "film that grows with speed, beside the film at standstill",
           .law = "q = growth (n / at_speed)^exponent (T - T_surrounding)",
@@ -67,4 +64,4 @@ EffectKind forced_convection() {
           .exchange_finding = "forced_convection"};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::forced_convection

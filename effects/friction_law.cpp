@@ -2,8 +2,7 @@
 
 #include "effects/effect.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::friction_law {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double power_W = e["power"], n0_rpm = e["at_speed"], exponent = e["exponent"];
@@ -18,9 +17,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   balance.heats.push_back({e.name(), e.body(), Law(law, probes)});
 }
 
-}  // namespace
-
-EffectKind friction_law() {
+EffectKind kind() {
   return {.key = "friction_law",
           .title = "friction by a power law of speed that falls as its body warms",
           .law = "P = power (n / at_speed)^exponent exp(-decay (T - at_temperature)) while it turns, T of its own body",
@@ -35,4 +32,4 @@ EffectKind friction_law() {
           .contribute = contribute};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::friction_law

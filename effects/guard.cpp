@@ -7,8 +7,7 @@
 
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::guard {
 
 constexpr std::size_t kEveryChoice = 6;  // of up to so many bodies any two and more may stand behind one
 constexpr std::size_t kMostBodies = 12;  // of up to so many any two
@@ -140,9 +139,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind guard() {
+EffectKind kind() {
   return {.key = "guard",
           .title = "a body that stands behind a guard: what it loses to the ambient goes to the air in the guard",
           .law =
@@ -156,4 +153,4 @@ EffectKind guard() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::guard

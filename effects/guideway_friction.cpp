@@ -1,7 +1,6 @@
 #include "effects/axis.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::guideway_friction {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double coulomb_N = e["friction"] * e["load"], viscous_N_s_m = e["viscous"], share = e["share"];
@@ -13,9 +12,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   balance.heats.push_back({e.name(), e.body(), law});
 }
 
-}  // namespace
-
-EffectKind guideway_friction() {
+EffectKind kind() {
   return {
       .key = "guideway_friction",
       .title = "friction of a guideway",
@@ -37,4 +34,4 @@ EffectKind guideway_friction() {
       .choices = {axis_choice()}};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::guideway_friction

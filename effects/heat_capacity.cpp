@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::heat_capacity {
 
 void change_material(const Effect& e, MaterialFactor& factor) {
   factor.heat_capacity *= e["factor"];
@@ -21,9 +20,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind heat_capacity() {
+EffectKind kind() {
   return {.key = "heat_capacity",
           .title = "a material or a lumped node that stores more or less heat than written",
           .law = "c = factor c_material, at every temperature; C = factor C_node",
@@ -33,4 +30,4 @@ EffectKind heat_capacity() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::heat_capacity

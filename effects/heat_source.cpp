@@ -6,8 +6,7 @@
 #include "effects/lasting.hpp"
 #include "effects/run_on.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::heat_source {
 
 constexpr double kMostPeriods = 10000.0;
 constexpr double kUsualRunOn_min = 10.0;
@@ -216,9 +215,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind heat_source() {
+EffectKind kind() {
   return {
       .key = "heat_source",
       .title = "heat by a power law of speed, constant, on and off with the spindle, or in a wave",
@@ -253,4 +250,4 @@ EffectKind heat_source() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::heat_source

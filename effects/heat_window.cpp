@@ -1,7 +1,6 @@
 #include "effects/time_windows.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::heat_window {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const auto windows = windows_of(e);
@@ -9,9 +8,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   add_change_times(windows, balance);
 }
 
-}  // namespace
-
-EffectKind heat_window() {
+EffectKind kind() {
   return {.key = "heat_window",
           .title = "heat that is there for a while, once or again and again: a pump, a lamp, a bearing that drags",
           .law = "P = power within the windows, else 0",
@@ -23,4 +20,4 @@ EffectKind heat_window() {
           .check = check_windows};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::heat_window

@@ -5,8 +5,7 @@
 #include "effects/body_between.hpp"
 #include "effects/time_windows.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::hidden_body {
 
 constexpr const char *kSuffix = "_hidden", *kIn = " in ";  // of a body's node, and of one that is there in one record alone
 constexpr double kCapacitySd = 1.5;                        // of the logarithm: from a fifth to five times its body's
@@ -134,9 +133,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind hidden_body() {
+EffectKind kind() {
   return {
       .key = "hidden_body",
       .title = "body behind another: a cover, a tank, a clamped part, which no node or region of the machine is",
@@ -157,4 +154,4 @@ EffectKind hidden_body() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::hidden_body

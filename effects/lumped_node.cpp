@@ -1,15 +1,12 @@
 #include "effects/effect.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::lumped_node {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.nodes.push_back({e.place, e["capacity"]});
 }
 
-}  // namespace
-
-EffectKind lumped_node() {
+EffectKind kind() {
   return {.key = "node",
           .title = "lumped body with one temperature: a rotor, a tank, a motor",
           .law = "C dT/dt = sum of what links, films, sources and circuits bring",
@@ -18,4 +15,4 @@ EffectKind lumped_node() {
           .contribute = contribute};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::lumped_node

@@ -2,8 +2,7 @@
 
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::missing_stop {
 
 constexpr double kShortest_min = 1e-3;
 
@@ -45,9 +44,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind missing_stop() {
+EffectKind kind() {
   return {.key = "missing_stop",
           .title = "stop of the spindle that the record does not have",
           .law = "n = 0 from start to start + length; feeds and cutting power as recorded",
@@ -59,4 +56,4 @@ EffectKind missing_stop() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::missing_stop

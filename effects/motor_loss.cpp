@@ -2,8 +2,7 @@
 
 #include "effects/effect.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::motor_loss {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double idle_W = e["idle"], power_W = e["power"], n0_rpm = e["at_speed"], exponent = e["exponent"];
@@ -13,9 +12,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   balance.heats.push_back({e.name(), e.body(), law});
 }
 
-}  // namespace
-
-EffectKind motor_loss() {
+EffectKind kind() {
   return {.key = "motor_loss",
           .title = "loss of the spindle motor",
           .law = "P = idle + power (n / at_speed)^exponent while it turns, else 0",
@@ -29,4 +26,4 @@ EffectKind motor_loss() {
           .contribute = contribute};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::motor_loss

@@ -4,8 +4,7 @@
 #include "effects/displacement_amount.hpp"
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::mount_shift {
 
 constexpr double kUsualLength = 0.25, kShortest_s = 1.0;  // of a record, that a bump lasts
 
@@ -84,9 +83,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind mount_shift() {
+EffectKind kind() {
   return {
       .key = "mount_shift",
       .title = "step of a displacement channel, or its creep: a magnet base, a clamp, a crash, glue",
@@ -103,4 +100,4 @@ EffectKind mount_shift() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::mount_shift

@@ -1,8 +1,7 @@
 #include "effects/effect.hpp"
 #include "effects/film_formulas.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::natural_convection {
 
 Orientation orientation(const std::string& word) {
   if (word == "vertical") return Orientation::kVertical;
@@ -21,9 +20,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
   balance.exchanges.push_back(make_film(e.name(), e.place, Law(htc, {e.body(), node(surrounding)}), surrounding));
 }
 
-}  // namespace
-
-EffectKind natural_convection() {
+EffectKind kind() {
   return {
       .key = "natural_convection",
       .title = "film of free convection, which grows with the difference of mean temperatures",
@@ -40,4 +37,4 @@ EffectKind natural_convection() {
       .exchange_finding = "convection"};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::natural_convection

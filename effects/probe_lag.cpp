@@ -4,8 +4,7 @@
 
 #include "effects/displacement_amount.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::probe_lag {
 
 constexpr double kFeed_mm_min = 1000.0;  // that lags are stated at where nobody says
 constexpr double kNoProbe =
@@ -36,9 +35,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind probe_lag() {
+EffectKind kind() {
   return {.key = "probe_lag",
           .title = "touch probe whose trigger comes later than assumed",
           .law = "reading = u + lag feed: the axis has gone on by as much (Wang & Jia)",
@@ -50,4 +47,4 @@ EffectKind probe_lag() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::probe_lag

@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::radiation {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.radiations.push_back({e.name(), e.place, e["emissivity"], e.references.at("surrounding").name});
@@ -22,9 +21,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind radiation() {
+EffectKind kind() {
   return {.key = "radiation",
           .title = "grey radiation to a surrounding that encloses the surface",
           .law = "q = emissivity sigma (T^4 - T_surrounding^4), T local (Stefan-Boltzmann, CODATA 2018)",
@@ -43,4 +40,4 @@ EffectKind radiation() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::radiation

@@ -7,8 +7,7 @@
 #include "effects/lasting.hpp"
 #include "effects/recorded_column.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::recorded_drive {
 
 constexpr double kMedium_K =
     kZeroCelsius_K + 20.0;  // of an exchange with a recorded temperature: heat makes up for the rest
@@ -160,9 +159,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind recorded_drive() {
+EffectKind kind() {
   return {.key = "recorded_drive",
           .title = "heat or exchange by a recorded column: a heater's power, the sun, a bed, a valve",
           .law =
@@ -194,4 +191,4 @@ EffectKind recorded_drive() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::recorded_drive

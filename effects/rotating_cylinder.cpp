@@ -1,8 +1,7 @@
 #include "effects/effect.hpp"
 #include "effects/film_formulas.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::rotating_cylinder {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double diameter_m = e["diameter"], factor = e["factor"];
@@ -12,9 +11,7 @@ void contribute(const Effect& e, HeatBalance& balance) {
       e.references.at("surrounding").name));
 }
 
-}  // namespace
-
-EffectKind rotating_cylinder() {
+EffectKind kind() {
   return {.key = "rotating_cylinder",
           .title = "film on a turning shaft, beside the film at standstill",
           .law = "Nu = 0.133 Re^(2/3) Pr^(1/3), Re = u d / nu (Becker 1963)",
@@ -27,4 +24,4 @@ EffectKind rotating_cylinder() {
           .exchange_finding = "forced_convection"};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::rotating_cylinder

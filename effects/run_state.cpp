@@ -3,8 +3,7 @@
 
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::run_state {
 
 constexpr std::size_t kFewRuns = 5;  // of which every choice is tried
 constexpr double kLongest_min = 1440.0, kLongestLooked_min = 240.0;
@@ -123,9 +122,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind run_state() {
+EffectKind kind() {
   return {
       .key = "run_state",
       .title =
@@ -148,4 +145,4 @@ EffectKind run_state() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::run_state

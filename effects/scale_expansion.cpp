@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::scale_expansion {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kScale, [channel = e.place, factor = e["factor"], lag_s = e["lag"] * 60.0](Readings& r) {
@@ -35,9 +34,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind scale_expansion() {
+EffectKind kind() {
   return {.key = "scale_expansion",
           .title = "linear scale that expands itself, and so scales what it measures, or follows late",
           .law =
@@ -52,4 +49,4 @@ EffectKind scale_expansion() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::scale_expansion

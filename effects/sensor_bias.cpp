@@ -3,8 +3,7 @@
 #include "effects/instrument_groups.hpp"
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::sensor_bias {
 
 constexpr double kUsualFading = 1.0 / 12.0, kLongestFading = 1.0 / 3.0;  // of the longest record
 constexpr double kSlope = 0.03;  // 1 sigma of a wrong scale: a thermocouple of another class, a bridge of another resistor
@@ -81,9 +80,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind sensor_bias() {
+EffectKind kind() {
   return {
       .key = "sensor_bias",
       .title =
@@ -103,4 +100,4 @@ EffectKind sensor_bias() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::sensor_bias

@@ -1,7 +1,6 @@
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::sensor_detached {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kDetachment, [sensor = e.place, share = e["share"], time_s = e["time"] * 60.0](Readings& r) {
@@ -38,9 +37,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind sensor_detached() {
+EffectKind kind() {
   return {.key = "sensor_detached",
           .title = "sensor that comes off its body",
           .law = "reading = share T_ambient + (1 - share) T from a time on",
@@ -52,4 +49,4 @@ EffectKind sensor_detached() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::sensor_detached

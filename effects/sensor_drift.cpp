@@ -1,8 +1,7 @@
 #include "effects/instrument_groups.hpp"
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::sensor_drift {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kError, [sensor = e.place, drift_K_s = e["drift"] / 3600.0](Readings& r) {
@@ -26,9 +25,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind sensor_drift() {
+EffectKind kind() {
   return {.key = "sensor_drift",
           .title = "sensor whose error grows with time",
           .law = "reading = T + drift t, t from the start of each cyclogram",
@@ -39,4 +36,4 @@ EffectKind sensor_drift() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::sensor_drift

@@ -1,7 +1,6 @@
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::sensor_lag {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kLag, [sensor = e.place, lag_s = e["lag"] * 60.0](Readings& r) {
@@ -28,9 +27,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind sensor_lag() {
+EffectKind kind() {
   return {.key = "sensor_lag",
           .title = "sensor that follows late: a glued or sleeved one",
           .law = "lag d(reading)/dt = T - reading, settled at t = 0",
@@ -41,4 +38,4 @@ EffectKind sensor_lag() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::sensor_lag

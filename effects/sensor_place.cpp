@@ -3,8 +3,7 @@
 #include "effects/instrument_groups.hpp"
 #include "effects/lasting.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::sensor_place {
 
 // Nats: between two bodies that touch there is a path of heat as well; where the scenario has none, two things would have to be wrong at once.
 constexpr double kTouchWithoutPath = 2.0;
@@ -86,9 +85,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind sensor_place() {
+EffectKind kind() {
   return {
       .key = "sensor_place",
       .title = "sensor that sits elsewhere than stated: between its place and another body",
@@ -107,4 +104,4 @@ EffectKind sensor_place() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::sensor_place

@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::sensor_swap {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kSwap,
@@ -32,9 +31,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind sensor_swap() {
+EffectKind kind() {
   return {.key = "sensor_swap",
           .title = "two sensors wired to each other's channel",
           .law = "each channel carries the other's reading",
@@ -47,4 +44,4 @@ EffectKind sensor_swap() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::sensor_swap

@@ -7,8 +7,7 @@
 #include "effects/axis.hpp"
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::servo_loss {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   const double idle_W = e["idle"], holding_W = e["holding"], power_W = e["power"], v0_m_s = e["at_feed"],
@@ -67,9 +66,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind servo_loss() {
+EffectKind kind() {
   return {.key = "servo_loss",
           .title = "loss of an axis' servo motor",
           .law =
@@ -89,4 +86,4 @@ EffectKind servo_loss() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::servo_loss

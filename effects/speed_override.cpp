@@ -3,8 +3,7 @@
 #include "effects/lasting.hpp"
 #include "effects/time_windows.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::speed_override {
 
 using Windows = std::vector<std::pair<double, double>>;
 
@@ -87,9 +86,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind speed_override() {
+EffectKind kind() {
   return {
       .key = "speed_override",
       .title =
@@ -107,4 +104,4 @@ EffectKind speed_override() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::speed_override

@@ -2,8 +2,7 @@
 
 #include "effects/displacement_amount.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::spindle_growth {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   const double amount = amount_of(e, "growth"), n0_rpm = e["at_speed"], exponent = e["exponent"], lag_s = e["lag"] * 60.0;
@@ -38,9 +37,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind spindle_growth() {
+EffectKind kind() {
   return {.key = "spindle_growth",
           .title = "displacement that follows speed behind one lag: a rotor that no node of the machine holds",
           .law = "lag du/dt = growth (n / at_speed)^exponent - u, u = 0 at t = 0",
@@ -55,4 +52,4 @@ EffectKind spindle_growth() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::spindle_growth

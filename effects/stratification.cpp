@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::stratification {
 
 constexpr double kUsual_K_m = 2.0;  // 1 sigma of a gradient that nobody wrote down
 constexpr double kWritten_K_m =
@@ -23,9 +22,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
            .grid = {{-0.6}, {0.2}}}};
 }
 
-}  // namespace
-
-EffectKind stratification() {
+EffectKind kind() {
   return {
       .key = "stratification",
       .title = "ambient air that is warmer above than below",
@@ -37,4 +34,4 @@ EffectKind stratification() {
       .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::stratification

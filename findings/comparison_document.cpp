@@ -11,7 +11,7 @@
 namespace driftwright::findings {
 namespace {
 
-constexpr std::size_t kMostPlots = 12;
+constexpr std::size_t kMostComparisonPlots = 12;
 
 /// Displacements, tilts, temperatures, then the rest; within each the largest difference first.
 std::vector<const studies::ChannelDifference*> in_order(const studies::RecordComparison& comparison) {
@@ -56,7 +56,7 @@ output::Document document_of(const studies::RecordComparison& comparison, const 
   if (!comparison.only_second.empty())
     notes.push_back(fmt::format("only in the second: {}", fmt::join(comparison.only_second, ", ")));
   add(body, output::Notes{.sort = "note", .lines = notes});
-  for (std::size_t i = 0; i < std::min(kMostPlots, list.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMostComparisonPlots, list.size()); ++i) {
     const std::string header = list[i]->name + "_" + list[i]->unit;
     const std::string unit = output::shown_unit(list[i]->unit);
     add(body, output::Plot{.title = list[i]->name,

@@ -261,7 +261,7 @@ std::string shape_text(const diagnosis::Waveform& w) {
 
 /// The best of each run and kind are drawn.
 Section waveforms_section(const diagnosis::Diagnosis& d) {
-  constexpr std::size_t kMostPlots = 4;
+  constexpr std::size_t kMostHeatPlots = 4;
   Section section{.title = "What is missing over time", .detail = true};
   Table table{
       .title = "What the scenario misses, row by row",
@@ -283,7 +283,7 @@ Section waveforms_section(const diagnosis::Diagnosis& d) {
     if (w.shape.shape == diagnosis::Shape::kNothing) continue;
     table.rows.push_back({w.run, w.where, shape_text(w), is_heat ? Datum(w.log_likelihood_gain) : Datum(""),
                           is_heat ? Datum(w.explained) : Datum(""), w.shape.explained});
-    if (plots.size() == kMostPlots || !drawn.insert({is_heat ? w.run : w.run + " " + w.where, is_heat}).second) continue;
+    if (plots.size() == kMostHeatPlots || !drawn.insert({is_heat ? w.run : w.run + " " + w.where, is_heat}).second) continue;
     const bool is_exchange = !w.to.empty();
     Plot plot{.title = is_exchange ? fmt::format("Conductance that is missing between {} and {}, {}", w.where, w.to, w.run)
                        : is_heat   ? fmt::format("Heat that is missing in {}, {}", w.where, w.run)

@@ -6,25 +6,25 @@ namespace driftwright::findings {
 namespace {
 
 using output::ResultKey;
-using Kind = ResultKey::Kind;
+using ResultKind = ResultKey::Kind;
 
 ResultKey text(const char* path, const char* meaning) {
-  return {.path = path, .kind = Kind::kText, .meaning = meaning};
+  return {.path = path, .kind = ResultKind::kText, .meaning = meaning};
 }
 ResultKey words(const char* path, std::vector<std::string> all, const char* meaning) {
-  return {.path = path, .kind = Kind::kText, .meaning = meaning, .words = std::move(all)};
+  return {.path = path, .kind = ResultKind::kText, .meaning = meaning, .words = std::move(all)};
 }
 ResultKey number(const char* path, const char* meaning) {
-  return {.path = path, .kind = Kind::kNumber, .meaning = meaning};
+  return {.path = path, .kind = ResultKind::kNumber, .meaning = meaning};
 }
 ResultKey count(const char* path, const char* meaning) {
-  return {.path = path, .kind = Kind::kCount, .meaning = meaning};
+  return {.path = path, .kind = ResultKind::kCount, .meaning = meaning};
 }
 ResultKey flag(const char* path, const char* meaning) {
-  return {.path = path, .kind = Kind::kFlag, .meaning = meaning};
+  return {.path = path, .kind = ResultKind::kFlag, .meaning = meaning};
 }
 ResultKey object(const char* path, const char* meaning = "") {
-  return {.path = path, .kind = Kind::kObject, .meaning = meaning};
+  return {.path = path, .kind = ResultKind::kObject, .meaning = meaning};
 }
 ResultKey sometimes(ResultKey key) {
   key.is_always = false;
@@ -67,7 +67,7 @@ void add_causes(std::vector<ResultKey>& keys) {
                            number("causes[].log_evidence_gain",
                                   "logarithm of how much more probable the data are with it, after its price [nats]"),
                            ResultKey{.path = "causes[].alternatives",
-                                     .kind = Kind::kLike,
+                                     .kind = ResultKind::kLike,
                                      .meaning = "what the data cannot tell from it",
                                      .like = "causes[]"}});
 }

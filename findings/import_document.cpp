@@ -10,7 +10,7 @@
 namespace driftwright::findings {
 namespace {
 
-constexpr std::size_t kMostCurves = 10;  // in one plot
+constexpr std::size_t kMostImportedCurves = 10;  // in one plot
 
 output::Table channels_table(const studies::LoggerImport& import) {
   output::Table table{.key = "channels",
@@ -64,7 +64,7 @@ void add_plots(output::Section& body, const Record& record) {
     for (const Channel& c : record.channels) {
       if (c.unit != unit) continue;
       plot.series.push_back({.label = c.name, .x = minutes(record), .y = c.values});
-      if (plot.series.size() == kMostCurves) flush();
+      if (plot.series.size() == kMostImportedCurves) flush();
     }
     flush();
   }

@@ -148,15 +148,15 @@ Section record_section(const studies::MeasuredTwin& m, const diagnosis::Diagnosi
   Section section{.title = "Record " + run.name, .detail = true};
   add(section, drive_plot(run));
   add(section, ambient_plot(run, m.twin->reference_K()));
-  constexpr output::Digits kThree = output::significant(3), kCorrelation = output::signed_decimals(2);
+  constexpr output::Digits kThreeDigits = output::significant(3), kCorrelation = output::signed_decimals(2);
   Table structure{
       .title = "Residuals against noise",
       .caption = "Lag 1: correlation of a reading's residual with the next one's; white noise stays within the bound.",
       .columns = {{.title = "channel"},
                   {.key = "unit", .title = "unit"},
-                  {.title = "noise", .digits = kThree},
-                  {.title = "rms as written", .digits = kThree},
-                  {.title = "rms " + after, .digits = kThree},
+                  {.title = "noise", .digits = kThreeDigits},
+                  {.title = "rms as written", .digits = kThreeDigits},
+                  {.title = "rms " + after, .digits = kThreeDigits},
                   {.title = "lag 1 as written", .digits = kCorrelation},
                   {.title = "lag 1 " + after, .digits = kCorrelation},
                   {.title = "bound, ±", .digits = output::decimals(2)}}};

@@ -141,7 +141,7 @@ Table inner_heat_table(const solver::Trajectory& run) {
 }
 
 Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram) {
-  constexpr std::size_t kMostCurves = 6;  // and `stored`: as many as there are colours
+  constexpr std::size_t kMostRunCurves = 6;  // and `stored`: as many as there are colours
   const Record record = scenarios::heat_flow_record(run, cyclogram.name);
   std::vector<std::pair<double, std::size_t>> by_size;  // total heat moved, channel
   for (std::size_t j = 0; j < run.flows.size(); ++j) {
@@ -153,7 +153,7 @@ Plot heat_plot(const solver::Trajectory& run, const Cyclogram& cyclogram) {
   std::sort(by_size.begin(), by_size.end());
   std::vector<std::string> names = {"stored"};
   for (const auto& [size, channel] : by_size) {
-    if (names.size() <= kMostCurves) names.push_back(record.channels[channel].name);
+    if (names.size() <= kMostRunCurves) names.push_back(record.channels[channel].name);
   }
   Plot plot = channels_plot("Heat into the machine", "heat flow [W]", record, names, cyclogram);
   plot.series.front().style = output::Series::Style::kDashed;

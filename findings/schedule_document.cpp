@@ -28,7 +28,7 @@ using studies::CorrectedSeries;
 
 constexpr const char* kLetters = "xyz";
 
-output::Column um_column(const std::string& key, const std::string& title) {
+output::Column drift_column(const std::string& key, const std::string& title) {
   return {.key = key, .title = title, .unit = "um"};
 }
 
@@ -107,9 +107,9 @@ std::string letter(int axis) {
 const std::vector<output::Column>& axes_columns() {
   static const std::vector<output::Column> kColumns = {{.key = "axis", .title = "axis"},
                                                        {.key = "displacement", .title = "displacement"},
-                                                       um_column("tolerance_um", "tolerance"),
-                                                       um_column("peak_before_um", "without"),
-                                                       um_column("peak_after_um", "with correction"),
+                                                       drift_column("tolerance_um", "tolerance"),
+                                                       drift_column("peak_before_um", "without"),
+                                                       drift_column("peak_after_um", "with correction"),
                                                        {.key = "n_changes", .title = "changes"},
                                                        {.key = "inside_tolerance", .title = "inside the tolerance"}};
   return kColumns;
@@ -147,8 +147,8 @@ Table parts_table(const CorrectedSeries& series) {
                   {.key = "file", .title = "program"}},
       .detail = true};
   for (const auto& axis : series.settings.axes) {
-    table.columns.push_back(um_column(letter(axis.axis) + "_before_um", letter(axis.axis) + " before"));
-    table.columns.push_back(um_column(letter(axis.axis) + "_after_um", letter(axis.axis) + " after"));
+    table.columns.push_back(drift_column(letter(axis.axis) + "_before_um", letter(axis.axis) + " before"));
+    table.columns.push_back(drift_column(letter(axis.axis) + "_after_um", letter(axis.axis) + " after"));
   }
   for (const CorrectedProgram& program : series.programs) {
     for (std::size_t i = 0; i < program.shared.courses.size(); ++i) {
@@ -169,8 +169,8 @@ Table long_table(const CorrectedSeries& series) {
               .columns = {{.key = "parts", .title = series.is_series() ? "parts" : ""},
                           {.key = "where", .title = "where"},
                           {.key = "axis", .title = "axis"},
-                          um_column("left_um", "left"),
-                          um_column("beyond_um", "beyond the tolerance"),
+                          drift_column("left_um", "left"),
+                          drift_column("beyond_um", "beyond the tolerance"),
                           {.key = "lasts_min", .title = "lasts", .unit = "min"},
                           {.key = "remedy", .title = "remedy"}}};
   for (const CorrectedProgram& program : series.programs) {
@@ -193,7 +193,7 @@ Table changes_table(const CorrectedSeries& series) {
                           {.title = "line"},
                           {.title = "corrected"}},
               .detail = true};
-  for (const auto& axis : series.settings.axes) table.columns.push_back(um_column("", letter(axis.axis)));
+  for (const auto& axis : series.settings.axes) table.columns.push_back(drift_column("", letter(axis.axis)));
   for (const CorrectedProgram& program : series.programs) {
     for (const studies::CorrectionRow& row : rows_of(series, program)) {
       if (table.rows.size() == kMostRows) break;

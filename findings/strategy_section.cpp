@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "compensation/predictors/formula_predictor.hpp"
+#include "findings/columns.hpp"
 #include "findings/iso230_3_section.hpp"
 #include "output/drift_model_files.hpp"
 #include "output/heat_map.hpp"
@@ -98,13 +99,6 @@ bool has_failed(const Case& c) {
 
 std::string name_of(const JudgedRunOfMachine& r) {
   return r.season.empty() ? r.name : fmt::format("{}, {}", r.name, r.season);
-}
-
-output::Column um_column(const std::string& key, const std::string& title, int n = 1) {
-  return {.key = key, .title = title, .unit = "um", .digits = output::decimals(n)};
-}
-output::Column percent_column(const std::string& key, const std::string& title) {
-  return {.key = key, .title = title, .unit = "percent", .digits = output::decimals(0)};
 }
 
 /// What is no number where a bare prediction said nothing.

@@ -16,7 +16,7 @@ using scenarios::SweepPlan;
 using scenarios::Variation;
 using studies::SweepColumns;
 
-constexpr std::size_t kMostPlots = 24, kMostPoints = 2000, kMostFailures = 50;
+constexpr std::size_t kMostSweepPlots = 24, kMostPoints = 2000, kMostFailures = 50;
 
 std::string axis_label(const Variation& v) {
   if (v.is_number) return v.unit.empty() ? v.name : fmt::format("{} [{}]", v.name, v.unit);
@@ -124,12 +124,12 @@ output::Document sweep_document(const SweepPlan& plan, const std::map<std::size_
   for (std::size_t i = 0; i < plan.collect.size(); ++i) {
     if (plan.collect[i].scalar == scenarios::Scalar::kTimeOfPeak) continue;
     for (std::size_t j = 0; j < plan.variations.size(); ++j) {
-      if (n_all++ < kMostPlots)
+      if (n_all++ < kMostSweepPlots)
         add(plots, scatter(plan.variations[j], columns.varied[j], plan.collect[i].header(), columns.results[i]));
     }
   }
   const auto remark = [&](const std::string& words) { add(plots, output::Text{.words = words, .detail = true}); };
-  if (n_all > kMostPlots) remark(fmt::format("The first {} of {} pairs; all are in sweep.csv.", kMostPlots, n_all));
+  if (n_all > kMostSweepPlots) remark(fmt::format("The first {} of {} pairs; all are in sweep.csv.", kMostSweepPlots, n_all));
   if (rows.size() > kMostPoints) remark(fmt::format("Plots show the first {} members.", kMostPoints));
   body.sections.push_back(std::move(plots));
   return document;

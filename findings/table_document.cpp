@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/quantity.hpp"
+#include "findings/columns.hpp"
 #include "studies/table_strategy.hpp"
 
 namespace driftwright::findings {
@@ -104,13 +105,6 @@ Plot profile_plot(const scenarios::Scenario& scenario, const studies::TableStudy
           .y_label = "error [µm]",
           .series = {{.label = "without correction", .x = x_m, .y = before_um},
                      {.label = "with the frame of the last measurement", .x = x_m, .y = after_um}}};
-}
-
-Column um_column(const std::string& key, const std::string& title, int n = 1) {
-  return {.key = key, .title = title, .unit = "um", .digits = output::decimals(n)};
-}
-Column percent_column(const std::string& key, const std::string& title) {
-  return {.key = key, .title = title, .unit = "percent", .digits = output::decimals(0)};
 }
 
 Table strategies_table(const studies::TableStudy& study) {

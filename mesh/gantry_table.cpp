@@ -11,7 +11,7 @@ namespace {
 
 namespace occ = gmsh::model::occ;
 
-constexpr double kTolerance_m = 1e-5;
+constexpr double kFaceTolerance_m = 1e-5;
 
 int box(double x_m, double y_m, double bottom_m, const GantryTable::Box& size) {
   return occ::addBox(x_m - 0.5 * size.length_m, y_m - 0.5 * size.width_m, bottom_m, size.length_m, size.width_m,
@@ -33,7 +33,7 @@ int add_bed(const GantryTable& t) {
 
 std::string surface_name(const GantryTable& t, const OuterFace& face) {
   const auto flat_at = [&](int axis, double at_m) {
-    return std::abs(face.low[axis] - at_m) < kTolerance_m && std::abs(face.high[axis] - at_m) < kTolerance_m;
+    return std::abs(face.low[axis] - at_m) < kFaceTolerance_m && std::abs(face.high[axis] - at_m) < kFaceTolerance_m;
   };
   if (face.region == "workpiece") return "workpiece_outer";
   if (face.region == "table") {
@@ -45,7 +45,7 @@ std::string surface_name(const GantryTable& t, const OuterFace& face) {
   }
   const double plate_m = -t.table.height_m - t.guideway_height_m;
   if (flat_at(2, plate_m - t.bed.height_m)) return "bed_underside";
-  const bool level = face.high[2] - face.low[2] < kTolerance_m;
+  const bool level = face.high[2] - face.low[2] < kFaceTolerance_m;
   return level ? "bed_top" : "bed_sides";
 }
 

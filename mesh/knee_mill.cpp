@@ -10,7 +10,7 @@ namespace {
 
 namespace occ = gmsh::model::occ;
 
-constexpr double kTolerance_m = 1e-6;
+constexpr double kPartTolerance_m = 1e-6;
 
 int cylinder(double y_start_m, double y_end_m, double z_m, double diameter_m) {
   return occ::addCylinder(0, y_start_m, z_m, 0, y_end_m - y_start_m, 0, 0.5 * diameter_m);
@@ -101,13 +101,13 @@ std::vector<Named> add_parts(const KneeMill& m, const Layout& at) {
 
 bool strictly_inside(const OuterFace& face, const std::array<double, 3>& low, const std::array<double, 3>& high) {
   for (int i = 0; i < 3; ++i) {
-    if (face.low[i] < low[i] + kTolerance_m || face.high[i] > high[i] - kTolerance_m) return false;
+    if (face.low[i] < low[i] + kPartTolerance_m || face.high[i] > high[i] - kPartTolerance_m) return false;
   }
   return true;
 }
 
 std::string surface_name(const KneeMill& m, const Layout& at, const OuterFace& face) {
-  const double tol = 10 * kTolerance_m;
+  const double tol = 10 * kPartTolerance_m;
   if (face.region == "column") {
     if (face.high[2] < tol) return "foot";
     const bool inner = strictly_inside(face, {-0.5 * m.column.width_m, -m.column.depth_m, 0},

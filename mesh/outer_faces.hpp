@@ -9,6 +9,9 @@
 
 namespace driftwright::mesh {
 
+/// Of the mesh's size: how far from a plane or cylinder a face may lie that is picked by it.
+inline constexpr double kPickTolerance = 1e-4;
+
 /// Corner nodes of a face in increasing order, -1 first where there are three: the same for the two cells that share it.
 using FaceKey = std::array<int, 4>;
 [[nodiscard]] FaceKey face_key(std::span<const int> corners);

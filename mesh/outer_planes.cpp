@@ -11,7 +11,6 @@
 namespace driftwright::mesh {
 namespace {
 
-constexpr double kRelativeTolerance = 1e-4;  // of the mesh's size, as surfaces are picked
 constexpr double kSameDirection = 1e-3;      // of unit normals
 constexpr double kLeastShare = 0.01;         // of the smaller of two planes: what they have in common less is an edge
 
@@ -125,7 +124,7 @@ std::vector<OuterFacet> outer_facets(const Mesh& mesh) {
 }
 
 std::vector<OuterPlane> outer_planes(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
-  const double tolerance_m = kRelativeTolerance * size_m(mesh);
+  const double tolerance_m = kPickTolerance * size_m(mesh);
   std::vector<OuterPlane> planes;
   std::map<std::pair<int, long>, std::vector<std::size_t>> near;  // by region and distance from the origin, in steps
   for (std::size_t f = 0; f < facets.size(); ++f) {
@@ -159,7 +158,7 @@ std::vector<OuterPlane> outer_planes(const Mesh& mesh, const std::vector<OuterFa
 
 std::vector<PlaneContact> plane_contacts(const Mesh& mesh, const std::vector<OuterFacet>& facets,
                                          const std::vector<OuterPlane>& planes) {
-  const double tolerance_m = kRelativeTolerance * size_m(mesh);
+  const double tolerance_m = kPickTolerance * size_m(mesh);
   std::vector<PlaneContact> contacts;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     for (std::size_t k = i + 1; k < planes.size(); ++k) {
@@ -177,7 +176,7 @@ std::vector<PlaneContact> plane_contacts(const Mesh& mesh, const std::vector<Out
 
 std::vector<PlaneGap> plane_gaps(const Mesh& mesh, const std::vector<OuterFacet>& facets,
                                  const std::vector<OuterPlane>& planes, double widest_m) {
-  const double tolerance_m = kRelativeTolerance * size_m(mesh);
+  const double tolerance_m = kPickTolerance * size_m(mesh);
   std::vector<PlaneGap> gaps;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     for (std::size_t k = i + 1; k < planes.size(); ++k) {

@@ -14,18 +14,17 @@
 namespace driftwright::mesh {
 namespace {
 
-constexpr double kRelativeTolerance = 1e-4;
 constexpr double kLeastCosine = 0.7;  ///< between the normal of a face and the one wanted
 
-struct OuterFacet {
+struct DescribedFacet {
   CellFace face;
   std::vector<int> nodes;
   int n_corners;
   Eigen::Vector3d centre_m, normal;  // normal: unit length, out of the body
 };
 
-OuterFacet describe(const Mesh& mesh, CellFace face) {
-  OuterFacet f{face, nodes_of(mesh.cells, face), n_corners_of(shape_of(mesh.cells, face)), {}, {}};
+DescribedFacet describe(const Mesh& mesh, CellFace face) {
+  DescribedFacet f{face, nodes_of(mesh.cells, face), n_corners_of(shape_of(mesh.cells, face)), {}, {}};
   f.centre_m.setZero();
   for (int i = 0; i < f.n_corners; ++i) f.centre_m += mesh.coords.col(f.nodes[i]) / f.n_corners;
   Eigen::Vector3d area = Eigen::Vector3d::Zero();
@@ -41,13 +40,13 @@ struct Matcher {
   const Mesh& mesh;
   double tolerance_m;
 
-  bool operator()(const OuterFacet& f, const PlanePick& plane) const {
+  bool operator()(const DescribedFacet& f, const PlanePick& plane) const {
     const Eigen::Vector3d n = plane.normal.normalized();
     if (f.normal.dot(n) < kLeastCosine) return false;
     return std::all_of(f.nodes.begin(), f.nodes.end(),
                        [&](int i) { return std::abs(n.dot(mesh.coords.col(i) - plane.through_m)) <= tolerance_m; });
   }
-  bool operator()(const OuterFacet& f, const CylinderPick& cylinder) const {
+  bool operator()(const DescribedFacet& f, const CylinderPick& cylinder) const {
     const Eigen::Vector3d axis = cylinder.axis.normalized();
     const auto radial = [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
       const Eigen::Vector3d d = x - cylinder.through_m;
@@ -58,12 +57,12 @@ struct Matcher {
     }
     return std::abs(f.normal.dot(radial(f.centre_m).normalized())) >= kLeastCosine;
   }
-  bool operator()(const OuterFacet&, const RemainingPick&) const { return true; }
+  bool operator()(const DescribedFacet&, const RemainingPick&) const { return true; }
 };
 
-std::string extent(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
+std::string extent(const Mesh& mesh, const std::vector<DescribedFacet>& facets) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(kNoLimit), high = -low;
-  for (const OuterFacet& f : facets) {
+  for (const DescribedFacet& f : facets) {
     for (int n : f.nodes) {
       low = low.cwiseMin(mesh.coords.col(n));
       high = high.cwiseMax(mesh.coords.col(n));
@@ -77,7 +76,7 @@ std::string extent(const Mesh& mesh, const std::vector<OuterFacet>& facets) {
 
 void pick_surfaces(Mesh& mesh, const std::vector<SurfacePick>& picks) {
   if (picks.empty()) return;
-  std::vector<OuterFacet> outer;
+  std::vector<DescribedFacet> outer;
   FaceTable(mesh.cells).for_each([&](const FaceKey&, std::span<const FaceTable::Entry> at) {
     if (at.size() == 1) outer.push_back(describe(mesh, at.front().at));
   });
@@ -86,7 +85,7 @@ void pick_surfaces(Mesh& mesh, const std::vector<SurfacePick>& picks) {
     named.insert(face_key(mesh.facets.nodes(f).first(n_corners_of(mesh.facets.shape[f]))));
   }
   const double size_m = (mesh.coords.rowwise().maxCoeff() - mesh.coords.rowwise().minCoeff()).norm();
-  const Matcher matches{mesh, kRelativeTolerance * size_m};
+  const Matcher matches{mesh, kPickTolerance * size_m};
   for (const SurfacePick& pick : picks) {
     if (mesh.surface(pick.name) >= 0)
       throw InputError(pick.where, fmt::format("there is a surface '{}' already", pick.name));
@@ -96,15 +95,15 @@ void pick_surfaces(Mesh& mesh, const std::vector<SurfacePick>& picks) {
                        fmt::format("the mesh has no region '{}'; there are {}", pick.region, fmt::join(mesh.regions, ", ")));
     }
     const bool remaining = std::holds_alternative<RemainingPick>(pick.pick);
-    std::vector<OuterFacet> candidates;
-    for (const OuterFacet& f : outer) {
+    std::vector<DescribedFacet> candidates;
+    for (const DescribedFacet& f : outer) {
       if (region >= 0 && mesh.cells.group[f.face.cell] != region) continue;
       if (remaining && named.contains(face_key(mesh.cells, f.face))) continue;
       candidates.push_back(f);
     }
     const int surface = static_cast<int>(mesh.surfaces.size());
     bool any = false;
-    for (const OuterFacet& f : candidates) {
+    for (const DescribedFacet& f : candidates) {
       if (!std::visit([&](const auto& kind) { return matches(f, kind); }, pick.pick)) continue;
       if (!any) mesh.surfaces.push_back(pick.name);
       any = true;

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "base/characters.hpp"
 #include "nc/places.hpp"
 #include "nc/words.hpp"
 
@@ -38,10 +39,6 @@ struct BlockStyle {
   std::string letter = {};  ///< before the number: "N" or none
   bool star = false;
 };
-
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 
 /// Where the digits of a line's block number stand, or none.
 std::optional<std::pair<std::size_t, std::size_t>> block_number(const std::string& line, const std::string& letter) {

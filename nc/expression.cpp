@@ -10,14 +10,14 @@
 #include <optional>
 #include <vector>
 
+#include "base/characters.hpp"
 #include "base/errors.hpp"
 
 namespace driftwright {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kSame = 1e-4;  // LinuxCNC's EQ and NE
-constexpr int kDeepest = 100;   // brackets in brackets
+constexpr int kDeepestBracket = 100;   // brackets in brackets
 
 struct Operator {
   const char* text;
@@ -149,10 +149,6 @@ std::optional<double> function_of(const std::string& name, double x, NcSyntax sy
 bool is_letter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '$';
 }
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
-
 class Reader {
  public:
   Reader(const std::string& text, std::size_t& at, NcSyntax syntax, const NcLookup& lookup)
@@ -169,7 +165,7 @@ class Reader {
   }
 
   NcValue primary() {
-    if (++depth_ > kDeepest) throw RangeError("an expression nested too deeply");
+    if (++depth_ > kDeepestBracket) throw RangeError("an expression nested too deeply");
     const NcValue value = unguarded_primary();
     --depth_;
     return value;

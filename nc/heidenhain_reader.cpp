@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "base/characters.hpp"
 #include "nc/arc.hpp"
 #include "nc/heidenhain_run.hpp"
 
@@ -15,10 +16,6 @@ namespace driftwright {
 namespace {
 
 constexpr double kInch_m = 0.0254, kDegree = std::numbers::pi / 180.0;
-
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 
 std::vector<HeidenhainLine> blocks_of(const std::string& path, const std::vector<std::string>& lines) {
   std::vector<HeidenhainLine> blocks;

@@ -7,13 +7,13 @@
 #include <numbers>
 
 #include "nc/arc.hpp"
+#include "nc/expression.hpp"
 #include "nc/tapping.hpp"
 
 namespace driftwright {
 namespace {
 
-constexpr std::size_t kDeepest = 8;  // subprograms within subprograms, as the control has it
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::size_t kDeepestSubprogram = 8;  // subprograms within subprograms, as the control has it
 
 }  // namespace
 
@@ -99,7 +99,7 @@ void HeidenhainRun::go_to(const HeidenhainLine& line, const std::string& label) 
 void HeidenhainRun::call(const HeidenhainLine& line, const std::string& label, int times) {
   const std::size_t own = at - 1;  // the reader stands behind it
   if (times == 0) {
-    if (returns_.size() >= kDeepest) fail(line, fmt::format("subprograms nested more than {} deep", kDeepest));
+    if (returns_.size() >= kDeepestSubprogram) fail(line, fmt::format("subprograms nested more than {} deep", kDeepestSubprogram));
     returns_.push_back(at);
     go_to(line, label);
     return;

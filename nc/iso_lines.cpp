@@ -7,14 +7,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/characters.hpp"
 #include "base/delimited_text.hpp"
 
 namespace driftwright {
 namespace {
-
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 
 [[noreturn]] void fail(const IsoLine& line, int column, const std::string& message) {
   Where where = line.where;

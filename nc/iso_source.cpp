@@ -13,7 +13,7 @@
 namespace driftwright {
 namespace {
 
-constexpr std::size_t kDeepest = 10;  // subroutines within subroutines, as LinuxCNC has it
+constexpr std::size_t kDeepestSubroutine = 10;  // subroutines within subroutines, as LinuxCNC has it
 constexpr int kLocals = 30;
 
 struct File {
@@ -204,7 +204,7 @@ class IsoSource::Impl {
   // --- what runs when -----------------------------------------------------------------------------------------------------------
 
   void enter(const IsoLine& line, Frame next) {
-    if (frames_.size() > kDeepest) fail(line, 0, fmt::format("subroutines nested more than {} deep", kDeepest));
+    if (frames_.size() > kDeepestSubroutine) fail(line, 0, fmt::format("subroutines nested more than {} deep", kDeepestSubroutine));
     frames_.push_back(std::move(next));
   }
 

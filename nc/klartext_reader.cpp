@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/characters.hpp"
 #include "nc/arc.hpp"
 #include "nc/heidenhain_run.hpp"
 
@@ -14,10 +15,6 @@ namespace driftwright {
 namespace {
 
 constexpr double kInch_m = 0.0254, kDegree = std::numbers::pi / 180.0;
-
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 
 /// Upper case but for texts in quotation marks, without block number and comment, blanks one by one. @param number  whether there was one
 std::string plain(const std::string& line, bool& deletable) {

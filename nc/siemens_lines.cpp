@@ -6,12 +6,11 @@
 #include <cstdlib>
 #include <map>
 
+#include "base/characters.hpp"
+
 namespace driftwright {
 namespace {
 
-bool is_digit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 bool begins_name(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '$';
 }

@@ -18,7 +18,7 @@ using schema::Group;
 using schema::Key;
 using schema::Map;
 using schema::Value;
-using Kind = Value::Kind;
+using ValueKind = Value::Kind;
 
 /// Spellings of units that people write. A schema cannot do dimensional analysis; it refuses, of these, the ones that UDUNITS cannot convert.
 constexpr const char* kSpellings[] = {
@@ -150,7 +150,7 @@ class Writer {
   Json of(const Key& key) {
     std::string about = key.meaning;
     for (const Value& way : key.values) {
-      if (way.kind != Kind::kQuantity) continue;
+      if (way.kind != ValueKind::kQuantity) continue;
       const std::string range = schema::range(way);
       about += fmt::format(" [{}]", range.empty() ? way.unit : range);
     }
@@ -174,29 +174,29 @@ class Writer {
 
   Json of(const Value& value) {
     switch (value.kind) {
-      case Kind::kAnything:
+      case ValueKind::kAnything:
         return Json::object();
-      case Kind::kText:
+      case ValueKind::kText:
         return {{"type", {"string", "number", "boolean"}}, {"minLength", 1}};
-      case Kind::kName:
+      case ValueKind::kName:
         return {{"type", {"string", "integer"}}, {"pattern", "^[A-Za-z0-9_-]+$"}};
-      case Kind::kChoice:
+      case ValueKind::kChoice:
         return {{"enum", words(value.options)}};
-      case Kind::kInteger:
+      case ValueKind::kInteger:
         return {{"type", "integer"}, {"minimum", static_cast<int>(value.low)}, {"maximum", static_cast<int>(value.high)}};
-      case Kind::kQuantity:
+      case ValueKind::kQuantity:
         return of_quantity(value);
-      case Kind::kList: {
+      case ValueKind::kList: {
         Json json = {{"type", "array"}, {"items", of(value.items.front())}};
         if (value.least > 0) json["minItems"] = value.least;
         return json;
       }
-      case Kind::kRow: {
+      case ValueKind::kRow: {
         Json items = Json::array();
         for (const Value& item : value.items) items.push_back(of(item));
         return {{"type", "array"}, {"items", items}, {"minItems", items.size()}, {"maxItems", items.size()}};
       }
-      case Kind::kMap:
+      case ValueKind::kMap:
         return of(value.maps);
     }
     return {};

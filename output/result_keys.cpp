@@ -10,7 +10,7 @@ namespace driftwright::output {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Kind = ResultKey::Kind;
+using ResultKind = ResultKey::Kind;
 
 const std::string kEntries = "[]";
 
@@ -36,7 +36,7 @@ class Writer {
       bool is_known = around.empty();
       int n = 0;
       for (const ResultKey& other : keys) {
-        is_known |= other.kind == Kind::kObject && other.path == around;
+        is_known |= other.kind == ResultKind::kObject && other.path == around;
         n += other.path == key.path ? 1 : 0;
       }
       if (!is_known) throw std::logic_error(fmt::format("'{}' lies in no object that is described", key.path));
@@ -66,17 +66,17 @@ class Writer {
  private:
   Json kind_of(const ResultKey& key) {
     switch (key.kind) {
-      case Kind::kText:
+      case ResultKind::kText:
         return key.words.empty() ? Json{{"type", "string"}} : Json{{"enum", key.words}};
-      case Kind::kNumber:
+      case ResultKind::kNumber:
         return {{"type", "number"}};
-      case Kind::kCount:
+      case ResultKind::kCount:
         return {{"type", "integer"}, {"minimum", 0}};
-      case Kind::kFlag:
+      case ResultKind::kFlag:
         return {{"type", "boolean"}};
-      case Kind::kObject:
+      case ResultKind::kObject:
         return object(key.path);
-      case Kind::kLike: {
+      case ResultKind::kLike: {
         if (!definitions_.contains(key.like)) {
           definitions_[key.like] = nullptr;  // it may hold itself
           definitions_[key.like] = object(key.like);
@@ -100,25 +100,25 @@ class Writer {
 std::string kind_words(const ResultKey& key) {
   std::string words;
   switch (key.kind) {
-    case Kind::kText: {
+    case ResultKind::kText: {
       std::vector<std::string> quoted;
       for (const std::string& word : key.words) quoted.push_back(fmt::format("`{}`", word));
       words = quoted.empty() ? "text" : fmt::format("{}", fmt::join(quoted, ", "));
       break;
     }
-    case Kind::kNumber:
+    case ResultKind::kNumber:
       words = "number";
       break;
-    case Kind::kCount:
+    case ResultKind::kCount:
       words = "count";
       break;
-    case Kind::kFlag:
+    case ResultKind::kFlag:
       words = "true or false";
       break;
-    case Kind::kObject:
+    case ResultKind::kObject:
       words = "object";
       break;
-    case Kind::kLike:
+    case ResultKind::kLike:
       words = fmt::format("list, each as `{}`", key.like);
   }
   return words + (key.or_null ? ", or null" : "") + (key.is_always ? "" : "; may be missing");

@@ -12,7 +12,7 @@ using schema::Group;
 using schema::Key;
 using schema::Map;
 using schema::Value;
-using Kind = Value::Kind;
+using ValueKind = Value::Kind;
 
 constexpr std::size_t kMostWords = 12;  // that a cell lists
 
@@ -57,7 +57,7 @@ class Tables {
 
  private:
   static const std::vector<Map>& maps_of(const Value& value) {
-    return value.kind == Kind::kList || value.kind == Kind::kRow ? maps_of(value.items.front()) : value.maps;
+    return value.kind == ValueKind::kList || value.kind == ValueKind::kRow ? maps_of(value.items.front()) : value.maps;
   }
 
   void note(const std::vector<Map>& maps) {
@@ -98,7 +98,7 @@ class Tables {
     rows += fmt::format("| {} | {} | {} | {} |\n", shown, escaped(fmt::format("{}", fmt::join(ways, "; or "))), otherwise,
                         escaped(key.meaning));
     for (const Value& way : key.values) {
-      const bool is_list = way.kind == Kind::kList;
+      const bool is_list = way.kind == ValueKind::kList;
       std::set<std::string> written;  // keys that several forms share
       for (const Map& map : maps_of(way)) {
         if (has_table_.contains(map.name) || map.when_key == "type") continue;
@@ -112,32 +112,32 @@ class Tables {
   [[nodiscard]] std::string in_words(const Value& v) const {
     const std::string range = schema::range(v);
     switch (v.kind) {
-      case Kind::kAnything:
+      case ValueKind::kAnything:
         return "anything";
-      case Kind::kText:
+      case ValueKind::kText:
         return "text";
-      case Kind::kName:
+      case ValueKind::kName:
         return "name";
-      case Kind::kChoice:
+      case ValueKind::kChoice:
         return v.options.size() > kMostWords ? fmt::format("one of {} words", v.options.size())
                                              : fmt::format("`{}`", fmt::join(v.options, "`, `"));
-      case Kind::kInteger:
+      case ValueKind::kInteger:
         return "whole number, " + range;
-      case Kind::kQuantity:
+      case ValueKind::kQuantity:
         if (v.unit.empty()) return "number with its unit";
         if (v.unit == "1") return range.empty() ? "number" : "number, " + range;
         if (v.low == schema::kColdest_K && v.high == schema::kHottest_K && v.unit == "degC") return "temperature";
         return range.empty() ? "in " + v.unit : range;
-      case Kind::kList:
+      case ValueKind::kList:
         return "list of " + (maps_of(v).empty() ? in_words(v.items.front()) : of_maps(v, "maps"));
-      case Kind::kRow: {
+      case ValueKind::kRow: {
         std::vector<std::string> items;
         for (const Value& item : v.items) items.push_back(in_words(item));
         if (items.size() == 3 && items[0] == items[1] && items[1] == items[2])
           return fmt::format("[x, y, z], each {}", items[0]);
         return fmt::format("[{}]", fmt::join(items, "; "));
       }
-      case Kind::kMap:
+      case ValueKind::kMap:
         return of_maps(v, "map");
     }
     return "";

@@ -9,10 +9,10 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr double kSlow = 1e-3;   // of λt: below it the integrals are differences of large numbers, and series take over
+constexpr double kSlowStretch = 1e-3;   // of λt: below it the integrals are differences of large numbers, and series take over
 constexpr double kEqual = 1e-7;  // of |λ_i - λ_j| over the whole course: such a pair counts as one
 
-/// Σ (-x)^k / c_k for c_k as given, 0 <= x < kSlow.
+/// Σ (-x)^k / c_k for c_k as given, 0 <= x < kSlowStretch.
 double series(double x, double c0, double c1, double c2, double c3) {
   return 1.0 / c0 - x * (1.0 / c1 - x * (1.0 / c2 - x / c3));
 }
@@ -84,7 +84,7 @@ Course::Exponentials Course::exponentials(const Eigen::VectorXd& lambda_1_s, con
     x.s.col(k) = (x.q.col(k) - x.r.col(k)) / lambda;
     for (Eigen::Index i = 0; i < n; ++i) {
       const double lt = lambda[i] * t_s;
-      if (lt > kSlow) continue;
+      if (lt > kSlowStretch) continue;
       x.p(i, k) = t_s * series(lt, 1.0, 2.0, 6.0, 24.0);
       x.q(i, k) = t_s * t_s * series(lt, 2.0, 6.0, 24.0, 120.0);
       x.r(i, k) = t_s * t_s * series(lt, 2.0, 3.0, 8.0, 30.0);

@@ -20,7 +20,7 @@ namespace {
 
 using mesh::Mesh;
 
-constexpr int kMostIterations = 500;  // some 20 are usual
+constexpr int kMostMultigridIterations = 500;  // some 20 are usual
 
 void check_materials(const Mesh& mesh, const RegionMaterials& materials) {
   for (std::size_t r = 0; r < materials.size(); ++r) {
@@ -85,7 +85,7 @@ struct Elasticity::Parts {
     const CgOutcome outcome = conjugate_gradients(
         static_cast<int>(force.size()), [&](const double* x, double* y) { multiply(k, x, y); },
         [&](const double* r, double* z) { multigrid->precondition(r, z); }, force.data(), u.data(), kElasticTolerance,
-        kMostIterations);
+        kMostMultigridIterations);
     report.most_iterations = std::max(report.most_iterations, outcome.iterations);
     if (!outcome.converged) {
       throw SolveError(fmt::format(

@@ -9,19 +9,17 @@
 #include "solver/live_rate.hpp"
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"
+#include "solver/step_ends.hpp"
 #include "solver/stretches.hpp"
 
 namespace driftwright::solver {
 namespace {
 
 constexpr double kShareOfTolerance = 0.05;  // of the absolute tolerance: error of a step
-constexpr double kShareIterated = 1e-3;     // of a step's error: to which its end is iterated
-constexpr int kMostIterations = 8;
 constexpr int kStepsOfOneTangent = 50;
 constexpr std::size_t kMostKnown = 100;  // exponentials of one tangent: more are not kept for the next step
 constexpr double kShortestStep_s = 1e-3;
 constexpr double kFarthest_K = 3000.0;  // from the reference: no machine
-constexpr double kSame = 1e-9;          // of a step: times that are one
 constexpr int kBisections = 40;
 
 /// One run on its way.
@@ -75,8 +73,8 @@ class ExponentialRun {
   /// @return false where no step gets there
   [[nodiscard]] bool go(double from_s, double until_s) {
     double t_s = from_s, limit_s = std::min(until_s - from_s, most_s_);
-    while (until_s - t_s > kSame * (until_s - from_s)) {
-      const double h_s = until_s - t_s <= (1.0 + kSame) * limit_s ? until_s - t_s : limit_s;
+    while (until_s - t_s > kSameStep * (until_s - from_s)) {
+      const double h_s = until_s - t_s <= (1.0 + kSameStep) * limit_s ? until_s - t_s : limit_s;
       if (const double gone_s = step(t_s, h_s); gone_s > 0.0) {
         t_s += gone_s;
         limit_s = std::min(2.0 * limit_s, most_s_);
@@ -105,7 +103,7 @@ class ExponentialRun {
       known_s_ = -1.0;
       known_.clear();
     }
-    if (std::abs(h_s - known_s_) <= kSame * h_s) return;
+    if (std::abs(h_s - known_s_) <= kSameStep * h_s) return;
     const Exponentials& e = exponentials_of(h_s);
     decay_ = e.exp;
     second_ = h_s * e.phi2;
@@ -116,7 +114,7 @@ class ExponentialRun {
   const Exponentials& exponentials_of(double h_s) {
     const auto of = [&](double length_s) {
       return std::find_if(known_.begin(), known_.end(),
-                          [&](const auto& e) { return std::abs(e.first - length_s) <= kSame * length_s; });
+                          [&](const auto& e) { return std::abs(e.first - length_s) <= kSameStep * length_s; });
     };
     if (const auto same = of(h_s); same != known_.end()) return same->second;
     if (known_.size() > kMostKnown) known_.clear();
@@ -150,11 +148,11 @@ class ExponentialRun {
         const double s = 0.5 * (before + after);
         (has_switched(beyond_K(i, ambient_.at(t_s + s * h_s), between(s, h_s, end))) ? after : before) = s;
       }
-      if (after < first * (1.0 - kSame)) {
+      if (after < first * (1.0 - kSameStep)) {
         first = after;
         which.clear();
       }
-      if (after <= first * (1.0 + kSame)) which.push_back(i);
+      if (after <= first * (1.0 + kSameStep)) which.push_back(i);
     }
     return first;
   }
@@ -196,7 +194,7 @@ class ExponentialRun {
     std::vector<StepsOfRun::Matrices>& known = steps_->matrices;
     std::size_t which = known.size();
     for (std::size_t i = known.size(); i-- > 0 && known[i].tangent == tangent && which == known.size();) {
-      if (std::abs(known[i].h_s - h_s) <= kSame * h_s) which = i;
+      if (std::abs(known[i].h_s - h_s) <= kSameStep * h_s) which = i;
     }
     if (which == known.size()) known.push_back({tangent, h_s, decay_, first_, second_});
     steps_->steps.push_back({t_s, which, n1_ - n0_});
@@ -211,7 +209,7 @@ class ExponentialRun {
     end = next_;
     end.noalias() += second_ * n1_;
     bool is_there = false;
-    for (int j = 0; j < kMostIterations && !is_there; ++j) {
+    for (int j = 0; j < kMostStepIterations && !is_there; ++j) {
       rest(t_s + h_s, end, n1_);
       rest_ = next_;
       rest_.noalias() += second_ * n1_;

@@ -10,8 +10,8 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr int kMostIterations = 2000;
-constexpr double kShareOfTolerance = 0.02;  // errors of linear solves do not steer the steps
+constexpr int kMostPcgIterations = 2000;
+constexpr double kPcgShareOfTolerance = 0.02;  // errors of linear solves do not steer the steps
 // With the diagonal alone iterations grow with the root of γ over the square of the cells' size; a cycle of multigrid costs some
 // four of them and keeps to under ten. The first γ that took many turns it on for itself and all above.
 constexpr int kManyIterations = 24;
@@ -66,7 +66,7 @@ void require_sane(const double* theta, int n, double reference_K, double t_s) {
 HeatOde::HeatOde(const FullSystem& system, const TimeSeries& ambient, double absolute_K, int worth_multigrid)
     : system_(system),
       ambient_(ambient),
-      tolerance_K_(kShareOfTolerance * absolute_K),
+      tolerance_K_(kPcgShareOfTolerance * absolute_K),
       n_(system.size()),
       worth_multigrid_(worth_multigrid),
       is_affine_(is_affine(system)),
@@ -250,7 +250,7 @@ void HeatOde::slopes(double t_s, const double* y, double* ydot) {
   constexpr double kPerSecond = 0.1;
   Pcg solver(*matrix);
   solver.refresh(free_ones_);
-  count(solver.improve(residual_.data(), x_.data(), kPerSecond * tolerance_K_, kMostIterations));
+  count(solver.improve(residual_.data(), x_.data(), kPerSecond * tolerance_K_, kMostPcgIterations));
   slope += x_;
   std::copy(slope.begin(), slope.end(), ydot);
   double* of_flow = std::copy(flow_W_.data(), flow_W_.data() + rate_.flows().size(), ydot + n_);
@@ -337,7 +337,7 @@ void HeatOde::solve_linear_stage(double gamma) {
     zero_fixed(residual_.data());
   }
   const Multigrid* multigrid = multigrid_for(gamma);
-  const PcgOutcome outcome = shifted_solver_.improve(residual_.data(), x_.data(), tolerance_K_, kMostIterations, multigrid);
+  const PcgOutcome outcome = shifted_solver_.improve(residual_.data(), x_.data(), tolerance_K_, kMostPcgIterations, multigrid);
   count(outcome);
   if (!multigrid && outcome.iterations > kManyIterations && n_ > worth_multigrid_) {
     least_multigrid_gamma_ = std::min(least_multigrid_gamma_, gamma);
@@ -375,7 +375,7 @@ bool HeatOde::solve_nonlinear_stage(double t_s, double gamma, const double* weig
     residual_ += gamma * heat_;
     zero_fixed(residual_.data());
     step.setZero();
-    count(shifted_solver_.improve(residual_.data(), step.data(), tolerance_K_, kMostIterations));
+    count(shifted_solver_.improve(residual_.data(), step.data(), tolerance_K_, kMostPcgIterations));
     x_ += step;
     double sum = 0.0;
     for (int i = 0; i < n_; ++i) sum += step[i] * step[i] * weight[i] * weight[i];

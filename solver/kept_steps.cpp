@@ -6,15 +6,13 @@
 #include "solver/exponential_run.hpp"
 #include "solver/exponentials.hpp"
 #include "solver/live_rate.hpp"
+#include "solver/step_ends.hpp"
 #include "solver/stretches.hpp"
 
 namespace driftwright::solver {
 namespace {
 
-constexpr double kShareIterated = 1e-3;  // of a step's error: to which its end is iterated
-constexpr int kMostIterations = 8;
 constexpr int kMostHalved = 8;
-constexpr double kSame = 1e-9;  // of a step: times that are one
 constexpr double kApart =
     10.0;  // step errors: a step that the two machines' laws change so differently has its own error looked at
 constexpr double kOfApart = 1e-2;  // of that difference: error that is allowed beside twice a step's
@@ -33,7 +31,7 @@ class AlongSteps {
   /// @return false where no step gets there
   [[nodiscard]] bool go(const StepsOfRun::Step& step, double from_s, double h_s, int n_halved = 0) {
     const StepsOfRun::Matrices& whole = steps_.matrices[step.matrices];
-    const bool is_whole = std::abs(h_s - whole.h_s) <= kSame * whole.h_s;
+    const bool is_whole = std::abs(h_s - whole.h_s) <= kSameStep * whole.h_s;
     begin_ = state_;
     if (is_whole ? tried(whole, step.more, from_s) : tried(part(whole, h_s), h_s / whole.h_s * step.more, from_s))
       return true;
@@ -56,7 +54,7 @@ class AlongSteps {
     state_ = next_;
     state_.noalias() += m.second * n1_;
     knows_rate_ = true;
-    for (int j = 0; j < kMostIterations; ++j) {
+    for (int j = 0; j < kMostStepIterations; ++j) {
       rates_.rate(from_s + m.h_s, state_, rate_);
       n1_ = rate_;
       n1_.noalias() -= tangent * state_;
@@ -83,7 +81,7 @@ class AlongSteps {
   /// Matrices of a part of a step.
   [[nodiscard]] const StepsOfRun::Matrices& part(const StepsOfRun::Matrices& whole, double h_s) {
     for (const StepsOfRun::Matrices& m : parts_) {
-      if (m.tangent == whole.tangent && std::abs(h_s - m.h_s) <= kSame * h_s) return m;
+      if (m.tangent == whole.tangent && std::abs(h_s - m.h_s) <= kSameStep * h_s) return m;
     }
     const Exponentials e = exponentials(h_s * steps_.tangents[whole.tangent]);
     parts_.push_back({whole.tangent, h_s, e.exp, h_s * (e.phi1 - e.phi2), h_s * e.phi2});
@@ -127,7 +125,7 @@ std::optional<Eigen::MatrixXd> KeptSteps::states_of(const ReducedSystem& other, 
     };
     take_outputs(0.0, 0.0);
     for (const StepsOfRun::Step& step : run_.steps) {
-      const double h_s = run_.matrices[step.matrices].h_s, until_s = step.from_s + h_s, rounding_s = kSame * h_s;
+      const double h_s = run_.matrices[step.matrices].h_s, until_s = step.from_s + h_s, rounding_s = kSameStep * h_s;
       double t_s = step.from_s;
       while (until_s - t_s > rounding_s) {
         while (stretches[stretch].end_s <= t_s + rounding_s) {

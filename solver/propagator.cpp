@@ -11,9 +11,9 @@ namespace driftwright::solver {
 namespace {
 
 /// Modes that decay less than this in a stretch: there a and b are differences of large numbers, and series take over.
-constexpr double kSlow = 1e-3;
+constexpr double kSlowMode = 1e-3;
 
-/// φ1 = (1 - e^{-x}) / x, φ2 = (1 - φ1) / x, φ3 = (1/2 - φ2) / x for 0 <= x < kSlow, to x^4.
+/// φ1 = (1 - e^{-x}) / x, φ2 = (1 - φ1) / x, φ3 = (1/2 - φ2) / x for 0 <= x < kSlowMode, to x^4.
 double phi1(double x) {
   return 1.0 - x / 2 * (1.0 - x / 3 * (1.0 - x / 4 * (1.0 - x / 5)));
 }
@@ -36,7 +36,7 @@ struct Propagator::Solution {
            double length_s)
       : lambda(lambda_1_s), z0(std::move(start)), f0(std::move(load)), f1(std::move(slope)) {
     for (Eigen::Index i = 0; i < lambda.size(); ++i) {
-      if (!(lambda[i] * length_s > kSlow)) slow.push_back(i);
+      if (!(lambda[i] * length_s > kSlowMode)) slow.push_back(i);
     }
     b = f1.cwiseQuotient(lambda);
     a = (f0 - b).cwiseQuotient(lambda);

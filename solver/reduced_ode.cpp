@@ -10,9 +10,9 @@
 namespace driftwright::solver {
 namespace {
 
-constexpr int kMostIterations = 12;
+constexpr int kMostNewtonIterations = 12;
 constexpr double kServes = 0.3;             // an exchange within so much of its value in the diagonal leaves it as it is
-constexpr double kShareOfTolerance = 0.02;  // errors of Newton's iterations do not steer the steps
+constexpr double kNewtonShareOfTolerance = 0.02;  // errors of Newton's iterations do not steer the steps
 
 }  // namespace
 
@@ -227,7 +227,7 @@ bool ReducedOde::solve_stage(double t_s, double gamma, const double* predicted, 
                                                       gamma * slopes.transpose() * along);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n_), w(n_);
   bool converged = false;
-  for (int i = 0; i < kMostIterations && !converged; ++i) {
+  for (int i = 0; i < kMostNewtonIterations && !converged; ++i) {
     w = base + x;
     evaluate(t_s, w, heat_, flow_W_);
     Eigen::VectorXd step = damping.cwiseProduct(gathered + gamma * heat_ - x);
@@ -236,7 +236,7 @@ bool ReducedOde::solve_stage(double t_s, double gamma, const double* predicted, 
     ++n_iterations_;
     const double size_of_step = std::sqrt(step.cwiseProduct(scale).squaredNorm() / n_);
     if (!std::isfinite(size_of_step)) return false;
-    converged = size_of_step <= kShareOfTolerance || (live_sources_.empty() && live_exchanges_.empty());
+    converged = size_of_step <= kNewtonShareOfTolerance || (live_sources_.empty() && live_exchanges_.empty());
   }
   ++n_solves_;
   if (!converged) return false;

@@ -13,7 +13,7 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr std::uint64_t kSeed = 11;
+constexpr std::uint64_t kSeedOfRivals = 11;
 
 /// Temperatures of all free candidates and the first drift, named by their numbers.
 Record record_of(const PlacementModel& model, const PlacementRun& run, double noise_K, std::uint64_t seed) {
@@ -36,7 +36,7 @@ Record record_of(const PlacementModel& model, const PlacementRun& run, double no
 
 std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& model, const std::vector<PlacementRun>& runs, int n_most, double noise_K) {
   std::vector<Record> records;
-  for (const PlacementRun& run : runs) records.push_back(record_of(model, run, noise_K, kSeed + records.size()));
+  for (const PlacementRun& run : runs) records.push_back(record_of(model, run, noise_K, kSeedOfRivals + records.size()));
   std::vector<std::string> candidates;
   for (int c = 0; c < model.n_free(); ++c) candidates.push_back(fmt::format("{}", c));
   using Select = compensation::Selection (*)(std::span<const Record>, const std::vector<std::string>&, const std::string&, int);
@@ -64,7 +64,7 @@ std::vector<std::vector<std::vector<int>>> rival_places(const PlacementModel& mo
 
 std::vector<std::vector<int>> random_places(const PlacementModel& model, int n_most) {
   const int n_free = model.n_free();
-  Random random(kSeed);
+  Random random(kSeedOfRivals);
   std::vector<std::vector<int>> sets;
   for (int n = 1; n <= n_most; ++n) {
     for (int k = 0; k < kRandomSets; ++k) {

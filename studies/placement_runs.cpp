@@ -16,7 +16,7 @@ using scenarios::Validation;
 
 constexpr std::size_t kLeastToChooseOn = 3, kMadeToJudgeBy = 4, kMostToJudgeBy = 8;
 constexpr double kMade_s = 5 * 3600.0, kShortest_s = 600.0, kLongest_s = 3600.0;
-constexpr std::uint64_t kSeed = 7;
+constexpr std::uint64_t kSeedOfRuns = 7;
 
 Cyclogram known(const scenarios::Scenario& scenario, const std::string& name) {
   if (scenario.validation) {
@@ -40,7 +40,7 @@ bool holds(const std::vector<Cyclogram>& list, const std::string& name) {
 Cyclogram made(const std::vector<Drive>& drives, const std::string& name, std::uint64_t purpose) {
   std::vector<Drive> choices = drives;
   choices.emplace_back();  // rest
-  Random random(kSeed, purpose);
+  Random random(kSeedOfRuns, purpose);
   Cyclogram c{.name = name, .sections = {}};
   double left_s = kMade_s;
   while (left_s > 0.0) {

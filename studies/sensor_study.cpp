@@ -17,7 +17,7 @@ SensorStudy study_sensors(const scenarios::Scenario& scenario, const RecordPaths
   for (const ObservedRun& run : read.train)
     records.push_back(own_rows(scored_readings(run, settings.target, settings.count_from_start), run.n_before));
   const GreyOptions how{.image = settings.image,
-                        .quantity = settings.count_from_start ? Quantity::kRise : Quantity::kAsRecorded};
+                        .quantity = settings.count_from_start ? compensation::Quantity::kRise : compensation::Quantity::kAsRecorded};
   const std::string& target = settings.target;
   const int n = settings.sensors_to_choose;
 
@@ -30,7 +30,7 @@ SensorStudy study_sensors(const scenarios::Scenario& scenario, const RecordPaths
                     .warnings = read.notes};
   const std::vector<std::string> of_sensors = sensor_warnings(whole_records(read.train, target), all);
   study.warnings.insert(study.warnings.end(), of_sensors.begin(), of_sensors.end());
-  for (const Quantity quantity : {Quantity::kAsRecorded, Quantity::kRise}) {
+  for (const compensation::Quantity quantity : {compensation::Quantity::kAsRecorded, compensation::Quantity::kRise}) {
     for (const Image image : {Image::kInitialValue, Image::kMeanValue, Image::kRange}) {
       OtherRanking other{.image = image, .quantity = quantity, .best = {}, .not_defined = {}};
       try {

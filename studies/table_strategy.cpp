@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/median.hpp"
 #include "base/quantity.hpp"
 #include "compensation/sensors/thermometers.hpp"
 
@@ -11,11 +12,6 @@ namespace driftwright::studies {
 namespace {
 
 constexpr double kExpansionScatter = 0.03;
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 }  // namespace
 
@@ -32,7 +28,7 @@ TableStrategy repeated(const std::string& name, const std::function<std::vector<
   for (auto member : {&PeakErrors::x_m, &PeakErrors::y_m, &PeakErrors::z_m, &PeakErrors::position_m}) {
     std::vector<double> values;
     for (const PeakErrors& p : all) values.push_back(p.*member);
-    strategy.peak.*member = median(values);
+    strategy.peak.*member = upper_median(values);
     strategy.worst.*member = *std::max_element(values.begin(), values.end());
   }
   return strategy;

@@ -30,7 +30,7 @@ constexpr double kWork = 1.8e11;         // multiplications, some ten seconds of
 constexpr double kWorthASection = 0.01;  // of the best
 
 /// Numbers of pieces: where those of each stage begin.
-constexpr std::size_t kSearch = 0, kFineSearch = 5'000'000, kFound = 10'000'000, kJudged = 10'000'001;
+constexpr std::size_t kPlanSearch = 0, kFineSearch = 5'000'000, kFound = 10'000'000, kPlanJudged = 10'000'001;
 
 struct Tried {
   TestProgramme programme;
@@ -163,7 +163,7 @@ std::vector<Pieces::Numbers> judge(const PlannedTwin& p, const diagnosis::Doubts
   const auto n_own = static_cast<std::ptrdiff_t>(p.channels.size());
   for (std::size_t t = 0; t < n_tests; ++t) {  // each has all cores
     if (!pieces.shard.has(t)) continue;
-    told[t] = pieces.of(kJudged + t, [&] {
+    told[t] = pieces.of(kPlanJudged + t, [&] {
       const std::vector<Eigen::MatrixXd> of_channels = diagnosis::information_by_channel(*p.twin, doubts, run_of(t), p.noise);
       const Eigen::MatrixXd total = std::accumulate(of_channels.begin() + 1, of_channels.begin() + n_own, of_channels.front());
       std::vector<double> by_channel(of_channels.size());
@@ -239,7 +239,7 @@ std::optional<TestPlan> plan_test(const scenarios::Scenario& scenario, const Tes
     const diagnosis::LevelMachine coarse_machine = machine_of(kCoarse, few);
     const int n_programmes = options.n_programmes > 0 ? options.n_programmes : programmes_of(p, few);
     listener.begin(fmt::format("trying {} programmes", n_programmes));
-    Search coarse(coarse_machine, few.question, kCoarse.rows_per_slot, kTriedFinely, pieces.from(kSearch));
+    Search coarse(coarse_machine, few.question, kCoarse.rows_per_slot, kTriedFinely, pieces.from(kPlanSearch));
     look_for(coarse, levels, n_programmes, options.seed, listener);
     const diagnosis::LevelMachine fine_machine = machine_of(kFine, more);
     Search fine(fine_machine, more.question, kFine.rows_per_slot, 1, pieces.from(kFineSearch));

@@ -23,7 +23,7 @@ using namespace compensation;
 using scenarios::Scenario;
 using scenarios::Validation;
 
-constexpr int kObserverModes = 12;   // the slowest of the model, beside its steady responses
+constexpr int kModesOfObserver = 12;   // the slowest of the model, beside its steady responses
 constexpr double kRounding = 0.289;  // standard deviation of an error spread evenly over one step, 1 / sqrt(12)
 
 /// One simulation to make.
@@ -151,7 +151,7 @@ std::optional<compensation::Physics> physics_of(const Scenario& scenario, const 
   if (!reduced || !reduced->system.is_linear()) return std::nullopt;
   const double ambient_K = scenarios::felt_ambient_at_start_K(*scenario.machine);
   const ModalPredictor modes =
-      make_ritz_predictor(reduced->system, reduced->start, kObserverModes, {.drive = {}, .ambient_K = ambient_K});
+      make_ritz_predictor(reduced->system, reduced->start, kModesOfObserver, {.drive = {}, .ambient_K = ambient_K});
   return compensation::Physics{scattered(modes.system, scatter, seed, true), modes.start, ambient_K};
 }
 

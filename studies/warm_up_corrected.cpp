@@ -10,7 +10,7 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr int kTimes = 12;            // of warm-ups, from none to the longest
+constexpr int kCorrectedTimes = 12;            // of warm-ups, from none to the longest
 constexpr int kHalvings = 4;          // between two of them
 constexpr std::size_t kNoise = 1000;  // of readings: that of no run of the validation
 
@@ -57,7 +57,7 @@ std::optional<CorrectedWarmUps> corrected_warm_ups(const scenarios::Scenario& sc
 
   CorrectedWarmUps result{
       .target = scenario.study->target, .speed_rpm = speed_rpm, .model_scatter = validation.model_scatter};
-  for (int i = 0; i <= kTimes; ++i) result.times_s.push_back(longest_s * i / kTimes);
+  for (int i = 0; i <= kCorrectedTimes; ++i) result.times_s.push_back(longest_s * i / kCorrectedTimes);
   std::vector<ReadRun> runs(result.times_s.size());
   listener.begin("warm-up beside correction");
   parallel_for(runs.size(), [&](std::size_t i) { runs[i] = read_run(validation, trials, speed_rpm, result.times_s[i]); });

@@ -9,7 +9,7 @@
 namespace driftwright::studies {
 namespace {
 
-constexpr int kTimes = 16;   // of a warm-up at one speed, from none to the longest
+constexpr int kErrorTimes = 16;   // of a warm-up at one speed, from none to the longest
 constexpr int kBetween = 8;  // then between the last that is not enough and the first that is
 
 /// Without what only pictures need.
@@ -65,12 +65,12 @@ std::optional<double> free_share(const WarmUpTrials& trials, const DrawnMachines
   };
   double low_s = 0.0, high_s = most_s;
   bool is_found = false;
-  for (int n : {kTimes, kBetween}) {
+  for (int n : {kErrorTimes, kBetween}) {
     std::vector<std::vector<Cyclogram::Section>> programmes;
     std::vector<double> times_s;
     for (int i = 0; i <= n; ++i) {
       const double share = static_cast<double>(i) / n;
-      times_s.push_back(low_s + (high_s - low_s) * (n == kTimes ? share * share : share));
+      times_s.push_back(low_s + (high_s - low_s) * (n == kErrorTimes ? share * share : share));
       programmes.push_back(at_speed(times_s.back()));
     }
     const Eigen::MatrixXd peaks = machines.peaks_um(programmes, listener);

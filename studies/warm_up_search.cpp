@@ -17,7 +17,7 @@ constexpr int kTimes = 16;               // at which one speed is tried before t
 constexpr int kSpeeds = 25;              // up to the limit, of one speed
 constexpr double kBeyond = 1.2;          // of the best time so far: the least of a peak shows between times alone
 constexpr int kStages = 7, kShares = 7;  // of two: speeds from rest to the limit, and shares of the first in the time
-constexpr std::size_t kMostSections = 4;
+constexpr std::size_t kMostWarmUpSections = 4;
 constexpr int kEnds = 10;                // parts of the time, at whose ends one of three sections may end
 constexpr int kImproved = 3;             // of programmes with another section, the best ones
 constexpr double kFirstGain = 0.02;      // of its time, by another section
@@ -224,7 +224,7 @@ WarmUp WarmUpSearch::with_one_more(const WarmUp& known, double time_s) const {
 
 WarmUp WarmUpSearch::refined(const WarmUp& known) const {
   WarmUp best = known;
-  for (bool helped = !best.sections.empty(); helped && best.sections.size() < kMostSections;) {
+  for (bool helped = !best.sections.empty(); helped && best.sections.size() < kMostWarmUpSections;) {
     listener_.begin(fmt::format("{} speeds", best.sections.size() + 1));
     if (!best.is_enough) {
       const WarmUp next = with_one_more(best, best.duration_s());

@@ -8,7 +8,7 @@
 #include "effects/catalogue_table.hpp"
 #include "tests/beside_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::added_kinds_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -110,4 +110,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& one) { return std::string(one.param.key); });
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::added_kinds_test

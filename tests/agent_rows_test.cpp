@@ -13,7 +13,7 @@
 #include "base/errors.hpp"
 #include "follow/bounded_server.hpp"
 
-namespace driftwright::follow {
+namespace driftwright::follow::agent_rows_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -152,4 +152,4 @@ TEST(CurrentRows, AskWhichOfTwoItemsOfOneNameIsMeant) {
 }
 
 }  // namespace
-}  // namespace driftwright::follow
+}  // namespace driftwright::follow::agent_rows_test

@@ -6,7 +6,7 @@
 
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::ambient_record_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST(AnAmbientOfARightRecord, IsNotBlamed) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::ambient_record_test

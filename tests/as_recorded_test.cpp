@@ -12,7 +12,7 @@
 #include "solver/reduced_transient.hpp"
 #include "tests/column_and_head.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::as_recorded_test {
 namespace {
 
 using fixtures::ColumnAndHead;
@@ -266,4 +266,4 @@ TEST(ReducedMachines, FollowWhatTheFullOneFeels) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::as_recorded_test

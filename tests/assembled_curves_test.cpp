@@ -9,7 +9,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::assembled_curves_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -147,4 +147,4 @@ TEST(AssembledCurves, NameWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::assembled_curves_test

@@ -11,7 +11,7 @@
 #include "output/document_json.hpp"
 #include "output/document_text.hpp"
 
-namespace driftwright::findings {
+namespace driftwright::findings::axis_loop_section_test {
 namespace {
 
 using ::testing::AllOf;
@@ -72,4 +72,4 @@ TEST(AxisLoopSection, TheLedgerIsTheInjectorsOwn) {
 }
 
 }  // namespace
-}  // namespace driftwright::findings
+}  // namespace driftwright::findings::axis_loop_section_test

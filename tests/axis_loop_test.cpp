@@ -7,7 +7,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::axis_loop_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -355,4 +355,4 @@ TEST(AxisLoop, RefusesBadInput) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::axis_loop_test

@@ -10,7 +10,7 @@
 
 #include "base/random.hpp"
 
-namespace driftwright {
+namespace driftwright::axis_offset_test {
 namespace {
 
 constexpr double kCycle_s = 0.125;  // sums of it are exact
@@ -168,4 +168,4 @@ TEST(AxisOffset, NeverMovesFasterThanTheSlewLimitAndKeepsWhatTheControlAddsUp) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::axis_offset_test

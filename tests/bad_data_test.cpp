@@ -14,7 +14,7 @@
 #include "machine/machine.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::bad_data_test {
 namespace {
 
 using ::testing::AllOf;
@@ -385,4 +385,4 @@ TEST(MissingData, KnowsHowLongTheMachineTakes) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::bad_data_test

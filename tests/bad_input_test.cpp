@@ -5,7 +5,7 @@
 
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::bad_input_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -341,4 +341,4 @@ TEST(BadCommand, ARecordWithoutTheTargetIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::bad_input_test

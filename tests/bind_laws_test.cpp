@@ -10,7 +10,7 @@
 #include "solver/reduced_model.hpp"
 #include "tests/effect_list.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::bind_laws_test {
 namespace {
 
 using effects::HeatBalance;
@@ -113,4 +113,4 @@ TEST(BindLaws, RefusesAPlaceThatTheSystemHasNot) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::bind_laws_test

@@ -7,7 +7,7 @@
 
 #include "blind/case.hpp"
 
-namespace driftwright::blind {
+namespace driftwright::blind::blind_laws_test {
 namespace {
 
 const Subject& spindle() {
@@ -239,4 +239,4 @@ TEST(BlindRandom, NormalNumbersAreNormal) {
 }
 
 }  // namespace
-}  // namespace driftwright::blind
+}  // namespace driftwright::blind::blind_laws_test

@@ -9,7 +9,7 @@
 #include "blind/case.hpp"
 #include "solver/transient.hpp"
 
-namespace driftwright::blind {
+namespace driftwright::blind::blind_truth_test {
 namespace {
 
 constexpr const char* kMachines = "tests/blind/machines";
@@ -133,4 +133,4 @@ TEST(BlindCases, ScenariosReadAndRecordsFitThem) {
 }
 
 }  // namespace
-}  // namespace driftwright::blind
+}  // namespace driftwright::blind::blind_truth_test

@@ -11,7 +11,7 @@
 #include "base/errors.hpp"
 #include "base/hashed_json.hpp"
 
-namespace driftwright {
+namespace driftwright::bounded_json_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -66,4 +66,4 @@ TEST(HashedJson, IsWholeUntilAValueIsAnother) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::bounded_json_test

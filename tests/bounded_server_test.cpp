@@ -14,7 +14,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright::follow {
+namespace driftwright::follow::bounded_server_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -258,4 +258,4 @@ TEST(BoundedServer, SaysWhereNobodyCanListen) {
 }
 
 }  // namespace
-}  // namespace driftwright::follow
+}  // namespace driftwright::follow::bounded_server_test

@@ -11,7 +11,7 @@
 #include "solver/heat_assembly.hpp"
 #include "tests/heat_runs.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::calculix_test {
 namespace {
 
 using fixtures::text;
@@ -208,4 +208,4 @@ TEST(SideBySide, RulesForTemperatureWithinHexahedraDifferByWhatTheMeshLeavesOut)
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::calculix_test

@@ -5,7 +5,7 @@
 #include "diagnosis/extended_scenario.hpp"
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::causes_alone_test {
 namespace {
 
 constexpr const char* kBox = R"(name: box
@@ -73,4 +73,4 @@ TEST(CausesAlone, AreWrittenWhereTheyHoldAndNothingElseIs) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::causes_alone_test

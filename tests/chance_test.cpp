@@ -14,7 +14,7 @@
 #include "studies/measured_twin.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::chance_test {
 namespace {
 
 constexpr double kNoise_K = 0.05, kNoise_um = 0.3;
@@ -143,4 +143,4 @@ TEST(Chance, IsMetByMachinesWithoutFault) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::chance_test

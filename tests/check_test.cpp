@@ -5,7 +5,7 @@
 
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::check_test {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -29,4 +29,4 @@ TEST(Check, TellsDurationSpeedSectionsAndMachiningTime) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::check_test

@@ -9,7 +9,7 @@
 #include "tests/curved_bodies.hpp"
 #include "tests/heat_runs.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::closed_forms_test {
 namespace {
 
 using fixtures::film;
@@ -258,4 +258,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Sleeve,
                          shape_name);
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::closed_forms_test

@@ -12,7 +12,7 @@
 #include "compensation/sensors/grey_relational.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::cnc_mill_13_test {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -140,4 +140,4 @@ TEST_F(CncMill13, PredictorsAreJudgedOnItsProgramme) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::cnc_mill_13_test

@@ -7,7 +7,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::complete_rows_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -38,4 +38,4 @@ TEST(CompleteRows, RefusesNoRecordMissingChannelAndMixedUnits) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::complete_rows_test

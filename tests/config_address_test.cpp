@@ -6,7 +6,7 @@
 #include "base/config_map.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::config_address_test {
 namespace {
 
 using ::testing::AllOf;
@@ -108,4 +108,4 @@ TEST(ConfigTree, AnAliasStandsForItsAnchorAndNeverForItself) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::config_address_test

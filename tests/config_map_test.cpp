@@ -5,7 +5,7 @@
 
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::config_map_test {
 namespace {
 
 using ::testing::AllOf;
@@ -222,4 +222,4 @@ TEST(ConfigMap, RefusesAMissingFile) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::config_map_test

@@ -8,7 +8,7 @@
 
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::config_tree_test {
 namespace {
 
 using ::testing::AllOf;
@@ -100,4 +100,4 @@ TEST(WrittenTree, AnEditShowsAndItsUndoIsTheSameAgain) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::config_tree_test

@@ -10,7 +10,7 @@
 #include "tests/effect_list.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::coolant_test {
 namespace {
 
 using fixtures::flow;
@@ -150,4 +150,4 @@ TEST(Coolant, AThermostatThatSwitchesWithoutEndIsNamed) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::coolant_test

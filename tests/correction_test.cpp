@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::correction_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -67,4 +67,4 @@ TEST(OperationBoundaries, AddUp) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::correction_test

@@ -9,7 +9,7 @@
 #include "solver/reduced_model.hpp"
 #include "tests/two_blocks.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::course_test {
 namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
@@ -165,4 +165,4 @@ TEST(Course, IsNotKeptThroughMoreSetsOfCoefficientsThanItHolds) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::course_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace driftwright::output {
+namespace driftwright::output::csv_row_test {
 namespace {
 
 TEST(CsvRow, ReadsBackWhatItWrites) {
@@ -16,4 +16,4 @@ TEST(CsvRow, ReadsBackWhatItWrites) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::csv_row_test

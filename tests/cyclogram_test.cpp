@@ -6,7 +6,7 @@
 
 #include "base/series_in_order.hpp"
 
-namespace driftwright {
+namespace driftwright::cyclogram_test {
 namespace {
 
 const Cyclogram kCycle{.name = "c", .sections = {{100, 2000}, {50, 0}, {50, 0}, {200, 500}}};
@@ -125,4 +125,4 @@ TEST(LinearStretches, KeepBothKnotsOfAJumpInALongSection) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::cyclogram_test

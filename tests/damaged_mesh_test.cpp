@@ -16,7 +16,7 @@
 #include "tests/fixtures.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::mesh {
+namespace driftwright::mesh::damaged_mesh_test {
 namespace {
 
 using ::testing::AllOf;
@@ -242,4 +242,4 @@ TEST(DamagedStep, ACornerAtInfinityIsRefusedInTime) {  // OpenCASCADE compares i
 }
 
 }  // namespace
-}  // namespace driftwright::mesh
+}  // namespace driftwright::mesh::damaged_mesh_test

@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace driftwright::dense {
+namespace driftwright::dense::dense_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -81,4 +81,4 @@ TEST(Dense, OrthonormalColumnsSpanWhatTheyAreMadeFrom) {
 }
 
 }  // namespace
-}  // namespace driftwright::dense
+}  // namespace driftwright::dense::dense_test

@@ -13,7 +13,7 @@
 #include "tests/deployed_model.hpp"
 #include "tests/three_parts.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::deployed_follower_test {
 namespace {
 
 /// The rows of a run one after another; those further back than followers look are dropped at each.
@@ -175,4 +175,4 @@ TEST(DeployedFollower, TheMemoryOfAnotherIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::deployed_follower_test

@@ -7,7 +7,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright {
+namespace driftwright::designs_test {
 namespace {
 
 class LatinHypercube : public ::testing::TestWithParam<std::pair<int, int>> {};
@@ -90,4 +90,4 @@ TEST(NormalQuantile, InvertsTheDistribution) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::designs_test

@@ -13,7 +13,7 @@
 #include "diagnosis/diagnosis.hpp"
 #include "studies/measured_twin.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::diagnosis_blind_test {
 namespace {
 
 constexpr const char* kMachines = "tests/blind/machines";
@@ -147,4 +147,4 @@ TEST(EffectOutsideTheCatalogue, IsOneCauseWithoutANameWhereTwoNamedOnesWouldDo) 
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::diagnosis_blind_test

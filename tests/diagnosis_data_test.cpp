@@ -11,7 +11,7 @@
 #include "findings/diagnosis_words.hpp"
 #include "output/document_json.hpp"
 
-namespace driftwright::findings {
+namespace driftwright::findings::diagnosis_data_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -115,4 +115,4 @@ TEST(DiagnosisData, WaveformsHaveTheirCourse) {
 }
 
 }  // namespace
-}  // namespace driftwright::findings
+}  // namespace driftwright::findings::diagnosis_data_test

@@ -7,7 +7,7 @@
 
 #include "findings/diagnosis_words.hpp"
 
-namespace driftwright::app {
+namespace driftwright::app::diagnosis_files_test {
 namespace {
 
 using diagnosis::Estimate;
@@ -93,4 +93,4 @@ TEST(CalibrationWarning, ComesFromLeftoversFromEvidenceAndFromNumbersThatMovedFa
 }
 
 }  // namespace
-}  // namespace driftwright::app
+}  // namespace driftwright::app::diagnosis_files_test

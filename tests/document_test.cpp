@@ -11,7 +11,7 @@
 #include "output/document_json.hpp"
 #include "output/document_text.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::document_test {
 namespace {
 
 using ::testing::AllOf;
@@ -152,4 +152,4 @@ TEST(Datum, IsShownWithTheDigitsAskedFor) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::document_test

@@ -12,7 +12,7 @@
 #include "compensation/predictors/drift_model.hpp"
 #include "compensation/predictors/fail_safe.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::drift_correction_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -209,4 +209,4 @@ TEST(Repaired, TakesInfiniteReadingsForMissing) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::drift_correction_test

@@ -15,7 +15,7 @@
 #include "compensation/sensors/exchange_search.hpp"
 #include "compensation/sensors/regression_left.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::drift_left_test {
 namespace {
 
 Eigen::MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::Index columns) {
@@ -193,4 +193,4 @@ TEST(ExchangeSearch, KeepsWhatIsFixed) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::drift_left_test

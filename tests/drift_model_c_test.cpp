@@ -14,7 +14,7 @@
 #include "tests/deployed_model.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::drift_model_c_test {
 namespace {
 
 using compensation::DriftModel;
@@ -258,4 +258,4 @@ TEST(CFunction, OfAConstantCompilesThoughCKnowsNoEmptyTables) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::drift_model_c_test

@@ -9,7 +9,7 @@
 
 #include "tests/deployed_model.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::drift_model_files_test {
 namespace {
 
 using compensation::DriftModel;
@@ -30,4 +30,4 @@ TEST(FormulaText, SaysUnitsRangesAndLimits) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::drift_model_files_test

@@ -10,7 +10,7 @@
 #include "effects/effect.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::effects {
+namespace driftwright::effects::drive_effects_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -281,4 +281,4 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{"{type: missing_stop, start: 1 min, length: 0 min}", "outside what is allowed"}));
 
 }  // namespace
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::drive_effects_test

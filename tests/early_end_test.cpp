@@ -6,7 +6,7 @@
 
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::early_end_test {
 namespace {
 
 constexpr const char* kBox = R"(name: box
@@ -89,4 +89,4 @@ TEST(ADiagnosis, TellsHowFarItIs) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::early_end_test

@@ -7,7 +7,7 @@
 #include "effects/effect.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::effects {
+namespace driftwright::effects::effect_errors_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -124,4 +124,4 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"{type: stratification, ambient: ambient, gradient: 1 K/m}", "unknown key 'ambient'"}));
 
 }  // namespace
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::effect_errors_test

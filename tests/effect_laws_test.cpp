@@ -12,7 +12,7 @@
 #include "effects/effect.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::effects {
+namespace driftwright::effects::effect_laws_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -715,4 +715,4 @@ TEST(FilmsByFormula, TakeAFactor) {
 }
 
 }  // namespace
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::effect_laws_test

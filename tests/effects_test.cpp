@@ -10,7 +10,7 @@
 #include "effects/film_formulas.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::effects {
+namespace driftwright::effects::effects_test {
 namespace {
 
 using ::testing::AllOf;
@@ -263,4 +263,4 @@ TEST(Effect, AsksForNoParameterItHasNot) {
 }
 
 }  // namespace
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::effects_test

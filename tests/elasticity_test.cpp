@@ -16,7 +16,7 @@
 #include "mesh/shape.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::elasticity_test {
 namespace {
 
 using fixtures::Box;
@@ -332,4 +332,4 @@ TEST(FreeToMove, OnePartOfTwoIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::elasticity_test

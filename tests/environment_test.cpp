@@ -10,7 +10,7 @@
 
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::environment_test {
 namespace {
 
 using ::testing::AllOf;
@@ -143,4 +143,4 @@ TEST(Environment, ResultsOfANameThatNoFileMayHaveAreRefusedBeforeTheRun) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::environment_test

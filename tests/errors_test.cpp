@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace driftwright {
+namespace driftwright::errors_test {
 namespace {
 
 std::string message(int column, const std::string& line) {
@@ -43,4 +43,4 @@ TEST(InputErrors, LettersOfTwoBytesAreNotCutInHalf) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::errors_test

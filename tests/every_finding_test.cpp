@@ -14,7 +14,7 @@
 #include "machine/machine.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::every_finding_test {
 namespace {
 
 constexpr double kSame_K = 1e-3, kSame_um = 0.01;
@@ -153,4 +153,4 @@ INSTANTIATE_TEST_SUITE_P(Shipped, EveryFinding,
                          });
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::every_finding_test

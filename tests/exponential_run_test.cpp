@@ -12,7 +12,7 @@
 #include "solver/reduced_model.hpp"
 #include "solver/reduced_transient.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::exponential_run_test {
 namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
@@ -256,4 +256,4 @@ TEST(ExponentialRun, HasTheExponentialsOfEveryHalf) {  // of V Λ V⁻¹, from r
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::exponential_run_test

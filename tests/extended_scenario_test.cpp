@@ -16,7 +16,7 @@
 #include "solver/transient.hpp"
 #include "tests/column_and_head.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::extended_scenario_test {
 namespace {
 
 using ::testing::AllOf;
@@ -523,4 +523,4 @@ TEST(AMachineThatHadRun, IsRefusedByWhatBeginsEveryCyclogramAtTheStart) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::extended_scenario_test

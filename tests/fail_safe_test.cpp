@@ -12,7 +12,7 @@
 #include "compensation/predictors/drift_model.hpp"
 #include "tests/sensor_records.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::fail_safe_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -366,4 +366,4 @@ TEST(MostReplaced, IsAThirdAndOneAtLeast) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::fail_safe_test

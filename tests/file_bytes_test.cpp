@@ -9,7 +9,7 @@
 #include "base/errors.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::file_bytes_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -35,4 +35,4 @@ TEST(FileBytes, OfADeviceWithoutEndAreRefusedBeforeMemoryIsFull) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::file_bytes_test

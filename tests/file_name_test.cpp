@@ -4,7 +4,7 @@
 
 #include "base/delimited_text.hpp"
 
-namespace driftwright {
+namespace driftwright::file_name_test {
 namespace {
 
 TEST(FileName, ShortNamesStayAsTheyAre) {
@@ -56,4 +56,4 @@ TEST(FileName, AnEndingAsLongAsANameIsCutToo) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::file_name_test

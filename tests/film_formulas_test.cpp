@@ -9,7 +9,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright::effects {
+namespace driftwright::effects::film_formulas_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -125,4 +125,4 @@ INSTANTIATE_TEST_SUITE_P(
                       OutOfRange{"Taylor", [] { return nusselt_gap(NAN); }}));
 
 }  // namespace
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::film_formulas_test

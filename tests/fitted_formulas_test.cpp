@@ -13,7 +13,7 @@
 #include "compensation/sensors/product_sums.hpp"
 #include "tests/sensor_records.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::fitted_formulas_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -304,4 +304,4 @@ TEST(DriftModel, CountsTemperaturesFromTheirFirstReadingAndSpeedsNot) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::fitted_formulas_test

@@ -17,7 +17,7 @@
 #include "tests/command_line.hpp"
 #include "tests/fmu/importer.h"
 
-namespace driftwright::output {
+namespace driftwright::output::fmu_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -437,4 +437,4 @@ TEST(ExportVerb, RefusesInWordsWhatItCannotExport) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::fmu_test

@@ -17,7 +17,7 @@
 #include "tests/deployed_model.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::follow {
+namespace driftwright::follow::follow_session_test {
 namespace {
 
 using namespace compensation;
@@ -199,4 +199,4 @@ TEST(FollowSession, NoCorrectionStepsWhateverTheRowsAre) {
 }
 
 }  // namespace
-}  // namespace driftwright::follow
+}  // namespace driftwright::follow::follow_session_test

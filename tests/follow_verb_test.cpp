@@ -10,7 +10,7 @@
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::follow_verb_test {
 namespace {
 
 using ::testing::AllOf;
@@ -205,4 +205,4 @@ TEST(FollowVerb, SaysWhatItCannotFollow) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::follow_verb_test

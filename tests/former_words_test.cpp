@@ -16,7 +16,7 @@
 #include "scenarios/reader/sweep_plan.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::former_words_test {
 namespace {
 
 using ::testing::AllOf;
@@ -157,4 +157,4 @@ TEST(FormerWords, OfFilesOfPredictorsAreReadAsNames) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::former_words_test

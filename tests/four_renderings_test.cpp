@@ -10,7 +10,7 @@
 
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::four_renderings_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -156,4 +156,4 @@ TEST_F(FourRenderings, TablesThatAreDetailsWaitForTheirFlag) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::four_renderings_test

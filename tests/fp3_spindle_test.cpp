@@ -12,7 +12,7 @@
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::fp3_spindle_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -242,4 +242,4 @@ TEST_F(Fp3Spindle, EveryReadingIsThatOfTheFullModelWithinFiveMillikelvin) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::fp3_spindle_test

@@ -15,7 +15,7 @@
 #include "tests/one_hal.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::frame_programs_test {
 namespace {
 
 using ::testing::AllOf;
@@ -301,4 +301,4 @@ TEST(FrameProgram, TakesOriginSignAndBallFromTheScenario) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::frame_programs_test

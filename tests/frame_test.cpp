@@ -9,7 +9,7 @@
 #include "base/random.hpp"
 #include "compensation/frames/table_frame.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::frame_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -141,4 +141,4 @@ TEST(TableFrame, SaysWhyItRefuses) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::frame_test

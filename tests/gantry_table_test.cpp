@@ -9,7 +9,7 @@
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::gantry_table_test {
 namespace {
 
 using ::testing::AllOf;
@@ -208,4 +208,4 @@ TEST(GantryTable, SaysWhatIsWrongWithALine) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::gantry_table_test

@@ -7,7 +7,7 @@
 #include "diagnosis/scatter.hpp"
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::given_up_fits_test {
 namespace {
 
 constexpr double kHopeless = 1e-3;  // a misfit that no fit reaches
@@ -64,4 +64,4 @@ TEST_F(GivenUpFits, AreNotThoseThatComeFromFarAway) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::given_up_fits_test

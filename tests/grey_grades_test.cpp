@@ -10,7 +10,7 @@
 #include "compensation/sensors/ranking_stability.hpp"
 #include "tests/sensor_records.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::grey_grades_test {
 namespace {
 
 using ::testing::Contains;
@@ -284,4 +284,4 @@ TEST(RankingStability, DeviationIsThatOfABlockBootstrap) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::grey_grades_test

@@ -6,7 +6,7 @@
 #include "tests/effect_list.hpp"
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::guard_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -194,4 +194,4 @@ TEST(AGuard, WantsANodeForItsAir) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::guard_test

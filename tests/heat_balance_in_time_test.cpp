@@ -7,7 +7,7 @@
 #include "solver/heat_assembly.hpp"
 #include "tests/heat_runs.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::heat_balance_in_time_test {
 namespace {
 
 using fixtures::constant;
@@ -185,4 +185,4 @@ TEST(Pulses, OfAPrescribedSurfaceWithinHoursOfRestStoreTheHeatOfFineSteps) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::heat_balance_in_time_test

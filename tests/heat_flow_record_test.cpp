@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::heat_flow_record_test {
 namespace {
 
 using solver::FlowKind;
@@ -45,4 +45,4 @@ TEST(HeatFlowRecord, NamesAreFitForAColumnAndUnlike) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::heat_flow_record_test

@@ -9,7 +9,7 @@
 #include <limits>
 #include <regex>
 
-namespace driftwright::output {
+namespace driftwright::output::heat_map_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -61,4 +61,4 @@ TEST(HeatMap, RefusesValuesThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::heat_map_test

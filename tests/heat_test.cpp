@@ -10,7 +10,7 @@
 #include "solver/transient.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::heat_test {
 namespace {
 
 using fixtures::Box;
@@ -323,4 +323,4 @@ TEST(AssembleHeat, RefusesNamesThatTheMeshHasNot) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::heat_test

@@ -8,7 +8,7 @@
 #include "diagnosis/scatter.hpp"
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::heat_wander_test {
 namespace {
 
 constexpr const char* kBox = R"(name: box
@@ -118,4 +118,4 @@ TEST(AComparison, WhitensWhatChannelsShare) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::heat_wander_test

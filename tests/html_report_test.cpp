@@ -12,7 +12,7 @@
 #include "base/errors.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::output::html {
+namespace driftwright::output::html::html_report_test {
 namespace {
 
 using ::testing::AllOf;
@@ -211,4 +211,4 @@ TEST(Plot, PassesOnWhatGnuplotSaysWhenItFails) {
 }
 
 }  // namespace
-}  // namespace driftwright::output::html
+}  // namespace driftwright::output::html::html_report_test

@@ -10,7 +10,7 @@
 #include "base/errors.hpp"
 #include "base/random.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::identified_modes_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -254,4 +254,4 @@ TEST(AveragedTests, NeverAverageAcrossAChangeOfTheDrive) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::identified_modes_test

@@ -20,7 +20,7 @@
 #include "tests/fixtures.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::mesh {
+namespace driftwright::mesh::import_test {
 namespace {
 
 using ::testing::AllOf;
@@ -694,4 +694,4 @@ TEST_F(Picking, ThatFindsNothingOrRepeatsANameIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::mesh
+}  // namespace driftwright::mesh::import_test

@@ -8,7 +8,7 @@
 #include "tests/column_and_head.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::imported_scenario_test {
 namespace {
 
 using fixtures::column_and_head;
@@ -204,4 +204,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::imported_scenario_test

@@ -8,7 +8,7 @@
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::init_test {
 namespace {
 
 using ::testing::AllOf;
@@ -147,4 +147,4 @@ TEST(List, WhatThereIsToChooseFrom) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::init_test

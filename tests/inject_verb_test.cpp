@@ -12,7 +12,7 @@
 #include "base/random.hpp"
 #include "tests/inject_filter.hpp"
 
-namespace driftwright {
+namespace driftwright::inject_verb_test {
 namespace {
 
 using ::testing::AllOf;
@@ -404,4 +404,4 @@ TEST(InjectVerb, HelpHasAnExample) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::inject_verb_test

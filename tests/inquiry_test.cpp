@@ -8,7 +8,7 @@
 #include "diagnosis/scatter.hpp"
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::inquiry_test {
 namespace {
 
 constexpr const char* kBox = R"(name: box
@@ -116,4 +116,4 @@ TEST_F(TwoRecords, WhatIsSaidOfOneOwesNothingToTheOther) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::inquiry_test

@@ -6,7 +6,7 @@
 #include "diagnosis/extended_scenario.hpp"
 #include "tests/beside_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::instruments_in_common_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -115,4 +115,4 @@ TEST(InstrumentsInCommon, AreNoCauseWhereNothingIsWrong) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::instruments_in_common_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::interpolate_test {
 namespace {
 
 TEST(Interpolate, IsLinearBetweenSamplesAndExactAtThem) {
@@ -28,4 +28,4 @@ TEST(Interpolate, IsMissingOutsideAndBesideAGap) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::interpolate_test

@@ -11,7 +11,7 @@
 #include "solver/heat_assembly.hpp"
 #include "tests/heat_runs.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::invariance_test {
 namespace {
 
 using fixtures::constant;
@@ -212,4 +212,4 @@ TEST_P(InvarianceOfEachCell, NumberOfThreadsChangesNoBit) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::invariance_test

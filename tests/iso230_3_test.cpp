@@ -9,7 +9,7 @@
 #include <functional>
 #include <limits>
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::iso230_3_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -94,4 +94,4 @@ TEST(Iso230Figures, SayWhatARecordLacks) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::iso230_3_test

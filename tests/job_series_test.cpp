@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::job_series_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -79,4 +79,4 @@ TEST(JobSeries, ARunInTheScenariosAmbientOrWithoutOneGoesOnInIt) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::job_series_test

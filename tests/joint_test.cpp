@@ -8,7 +8,7 @@
 #include "solver/heat_assembly.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::joint_test {
 namespace {
 
 using fixtures::Box;
@@ -146,4 +146,4 @@ TEST(OverhangingJoint, OfSidesThatNowhereMeetIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::joint_test

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::kept_out_rows_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -70,4 +70,4 @@ TEST(FoldsOfCycles, AreNoneWhereRecordsAreKeptOutOneByOneAnyway) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::kept_out_rows_test

@@ -11,7 +11,7 @@
 #include "diagnosis/scatter.hpp"
 #include "tests/beside_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::known_to_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -123,4 +123,4 @@ TEST(KnownTo, SaysWhatIsCalibrationAndWhatIsACause) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::known_to_test

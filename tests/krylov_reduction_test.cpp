@@ -10,7 +10,7 @@
 #include "solver/reduced_model.hpp"
 #include "tests/two_blocks.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::krylov_reduction_test {
 namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
@@ -209,4 +209,4 @@ TEST(KrylovReduction, SaysWhenHeatHasNoWayOutOrTheToleranceIsOutOfReach) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::krylov_reduction_test

@@ -11,7 +11,7 @@
 #include "effects/lasting.hpp"
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::lasting_causes_test {
 namespace {
 
 using ::testing::AllOf;
@@ -558,4 +558,4 @@ TEST(ASteadyStart, FollowsTheNumbersOfAMachineWhoseFrictionFollowsTemperature) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::lasting_causes_test

@@ -13,7 +13,7 @@
 #include "solver/stress.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::le11_test {
 namespace {
 
 /// A quarter of the body of revolution about z; surfaces x0, y0, bottom, top and outer.
@@ -84,4 +84,4 @@ TEST(NafemsLe11, AxialStressAtAConvergesToMinus105MPa) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::le11_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace driftwright {
+namespace driftwright::line_diff_test {
 namespace {
 
 TEST(UnifiedDiff, OfEqualTextsIsEmpty) {
@@ -25,4 +25,4 @@ TEST(UnifiedDiff, ChangesFarApartAreHunksOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::line_diff_test

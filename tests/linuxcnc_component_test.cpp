@@ -14,7 +14,7 @@
 #include "tests/deployed_model.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::linuxcnc_component_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -386,4 +386,4 @@ TEST(LinuxcncComponent, IsTakenByHalcompile) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::linuxcnc_component_test

@@ -10,7 +10,7 @@
 #include "mesh/topology.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::mesh {
+namespace driftwright::mesh::locate_test {
 namespace {
 
 std::vector<int> all(const Cells& cells) {
@@ -211,4 +211,4 @@ TEST(NearestPoint, LooksAtTheCandidatesAlone) {
 }
 
 }  // namespace
-}  // namespace driftwright::mesh
+}  // namespace driftwright::mesh::locate_test

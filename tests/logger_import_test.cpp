@@ -17,7 +17,7 @@
 #include "base/guess_names.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::logger_import_test {
 namespace {
 
 using ::testing::Contains;
@@ -207,4 +207,4 @@ TEST(GuessNames, TakesUnitsOutOfHeaders) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::logger_import_test

@@ -10,7 +10,7 @@
 #include "tests/effect_list.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::lumped_effects_test {
 namespace {
 
 using fixtures::flow;
@@ -149,4 +149,4 @@ TEST(Stratification, ABodyTakesTheMeanOfTheAirAlongItsHeight) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::lumped_effects_test

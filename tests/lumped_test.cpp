@@ -10,7 +10,7 @@
 #include "machine/machine.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::lumped_test {
 namespace {
 
 using ::testing::AllOf;
@@ -162,4 +162,4 @@ TEST(Positions, MakeOneOutputEachOnAnotherSpotOfTheTable) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::lumped_test

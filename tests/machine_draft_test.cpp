@@ -12,7 +12,7 @@
 #include "tests/fixtures.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::machine_draft_test {
 namespace {
 
 using ::testing::AllOf;
@@ -130,4 +130,4 @@ TEST(MachineDraft, WritesNamesThatYamlTakes) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::machine_draft_test

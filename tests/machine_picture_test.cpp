@@ -8,7 +8,7 @@
 
 #include "tests/fixtures.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::machine_picture_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -104,4 +104,4 @@ TEST(MachinePicture, OfAnotherMeshIsOurMistake) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::machine_picture_test

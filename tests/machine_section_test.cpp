@@ -4,7 +4,7 @@
 
 #include "tests/fixtures.hpp"
 
-namespace driftwright::findings {
+namespace driftwright::findings::machine_section_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -49,4 +49,4 @@ TEST(AddMachine, ShowsFieldsElseSurfacesAndNothingWithoutAMesh) {
 }
 
 }  // namespace
-}  // namespace driftwright::findings
+}  // namespace driftwright::findings::machine_section_test

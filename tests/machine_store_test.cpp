@@ -18,7 +18,7 @@
 #include "tests/column_and_head.hpp"
 #include "tests/numpy.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::machine_store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -510,4 +510,4 @@ for k, (drive, duration, slope) in enumerate(zip(model['drives'], [2400, 1200, 1
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::machine_store_test

@@ -9,7 +9,7 @@
 
 #include "mesh/quality.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::machine_test {
 namespace {
 
 class PlacedFp3 : public ::testing::Test {
@@ -116,4 +116,4 @@ TEST_F(PlacedFp3, MassAndJointAreasAreThoseOfTheDrawing) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::machine_test

@@ -19,7 +19,7 @@
 #include "scenarios/reader/read_columns.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::mapped_record_test {
 namespace {
 
 using ::testing::AllOf;
@@ -317,4 +317,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& bad) { return std::string(bad.param.name); });
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::mapped_record_test

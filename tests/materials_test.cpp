@@ -11,7 +11,7 @@
 #include "solver/material.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::materials_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -86,4 +86,4 @@ TEST(Material, ExpansionWithoutSenseIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::materials_test

@@ -14,7 +14,7 @@
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::measured_records_test {
 namespace {
 
 /// A number of strategies.csv: the row of that strategy, the column of that name.
@@ -133,4 +133,4 @@ TEST(FlThermalNetwork, LeavesOfTheHoursKeptOutWhatItsTutorialSays) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::measured_records_test

@@ -9,7 +9,7 @@
 
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::measured_run_test {
 namespace {
 
 using ::testing::AllOf;
@@ -409,4 +409,4 @@ TEST_F(MeasuredRunTest, RefusesWhatCannotBeComparedAndSaysWhatIsWanted) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::measured_run_test

@@ -17,7 +17,7 @@
 #include "solver/stress.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::mechanics_test {
 namespace {
 
 using fixtures::Box;
@@ -429,4 +429,4 @@ TEST(Materials, WithoutSenseAreRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::mechanics_test

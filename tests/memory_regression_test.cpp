@@ -13,7 +13,7 @@
 #include "base/random.hpp"
 #include "compensation/predictors/score.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::memory_regression_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -259,4 +259,4 @@ TEST(MeasuredMachine, IsPredictedBetterThanByPlainRidgeOnHoursNotFittedOn) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::memory_regression_test

@@ -7,7 +7,7 @@
 #include "tests/beside_records.hpp"
 #include "tests/column_and_head.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::missing_paths_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -177,4 +177,4 @@ TEST(AWrittenGradient, ThatIsFarOffIsFound) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::missing_paths_test

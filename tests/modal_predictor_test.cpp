@@ -14,7 +14,7 @@
 #include "tests/fixtures.hpp"
 #include "tests/two_blocks.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::modal_predictor_test {
 namespace {
 
 TEST(ModalPredictor, FreezesFilmsInTheSteadyStateOfTheTypicalDrive) {
@@ -136,4 +136,4 @@ TEST(FixedExchanges, KeepTimeConstantsAtAllSpeeds) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::modal_predictor_test

@@ -12,7 +12,7 @@
 
 #include "solver/propagator.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::model_factors_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -361,4 +361,4 @@ TEST(ModelFactors, RefuseWhatMatricesAloneCannotSay) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::model_factors_test

@@ -14,7 +14,7 @@
 #include "solver/stiffness_assembly.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::multigrid_test {
 namespace {
 
 Eigen::VectorXd random_vector(Eigen::Index n, unsigned seed) {
@@ -287,4 +287,4 @@ TEST(ElasticityByMultigrid, IsTakenForManyUnknownsAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::multigrid_test

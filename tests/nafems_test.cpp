@@ -9,7 +9,7 @@
 #include "solver/heat_assembly.hpp"
 #include "tests/heat_runs.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::nafems_test {
 namespace {
 
 using fixtures::film;
@@ -276,4 +276,4 @@ TEST_P(NafemsOnEachCell, CornerOfNafemsT4LimitsTheL2ErrorToSecondOrder) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::nafems_test

@@ -8,7 +8,7 @@
 #include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::nc_correction_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -310,4 +310,4 @@ TEST(CorrectedProgram, WantsAnAllowedPlace) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::nc_correction_test

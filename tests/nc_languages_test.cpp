@@ -11,7 +11,7 @@
 #include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::nc_languages_test {
 namespace {
 
 using ::testing::AllOf;
@@ -486,4 +486,4 @@ TEST(NcLanguages, KnowWhereNoLineMayStand) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::nc_languages_test

@@ -11,7 +11,7 @@
 #include "nc/sections.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::nc_program_test {
 namespace {
 
 using ::testing::AllOf;
@@ -310,4 +310,4 @@ TEST(Merging, MakesMeansOfFeedAndPower) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::nc_program_test

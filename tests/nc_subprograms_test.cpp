@@ -12,7 +12,7 @@
 #include "tests/rs274.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::nc_subprograms_test {
 namespace {
 
 using ::testing::AllOf;
@@ -331,4 +331,4 @@ TEST(CorrectionsOnLinuxCnc, RefuseAG92OfAnAxisThatHasNotTakenThem) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::nc_subprograms_test

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::noise_model_test {
 namespace {
 
 std::vector<double> minutes(int n) {
@@ -178,4 +178,4 @@ TEST(EstimateNoise, IsNeverBelowItsFloor) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::noise_model_test

@@ -15,7 +15,7 @@
 #include "tests/effect_list.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::nonlinear_test {
 namespace {
 
 using fixtures::flow;
@@ -324,4 +324,4 @@ TEST(Linearised, KeepsTheHeatCapacityOfItsTemperature) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::nonlinear_test

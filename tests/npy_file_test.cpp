@@ -8,7 +8,7 @@
 #include "base/errors.hpp"
 #include "tests/numpy.hpp"
 
-namespace driftwright {
+namespace driftwright::npy_file_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -126,4 +126,4 @@ for name, want in [('d', a), ('f', a.astype(np.float32)), ('i', a.astype(np.int3
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::npy_file_test

@@ -14,7 +14,7 @@
 #include "solver/propagator.hpp"
 #include "tests/three_parts.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::observer_test {
 namespace {
 
 using fixtures::kWork;
@@ -398,4 +398,4 @@ TEST(Scattered, MultipliesHeatAndFilmsAndIsTheSameForASeed) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::observer_test

@@ -9,7 +9,7 @@
 
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::other_duty_cycles_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -90,4 +90,4 @@ TEST(OtherDutyCycles, DoNotHoldBackWhatExplainsAll) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::other_duty_cycles_test

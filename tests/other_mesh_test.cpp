@@ -13,7 +13,7 @@
 #include "tests/column_and_head.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::studies {
+namespace driftwright::studies::other_mesh_test {
 namespace {
 
 [[maybe_unused]] const bool kOwnStore =
@@ -143,4 +143,4 @@ TEST(MeasuredTwin, OfAMeshFromAFileSaysThatThereIsNoSecondOne) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::other_mesh_test

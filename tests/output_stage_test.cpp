@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace driftwright::follow {
+namespace driftwright::follow::output_stage_test {
 namespace {
 
 constexpr OutputSettings kSettings{.most_rate_um_s = 2.0, .hold_s = 30.0, .fade_s = 100.0};
@@ -49,4 +49,4 @@ TEST(OutputStage, OneLongWaitIsManyShortOnes) {
 }
 
 }  // namespace
-}  // namespace driftwright::follow
+}  // namespace driftwright::follow::output_stage_test

@@ -12,7 +12,7 @@
 #include "solver/heat_assembly.hpp"
 #include "tests/heat_runs.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::overshoot_test {
 namespace {
 
 using fixtures::constant;
@@ -241,4 +241,4 @@ TEST(OvershootWatch, KeepsTheWorstOfEachJumpAndKnowsTheBounds) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::overshoot_test

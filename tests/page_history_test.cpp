@@ -12,7 +12,7 @@
 #include "base/errors.hpp"
 #include "follow/page_server.hpp"
 
-namespace driftwright::follow {
+namespace driftwright::follow::page_history_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -141,4 +141,4 @@ TEST(PageServer, ListensBeyondLoopbackWithATokenAlone) {
 }
 
 }  // namespace
-}  // namespace driftwright::follow
+}  // namespace driftwright::follow::page_history_test

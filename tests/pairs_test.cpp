@@ -8,7 +8,7 @@
 
 #include "base/random.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::pairs_test {
 namespace {
 
 constexpr Eigen::Index kRows = 400;
@@ -83,4 +83,4 @@ TEST(Pairs, HaveBothWithinTheirRange) {  // where b would have to be negative th
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::pairs_test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace driftwright {
+namespace driftwright::parallel_test {
 namespace {
 
 TEST(ForEachIndex, DoesEachOnceAndThrowsTheFirstFailureByIndex) {
@@ -65,4 +65,4 @@ TEST(ParallelFor, LeavesOutWhatHasNotBegunOnceAnEndIsWanted) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::parallel_test

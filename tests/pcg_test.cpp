@@ -9,7 +9,7 @@
 #include "solver/multigrid.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::pcg_test {
 namespace {
 
 /// M + 60 s K of a 0.1 m cube of steel with a film: what a step of the integrator solves.
@@ -157,4 +157,4 @@ TEST(Pcg, WithMultigridFindsTheSameInFewerIterationsAndConservesHeat) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::pcg_test

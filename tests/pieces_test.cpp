@@ -8,7 +8,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright {
+namespace driftwright::pieces_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -62,4 +62,4 @@ TEST(Pieces, AreWorkedOutOnceAndFoundAgain) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::pieces_test

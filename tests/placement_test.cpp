@@ -18,7 +18,7 @@
 #include "tests/kept_in_memory.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::studies {
+namespace driftwright::studies::placement_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -303,4 +303,4 @@ TEST(PlacementTests, OfEquallyGoodTheShortestIsEnough) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::placement_test

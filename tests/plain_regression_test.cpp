@@ -8,7 +8,7 @@
 
 #include "base/random.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::plain_regression_test {
 namespace {
 
 /// Ten hours of a cyclogram whose growth is 20 um at 2000 rpm behind a lag of 20 min, beside a thermometer of the same course, 0.1 um noise.
@@ -71,4 +71,4 @@ TEST(PlainRegression, TakesThermometersWhereTheyAreAskedFor) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::plain_regression_test

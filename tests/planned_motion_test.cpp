@@ -11,7 +11,7 @@
 #include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::planned_motion_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi, kRounding = 1e-12;
@@ -100,4 +100,4 @@ TEST(PlannedMotion, KeepsStepsAndMovesTogether) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::planned_motion_test

@@ -8,7 +8,7 @@
 
 #include "compensation/judging/correction.hpp"
 
-namespace driftwright::studies {
+namespace driftwright::studies::planner_test {
 namespace {
 
 using compensation::SchedulePolicy;
@@ -41,4 +41,4 @@ TEST(Planner, ThePolicyOfTheScenarioPlans) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::planner_test

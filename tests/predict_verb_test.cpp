@@ -10,7 +10,7 @@
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::predict_verb_test {
 namespace {
 
 using ::testing::AllOf;
@@ -272,4 +272,4 @@ TEST(Iso230Figures, StandInSummaryReportAndTerminal) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::predict_verb_test

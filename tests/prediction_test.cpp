@@ -7,7 +7,7 @@
 
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::studies {
+namespace driftwright::studies::prediction_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -47,4 +47,4 @@ TEST(NamedCyclogram, IsTheScenariosOrThatOfACsvNamedAsTheFile) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::prediction_test

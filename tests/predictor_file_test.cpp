@@ -15,7 +15,7 @@
 #include "tests/deployed_model.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::predictor_file_test {
 namespace {
 
 using namespace compensation;
@@ -228,4 +228,4 @@ TEST(PredictorFile, NamesOfAnyBytesComeBack) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::predictor_file_test

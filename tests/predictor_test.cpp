@@ -13,7 +13,7 @@
 #include "compensation/predictors/past_drift.hpp"
 #include "tests/sensor_records.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::predictor_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -161,4 +161,4 @@ TEST(Predictor, AnInputInAnotherUnitIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::predictor_test

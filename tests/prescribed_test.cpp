@@ -9,7 +9,7 @@
 #include "tests/effect_list.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::prescribed_test {
 namespace {
 
 using fixtures::flow;
@@ -146,4 +146,4 @@ TEST(FixedTemperature, RampOfABodyWhoseHeatCapacityIsNotThatOfTheReference) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::prescribed_test

@@ -11,7 +11,7 @@
 #include "compensation/predictors/regression.hpp"
 #include "tests/sensor_records.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::product_sums_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -163,4 +163,4 @@ TEST(ProductSums, KeepADeadSensorOutOfEverything) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::product_sums_test

@@ -9,7 +9,7 @@
 #include "studies/measured_twin.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::profile_interval_test {
 namespace {
 
 constexpr int kRows = 240;
@@ -85,4 +85,4 @@ TEST_F(ProfileInterval, OfAStepInAReadingReachesFromRowToRow) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::profile_interval_test

@@ -15,7 +15,7 @@
 #include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::program_schedule_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -360,4 +360,4 @@ TEST(ProgramSchedule, MovesTheAxisAgainstTheError) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::program_schedule_test

@@ -11,7 +11,7 @@
 #include "nc/program.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::program_series_test {
 namespace {
 
 /// Ten passes of a minute, each with a rapid at which z may change.
@@ -129,4 +129,4 @@ TEST(ProgramSeries, APlanLeavesOfAnotherDriftTheDifferenceAsWell) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::program_series_test

@@ -11,7 +11,7 @@
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::programme_study_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -186,4 +186,4 @@ TEST(ProgrammeMistakes, EndWithTwoAndWriteNothing) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::programme_study_test

@@ -8,7 +8,7 @@
 #include "base/errors.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::programme_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -164,4 +164,4 @@ TEST(TestCyclograms, HeatAndThenStand) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::programme_test

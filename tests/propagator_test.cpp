@@ -10,7 +10,7 @@
 #include "solver/transient.hpp"
 #include "tests/two_blocks.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::propagator_test {
 namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {3600, 3000}}};
@@ -233,4 +233,4 @@ TEST(Propagator, RefusesWhatIsNotLinear) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::propagator_test

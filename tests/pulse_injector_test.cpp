@@ -6,7 +6,7 @@
 #include "base/errors.hpp"
 #include "base/random.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::pulse_injector_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -204,4 +204,4 @@ TEST(PulseInjector, KeepsItsPropertiesOnRandomWalks) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::pulse_injector_test

@@ -8,7 +8,7 @@
 #include "mesh/topology.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::mesh {
+namespace driftwright::mesh::quality_test {
 namespace {
 
 Mesh one_tet(const Eigen::Matrix<double, 3, 4>& corners, const std::array<int, 4>& order) {
@@ -179,4 +179,4 @@ TEST(Areas, OfACylinderOfQuadraticHexahedraConverge) {
 }
 
 }  // namespace
-}  // namespace driftwright::mesh
+}  // namespace driftwright::mesh::quality_test

@@ -5,7 +5,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright {
+namespace driftwright::quantity_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -119,4 +119,4 @@ TEST(Quantity, TemperaturesNeedAUnitOfTemperature) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::quantity_test

@@ -5,7 +5,7 @@
 
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::read_axis_loop_test {
 namespace {
 
 using compensation::Counting;
@@ -99,4 +99,4 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{"  growth: {of: screw, sensor: t1, expansion: 1e-5 1/K, at: 1 m, on: 2}\n", "unknown key 'on'"}));
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::read_axis_loop_test

@@ -12,7 +12,7 @@
 #include "scenarios/reader/recorded_run.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::read_cyclogram_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -267,4 +267,4 @@ TEST(ToRecord, CarriesFeedsAndCuttingPowerWhereTheCyclogramUsesThem) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::read_cyclogram_test

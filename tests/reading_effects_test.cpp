@@ -9,7 +9,7 @@
 #include "effects/effect.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::effects {
+namespace driftwright::effects::reading_effects_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -279,4 +279,4 @@ INSTANTIATE_TEST_SUITE_P(
                       Bad{"{type: scale_expansion, displacement: z}", "`factor`, `lag` or both"}));
 
 }  // namespace
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::reading_effects_test

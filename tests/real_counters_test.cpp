@@ -11,7 +11,7 @@
 #include "tests/inject_filter.hpp"
 #include "tests/one_hal.hpp"
 
-namespace driftwright {
+namespace driftwright::real_counters_test {
 namespace {
 
 /// Out and back, turns at all four states, corrections forward and backward; the last step is forward.
@@ -148,4 +148,4 @@ TEST(RealCounters, SigrokReadsTheSameCountsBeforeAndAfter) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::real_counters_test

@@ -6,7 +6,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright::studies {
+namespace driftwright::studies::record_comparison_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -53,4 +53,4 @@ TEST(CompareRecords, ThatShareNothingAreRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::record_comparison_test

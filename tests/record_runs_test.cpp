@@ -15,7 +15,7 @@
 #include "scenarios/reader/recorded_run.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::record_runs_test {
 namespace {
 
 using compensation::ObservedRun;
@@ -221,4 +221,4 @@ TEST(ObservedRun, RunsOfOneHistoryAreOneRunThatKnowsTheirDriftAlone) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::record_runs_test

@@ -13,7 +13,7 @@
 #include "tests/sensor_records.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::studies {
+namespace driftwright::studies::record_study_test {
 namespace {
 
 using ::testing::AllOf;
@@ -115,4 +115,4 @@ TEST(SensorWarnings, NameExchangedSensorsAndTheirRecord) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::record_study_test

@@ -8,7 +8,7 @@
 #include "base/errors.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::record_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -79,4 +79,4 @@ TEST(RecordCsv, RefusesAMissingFile) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::record_test

@@ -17,7 +17,7 @@
 #include "tests/lumped_records.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::recorded_columns_test {
 namespace {
 
 using ::testing::AllOf;
@@ -273,4 +273,4 @@ TEST(RecordedColumns, AreWhatAResidualIsComparedWith) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::recorded_columns_test

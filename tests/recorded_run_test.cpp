@@ -7,7 +7,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::recorded_run_test {
 namespace {
 
 using ::testing::AllOf;
@@ -146,4 +146,4 @@ TEST(RecordedRun, RefusesStrictlyWhatItSaysLeniently) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::recorded_run_test

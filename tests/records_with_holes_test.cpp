@@ -8,7 +8,7 @@
 
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::records_with_holes_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -116,4 +116,4 @@ TEST(ARecordWithAHole, IsNoneOfRowsThatAreFurtherApartFromATimeOn) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::records_with_holes_test

@@ -15,7 +15,7 @@
 #include "tests/column_and_head.hpp"
 #include "tests/heat_runs.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::reduced_machine_test {
 namespace {
 
 using fixtures::ColumnAndHead;
@@ -350,4 +350,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& one) { return std::string(one.param.first); });
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::reduced_machine_test

@@ -13,7 +13,7 @@
 #include "tests/column_and_head.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::reduced_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -246,4 +246,4 @@ collect: [t_head.end, z.end]
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::reduced_run_test

@@ -15,7 +15,7 @@
 #include "tests/heat_runs.hpp"
 #include "tests/two_blocks.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::reduced_transient_test {
 namespace {
 
 const Cyclogram kCycle{.name = "cycle", .sections = {{1800, 2000}, {600, 0}, {1200, 500}, {1800, 3000}}};
@@ -236,4 +236,4 @@ TEST(ReducedTransient, StopsAtTemperaturesThatNoMachineHas) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::reduced_transient_test

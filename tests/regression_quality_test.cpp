@@ -10,7 +10,7 @@
 #include "compensation/sensors/product_sums.hpp"
 #include "tests/sensor_records.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::regression_quality_test {
 namespace {
 
 using Real = __float128;
@@ -294,4 +294,4 @@ TEST(NearDuplicates, WithoutARowInCommonThereAreNone) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::regression_quality_test

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::residual_structure_test {
 namespace {
 
 /// Eight hours, a row a minute, the speed changing every 40 min, an ambient that swings once in five hours.
@@ -113,4 +113,4 @@ TEST(ResidualStructure, WhatDoesNotChangeIsLikeNothing) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::residual_structure_test

@@ -13,7 +13,7 @@
 #include "base/errors.hpp"
 #include "output/json_text.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::results_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -217,4 +217,4 @@ TEST(JsonText, RoundsToSixDigitsAndWritesNanAsNull) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::results_folder_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::rivals_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -63,4 +63,4 @@ TEST(Odds, OfWhatSaysTheSameInOtherWordsTakeNothingAway) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::rivals_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace driftwright::follow {
+namespace driftwright::follow::row_guard_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -101,4 +101,4 @@ TEST(RowGuard, ValuesThatNoMachineHasAreMissing) {
 }
 
 }  // namespace
-}  // namespace driftwright::follow
+}  // namespace driftwright::follow::row_guard_test

@@ -12,7 +12,7 @@
 #include "base/errors.hpp"
 #include "scenarios/reader/read_columns.hpp"
 
-namespace driftwright::follow {
+namespace driftwright::follow::row_text_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -87,4 +87,4 @@ TEST(RowText, AHeaderThatNobodyCanReadIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::follow
+}  // namespace driftwright::follow::row_text_test

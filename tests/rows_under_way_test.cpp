@@ -9,7 +9,7 @@
 #include "base/file_bytes.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::rows_under_way_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -114,4 +114,4 @@ TEST(RemoveRows, SparesWhatIsWrittenToAndWhatIsNotOurs) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::rows_under_way_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::run_up_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -59,4 +59,4 @@ TEST(RunUp, IsNotFoundWhereClocksOrChannelsDiffer) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::run_up_test

@@ -12,7 +12,7 @@
 #include "solver/model_factors.hpp"
 #include "solver/propagator.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::scaled_modes_test {
 namespace {
 
 constexpr double kHeat = 1.2, kFilms = 0.85;  // what tests know and the model does not
@@ -155,4 +155,4 @@ TEST(ScaledModes, NameAChannelThatTheModelHasNot) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::scaled_modes_test

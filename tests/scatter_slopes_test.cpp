@@ -12,7 +12,7 @@
 #include "studies/measured_twin.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::scatter_slopes_test {
 namespace {
 
 constexpr const char* kScenario = R"(name: two_bodies
@@ -132,4 +132,4 @@ TEST(ScatterSlopes, SeeNothingOfTheScaleOfAllHeatsAndConductances) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::scatter_slopes_test

@@ -7,7 +7,7 @@
 
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::scene_test {
 namespace {
 
 using ::testing::DoubleEq;
@@ -44,4 +44,4 @@ TEST(SpeedSteps, AreTheSixWidestOfMany) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::scene_test

@@ -14,7 +14,7 @@
 #include "base/errors.hpp"
 #include "compensation/sensors/interpolate.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::schedule_policy_test {
 namespace {
 
 using ::testing::Each;
@@ -290,4 +290,4 @@ TEST(SchedulePolicies, RefuseATolerancesThatIsNotPositiveAndADriftWithoutValue) 
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::schedule_policy_test

@@ -11,7 +11,7 @@
 #include "compensation/schedule/schedule_policy.hpp"
 #include "compensation/sensors/interpolate.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::schedule_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -199,4 +199,4 @@ TEST(Schedule, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::schedule_test

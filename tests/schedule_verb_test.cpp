@@ -14,7 +14,7 @@
 #include "tests/command_line.hpp"
 #include "tests/one_hal.hpp"
 
-namespace driftwright {
+namespace driftwright::schedule_verb_test {
 namespace {
 
 using ::testing::AllOf;
@@ -492,4 +492,4 @@ TEST(Fp3Part, KeepsTheToleranceOfThePaper) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::schedule_verb_test

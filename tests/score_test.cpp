@@ -7,7 +7,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::score_test {
 namespace {
 
 using ::testing::Each;
@@ -72,4 +72,4 @@ TEST(Baselines, RefuseTrainingWithoutData) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::score_test

@@ -14,7 +14,7 @@
 #include "solver/transient.hpp"
 #include "tests/column_and_head.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::semi_closed_axis_test {
 namespace {
 
 using fixtures::ColumnAndHead;
@@ -133,4 +133,4 @@ TEST(SemiClosedAxis, HalfADisplacementOrAnUnknownBodyIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::semi_closed_axis_test

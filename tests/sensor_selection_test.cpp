@@ -11,7 +11,7 @@
 #include "base/errors.hpp"
 #include "tests/sensor_records.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::sensor_selection_test {
 namespace {
 
 using ::testing::AnyOf;
@@ -207,4 +207,4 @@ TEST(Selectors, GiveTheSameInAnyOrderOfTheCandidates) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::sensor_selection_test

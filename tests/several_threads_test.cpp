@@ -12,7 +12,7 @@
 #include "solver/elasticity.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright {
+namespace driftwright::several_threads_test {
 namespace {
 
 using Task = std::function<std::vector<double>()>;
@@ -105,4 +105,4 @@ TEST(SeveralThreads, MeshAndFactoriseBesideEachOther) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::several_threads_test

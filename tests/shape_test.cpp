@@ -25,7 +25,7 @@
 
 #include "mesh/topology.hpp"
 
-namespace driftwright::mesh {
+namespace driftwright::mesh::shape_test {
 namespace {
 
 constexpr double kRounding = 1e-14;  // sums of ten products of numbers of size one
@@ -322,4 +322,4 @@ TEST(Jacobian, OfAStretchedAndTurnedCellIsItsVolumeAndAreaRatio) {
 }
 
 }  // namespace
-}  // namespace driftwright::mesh
+}  // namespace driftwright::mesh::shape_test

@@ -9,7 +9,7 @@
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::shipped_scenarios_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -89,4 +89,4 @@ TEST(Mesh, OfUnbearableFinenessIsRefusedBeforeItIsMade) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::shipped_scenarios_test

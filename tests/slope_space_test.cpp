@@ -8,7 +8,7 @@
 #include "solver/heat_assembly.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::slope_space_test {
 namespace {
 
 constexpr int kHeld = 6;  // slopes that a space keeps
@@ -132,4 +132,4 @@ TEST(SlopeSpace, GivesTheSameBitsOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::slope_space_test

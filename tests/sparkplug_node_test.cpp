@@ -7,7 +7,7 @@
 
 #include "sparkplug_b.pb.h"
 
-namespace driftwright::follow {
+namespace driftwright::follow::sparkplug_node_test {
 namespace {
 
 using ::testing::Contains;
@@ -112,4 +112,4 @@ TEST(SparkplugNode, WhatIsSaidBehindADeathIsOfNoUse) {
 }
 
 }  // namespace
-}  // namespace driftwright::follow
+}  // namespace driftwright::follow::sparkplug_node_test

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::strategy_matrix_test {
 namespace {
 
 using ::testing::AllOf;
@@ -49,4 +49,4 @@ TEST(StrategyMatrix, MoreThanNothingInsideTheToleranceIsSaidAndSafe) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::strategy_matrix_test

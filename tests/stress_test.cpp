@@ -13,7 +13,7 @@
 #include "mesh/quality.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::stress_test {
 namespace {
 
 using mesh::CellShape;
@@ -259,4 +259,4 @@ INSTANTIATE_TEST_SUITE_P(
                       CylinderOrder{CellShape::kHex20, 3.0, 6.1e-4}, CylinderOrder{CellShape::kWedge15, 3.0, 7.6e-4}));
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::stress_test

@@ -8,7 +8,7 @@
 
 #include "base/random.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::stretch_choice_test {
 namespace {
 
 constexpr int kStretches = 12;
@@ -201,4 +201,4 @@ TEST(WorkStretches, AreToldByWhatRestsInAnyRecord) {  // one that works all alon
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::stretch_choice_test

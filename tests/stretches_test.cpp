@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace driftwright::solver {
+namespace driftwright::solver::stretches_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -34,4 +34,4 @@ TEST(LawChanges, SeeAJumpThatLiesInTheFirstStretchesOfARunTakenUpLater) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::stretches_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace driftwright::output {
+namespace driftwright::output::surface_view_test {
 namespace {
 
 /// A unit cube, each face in the colour of its direction and a part of its own.
@@ -115,4 +115,4 @@ TEST(Inferno, BrightensAllTheWay) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::surface_view_test

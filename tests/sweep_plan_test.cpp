@@ -9,7 +9,7 @@
 
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::sweep_plan_test {
 namespace {
 
 using ::testing::AllOf;
@@ -308,4 +308,4 @@ TEST(BadStudyFile, ScenarioMustBeThereAndHaveAMachine) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::sweep_plan_test

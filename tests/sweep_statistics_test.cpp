@@ -9,7 +9,7 @@
 #include "studies/sweep_member.hpp"
 #include "studies/sweep_run.hpp"
 
-namespace driftwright::studies {
+namespace driftwright::studies::sweep_statistics_test {
 namespace {
 
 using scenarios::Scalar;
@@ -48,4 +48,4 @@ TEST(TableRow, SaysWhyAMemberFailedOnOneLine) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::sweep_statistics_test

@@ -15,7 +15,7 @@
 #include "base/file_bytes.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -431,4 +431,4 @@ TEST(LumpedSweep, GivesWhatItsHeaderSays) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::sweep_test

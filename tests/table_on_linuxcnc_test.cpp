@@ -13,7 +13,7 @@
 #include "tests/one_hal.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::table_on_linuxcnc_test {
 namespace {
 
 constexpr double kRadius_mm = 3.0, kFeed_mm_min = 120.0;  // 2 um a servo cycle
@@ -256,4 +256,4 @@ TEST(TableOnLinuxcnc, ReadsBackTheFrameOfItsOwnProbingAndKeepsTheOldOneWhereItRe
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::table_on_linuxcnc_test

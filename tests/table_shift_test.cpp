@@ -12,7 +12,7 @@
 #include "compensation/frames/even_growth.hpp"
 #include "compensation/frames/minimax_frame.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::table_shift_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -289,4 +289,4 @@ TEST(AmbientModels, FindLagsThatAreThere) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::table_shift_test

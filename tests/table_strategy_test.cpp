@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace driftwright::studies {
+namespace driftwright::studies::table_strategy_test {
 namespace {
 
 struct Case {
@@ -81,4 +81,4 @@ TEST(WrongExpansions, AreOthersEachTimeAndTheSameAgain) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::table_strategy_test

@@ -7,7 +7,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::temperature_ambiguity_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -121,4 +121,4 @@ TEST(TemperatureAmbiguity, RefusesBadInput) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::temperature_ambiguity_test

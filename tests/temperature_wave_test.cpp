@@ -9,7 +9,7 @@
 #include "solver/heat_assembly.hpp"
 #include "tests/heat_runs.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::temperature_wave_test {
 namespace {
 
 using fixtures::text;
@@ -70,4 +70,4 @@ TEST(PeriodicHalfSpace, AmplitudeAndPhaseFallWithDepthAsTheComplexWave) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::temperature_wave_test

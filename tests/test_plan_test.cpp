@@ -12,7 +12,7 @@
 #include "tests/kept_in_memory.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::studies {
+namespace driftwright::studies::test_plan_test {
 namespace {
 
 using diagnosis::Question;
@@ -306,4 +306,4 @@ TEST(TestPlan, IsRefusedWhereNothingDrivesOrNothingIsRead) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::test_plan_test

@@ -9,7 +9,7 @@
 #include "base/errors.hpp"
 #include "tests/two_blocks.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::thermal_modes_test {
 namespace {
 
 TEST(ThermalModes, OfASlabHaveTheTimeConstantsOfTheTranscendentalRoots) {
@@ -81,4 +81,4 @@ TEST(SteadyResponses, AreTheSteadyTemperaturesPerWattAndPerKelvin) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::thermal_modes_test

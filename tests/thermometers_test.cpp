@@ -8,7 +8,7 @@
 #include "base/errors.hpp"
 #include "compensation/predictors/score.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::thermometers_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -93,4 +93,4 @@ TEST(Sampling, IsLinearBetweenRowsAndHoldsTheSpeed) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::thermometers_test

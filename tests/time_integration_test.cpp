@@ -10,7 +10,7 @@
 #include "solver/heat_assembly.hpp"
 #include "tests/heat_runs.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::time_integration_test {
 namespace {
 
 using fixtures::constant;
@@ -232,4 +232,4 @@ TEST(NonlinearSystem, FrictionThatThinsWithHeatFollowsTheToleranceAgainstItsClos
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::time_integration_test

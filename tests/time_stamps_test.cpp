@@ -8,7 +8,7 @@
 
 #include "base/errors.hpp"
 
-namespace driftwright {
+namespace driftwright::time_stamps_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -122,4 +122,4 @@ TEST(TimeStamps, RefuseWhatTheFormatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::time_stamps_test

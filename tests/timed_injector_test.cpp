@@ -10,7 +10,7 @@
 #include "base/random.hpp"
 #include "compensation/injector/encoder.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::timed_injector_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -385,4 +385,4 @@ TEST(Feedback, AMotorEncoderMissesTheScrewsGrowthAndAScaleItsOwn) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::timed_injector_test

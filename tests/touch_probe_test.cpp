@@ -10,7 +10,7 @@
 #include "base/errors.hpp"
 #include "compensation/frames/probe_study.hpp"
 
-namespace driftwright::compensation {
+namespace driftwright::compensation::touch_probe_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -196,4 +196,4 @@ TEST(Touch, RefusesWhatCannotTrigger) {
 }
 
 }  // namespace
-}  // namespace driftwright::compensation
+}  // namespace driftwright::compensation::touch_probe_test

@@ -15,7 +15,7 @@
 #include "tests/effect_list.hpp"
 #include "tests/fixtures.hpp"
 
-namespace driftwright::solver {
+namespace driftwright::solver::transient_test {
 namespace {
 
 using mesh::CellShape;
@@ -284,4 +284,4 @@ TEST(Simulate, NotANumberIsASolveError) {
 }
 
 }  // namespace
-}  // namespace driftwright::solver
+}  // namespace driftwright::solver::transient_test

@@ -9,7 +9,7 @@
 
 #include "effects/bearing_formulas.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::twin_law_test {
 namespace {
 
 using Law = std::function<double(const Drive&, const std::vector<double>&)>;
@@ -103,4 +103,4 @@ TEST(TwinLaw, ThreeTemperaturesTogetherAreNoTable) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::twin_law_test

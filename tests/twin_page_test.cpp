@@ -10,7 +10,7 @@
 
 #include "tests/column_and_head.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::twin_page_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -103,4 +103,4 @@ TEST(TwinPage, NamesAreTextWhateverTheyHold) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::twin_page_test

@@ -14,7 +14,7 @@
 #include "base/record.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::validate_records_test {
 namespace {
 
 using ::testing::AllOf;
@@ -521,4 +521,4 @@ TEST_F(ValidateRecords, ReadsLoggersFilesWithEveryVerb) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::validate_records_test

@@ -14,7 +14,7 @@
 #include "base/csv_row.hpp"
 #include "tests/command_line.hpp"
 
-namespace driftwright {
+namespace driftwright::validation_study_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -223,4 +223,4 @@ TEST_F(ValidationStudy, WhatCannotBeCorrectedIsRefused) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::validation_study_test

@@ -10,7 +10,7 @@
 #include "base/errors.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::scenarios {
+namespace driftwright::scenarios::validation_test {
 namespace {
 
 using ::testing::AllOf;
@@ -153,4 +153,4 @@ TEST(AmbientIn, IsTheScenariosWithOffsetAndASineOfADay) {
 }
 
 }  // namespace
-}  // namespace driftwright::scenarios
+}  // namespace driftwright::scenarios::validation_test

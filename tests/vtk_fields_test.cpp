@@ -23,7 +23,7 @@
 #include "mesh/topology.hpp"
 #include "output/field_series.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::vtk_fields_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -249,4 +249,4 @@ TEST_F(VtkFieldsTest, MeshCarriesQualityPerCell) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::vtk_fields_test

@@ -14,7 +14,7 @@
 #include "studies/warm_up_program.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::studies {
+namespace driftwright::studies::warm_up_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -332,4 +332,4 @@ TEST(WarmUp, IsWrittenAsAProgram) {
 }
 
 }  // namespace
-}  // namespace driftwright::studies
+}  // namespace driftwright::studies::warm_up_test

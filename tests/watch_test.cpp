@@ -11,7 +11,7 @@
 #include "tests/temporary_file.hpp"
 #include "tests/three_parts.hpp"
 
-namespace driftwright::follow {
+namespace driftwright::follow::watch_test {
 namespace {
 
 using ::testing::AllOf;
@@ -129,4 +129,4 @@ TEST(Watch, ThresholdsWantAMachineForADay) {
 }
 
 }  // namespace
-}  // namespace driftwright::follow
+}  // namespace driftwright::follow::watch_test

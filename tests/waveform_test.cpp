@@ -10,7 +10,7 @@
 #include "diagnosis/extended_scenario.hpp"
 #include "tests/lumped_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::waveform_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -198,4 +198,4 @@ TEST(AShape, IsToldFromOthers) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::waveform_test

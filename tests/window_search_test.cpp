@@ -10,7 +10,7 @@
 
 #include "base/random.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::window_search_test {
 namespace {
 
 using ::testing::SizeIs;
@@ -156,4 +156,4 @@ TEST(WindowSearch, APositiveSizeIsKept) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::window_search_test

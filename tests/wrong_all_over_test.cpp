@@ -8,7 +8,7 @@
 
 #include "tests/beside_records.hpp"
 
-namespace driftwright::diagnosis {
+namespace driftwright::diagnosis::wrong_all_over_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -64,4 +64,4 @@ TEST(NumbersFarOff, SayThatTheModelIsWrongAllOverWhereTheyAreMany) {
 }
 
 }  // namespace
-}  // namespace driftwright::diagnosis
+}  // namespace driftwright::diagnosis::wrong_all_over_test

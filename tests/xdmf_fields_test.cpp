@@ -19,7 +19,7 @@
 #include "mesh/topology.hpp"
 #include "output/hdf5_file.hpp"
 
-namespace driftwright::output {
+namespace driftwright::output::xdmf_fields_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -343,4 +343,4 @@ TEST_F(XdmfFieldsTest, LongArraysAreSplitIntoChunksAndRowsMustBeWhole) {
 }
 
 }  // namespace
-}  // namespace driftwright::output
+}  // namespace driftwright::output::xdmf_fields_test

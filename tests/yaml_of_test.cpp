@@ -9,7 +9,7 @@
 #include "effects/effect.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright::effects {
+namespace driftwright::effects::yaml_of_test {
 namespace {
 
 Effect read(const std::string& text) {
@@ -116,4 +116,4 @@ TEST(YamlOf, LeavesOutWhatStandsAtItsFallbackAndKeepsUnits) {
 }
 
 }  // namespace
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::yaml_of_test

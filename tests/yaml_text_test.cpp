@@ -8,7 +8,7 @@
 #include "base/errors.hpp"
 #include "tests/temporary_file.hpp"
 
-namespace driftwright {
+namespace driftwright::yaml_text_test {
 namespace {
 
 YamlText yaml(const std::string& text) {
@@ -82,4 +82,4 @@ TEST(YamlText, AnEntryOfSeveralLinesBecomesAComment) {
 }
 
 }  // namespace
-}  // namespace driftwright
+}  // namespace driftwright::yaml_text_test

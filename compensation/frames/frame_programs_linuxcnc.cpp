@@ -44,7 +44,7 @@ std::string ring_touches(const FrameProgram& p, const ProgramRing& ring, std::si
 }
 
 // The scale acts on the joint, after all offsets: what stands in G59.3 is the shift before it, turned and moved as G54 is.
-std::string therm_frame(const FrameProgram& p) {
+std::string linuxcnc_therm_frame(const FrameProgram& p) {
   const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
   std::string text = fmt::format("(Driftwright: rings by G38.3, the thermal frame into G59.3)\n({})\n({})\n",
                                  last_numbers(p), origin_words(p));
@@ -101,7 +101,7 @@ std::string joint_trims(const FrameProgram& p) {
 }  // namespace
 
 std::vector<ProgramFile> linuxcnc_frame(const FrameProgram& p) {
-  return {{"linuxcnc/thermframe.ngc", therm_frame(p)}, {"linuxcnc/joint_0.comp", joint_trims(p)}};
+  return {{"linuxcnc/thermframe.ngc", linuxcnc_therm_frame(p)}, {"linuxcnc/joint_0.comp", joint_trims(p)}};
 }
 
 }  // namespace driftwright::compensation

@@ -8,7 +8,7 @@ namespace {
 
 // Names start with TF_: X1, Y1, Z1, I and TURN are taken by axes, interpolation and helices. No SAVE, which would take the new frame
 // away at the return; RINGMEAS has it, so that no G function of the caller changes.
-std::string therm_frame(const FrameProgram& p) {
+std::string siemens_therm_frame(const FrameProgram& p) {
   const auto &a = p.rings[0].at_m, &b = p.rings[1].at_m;
   std::string text = fmt::format("PROC THERMFRAME(VAR INT TF_STATUS) DISPLOF\n; {}\n; {}\n; {}\n", p.made_by,
                                  last_numbers(p), origin_words(p));
@@ -148,7 +148,7 @@ std::string setting_data(const FrameProgram& p) {
 }  // namespace
 
 std::vector<ProgramFile> siemens_frame(const FrameProgram& p) {
-  return {{"siemens/THERMFRAME.SPF", therm_frame(p)},
+  return {{"siemens/THERMFRAME.SPF", siemens_therm_frame(p)},
           {"siemens/RINGMEAS.SPF", ring_measurement(p)},
           {"siemens/THERMDATA.SPF", setting_data(p)}};
 }

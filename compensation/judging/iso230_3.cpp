@@ -9,7 +9,6 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kHour_s = 3600.0;
 constexpr double kRounding = 1e-9;  // of a time: rows are sums of intervals
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 

@@ -8,6 +8,8 @@
 
 namespace driftwright::compensation {
 
+inline constexpr double kHour_s = 3600.0;
+
 /// Of one displacement or tilt X. Ranges are maximum minus minimum, so they do not depend on where the gauge was set to zero. NaN
 /// where the channel has no reading in that time.
 struct Iso230Channel {

@@ -16,7 +16,6 @@ namespace {
 
 using namespace compensation;
 
-constexpr double kHour_s = 3600.0;
 
 /// From row `first` on.
 double range_until(const std::vector<double>& time_s, const std::vector<double>& x, std::size_t first, double until_s) {

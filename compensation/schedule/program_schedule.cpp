@@ -12,7 +12,7 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kRounding_um = 1e-6;  // differences of interpolated values: far below any resolution
+constexpr double kInterpolation_um = 1e-6;  // differences of interpolated values: far below any resolution
 constexpr double kMostParts = 1000;    // of one block
 constexpr int kSplitCost = 6;
 
@@ -96,7 +96,7 @@ class AxisPlanner {
   }
 
   bool wants_parts(std::size_t cell) const {
-    if (std::abs(worst_um(cell)) > axis_.tolerance_um + kRounding_um) return true;
+    if (std::abs(worst_um(cell)) > axis_.tolerance_um + kInterpolation_um) return true;
     if (options_.policy == SchedulePolicy::kMinimal) return false;
     const double c = correction_um[cell], beyond_zero = c < 0.0 ? cells[cell].high_um - c : c - cells[cell].low_um;
     return c != 0.0 && beyond_zero > kPaperReach * axis_.tolerance_um;
@@ -218,7 +218,7 @@ class CourseWriter {
   }
 
   void note_without(std::size_t i, const NcStep& step, double worst_um, double duration_s) {
-    if (!(std::abs(worst_um) > axis_.tolerance_um + kRounding_um)) return;
+    if (!(std::abs(worst_um) > axis_.tolerance_um + kInterpolation_um)) return;
     if (!without) without = LongStretch{.first = i, .last = i, .residual_um = worst_um};
     without->last = i;
     without->duration_s += duration_s;
@@ -263,7 +263,7 @@ std::vector<LongStretch> long_stretches(const AxisPlanner& planner, const std::v
   std::vector<LongStretch> found;
   for (std::size_t cell = 0; cell < planner.cells.size(); ++cell) {
     const double worst_um = planner.worst_um(cell);
-    if (!(std::abs(worst_um) > tolerance_um + kRounding_um)) continue;
+    if (!(std::abs(worst_um) > tolerance_um + kInterpolation_um)) continue;
     const auto [first, last] = planner.steps_of(cell);
     LongStretch stretch{.first = first,
                         .last = last,

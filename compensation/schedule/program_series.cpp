@@ -7,14 +7,14 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kRounding_um = 1e-9;
+constexpr double kSameDrift_um = 1e-9;
 constexpr std::size_t kMostPoints = 40000;  // of one axis over all parts, which a picture cannot show any more
 constexpr std::size_t kFewestPoints = 200;  // of one part
 
 bool agree(const std::vector<ProgramAxis>& a, const std::vector<ProgramAxis>& b, double resolution_um) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (std::size_t k = 0; k < a[i].drift_um.size(); ++k) {
-      if (!(std::abs(a[i].drift_um[k] - b[i].drift_um[k]) <= resolution_um + kRounding_um)) return false;
+      if (!(std::abs(a[i].drift_um[k] - b[i].drift_um[k]) <= resolution_um + kSameDrift_um)) return false;
     }
   }
   return true;

@@ -14,14 +14,14 @@ namespace {
 
 constexpr double kNearZero = 0.05;     // of the span: kAutomatic divides by nothing smaller
 constexpr double kUndefined = 1.0e-9;  // of the span: nobody divides by anything smaller
-constexpr double kConstant = 1.0e-12;  // span over largest magnitude: rounding, not movement
+constexpr double kConstantSpan = 1.0e-12;  // span over largest magnitude: rounding, not movement
 
 double span_of(const Eigen::VectorXd& x) {
   return x.maxCoeff() - x.minCoeff();
 }
 
 bool is_constant(const Eigen::VectorXd& x) {
-  return span_of(x) <= kConstant * x.cwiseAbs().maxCoeff();
+  return span_of(x) <= kConstantSpan * x.cwiseAbs().maxCoeff();
 }
 
 bool is_temperature(const std::string& unit) {

@@ -11,7 +11,7 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr double kConstant = 1.0e-12;   // deviation over largest magnitude: rounding, not movement
+constexpr double kConstantDeviation = 1.0e-12;   // deviation over largest magnitude: rounding, not movement
 constexpr double kDependent = 1.0e-10;  // of a column's square left beside those before it
 constexpr double kMoves = 1.0e-10;      // variance in some rows, of that over all
 
@@ -51,7 +51,7 @@ ProductSums product_sums(std::span<const Record> records, const std::vector<std:
     const double magnitude = rows.values.col(j).cwiseAbs().maxCoeff();
     rows.values.col(j).array() -= sums.mean(j);
     const double deviation = rows.values.col(j).norm() / std::sqrt(static_cast<double>(n));
-    const bool is_constant = !(deviation > kConstant * magnitude);
+    const bool is_constant = !(deviation > kConstantDeviation * magnitude);
     if (j == m - 1 && is_constant) throw InputError(fmt::format("'{}' never changes; there is nothing to fit", target));
     if (j < m - 1) sums.is_constant[static_cast<std::size_t>(j)] = is_constant;
     if (is_constant) {

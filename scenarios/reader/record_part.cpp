@@ -12,7 +12,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-constexpr std::size_t kFewestRows = 3;
+constexpr std::size_t kFewestRowsOfPart = 3;
 
 double read_time_s(const std::string& text, const std::string& argument) {
   try {
@@ -60,9 +60,9 @@ std::pair<std::size_t, std::size_t> rows_of(const RecordPart& part, const Record
   if (part.from_s > last_s || (std::isfinite(part.until_s) && part.until_s > last_s + step_s))
     throw InputError(fmt::format("{}: the record is {} long", part.words, hours(last_s)));
   const std::size_t first = row(part.from_s), last = part.until_s >= last_s ? t.size() : row(part.until_s);
-  if (last < first + kFewestRows)
+  if (last < first + kFewestRowsOfPart)
     throw InputError(
-        fmt::format("{}: the part holds {} rows; {} at least are wanted", part.words, last - first, kFewestRows));
+        fmt::format("{}: the part holds {} rows; {} at least are wanted", part.words, last - first, kFewestRowsOfPart));
   return {first, last};
 }
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double kLeastRest_s = 600.0;
 constexpr double kStill = 0.01;          // of the top speed: the spindle stands
 constexpr std::size_t kMostRuns = 8;     // as many fits of each strategy decide what it leaves open
-constexpr std::size_t kFewestRows = 20;  // of a run
+constexpr std::size_t kFewestRowsOfRun = 20;  // of a run
 constexpr double kBack = 0.05, kBack_K = 0.2, kBack_um = 0.5;
 constexpr std::size_t kMeanRows = 5;  // what noise is taken out of
 
@@ -124,7 +124,7 @@ std::vector<RunRows> runs_between_rests(const CutRecord& cut, std::size_t first,
   for (const Rest& rest : by_length) {
     if (cuts.size() > kMostRuns) break;
     const bool leaves_rows = std::all_of(cuts.begin(), cuts.end(), [&](std::size_t c) {
-      return (c > rest.start ? c - rest.start : rest.start - c) >= kFewestRows;
+      return (c > rest.start ? c - rest.start : rest.start - c) >= kFewestRowsOfRun;
     });
     if (leaves_rows) cuts.push_back(rest.start);
   }

@@ -2,8 +2,7 @@
 
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::creeping_glue {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kGrowth, [channel = e.place, creep_m = 1e-6 * e["creep"]](Readings& r) {
@@ -25,9 +24,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind creeping_glue() {
+EffectKind kind() {
   return {.key = "creeping_glue",
           .title = "indicator whose glue creeps",
           .law = "u = u + creep sqrt(t / 1 h)",
@@ -38,4 +35,4 @@ EffectKind creeping_glue() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::creeping_glue

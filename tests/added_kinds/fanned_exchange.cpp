@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::fanned_exchange {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.exchanges.push_back(make_link(
@@ -23,9 +22,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind fanned_exchange() {
+EffectKind kind() {
   return {.key = "fanned_exchange",
           .title = "exchange with the ambient that a fan on the spindle makes",
           .law = "Q = conductance n / 1000 rpm (T - T_ambient)",
@@ -37,4 +34,4 @@ EffectKind fanned_exchange() {
           .exchange_finding = "fanned_exchange"};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::fanned_exchange

@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::humming_heat {
 
 void contribute(const Effect& e, HeatBalance& balance) {
   balance.heats.push_back({e.name(), e.body(), [power_W = e["power"]](const Inputs& u) {
@@ -23,9 +22,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind humming_heat() {
+EffectKind kind() {
   return {.key = "humming_heat",
           .title = "heat that is largest at 1000 rpm",
           .law = "P = power x (2 - x), x = n / 1000 rpm",
@@ -36,4 +33,4 @@ EffectKind humming_heat() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::humming_heat

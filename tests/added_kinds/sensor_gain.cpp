@@ -1,7 +1,6 @@
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::sensor_gain {
 
 void change_readings(const Effect& e, ReadingChain& chain) {
   chain.add(ReadingStage::kError,
@@ -21,9 +20,7 @@ std::vector<Doubt> doubts(const DoubtScene& s) {
   return list;
 }
 
-}  // namespace
-
-EffectKind sensor_gain() {
+EffectKind kind() {
   return {.key = "sensor_gain",
           .title = "sensor with a wrong gain about the reference temperature",
           .law = "reading - T_ref = gain (T - T_ref)",
@@ -34,4 +31,4 @@ EffectKind sensor_gain() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::sensor_gain

@@ -2,8 +2,7 @@
 
 #include "effects/doubt.hpp"
 
-namespace driftwright::effects {
-namespace {
+namespace driftwright::effects::slipping_belt {
 
 void change_drive(const Effect& e, DriveChange& change) {
   change.drive.push_back([slip_rpm = e["slip"]](const Cyclogram& recorded) {
@@ -24,9 +23,7 @@ std::vector<Doubt> doubts(const DoubtScene&) {
            .trial = 50.0}};
 }
 
-}  // namespace
-
-EffectKind slipping_belt() {
+EffectKind kind() {
   return {.key = "slipping_belt",
           .title = "belt that slips by as many turns at each speed",
           .law = "n = n_recorded - slip while it turns",
@@ -37,4 +34,4 @@ EffectKind slipping_belt() {
           .doubts = doubts};
 }
 
-}  // namespace driftwright::effects
+}  // namespace driftwright::effects::slipping_belt
