@@ -182,7 +182,7 @@ class TwoBodies {
   Eigen::Matrix2d v_, inverse_;
 };
 
-TEST(WarmUp, OfTwoBodiesIsTheShortestOfAllTriedOneByOne) {
+TEST(WarmUpAtLength, OfTwoBodiesIsTheShortestOfAllTriedOneByOne) {
   const WarmUpPlan plan = planned(kTwoBodies, {.tolerance_um = 3.0});
   ASSERT_TRUE(plan.constant.is_enough);
   ASSERT_TRUE(plan.staged.is_enough);
@@ -313,7 +313,7 @@ TEST(WarmUp, OfTheKneeMillIsWithinTwoPercentOfBruteForce) {
   expect_no_shorter_one("fp3_spindle", 12.0);
 }
 
-TEST(WarmUp, OfTheVerticalMillIsWithinTwoPercentOfBruteForce) {
+TEST(WarmUpAtLength, OfTheVerticalMillIsWithinTwoPercentOfBruteForce) {
   expect_no_shorter_one("cnc_mill_13", 20.0);
 }
 

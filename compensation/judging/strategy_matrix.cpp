@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/parallel.hpp"
+#include "compensation/judging/iso230_3.hpp"
 #include "compensation/predictors/drift_model.hpp"
 
 namespace driftwright::compensation {
